@@ -11,11 +11,10 @@ use super::log::Log;
 use super::meeting::{self, Met, meet};
 use super::orders::requests;
 use super::posed::posed;
-use super::told::Frame;
+use super::told::{self, Frame, Led};
 use crate::explain::names;
-use crate::model::Model;
+use crate::model::{Mode, Model};
 use crate::scene::Scene;
-use crate::scene::attached::mode;
 use crate::step::Status;
 use crate::step::event::{Event, Position};
 use crate::step::intervene::{Intervention, Refusal};
@@ -24,7 +23,7 @@ use crate::step::solver::{Lost, Offers, Posed, Solver};
 use crate::step::state::State;
 use std::sync::Arc;
 use std::sync::atomic::AtomicUsize;
-use stickslip_exchange::attach::message::{self, Ended, Hello, Id, Mode, Restore};
+use stickslip_exchange::attach::message::{self, Ended, Hello, Id, Restore};
 use stickslip_exchange::attach::{Answer, Request};
 
 /// A solver that is a program of its own.
@@ -41,9 +40,8 @@ pub struct Attached {
     places: Places<Kept>,
     /// The place at which the running solver is, with nothing changed there; `None` where that is not known.
     at: Option<u64>,
-    state: State,
-    event: Event,
-    monitors: Vec<f64>,
+    /// The present state, and the iteration that led to it.
+    now: Led,
     /// Iterations that were done again to come to the present place.
     again: usize,
     /// Whether it was started anew for that.
@@ -89,20 +87,12 @@ impl Attached {
             scene: told,
             offers,
         } = meet(&start, &log, &asks)?;
-        let scene = Scene::told(&offers.name, &told, offers.begins_with()).map_err(|error| {
-            Fault::Unfit {
-                message: "scene",
-                why: error.message,
-            }
-        })?;
-        let model = Arc::new(scene.model.clone());
-        let contacts = told.contacts.iter();
+        let (scene, ids, now) = told::start(&offers.name, &told, offers.begins_with())?;
         let mut attached = Attached {
-            ids: contacts.map(|contact| contact.id.clone()).collect(),
-            state: State::outside_start(&model),
-            event: Event::nothing_yet(&model),
+            ids,
+            now,
             start,
-            model,
+            model: Arc::new(scene.model.clone()),
             told,
             hello,
             offers,
@@ -111,7 +101,6 @@ impl Attached {
             asks,
             places: Places::new(Kept::default()),
             at: Some(0),
-            monitors: Vec::new(),
             again: 0,
             anew: false,
         };
@@ -332,7 +321,7 @@ impl Attached {
     /// The place of the present state.
     fn place(&self) -> Result<u64, Fault> {
         let known = |place: &u64| self.places.get(*place).is_some();
-        self.state.place().filter(known).ok_or(Fault::Unknown)
+        self.now.state.place().filter(known).ok_or(Fault::Unknown)
     }
 
     fn frame(&self) -> Frame<'_> {
@@ -346,10 +335,10 @@ impl Attached {
     /// One iteration from the present state.
     fn iterate(&mut self) -> Result<(), Fault> {
         self.go()?;
-        let (from, asked) = (self.place()?, self.state.asked().to_vec());
+        let (from, asked) = (self.place()?, self.now.state.asked().to_vec());
         self.change(&asked)?;
         let told = self.step_there()?;
-        let mut led = self.frame().led(&self.state, &told)?;
+        let mut led = self.frame().led(&self.now.state, &told)?;
         let kept = Kept::of(&told, led.event.position);
         let place = match self.places.follows(from, &asked) {
             Some(place) => {
@@ -364,14 +353,14 @@ impl Attached {
         if let Err(fault) = self.save(place) {
             self.log.noted(&fault.to_string());
         }
-        (self.state, self.event, self.monitors) = (led.state, led.event, led.monitors);
+        self.now = led;
         Ok(())
     }
 
     /// Asks for the frozen interface problem of the present state.
     fn ask_problem(&mut self) -> Result<Posed, Fault> {
         self.go()?;
-        let asked = self.state.asked().to_vec();
+        let asked = self.now.state.asked().to_vec();
         if !asked.is_empty() {
             // What was changed belongs to the problem, but not to this place.
             self.change(&asked)?;
@@ -390,15 +379,15 @@ impl Solver for Attached {
     }
 
     fn state(&self) -> &State {
-        &self.state
+        &self.now.state
     }
 
     fn event(&self) -> &Event {
-        &self.event
+        &self.now.event
     }
 
     fn step(&mut self) -> Result<bool, Lost> {
-        if self.state.status == Status::Finished {
+        if self.now.state.status == Status::Finished {
             return Ok(false);
         }
         self.iterate().map(|()| true).map_err(|fault| {
@@ -409,7 +398,7 @@ impl Solver for Attached {
     }
 
     fn restore(&mut self, state: &State) -> Result<(), Lost> {
-        self.state.clone_from(state);
+        self.now.state.clone_from(state);
         match self.place() {
             Ok(_) => Ok(()),
             Err(fault) => Err(Lost::new(fault.to_string())),
@@ -418,11 +407,11 @@ impl Solver for Attached {
 
     fn intervene(&mut self, intervention: &Intervention) -> Result<(), Refusal> {
         self.offers.check(intervention)?;
-        self.state.intervene(&self.model, intervention)
+        self.now.state.intervene(&self.model, intervention)
     }
 
     fn monitors(&mut self, out: &mut Vec<f64>) {
-        out.extend_from_slice(&self.monitors);
+        out.extend_from_slice(&self.now.monitors);
     }
 
     fn offers(&self) -> Offers {
@@ -489,7 +478,7 @@ fn differs(then: &Kept, now: &Kept, model: &Model) -> Option<String> {
     }
     let other = modes.iter().zip(now).position(|(then, now)| then != now);
     if let Some(k) = other {
-        let word = |told| names::mode(mode(told));
+        let word = |told| names::mode(told);
         return Some(format!(
             "{} goes on {}, and went on {}",
             names::slave(model, k),

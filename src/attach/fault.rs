@@ -162,6 +162,9 @@ pub enum Fault {
     /// A state of another session.
     #[error("this state is none that the solver has had since it was attached")]
     Unknown,
+    /// A kept exchange without a scene.
+    #[error("it ends before the solver has told what it solves")]
+    NoScene,
     /// The exchange that was opened ends here.
     #[error("the kept exchange ends here, and there is no solver that could go on")]
     Past,

@@ -1,7 +1,6 @@
 //! What a solver is asked for an intervention, and what an exchange says was changed.
 
 use crate::model::{Friction, Mode};
-use crate::scene::attached::mode;
 use crate::step::intervene::{self, Intervention};
 use crate::step::solver::{Offers, Range};
 use stickslip_exchange::attach::Request;
@@ -18,7 +17,6 @@ pub const COHESION: &str = "cohesion";
 pub fn requests(intervention: &Intervention, ids: &[Id], offers: &Offers) -> Vec<Request> {
     let force = |slave: usize, mode: Mode, hold: bool| {
         let contact = ids.get(slave)?.clone();
-        let mode = super::wire::mode(mode);
         Some(Request::Force {
             contact,
             mode,
@@ -79,10 +77,8 @@ fn is_whole(name: &str, offers: &Offers) -> bool {
 /// change of friction become one again.
 pub fn add(changed: &mut Vec<Intervention>, request: &Request, ids: &[Id], now: Friction) {
     let slave = |id: &Id| ids.iter().position(|known| known == id);
-    let force = |id: &Id, told, hold| {
-        let mode = mode(told);
-        slave(id).map(|slave| Intervention::Force { slave, mode, hold })
-    };
+    let force =
+        |id: &Id, mode, hold| slave(id).map(|slave| Intervention::Force { slave, mode, hold });
     let now = match changed.last() {
         Some(Intervention::Friction(last)) => *last,
         _ => now,
@@ -94,28 +90,35 @@ pub fn add(changed: &mut Vec<Intervention>, request: &Request, ids: &[Id], now: 
             hold,
         } => force(contact, *mode, *hold),
         Request::Release { contact } => slave(contact).map(|slave| Intervention::Release { slave }),
-        Request::Set { name, value } => Some(match (name.as_str(), value.as_f64()) {
-            (INCREMENT, Some(size)) => Intervention::Increment(size),
-            (FRICTION, Some(mu)) => {
-                Intervention::Friction(Friction::from_coefficient(mu, now.cohesion))
+        Request::Set { name, value } => {
+            let change = set(name, value, now);
+            let is_friction = |one: &Intervention| matches!(one, Intervention::Friction(_));
+            if name == COHESION && is_friction(&change) && changed.last().is_some_and(is_friction) {
+                changed.pop();
             }
-            (COHESION, Some(cohesion)) => {
-                if let Some(Intervention::Friction(_)) = changed.last() {
-                    changed.pop();
-                }
-                Intervention::Friction(Friction { cohesion, ..now })
-            }
-            (_, number) => Intervention::Parameter {
-                name: name.clone(),
-                value: match (number, value) {
-                    (Some(number), _) => intervene::Value::Number(number),
-                    (None, serde_json::Value::Bool(flag)) => intervene::Value::Flag(*flag),
-                    (None, serde_json::Value::String(text)) => intervene::Value::Text(text.clone()),
-                    (None, other) => intervene::Value::Text(other.to_string()),
-                },
-            },
-        }),
+            Some(change)
+        }
         _ => None,
     };
     changed.extend(intervention);
+}
+
+/// What another value of a parameter changes; `now` is the friction before.
+pub fn set(name: &str, value: &serde_json::Value, now: Friction) -> Intervention {
+    match (name, value.as_f64()) {
+        (INCREMENT, Some(size)) => Intervention::Increment(size),
+        (FRICTION, Some(mu)) => {
+            Intervention::Friction(Friction::from_coefficient(mu, now.cohesion))
+        }
+        (COHESION, Some(cohesion)) => Intervention::Friction(Friction { cohesion, ..now }),
+        (_, number) => Intervention::Parameter {
+            name: name.to_owned(),
+            value: match (number, value) {
+                (Some(number), _) => intervene::Value::Number(number),
+                (None, serde_json::Value::Bool(flag)) => intervene::Value::Flag(*flag),
+                (None, serde_json::Value::String(text)) => intervene::Value::Text(text.clone()),
+                (None, other) => intervene::Value::Text(other.to_string()),
+            },
+        },
+    }
 }

@@ -6,7 +6,8 @@
 use super::fault::Fault;
 use super::log::Log;
 use super::orders;
-use super::told::{Frame, Led};
+use super::told::{self, Frame, Led};
+use crate::format::{SceneError, read};
 use crate::model::Model;
 use crate::outside::input::{self, Unreadable};
 use crate::scene::Scene;
@@ -32,35 +33,8 @@ pub struct Past {
     model: Arc<Model>,
     places: Places<Option<Led>>,
     offers: Offers,
-    state: State,
-    event: Event,
-    monitors: Vec<f64>,
-}
-
-/// What is wrong with a kept exchange.
-#[derive(Debug, thiserror::Error)]
-pub enum NoPast {
-    /// It is none, or a line is no message.
-    #[error("{}{broken}", place(broken))]
-    Broken {
-        /// What is wrong, and where.
-        broken: Broken,
-    },
-    /// It ends before there is a scene.
-    #[error("it ends before the solver has told what it solves")]
-    NoScene,
-    /// It cannot be read.
-    #[error(transparent)]
-    Unread(#[from] Unreadable),
-    /// What it tells does not fit together.
-    #[error(transparent)]
-    Unfit(#[from] Fault),
-}
-
-fn place(broken: &Broken) -> String {
-    broken
-        .at
-        .map_or_else(String::new, |(line, column)| format!("{line}:{column}: "))
+    /// The present state, and the iteration that led to it.
+    now: Led,
 }
 
 /// An exchange that was read.
@@ -75,32 +49,19 @@ pub struct Opened {
     pub log: Log,
 }
 
-impl NoPast {
-    /// The message about a file.
-    pub fn of(&self, file: &str) -> String {
-        match self {
-            NoPast::Unread(why) => why.of(file),
-            NoPast::Broken { broken } if broken.at.is_some() => format!("{file}:{self}"),
-            _ => format!("{file}: {self}"),
-        }
-    }
-}
-
 /// What a kept exchange is.
 pub const READ_ONLY: &str = "kept exchange, read-only";
 /// Most bytes of a kept exchange.
 const MOST_BYTES: u64 = 1 << 30;
 
 /// Reads the file of a kept exchange; `None` where it is the name of something else.
-pub fn file(name: &str) -> Option<Result<Opened, NoPast>> {
+pub fn file(name: &str) -> Option<Result<Opened, SceneError>> {
     let path = Path::new(name);
     let head = input::start(path, HEAD.len() as u64).ok()?;
     (head == HEAD.as_bytes()).then(|| {
-        let mut bytes = input::bytes(
-            path,
-            MOST_BYTES,
-            "no exchange that was kept whole is so large",
-        )?;
+        let not_read = |why: Unreadable| read::not_read(name, &why);
+        let large = "no exchange that was kept whole is so large";
+        let mut bytes = input::bytes(path, MOST_BYTES, large).map_err(not_read)?;
         // Who wrote it may have been ended in the middle of a letter; such a line is left out in any case.
         bytes.truncate(
             bytes
@@ -108,7 +69,7 @@ pub fn file(name: &str) -> Option<Result<Opened, NoPast>> {
                 .rposition(|byte| *byte == b'\n')
                 .map_or(0, |end| end + 1),
         );
-        open(name, &input::utf8(bytes)?)
+        open(name, &input::utf8(bytes).map_err(not_read)?)
     })
 }
 
@@ -116,16 +77,14 @@ pub fn file(name: &str) -> Option<Result<Opened, NoPast>> {
 ///
 /// # Errors
 /// What is wrong with it.
-pub fn open(name: &str, text: &str) -> Result<Opened, NoPast> {
-    let kept = Kept::read(text).map_err(|broken| NoPast::Broken { broken })?;
+pub fn open(name: &str, text: &str) -> Result<Opened, SceneError> {
+    let kept = Kept::read(text).map_err(|broken| read::of_file(name, broken))?;
     let log = Log::default();
     let mut reader = Reader::new();
     for (number, line) in kept.iter().enumerate() {
         let broken = |broken: Broken| {
             let column = broken.at.map_or(1, |(_, column)| column + 2);
-            NoPast::Broken {
-                broken: Broken::at(number + 2, column, broken.message),
-            }
+            read::of_file(name, Broken::at(number + 2, column, broken.message))
         };
         match line.side {
             Side::Noted => {
@@ -139,7 +98,9 @@ pub fn open(name: &str, text: &str) -> Result<Opened, NoPast> {
             // A solver may have written what is no message: that was its end.
             Side::Answered => match Answer::read(&line.text) {
                 Ok(Answer::Message { level, text }) => log.told(level, &text),
-                Ok(answer) => reader.answered(name, answer)?,
+                Ok(answer) => reader
+                    .answered(name, answer)
+                    .map_err(|fault| SceneError::whole(name, fault.to_string()))?,
                 Err(_) => log.noted(&format!("no message: {}", line.text)),
             },
         }
@@ -150,7 +111,7 @@ pub fn open(name: &str, text: &str) -> Result<Opened, NoPast> {
         ..
     } = reader
     else {
-        return Err(NoPast::NoScene);
+        return Err(SceneError::whole(name, Fault::NoScene.to_string()));
     };
     let past = Past {
         offers: Offers {
@@ -160,12 +121,10 @@ pub fn open(name: &str, text: &str) -> Result<Opened, NoPast> {
             goes_back: GoesBack::ToAny,
             ..Offers::default()
         },
-        state: met.start.clone(),
-        start: met.start,
-        event: Event::nothing_yet(&met.model),
-        model: met.model,
+        start: met.start.state.clone(),
+        now: met.start,
+        model: Arc::new(met.scene.model.clone()),
         places,
-        monitors: Vec::new(),
     };
     Ok(Opened {
         lines: past
@@ -195,10 +154,9 @@ struct Reader {
 /// Who it is and what it solves.
 struct Met {
     scene: Scene,
-    model: Arc<Model>,
     hello: Hello,
     ids: Vec<Id>,
-    start: State,
+    start: Led,
 }
 
 impl Reader {
@@ -228,13 +186,19 @@ impl Reader {
         }
     }
 
-    fn answered(&mut self, name: &str, answer: Answer) -> Result<(), NoPast> {
+    fn answered(&mut self, name: &str, answer: Answer) -> Result<(), Fault> {
         let pending = self.pending.take();
         match (answer, pending) {
             (Answer::Hello(hello), _) => self.hello = Some(*hello),
             (Answer::Scene(told), _) if self.met.is_none() => {
-                let hello = self.hello.clone().ok_or(NoPast::NoScene)?;
-                self.met = Some(meet(name, hello, &told)?);
+                let hello = self.hello.clone().ok_or(Fault::NoScene)?;
+                let (scene, ids, start) = told::start(name, &told, None)?;
+                self.met = Some(Met {
+                    scene,
+                    hello,
+                    ids,
+                    start,
+                });
             }
             (Answer::State(told), _) => self.led(&told)?,
             (Answer::Saved { token }, _) => {
@@ -245,7 +209,7 @@ impl Reader {
                 self.changed.clear();
             }
             (Answer::Ok, Some(request)) => {
-                let met = self.met.as_ref().ok_or(NoPast::NoScene)?;
+                let met = self.met.as_ref().ok_or(Fault::NoScene)?;
                 let friction = self.state(met).controls.friction.first();
                 let now = friction.copied().unwrap_or_default();
                 orders::add(&mut self.changed, &request, &met.ids, now);
@@ -258,11 +222,11 @@ impl Reader {
     /// The state at which the solver is, without what was changed there.
     fn state<'a>(&'a self, met: &'a Met) -> &'a State {
         let led = self.places.get(self.at).and_then(Option::as_ref);
-        led.map_or(&met.start, |led| &led.state)
+        &led.unwrap_or(&met.start).state
     }
 
-    fn led(&mut self, told: &stickslip_exchange::attach::message::State) -> Result<(), NoPast> {
-        let met = self.met.as_ref().ok_or(NoPast::NoScene)?;
+    fn led(&mut self, told: &stickslip_exchange::attach::message::State) -> Result<(), Fault> {
+        let met = self.met.as_ref().ok_or(Fault::NoScene)?;
         let asked = std::mem::take(&mut self.changed);
         if let Some(place) = self.places.follows(self.at, &asked) {
             self.at = place;
@@ -271,10 +235,10 @@ impl Reader {
         let mut from = self.state(met).clone();
         for intervention in &asked {
             // It was taken then.
-            let _ = from.intervene(&met.model, intervention);
+            let _ = from.intervene(&met.scene.model, intervention);
         }
         let frame = Frame {
-            model: &met.model,
+            model: &met.scene.model,
             ids: &met.ids,
             decides: met.hello.decides,
         };
@@ -287,45 +251,18 @@ impl Reader {
     }
 }
 
-fn meet(
-    name: &str,
-    hello: Hello,
-    told: &stickslip_exchange::attach::message::Scene,
-) -> Result<Met, NoPast> {
-    let scene = Scene::told(name, told, None).map_err(|error| {
-        NoPast::Unfit(Fault::Unfit {
-            message: "scene",
-            why: error.message,
-        })
-    })?;
-    let model = Arc::new(scene.model.clone());
-    let ids: Vec<Id> = told
-        .contacts
-        .iter()
-        .map(|contact| contact.id.clone())
-        .collect();
-    let start = State::outside_start(&model);
-    Ok(Met {
-        scene,
-        model,
-        hello,
-        ids,
-        start,
-    })
-}
-
 impl Past {
     /// Goes back to the start.
     pub fn rewind(&mut self) {
-        self.state.clone_from(&self.start);
-        self.event = Event::nothing_yet(&self.model);
+        self.now.state.clone_from(&self.start);
+        self.now.event = Event::nothing_yet(&self.model);
     }
 
     /// The place to which the present state leads.
     fn next(&self) -> Option<&Led> {
         let place = self
             .places
-            .follows(self.state.place()?, self.state.asked())?;
+            .follows(self.now.state.place()?, self.now.state.asked())?;
         self.places.get(place)?.as_ref()
     }
 }
@@ -336,35 +273,35 @@ impl Solver for Past {
     }
 
     fn state(&self) -> &State {
-        &self.state
+        &self.now.state
     }
 
     fn event(&self) -> &Event {
-        &self.event
+        &self.now.event
     }
 
     fn step(&mut self) -> Result<bool, Lost> {
-        if self.state.status == Status::Finished {
+        if self.now.state.status == Status::Finished {
             return Ok(false);
         }
         let Some(led) = self.next().cloned() else {
             return Err(Lost::new(Fault::Past.to_string()));
         };
-        (self.state, self.event, self.monitors) = (led.state, led.event, led.monitors);
+        self.now = led;
         Ok(true)
     }
 
     fn restore(&mut self, state: &State) -> Result<(), Lost> {
-        self.state.clone_from(state);
+        self.now.state.clone_from(state);
         Ok(())
     }
 
     fn intervene(&mut self, intervention: &Intervention) -> Result<(), Refusal> {
-        self.state.intervene(&self.model, intervention)
+        self.now.state.intervene(&self.model, intervention)
     }
 
     fn monitors(&mut self, out: &mut Vec<f64>) {
-        out.extend_from_slice(&self.monitors);
+        out.extend_from_slice(&self.now.monitors);
     }
 
     fn offers(&self) -> Offers {

@@ -3,7 +3,7 @@
 use super::fault::Fault;
 use crate::model::Friction;
 use crate::step::solver::{Posed, PosedForm};
-use stickslip_exchange::attach::message::{Id, Matrix, MatrixKind, Problem};
+use stickslip_exchange::attach::message::{Id, Matrix, Problem};
 
 /// The problem, of contacts with these ids.
 ///
@@ -37,7 +37,7 @@ pub fn posed(problem: &Problem, ids: &[Id]) -> Result<Posed, Fault> {
     if problem.q.is_empty() && problem.load.is_empty() {
         return Err(unfit("it has neither q nor load".into()));
     }
-    if !problem.load.is_empty() && problem.kind == MatrixKind::Compliance {
+    if !problem.load.is_empty() && problem.kind == PosedForm::Compliance {
         return Err(unfit("load stands with a stiffness only".into()));
     }
     let lengths = [
@@ -89,10 +89,7 @@ pub fn posed(problem: &Problem, ids: &[Id]) -> Result<Posed, Fault> {
     }
     Ok(Posed {
         contacts,
-        form: match problem.kind {
-            MatrixKind::Compliance => PosedForm::Compliance,
-            MatrixKind::Stiffness => PosedForm::Stiffness,
-        },
+        form: problem.kind,
         matrix,
         q,
         load,

@@ -29,7 +29,7 @@ impl Recording {
             return run.map(Recording::Calculix).map(Some);
         }
         let exchange = past::file(name).transpose();
-        let exchange = exchange.map_err(|why| why.of(name))?;
+        let exchange = exchange.map_err(|why| why.to_string())?;
         Ok(exchange.map(Recording::Exchange))
     }
 

@@ -2,20 +2,21 @@
 //!
 //! A debugger that attaches to it sees what it would see of the scene itself, to the last bit.
 
+use super::orders::{self, COHESION, FRICTION, INCREMENT};
 use super::wire;
 use crate::format::paths;
-use crate::model::Friction;
 use crate::record::export::frozen;
 use crate::scene::Scene;
 use crate::scene::solver::solver;
 use crate::step::intervene::Intervention;
+use crate::step::solver::PosedForm;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
 use serde_json::Value;
 use std::io::{self, BufRead, Write};
 use std::sync::Arc;
 use stickslip_exchange::attach::message::{
-    Abilities, Hello, Id, Matrix, MatrixKind, Parameter, ParameterKind, Problem, Restore,
+    Abilities, Hello, Id, Matrix, Parameter, ParameterKind, Problem, Restore,
 };
 use stickslip_exchange::attach::{Answer, Line, Lines, MOST_BYTES, PROTOCOL, Request};
 
@@ -74,7 +75,7 @@ impl<'a> Server<'a> {
                 hold,
             } => self.on_contact(contact, |slave| Intervention::Force {
                 slave,
-                mode: crate::scene::attached::mode(*mode),
+                mode: *mode,
                 hold: *hold,
             }),
             Request::Release { contact } => {
@@ -154,21 +155,12 @@ impl<'a> Server<'a> {
     /// What a parameter's new value means.
     fn setting(&self, name: &str, value: &Value) -> Result<Intervention, String> {
         let controls = &self.stepper.state().controls;
-        let number = || {
-            let number = value.as_f64();
-            number.ok_or_else(|| format!("{name} takes a number, and {value} is none"))
-        };
         let now = controls.friction.first().copied().unwrap_or_default();
         match name {
-            "increment" => number().map(Intervention::Increment),
-            "friction" => Ok(Intervention::Friction(Friction::from_coefficient(
-                number()?,
-                now.cohesion,
-            ))),
-            "cohesion" => Ok(Intervention::Friction(Friction {
-                cohesion: number()?,
-                ..now
-            })),
+            INCREMENT | FRICTION | COHESION => match value.is_number() {
+                true => Ok(orders::set(name, value, now)),
+                false => Err(format!("{name} takes a number, and {value} is none")),
+            },
             path if path.starts_with("settings.") => {
                 let mut spec = self.scene.spec.clone();
                 spec.settings = controls.settings;
@@ -195,7 +187,7 @@ impl<'a> Server<'a> {
                 let of = |&slave: &usize| friction[slave];
                 Answer::Problem(Box::new(Problem {
                     contacts: total.slaves.iter().map(|&slave| wire::id(slave)).collect(),
-                    kind: MatrixKind::Compliance,
+                    kind: PosedForm::Compliance,
                     matrix: Matrix::Rows(total.w),
                     q: total.q,
                     load: Vec::new(),
@@ -230,16 +222,16 @@ fn parameters(scene: &Scene) -> Vec<Parameter> {
     };
     let mut all = vec![
         number(
-            "increment",
+            INCREMENT,
             scene.model.on_leg(0),
             "Increment of the load factor; the present one starts again",
         ),
         number(
-            "friction",
+            FRICTION,
             friction.coefficient(),
             "Friction coefficient of all contacts",
         ),
-        number("cohesion", friction.cohesion, "Cohesion of all contacts"),
+        number(COHESION, friction.cohesion, "Cohesion of all contacts"),
     ];
     let words = paths::of_settings();
     let settings = paths::list(&scene.spec).into_iter();

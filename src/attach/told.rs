@@ -13,7 +13,7 @@ use crate::interface::method::Known;
 use crate::linear::norms::Norms;
 use crate::model::{Friction, Mode, Model, Strategy};
 use crate::outside::shown;
-use crate::scene::attached::mode;
+use crate::scene::Scene;
 use crate::step::event::{Event, Failure, Outcome, Position, Words};
 use crate::step::state::State;
 use crate::strategy::method;
@@ -21,7 +21,7 @@ use serde::Deserialize;
 use serde::de::IntoDeserializer;
 use serde::de::value::{Error as NoName, StrDeserializer};
 use std::sync::Arc;
-use stickslip_exchange::attach::message::{self, At, Decides, Ended, Found, Id};
+use stickslip_exchange::attach::message::{self, Decides, Ended, Found, Id};
 
 /// Forces and lengths that differ by less than this part of the scene's are a tie in decisions that are made again.
 const TIE: f64 = 1e-9;
@@ -52,6 +52,29 @@ pub struct Led {
     pub state: State,
     /// The monitors, as far as they were told.
     pub monitors: Vec<f64>,
+}
+
+/// A scene that a solver told, with what it calls its contacts, and the state at its start. `increment` is the one that it begins
+/// with, if it tells that.
+///
+/// # Errors
+/// [`Fault::Unfit`].
+pub fn start(
+    name: &str,
+    told: &message::Scene,
+    increment: Option<f64>,
+) -> Result<(Scene, Vec<Id>, Led), Fault> {
+    let scene = Scene::told(name, told, increment).map_err(|error| Fault::Unfit {
+        message: "scene",
+        why: error.message,
+    })?;
+    let ids = told.contacts.iter().map(|contact| contact.id.clone());
+    let start = Led {
+        state: State::outside_start(&scene.model),
+        event: Event::nothing_yet(&scene.model),
+        monitors: Vec::new(),
+    };
+    Ok((scene, ids.collect(), start))
 }
 
 fn unfit<T>(why: impl Into<String>) -> Result<T, Fault> {
@@ -124,7 +147,7 @@ impl Frame<'_> {
     /// # Errors
     /// [`Fault::Unfit`].
     pub fn check(&self, told: &message::State) -> Result<Position, Fault> {
-        let at = position(told.at);
+        let at = told.at;
         let counts = [at.increment, at.attempt, at.major, at.minor];
         if counts.iter().any(|count| !(1..=MOST_COUNT).contains(count)) {
             return unfit(format!("at: all counts are from 1 to {MOST_COUNT}"));
@@ -245,14 +268,12 @@ impl Frame<'_> {
         ties: &Ties,
         (named, forced): (Option<Rule>, Forced),
     ) -> Decision {
-        let (before, next) = (mode(found.mode), mode(found.next));
         let ours = match self.decides {
             _ if !found.tests.is_empty() => None,
             Some(Decides::Table2) => by_table_2(found, friction, ties),
             Some(Decides::Newton) => by_newton(found, friction, spring, ties),
             None => None,
         };
-        let told = [0, 1].map(|place| found.tests.get(place).map(test));
         let own = found.margin.map(|margin| Test {
             tested: Tested::Own,
             value: margin,
@@ -260,36 +281,20 @@ impl Frame<'_> {
             margin,
             tie: false,
         });
-        let held = forced != Forced::No && named.is_none();
-        let wanted = found.wanted.map(mode);
-        match ours {
-            Some(ours) => Decision {
-                before,
-                next,
-                rule: match named {
-                    Some(rule) => rule,
-                    None if ours.next == next => ours.rule,
-                    None if held => Rule::Held,
-                    None => Rule::Theirs,
-                },
-                tests: ours.tests,
-                wanted: wanted.unwrap_or(ours.next),
+        let mut told = found.tests.iter().copied();
+        let (next, wanted) = (found.next, ours.map_or(found.next, |ours| ours.next));
+        Decision {
+            before: found.mode,
+            next,
+            rule: match (named, ours) {
+                (Some(rule), _) => rule,
+                (None, Some(ours)) if ours.next == next => ours.rule,
+                (None, None) if !found.over => Rule::OffSurface,
+                (None, _) if forced != Forced::No => Rule::Held,
+                (None, _) => Rule::Theirs,
             },
-            None => Decision {
-                before,
-                next,
-                rule: match named {
-                    Some(rule) => rule,
-                    None if !found.over => Rule::OffSurface,
-                    None if held => Rule::Held,
-                    None => Rule::Theirs,
-                },
-                tests: match told {
-                    [None, None] => [own, None],
-                    told => told,
-                },
-                wanted: wanted.unwrap_or(next),
-            },
+            tests: ours.map_or([told.next().or(own), told.next()], |ours| ours.tests),
+            wanted: found.wanted.unwrap_or(wanted),
         }
     }
 
@@ -326,14 +331,14 @@ impl Led {
 /// Whether a node is forced: as the solver says, or as it was told.
 fn forced(from: &State, k: usize, found: &Found) -> Forced {
     match found.forced {
-        Some(message::Forced::Once) => Forced::Once(mode(found.mode)),
-        Some(message::Forced::Held) => Forced::Held(mode(found.next)),
+        Some(message::Forced::Once) => Forced::Once(found.mode),
+        Some(message::Forced::Held) => Forced::Held(found.next),
         None => from.nodes[k].forced,
     }
 }
 
 fn by_table_2(found: &Found, friction: &Friction, ties: &Ties) -> Option<Decision> {
-    let before = mode(found.mode);
+    let before = found.mode;
     // What a row does not look at may be missing.
     let rest = |x: Option<f64>, needed: bool| match (x, needed) {
         (Some(x), _) => Some(x),
@@ -363,7 +368,7 @@ fn by_newton(
     spring: Option<f64>,
     ties: &Ties,
 ) -> Option<Decision> {
-    let before = mode(found.mode);
+    let before = found.mode;
     let sticks = before == Mode::Fixed;
     let numbers = Numbers {
         mode: before,
@@ -391,45 +396,6 @@ fn by_newton(
 fn rule(name: &str) -> Option<Rule> {
     let name: StrDeserializer<'_, NoName> = name.into_deserializer();
     Rule::deserialize(name).ok()
-}
-
-/// What is compared, by its name in messages.
-pub(super) const TESTED: [(Tested, &str); 11] = [
-    (Tested::NormalForce, "normal-force"),
-    (Tested::ShearForce, "shear-force"),
-    (Tested::LeastFriction, "least-friction"),
-    (Tested::Slip, "slip"),
-    (Tested::Room, "room"),
-    (Tested::Gap, "gap"),
-    (Tested::Pressure, "pressure"),
-    (Tested::Drag, "drag"),
-    (Tested::Cover, "cover"),
-    (Tested::Change, "change"),
-    (Tested::Own, "own"),
-];
-
-fn test(told: &message::Test) -> Test {
-    let known = |x: Option<f64>| x.unwrap_or(f64::INFINITY);
-    Test {
-        tested: TESTED
-            .iter()
-            .find(|(_, name)| *name == told.tested)
-            .map_or(Tested::Own, |(tested, _)| *tested),
-        value: known(told.value),
-        bound: known(told.bound),
-        margin: known(told.margin),
-        tie: told.tie,
-    }
-}
-
-/// Where an iteration was.
-fn position(at: At) -> Position {
-    Position {
-        increment: at.increment,
-        attempt: at.attempt,
-        major: at.major,
-        minor: at.minor,
-    }
 }
 
 /// Norms; those that are not told are NaN.

@@ -2,18 +2,15 @@
 //!
 //! Nothing is rounded on the way, so that a trace that is made on the other side has the same bits.
 
-use super::told::TESTED;
 use crate::contact::record::{self, ContactRecord};
-use crate::contact::table2::{Test, Tested};
 use crate::explain::names;
 use crate::explain::report;
 use crate::linear::norms::Norms;
-use crate::model::{Axis, Bond, Control, Jumps, Mode, Model, Watched};
+use crate::model::{Axis, Bond, Control, Jumps, Model, Watched};
 use crate::step::event::{Event, Failure, Outcome};
 use crate::step::state::State;
 use stickslip_exchange::attach::message::{
-    self, At, Contact, Ended, Forced, Found, Friction, Id, Monitor, MonitorKind, Node, Scene,
-    Surface, number,
+    self, Contact, Ended, Forced, Found, Friction, Id, Monitor, Scene, Surface, ToldKind, number,
 };
 
 /// The number of a contact in messages, from 1.
@@ -30,27 +27,14 @@ pub fn contact(id: &Id, model: &Model) -> Option<usize> {
     (contact < model.contacts.len()).then_some(contact)
 }
 
-/// A mode's word.
-pub fn mode(mode: Mode) -> message::Mode {
-    match mode {
-        Mode::Free => message::Mode::Free,
-        Mode::Sliding => message::Mode::Sliding,
-        Mode::Fixed => message::Mode::Fixed,
-    }
-}
-
 /// A scene. Of a surface whose elements have more than two nodes the chain of all nodes is told, and of one in several pieces
 /// the first.
 pub fn scene(model: &Model) -> Scene {
-    let node = |node: &crate::model::Node| Node {
-        name: node.name.clone(),
-        at: node.at,
-    };
     let lines = model.bodies.iter().flat_map(|body| body.kind.lines());
     Scene {
         title: model.title.clone(),
         about: model.about.clone(),
-        nodes: model.nodes.iter().map(node).collect(),
+        nodes: model.nodes.clone(),
         lines: lines.cloned().collect(),
         surfaces: model.surfaces.iter().map(surface).collect(),
         contacts: (0..model.contacts.len())
@@ -98,7 +82,7 @@ fn of_contact(model: &Model, k: usize) -> Contact {
             angle: Some(friction.angle),
             cohesion: friction.cohesion,
         },
-        mode: mode(contact.start),
+        mode: contact.start,
         area: contact.area,
         gives: match contact.bond {
             Bond::Giving(give) => Some(give),
@@ -114,11 +98,11 @@ fn monitor(monitor: &crate::model::Monitor) -> Monitor {
             axis: Axis::X | Axis::Y,
             ..
         }
-        | Watched::Reaction { .. } => MonitorKind::Force,
-        Watched::Pressure { .. } => MonitorKind::Pressure,
-        Watched::Modes { .. } => MonitorKind::Count,
-        Watched::Displacement { .. } | Watched::Drift { .. } => MonitorKind::Length,
-        Watched::Arc | Watched::Told { .. } => MonitorKind::Other,
+        | Watched::Reaction { .. } => ToldKind::Force,
+        Watched::Pressure { .. } => ToldKind::Pressure,
+        Watched::Modes { .. } => ToldKind::Count,
+        Watched::Displacement { .. } | Watched::Drift { .. } => ToldKind::Length,
+        Watched::Arc | Watched::Told { .. } => ToldKind::Other,
     };
     Monitor::Kind {
         name: monitor.name.clone(),
@@ -128,16 +112,10 @@ fn monitor(monitor: &crate::model::Monitor) -> Monitor {
 
 /// What a minor iteration did; `monitors` where it ended an increment.
 pub fn state(model: &Model, state: &State, event: &Event, monitors: &[f64]) -> message::State {
-    let at = event.position;
     let (ended, after, size) = ended(event);
     let found = event.nodes.iter().enumerate();
     message::State {
-        at: At {
-            increment: at.increment,
-            attempt: at.attempt,
-            major: at.major,
-            minor: at.minor,
-        },
+        at: event.position,
         load: Some(event.load_factor),
         ended,
         reason: reason(model, event),
@@ -213,8 +191,8 @@ fn of_record(k: usize, record: &ContactRecord) -> Found {
     let decision = &record.decision;
     Found {
         id: id(k),
-        mode: mode(decision.before),
-        next: mode(decision.next),
+        mode: decision.before,
+        next: decision.next,
         gap: number(record.gap),
         f_n: number(record.f_n),
         f_t: number(record.f_t),
@@ -222,8 +200,8 @@ fn of_record(k: usize, record: &ContactRecord) -> Found {
         slip: number(record.slip),
         rule: decision.rule.name().to_owned(),
         margin: None,
-        tests: decision.tests.iter().flatten().map(test).collect(),
-        wanted: (decision.wanted != decision.next).then(|| mode(decision.wanted)),
+        tests: decision.tests.into_iter().flatten().collect(),
+        wanted: (decision.wanted != decision.next).then_some(decision.wanted),
         limit_used: number(record.t_max_used),
         drift: number(record.drift),
         normal: place(record.normal),
@@ -242,19 +220,6 @@ fn of_record(k: usize, record: &ContactRecord) -> Found {
 /// What has no surface has no place on one.
 fn place(at: [f64; 2]) -> Option<[f64; 2]> {
     at.iter().all(|x| x.is_finite()).then_some(at)
-}
-
-fn test(test: &Test) -> message::Test {
-    let named = |of: Tested| TESTED.iter().find(|(tested, _)| *tested == of);
-    message::Test {
-        tested: named(test.tested)
-            .map_or("own", |(_, name)| name)
-            .to_owned(),
-        value: number(test.value),
-        bound: number(test.bound),
-        margin: number(test.margin),
-        tie: test.tie,
-    }
 }
 
 fn norms(norms: &Norms) -> message::Norms {

@@ -1,9 +1,9 @@
 //! stickslip-exchange: files of other programs, as plain data.
 //!
 //! A reader takes bytes and gives what stands in them, or says at which line and column something is wrong and what would be
-//! right; a writer takes plain data and gives bytes. Nothing here opens a file, knows a scene or solves anything: what the data
-//! mean to stickslip is said by those who use them. No input makes a reader panic, or take more memory than its own size calls
-//! for.
+//! right; a writer takes plain data and gives bytes. Nothing here opens a file, reads a scene or solves anything: what the data
+//! mean to stickslip is said by those who use them. Of stickslip-core only the records are used that messages of [`attach`] name.
+//! No input makes a reader panic, or take more memory than its own size calls for.
 //!
 //! Each takes only from those above it:
 //!

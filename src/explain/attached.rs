@@ -7,7 +7,7 @@
 use super::examination::{DONE, Examination, examine_nodes, frozen};
 use super::names;
 use crate::format::SceneError;
-use crate::format::condensed::{Contact, Matrix, Problem, at_once};
+use crate::format::condensed::{Contact, Matrix, Problem};
 use crate::model::{InitialState, Mode, Model, Strategy};
 use crate::scene::Scene;
 use crate::scene::limits;
@@ -56,7 +56,7 @@ pub fn problem(model: &Model, state: &State, posed: &Posed) -> Problem {
         },
         free: free.collect(),
         spacing: None,
-        history: at_once(),
+        history: Default::default(),
         settings: crate::model::Settings {
             strategy: Strategy::Table2,
             ..Default::default()
@@ -74,7 +74,7 @@ fn id(name: &str, place: usize) -> String {
     }
 }
 
-/// A solver of ours of a problem, and the state from which it sets out.
+/// The scene that a problem is, and a solver of ours at its start.
 ///
 /// # Errors
 /// If the problem is unsound.
@@ -82,12 +82,11 @@ pub fn stepper(
     model: &Model,
     state: &State,
     posed: &Posed,
-) -> Result<(Stepper, State), SceneError> {
+) -> Result<(Scene, Stepper), SceneError> {
     let spec = problem(model, state, posed).spec();
     let scene = Scene::from_spec("the interface problem", spec)?;
-    let stepper = Stepper::new(Arc::new(scene.model));
-    let start = stepper.state().clone();
-    Ok((stepper, start))
+    let stepper = Stepper::new(Arc::new(scene.model.clone()));
+    Ok((scene, stepper))
 }
 
 /// What is known of the problem that is solved next from a state: of these contacts, or (none) of all that matter. It ends where
@@ -106,14 +105,15 @@ pub fn examine(
     if state.status == Status::Finished {
         return told(DONE.into());
     }
-    let (mut stepper, start) = match stepper(model, state, posed) {
-        Ok(both) => both,
+    let mut stepper = match stepper(model, state, posed) {
+        Ok((_, stepper)) => stepper,
         Err(why) => {
             return told(format!(
                 "The interface problem that it tells is unsound: {why}."
             ));
         }
     };
+    let start = stepper.state().clone();
     let mut found = match contacts {
         [] => frozen(&mut stepper, &start, stop),
         some => {

@@ -41,6 +41,19 @@ pub fn influences(
     let mut trials = Trials::new(problem)?;
     let old = trials.given(before)?;
     trials.given(after)?;
+    spread(&mut trials, after, targets, |from, row| {
+        row.value - left_side(row, &old[from])
+    })
+}
+
+/// The same, where `missed` tells by how much the earlier answer misses an equation of a node. `trials` has solved for `after`.
+pub(super) fn spread(
+    trials: &mut Trials<'_>,
+    after: &[ContactState],
+    targets: &[usize],
+    mut missed: impl FnMut(usize, &Equation) -> f64,
+) -> Option<Vec<Vec<Influence>>> {
+    let problem = trials.problem();
     let mut found = vec![Vec::new(); targets.len()];
     for (from, node) in problem.nodes.iter().enumerate() {
         let rows = rows::rows(
@@ -56,7 +69,7 @@ pub fn influences(
         };
         let mut on = vec![none; targets.len()];
         for (k, row) in rows.iter().enumerate() {
-            let missed = row.value - left_side(row, &old[from]);
+            let missed = missed(from, row);
             if missed == 0.0 {
                 continue;
             }
@@ -83,7 +96,8 @@ pub fn influences(
     Some(found)
 }
 
-fn left_side(row: &Equation, given: &NodeIncrement) -> f64 {
+/// What an equation gives a value to, at a node that has come this far.
+pub(super) fn left_side(row: &Equation, given: &NodeIncrement) -> f64 {
     let motion = match row.motion {
         Motion::None => 0.0,
         Motion::Normal => given.motion[0],

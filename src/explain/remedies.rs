@@ -27,7 +27,7 @@ use std::time::Instant;
 /// Most minor iterations of a trial.
 pub const BUDGET: u32 = 400;
 /// Most iterations of a trial on an attached solver, which may take its time.
-const BUDGET_ATTACHED: u64 = 60;
+const BUDGET_ATTACHED: u32 = 60;
 /// A node keeps its mode while the inequality is violated by less than this, relatively.
 pub const HYSTERESIS: f64 = 1e-3;
 /// Violations below this, relatively, are round-off.
@@ -180,44 +180,6 @@ pub fn offered(model: &Model, state: &State, offers: &Offers, found: &Examinatio
     all.filter(takes).collect()
 }
 
-/// Tries a remedy on an attached solver; `None` if it was stopped, or the solver is lost.
-pub fn attempt_attached(
-    solver: &mut dyn Solver,
-    state: &State,
-    remedy: &Remedy,
-    stop: &dyn Fn() -> bool,
-) -> Option<Trial> {
-    solver.restore(state).ok()?;
-    let target = (state.start.leg, state.load_factor);
-    let mut trial = Trial::new(remedy);
-    for first in &remedy.first {
-        if solver.intervene(first).is_ok() {
-            trial.steps.push(Some(first.clone()));
-        }
-    }
-    let until = Until::end().minors(BUDGET_ATTACHED).interrupted_by(stop);
-    let began = Instant::now();
-    let end = drive(solver, until, |solver| {
-        trial.minors += 1;
-        trial.steps.push(None);
-        let event = solver.event();
-        trial.majors += u32::from(event.outcome.ends_major());
-        let accepted = matches!(event.outcome, Outcome::Increment { .. });
-        match accepted && is_there(solver.state(), event, target) {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        }
-    });
-    trial.seconds = began.elapsed().as_secs_f64();
-    trial.end = match end.ok()? {
-        RunEnd::Interrupted => return None,
-        RunEnd::Stopped(()) | RunEnd::Finished => TrialEnd::Converged,
-        RunEnd::Failed(failure) => TrialEnd::Failed(failure),
-        RunEnd::Spent => TrialEnd::Budget,
-    };
-    Some(trial)
-}
-
 /// Tries a remedy that changes the scene from its start; `None` if interrupted, or if there is no such scene.
 fn attempt_restart(
     spec: &Spec,
@@ -250,9 +212,10 @@ fn attempt_restart(
     Some(trial)
 }
 
-/// Tries a remedy; `None` if interrupted. `spec` is the original scene, for remedies that change it.
+/// Tries a remedy; `None` if interrupted, or if an attached solver is lost. `spec` is the original scene, for remedies that change
+/// it.
 pub fn attempt(
-    stepper: &mut Stepper,
+    solver: &mut dyn Solver,
     state: &State,
     spec: Option<&Spec>,
     remedy: &Remedy,
@@ -261,52 +224,55 @@ pub fn attempt(
     if let How::Restart(changes) = &remedy.how {
         return attempt_restart(spec?, state, (remedy, changes), stop);
     }
-    stepper.restore(state);
+    solver.restore(state).ok()?;
     let target = (state.start.leg, state.load_factor);
     let mut trial = Trial::new(remedy);
-    let change = |stepper: &mut Stepper, trial: &mut Trial, what: Intervention| {
+    let change = |solver: &mut dyn Solver, trial: &mut Trial, what: Intervention| {
         // What cannot be done is not a part of the trial: a node past its surface cannot touch.
-        if stepper.intervene(&what).is_ok() {
+        if solver.intervene(&what).is_ok() {
             trial.steps.push(Some(what));
         }
     };
     for first in &remedy.first {
-        change(stepper, &mut trial, first.clone());
+        change(solver, &mut trial, first.clone());
     }
-    let until = Until::end().minors(BUDGET.into()).interrupted_by(stop);
+    let is_own = solver.stepper().is_some();
+    let budget = if is_own { BUDGET } else { BUDGET_ATTACHED };
+    let until = Until::end().minors(budget.into()).interrupted_by(stop);
     let mut began = Instant::now();
-    let end = stepper.drive(until, |stepper| {
+    let end = drive(solver, until, |solver| {
         trial.seconds += began.elapsed().as_secs_f64();
         trial.minors += 1;
         trial.steps.push(None);
-        let event = stepper.event();
+        let event = solver.event();
         let ends = event.outcome.ends_major();
         trial.majors += u32::from(ends);
-        trial.factorizations += u32::from(ends || !stepper.condenses());
-        match &event.outcome {
-            Outcome::Increment {
-                after,
-                marked: Some(found),
-                ..
-            } => {
-                trial.left = Some(left(stepper, event, after));
-                return ControlFlow::Break(TrialEnd::Against(found.law));
-            }
-            Outcome::Increment { after, .. } if is_there(stepper.state(), event, target) => {
-                trial.left = Some(left(stepper, event, after));
-                return ControlFlow::Break(TrialEnd::Converged);
-            }
-            Outcome::Minor if remedy.kind == Kind::Hysteresis => {
-                for what in hysteresis(stepper, event) {
-                    change(stepper, &mut trial, what);
+        let is_there = is_there(solver.state(), event, target);
+        let mut changes = Vec::new();
+        if let Some(stepper) = solver.stepper() {
+            let event = stepper.event();
+            trial.factorizations += u32::from(ends || !stepper.condenses());
+            match &event.outcome {
+                Outcome::Increment { after, marked, .. } if is_there || marked.is_some() => {
+                    trial.left = Some(left(stepper, event, after));
+                    let against = marked.as_ref().map(|found| TrialEnd::Against(found.law));
+                    return ControlFlow::Break(against.unwrap_or(TrialEnd::Converged));
                 }
+                Outcome::Minor if remedy.kind == Kind::Hysteresis => {
+                    changes = hysteresis(stepper, event);
+                }
+                _ => {}
             }
-            _ => {}
+        } else if is_there {
+            return ControlFlow::Break(TrialEnd::Converged);
+        }
+        for what in changes {
+            change(solver, &mut trial, what);
         }
         began = Instant::now();
         ControlFlow::Continue(())
     });
-    trial.end = match end {
+    trial.end = match end.ok()? {
         RunEnd::Interrupted => return None,
         RunEnd::Stopped(end) => end,
         RunEnd::Failed(failure) => TrialEnd::Failed(failure),
@@ -314,20 +280,21 @@ pub fn attempt(
         RunEnd::Spent => TrialEnd::Budget,
     };
     // The last major iteration, where the trial ended within it.
-    if trial.end == TrialEnd::Budget {
+    if is_own && trial.end == TrialEnd::Budget {
         trial.factorizations += 1;
     }
     Some(trial)
 }
 
-/// Whether the accepted increment has come to the load that failed.
+/// Whether an increment was accepted that has come to the load that failed.
 fn is_there(state: &State, event: &Event, (leg, load): (usize, f64)) -> bool {
+    let accepted = matches!(event.outcome, Outcome::Increment { .. });
     #[cfg(mutants)]
     if crate::mutants::is_active("remedy-ends-at-its-first-increment") {
-        return true;
+        return accepted;
     }
     let close = (event.load_factor - load).abs() <= 1e-9 * state.controls.increment;
-    state.status == Status::Finished || state.start.leg > leg || close
+    accepted && (state.status == Status::Finished || state.start.leg > leg || close)
 }
 
 /// What is held, and released, after a minor iteration that did not settle.

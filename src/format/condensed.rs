@@ -12,11 +12,11 @@
 //! [`Problem::spec`] makes a scene of it that everything else understands: the contacts in a row over one endless floor
 //! y = 0, where u_n = u_y and u_t = −u_x.
 
-use super::contact_law::{ContactLaw, FrictionSpec};
+use super::contact_law::ContactLaw;
 use super::error::{Path, Step, at};
 use super::notation;
 use super::spec::{BodySpec, History, LoadSpec, Nodes, SlaveSpec, Spec, SurfaceSpec};
-use crate::model::{Friction, InitialState, Jumps, Mode, Settings};
+use crate::model::{Friction, InitialState, Mode, Settings};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize};
 
@@ -76,7 +76,7 @@ pub struct Problem {
     #[serde(default, deserialize_with = "positive")]
     pub spacing: Option<f64>,
     /// Default: one increment from 0 to 1.
-    #[serde(default = "at_once")]
+    #[serde(default)]
     pub history: History,
     /// How it is solved. Default: as for a scene.
     #[serde(default)]
@@ -90,19 +90,6 @@ fn positive<'de, D: Deserializer<'de>>(reader: D) -> Result<Option<f64>, D::Erro
             "the spacing is {x:?}; it must be a positive length"
         ))),
         _ => Ok(value),
-    }
-}
-
-/// One increment from 0 to 1.
-pub fn at_once() -> History {
-    History {
-        path: vec![0.0, 1.0],
-        increment: 1.0,
-        increments: Vec::new(),
-        least: None,
-        jumps: Jumps::default(),
-        control: Default::default(),
-        arc: Default::default(),
     }
 }
 
@@ -176,9 +163,7 @@ impl Problem {
         Spec {
             title: self.title.clone(),
             about: self.about.clone(),
-            refine: 1,
             nodes,
-            materials: Vec::new(),
             bodies: vec![BodySpec::Matrix {
                 id: "matrix".to_owned(),
                 nodes: ids().collect(),
@@ -195,13 +180,10 @@ impl Problem {
                 cut: false,
             }],
             slaves: self.contacts.iter().map(slave).collect(),
-            friction: FrictionSpec::default(),
-            supports: Vec::new(),
             loads: self.contacts.iter().filter_map(load).collect(),
             history: self.history.clone(),
             settings: self.settings,
-            monitors: Vec::new(),
-            attached: None,
+            ..Spec::default()
         }
     }
 
@@ -251,7 +233,7 @@ impl Problem {
         if let Some(spacing) = self.spacing {
             text += &format!("    spacing: {spacing:?},\n");
         }
-        let once = at_once();
+        let once = History::default();
         if self.history != once {
             let (path, increment) = (list(&self.history.path), self.history.increment);
             let of_legs = match self.history.increments.as_slice() {

@@ -10,6 +10,7 @@ use crate::outside::input::{self, Unreadable};
 use crate::outside::shown;
 use ron::error::SpannedError;
 use serde::de::DeserializeOwned;
+use stickslip_exchange::broken::Broken;
 
 /// Most bytes of a scene file: a dense matrix of 2,500 contacts to the last digit.
 pub const FILE_BYTES: usize = 512 << 20;
@@ -142,15 +143,38 @@ pub(crate) fn text(file: &str) -> Result<String, SceneError> {
 
 /// Why a file with a scene is not read.
 pub(crate) fn unread(file: &str, error: Unreadable) -> SceneError {
-    let (at, more) = match error {
-        Unreadable::NoText { line, column } => {
-            (Some((line, column)), "; a scene is written in RON")
-        }
-        _ => (None, ""),
-    };
+    let mut error = not_read(file, &error);
+    if error.at.is_some() {
+        error.message += "; a scene is written in RON";
+    }
+    error
+}
+
+/// Why a file is not read.
+pub(crate) fn not_read(file: &str, error: &Unreadable) -> SceneError {
     SceneError {
-        at,
-        ..SceneError::whole(file, format!("{error}{more}"))
+        at: match error {
+            Unreadable::NoText { line, column } => Some((*line, *column)),
+            _ => None,
+        },
+        ..SceneError::whole(file, error.to_string())
+    }
+}
+
+/// What is wrong with a file of another program.
+pub(crate) fn of_file(file: &str, broken: Broken) -> SceneError {
+    SceneError {
+        at: broken.at,
+        ..SceneError::whole(file, broken.message)
+    }
+}
+
+/// What ron refuses in a text that begins at this line, after words about it.
+pub(crate) fn refused(file: &str, line: usize, words: &str, error: &SpannedError) -> SceneError {
+    let start = error.span.start;
+    SceneError {
+        at: Some((line + start.line - 1, start.col)),
+        ..SceneError::whole(file, format!("{words}{}", plainly(&error.code)))
     }
 }
 

@@ -68,6 +68,29 @@ described! {
     }
 }
 
+impl Default for Spec {
+    /// A scene without bodies, nodes and all that stands on them.
+    fn default() -> Self {
+        Spec {
+            title: String::new(),
+            about: String::new(),
+            refine: 1,
+            nodes: Vec::new(),
+            materials: Vec::new(),
+            bodies: Vec::new(),
+            surfaces: Vec::new(),
+            slaves: Vec::new(),
+            friction: FrictionSpec::default(),
+            supports: Vec::new(),
+            loads: Vec::new(),
+            history: History::default(),
+            settings: Settings::default(),
+            monitors: Vec::new(),
+            attached: None,
+        }
+    }
+}
+
 fn one() -> usize {
     1
 }
@@ -572,6 +595,21 @@ described! {
         /// How the path of equilibrium is followed, with `control: arc`. Default: along all displacements.
         #[serde(default, skip_serializing_if = "ArcSpec::is_default")]
         pub arc: ArcSpec,
+    }
+}
+
+impl Default for History {
+    /// One increment from 0 to 1.
+    fn default() -> Self {
+        History {
+            path: vec![0.0, 1.0],
+            increment: 1.0,
+            increments: Vec::new(),
+            least: None,
+            jumps: Jumps::default(),
+            control: Control::default(),
+            arc: ArcSpec::default(),
+        }
     }
 }
 

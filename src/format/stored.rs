@@ -7,7 +7,6 @@
 //! Nodes are called by the numbers that the deck gives them. The stiffness is condensed to the nodes that may touch
 //! ([`crate::scene::problems::stored`]); what comes of it is a [`super::condensed::Problem`].
 
-use super::condensed::at_once;
 use super::spec::History;
 use crate::model::{Friction, Mode, Settings};
 use serde::{Deserialize, Serialize};
@@ -90,7 +89,7 @@ pub struct Stored {
     #[serde(default)]
     pub spacing: Option<f64>,
     /// Default: one increment from 0 to 1.
-    #[serde(default = "at_once")]
+    #[serde(default)]
     pub history: History,
     /// How it is solved. Default: as for a scene.
     #[serde(default)]

@@ -7,10 +7,10 @@
 //! loses neither, a power failure only cursor moves. A last line without its end is an entry cut off by a kill; it is
 //! dropped and reported.
 
-use crate::format::kind::{FileKind, mistaken};
+use crate::format::kind::FileKind;
 use crate::format::{SceneError, Spec, notation, read};
 use crate::outside::files;
-use crate::outside::input::{self, RECORD_BYTES, Unreadable};
+use crate::outside::input::{self, RECORD_BYTES};
 use crate::record::command::Command;
 use crate::scene::Scene;
 use crate::step::state::State;
@@ -88,14 +88,9 @@ pub enum JournalError {
         /// Why.
         source: io::Error,
     },
-    /// It cannot be read.
-    #[error("{}: the journal cannot be read: {why}", file.display())]
-    Unread {
-        /// The journal.
-        file: PathBuf,
-        /// Why.
-        why: Unreadable,
-    },
+    /// It cannot be read, is no journal, or is a damaged one.
+    #[error(transparent)]
+    Read(Box<SceneError>),
     /// A new journal was wanted, and there is a file of that name.
     #[error("{}: the file exists already; `stickslip resume` goes on with a journal", .0.display())]
     Exists(PathBuf),
@@ -110,34 +105,6 @@ pub enum JournalError {
     /// There is none in this directory.
     #[error("there is no journal in {}; `stickslip SCENE` writes one", .0.display())]
     NoJournal(PathBuf),
-    /// A line of it cannot be read.
-    #[error("{file}:{line}:{column}: {message}")]
-    Damaged {
-        /// The journal.
-        file: String,
-        /// From 1.
-        line: usize,
-        /// From 1, in characters.
-        column: usize,
-        /// What is wrong there.
-        message: String,
-    },
-    /// It is another file of the program.
-    #[error("{file}: {told}")]
-    Mistaken {
-        /// The file.
-        file: String,
-        /// What it is, and what reads it.
-        told: String,
-    },
-    /// It is of another format than this program knows.
-    #[error("{file}: the journal has format {found}, and this program knows only format {FORMAT}")]
-    Format {
-        /// The journal.
-        file: String,
-        /// Its format.
-        found: u32,
-    },
     /// The scene in it is unsound.
     #[error("{file}:1: the journal's scene is unsound: {source}")]
     Scene {
@@ -156,6 +123,12 @@ pub enum JournalError {
         /// What differs.
         message: String,
     },
+}
+
+impl From<SceneError> for JournalError {
+    fn from(error: SceneError) -> Self {
+        JournalError::Read(Box::new(error))
+    }
 }
 
 /// Where the journal of a session is to be.
@@ -354,11 +327,11 @@ impl Record {
     /// # Errors
     /// If the file cannot be read or is damaged, with the line.
     pub fn read(path: &Path) -> Result<Record, JournalError> {
+        let file = path.display().to_string();
         let bytes = input::bytes(path, RECORD_BYTES, "no journal has").map_err(|why| {
-            let file = path.to_owned();
-            JournalError::Unread { file, why }
+            SceneError::whole(&file, format!("the journal cannot be read: {why}"))
         })?;
-        Record::from_bytes(&path.display().to_string(), &bytes)
+        Record::from_bytes(&file, &bytes)
     }
 
     /// Reads a journal from the bytes of its file; `file` is what messages call it.
@@ -377,26 +350,16 @@ impl Record {
         let text = str::from_utf8(&bytes[marked..whole]).map_err(|e| {
             let good = &bytes[..marked + e.valid_up_to()];
             let line = 1 + good.iter().filter(|byte| **byte == b'\n').count();
-            damaged(file, line, 1, "the line is not text in UTF-8")
+            damaged(file, (line, 1), "the line is not text in UTF-8")
         })?;
         let mut lines = text.lines().enumerate().map(|(k, line)| (k + 1, line));
         let (_, first) = lines.next().ok_or_else(|| {
-            damaged(
-                file,
-                1,
-                1,
-                "the file has no whole line; a journal's first is its scene",
-            )
+            let message = "the file has no whole line; a journal's first is its scene";
+            damaged(file, (1, 1), message)
         })?;
-        let header = header(file, first).map_err(|error| {
-            let told = match &error {
-                JournalError::Damaged { .. } => mistaken(file, text, FileKind::Journal),
-                _ => None,
-            };
-            told.map_or(error, |told| JournalError::Mistaken {
-                file: file.to_owned(),
-                told,
-            })
+        let header = header(file, first).map_err(|error| match error.at {
+            Some(_) => read::or_mistaken(error, file, text, FileKind::Journal),
+            None => error,
         })?;
         let mut record = Record {
             file: file.to_owned(),
@@ -443,44 +406,32 @@ impl Record {
     }
 }
 
-fn header(file: &str, line: &str) -> Result<Header, JournalError> {
+fn header(file: &str, line: &str) -> Result<Header, SceneError> {
     /// What any format has.
     #[derive(Deserialize)]
     struct Any {
         format: u32,
     }
-    if let Ok(any) = notation::read::<Any>(line)
-        && any.format != FORMAT
+    if let Ok(Any { format }) = notation::read(line)
+        && format != FORMAT
     {
-        return Err(JournalError::Format {
-            file: file.to_owned(),
-            found: any.format,
-        });
+        return Err(SceneError::whole(
+            file,
+            format!("the journal has format {format}, and this program knows only format {FORMAT}"),
+        ));
     }
     parsed(file, 1, line)
 }
 
-fn parsed<T: DeserializeOwned>(file: &str, number: usize, line: &str) -> Result<T, JournalError> {
-    notation::read(line).map_err(|e| {
-        let column = e.span.start.col;
-        damaged(
-            file,
-            number,
-            column,
-            &format!(
-                "the line is no entry of a journal: {}",
-                read::plainly(&e.code)
-            ),
-        )
-    })
+fn parsed<T: DeserializeOwned>(file: &str, number: usize, line: &str) -> Result<T, SceneError> {
+    notation::read(line)
+        .map_err(|e| read::refused(file, number, "the line is no entry of a journal: ", &e))
 }
 
-fn damaged(file: &str, line: usize, column: usize, message: &str) -> JournalError {
-    JournalError::Damaged {
-        file: file.to_owned(),
-        line,
-        column,
-        message: message.to_owned(),
+fn damaged(file: &str, at: (usize, usize), message: &str) -> SceneError {
+    SceneError {
+        at: Some(at),
+        ..SceneError::whole(file, message)
     }
 }
 

@@ -6,12 +6,12 @@
 
 use crate::contact::record::Forced;
 use crate::contact::table2::Rule;
-use crate::format::kind::{FileKind, mistaken};
+use crate::format::kind::FileKind;
 use crate::format::{SceneError, Spec, notation, read};
 use crate::linear::norms::Norms;
 use crate::model::{Mode, Model};
 use crate::outside::files::{self, FileError};
-use crate::outside::input::{self, RECORD_BYTES, Unreadable};
+use crate::outside::input::{self, RECORD_BYTES};
 use crate::scene::Scene;
 use crate::scene::solver::solver;
 use crate::step::drive::{RunEnd, Until, drive};
@@ -141,44 +141,9 @@ pub enum SnapshotError {
     /// It cannot be written.
     #[error(transparent)]
     File(#[from] FileError),
-    /// It cannot be read.
-    #[error("{}", why.of(file))]
-    Unreadable {
-        /// The file.
-        file: String,
-        /// Why.
-        why: Unreadable,
-    },
-    /// It is no snapshot, or a damaged one.
-    #[error("{file}:{line}:{column}: {message}")]
-    Syntax {
-        /// The file.
-        file: String,
-        /// From 1.
-        line: usize,
-        /// From 1, in characters.
-        column: usize,
-        /// What is wrong there.
-        message: String,
-    },
-    /// It is another file of the program.
-    #[error("{file}: {told}")]
-    Mistaken {
-        /// The file.
-        file: String,
-        /// What it is, and what reads it.
-        told: String,
-    },
-    /// It is of another format than this program knows.
-    #[error(
-        "{file}: the snapshot has format {found}, and this program knows only format {FORMAT}; read it with the version that wrote it"
-    )]
-    Format {
-        /// The file.
-        file: String,
-        /// Its format.
-        found: u32,
-    },
+    /// It cannot be read, is no snapshot, or is a damaged one.
+    #[error(transparent)]
+    Read(Box<SceneError>),
     /// The state cannot be written as text.
     #[error("the snapshot cannot be written as text: {0}")]
     Unwritable(ron::Error),
@@ -246,10 +211,8 @@ impl Snapshot {
     /// If the file cannot be read, is damaged, or has a format that this program does not know.
     pub fn read(path: &Path) -> Result<Snapshot, SnapshotError> {
         let file = path.display().to_string();
-        let text = input::text(path, RECORD_BYTES, "no snapshot has").map_err(|why| {
-            let file = file.clone();
-            SnapshotError::Unreadable { file, why }
-        })?;
+        let text = input::text(path, RECORD_BYTES, "no snapshot has")
+            .map_err(|why| SnapshotError::Read(Box::new(read::not_read(&file, &why))))?;
         Snapshot::from_text(&file, &text)
     }
 
@@ -264,35 +227,25 @@ impl Snapshot {
             format: u32,
         }
         let text = text.strip_prefix(input::MARK).unwrap_or(text);
-        read::shallow(file, text, "snapshot").map_err(|deep| {
-            let (line, column) = deep.at.unwrap_or((1, 1));
-            SnapshotError::Syntax {
-                file: file.to_owned(),
-                line,
-                column,
-                message: deep.message,
-            }
-        })?;
-        if let Ok(header) = notation::read::<Header>(text)
-            && header.format != FORMAT
-        {
-            return Err(SnapshotError::Format {
-                file: file.to_owned(),
-                found: header.format,
-            });
-        }
-        notation::read(text).map_err(|e| {
-            let file = file.to_owned();
-            match mistaken(&file, text, FileKind::Snapshot) {
-                Some(told) => SnapshotError::Mistaken { file, told },
-                None => SnapshotError::Syntax {
+        let read = || {
+            read::shallow(file, text, "snapshot")?;
+            if let Ok(header) = notation::read::<Header>(text)
+                && header.format != FORMAT
+            {
+                return Err(SceneError::whole(
                     file,
-                    line: e.span.start.line,
-                    column: e.span.start.col,
-                    message: read::plainly(&e.code),
-                },
+                    format!(
+                        "the snapshot has format {}, and this program knows only format {FORMAT}; read it with the version that wrote it",
+                        header.format
+                    ),
+                ));
             }
-        })
+            notation::read(text).map_err(|e| {
+                let error = read::refused(file, 1, "", &e);
+                read::or_mistaken(error, file, text, FileKind::Snapshot)
+            })
+        };
+        read().map_err(|error| SnapshotError::Read(Box::new(error)))
     }
 
     /// Computes the snapshot again, from the start of its scene.

@@ -10,8 +10,8 @@ use crate::format::contact_law::FrictionSpec;
 use crate::format::error::{Fault, at};
 use crate::format::spec::{History, Spec};
 use crate::model::{
-    Body, BodyKind, Bond, Contact, Control, Form, Friction, InitialState, Jumps, Linear, Mode,
-    Model, Monitor, Node, Settings, Surface, ToldKind, Watched,
+    Body, BodyKind, Bond, Contact, Control, Form, Friction, InitialState, Jumps, Linear, Model,
+    Monitor, Node, Surface, ToldKind, Watched,
 };
 use crate::outside::shown;
 use std::collections::{HashMap, HashSet};
@@ -32,39 +32,22 @@ pub(super) fn spec(scene: &Scene, increment: Option<f64>) -> Spec {
         .first()
         .map(|first| friction(&first.friction));
     let friction = uniform.unwrap_or_default();
+    let message = Answer::Scene(Box::new(scene.clone())).line();
     Spec {
         title: scene.title.clone(),
         about: scene.about.clone(),
-        refine: 1,
-        nodes: Vec::new(),
-        materials: Vec::new(),
-        bodies: Vec::new(),
-        surfaces: Vec::new(),
-        slaves: Vec::new(),
         friction: FrictionSpec {
             angle: friction.angle,
             cohesion: friction.cohesion,
             adhesion: 0.0,
         },
-        supports: Vec::new(),
-        loads: Vec::new(),
         history: History {
             path: vec![from, to],
             increment: increment.unwrap_or(whole),
-            increments: Vec::new(),
-            least: None,
-            jumps: Jumps::default(),
-            control: Default::default(),
-            arc: Default::default(),
+            ..History::default()
         },
-        settings: Settings::default(),
-        monitors: Vec::new(),
-        attached: Some(
-            Answer::Scene(Box::new(scene.clone()))
-                .line()
-                .trim_end()
-                .to_owned(),
-        ),
+        attached: Some(message.trim_end().to_owned()),
+        ..Spec::default()
     }
 }
 
@@ -74,15 +57,6 @@ pub fn friction(told: &message::Friction) -> Friction {
     match (told.angle, told.mu) {
         (Some(angle), _) => Friction { angle, cohesion },
         (None, mu) => Friction::from_coefficient(mu.unwrap_or(0.0), cohesion),
-    }
-}
-
-/// The mode as the core has it.
-pub fn mode(told: message::Mode) -> Mode {
-    match told {
-        message::Mode::Free => Mode::Free,
-        message::Mode::Sliding => Mode::Sliding,
-        message::Mode::Fixed => Mode::Fixed,
     }
 }
 
@@ -115,9 +89,14 @@ pub(super) fn compile(spec: &Spec, text: &str) -> Result<(Model, Names), Fault> 
     of_body.sort_unstable();
     of_body.dedup();
     let monitor = |(number, told): (usize, &message::Monitor)| {
-        let (name, kind) = monitor(told);
-        let of = Watched::Told { number, kind };
-        Monitor { name, of }
+        let (name, kind) = match told {
+            message::Monitor::Name(name) => (name, ToldKind::Other),
+            message::Monitor::Kind { name, kind } => (name, *kind),
+        };
+        Monitor {
+            name: shown::line(name).into_owned(),
+            of: Watched::Told { number, kind },
+        }
     };
     let model = Model {
         about: shown::text(&scene.about).into_owned(),
@@ -154,23 +133,6 @@ pub(super) fn compile(spec: &Spec, text: &str) -> Result<(Model, Names), Fault> 
     }
     let names = Names::single(&model.nodes);
     Ok((model, names))
-}
-
-/// Name and kind of a monitor.
-fn monitor(told: &message::Monitor) -> (String, ToldKind) {
-    match told {
-        message::Monitor::Name(name) => (shown::line(name).into_owned(), ToldKind::Other),
-        message::Monitor::Kind { name, kind } => {
-            let kind = match kind {
-                message::MonitorKind::Length => ToldKind::Length,
-                message::MonitorKind::Force => ToldKind::Force,
-                message::MonitorKind::Pressure => ToldKind::Pressure,
-                message::MonitorKind::Count => ToldKind::Count,
-                message::MonitorKind::Other => ToldKind::Other,
-            };
-            (shown::line(name).into_owned(), kind)
-        }
-    }
 }
 
 /// What holds where a contact touches.
@@ -314,7 +276,7 @@ fn contacts(scene: &Scene, surfaces: &HashMap<&str, usize>) -> Result<Vec<Contac
             node: told.node,
             surfaces: surface,
             friction,
-            start: mode(told.mode),
+            start: told.mode,
             state: InitialState::default(),
             overlap: 0.0,
             bond: bond(told),

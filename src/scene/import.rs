@@ -9,7 +9,7 @@ use super::limits;
 use crate::format::error::{Fault, Path, at, quoted, some_of};
 use crate::format::given::{Cells, NodeSet, SideSet};
 use crate::format::spec::Nodes;
-use crate::format::{SceneError, Spec};
+use crate::format::{SceneError, Spec, read};
 use crate::model::ElementKind;
 use crate::outside::input;
 use std::collections::HashMap;
@@ -85,12 +85,7 @@ pub(crate) fn mesh(file: &str) -> Result<Mesh, NoMesh> {
         "a mesh that can be solved has less",
     );
     let bytes = bytes.map_err(|error| NoMesh::Unread(error.to_string()))?;
-    gmsh::read(&bytes).map_err(|broken| {
-        NoMesh::Broken(SceneError {
-            at: broken.at,
-            ..SceneError::whole(file, broken.message)
-        })
-    })
+    gmsh::read(&bytes).map_err(|broken| NoMesh::Broken(read::of_file(file, broken)))
 }
 
 /// Parts of a mesh that have no element in common, and are bodies together: those first named.

@@ -13,7 +13,7 @@
 //!
 //! Pushes and examinations are kept by place (branch and step on its line), which never changes its meaning.
 
-use super::exports::{Export, NotWritten, is_of_problem, write, write_posed};
+use super::exports::{Export, is_of_problem, write, write_posed};
 use super::worker::Lender;
 use crate::explain::attached;
 use crate::explain::examination::{Examination, examine_nodes};
@@ -21,9 +21,11 @@ use crate::explain::influence::{Push, Way, between, pushed, pushes};
 use crate::explain::page::page;
 use crate::explain::pushes_told::{self, Iterations};
 use crate::explain::remedies::{self, Trial};
+use crate::explain::remedy::Remedy;
 use crate::format::spec::Spec;
 use crate::linear::estimate::Estimate;
 use crate::model::Model;
+use crate::record::export::shown::ExportError;
 use crate::scene::solver::solver;
 use crate::step::solver::{Lost, Offers, Posed};
 use crate::step::state::{State, Status};
@@ -59,13 +61,19 @@ pub struct Tried {
 }
 
 enum Ask {
-    Pushes(LinePlace, usize, Way),
-    /// The same of an attached solver.
-    PushesThere(LinePlace, usize, Iterations),
+    Pushes(LinePlace, usize, Between),
     /// With what is known already, of an attached solver.
     Examination(LinePlace, Box<State>, Vec<usize>, Vec<String>),
     Remedies(Box<State>),
     Export(Export),
+}
+
+/// The two minor iterations between which a node was pushed.
+pub(super) enum Between {
+    /// How to come to them again.
+    Way(Way),
+    /// What an attached solver told of them.
+    Told(Iterations),
 }
 
 enum Told {
@@ -87,7 +95,7 @@ enum Told {
     Done {
         stopped: bool,
     },
-    Exported(Result<String, NotWritten>),
+    Exported(Result<String, ExportError>),
 }
 
 /// What the thread works with.
@@ -120,7 +128,7 @@ pub struct Background {
     pushes: HashMap<(LinePlace, usize), Option<Vec<Push>>>,
     /// By place: the nodes that were asked for, and what was found.
     examinations: HashMap<LinePlace, (Vec<usize>, Option<Examination>)>,
-    exported: Option<Result<String, NotWritten>>,
+    exported: Option<Result<String, ExportError>>,
     tried: Option<Tried>,
     trying: bool,
     /// Pages that are being made, or wait for it.
@@ -211,24 +219,17 @@ impl Background {
     }
 
     /// Asks what pushed a node. One question at a time: while another waits, this one may be asked again later.
-    pub(super) fn ask_pushes(&mut self, place: LinePlace, slave: usize, way: impl FnOnce() -> Way) {
-        if self.waiting == 0 && !self.pushes.contains_key(&(place, slave)) {
-            self.send(Ask::Pushes(place, slave, way()));
-        }
-    }
-
-    /// The same of an attached solver, of two of its iterations.
-    pub(super) fn ask_pushes_there(
+    pub(super) fn ask_pushes(
         &mut self,
         place: LinePlace,
         slave: usize,
-        iterations: impl FnOnce() -> Option<Iterations>,
+        between: impl FnOnce() -> Option<Between>,
     ) {
         if self.waiting == 0
             && !self.pushes.contains_key(&(place, slave))
-            && let Some(iterations) = iterations()
+            && let Some(between) = between()
         {
-            self.send(Ask::PushesThere(place, slave, iterations));
+            self.send(Ask::Pushes(place, slave, between));
         }
     }
 
@@ -272,7 +273,7 @@ impl Background {
     }
 
     /// What came of the scene that was written last; once.
-    pub(super) fn exported(&mut self) -> Option<Result<String, NotWritten>> {
+    pub(super) fn exported(&mut self) -> Option<Result<String, ExportError>> {
         self.exported.take()
     }
 
@@ -397,16 +398,16 @@ impl Helper {
     /// Answers; `None` if nobody listens any more.
     fn answer(&mut self, ask: Ask, news: &Sender<Told>, stop: &AtomicBool) -> Option<()> {
         match ask {
-            Ask::Pushes(place, slave, way) => {
-                let found = self.pushes(slave, way);
-                news.send(Told::Pushes(place, slave, found)).ok()
-            }
-            Ask::PushesThere(place, slave, iterations) => {
-                let posed = self.posed_aside(&iterations.start);
-                let found = posed.map(|posed| {
-                    let posed = posed.ok()?;
-                    pushes_told::pushes(&posed, &iterations.found, slave)
-                });
+            Ask::Pushes(place, slave, between) => {
+                let found = match between {
+                    Between::Way(way) => Some(self.pushes(slave, way)),
+                    Between::Told(iterations) => {
+                        let posed = self.posed_aside(&iterations.start);
+                        posed.map(|posed| {
+                            pushes_told::pushes(&self.model, &iterations, &posed.ok()?, slave)
+                        })
+                    }
+                };
                 let told = found.map_or(Told::NotNow, |found| Told::Pushes(place, slave, found));
                 news.send(told).ok()
             }
@@ -429,7 +430,7 @@ impl Helper {
             Ask::Export(ask) if self.spec.is_none() && is_of_problem(&ask) => {
                 let done = self
                     .posed(&ask.state)
-                    .map_err(NotWritten::from)
+                    .map_err(ExportError::from)
                     .and_then(|posed| write_posed(&self.model, &posed, &ask));
                 let told = done.map(|()| format!("wrote {}", ask.file.display()));
                 news.send(Told::Exported(told)).ok()
@@ -534,32 +535,18 @@ impl Helper {
             Err(_) => Examination::default(),
         };
         let all = remedies::offered(&self.model, state, &self.offers, &found);
-        let mut ended = false;
-        for remedy in &all {
-            let now = remedy.label.clone();
-            news.send(Told::Trying {
-                all: all.len(),
-                now,
-            })
-            .ok()?;
+        try_all(&all, news, |remedy| {
             let (remedy, state) = (remedy.clone(), state.clone());
             let stopping = self.stopping.clone();
             let tried = self.lender.look(move |solver| {
                 let stopped = || stopping.load(Ordering::Relaxed);
-                let tried = remedies::attempt_attached(solver, &state, &remedy, &stopped);
+                let tried = remedies::attempt(solver, &state, None, &remedy, &stopped);
                 // Where the session stands, whatever came of the trial; a solver that does not find back says so when it goes on.
                 let _ = solver.restore(&state);
                 tried
             });
-            match tried.flatten() {
-                Some(trial) => news.send(Told::Tried(Box::new(trial))).ok()?,
-                None => {
-                    ended = true;
-                    break;
-                }
-            }
-        }
-        news.send(Told::Done { stopped: ended }).ok()
+            tried.flatten().map(Some)
+        })
     }
 
     /// What pushed a node: by the session's solver where that has the problem at hand, else by its own.
@@ -647,22 +634,30 @@ fn try_remedies(
 ) -> Option<()> {
     let stopped = || stop.load(Ordering::Relaxed);
     let all = remedies::all(stepper, state, spec, &stopped);
-    let mut ended = false;
-    for remedy in &all {
-        let now = remedy.label.clone();
-        news.send(Told::Trying {
-            all: all.len(),
-            now,
-        })
-        .ok()?;
-        match remedies::attempt(stepper, state, spec, remedy, &stopped) {
-            Some(trial) => news.send(Told::Tried(Box::new(trial))).ok()?,
-            None if !stopped() => {}
+    try_all(&all, news, |remedy| {
+        let tried = remedies::attempt(stepper, state, spec, remedy, &stopped);
+        (tried.is_some() || !stopped()).then_some(tried)
+    })
+}
+
+/// Tries remedies until `attempt` gives none; where it gives an inner `None`, there was nothing to try.
+fn try_all(
+    all: &[Remedy],
+    news: &Sender<Told>,
+    mut attempt: impl FnMut(&Remedy) -> Option<Option<Trial>>,
+) -> Option<()> {
+    let mut stopped = false;
+    for remedy in all {
+        let (all, now) = (all.len(), remedy.label.clone());
+        news.send(Told::Trying { all, now }).ok()?;
+        match attempt(remedy) {
+            Some(Some(trial)) => news.send(Told::Tried(Box::new(trial))).ok()?,
+            Some(None) => {}
             None => {
-                ended = true;
+                stopped = true;
                 break;
             }
         }
     }
-    news.send(Told::Done { stopped: ended }).ok()
+    news.send(Told::Done { stopped }).ok()
 }

@@ -2,7 +2,7 @@
 
 use super::machine::{Reply, Session, Task};
 use super::refusal::Refusal;
-use super::worker::Job;
+use super::worker::Steps;
 use crate::explain::report;
 use crate::format::contact_law::FrictionSpec;
 use crate::format::{Spec, paths};
@@ -103,13 +103,8 @@ impl Session {
 
     /// Starts given steps from the cursor, which is at the tip.
     pub(super) fn take_steps(&mut self, steps: Vec<Option<Intervention>>) {
-        self.stands.again = self.back_to(self.cursor).unwrap_or_default();
-        self.task = Some(Task::Run);
-        self.worker.start(Job::Follow {
-            state: Box::new(self.frame().state.clone()),
-            before: Box::new(self.strips()[self.cursor].clone()),
-            steps,
-        });
+        let before = self.strips()[self.cursor].clone();
+        self.work(self.cursor, Task::Run, Steps::Follow { before, steps });
     }
 
     /// The scene with what was set since.

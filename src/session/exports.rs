@@ -3,18 +3,17 @@
 use crate::explain::attached;
 use crate::explain::core::core;
 use crate::explain::diagnosis::too_many;
-use crate::explain::examination::{NOT_CONDENSED, Untold, going_round};
+use crate::explain::examination::{Untold, going_round};
 use crate::explain::report;
 use crate::history::strip::Strip;
 use crate::model::Model;
-use crate::outside::files::{self, FileError};
+use crate::outside::files;
 use crate::record::command::Exported;
-use crate::record::export::shown::{NotMade, Shown};
-use crate::record::export::{self, Kind, NoExport, Origin, UnknownKind};
+use crate::record::export::shown::{ExportError, Shown};
+use crate::record::export::{self, Kind, Origin};
 use crate::scene::Scene;
-use crate::scene::solver::solver;
 use crate::step::event::Event;
-use crate::step::solver::{Lost, Posed};
+use crate::step::solver::Posed;
 use crate::step::state::{State, Status};
 use crate::step::stepper::Stepper;
 use std::path::{Path, PathBuf};
@@ -48,48 +47,8 @@ pub struct Seen {
     pub last_major: Option<State>,
 }
 
-/// Why no scene was written.
-#[derive(Debug, thiserror::Error)]
-pub enum NotWritten {
-    /// The history is done.
-    #[error("the history is done; nothing is solved next from here")]
-    Finished,
-    /// The bodies cannot be condensed to the interface here.
-    #[error("{NOT_CONDENSED}")]
-    NotCondensed,
-    /// The minor iterations do not cycle here.
-    #[error("the minor iterations do not cycle from here, so there is no core")]
-    NoCycle,
-    /// Too many nodes take part; the words say how many.
-    #[error("{0}")]
-    TooMany(String),
-    /// What is to be written could not be found out.
-    #[error(transparent)]
-    Untold(#[from] Untold),
-    /// No file can say what the problem says.
-    #[error(transparent)]
-    NoExport(#[from] NoExport),
-    /// No file of that kind can be made of the state.
-    #[error(transparent)]
-    NotMade(#[from] NotMade),
-    /// An attached solver does not tell what is to be written.
-    #[error(transparent)]
-    Lost(#[from] Lost),
-    /// The extension is none that is known.
-    #[error(transparent)]
-    UnknownKind(#[from] UnknownKind),
-    /// The kind is made of a journal.
-    #[error(
-        "a .cast is made of a journal; `stickslip export JOURNAL -o FILE` does it, and :journal tells where it is"
-    )]
-    OfJournal,
-    /// The file could not be written.
-    #[error(transparent)]
-    File(#[from] FileError),
-}
-
 /// Makes a file of a state.
-pub(super) fn write(stepper: &mut Stepper, ask: &Export) -> Result<(), NotWritten> {
+pub(super) fn write(stepper: &mut Stepper, ask: &Export) -> Result<(), ExportError> {
     let bytes = match ask.what {
         Exported::Core => {
             let text = core_of(stepper, &ask.state, &ask.origin)?;
@@ -104,7 +63,7 @@ pub(super) fn write(stepper: &mut Stepper, ask: &Export) -> Result<(), NotWritte
     };
     let kind = export::kind(&ask.file).ok();
     let names = match kind.filter(|_| bytes.len() > 1) {
-        Some(kind) => kind.files(&ask.file).map_err(NotMade::NoFile)?,
+        Some(kind) => kind.files(&ask.file).map_err(ExportError::NoFile)?,
         None => vec![ask.file.clone()],
     };
     let whole: Vec<_> = names.into_iter().zip(bytes).collect();
@@ -112,23 +71,21 @@ pub(super) fn write(stepper: &mut Stepper, ask: &Export) -> Result<(), NotWritte
 }
 
 /// The scene of the core of the cycle that a state runs into.
-fn core_of(stepper: &mut Stepper, state: &State, origin: &Origin) -> Result<String, NotWritten> {
+fn core_of(stepper: &mut Stepper, state: &State, origin: &Origin) -> Result<String, ExportError> {
     if state.status == Status::Finished {
-        return Err(NotWritten::Finished);
+        return Err(ExportError::Finished);
     }
     stepper.restore(state);
-    let problem = stepper
-        .interface_problem()
-        .ok_or(NotWritten::NotCondensed)?;
-    let (problem, cycle) = going_round(stepper, state, &problem)?.ok_or(NotWritten::NoCycle)?;
-    let core = core(&problem).ok_or_else(|| NotWritten::TooMany(too_many(&cycle)))?;
+    let problem = stepper.interface_problem().ok_or(Untold::NotCondensed)?;
+    let (problem, cycle) = going_round(stepper, state, &problem)?.ok_or(ExportError::NoCycle)?;
+    let core = core(&problem).ok_or_else(|| Untold::TooMany(too_many(&cycle)))?;
     Ok(export::core(stepper.model(), origin, &cycle, &core)?)
 }
 
 /// What is in the files of a kind.
-fn shown(stepper: &mut Stepper, ask: &Export, kind: &Kind) -> Result<Vec<Vec<u8>>, NotWritten> {
+fn shown(stepper: &mut Stepper, ask: &Export, kind: &Kind) -> Result<Vec<Vec<u8>>, ExportError> {
     let Some(seen) = &ask.shown else {
-        return Err(NotWritten::Finished);
+        return Err(ExportError::Finished);
     };
     let ended = match &ask.state.status {
         Status::Failed(failure) => report::describe_failure(stepper.model(), failure),
@@ -144,23 +101,20 @@ fn shown(stepper: &mut Stepper, ask: &Export, kind: &Kind) -> Result<Vec<Vec<u8>
         ended,
         frozen: ask.what == Exported::Whole,
     };
-    let made = kind.made(&shown, stepper).ok_or(NotWritten::OfJournal)?;
-    Ok(made?)
+    kind.made(&shown, stepper).ok_or(ExportError::OfJournal)?
 }
 
 /// Writes the interface problem that an attached solver tells, in the form of another program too, or its core.
-pub(super) fn write_posed(model: &Model, posed: &Posed, ask: &Export) -> Result<(), NotWritten> {
-    let problem = || attached::problem(model, &ask.state, posed);
+pub(super) fn write_posed(model: &Model, posed: &Posed, ask: &Export) -> Result<(), ExportError> {
+    let solver = || attached::stepper(model, &ask.state, posed).map_err(Box::new);
     let text = match (ask.what, export::kind(&ask.file)) {
         (Exported::Core, _) => {
-            let (mut stepper, start) = attached::stepper(model, &ask.state, posed)
-                .map_err(|why| NoExport::Parted(Box::new(why).into()))?;
+            let (_, mut stepper) = solver()?;
+            let start = stepper.state().clone();
             core_of(&mut stepper, &start, &ask.origin)?
         }
         (_, Ok(kind)) if kind.may_be_frozen && kind.extension != "ron" => {
-            let scene = Scene::from_spec("the interface problem", problem().spec())
-                .map_err(|why| NoExport::Parted(Box::new(why).into()))?;
-            let mut stepper = solver(Arc::new(scene.model.clone()));
+            let (scene, mut stepper) = solver()?;
             let shown = Seen {
                 scene,
                 event: None,
@@ -176,7 +130,7 @@ pub(super) fn write_posed(model: &Model, posed: &Posed, ask: &Export) -> Result<
             };
             return write(&mut stepper, &of_problem);
         }
-        _ => problem().text(&[ask.origin.words()]),
+        _ => attached::problem(model, &ask.state, posed).text(&[ask.origin.words()]),
     };
     Ok(files::write(&ask.file, text, ask.overwrite)?)
 }

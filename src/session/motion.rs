@@ -2,7 +2,7 @@
 
 use super::machine::{Reply, Session, Task};
 use super::refusal::Refusal;
-use super::worker::Job;
+use super::worker::Steps;
 use crate::history::breakpoints::{self, Breakpoint};
 use crate::history::strip::{PointKind, Strip};
 use crate::record::command::Unit;
@@ -42,15 +42,20 @@ impl Session {
 
     /// Starts new minor iterations from the cursor, which is at the tip.
     pub(super) fn solve(&mut self, unit: Unit, count: u32, breakpoints: Vec<Breakpoint>) {
-        self.stands.again = self.back_to(self.cursor).unwrap_or_default();
-        self.task = Some(Task::Run);
-        self.worker.start(Job::Run {
-            state: Box::new(self.frame().state.clone()),
-            before: Box::new(self.strips()[self.cursor].clone()),
+        let run = Steps::Run {
+            before: self.strips()[self.cursor].clone(),
             unit,
             count,
             breakpoints,
-        });
+        };
+        self.work(self.cursor, Task::Run, run);
+    }
+
+    /// Starts steps from a point of the line, to which an attached solver may have to go back first.
+    pub(super) fn work(&mut self, from: usize, task: Task, steps: Steps) {
+        self.stands.again = self.back_to(from).unwrap_or_default();
+        self.task = Some(task);
+        self.worker.start(self.frames()[from].state.clone(), steps);
     }
 
     pub(super) fn back(&mut self, unit: Unit, count: u32) -> Result<Reply, Refusal> {
@@ -104,22 +109,18 @@ impl Session {
             };
             return Reply(self.stops(hits) + &self.told() + &way);
         }
-        self.stands.again = self.back_to(from).unwrap_or_default();
         let frames = &self.frames()[from..=target];
-        let job = Job::Again {
-            state: Box::new(frames[0].state.clone()),
+        let steps = frames[1..].iter().map(|frame| frame.intervention.clone());
+        let again = Steps::Again {
             event: frames[0].event.clone(),
-            steps: frames[1..]
-                .iter()
-                .map(|frame| frame.intervention.clone())
-                .collect(),
+            steps: steps.collect(),
         };
-        self.task = Some(Task::Again {
+        let task = Task::Again {
             next: from + 1,
             target,
             sound: true,
-        });
-        self.worker.start(job);
+        };
+        self.work(from, task, again);
         Reply(format!(
             "computing {} steps again; Ctrl-C interrupts",
             target - from

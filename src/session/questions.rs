@@ -1,7 +1,7 @@
 //! What is asked beside the run, and answered in the background.
 
-use super::background::Background;
-use super::exports::{Export, NotWritten, Seen};
+use super::background::{Background, Between};
+use super::exports::{Export, Seen};
 use super::machine::{Reply, Session};
 use super::refusal::Refusal;
 use crate::explain::influence::Way;
@@ -13,8 +13,7 @@ use crate::history::strip::{PointKind, Strip};
 use crate::history::tree::Tree;
 use crate::outside::files;
 use crate::record::command::Exported;
-use crate::record::export::shown::COLUMNS;
-use crate::record::export::shown::NotMade;
+use crate::record::export::shown::{COLUMNS, ExportError};
 use crate::record::export::{self, MadeOf, Origin};
 use crate::step::state::Status;
 use std::path::PathBuf;
@@ -56,25 +55,22 @@ impl Session {
             return;
         };
         let (tree, cursor) = (&self.tree, self.cursor);
-        if self.log().is_some() {
-            match pushes_told::are_told(tree.model(), &self.offers) {
-                true => {
-                    let iterations = || iterations(tree, before, cursor);
-                    self.background.ask_pushes_there(place, slave, iterations);
-                }
-                false => self.background.pushes_untold(place, slave),
-            }
-            return;
+        let is_attached = self.log().is_some();
+        if is_attached && !pushes_told::are_told(tree.model(), &self.offers) {
+            return self.background.pushes_untold(place, slave);
         }
         self.background.ask_pushes(place, slave, || {
+            if is_attached {
+                return iterations(tree, before, cursor).map(Between::Told);
+            }
             let from = tree.whole_before(before - 1);
             let frames = &tree.frames()[from..cursor];
             let steps = frames[1..].iter().map(|frame| frame.intervention.clone());
-            Way {
+            Some(Between::Way(Way {
                 state: Box::new(frames[0].state.clone()),
                 steps: steps.collect(),
                 before: before - from - 1,
-            }
+            }))
         });
     }
 
@@ -149,14 +145,11 @@ impl Session {
         // Sooner rather than later; it leaves nothing behind.
         files::regular(&file)?;
         if what == Exported::Shown {
-            let kind = export::kind(&file).map_err(NotWritten::from)?;
+            let kind = export::kind(&file)?;
             if matches!(kind.made_of, MadeOf::Journal) {
-                return Err(NotWritten::OfJournal.into());
+                return Err(ExportError::OfJournal.into());
             }
-            for part in kind
-                .files(&file)
-                .map_err(|why| NotWritten::from(NotMade::NoFile(why)))?
-            {
+            for part in kind.files(&file).map_err(ExportError::NoFile)? {
                 drop(files::Output::create(&part, overwrite)?);
             }
         }

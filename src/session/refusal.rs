@@ -1,9 +1,9 @@
 //! Why a session does not do what it is told, or not again what it did.
 
-use super::exports::NotWritten;
 use crate::format::error::NotSet;
 use crate::history::branches::NoBranch;
 use crate::outside::files::FileError;
+use crate::record::export::shown::ExportError;
 use crate::record::journal::JournalError;
 use crate::record::snapshot::SnapshotError;
 
@@ -122,7 +122,7 @@ pub enum Refusal {
     Journal(#[from] JournalError),
     /// A problem could not be written out.
     #[error(transparent)]
-    NotWritten(#[from] NotWritten),
+    Export(#[from] ExportError),
 }
 
 /// How an entry of a journal, done again, leads elsewhere than it did.

@@ -25,13 +25,21 @@ const AHEAD: usize = 1024;
 
 /// What the worker is to do.
 pub enum Job {
-    /// Minor iterations from a state, until so many of a unit are complete, or a breakpoint holds, or a failure, or the
-    /// end. `before` is the strip of the frame that it starts from.
+    /// Steps from a state.
+    Steps(Box<State>, Steps),
+    /// A look at the solver, between two other jobs.
+    Look(Look),
+    /// Nothing more: the thread ends.
+    End,
+}
+
+/// Steps of the solver. `before` is the strip of the frame from which they set out; a step that is given is a minor iteration
+/// (`None`) or an intervention.
+pub enum Steps {
+    /// Minor iterations until so many of a unit are complete, or a breakpoint holds, or a failure, or the end.
     Run {
-        /// Where it starts.
-        state: Box<State>,
         /// Strip of the frame that it starts from.
-        before: Box<Strip>,
+        before: Strip,
         /// What is counted.
         unit: Unit,
         /// How many of it.
@@ -39,29 +47,20 @@ pub enum Job {
         /// Where it stops before.
         breakpoints: Vec<Breakpoint>,
     },
-    /// Steps that are given, from a state: each a minor iteration, or an intervention. `before` is the strip of the frame
-    /// that it starts from.
+    /// Steps that are given.
     Follow {
-        /// Where it starts.
-        state: Box<State>,
         /// Strip of the frame that it starts from.
-        before: Box<Strip>,
-        /// The steps, in order; `None` is a minor iteration.
+        before: Strip,
+        /// In order.
         steps: Vec<Option<Intervention>>,
     },
-    /// A look at the solver, between two other jobs.
-    Look(Look),
-    /// The same steps as once before, from a state: each a minor iteration, or an intervention.
+    /// The same steps as once before.
     Again {
-        /// Where it starts.
-        state: Box<State>,
-        /// The last minor iteration before that state.
+        /// The last minor iteration before them.
         event: Option<Arc<Event>>,
-        /// The steps, in order; `None` is a minor iteration.
+        /// In order.
         steps: Vec<Option<Intervention>>,
     },
-    /// Nothing more: the thread ends.
-    End,
 }
 
 /// What is done with the solver, and told by whoever does it. It may leave the solver at another state, since every job goes to
@@ -144,42 +143,15 @@ impl Worker {
             while let Ok(job) = orders.recv() {
                 at_work.store(!matches!(job, Job::Look(_)), Ordering::Relaxed);
                 let done = match job {
-                    Job::Run {
-                        state,
-                        before,
-                        unit,
-                        count,
-                        breakpoints,
-                    } => {
-                        let run = |solver: &mut dyn Solver| {
-                            let wanted = (unit, count);
-                            run(solver, *before, wanted, &breakpoints, &news, &flag)
-                        };
-                        from(solver, &state, &news, run)
-                    }
-                    Job::Follow {
-                        state,
-                        before,
-                        steps,
-                    } => {
-                        let follow =
-                            |solver: &mut dyn Solver| follow(solver, *before, steps, &news, &flag);
-                        from(solver, &state, &news, follow)
-                    }
-                    Job::End => None,
+                    Job::Steps(state, steps) => match solver.restore(&state) {
+                        Ok(()) => take(solver, steps, &news, &flag),
+                        Err(lost) => news.send(Message::Lost(lost)).ok(),
+                    },
                     Job::Look(look) => {
                         look(solver);
                         Some(())
                     }
-                    Job::Again {
-                        state,
-                        event,
-                        steps,
-                    } => {
-                        let again =
-                            |solver: &mut dyn Solver| again(solver, event, &steps, &news, &flag);
-                        from(solver, &state, &news, again)
-                    }
+                    Job::End => None,
                 };
                 at_work.store(false, Ordering::Relaxed);
                 if done.is_none() {
@@ -211,11 +183,11 @@ impl Worker {
     }
 
     /// Starts a job. A dead worker answers [`Message::Died`].
-    pub fn start(&self, job: Job) {
+    pub fn start(&self, from: State, steps: Steps) {
         self.stop.store(0, Ordering::Relaxed);
         self.busy.store(true, Ordering::Relaxed);
         // A failing send means that the thread is gone, which the next message says.
-        let _ = self.jobs.send(job);
+        let _ = self.jobs.send(Job::Steps(Box::new(from), steps));
     }
 
     /// Asks the running job to stop after the present minor iteration.
@@ -258,16 +230,33 @@ impl Drop for Worker {
     }
 }
 
-/// Does a job from a state; `None` if nobody listens any more.
-fn from(
+/// Takes steps from where the solver is; `None` if nobody listens any more.
+fn take(
     solver: &mut dyn Solver,
-    state: &State,
+    steps: Steps,
     news: &SyncSender<Message>,
-    job: impl FnOnce(&mut dyn Solver) -> Option<()>,
+    stop: &AtomicUsize,
 ) -> Option<()> {
-    match solver.restore(state) {
-        Ok(()) => job(solver),
-        Err(lost) => news.send(Message::Lost(lost)).ok(),
+    match steps {
+        Steps::Run {
+            before,
+            unit,
+            count,
+            breakpoints,
+        } => run(solver, before, (unit, count), &breakpoints, news, stop),
+        Steps::Follow { mut before, steps } => {
+            follow(solver, steps, news, stop, |solver, step, began| {
+                made(solver, &mut before, step, began)
+            })
+        }
+        Steps::Again { mut event, steps } => {
+            follow(solver, steps, news, stop, |solver, step, _| {
+                if step.is_none() {
+                    event = Some(Arc::new(solver.event().clone()));
+                }
+                Message::Again(Box::new(solver.state().clone()), event.clone())
+            })
+        }
     }
 }
 
@@ -349,45 +338,32 @@ fn seen(solver: &mut dyn Solver, before: &Strip, began: Instant) -> (Frame, Stri
     (frame, strip)
 }
 
-/// Takes given steps, as far as they can be taken; `None` if nobody listens any more.
+/// Takes given steps, as far as they can be taken, and sends what `message` makes of each; `None` if nobody listens any more.
 fn follow(
     solver: &mut dyn Solver,
-    mut before: Strip,
     steps: Vec<Option<Intervention>>,
     news: &SyncSender<Message>,
     stop: &AtomicUsize,
+    mut message: impl FnMut(&mut dyn Solver, Option<Intervention>, Instant) -> Message,
 ) -> Option<()> {
     let mut interrupted = false;
-    for given in steps {
+    for step in steps {
         if stop.load(Ordering::Relaxed) > 0 {
             interrupted = true;
             break;
         }
-        match given {
-            Some(intervention) => {
-                if solver.intervene(&intervention).is_err() {
-                    break;
-                }
-                let state = Box::new(solver.state().clone());
-                before = Strip::intervention(solver.model(), &state, &before);
-                news.send(Message::Changed(state, intervention)).ok()?;
-            }
-            None => {
-                let began = Instant::now();
-                match solver.step() {
-                    Ok(true) => {}
-                    Ok(false) => break,
-                    Err(lost) => return news.send(Message::Lost(lost)).ok(),
-                }
-                let (frame, strip) = seen(solver, &before, began);
-                before = strip.clone();
-                news.send(Message::Made(Box::new(frame), Box::new(strip)))
-                    .ok()?;
-            }
+        let began = Instant::now();
+        let taken = match &step {
+            Some(intervention) => Ok(solver.intervene(intervention).is_ok()),
+            None => solver.step(),
+        };
+        match taken {
+            Ok(true) => news.send(message(solver, step, began)).ok()?,
+            Ok(false) => break,
+            Err(lost) => return news.send(Message::Lost(lost)).ok(),
         }
     }
-    let hits = Vec::new();
-    let remark = solver.remark();
+    let (hits, remark) = (Vec::new(), solver.remark());
     news.send(Message::Done {
         interrupted,
         hits,
@@ -396,38 +372,19 @@ fn follow(
     .ok()
 }
 
-/// Does what was done before; `None` if nobody listens any more.
-fn again(
+/// A step that was taken for the first time.
+fn made(
     solver: &mut dyn Solver,
-    mut event: Option<Arc<Event>>,
-    steps: &[Option<Intervention>],
-    news: &SyncSender<Message>,
-    stop: &AtomicUsize,
-) -> Option<()> {
-    let mut interrupted = false;
-    for step in steps {
-        if stop.load(Ordering::Relaxed) > 0 {
-            interrupted = true;
-            break;
-        }
-        match step {
-            // It was sound the first time, from the same state.
-            Some(intervention) if solver.intervene(intervention).is_err() => break,
-            Some(_) => {}
-            None => match solver.step() {
-                Ok(solved) => event = solved.then(|| Arc::new(solver.event().clone())),
-                Err(lost) => return news.send(Message::Lost(lost)).ok(),
-            },
-        }
-        let state = Box::new(solver.state().clone());
-        news.send(Message::Again(state, event.clone())).ok()?;
-    }
-    let hits = Vec::new();
-    let remark = solver.remark();
-    news.send(Message::Done {
-        interrupted,
-        hits,
-        remark,
-    })
-    .ok()
+    before: &mut Strip,
+    step: Option<Intervention>,
+    began: Instant,
+) -> Message {
+    let Some(intervention) = step else {
+        let (frame, strip) = seen(solver, before, began);
+        before.clone_from(&strip);
+        return Message::Made(Box::new(frame), Box::new(strip));
+    };
+    let state = Box::new(solver.state().clone());
+    *before = Strip::intervention(solver.model(), &state, before);
+    Message::Changed(state, intervention)
 }

@@ -12,7 +12,7 @@
 //!   0 to 1, too, and the problem may have no answer;
 //! - gaps: half of the nodes touch (0), the others are uniform in −0.25 to 0.75: some penetrate. All nodes start free.
 
-use crate::format::condensed::{Contact, HEAD, Matrix, Problem, at_once};
+use crate::format::condensed::{Contact, HEAD, Matrix, Problem};
 use crate::model::{Friction, Mode, Settings};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
@@ -136,7 +136,7 @@ impl Population {
                 matrix,
                 free,
                 spacing: None,
-                history: at_once(),
+                history: Default::default(),
                 settings: Settings::default(),
             },
             form,

@@ -14,7 +14,7 @@ use super::log::Outcome;
 use super::random::{Drawn, Population};
 use super::reason::Reason;
 use super::verdict::RunVerdict;
-use crate::format::condensed::{Matrix, Problem, at_once};
+use crate::format::condensed::{Matrix, Problem};
 use crate::format::{SceneError, paths};
 use crate::interface::census::census;
 use crate::model::{Model, Settings};
@@ -114,7 +114,7 @@ pub fn prepared(variants: &[Variant]) -> Vec<Prepared<'_>> {
         matrix: Matrix::Stiffness(Vec::new()),
         free: Vec::new(),
         spacing: None,
-        history: at_once(),
+        history: Default::default(),
         settings: Settings::default(),
     };
     let spec = common.spec();
@@ -318,7 +318,7 @@ mod tests {
             matrix: Matrix::Stiffness(vec![vec![1.0, 0.0], vec![0.0, 1.0]]),
             free: Vec::new(),
             spacing: None,
-            history: at_once(),
+            history: Default::default(),
             settings: Default::default(),
         }
     }

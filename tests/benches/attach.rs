@@ -14,8 +14,8 @@ use stickslip::record::command::{Command, Unit};
 use stickslip::session::Session;
 use stickslip::step::Solver;
 use stickslip_exchange::attach::message::{
-    Abilities, At, Contact, Ended, Found, Friction, Hello, Id, Mode as Told, Node, Norms, Restore,
-    Scene, State, Surface,
+    Abilities, Contact, Ended, Found, Friction, Hello, Id, Node, Norms, Position, Restore, Scene,
+    State, Surface,
 };
 use stickslip_exchange::attach::{Answer, PROTOCOL, Request};
 
@@ -221,7 +221,7 @@ fn scene(contacts: usize) -> Scene {
             mu: Some(0.3),
             ..Friction::default()
         },
-        mode: Told::Free,
+        mode: Mode::Free,
         area: None,
         gives: None,
         tied: false,
@@ -252,7 +252,7 @@ fn states(contacts: usize) -> Vec<Answer> {
 
 /// A state with numbers of 16 digits.
 fn state(contacts: usize, n: usize) -> State {
-    let mode = |k: usize, n: usize| [Told::Free, Told::Fixed, Told::Sliding][(k + n) % 3];
+    let mode = |k: usize, n: usize| [Mode::Free, Mode::Fixed, Mode::Sliding][(k + n) % 3];
     let number = |k: usize, of: f64| ((k * STATES + n) as f64 + of).sin() / 3.0;
     let found = |k: usize| Found {
         id: Id::Number(k as i64),
@@ -277,7 +277,7 @@ fn state(contacts: usize, n: usize) -> State {
         over: true,
     };
     State {
-        at: At {
+        at: Position {
             increment: 1,
             attempt: 1,
             major: 1,

@@ -22,9 +22,7 @@ use stickslip::step::event::{Event, Failure, Outcome};
 use stickslip::step::intervene::{Intervention, Refusal};
 use stickslip::step::solver::{GoesBack, Lost, Offers};
 use stickslip::step::{Solver, State, Status};
-use stickslip_exchange::attach::message::{
-    Contact, Friction, Id, Mode as Told, Node, Scene, Surface,
-};
+use stickslip_exchange::attach::message::{Contact, Friction, Id, Node, Scene, Surface};
 
 /// Nodes, their distances from the floor, the stiffness of every spring, and the loads on a node at the load factor 1.
 const GAPS: [f64; 4] = [0.0, 0.01, 0.03, 0.08];
@@ -211,7 +209,7 @@ fn told() -> Scene {
             mu: Some(MU),
             ..Friction::default()
         },
-        mode: Told::Free,
+        mode: Mode::Free,
         area: None,
         gives: None,
         tied: false,

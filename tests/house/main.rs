@@ -31,7 +31,7 @@ const PACKAGES: &[Package] = &[
     Package {
         name: "stickslip_exchange",
         folder: "src/exchange",
-        others: &[],
+        others: &["core"],
     },
 ];
 

@@ -1,27 +1,26 @@
 //! Whether states that a solver keeps are the same when it comes back to them.
 
 use super::super::fault::Fault;
-use super::report::{Report, Verdict};
+use super::report::{Outcome, fails, good, not_offered};
 use super::steps::otherwise;
 use super::trial::{Trial, at, is_last};
+use crate::model::Mode;
 use serde_json::Value;
-use stickslip_exchange::attach::message::{Ended, Mode, Restore, State};
+use stickslip_exchange::attach::message::{Ended, Restore, State};
 
 /// Iterations that are looked at after each state.
 const AFTER: usize = 2;
-const WHAT: &str = "restore";
 const MEND: &str = "a token keeps all that the next iterations depend on: displacements, forces, modes, what is forced and held, parameters, counters, multipliers, anchors";
 
 /// All states are kept as far as that is offered; each is gone back to, the last first, and from the start again.
-pub fn restore(report: &mut Report, mut trial: Trial, states: &[State]) -> Result<(), Fault> {
+pub fn restore(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
     let offered = trial.hello.abilities.restore;
     if offered == Restore::None {
         let took = format!(
             "going back starts it anew ({:.0} ms), and does everything again",
             super::millis(trial.began)
         );
-        report.add(WHAT, took, Verdict::NotOffered);
-        return Ok(());
+        return Ok(not_offered(took));
     }
     let mut kept: Vec<(usize, Value)> = Vec::new();
     for place in 0..states.len() {
@@ -31,8 +30,10 @@ pub fn restore(report: &mut Report, mut trial: Trial, states: &[State]) -> Resul
                 Ok(token) => kept.push((place, token)),
                 Err(reason) => {
                     let found = format!("save after iteration {place} is refused: {reason}");
-                    report.fails(WHAT, found, "what hello offers is kept: \"any\" state, or the start and every one after which an \"increment\" has ended");
-                    return Ok(());
+                    return Ok(fails(
+                        found,
+                        "what hello offers is kept: \"any\" state, or the start and every one after which an \"increment\" has ended",
+                    ));
                 }
             }
         }
@@ -43,8 +44,7 @@ pub fn restore(report: &mut Report, mut trial: Trial, states: &[State]) -> Resul
     let ways = kept.iter().rev().chain(kept.first());
     for (place, token) in ways.clone() {
         if let Some((found, mend)) = comes_back(&mut trial, *place, token, states)? {
-            report.fails(WHAT, found, mend);
-            return Ok(());
+            return Ok(fails(found, mend));
         }
         if trial.is_late() {
             break;
@@ -54,15 +54,12 @@ pub fn restore(report: &mut Report, mut trial: Trial, states: &[State]) -> Resul
         && trial.hello.abilities.force
         && let Some(found) = forgets(&mut trial, *place, token, states)?
     {
-        report.fails(WHAT, found, MEND);
-        return Ok(());
+        return Ok(fails(found, MEND));
     }
     let (count, s) = (kept.len(), if kept.len() == 1 { "" } else { "s" });
-    report.good(
-        WHAT,
-        format!("{count} state{s} gone back to, and what follows is the same to the last bit"),
-    );
-    Ok(())
+    Ok(good(format!(
+        "{count} state{s} gone back to, and what follows is the same to the last bit"
+    )))
 }
 
 /// What is not the same after a state was gone back to, and how to mend it.

@@ -2,11 +2,13 @@
 
 use super::super::fault::Fault;
 use super::super::orders::{FRICTION, INCREMENT};
-use super::report::{Report, Verdict};
-use super::trial::{Trial, at, is_last, word};
+use super::report::{Outcome, fails, good, not_offered};
+use super::trial::{Trial, at, is_last};
+use crate::explain::names::{self, MODES};
+use crate::model::Mode;
 use crate::outside::shown;
 use serde_json::Value;
-use stickslip_exchange::attach::message::{Ended, Id, Mode, Parameter, ParameterKind, State};
+use stickslip_exchange::attach::message::{Ended, Id, Parameter, ParameterKind, State};
 
 /// Contacts that are forced, each in every mode.
 const FORCED: usize = 100;
@@ -18,19 +20,16 @@ const LONG: usize = 10;
 const SHOWS: usize = 4;
 /// Load factors that differ by less than this part are the same.
 const SAME: f64 = 1e-9;
-const MODES: [Mode; 3] = [Mode::Fixed, Mode::Sliding, Mode::Free];
 
 fn name(contact: &Id) -> String {
     shown::line(&contact.to_string()).into_owned()
 }
 
 /// Forces each contact in each mode; all at once at last.
-pub fn force(report: &mut Report, mut trial: Trial, _: &[State]) -> Result<(), Fault> {
-    const WHAT: &str = "force";
+pub fn force(mut trial: Trial, _: &[State]) -> Result<Outcome, Fault> {
     const MEND: &str = "`mode` of the next state is that of the solve, which is the forced one, whatever the rules would choose";
     if !trial.hello.abilities.force {
-        report.add(WHAT, "", Verdict::NotOffered);
-        return Ok(());
+        return Ok(not_offered(""));
     }
     let contacts = trial.some_contacts(FORCED);
     let (mut obeyed, mut refused, mut tried) = (0, Vec::new(), 0);
@@ -42,23 +41,21 @@ pub fn force(report: &mut Report, mut trial: Trial, _: &[State]) -> Result<(), F
         for mode in MODES {
             if let Err(reason) = trial.force(contact, mode, false)? {
                 // A contact without friction cannot stick, one past its surface cannot touch.
-                refused.push(format!("{} {}: {reason}", name(contact), word(mode)));
+                refused.push(format!("{} {}: {reason}", name(contact), names::mode(mode)));
                 continue;
             }
             let state = trial.step()?;
             let found = state.as_ref().and_then(|state| at(state, contact));
             if let Some(found) = found {
                 if found.mode != mode {
-                    let (is, wanted) = (word(found.mode), word(mode));
+                    let (is, wanted) = (names::mode(found.mode), names::mode(mode));
                     let contact = name(contact);
-                    report.fails(
-                        WHAT,
+                    return Ok(fails(
                         format!(
                             "contact {contact} is forced {wanted}, and the next solve has it {is}"
                         ),
                         MEND,
-                    );
-                    return Ok(());
+                    ));
                 }
                 obeyed += 1;
             }
@@ -72,12 +69,10 @@ pub fn force(report: &mut Report, mut trial: Trial, _: &[State]) -> Result<(), F
             .first()
             .cloned()
             .unwrap_or_else(|| "no forced iteration could be solved".into());
-        report.fails(
-            WHAT,
+        return Ok(fails(
             why,
             "hello offers force only where contacts can be forced",
-        );
-        return Ok(());
+        ));
     }
     trial.again()?;
     let mut all = Vec::new();
@@ -94,10 +89,9 @@ pub fn force(report: &mut Report, mut trial: Trial, _: &[State]) -> Result<(), F
             let found = format!(
                 "all contacts are forced at once, and {} is not {}",
                 name(contact),
-                word(*mode)
+                names::mode(*mode)
             );
-            report.fails(WHAT, found, MEND);
-            return Ok(());
+            return Ok(fails(found, MEND));
         }
     }
     let count = trial.scene.contacts.len();
@@ -111,16 +105,13 @@ pub fn force(report: &mut Report, mut trial: Trial, _: &[State]) -> Result<(), F
             shown::line(first)
         );
     }
-    report.good(WHAT, found);
-    Ok(())
+    Ok(good(found))
 }
 
 /// Held modes stay, through equilibrium and to the next increment, until they are released.
-pub fn hold(report: &mut Report, mut trial: Trial, states: &[State]) -> Result<(), Fault> {
-    const WHAT: &str = "hold";
+pub fn hold(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
     if !trial.hello.abilities.hold {
-        report.add(WHAT, "", Verdict::NotOffered);
-        return Ok(());
+        return Ok(not_offered(""));
     }
     let (mut longest, mut held) = (0, 0);
     for contact in trial.some_contacts(HELD) {
@@ -153,18 +144,16 @@ pub fn hold(report: &mut Report, mut trial: Trial, states: &[State]) -> Result<(
                 Some(Ended::Cut) => ", after the increment was cut",
                 _ => "",
             };
-            let is = at(state, &contact).map_or("", |found| word(found.mode));
+            let is = at(state, &contact).map_or("", |found| names::mode(found.mode));
             let found = format!(
                 "contact {} is held {}, and solved {is} in iteration {number}{then}",
                 name(&contact),
-                word(mode)
+                names::mode(mode)
             );
-            report.fails(
-                WHAT,
+            return Ok(fails(
                 found,
                 "a held mode is that of every solve until release, whatever ends in between",
-            );
-            return Ok(());
+            ));
         }
         // After the end there is nothing to be released for.
         if states.last().is_none_or(is_last) {
@@ -175,44 +164,42 @@ pub fn hold(report: &mut Report, mut trial: Trial, states: &[State]) -> Result<(
         };
         if let Err(reason) = trial.order(&release)? {
             let found = format!("release of contact {} is refused: {reason}", name(&contact));
-            report.fails(WHAT, found, "release is answered by ok");
-            return Ok(());
+            return Ok(fails(found, "release is answered by ok"));
         }
     }
-    match held {
-        0 => report.fails(
-            WHAT,
+    Ok(match held {
+        0 => fails(
             "no contact can be held",
             "hello offers hold only where contacts can be held",
         ),
-        _ => report.good(
-            WHAT,
-            format!("{held} contacts, through {longest} iterations, and released"),
-        ),
-    }
-    Ok(())
+        _ => good(format!(
+            "{held} contacts, through {longest} iterations, and released"
+        )),
+    })
 }
 
 /// Each parameter takes its own value, refuses what it cannot take, and what another value does is looked at.
-pub fn parameters(report: &mut Report, mut trial: Trial, states: &[State]) -> Result<(), Fault> {
-    const WHAT: &str = "parameters";
+pub fn parameters(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
     let all = trial.hello.parameters.clone();
     if all.is_empty() {
-        report.add(WHAT, "", Verdict::NotOffered);
-        return Ok(());
+        return Ok(not_offered(""));
     }
     for known in &all {
         let name = &known.name;
         if let Err(reason) = trial.set(name, known.value.clone())? {
             let found = format!("{name} refuses the value that it has: {reason}");
-            report.fails(WHAT, found, "set with the value of hello is answered by ok");
-            return Ok(());
+            return Ok(fails(
+                found,
+                "set with the value of hello is answered by ok",
+            ));
         }
         for wrong in wrong_values(known) {
             if trial.set(name, wrong.clone())?.is_ok() {
                 let found = format!("{name} takes {wrong}, which is none of its values");
-                report.fails(WHAT, found, "what is out of range, or of another kind, is answered by refused, and changes nothing");
-                return Ok(());
+                return Ok(fails(
+                    found,
+                    "what is out of range, or of another kind, is answered by refused, and changes nothing",
+                ));
             }
         }
     }
@@ -243,8 +230,7 @@ pub fn parameters(report: &mut Report, mut trial: Trial, states: &[State]) -> Re
             without.join(", ")
         );
     }
-    report.good(WHAT, found);
-    Ok(())
+    Ok(good(found))
 }
 
 /// Values that a parameter cannot take.
@@ -309,11 +295,10 @@ fn meant(trial: &Trial, name: &str) -> Option<f64> {
 }
 
 /// Another increment starts the present one again.
-pub fn increment(report: &mut Report, mut trial: Trial, states: &[State]) -> Result<(), Fault> {
+pub fn increment(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
     const MEND: &str = "with a new size the present increment starts again: the same increment, a further attempt, major 1, minor 1, from the last accepted state";
     let Some(size) = meant(&trial, INCREMENT) else {
-        report.add(INCREMENT, "", Verdict::NotOffered);
-        return Ok(());
+        return Ok(not_offered(""));
     };
     // In the middle of an increment, if there is a middle.
     let done = states
@@ -322,16 +307,13 @@ pub fn increment(report: &mut Report, mut trial: Trial, states: &[State]) -> Res
         .map_or(0, |place| place + 1);
     let before = trial.steps(done)?;
     if let Err(reason) = trial.set(INCREMENT, 0.5 * size)? {
-        report.fails(
-            INCREMENT,
+        return Ok(fails(
             format!("half of its size is refused: {reason}"),
             MEND,
-        );
-        return Ok(());
+        ));
     }
     let Some(now) = trial.step()? else {
-        report.fails(INCREMENT, "the step after it is refused", MEND);
-        return Ok(());
+        return Ok(fails("the step after it is refused", MEND));
     };
     if let Some(last) = before.last() {
         let at = now.at;
@@ -350,8 +332,7 @@ pub fn increment(report: &mut Report, mut trial: Trial, states: &[State]) -> Res
                 at.major,
                 at.minor
             );
-            report.fails(INCREMENT, found, MEND);
-            return Ok(());
+            return Ok(fails(found, MEND));
         }
     }
     let [from, to] = trial.scene.load.unwrap_or([0.0, 1.0]);
@@ -362,30 +343,24 @@ pub fn increment(report: &mut Report, mut trial: Trial, states: &[State]) -> Res
         let found = format!(
             "half of its size leads to the load factor {load:?}, and {wanted:?} would be right"
         );
-        report.fails(
-            INCREMENT,
+        return Ok(fails(
             found,
             "`load` is the factor at the end of the present increment",
-        );
-        return Ok(());
+        ));
     }
-    report.good(INCREMENT, "half of its size starts the increment again");
-    Ok(())
+    Ok(good("half of its size starts the increment again"))
 }
 
 /// Without friction there is no limit but the cohesion.
-pub fn friction(report: &mut Report, mut trial: Trial, states: &[State]) -> Result<(), Fault> {
+pub fn friction(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
     if meant(&trial, FRICTION).is_none() {
-        report.add(FRICTION, "", Verdict::NotOffered);
-        return Ok(());
+        return Ok(not_offered(""));
     }
     if let Err(reason) = trial.set(FRICTION, 0.0)? {
-        report.fails(
-            FRICTION,
+        return Ok(fails(
             format!("mu = 0 is refused: {reason}"),
             "friction is the coefficient of all contacts, and 0 is none",
-        );
-        return Ok(());
+        ));
     }
     let now = trial.steps(states.len())?;
     let size = |of: &[State]| {
@@ -400,16 +375,11 @@ pub fn friction(report: &mut Report, mut trial: Trial, states: &[State]) -> Resu
     });
     // The first solve may still have the old one.
     let (least, then) = (size(now.get(1..).unwrap_or(&[])), size(states));
-    match then > 0.0 && least > cohesion.max(1e-6 * then) {
-        true => report.fails(
-            FRICTION,
+    Ok(match then > 0.0 && least > cohesion.max(1e-6 * then) {
+        true => fails(
             format!("with mu = 0 the limit of a contact is {least:?}"),
             "limit is mu f_n + cohesion with the mu that was set, from the next iteration on",
         ),
-        false => report.good(
-            FRICTION,
-            "with mu = 0 no contact has a limit but its cohesion",
-        ),
-    }
-    Ok(())
+        false => good("with mu = 0 no contact has a limit but its cohesion"),
+    })
 }

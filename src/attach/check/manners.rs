@@ -2,44 +2,34 @@
 
 use super::super::fault::Fault;
 use super::super::link::name;
-use super::report::{Report, Verdict};
+use super::report::{Outcome, fails, good, not_offered};
 use super::trial::{Trial, millis};
+use crate::model::Mode;
 use std::time::Instant;
-use stickslip_exchange::attach::message::{Id, Mode, State};
+use stickslip_exchange::attach::message::{Id, State};
 use stickslip_exchange::attach::{Answer, Request};
 
 /// An interrupt is no request: it has no answer of its own, before a step and during one.
-pub fn interrupt(report: &mut Report, mut trial: Trial, _: &[State]) -> Result<(), Fault> {
-    const WHAT: &str = "interrupt";
+pub fn interrupt(mut trial: Trial, _: &[State]) -> Result<Outcome, Fault> {
     if !trial.hello.abilities.interrupt {
-        let found = "Ctrl-C waits for the iteration at hand; the second one is a signal";
-        report.add(WHAT, found, Verdict::NotOffered);
-        return Ok(());
+        return Ok(not_offered(
+            "Ctrl-C waits for the iteration at hand; the second one is a signal",
+        ));
     }
     trial.link.interrupt();
     trial.step()?;
     trial.interrupted_step()?;
-    match trial.step()? {
-        Some(_) => report.good(
-            WHAT,
-            "before a step and during one; the step is answered, and the next too",
-        ),
-        None => report.fails(
-            WHAT,
+    Ok(match trial.step()? {
+        Some(_) => good("before a step and during one; the step is answered, and the next too"),
+        None => fails(
             "after an interrupt the next step is refused",
             "an interrupt ends the request at hand soon, if there is one, and nothing else",
         ),
-    }
-    Ok(())
+    })
 }
 
 /// What does not exist is refused, and ends nothing.
-pub fn wrong_requests(
-    report: &mut Report,
-    mut trial: Trial,
-    states: &[State],
-) -> Result<(), Fault> {
-    const WHAT: &str = "wrong requests";
+pub fn wrong_requests(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
     let nobody = || Id::Text("no such contact".into());
     let wrong = [
         Request::Set {
@@ -59,52 +49,37 @@ pub fn wrong_requests(
     for request in wrong {
         if !matches!(trial.ask(&request)?, Answer::Refused { .. }) {
             let found = format!("{} is not refused", name(&request));
-            report.fails(
-                WHAT,
+            return Ok(fails(
                 found,
                 "what does not exist, or is not offered, is answered by refused",
-            );
-            return Ok(());
+            ));
         }
     }
-    match (trial.step()?.as_ref(), states.first()) {
-        (Some(now), Some(then)) if now == then => {
-            report.good(WHAT, "they are refused, and change nothing")
-        }
-        _ => report.fails(
-            WHAT,
+    Ok(match (trial.step()?.as_ref(), states.first()) {
+        (Some(now), Some(then)) if now == then => good("they are refused, and change nothing"),
+        _ => fails(
             "after requests that were refused the first iteration is another",
             "what is refused changes nothing",
         ),
-    }
-    Ok(())
+    })
 }
 
 /// It ends when it is told to.
-pub fn bye(report: &mut Report, mut trial: Trial, _: &[State]) -> Result<(), Fault> {
+pub fn bye(mut trial: Trial, _: &[State]) -> Result<Outcome, Fault> {
     let began = Instant::now();
-    match trial.link.leave(true) {
-        true => report.good(
-            "bye",
-            format!("it ends within {:.0} ms", millis(began.elapsed())),
-        ),
-        false => report.fails("bye", "it does not end", "end on bye"),
-    }
-    Ok(())
+    Ok(match trial.link.leave(true) {
+        true => good(format!("it ends within {:.0} ms", millis(began.elapsed()))),
+        false => fails("it does not end", "end on bye"),
+    })
 }
 
 /// It ends when the debugger is gone.
-pub fn end_of_input(report: &mut Report, mut trial: Trial, _: &[State]) -> Result<(), Fault> {
-    match trial.link.leave(false) {
-        true => report.good(
-            "end of input",
-            "it ends, so that none is left when a debugger dies",
-        ),
-        false => report.fails(
-            "end of input",
+pub fn end_of_input(mut trial: Trial, _: &[State]) -> Result<Outcome, Fault> {
+    Ok(match trial.link.leave(false) {
+        true => good("it ends, so that none is left when a debugger dies"),
+        false => fails(
             "it does not end when its standard input is closed",
             "a read that gives nothing is the end: leave the loop",
         ),
-    }
-    Ok(())
+    })
 }

@@ -16,7 +16,7 @@ mod trial;
 use super::fault::Fault;
 use super::link::Start;
 use super::log::Log;
-pub use report::{Checked, Report, Verdict};
+pub use report::{Checked, Outcome, Report, Verdict};
 use stickslip_exchange::attach::message::State;
 use trial::{Trial, millis};
 
@@ -29,7 +29,7 @@ pub fn check(start: &Start, log: &Log) -> Report {
     let first = match Trial::begin(start, log) {
         Ok(trial) => trial,
         Err(fault) => {
-            report.ends("start", &fault);
+            report.add("start", Err(fault));
             return report;
         }
     };
@@ -37,13 +37,14 @@ pub fn check(start: &Start, log: &Log) -> Report {
     let count = first.scene.contacts.len();
     let s = if count == 1 { "" } else { "s" };
     let took = millis(first.began);
-    report.good("start", format!("{count} contact{s}, {took:.0} ms"));
+    let found = format!("{count} contact{s}, {took:.0} ms");
+    report.add("start", Ok(report::good(found)));
     let states = steps::stepping(&mut report, first);
     if states.is_empty() {
         return report;
     }
-    type Of = fn(&mut Report, Trial, &[State]) -> Result<(), Fault>;
-    let checks: [(&'static str, Of); 10] = [
+    type Check = fn(Trial, &[State]) -> Result<Outcome, Fault>;
+    let checks: [(&'static str, Check); 12] = [
         ("determinism", steps::determinism),
         ("restore", back::restore),
         ("force", changes::force),
@@ -54,23 +55,12 @@ pub fn check(start: &Start, log: &Log) -> Report {
         ("problem", problem::problem),
         ("interrupt", manners::interrupt),
         ("wrong requests", manners::wrong_requests),
-    ];
-    for (what, of) in checks {
-        if let Err(fault) =
-            Trial::begin(start, log).and_then(|trial| of(&mut report, trial, &states))
-        {
-            report.ends(what, &fault);
-        }
-    }
-    for (what, of) in [
-        ("bye", manners::bye as Of),
+        ("bye", manners::bye),
         ("end of input", manners::end_of_input),
-    ] {
-        if let Err(fault) =
-            Trial::begin(start, log).and_then(|trial| of(&mut report, trial, &states))
-        {
-            report.ends(what, &fault);
-        }
+    ];
+    for (what, check) in checks {
+        let trial = Trial::begin(start, log);
+        report.add(what, trial.and_then(|trial| check(trial, &states)));
     }
     report
 }

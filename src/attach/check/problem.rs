@@ -9,16 +9,16 @@
 use super::super::fault::Fault;
 use super::super::meeting::other;
 use super::super::posed::posed;
-use super::report::{Report, Verdict};
+use super::report::{Outcome, fails, good, not_offered, not_tried};
 use super::steps::is_settled;
 use super::trial::{Trial, is_last};
+use crate::model::Mode;
 use crate::outside::shown;
-use crate::step::solver::{Posed, PosedForm};
-use nalgebra::{DMatrix, DVector};
-use stickslip_exchange::attach::message::{Ended, Id, Mode, State};
+use crate::step::solver::Posed;
+use nalgebra::DVector;
+use stickslip_exchange::attach::message::{Ended, Id, State};
 use stickslip_exchange::attach::{Answer, Request};
 
-const WHAT: &str = "problem";
 /// What an iteration that solves the problem as it is posed may differ by, in parts of the lengths that go into it.
 const EXACT: f64 = 1e-6;
 /// The same in a settled state of a solver that changes more than modes in an iteration.
@@ -26,10 +26,9 @@ const SETTLED: f64 = 1e-2;
 const MEND: &str = "gap = W f + q, with the total forces f at the end of the increment (compression positive), of the state that the next iteration would find";
 
 /// Asks for the problem before every iteration, and compares.
-pub fn problem(report: &mut Report, mut trial: Trial, states: &[State]) -> Result<(), Fault> {
+pub fn problem(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
     if !trial.hello.abilities.problem {
-        report.add(WHAT, "", Verdict::NotOffered);
-        return Ok(());
+        return Ok(not_offered(""));
     }
     let ids: Vec<Id> = trial
         .scene
@@ -71,12 +70,10 @@ pub fn problem(report: &mut Report, mut trial: Trial, states: &[State]) -> Resul
             .filter(|_| !agrees)
             .and_then(|posed| unsound(posed, &ids))
         {
-            report.fails(
-                WHAT,
+            return Ok(fails(
                 why,
                 "W is that of deforming bodies: a force pushes its own node the way it points",
-            );
-            return Ok(());
+            ));
         }
         if let Some(apart) = compared {
             worst = worst.max(apart);
@@ -100,29 +97,35 @@ pub fn problem(report: &mut Report, mut trial: Trial, states: &[State]) -> Resul
             format!("{count} times")
         }
     };
-    match (asked, settled) {
+    Ok(match (asked, settled) {
         (0, _) => {
             let reason = refused.unwrap_or_default();
-            report.add(WHAT, "", Verdict::NotTried(format!("it is always refused: {}", shown::line(&reason))));
+            not_tried(
+                "",
+                format!("it is always refused: {}", shown::line(&reason)),
+            )
         }
-        (_, _) if worst <= EXACT => {
-            report.good(WHAT, format!("asked {}; every iteration solves it, to {worst:.0e}", times(asked)));
-        }
-        (_, Some(settled)) if settled <= SETTLED => report.good(
-            WHAT,
-            format!("asked {}; settled states solve it to {settled:.0e}, iterations on the way to {worst:.0e}", times(asked)),
-        ),
-        (_, Some(settled)) => report.fails(
-            WHAT,
-            format!("in a settled state, gap and W f + q differ by {settled:.0e} of the lengths in it"),
+        (_, _) if worst <= EXACT => good(format!(
+            "asked {}; every iteration solves it, to {worst:.0e}",
+            times(asked)
+        )),
+        (_, Some(settled)) if settled <= SETTLED => good(format!(
+            "asked {}; settled states solve it to {settled:.0e}, iterations on the way to {worst:.0e}",
+            times(asked)
+        )),
+        (_, Some(settled)) => fails(
+            format!(
+                "in a settled state, gap and W f + q differ by {settled:.0e} of the lengths in it"
+            ),
             MEND,
         ),
         (_, None) => {
-            let why = format!("no increment was accepted with settled modes; iterations on the way solve it to {worst:.0e}");
-            report.add(WHAT, format!("asked {}", times(asked)), Verdict::NotTried(why));
+            let why = format!(
+                "no increment was accepted with settled modes; iterations on the way solve it to {worst:.0e}"
+            );
+            not_tried(format!("asked {}", times(asked)), why)
         }
-    }
-    Ok(())
+    })
 }
 
 /// What of a matrix is not that of bodies that deform.
@@ -151,20 +154,12 @@ fn apart(posed: &Posed, state: &State, stuck: &[bool]) -> Option<f64> {
         let found = state.contacts.get(contact)?;
         (f[2 * place], f[2 * place + 1]) = (found.f_n?, found.f_t?);
     }
-    let matrix = DMatrix::from_fn(size, size, |i, j| posed.matrix[i][j]);
-    let pushed = match posed.form {
-        PosedForm::Compliance => &matrix * &f,
-        PosedForm::Stiffness => {
-            let load = DVector::from_column_slice(&posed.load);
-            matrix.lu().solve(&(&f + load))?
-        }
-    };
+    let w = posed.motion(&f)?;
     let q = DVector::from_column_slice(&posed.q);
-    let scale = pushed.amax().max(q.amax());
+    let scale = (&w - &q).amax().max(q.amax());
     if scale == 0.0 || !scale.is_finite() {
         return None;
     }
-    let w = pushed + q;
     let mut most = 0.0_f64;
     for (place, &contact) in posed.contacts.iter().enumerate() {
         let found = &state.contacts[contact];

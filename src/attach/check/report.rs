@@ -63,30 +63,35 @@ impl Report {
         text
     }
 
-    /// Adds a check.
-    pub fn add(&mut self, what: &'static str, found: impl Into<String>, verdict: Verdict) {
-        let found = found.into();
+    /// Adds a check, or the fault of the solver that ended it.
+    pub fn add(&mut self, what: &'static str, outcome: Result<Outcome, Fault>) {
+        let (found, verdict) =
+            outcome.unwrap_or_else(|fault| fails(fault.to_string(), mend(&fault)));
         self.checks.push(Checked {
             what,
             found,
             verdict,
         });
     }
+}
 
-    /// Adds one that went well.
-    pub fn good(&mut self, what: &'static str, found: impl Into<String>) {
-        self.add(what, found, Verdict::Good);
-    }
+/// What a check found, and how it ended.
+pub type Outcome = (String, Verdict);
 
-    /// Adds one that failed, with how to mend it.
-    pub fn fails(&mut self, what: &'static str, found: impl Into<String>, mend: &str) {
-        self.add(what, found, Verdict::Fails(mend.into()));
-    }
+pub(super) fn good(found: impl Into<String>) -> Outcome {
+    (found.into(), Verdict::Good)
+}
 
-    /// Adds one that ended with a fault of the solver.
-    pub fn ends(&mut self, what: &'static str, fault: &Fault) {
-        self.fails(what, fault.to_string(), mend(fault));
-    }
+pub(super) fn fails(found: impl Into<String>, mend: &str) -> Outcome {
+    (found.into(), Verdict::Fails(mend.into()))
+}
+
+pub(super) fn not_offered(found: impl Into<String>) -> Outcome {
+    (found.into(), Verdict::NotOffered)
+}
+
+pub(super) fn not_tried(found: impl Into<String>, why: String) -> Outcome {
+    (found.into(), Verdict::NotTried(why))
 }
 
 /// How a fault is mended.
@@ -122,6 +127,6 @@ fn mend(fault: &Fault) -> &'static str {
         Fault::Died { .. } | Fault::Bye { .. } => {
             "no request ends the solver but bye: what cannot be done is refused, what cannot be solved is a state that ended with failure"
         }
-        Fault::Stopped { .. } | Fault::Unknown | Fault::Past => "",
+        Fault::Stopped { .. } | Fault::Unknown | Fault::NoScene | Fault::Past => "",
     }
 }

@@ -4,14 +4,16 @@
 use super::super::fault::Fault;
 use super::super::judged::ALLOWED;
 use super::super::told::Frame;
-use super::report::{Report, Verdict};
-use super::trial::{Trial, is_last, millis, word};
-use crate::model::Model;
+use super::report::{Outcome, Report, fails, good, not_tried};
+use super::trial::{Trial, is_last, millis};
+use crate::explain::names;
+use crate::model::{Mode, Model};
 use crate::outside::shown;
 
+use crate::step::event::Position;
 use crate::step::state::State as OurState;
 use std::time::Instant;
-use stickslip_exchange::attach::message::{At, Ended, Found, Mode, Scene, State};
+use stickslip_exchange::attach::message::{Ended, Found, Scene, State};
 use stickslip_exchange::attach::{Answer, Request};
 
 /// Iterations that a solver is stepped by, and most of them as long as no increment was accepted.
@@ -28,7 +30,7 @@ const ROUNDED: f64 = 1e-6;
 pub fn stepping(report: &mut Report, mut trial: Trial) -> Vec<State> {
     let mut states = Vec::new();
     let mut times = Vec::new();
-    let mut fault = None;
+    let mut end = Ok(());
     let enough = |states: &[State]| {
         let most = match states.iter().any(is_settled) {
             true => STEPS,
@@ -49,60 +51,54 @@ pub fn stepping(report: &mut Report, mut trial: Trial) -> Vec<State> {
             }
             Ok(None) => break,
             Err(why) => {
-                fault = Some(why);
+                end = Err(why);
                 break;
             }
         }
     }
     times.sort_by(f64::total_cmp);
-    match (&fault, times.get(times.len() / 2)) {
-        (Some(why), _) => report.ends("step", why),
-        (None, None) => report.fails(
-            "step",
+    let goes_on = end.is_ok();
+    let step = end.map(|()| match times.get(times.len() / 2) {
+        None => fails(
             "the first step is refused",
             "a step from the start is answered by a state",
         ),
-        (None, Some(median)) => report.good(
-            "step",
-            format!(
-                "{} iterations, {median:.1} ms each (median; the slowest {:.1} ms)",
-                states.len(),
-                times[times.len() - 1]
-            ),
-        ),
-    }
+        Some(median) => good(format!(
+            "{} iterations, {median:.1} ms each (median; the slowest {:.1} ms)",
+            states.len(),
+            times[times.len() - 1]
+        )),
+    });
+    report.add("step", step);
     if states.is_empty() {
         return states;
     }
-    if fault.is_none() {
-        prompt(report, &mut trial);
+    if goes_on {
+        report.add("answers", prompt(&mut trial));
     }
     look(report, &trial.scene, &trial.hello.name, &states);
     states
 }
 
 /// How long a line is under way that takes no work.
-fn prompt(report: &mut Report, trial: &mut Trial) {
+fn prompt(trial: &mut Trial) -> Result<Outcome, Fault> {
     let request = Request::Set {
         name: "no such parameter".into(),
         value: serde_json::Value::Null,
     };
     let began = Instant::now();
     for _ in 0..ROUNDS {
-        if let Err(fault) = trial.ask(&request) {
-            return report.ends("answers", &fault);
-        }
+        trial.ask(&request)?;
     }
     let each = millis(began.elapsed()) / f64::from(ROUNDS);
     let found = format!("{each:.2} ms for a request and its answer without work");
-    match each <= PROMPT {
-        true => report.good("answers", found),
-        false => report.fails(
-            "answers",
+    Ok(match each <= PROMPT {
+        true => good(found),
+        false => fails(
             found,
             "read and write whole lines without waiting in between: no polling with sleeps, and a flush after each line",
         ),
-    }
+    })
 }
 
 /// Looks at states, as the debugger does.
@@ -110,11 +106,8 @@ fn look(report: &mut Report, scene: &Scene, name: &str, states: &[State]) {
     let sound = match crate::scene::Scene::told(name, scene, None) {
         Ok(sound) => sound,
         Err(why) => {
-            return report.fails(
-                "scene",
-                why.message,
-                "`stickslip help attach` says what a scene is",
-            );
+            let mend = "`stickslip help attach` says what a scene is";
+            return report.add("scene", Ok(fails(why.message, mend)));
         }
     };
     let model = &sound.model;
@@ -124,31 +117,28 @@ fn look(report: &mut Report, scene: &Scene, name: &str, states: &[State]) {
         Ok(()) => {
             let own = millis(began.elapsed()) / states.len() as f64;
             let kilobytes = bytes as f64 / 1e3 / states.len() as f64;
-            report.good(
-                "states",
-                format!(
-                    "{}; {kilobytes:.1} kB each, which this program reads in {own:.2} ms",
-                    told(states)
-                ),
+            let found = format!(
+                "{}; {kilobytes:.1} kB each, which this program reads in {own:.2} ms",
+                told(states)
             );
+            report.add("states", Ok(good(found)));
         }
         Err(why) => {
             let mend =
                 "a state has all contacts of the scene, in its order, and one displacement a node";
-            return report.fails("states", why, mend);
+            return report.add("states", Ok(fails(why, mend)));
         }
     }
     let follows = states
         .windows(2)
         .zip(2..)
         .find_map(|(pair, number)| Some((number, unfollowed(&pair[0], &pair[1])?)));
-    match follows {
-        None => report.good("order", "each iteration follows from the one before"),
-        Some((number, (why, mend))) => {
-            report.fails("order", format!("iteration {number}: {why}"), mend);
-        }
-    }
-    laws(report, states);
+    let order = match follows {
+        None => good("each iteration follows from the one before"),
+        Some((number, (why, mend))) => fails(format!("iteration {number}: {why}"), mend),
+    };
+    report.add("order", Ok(order));
+    report.add("laws", Ok(laws(states)));
 }
 
 fn line(state: &State) -> String {
@@ -221,7 +211,8 @@ fn unfollowed(before: &State, state: &State) -> Option<(String, &'static str)> {
         Ended::Failure | Ended::Done => true,
     };
     if !goes_on {
-        let place = |at: At| format!("{}.{}.{}.{}", at.increment, at.attempt, at.major, at.minor);
+        let place =
+            |at: Position| format!("{}.{}.{}.{}", at.increment, at.attempt, at.major, at.minor);
         let ended = format!("{:?}", before.ended).to_lowercase();
         return Some((
             format!(
@@ -243,20 +234,20 @@ fn unfollowed(before: &State, state: &State) -> Option<(String, &'static str)> {
             format!(
                 "contact {} is solved {}, and was to go on {}",
                 shown::line(&now.id.to_string()),
-                word(now.mode),
-                word(then.next)
+                names::mode(now.mode),
+                names::mode(then.next)
             ),
             "`mode` is that of the solve that was made, `next` that of the one to come",
         )
     })
 }
 
-fn same_attempt(then: At, now: At) -> bool {
+fn same_attempt(then: Position, now: Position) -> bool {
     (then.increment, then.attempt) == (now.increment, now.attempt)
 }
 
 /// Whether accepted states whose modes have settled keep to the signs of the protocol, and to the laws of contact.
-fn laws(report: &mut Report, states: &[State]) {
+fn laws(states: &[State]) -> Outcome {
     let accepted = states.iter().filter(|state| is_settled(state));
     // A state may have no forces but those of rounding: what is small, all states tell.
     let all = states.iter().flat_map(|state| &state.contacts);
@@ -272,7 +263,7 @@ fn laws(report: &mut Report, states: &[State]) {
                 format!("increment {at}, contact {}: {why}", shown::line(&id))
             };
             if let Some((why, mend)) = unlawful(found, ALLOWED * largest) {
-                return report.fails("laws", told(why), mend);
+                return fails(told(why), mend);
             }
             if let Some((why, _)) = unlawful(found, ROUNDED * largest)
                 && nearly.is_empty()
@@ -282,20 +273,13 @@ fn laws(report: &mut Report, states: &[State]) {
         }
     }
     match count {
-        0 => report.add(
-            "laws",
+        0 => not_tried(
             "",
-            Verdict::NotTried(format!(
-                "no increment was accepted in {} iterations",
-                states.len()
-            )),
+            format!("no increment was accepted in {} iterations", states.len()),
         ),
-        _ => report.good(
-            "laws",
-            format!(
-                "in {count} accepted increments: signs, and forces within their limits{nearly}"
-            ),
-        ),
+        _ => good(format!(
+            "in {count} accepted increments: signs, and forces within their limits{nearly}"
+        )),
     }
 }
 
@@ -340,7 +324,7 @@ fn unlawful(found: &Found, small: f64) -> Option<(String, &'static str)> {
 }
 
 /// The same twice.
-pub fn determinism(report: &mut Report, mut trial: Trial, states: &[State]) -> Result<(), Fault> {
+pub fn determinism(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
     const MEND: &str = "fix seeds and thread counts; a solver that is started again and goes elsewhere cannot go back by replaying";
     let mut bits = None;
     for (then, number) in states.iter().zip(1..) {
@@ -349,31 +333,25 @@ pub fn determinism(report: &mut Report, mut trial: Trial, states: &[State]) -> R
             continue;
         }
         let Some(now) = now else {
-            report.fails(
-                "determinism",
+            return Ok(fails(
                 format!("started again, step {number} is refused"),
                 MEND,
-            );
-            return Ok(());
+            ));
         };
         if let Some(how) = otherwise(then, &now) {
-            report.fails(
-                "determinism",
+            return Ok(fails(
                 format!("started again, iteration {number} is another: {how}"),
                 MEND,
-            );
-            return Ok(());
+            ));
         }
         bits = bits.or(Some(number));
     }
-    match bits {
-        None => report.good("determinism", "started again, the same to the last bit"),
-        Some(number) => report.good(
-            "determinism",
-            format!("started again, the same modes; from iteration {number} on the numbers have other bits"),
+    Ok(good(match bits {
+        None => "started again, the same to the last bit".into(),
+        Some(number) => format!(
+            "started again, the same modes; from iteration {number} on the numbers have other bits"
         ),
-    }
-    Ok(())
+    }))
 }
 
 /// How one state goes another way than a second.
@@ -391,7 +369,7 @@ pub fn otherwise(then: &State, now: &State) -> Option<String> {
     Some(format!(
         "contact {} is {} and goes on {}",
         shown::line(&id),
-        word(other.mode),
-        word(other.next)
+        names::mode(other.mode),
+        names::mode(other.next)
     ))
 }

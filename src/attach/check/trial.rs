@@ -4,11 +4,12 @@ use super::super::fault::Fault;
 use super::super::link::{Link, Start};
 use super::super::log::Log;
 use super::super::meeting::{Met, meet, other};
+use crate::model::Mode;
 use serde_json::Value;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
-use stickslip_exchange::attach::message::{Ended, Found, Hello, Id, Mode, Scene, State};
+use stickslip_exchange::attach::message::{Ended, Found, Hello, Id, Scene, State};
 use stickslip_exchange::attach::{Answer, Request};
 
 /// How long a single check goes on with more of the same.
@@ -198,15 +199,6 @@ pub fn is_last(state: &State) -> bool {
 /// What a state says of a contact.
 pub fn at<'a>(state: &'a State, contact: &Id) -> Option<&'a Found> {
     state.contacts.iter().find(|found| found.id == *contact)
-}
-
-/// A mode's word.
-pub fn word(mode: Mode) -> &'static str {
-    match mode {
-        Mode::Free => "free",
-        Mode::Sliding => "sliding",
-        Mode::Fixed => "fixed",
-    }
 }
 
 /// Milliseconds.

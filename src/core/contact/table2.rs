@@ -1,7 +1,9 @@
 //! Table 2: which mode a slave node takes next, and why.
 
 use crate::model::Mode;
-use serde::{Deserialize, Serialize};
+use serde::de::IntoDeserializer;
+use serde::de::value::{Error as NoName, StringDeserializer};
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// The cell of Table 2 that fired (row: mode before; column: mode after).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
@@ -97,6 +99,7 @@ crate::words! {
 
 /// What an inequality of Table 2 compares.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Tested {
     /// F_n against 0 (force).
     NormalForce,
@@ -122,19 +125,39 @@ pub enum Tested {
     Own,
 }
 
-/// One inequality of Table 2 with its numbers.
+/// One inequality of Table 2 with its numbers. Numbers that an attached solver does not tell are infinite.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Test {
     /// What is compared.
+    #[serde(deserialize_with = "tested")]
     pub tested: Tested,
     /// Left-hand side.
+    #[serde(default = "infinite", deserialize_with = "or_infinite")]
     pub value: f64,
     /// Right-hand side.
+    #[serde(default = "infinite", deserialize_with = "or_infinite")]
     pub bound: f64,
     /// Signed distance from switching: positive keeps the mode, negative changes it; force or length.
+    #[serde(default = "infinite", deserialize_with = "or_infinite")]
     pub margin: f64,
     /// |margin| is within the tie tolerance.
+    #[serde(default)]
     pub tie: bool,
+}
+
+/// Reads a name; what no rule of ours compares is the solver's own.
+fn tested<'de, D: Deserializer<'de>>(from: D) -> Result<Tested, D::Error> {
+    let name: StringDeserializer<NoName> = String::deserialize(from)?.into_deserializer();
+    Ok(Tested::deserialize(name).unwrap_or(Tested::Own))
+}
+
+fn infinite() -> f64 {
+    f64::INFINITY
+}
+
+/// JSON knows no infinity: `null` stands for it.
+fn or_infinite<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+    Ok(Option::deserialize(from)?.unwrap_or(f64::INFINITY))
 }
 
 /// Table 2's verdict on one node.

@@ -19,6 +19,8 @@ mod load;
 mod mesh;
 mod settings;
 
+use serde::{Deserialize, Serialize};
+
 pub use body::{
     Beam, Body, BodyKind, Elastic, Form, Law, Linear, Plane, Solid, SolidElement, Truss, Update,
 };
@@ -95,9 +97,10 @@ pub struct FinishedRun {
 }
 
 /// A node in the reference configuration.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Node {
     /// `ID.k` for the k-th node of a chain or block (from 1), or the id of a single node.
+    #[serde(default)]
     pub name: String,
     /// Position (length).
     pub at: [f64; 2],
@@ -164,7 +167,8 @@ pub enum Watched {
 }
 
 /// What kind of number an attached solver tells.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum ToldKind {
     /// A length.
     Length,

@@ -25,11 +25,18 @@ pub struct Position {
     /// Increment.
     pub increment: u32,
     /// How often this increment was started (with another size).
+    #[serde(default = "one")]
     pub attempt: u32,
     /// Major iteration of the attempt.
+    #[serde(default = "one")]
     pub major: u32,
     /// Minor iteration of the major one.
+    #[serde(default = "one")]
     pub minor: u32,
+}
+
+fn one() -> u32 {
+    1
 }
 
 /// What one minor iteration did.

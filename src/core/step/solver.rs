@@ -110,6 +110,8 @@ use crate::step::event::Event;
 use crate::step::intervene::{Intervention, Refusal, Value};
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
+use nalgebra::{DMatrix, DVector};
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use std::sync::atomic::AtomicUsize;
 
@@ -439,8 +441,25 @@ pub struct Posed {
     pub friction: Vec<Friction>,
 }
 
+impl Posed {
+    /// Gap and motion u of each contact under total forces (length); `None` where K has no inverse.
+    pub fn motion(&self, forces: &DVector<f64>) -> Option<DVector<f64>> {
+        let size = self.q.len();
+        let matrix = DMatrix::from_fn(size, size, |i, j| self.matrix[i][j]);
+        let pushed = match self.form {
+            PosedForm::Compliance => matrix * forces,
+            PosedForm::Stiffness => {
+                let load = DVector::from_column_slice(&self.load);
+                matrix.lu().solve(&(forces + load))?
+            }
+        };
+        Some(pushed + DVector::from_column_slice(&self.q))
+    }
+}
+
 /// What the matrix of a [`Posed`] problem is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum PosedForm {
     /// W (length by force).
     Compliance,

@@ -2,6 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
+pub use stickslip_core::contact::table2::Test;
+pub use stickslip_core::model::{Mode, Node, ToldKind};
+pub use stickslip_core::step::event::Position;
+pub use stickslip_core::step::solver::PosedForm;
 
 /// What the debugger asks. Each gets one answer, but for [`Request::Interrupt`] and [`Request::Bye`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -114,19 +118,6 @@ impl std::fmt::Display for Id {
             Id::Text(text) => text.fmt(f),
         }
     }
-}
-
-/// Mode of a contact.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Mode {
-    /// It does not touch.
-    #[default]
-    Free,
-    /// It touches, and slides.
-    Sliding,
-    /// It touches, and sticks.
-    Fixed,
 }
 
 /// How grave a message is.
@@ -287,34 +278,8 @@ pub enum Monitor {
         /// What the user reads.
         name: String,
         /// What it is.
-        kind: MonitorKind,
+        kind: ToldKind,
     },
-}
-
-/// What a monitor is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum MonitorKind {
-    /// A length.
-    Length,
-    /// A force.
-    Force,
-    /// A force by area.
-    Pressure,
-    /// A count.
-    Count,
-    /// Something else.
-    Other,
-}
-
-/// A node in the reference shape.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Node {
-    /// What the user reads; its place in the list, from 1, where it is left out.
-    #[serde(default)]
-    pub name: String,
-    /// Where it stands (length).
-    pub at: [f64; 2],
 }
 
 /// A master surface: a chain of nodes, the outward side on the right of the walk.
@@ -377,7 +342,7 @@ pub struct Friction {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct State {
     /// The iteration.
-    pub at: At,
+    pub at: Position,
     /// Load factor at the end of its increment.
     #[serde(default)]
     pub load: Option<f64>,
@@ -412,26 +377,6 @@ pub struct State {
     /// Drag of the damped motion that it is a part of (force by length).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drag: Option<f64>,
-}
-
-/// Where an iteration is; all counts start at 1.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct At {
-    /// Load increment.
-    pub increment: u32,
-    /// Attempt at it.
-    #[serde(default = "one")]
-    pub attempt: u32,
-    /// Major (equilibrium) iteration.
-    #[serde(default = "one")]
-    pub major: u32,
-    /// Minor (contact) iteration.
-    #[serde(default = "one")]
-    pub minor: u32,
-}
-
-fn one() -> u32 {
-    1
 }
 
 /// What ended with an iteration.
@@ -532,22 +477,6 @@ pub enum Forced {
     Held,
 }
 
-/// An inequality with its numbers.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Test {
-    /// What is compared: `normal-force`, `shear-force`, `slip`, `gap`, …
-    pub tested: String,
-    /// Left-hand side.
-    pub value: Option<f64>,
-    /// Right-hand side.
-    pub bound: Option<f64>,
-    /// Signed distance from switching.
-    pub margin: Option<f64>,
-    /// Whether it is a tie.
-    #[serde(default)]
-    pub tie: bool,
-}
-
 /// Sizes of what is not yet in balance; all but `force` and `scale` are relative.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
@@ -581,7 +510,7 @@ pub struct Problem {
     /// The contacts that take part, in the order of the pairs.
     pub contacts: Vec<Id>,
     /// What the matrix is.
-    pub kind: MatrixKind,
+    pub kind: PosedForm,
     /// Of size 2n.
     pub matrix: Matrix,
     /// Gap and motion without any force (length).
@@ -595,16 +524,6 @@ pub struct Problem {
     /// Cohesion of each (force); none where it is left out.
     #[serde(default)]
     pub cohesion: Vec<f64>,
-}
-
-/// What a matrix is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum MatrixKind {
-    /// W (length by force).
-    Compliance,
-    /// K = W⁻¹ (force by length).
-    Stiffness,
 }
 
 /// A matrix, row by row or entry by entry.

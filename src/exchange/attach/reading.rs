@@ -67,66 +67,25 @@ fn kind(line: &str) -> Result<Cow<'_, str>, Broken> {
         #[serde(rename = "type", borrow)]
         kind: Cow<'a, str>,
     }
-    let kind: Kind<'_> = serde_json::from_str(line).map_err(|error| broken(line, &error))?;
-    Ok(kind.kind)
+    body::<Kind<'_>>(line).map(|message| message.kind)
 }
 
 fn body<'a, T: Deserialize<'a>>(line: &'a str) -> Result<T, Broken> {
-    serde_json::from_str(line).map_err(|error| broken(line, &error))
-}
-
-/// The way into a message to the value that ends at a byte, as `contacts[0].gap`; where an object or a list ends there, the way to
-/// that. Names of fields are no values.
-fn path_at(line: &str, byte: usize) -> String {
-    enum Step<'a> {
-        Field(&'a str),
-        Number(usize),
-    }
-    let mut steps = Vec::new();
-    let (mut string, mut escaped, mut name) = (None, false, "");
-    let ends = |c: u8| matches!(c, b'}' | b']');
-    for (at, c) in line.bytes().enumerate().take(byte) {
-        match (string, c) {
-            (Some(_), _) if escaped => escaped = false,
-            (Some(_), b'\\') => escaped = true,
-            (Some(from), b'"') => (string, name) = (None, line.get(from..at).unwrap_or("")),
-            (Some(_), _) => {}
-            (None, b'"') => string = Some(at + 1),
-            (None, b'{') => steps.push(Step::Field("")),
-            (None, b'[') => steps.push(Step::Number(0)),
-            (None, c) if ends(c) => drop(steps.pop()),
-            (None, b':') => {
-                if let Some(Step::Field(field)) = steps.last_mut() {
-                    *field = name;
-                }
-            }
-            (None, b',') => match steps.last_mut() {
-                Some(Step::Field(field)) => *field = "",
-                Some(Step::Number(number)) => *number += 1,
-                None => {}
-            },
-            _ => {}
-        }
-    }
-    if string.is_none() && line.as_bytes().get(byte).copied().is_some_and(ends) {
-        steps.pop();
-    }
-    let mut path = String::new();
-    for step in steps {
-        match step {
-            Step::Field("") => {}
-            Step::Field(field) => {
-                let dot = if path.is_empty() { "" } else { "." };
-                path += &format!("{dot}{field}");
-            }
-            Step::Number(number) => path += &format!("[{number}]"),
-        }
-    }
-    path
+    serde_json::from_str(line).map_err(|error| {
+        // The path is looked for only where something is wrong; what ends too early may have ended anywhere.
+        let mut again = serde_json::Deserializer::from_str(line);
+        let found = serde_path_to_error::deserialize::<_, T>(&mut again).err();
+        let path = found.filter(|_| !error.is_eof());
+        broken(
+            line,
+            &path.map_or_else(String::new, |found| found.path().to_string()),
+            &error,
+        )
+    })
 }
 
 /// What serde says of a line, with the place in the message, at its column.
-fn broken(line: &str, error: &serde_json::Error) -> Broken {
+fn broken(line: &str, path: &str, error: &serde_json::Error) -> Broken {
     let told = error.to_string();
     // Where it stands is told beside it.
     let mut told = told.split(" at line ").next().unwrap_or(&told).to_owned();
@@ -145,15 +104,10 @@ fn broken(line: &str, error: &serde_json::Error) -> Broken {
         told = "JSON knows no NaN and no infinity; null stands for both".to_owned();
         at = letters.len();
     }
-    // What ends too early may have ended anywhere.
-    let path = match error.is_eof() {
-        true => String::new(),
-        false => path_at(line, error.column().saturating_sub(1)),
-    };
     let mut letters = path.chars();
     let path: String = letters.by_ref().take(MOST_PATH).collect();
     let cut = if letters.next().is_some() { "…" } else { "" };
-    if !path.is_empty() {
+    if !path.is_empty() && path != "." {
         told = format!("{path}{cut}: {told}");
     }
     match error.column() {
@@ -391,7 +345,7 @@ mod tests {
         ) -> Answer {
             let [increment, attempt, major, minor] = counts;
             Answer::State(Box::new(State {
-                at: At { increment, attempt, major, minor },
+                at: Position { increment, attempt, major, minor },
                 load: numbers[0],
                 ended: Ended::Iteration,
                 reason,

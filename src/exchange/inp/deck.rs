@@ -257,7 +257,7 @@ pub struct Tie {
 }
 
 /// A step.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Step {
     /// Where it begins.
     pub place: Place,
@@ -286,7 +286,7 @@ pub struct Step {
 }
 
 /// The increments of a step.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Time {
     /// The first increment.
     pub initial: f64,

@@ -98,13 +98,7 @@ fn begin(card: &Card<'_>, deck: &mut Deck, open: &mut Open) -> Result<(), Fault>
             most: None,
             direct: false,
         },
-        new_motions: false,
-        new_forces: false,
-        new_pressures: false,
-        motions: Vec::new(),
-        forces: Vec::new(),
-        pressures: Vec::new(),
-        weights: Vec::new(),
+        ..Step::default()
     });
     Ok(())
 }

@@ -17,7 +17,7 @@ use crate::contact::record::{ContactRecord, Forced};
 use crate::explain::core::Core;
 use crate::explain::names;
 use crate::explain::report;
-use crate::format::condensed::{Contact, Matrix, Problem, at_once};
+use crate::format::condensed::{Contact, Matrix, Problem};
 use crate::format::{SceneError, read};
 use crate::interface::minor_history::Cycle;
 use crate::interface::problem::{InterfaceProblem, ProblemNode};
@@ -297,7 +297,7 @@ fn text(
             matrix,
             free,
             spacing: Some(spacing(problem)),
-            history: at_once(),
+            history: Default::default(),
             settings: settings(&problem.settings),
         };
         let text = written.text(&comments);

@@ -23,7 +23,7 @@
 //! bytes, since readers other than VTK's know no arrays of text. Elements of beams with more than three nodes are lines from
 //! node to node, and so are surfaces.
 
-use super::shown::{NotMade, Shown};
+use super::shown::{ExportError, Shown};
 use crate::contact::record::ContactRecord;
 use crate::fem::deformation;
 use crate::fem::recovery::{self, Configuration};
@@ -38,7 +38,7 @@ const VECTOR: &[&str] = &["X", "Y", "Z"];
 const TENSOR: &[&str] = &["XX", "YY", "ZZ", "XY", "YZ", "XZ"];
 
 /// The file.
-pub(super) fn vtu(shown: &Shown, _: &mut Stepper) -> Result<Vec<u8>, NotMade> {
+pub(super) fn vtu(shown: &Shown, _: &mut Stepper) -> Result<Vec<u8>, ExportError> {
     let (at, load) = match shown.event {
         Some(event) => (event.position, event.load_factor),
         None => (shown.origin.at, shown.state.start.load_factor),

@@ -21,19 +21,19 @@ mod window;
 
 use crate::scene::problems::market;
 use crate::step::stepper::Stepper;
-use shown::{NotMade, Shown};
+use shown::{ExportError, Shown};
 use std::path::{Path, PathBuf};
 
 pub use frozen::{NoExport, Origin, Parted, compared, core, whole, writable};
 
 /// The bytes of several files of a state.
-type MakeParts = fn(&Shown, &mut Stepper) -> Result<Vec<Vec<u8>>, NotMade>;
+type MakeParts = fn(&Shown, &mut Stepper) -> Result<Vec<Vec<u8>>, ExportError>;
 
 /// What a kind of file is made of.
 #[derive(Clone, Copy)]
 pub enum MadeOf {
     /// A state; the stepper is of the same model, and may be left anywhere.
-    State(fn(&Shown, &mut Stepper) -> Result<Vec<u8>, NotMade>),
+    State(fn(&Shown, &mut Stepper) -> Result<Vec<u8>, ExportError>),
     /// A state too, in several files: those that [`Kind::files`] names.
     Parts(MakeParts),
     /// A whole session.
@@ -72,7 +72,7 @@ impl Kind {
         &self,
         shown: &Shown,
         stepper: &mut Stepper,
-    ) -> Option<Result<Vec<Vec<u8>>, NotMade>> {
+    ) -> Option<Result<Vec<Vec<u8>>, ExportError>> {
         match self.made_of {
             MadeOf::State(make) => Some(make(shown, stepper).map(|bytes| vec![bytes])),
             MadeOf::Parts(make) => Some(make(shown, stepper)),
@@ -133,32 +133,24 @@ pub const KINDS: &[Kind] = &[
     },
 ];
 
-/// A name that ends as none of the kinds do.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{file}: no file of that kind is made; these are: {}", known())]
-pub struct UnknownKind {
-    /// The name.
-    pub file: String,
-}
-
-fn known() -> String {
-    let told = KINDS
-        .iter()
-        .map(|k| format!(".{} ({})", k.extension, k.what));
-    told.collect::<Vec<_>>().join(", ")
-}
-
 /// The kind that the name of a file asks for.
 ///
 /// # Errors
 /// If it ends as none of them does; the message lists them all.
-pub fn kind(file: &Path) -> Result<&'static Kind, UnknownKind> {
+pub fn kind(file: &Path) -> Result<&'static Kind, ExportError> {
     let own = file.extension().unwrap_or_default();
     let found = KINDS
         .iter()
         .find(|kind| own.eq_ignore_ascii_case(kind.extension));
-    found.ok_or_else(|| UnknownKind {
-        file: file.display().to_string(),
+    found.ok_or_else(|| {
+        let known = KINDS
+            .iter()
+            .map(|k| format!(".{} ({})", k.extension, k.what));
+        let known = known.collect::<Vec<_>>().join(", ");
+        let file = file.display();
+        ExportError::NoFile(format!(
+            "{file}: no file of that kind is made; these are: {known}"
+        ))
     })
 }
 

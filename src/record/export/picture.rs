@@ -5,7 +5,7 @@
 //! number. Modes are told by shapes first, and by colours that differ in grey, too.
 
 use super::pressures::pressures;
-use super::shown::{NotMade, Shown};
+use super::shown::{ExportError, Shown};
 use super::timeline::{self, chosen, colour};
 use super::window::{FORCE, Window};
 use crate::contact::element::Element;
@@ -41,12 +41,12 @@ const VERMILION: Colour = (213, 94, 0);
 const DARK: Colour = (60, 60, 60);
 
 /// The picture as SVG.
-pub(super) fn svg(shown: &Shown, _: &mut Stepper) -> Result<Vec<u8>, NotMade> {
+pub(super) fn svg(shown: &Shown, _: &mut Stepper) -> Result<Vec<u8>, ExportError> {
     Ok(sheet(shown)?.svg()?.into_bytes())
 }
 
 /// The picture as PNG.
-pub(super) fn png(shown: &Shown, _: &mut Stepper) -> Result<Vec<u8>, NotMade> {
+pub(super) fn png(shown: &Shown, _: &mut Stepper) -> Result<Vec<u8>, ExportError> {
     Ok(sheet(shown)?.png()?)
 }
 

@@ -1,11 +1,14 @@
 //! What files are made of: a state, and what there is to tell of it.
 
 use super::frozen::{NoExport, Origin};
-use crate::explain::examination::NOT_CONDENSED;
+use crate::explain::examination::Untold;
+use crate::format::SceneError;
 use crate::history::strip::Strip;
 use crate::interface::problem::InterfaceProblem;
+use crate::outside::files::FileError;
 use crate::scene::Scene;
 use crate::step::event::Event;
+use crate::step::solver::Lost;
 use crate::step::state::{State, Status};
 use crate::step::stepper::Stepper;
 use crate::study::drawn::PlotError;
@@ -35,25 +38,39 @@ pub struct Shown<'a> {
 
 /// Why a file was not made.
 #[derive(Debug, thiserror::Error)]
-pub enum NotMade {
+pub enum ExportError {
     /// It cannot be drawn.
     #[error(transparent)]
     Drawn(#[from] PlotError),
     /// The history is done, and nothing is known of its last problem.
     #[error("the history is done; nothing is solved next from here")]
     Finished,
-    /// The bodies cannot be condensed to the interface here.
-    #[error("{NOT_CONDENSED}")]
-    NotCondensed,
+    /// The minor iterations do not cycle here.
+    #[error("the minor iterations do not cycle from here, so there is no core")]
+    NoCycle,
+    /// There is no interface problem, or too many nodes take part.
+    #[error(transparent)]
+    Untold(#[from] Untold),
     /// No file can say what the problem says.
     #[error(transparent)]
     NoExport(#[from] NoExport),
-    /// The file's form has no room for it.
+    /// No kind of file has this extension, or room for it.
     #[error("{0}")]
     NoFile(String),
-    /// The scene cannot be written as text.
-    #[error("the scene cannot be written as text: {0}")]
-    Unwritable(String),
+    /// The interface problem that an attached solver tells is unsound.
+    #[error(transparent)]
+    Unsound(#[from] Box<SceneError>),
+    /// An attached solver does not tell what is to be written.
+    #[error(transparent)]
+    Lost(#[from] Lost),
+    /// The kind is made of a journal.
+    #[error(
+        "a .cast is made of a journal; `stickslip export JOURNAL -o FILE` does it, and :journal tells where it is"
+    )]
+    OfJournal,
+    /// The file could not be written.
+    #[error(transparent)]
+    File(#[from] FileError),
 }
 
 /// The interface problem that is frozen at a state: the one that is solved next, or, where nothing is, the one that was
@@ -61,13 +78,13 @@ pub enum NotMade {
 pub(super) fn problem<'a>(
     shown: &Shown<'a>,
     stepper: &mut Stepper,
-) -> Result<(InterfaceProblem, &'a State), NotMade> {
+) -> Result<(InterfaceProblem, &'a State), ExportError> {
     let state = match (&shown.state.status, shown.last_major) {
-        (Status::Finished, None) => return Err(NotMade::Finished),
+        (Status::Finished, None) => return Err(ExportError::Finished),
         (Status::Finished, Some(last)) => last,
         _ => shown.state,
     };
     stepper.restore(state);
-    let problem = stepper.interface_problem().ok_or(NotMade::NotCondensed)?;
+    let problem = stepper.interface_problem().ok_or(Untold::NotCondensed)?;
     Ok((problem, state))
 }

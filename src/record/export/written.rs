@@ -1,7 +1,7 @@
 //! Scenes as text (`.ron`), and frozen problems in the forms of other programs: `.dat`, `.mtx`, `.h5`.
 
 use super::frozen::{self, Origin};
-use super::shown::{NotMade, Shown, problem};
+use super::shown::{ExportError, Shown, problem};
 use crate::explain::names;
 use crate::format::notation;
 use crate::outside::shown as outside;
@@ -12,7 +12,7 @@ use crate::step::stepper::Stepper;
 use stickslip_exchange::fclib;
 
 /// The scene, with what was set from outside; or its frozen problem, where that is wanted.
-pub(super) fn ron(shown: &Shown, stepper: &mut Stepper) -> Result<Vec<u8>, NotMade> {
+pub(super) fn ron(shown: &Shown, stepper: &mut Stepper) -> Result<Vec<u8>, ExportError> {
     if !shown.frozen {
         return Ok(scene(shown.scene)?.into_bytes());
     }
@@ -28,25 +28,25 @@ pub(super) fn ron(shown: &Shown, stepper: &mut Stepper) -> Result<Vec<u8>, NotMa
 }
 
 /// The frozen problem in the form of Siconos.
-pub(super) fn dat(shown: &Shown, stepper: &mut Stepper) -> Result<Vec<u8>, NotMade> {
+pub(super) fn dat(shown: &Shown, stepper: &mut Stepper) -> Result<Vec<u8>, ExportError> {
     let friction = condensed(shown, stepper)?;
     Ok(friction.write(Storage::Dense).into_bytes())
 }
 
 /// The same as matrices of the Matrix Market.
-pub(super) fn mtx(shown: &Shown, stepper: &mut Stepper) -> Result<Vec<Vec<u8>>, NotMade> {
+pub(super) fn mtx(shown: &Shown, stepper: &mut Stepper) -> Result<Vec<Vec<u8>>, ExportError> {
     let friction = condensed(shown, stepper)?;
     let texts = market::texts(&friction, &from(shown));
     Ok(texts.map(String::into_bytes).into())
 }
 
 /// The same for fclib.
-pub(super) fn h5(shown: &Shown, stepper: &mut Stepper) -> Result<Vec<u8>, NotMade> {
+pub(super) fn h5(shown: &Shown, stepper: &mut Stepper) -> Result<Vec<u8>, ExportError> {
     let friction = condensed(shown, stepper)?;
-    fclib::write(&friction.local(), &from(shown)).map_err(|e| NotMade::NoFile(e.to_string()))
+    fclib::write(&friction.local(), &from(shown)).map_err(|e| ExportError::NoFile(e.to_string()))
 }
 
-fn condensed(shown: &Shown, stepper: &mut Stepper) -> Result<Friction2d, NotMade> {
+fn condensed(shown: &Shown, stepper: &mut Stepper) -> Result<Friction2d, ExportError> {
     let (problem, _) = problem(shown, stepper)?;
     Ok(frozen::siconos(&shown.scene.model, &problem)?)
 }
@@ -66,12 +66,13 @@ fn from(shown: &Shown) -> String {
 ///
 /// # Errors
 /// If it does not read back as the scene that it was made of.
-pub fn scene(scene: &Scene) -> Result<String, NotMade> {
+pub fn scene(scene: &Scene) -> Result<String, ExportError> {
     if !scene.text.is_empty() && scene.overrides().next().is_none() && !scene.imports() {
         return Ok(scene.text.clone());
     }
     let layout = ron::ser::PrettyConfig::new().new_line("\n").depth_limit(3);
-    let unwritable = |why: String| NotMade::Unwritable(why);
+    let unwritable =
+        |why| ExportError::NoFile(format!("the scene cannot be written as text: {why}"));
     let text = notation::lines(&scene.spec, layout).map_err(|e| unwritable(e.to_string()))?;
     let set: Vec<String> = scene.overrides().map(|(p, v)| format!("{p}={v}")).collect();
     let mut head = format!("// From {}", scene.name.replace('\n', " "));

@@ -6,12 +6,11 @@ use super::super::nodes::Names;
 use super::layout::{Layout, Loads};
 use super::linear::free_motions;
 use super::{history, interface};
-use crate::format::contact_law::FrictionSpec;
 use crate::format::error::{Path, Step};
 use crate::format::paths::Found;
-use crate::format::spec::{History, SlaveSpec, Spec};
+use crate::format::spec::{SlaveSpec, Spec};
 use crate::linear::estimate::Estimate;
-use crate::model::{Control, Model, Settings};
+use crate::model::{Control, Model};
 
 /// Settings that are used outside the solver, too: they move nodes, create surfaces, or make the scene invalid.
 const DEEP: [&str; 4] = ["initial_gaps", "adjust_gap", "point_force", "memory"];
@@ -54,7 +53,10 @@ impl Choices {
                 slaves: spec.slaves.iter().map(group).collect(),
                 supports: spec.supports.clone(),
                 loads: spec.loads.clone(),
-                ..bare(spec.friction, spec.history.clone(), spec.settings)
+                friction: spec.friction,
+                history: spec.history.clone(),
+                settings: spec.settings,
+                ..Spec::default()
             },
             loaded: false,
         }
@@ -174,27 +176,6 @@ fn key(path: &Path, step: usize) -> &str {
     match path.0.get(step) {
         Some(Step::Key(key)) => key,
         _ => "",
-    }
-}
-
-/// A scene without bodies, nodes and all that stands on them.
-fn bare(friction: FrictionSpec, history: History, settings: Settings) -> Spec {
-    Spec {
-        title: String::new(),
-        about: String::new(),
-        refine: 1,
-        nodes: Vec::new(),
-        materials: Vec::new(),
-        bodies: Vec::new(),
-        surfaces: Vec::new(),
-        slaves: Vec::new(),
-        friction,
-        supports: Vec::new(),
-        loads: Vec::new(),
-        history,
-        settings,
-        monitors: Vec::new(),
-        attached: None,
     }
 }
 

@@ -22,7 +22,6 @@ mod tests;
 use crate::format::error::{self, Path, SceneError, Step, at};
 
 use crate::format::spec::Spec;
-use crate::model::{Control, Jumps, Settings};
 use crate::outside::input::{self, Unreadable};
 use crate::outside::shown::cut;
 use std::collections::HashSet;
@@ -264,27 +263,7 @@ impl<'d> Made<'d> {
             spec: Spec {
                 title: cut(title, super::limits::TITLE - 3),
                 about: format!("Read from the deck {}.", error::shortened(&file)),
-                refine: 1,
-                nodes: Vec::new(),
-                materials: Vec::new(),
-                bodies: Vec::new(),
-                surfaces: Vec::new(),
-                slaves: Vec::new(),
-                friction: Default::default(),
-                supports: Vec::new(),
-                loads: Vec::new(),
-                history: crate::format::spec::History {
-                    path: vec![0.0, 1.0],
-                    increment: 1.0,
-                    increments: Vec::new(),
-                    least: None,
-                    jumps: Jumps::default(),
-                    control: Control::default(),
-                    arc: Default::default(),
-                },
-                settings: Settings::default(),
-                monitors: Vec::new(),
-                attached: None,
+                ..Spec::default()
             },
             origin: Origin {
                 files: deck.files.iter().map(|file| shown(name, file)).collect(),

@@ -13,8 +13,8 @@
 
 use super::fits;
 use super::siconos::{contacts, settings};
-use crate::format::SceneError;
-use crate::format::condensed::{Matrix, Problem, at_once};
+use crate::format::condensed::{Matrix, Problem};
+use crate::format::{SceneError, read};
 use crate::outside::input;
 use std::path::{Path, PathBuf};
 use stickslip_exchange::matrix_market;
@@ -60,7 +60,7 @@ impl Names {
 pub fn read(file: &str, text: &str, memory: Option<f64>) -> Result<Problem, SceneError> {
     let whole = |why: String| SceneError::whole(file, why);
     let names = Names::of(Path::new(file)).map_err(whole)?;
-    let matrix = matrix_market::read(text).map_err(|broken| super::of_file(file, broken))?;
+    let matrix = matrix_market::read(text).map_err(|broken| read::of_file(file, broken))?;
     let size = matrix.rows;
     if size == 0 || size != matrix.columns || !size.is_multiple_of(2) {
         return Err(whole(format!(
@@ -99,7 +99,7 @@ pub fn read(file: &str, text: &str, memory: Option<f64>) -> Result<Problem, Scen
         },
         free: q.unwrap_or_default(),
         spacing: None,
-        history: at_once(),
+        history: Default::default(),
         settings: settings(),
     })
 }
@@ -115,7 +115,7 @@ fn column(names: &Names, part: &str, size: usize) -> Result<Option<Vec<f64>>, Sc
     let path =
         input::beside(&names.part("W"), &name).map_err(|why| SceneError::whole(&file, why))?;
     let text = super::text(&path)?;
-    let read = matrix_market::read(&text).map_err(|broken| super::of_file(&file, broken))?;
+    let read = matrix_market::read(&text).map_err(|broken| read::of_file(&file, broken))?;
     if (read.rows, read.columns) != (size, 1) && (read.rows, read.columns) != (1, size) {
         let why = format!(
             "{part} has {} rows and {} columns; it must be a column of {size} numbers",

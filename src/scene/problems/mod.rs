@@ -17,7 +17,6 @@ use super::limits;
 use crate::format::{SceneError, error, read};
 use crate::outside::input;
 use std::path::Path;
-use stickslip_exchange::broken::Broken;
 
 /// Refuses a matrix of so many contacts that takes more memory than there is.
 fn fits(contacts: usize, memory: Option<f64>) -> Result<(), String> {
@@ -30,21 +29,7 @@ fn fits(contacts: usize, memory: Option<f64>) -> Result<(), String> {
 fn text(path: &Path) -> Result<String, SceneError> {
     let file = path.display().to_string();
     let large = "no interface problem has more";
-    input::text(path, read::FILE_BYTES as u64, large).map_err(|why| SceneError {
-        at: match &why {
-            input::Unreadable::NoText { line, column } => Some((*line, *column)),
-            _ => None,
-        },
-        ..SceneError::whole(&file, why.to_string())
-    })
-}
-
-/// What is wrong with a file, as scenes tell it.
-fn of_file(file: &str, broken: Broken) -> SceneError {
-    SceneError {
-        at: broken.at,
-        ..SceneError::whole(file, broken.message)
-    }
+    input::text(path, read::FILE_BYTES as u64, large).map_err(|why| read::not_read(&file, &why))
 }
 
 /// The title of a file that has none: its name.

@@ -1,7 +1,7 @@
 //! Interface problems in files of other programs, by the name of the file or by its text.
 
 use super::siconos::{self, Friction2d};
-use super::{of_file, title};
+use super::title;
 use crate::format::condensed::Problem;
 use crate::format::{SceneError, read};
 use crate::outside::input;
@@ -20,18 +20,18 @@ pub(in crate::scene) fn from_file(
     if start != fclib::MARK {
         return None;
     }
-    let read = || {
+    let problem = || {
         let large = "no interface problem has more";
         let bytes = input::bytes(Path::new(name), read::FILE_BYTES as u64, large)
             .map_err(|why| SceneError::whole(name, why.to_string()))?;
-        let problem = fclib::read(bytes).map_err(|broken| of_file(name, broken))?;
+        let problem = fclib::read(bytes).map_err(|broken| read::of_file(name, broken))?;
         let problem = Friction2d::condensed(problem, memory(overrides))
             .map_err(|why| SceneError::whole(name, why))?;
         let mut problem = problem.problem(&title(name));
         problem.about = "A friction problem from a file of fclib: u = W r + q.".to_owned();
         Ok(problem)
     };
-    Some(read())
+    Some(problem())
 }
 
 /// A problem in Siconos' form.

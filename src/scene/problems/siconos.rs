@@ -7,7 +7,7 @@
 //! [`stickslip_exchange::siconos`] has the form of the text. The scene that comes of such a problem has all contacts at gap 0
 //! and free, and takes the unloaded motion q, and so u and r, in one increment.
 
-use crate::format::condensed::{Contact, Matrix, Problem, at_once};
+use crate::format::condensed::{Contact, Matrix, Problem};
 use crate::model::{Friction, InitialState, Mode, Settings, Solver};
 use crate::scene::limits;
 use stickslip_exchange::problem::{self, Local};
@@ -157,7 +157,7 @@ impl Friction2d {
             matrix: Matrix::Compliance(self.w.clone()),
             free: self.q.clone(),
             spacing: None,
-            history: at_once(),
+            history: Default::default(),
             settings: settings(),
         }
     }

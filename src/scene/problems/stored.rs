@@ -10,7 +10,7 @@
 //! needs both components of each contact to be free.
 
 use super::condense::{NotEliminated, condensed, reduced};
-use super::{fits, of_file};
+use super::fits;
 use crate::format::condensed::{Contact, Matrix, Problem};
 use crate::format::error::{Fault, Path, at, quoted};
 use crate::format::stored::{Stored, Touching};
@@ -43,7 +43,7 @@ pub fn read(file: &str, text: &str, memory: Option<f64>) -> Result<Problem, Scen
         }
     };
     let matrix = named("stiffness", &spec.stiffness)?;
-    let of = |path: &std::path::Path, broken| of_file(&path.display().to_string(), broken);
+    let of = |path: &std::path::Path, broken| read::of_file(&path.display().to_string(), broken);
     let list = stiffness::unknowns(&super::text(&unknowns)?).map_err(|b| of(&unknowns, b))?;
     let stored = super::text(&matrix)?;
     let k = stiffness::matrix(&stored, list.len()).map_err(|b| of(&matrix, b))?;
