@@ -11,7 +11,7 @@ use crate::linear::source::Solved;
 use crate::model::{AtLimit, Friction, Mode, Refactor, ResidualMethod, SlipCount, Sticking};
 use crate::step::event::{Failure, Outcome};
 use crate::step::major_history::{MajorCycle, Scales};
-use crate::step::recovery::proximal::PATIENCE;
+use crate::step::recovery::PATIENCE;
 use crate::step::stepper::Stepper;
 use std::sync::Arc;
 

@@ -1,6 +1,8 @@
 //! Smaller increments: half the load, or a shorter arc.
 
-use super::{Effect, Recovery, Retry, Stalled, smaller_arc};
+use super::path_corner::smaller_arc;
+use super::retry::{Effect, Recovery, Retry};
+use super::stalled::Stalled;
 use crate::model::ArcLength;
 use crate::step::event::{Failure, Outcome};
 use crate::step::way::ROUNDING;

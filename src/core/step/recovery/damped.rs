@@ -18,7 +18,8 @@
 //! summed up and told.
 
 use super::motion::Motion;
-use super::{Effect, Recovery, Retry, Stalled};
+use super::retry::{Effect, Recovery, Retry};
+use super::stalled::Stalled;
 use crate::contact::laws::{Finding, Law, Verdict};
 use crate::linear::norms::Norms;
 use crate::step::event::{Failure, Moves, Outcome, Slow};

@@ -13,10 +13,7 @@
 //! Each is cut into halves as before, and is in force until a part of the increment is accepted. If none helps, the last half is tried
 //! once more without a fallback, so that the failed state is the one that the failure describes.
 
-use super::{Effect, Recovery, Retry, Stalled};
-use crate::model::{BoundUpdate, Jumps, Settings, Strategy, Touch};
-use crate::step::event::{Failure, Outcome};
-use crate::step::state::State;
+use crate::model::{BoundUpdate, Settings, Strategy, Touch};
 use crate::step::sub_increment::SubIncrement;
 use crate::strategy;
 use serde::{Deserialize, Serialize};
@@ -58,72 +55,7 @@ crate::words! {
     Back "the last half as it was, since nothing else helps",
 }
 
-impl Recovery for Fallback {
-    fn propose(&self, why: &Failure, stalled: &Stalled<'_>) -> Option<Retry> {
-        let state = stalled.state;
-        let chosen = &state.controls.settings;
-        if state.fallback.is_some_and(|route| route.by >= *self)
-            || strategy::rungs(chosen.strategy).is_empty()
-            || matches!(why, Failure::Leapt { .. }) && state.fallback.is_none()
-            || !(stalled.size_helps(why) || stalled.drowned(why))
-            || state.way.is_some()
-            || stalled.model.jumps == Jumps::Dynamic
-            || !self.helps(why, stalled)
-        {
-            return None;
-        }
-        let (by, from) = (*self, last_half(state));
-        let rest = from.rest(state.start.load_factor);
-        let part = match by {
-            Fallback::Section => rest.section(),
-            Fallback::Held | Fallback::Back => from,
-            _ => rest,
-        };
-        let (why, size) = (why.clone(), part.size());
-        Some(Retry {
-            part,
-            effect: Effect::Fallback(FallbackState { by, from }),
-            outcome: Outcome::Fallback { why, by, size },
-        })
-    }
-}
-
-/// The last half of the increment that failed before any fallback.
-fn last_half(state: &State) -> SubIncrement {
-    state
-        .fallback
-        .map_or(state.sub_increment, |route| route.from)
-}
-
 impl Fallback {
-    /// Whether it may help after this failure. Where all bodies are given by numbers it is the interface problem itself that fails, of
-    /// which the ladder has tried all that it knows; there sliding can be held back at most.
-    fn helps(self, why: &Failure, stalled: &Stalled<'_>) -> bool {
-        let state = stalled.state;
-        if self == Fallback::Back {
-            return state.fallback.is_some();
-        }
-        if matches!(why, Failure::Inverted(_)) {
-            return false;
-        }
-        match self {
-            Fallback::Held => stalled.can_hold(why),
-            Fallback::Section => {
-                let rest = last_half(state).rest(state.start.load_factor);
-                // What the scene names as the least is one; else the section may be finer than a 64th.
-                let least = stalled.model.least;
-                !stalled.is_given() && least.is_none_or(|least| rest.section().size() >= least)
-            }
-            _ => !stalled.is_given() && self.changes(&state.controls.settings),
-        }
-    }
-
-    /// Whether it changes these settings.
-    fn changes(self, chosen: &Settings) -> bool {
-        let first = strategy::in_force(chosen, 0);
-        self.in_force(first, 0) != first
-    }
-
     /// What it makes of the settings in force on a rung.
     pub(in crate::step) fn in_force(self, mut settings: Settings, rung: usize) -> Settings {
         match self {
@@ -137,27 +69,5 @@ impl Fallback {
             Fallback::Newton => {}
         }
         settings
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_fallback_that_the_settings_have_already_is_left_out() {
-        let plain = Settings {
-            touch: Touch::Ratio,
-            ..Settings::default()
-        };
-        let own = Settings {
-            touch: Touch::Start,
-            t_max: BoundUpdate::Consistent,
-            ..plain
-        };
-        for by in [Fallback::Consistent, Fallback::Start, Fallback::Newton] {
-            assert!(by.changes(&plain), "{by:?}");
-            assert_eq!(by.changes(&own), by == Fallback::Newton, "{by:?}");
-        }
     }
 }

@@ -11,42 +11,37 @@
 //! at a given load      Halve       half the increment
 //!                      Whole       halves that were to tell whether it jumps have failed: the whole increment after all
 //!                      Release     the loads stay, and the nodes move damped to the next equilibrium
-//! then, at any size    Fallback    other parts, other interpretations of the laws, sliding held back (`fallback`)
+//! then, at any size    Fallback    other parts, other interpretations of the laws, sliding held back ([`fallback`])
 //! ```
 //!
 //! A node that makes more than [`MOST_CUTS`] parts of a whole increment fail ends this: its state does not depend on the size.
 
 mod cut;
 mod damped;
+mod fall_back;
 pub mod fallback;
 pub mod motion;
 mod path_corner;
 pub mod proximal;
+mod retry;
+mod slip_step;
 mod stalled;
 mod whole;
 
-pub(super) use path_corner::smaller_arc;
-pub(super) use stalled::Stalled;
+pub(super) use slip_step::PATIENCE;
 
 use crate::linear::source::Source;
 use crate::model::Model;
 use crate::step::event::{Failure, Outcome};
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
-use crate::step::sub_increment::SubIncrement;
-use crate::step::way::Way;
-use fallback::{Fallback, FallbackState};
-use motion::Motion;
+use fallback::Fallback;
 use proximal::Brake;
+use retry::{Effect, Recovery, Retry};
+use stalled::Stalled;
 
 /// Maximum number of cuts of a whole increment because of the same node, before the increment fails.
 const MOST_CUTS: u32 = 300;
-
-/// One way to start an increment again.
-trait Recovery: Sync {
-    /// What to try after the failure `why`. `None` if this recovery does not apply, or has been tried.
-    fn propose(&self, why: &Failure, stalled: &Stalled<'_>) -> Option<Retry>;
-}
 
 const MOVING: [&dyn Recovery; 1] = [&damped::Slower];
 const ALONG: [&dyn Recovery; 3] = [
@@ -63,32 +58,6 @@ const FALLBACKS: [&dyn Recovery; 6] = [
     &Fallback::Held,
     &Fallback::Back,
 ];
-
-/// How to start an increment again.
-pub(super) struct Retry {
-    /// The part of it that is tried.
-    part: SubIncrement,
-    /// What it changes in the state.
-    effect: Effect,
-    /// What is reported.
-    outcome: Outcome,
-}
-
-/// What a recovery changes in the state.
-enum Effect {
-    /// One more cut, because of this slave node if any.
-    Cut(Option<usize>),
-    /// The arc and the corner of the path.
-    Path(Box<Way>),
-    /// The increment is accepted although it jumps.
-    Whole,
-    /// The loads stay, and a damped motion begins.
-    Release,
-    /// Another drag of the damped motion.
-    Motion(Motion),
-    /// The fallback.
-    Fallback(FallbackState),
-}
 
 impl Stepper {
     /// The state of a failed increment, for the recoveries.

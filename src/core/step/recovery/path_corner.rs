@@ -23,7 +23,8 @@
 //! This is what pivoting methods do at the end of an edge of a piecewise linear path (Eaves 1972). Where the contacts that
 //! change together do not agree on a sign, the path does not go on in these modes.
 
-use super::{Effect, Recovery, Retry, Stalled};
+use super::retry::{Effect, Recovery, Retry};
+use super::stalled::Stalled;
 use crate::contact::record::Forced;
 use crate::contact::state::ContactState;
 use crate::contact::tracking::leave_border;

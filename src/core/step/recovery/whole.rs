@@ -1,7 +1,8 @@
 //! The whole increment after all: halves were to tell whether it jumps to another branch ([`crate::step::jump`]), and have failed. Near a
 //! limit point they may have no equilibrium, where the whole increment has one beyond.
 
-use super::{Effect, Recovery, Retry, Stalled};
+use super::retry::{Effect, Recovery, Retry};
+use super::stalled::Stalled;
 use crate::model::Jumps;
 use crate::step::event::{Failure, Outcome};
 use crate::strategy;
