@@ -7,9 +7,9 @@ use crate::outside::shown;
 /// A finished run.
 pub enum Recording {
     /// The exchange with an attached solver.
-    Exchange(past::Opened),
+    Exchange(Box<past::Opened>),
     /// A CalculiX run.
-    Calculix(calculix::Opened),
+    Calculix(Box<calculix::Opened>),
 }
 
 impl Recording {
@@ -26,11 +26,11 @@ impl Recording {
             ));
         }
         if let Some(run) = calculix::file(name) {
-            return run.map(Recording::Calculix).map(Some);
+            return run.map(Box::new).map(Recording::Calculix).map(Some);
         }
         let exchange = past::file(name).transpose();
         let exchange = exchange.map_err(|why| why.to_string())?;
-        Ok(exchange.map(Recording::Exchange))
+        Ok(exchange.map(Box::new).map(Recording::Exchange))
     }
 
     /// What it is.

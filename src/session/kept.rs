@@ -27,8 +27,8 @@ impl Session {
     /// The session on a finished run.
     pub fn recorded(recording: Recording) -> Session {
         match recording {
-            Recording::Exchange(opened) => Session::kept(opened),
-            Recording::Calculix(opened) => Session::finished(opened),
+            Recording::Exchange(opened) => Session::kept(*opened),
+            Recording::Calculix(opened) => Session::finished(*opened),
         }
     }
 
