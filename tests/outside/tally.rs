@@ -61,8 +61,8 @@ impl Row {
             trial.vertices,
             trial.unexplained,
         );
-        for detour in &trial.detours {
-            let _ = write!(line, " by-{detour:?}");
+        for fallback in &trial.fallbacks {
+            let _ = write!(line, " by-{fallback:?}");
         }
         if self.forgiven {
             line += " forgiven";

@@ -59,7 +59,7 @@ pub struct Trial {
     /// Accepted states of a node that touched, and whose friction no touch point on its way explains.
     pub unexplained: usize,
     /// The ways round on which increments were accepted whose halves had failed.
-    pub detours: Vec<Fallback>,
+    pub fallbacks: Vec<Fallback>,
 }
 
 impl Trial {
@@ -71,7 +71,7 @@ impl Trial {
             wrong: Vec::new(),
             vertices: 0,
             unexplained: 0,
-            detours: Vec::new(),
+            fallbacks: Vec::new(),
         }
     }
 
@@ -111,16 +111,16 @@ impl Trial {
             force: ROUNDING * stiffness(&model),
         };
         let mut passages = Passages::default();
-        let mut detour = None;
+        let mut fallback = None;
         for _ in 0..PATIENCE {
             if stepper.step().is_none() {
                 self.end = End::Finished;
                 return;
             }
             match &stepper.event().outcome {
-                Outcome::Increment { .. } => self.detours.extend(detour.take()),
+                Outcome::Increment { .. } => self.fallbacks.extend(fallback.take()),
                 Outcome::Fallback { by, .. } => {
-                    (detour, passages) = (Some(*by), Passages::default());
+                    (fallback, passages) = (Some(*by), Passages::default());
                     continue;
                 }
                 Outcome::Failed(failure) => {

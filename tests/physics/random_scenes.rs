@@ -46,7 +46,7 @@ fn an_increment_whose_halves_all_fail_is_finished_on_a_way_round_and_is_not_wron
     let row = &rows[0];
     assert_eq!(row.trial.end, End::Finished, "{}", row.line());
     assert!(
-        row.trial.detours.contains(&Fallback::Section),
+        row.trial.fallbacks.contains(&Fallback::Section),
         "{}",
         row.line()
     );

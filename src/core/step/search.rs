@@ -10,6 +10,7 @@ use crate::interface::problem::Assumed;
 use crate::linear::singular::Singular;
 use crate::model::{Contact, Mode};
 use crate::step::event::{Failure, Outcome};
+use crate::step::recovery::left_out::LeftOut;
 use crate::step::state::Progress;
 use crate::step::stepper::Stepper;
 use crate::strategy;
@@ -37,7 +38,13 @@ impl Stepper {
         let first = search.first.get_or_insert_with(|| Box::new(why.clone()));
         // A census that has tried all leaves nothing to find.
         let proven = matches!(why, Failure::NoAnswer { .. });
-        let next = strategy::next_rung(chosen, search.rung, self.state.nodes.len());
+        let contacts = self.state.nodes.len();
+        let mut next = strategy::next_rung(chosen, search.rung, contacts);
+        if let Some((rung, to)) = next
+            && self.left_out == Some(LeftOut::Strategy(to))
+        {
+            next = strategy::next_rung(chosen, rung, contacts);
+        }
         // The searches know nothing of what holds sliding back.
         let braked = self.state.brake.is_some();
         let next = next.filter(|(_, to)| !(braked && strategy::method(*to).search().is_some()));

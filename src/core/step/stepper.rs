@@ -25,6 +25,7 @@ use crate::linear::stability::Stability;
 use crate::model::Model;
 use crate::step::event::{Event, Failure, Outcome};
 use crate::step::intervene::{Intervention, Refusal};
+use crate::step::recovery::left_out::LeftOut;
 use crate::step::state::{IncrementStart, State, Status};
 use std::any::Any;
 use std::sync::Arc;
@@ -49,6 +50,8 @@ pub struct Stepper {
     /// What the contacts came with into the present minor iteration, where only one of them may change.
     pub(super) before: Vec<ContactState>,
     pub(super) event: Event,
+    /// What it does without.
+    pub(super) left_out: Option<LeftOut>,
 }
 
 /// What one solver lends another of the same scene.
@@ -85,6 +88,7 @@ impl Stepper {
             room: None,
             borrowed: None,
             before: Vec::new(),
+            left_out: None,
             model,
         };
         stepper.begin();

@@ -12,6 +12,10 @@ use crate::strategy;
 pub(super) struct Halve;
 
 impl Recovery for Halve {
+    fn name(&self) -> &'static str {
+        "halve"
+    }
+
     fn propose(&self, why: &Failure, stalled: &Stalled<'_>) -> Option<Retry> {
         if !stalled.size_helps(why) {
             return None;
@@ -36,6 +40,10 @@ impl Recovery for Halve {
 pub(super) struct ShorterArc;
 
 impl Recovery for ShorterArc {
+    fn name(&self) -> &'static str {
+        "shorter-arc"
+    }
+
     fn propose(&self, why: &Failure, stalled: &Stalled<'_>) -> Option<Retry> {
         if !stalled.size_helps(why) {
             return None;

@@ -54,6 +54,10 @@ const MOST_STEPS: u32 = 5000;
 pub(super) struct Release;
 
 impl Recovery for Release {
+    fn name(&self) -> &'static str {
+        "release"
+    }
+
     fn propose(&self, why: &Failure, stalled: &Stalled<'_>) -> Option<Retry> {
         let helps = stalled.size_helps(why) || matches!(why, Failure::Singular(_));
         let (why, load) = (why.clone(), stalled.state.start.load_factor);
@@ -69,6 +73,10 @@ impl Recovery for Release {
 pub(super) struct Slower;
 
 impl Recovery for Slower {
+    fn name(&self) -> &'static str {
+        "slower"
+    }
+
     fn propose(&self, why: &Failure, stalled: &Stalled<'_>) -> Option<Retry> {
         slower(Slow::Failed(why.clone()), stalled)
     }

@@ -10,6 +10,17 @@ use crate::step::sub_increment::SubIncrement;
 use crate::strategy;
 
 impl Recovery for Fallback {
+    fn name(&self) -> &'static str {
+        match self {
+            Fallback::Section => "section",
+            Fallback::Consistent => "consistent",
+            Fallback::Start => "start",
+            Fallback::Newton => "newton",
+            Fallback::Held => "held",
+            Fallback::Back => "back",
+        }
+    }
+
     fn propose(&self, why: &Failure, stalled: &Stalled<'_>) -> Option<Retry> {
         let state = stalled.state;
         let chosen = &state.controls.settings;

@@ -20,6 +20,7 @@ mod cut;
 mod damped;
 mod fall_back;
 pub mod fallback;
+pub mod left_out;
 pub mod motion;
 mod path_corner;
 pub mod proximal;
@@ -36,6 +37,7 @@ use crate::step::event::{Failure, Outcome};
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
 use fallback::Fallback;
+use left_out::LeftOut;
 use proximal::Brake;
 use retry::{Effect, Recovery, Retry};
 use stalled::Stalled;
@@ -59,7 +61,18 @@ const FALLBACKS: [&dyn Recovery; 6] = [
     &Fallback::Back,
 ];
 
+/// Names of all recoveries, in the order in which they are asked.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    let lists: [&[&dyn Recovery]; 4] = [&MOVING, &ALONG, &LOADED, &FALLBACKS];
+    lists.into_iter().flatten().map(|recovery| recovery.name())
+}
+
 impl Stepper {
+    /// Goes on without a recovery or a strategy, to find out whether a scene needs it. It is no part of the state.
+    pub fn leave_out(&mut self, left_out: LeftOut) {
+        self.left_out = Some(left_out);
+    }
+
     /// The state of a failed increment, for the recoveries.
     pub(super) fn stalled(&self) -> Stalled<'_> {
         let source: &dyn Source = &*self.source;
@@ -113,7 +126,9 @@ impl Stepper {
     }
 
     fn recover(&mut self, recoveries: &[&dyn Recovery], why: &Failure) -> Option<Outcome> {
-        recoveries.iter().find_map(|recovery| {
+        let left_out = self.left_out;
+        let kept = |recovery: &&&dyn Recovery| Some(LeftOut::Recovery(recovery.name())) != left_out;
+        recoveries.iter().filter(kept).find_map(|recovery| {
             let retry = recovery.propose(why, &self.stalled())?;
             self.try_again(retry)
         })

@@ -306,6 +306,10 @@ impl Stepper {
 pub(super) struct Turn;
 
 impl Recovery for Turn {
+    fn name(&self) -> &'static str {
+        "turn"
+    }
+
     fn propose(&self, why: &Failure, stalled: &Stalled<'_>) -> Option<Retry> {
         turn(why, stalled, AT_START, false)
     }
@@ -315,6 +319,10 @@ impl Recovery for Turn {
 pub(super) struct TurnAtLast;
 
 impl Recovery for TurnAtLast {
+    fn name(&self) -> &'static str {
+        "turn-at-last"
+    }
+
     fn propose(&self, why: &Failure, stalled: &Stalled<'_>) -> Option<Retry> {
         turn(why, stalled, AHEAD, true)
     }

@@ -9,6 +9,9 @@ use crate::step::way::Way;
 
 /// One way to start an increment again.
 pub(super) trait Recovery: Sync {
+    /// Its name, for [`crate::step::stepper::Stepper::leave_out`].
+    fn name(&self) -> &'static str;
+
     /// What to try after the failure `why`. `None` if this recovery does not apply, or has been tried.
     fn propose(&self, why: &Failure, stalled: &Stalled<'_>) -> Option<Retry>;
 }

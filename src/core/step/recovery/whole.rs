@@ -10,6 +10,10 @@ use crate::strategy;
 pub(super) struct Whole;
 
 impl Recovery for Whole {
+    fn name(&self) -> &'static str {
+        "whole"
+    }
+
     fn propose(&self, why: &Failure, stalled: &Stalled<'_>) -> Option<Retry> {
         let state = stalled.state;
         let rungs = strategy::rungs(state.controls.settings.strategy);

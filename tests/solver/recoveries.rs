@@ -1,0 +1,135 @@
+//! Which recoveries and strategies scenes need, judged by leaving each out.
+
+use crate::common;
+use std::collections::BTreeSet;
+use std::sync::Arc;
+use stickslip::model::Strategy;
+use stickslip::scene::Scene;
+use stickslip::step::event::{Moves, Outcome};
+use stickslip::step::recovery::{self, left_out::LeftOut};
+use stickslip::step::stepper::Stepper;
+
+/// Minor iterations after which a run counts as not finished.
+const PATIENCE: u64 = 20_000;
+
+/// A built-in scene and what is changed in it.
+type Changed = (&'static str, &'static [(&'static str, &'static str)]);
+
+/// Scenes whose runs need help: those that oscillate, on the ladder, and limit points under load, with jumps and along the path.
+const SCENES: [Changed; 14] = [
+    ("osc-big-step", LADDER),
+    ("osc-block-slide", LADDER),
+    ("osc-border", LADDER),
+    ("osc-drag65", LADDER),
+    ("osc-inclined-cantilever", LADDER),
+    ("osc-snap", LADDER),
+    ("osc-three10", LADDER),
+    ("osc-touch2", LADDER),
+    ("osc-two-many", LADDER),
+    ("osc-zig3", LADDER),
+    (
+        "05-cantilever-elastic-block",
+        &[
+            ("history.increment", "0.5"),
+            ("settings.strategy", "ladder"),
+        ],
+    ),
+    (
+        "02-two-cantilevers-rough",
+        &[("friction.angle", "10"), ("refine", "2")],
+    ),
+    (
+        "02-two-cantilevers-rough",
+        &[
+            ("friction.angle", "10"),
+            ("refine", "2"),
+            ("history.jumps", "dynamic"),
+        ],
+    ),
+    (
+        "02-two-cantilevers-rough",
+        &[
+            ("friction.angle", "10"),
+            ("refine", "2"),
+            ("history.control", "arc"),
+        ],
+    ),
+];
+
+const LADDER: &[(&str, &str)] = &[("settings.strategy", "ladder")];
+
+/// What a run used, and whether it reached its end.
+fn run(scene: &Scene, without: Option<LeftOut>) -> (bool, BTreeSet<String>) {
+    let mut stepper = Stepper::new(Arc::new(scene.model.clone()));
+    if let Some(without) = without {
+        stepper.leave_out(without);
+    }
+    let mut used = BTreeSet::new();
+    for _ in 0..PATIENCE {
+        let Some(event) = stepper.step() else {
+            return (true, used);
+        };
+        let name = match &event.outcome {
+            Outcome::Failed(_) => return (false, used),
+            Outcome::Cut { .. } if event.arc.is_some() => "shorter-arc".to_owned(),
+            Outcome::Cut { .. } => "halve".to_owned(),
+            Outcome::Leaps { .. } => "whole".to_owned(),
+            Outcome::Turns { .. } => "turn".to_owned(),
+            Outcome::Moves(Moves::LetsGo { .. }) => "release".to_owned(),
+            Outcome::Moves(Moves::Slower(_)) => "slower".to_owned(),
+            Outcome::Fallback { by, .. } => format!("{by:?}").to_lowercase(),
+            Outcome::Climbed { to, .. } => format!("{to:?}"),
+            _ => continue,
+        };
+        used.insert(name);
+    }
+    (false, used)
+}
+
+/// Recoveries and strategies without which a scene does not reach its end.
+fn needs(scene: &Scene, used: &BTreeSet<String>) -> Vec<String> {
+    let recoveries = recovery::names().map(|name| (name.to_owned(), LeftOut::Recovery(name)));
+    let rungs = stickslip::strategy::rungs(Strategy::Ladder).iter();
+    let strategies = rungs.map(|rung| (format!("{rung:?}"), LeftOut::Strategy(*rung)));
+    let asked = recoveries.chain(strategies).filter(|(name, _)| {
+        let turns = name == "turn-at-last" && used.contains("turn");
+        used.contains(name) || turns
+    });
+    let needed = asked.filter(|(_, without)| !run(scene, Some(*without)).0);
+    needed.map(|(name, _)| name).collect()
+}
+
+#[test]
+fn what_scenes_need_is_found_by_leaving_each_recovery_and_strategy_out() {
+    let (mut ever_used, mut ever_needed) = (BTreeSet::new(), BTreeSet::new());
+    for (name, set) in SCENES {
+        let scene = common::scene(name, set);
+        let (ends, used) = run(&scene, None);
+        let needed = if ends {
+            needs(&scene, &used)
+        } else {
+            Vec::new()
+        };
+        println!("{name} {set:?}: ends {ends}, uses {used:?}, needs {needed:?}");
+        ever_used.extend(used);
+        ever_needed.extend(needed);
+    }
+    println!("used {ever_used:?}\nneeded {ever_needed:?}");
+    for recovery in [
+        "halve",
+        "held",
+        "release",
+        "slower",
+        "turn-at-last",
+        "whole",
+    ] {
+        assert!(
+            ever_needed.contains(recovery),
+            "{recovery}: {ever_needed:?}"
+        );
+    }
+    // The last half is tried again only before a failure.
+    let idle = recovery::names().filter(|name| !ever_used.contains(*name));
+    let idle: Vec<&str> = idle.filter(|name| !ever_needed.contains(*name)).collect();
+    assert_eq!(idle, ["back"]);
+}
