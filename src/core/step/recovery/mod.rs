@@ -14,7 +14,7 @@
 //! then, at any size    Fallback    other parts, other interpretations of the laws, sliding held back ([`fallback`])
 //! ```
 //!
-//! A node that makes more than [`MOST_CUTS`] parts of a whole increment fail ends this: its state does not depend on the size.
+//! A node that makes more than 300 parts of a whole increment fail ends this: its state does not depend on the size.
 
 mod cut;
 mod damped;
