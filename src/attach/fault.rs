@@ -163,7 +163,7 @@ pub enum Fault {
     #[error("this state is none that the solver has had since it was attached")]
     Unknown,
     /// A kept exchange without a scene.
-    #[error("it ends before the solver has told what it solves")]
+    #[error("the file ends before the solver describes its scene")]
     NoScene,
     /// The exchange that was opened ends here.
     #[error("the kept exchange ends here, and there is no solver that could go on")]

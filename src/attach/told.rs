@@ -54,8 +54,8 @@ pub struct Led {
     pub monitors: Vec<f64>,
 }
 
-/// A scene that a solver told, with what it calls its contacts, and the state at its start. `increment` is the one that it begins
-/// with, if it tells that.
+/// The scene of an attached solver, with its names of the contacts, and the state at its start. `increment` is the first increment,
+/// if the solver reports it.
 ///
 /// # Errors
 /// [`Fault::Unfit`].

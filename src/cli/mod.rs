@@ -96,7 +96,7 @@ enum Command {
     Diff(diff::Args),
     /// Goes on with a session of the debugger where it was, from its journal
     Resume(resume::Args),
-    /// Tells a session's journal as text, or a finished CalculiX run
+    /// Prints a session's journal, or a finished CalculiX run, as text
     Story(story::Args),
     /// Judges every accepted increment by positions and forces alone: the worst violation of each law
     Audit(audit::Args),

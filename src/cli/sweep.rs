@@ -18,7 +18,7 @@ pub struct SweepArgs {
     /// Runs only the cells of shard K of N: writes their rows (--csv), or stores them (--log); page cluster
     #[arg(long, value_name = "K/N", value_parser = shard)]
     shard: Option<Shard>,
-    /// Keeps each result of this sweep in this file as it comes, and goes on with what is there
+    /// Stores each result in this file as it arrives, and continues from the results in it
     #[arg(long, value_name = "FILE", alias = "resume")]
     log: Option<PathBuf>,
     /// Runs nothing, and puts the logs of all shards together, in any order
@@ -116,7 +116,7 @@ impl SweepArgs {
             let done = count_done(&results);
             if done < all {
                 tell(&format!(
-                    "interrupted; {done} of {all} {unit} of shard {shard} are done; the same command goes on"
+                    "interrupted; {done} of {all} {unit} of shard {shard} are done; run the same command to continue"
                 ));
                 return Ok(Exit::Interrupted);
             }
@@ -164,7 +164,7 @@ fn tell_machines<T: Outcome>(store: &Store<T>) {
     }
 }
 
-/// An error of a sweep; what another try may get past is told from what it will not.
+/// An error of a sweep. Errors that another try may avoid are distinguished from those that remain.
 pub fn failed(error: RunError) -> Error {
     match error {
         RunError::Log(LogError::Busy(_) | LogError::File { .. }) | RunError::Threads(_) => {

@@ -4,6 +4,7 @@
 //! [`line()`]. Both leave what is harmless as it is, so that it does no harm to go through them twice.
 
 use std::borrow::Cow;
+use std::convert::Infallible;
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
 /// Whether a terminal or a viewer may take a character for an order: C0 and C1 controls and DEL, marks that turn the
@@ -59,39 +60,30 @@ pub fn first_of<T: std::fmt::Display>(
     }
 }
 
-/// Breaks a text at its blanks into lines that fit; a word that does not fit is a line by itself.
+/// Joins words by blanks into lines that fit; a word that does not fit is a line by itself.
 ///
 /// # Errors
 /// If it cannot be found out whether a line fits.
-pub fn wrapped<E>(text: &str, fits: impl Fn(&str) -> Result<bool, E>) -> Result<Vec<String>, E> {
-    let (mut lines, mut present) = (Vec::new(), String::new());
-    for word in text.split_whitespace() {
-        let longer = match present.is_empty() {
-            true => word.to_owned(),
-            false => format!("{present} {word}"),
-        };
-        if present.is_empty() || fits(&longer)? {
-            present = longer;
-        } else {
-            lines.push(std::mem::replace(&mut present, word.to_owned()));
+pub fn wrapped<E>(
+    words: impl IntoIterator<Item = String>,
+    fits: impl Fn(&str) -> Result<bool, E>,
+) -> Result<Vec<String>, E> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in words {
+        let longer = lines.last().map(|last| format!("{last} {word}"));
+        match (lines.last_mut(), longer) {
+            (Some(last), Some(longer)) if fits(&longer)? => *last = longer,
+            _ => lines.push(word),
         }
     }
-    lines.push(present);
     Ok(lines)
 }
 
 /// Breaks a text into lines at its blanks, and a word that is longer than a line where the line ends.
 pub fn wrap(text: &str, width: usize) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for word in line(text).split(' ') {
-        match lines.last_mut() {
-            Some(last) if last.width() + 1 + word.width() <= width => {
-                last.push(' ');
-                last.push_str(word);
-            }
-            _ => lines.extend(broken(word, width.max(2))),
-        }
-    }
+    let text = line(text);
+    let words = text.split(' ').flat_map(|word| broken(word, width.max(2)));
+    let Ok(lines) = wrapped(words, |line| Ok::<_, Infallible>(line.width() <= width));
     lines
 }
 

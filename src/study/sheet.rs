@@ -312,9 +312,12 @@ fn broken(lines: &[String], size: f64, width: f64) -> Result<Vec<String>, PlotEr
     let mut all = Vec::new();
     for line in lines {
         let line = shown::cut(line, MAX_LINE);
-        let words: Vec<String> = line.split_whitespace().map(label).collect();
+        let mut words: Vec<String> = line.split_whitespace().map(label).collect();
+        if words.is_empty() {
+            words.push(String::new());
+        }
         let fits = |line: &str| Ok(1.06 * width_of(line, size)? <= width);
-        all.extend(shown::wrapped(&words.join(" "), fits)?);
+        all.extend(shown::wrapped(words, fits)?);
     }
     Ok(all)
 }

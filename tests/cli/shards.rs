@@ -345,7 +345,7 @@ fn sigterm_stops_a_shard_with_130_and_the_same_command_goes_on() {
         assert_eq!(code(&output), 130, "{words}: {}", err(&output));
         let told = err(&output);
         assert!(
-            told.contains("of shard 1/2 are done; the same command goes on"),
+            told.contains("of shard 1/2 are done; run the same command to continue"),
             "{told}"
         );
         let before = bytes(here, "a.log");

@@ -105,12 +105,9 @@ fn what_scenes_need_is_found_by_leaving_each_recovery_and_strategy_out() {
     for (name, set) in SCENES {
         let scene = common::scene(name, set);
         let (ends, used) = run(&scene, None);
-        let needed = if ends {
-            needs(&scene, &used)
-        } else {
-            Vec::new()
-        };
-        println!("{name} {set:?}: ends {ends}, uses {used:?}, needs {needed:?}");
+        assert!(ends, "{name} {set:?}");
+        let needed = needs(&scene, &used);
+        println!("{name} {set:?}: uses {used:?}, needs {needed:?}");
         ever_used.extend(used);
         ever_needed.extend(needed);
     }

@@ -13,7 +13,7 @@ use stickslip_exchange::attach::{Answer, Request};
 pub fn interrupt(mut trial: Trial, _: &[State]) -> Result<Outcome, Fault> {
     if !trial.hello.abilities.interrupt {
         return Ok(not_offered(
-            "Ctrl-C waits for the iteration at hand; the second one is a signal",
+            "the first Ctrl-C waits for the current iteration; the second is a signal",
         ));
     }
     trial.link.interrupt();

@@ -76,8 +76,7 @@ impl Ground<'_> {
             if !was_held && node.corner.is_none() && slave.surfaces.len() > 1 {
                 self.meet_between(node, slave, at);
             }
-            let flexible =
-                |spot: SurfacePoint| point_force::of(&self.surfaces[spot.surface], spot).is_some();
+            let flexible = |spot: SurfacePoint| !self.surfaces[spot.surface].gives.is_empty();
             if node.spot.is_some_and(flexible) {
                 leave_border(self.surfaces, node);
             }
@@ -231,8 +230,8 @@ impl Ground<'_> {
 
     /// n (unit) at a border of one chain: the mean of both sides' normals.
     fn border_normal(&self, border: SurfacePoint, f_n: f64, over: &Projection) -> [f64; 2] {
-        let flexible = point_force::of(&self.surfaces[border.surface], border).is_some();
-        let sides = self.sides(border, f_n).filter(|_| flexible);
+        let rigid_lines = self.surfaces[border.surface].gives.is_empty();
+        let sides = self.sides(border, f_n).filter(|_| !rigid_lines);
         sides.map_or(over.normal, |[before, behind]| mean_normal(before, behind))
     }
 
