@@ -1,45 +1,32 @@
 //! stickslip: a terminal step-through debugger for FEM contact iterations.
 //!
-//! The map of the house, from the ground up: each line uses those above it and none below.
+//! The program is the command line ([`cli`]) on top of these packages, which are re-exported here. Each package uses
+//! only those above it:
 //!
-//! The solver is a package of its own, [`stickslip_core`], with [`linalg`] under it; its modules are handed on here. Another
-//! is [`stickslip_exchange`]: files of other programs as plain data. The program stands on them:
-//!
-//! - [`outside`]: what comes from outside and goes there: files that are read and written, texts of others that are shown.
-//! - [`format`](mod@format): the scene file as its author writes it: read, located, described, and set by paths.
-//! - [`scene`]: what to solve: a [`format::Spec`] becomes a checked [`model::Model`].
-//! - [`explain`]: what happened, why, and what could be done about it, in the words that all front ends share.
-//! - [`study`]: studies with many runs of a scene: sweeps, convergence maps, work-precision charts.
-//! - [`history`]: what was done so far: frames, branches, breakpoints, watches.
-//! - [`record`]: what is kept in files: snapshots, journals, problems written as scenes.
-//! - [`attach`]: solvers that others made, stepped as ours.
-//! - [`session`]: the debugger without a terminal: commands in, frames out.
+//! - `stickslip-linalg`: linear systems. `stickslip-core`: the solver, without files, terminal or threads.
+//! - `stickslip-exchange`: files of other programs as plain data.
+//! - `stickslip-platform`: what differs between operating systems.
+//! - [`scene`]: the scene file ([`format`](mod@format)), and the [`model::Model`] that it becomes.
+//! - [`study`]: many runs of a scene: sweeps, convergence maps, work-precision charts.
 //! - [`manual`]: the pages that `help` shows.
-//! - [`action`]: everything that can be done, by name, by key, or by a typed line.
-//! - [`teach`]: guided lessons.
+//! - `stickslip-debugger`: the debugger without a terminal ([`session`]), with its history, explanations, actions and lessons.
+//! - [`attach`]: solvers in other processes.
 //! - [`tui`]: the debugger in the terminal; with the feature `tui`.
-//! - [`cli`]: the command line.
 
 #![forbid(unsafe_code)]
 
-pub mod action;
-pub mod attach;
 pub mod cli;
-pub mod explain;
-pub mod format;
-pub mod history;
-pub mod manual;
-pub mod outside;
-pub mod record;
-pub mod scene;
-pub mod session;
-pub mod study;
-pub mod teach;
-#[cfg(feature = "tui")]
-pub mod tui;
 
+pub use stickslip_attach as attach;
 #[cfg(mutants)]
 pub use stickslip_core::mutants;
-pub use stickslip_core::{
-    contact, executor, fem, interface, linalg, linear, model, step, strategy,
-};
+pub use stickslip_core::{contact, executor, fem, interface, linear, model, step, strategy};
+pub use stickslip_debugger::{action, explain, history, record, recorded, session, teach};
+pub use stickslip_linalg as linalg;
+pub use stickslip_manual as manual;
+pub use stickslip_platform as platform;
+pub use stickslip_scene as scene;
+pub use stickslip_scene::format;
+pub use stickslip_study as study;
+#[cfg(feature = "tui")]
+pub use stickslip_tui as tui;

@@ -5,26 +5,26 @@
 //! go to a place is to restore the nearest state before it that can be had (the start, by starting the solver anew, always can), and
 //! to do again what led from there; what is done again must come to the same modes.
 
-use super::fault::Fault;
 use super::link::{Link, Start, name};
-use super::log::Log;
 use super::meeting::{self, Met, meet};
-use super::orders::requests;
-use super::posed::posed;
-use super::told::{self, Frame, Led};
-use crate::explain::names;
-use crate::model::{Mode, Model};
-use crate::scene::Scene;
-use crate::step::Status;
-use crate::step::event::{Event, Position};
-use crate::step::intervene::{Intervention, Refusal};
-use crate::step::places::Places;
-use crate::step::solver::{Lost, Offers, Posed, Solver};
-use crate::step::state::State;
 use std::sync::Arc;
 use std::sync::atomic::AtomicUsize;
+use stickslip_core::model::{Mode, Model};
+use stickslip_core::step::Status;
+use stickslip_core::step::event::{Event, Position};
+use stickslip_core::step::intervene::{Intervention, Refusal};
+use stickslip_core::step::places::Places;
+use stickslip_core::step::solver::{Lost, Offers, Posed, Solver};
+use stickslip_core::step::state::State;
+use stickslip_debugger::explain::names;
+use stickslip_debugger::recorded::fault::Fault;
+use stickslip_debugger::recorded::log::Log;
+use stickslip_debugger::recorded::orders::requests;
+use stickslip_debugger::recorded::posed::posed;
+use stickslip_debugger::recorded::told::{self, Frame, Led};
 use stickslip_exchange::attach::message::{self, Ended, Hello, Id, Restore};
 use stickslip_exchange::attach::{Answer, Request};
+use stickslip_scene::Scene;
 
 /// A solver that is a program of its own.
 pub struct Attached {

@@ -4,9 +4,6 @@
 //! It runs in a process group of its own, so that a Ctrl-C in the terminal is this program's to pass on: first as a message, then
 //! as a signal, then for good.
 
-use super::fault::Fault;
-use super::log::Log;
-use crate::outside::shown;
 use rustix::io::ioctl_fionbio;
 use rustix::process::{Pid, Signal, WaitId, WaitIdOptions, kill_process_group, waitid};
 use std::io::{self, BufRead, BufReader, Read, Write};
@@ -17,8 +14,11 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread;
 use std::time::{Duration, Instant};
+use stickslip_debugger::recorded::fault::Fault;
+use stickslip_debugger::recorded::log::Log;
 use stickslip_exchange::attach::conversation::STARTED;
 use stickslip_exchange::attach::{Answer, Line, Lines, MOST_BYTES, Request, Side};
+use stickslip_scene::shown;
 
 /// How often who waits looks whether it is to be interrupted.
 const LOOK: Duration = Duration::from_millis(10);

@@ -1,16 +1,16 @@
 //! How a solver is met: it is started, and asked who it is and what it solves.
 
-use super::fault::Fault;
 use super::link::{Link, Start, name};
-use super::log::Log;
-use super::orders::{COHESION, FRICTION, INCREMENT};
-use crate::outside::shown;
-use crate::step::intervene::Value;
-use crate::step::solver::{GoesBack, Offers, Parameter, Range};
 use std::sync::Arc;
 use std::sync::atomic::AtomicUsize;
+use stickslip_core::step::intervene::Value;
+use stickslip_core::step::solver::{GoesBack, Offers, Parameter, Range};
+use stickslip_debugger::recorded::fault::Fault;
+use stickslip_debugger::recorded::log::Log;
+use stickslip_debugger::recorded::orders::{COHESION, FRICTION, INCREMENT};
 use stickslip_exchange::attach::message::{self, Hello, ParameterKind, Restore, Scene};
 use stickslip_exchange::attach::{Answer, PROTOCOL, Request};
+use stickslip_scene::shown;
 
 /// A solver at its start.
 pub struct Met {
@@ -32,7 +32,7 @@ pub fn meet(start: &Start, log: &Log, asks: &Arc<AtomicUsize>) -> Result<Met, Fa
     let mut link = Link::start(start, log, asks.clone())?;
     let request = Request::Hello {
         protocol: PROTOCOL,
-        name: env!("CARGO_PKG_NAME").into(),
+        name: "stickslip".into(),
         version: env!("CARGO_PKG_VERSION").into(),
     };
     let hello = match link.ask(&request, start.start)? {

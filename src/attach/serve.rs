@@ -2,23 +2,23 @@
 //!
 //! A debugger that attaches to it sees what it would see of the scene itself, to the last bit.
 
-use super::orders::{self, COHESION, FRICTION, INCREMENT};
 use super::wire;
-use crate::format::paths;
-use crate::record::export::frozen;
-use crate::scene::Scene;
-use crate::scene::solver::solver;
-use crate::step::intervene::Intervention;
-use crate::step::solver::PosedForm;
-use crate::step::state::State;
-use crate::step::stepper::Stepper;
 use serde_json::Value;
 use std::io::{self, BufRead, Write};
 use std::sync::Arc;
+use stickslip_core::step::intervene::Intervention;
+use stickslip_core::step::solver::PosedForm;
+use stickslip_core::step::state::State;
+use stickslip_core::step::stepper::Stepper;
+use stickslip_debugger::record::export::frozen;
+use stickslip_debugger::recorded::orders::{self, COHESION, FRICTION, INCREMENT};
 use stickslip_exchange::attach::message::{
     Abilities, Hello, Id, Matrix, Parameter, ParameterKind, Problem, Restore,
 };
 use stickslip_exchange::attach::{Answer, Line, Lines, MOST_BYTES, PROTOCOL, Request};
+use stickslip_scene::Scene;
+use stickslip_scene::format::paths;
+use stickslip_scene::solver::solver;
 
 /// Answers what comes in, line by line, until it ends.
 ///
@@ -129,7 +129,10 @@ impl<'a> Server<'a> {
         }
         let mut monitors = Vec::new();
         let event = self.stepper.event();
-        let accepted = matches!(event.outcome, crate::step::event::Outcome::Increment { .. });
+        let accepted = matches!(
+            event.outcome,
+            stickslip_core::step::event::Outcome::Increment { .. }
+        );
         if accepted {
             self.stepper.monitors(&mut monitors);
         }

@@ -2,13 +2,13 @@
 //!
 //! Nothing is rounded on the way, so that a trace that is made on the other side has the same bits.
 
-use crate::contact::record::{self, ContactRecord};
-use crate::explain::names;
-use crate::explain::report;
-use crate::linear::norms::Norms;
-use crate::model::{Axis, Bond, Control, Jumps, Model, Watched};
-use crate::step::event::{Event, Failure, Outcome};
-use crate::step::state::State;
+use stickslip_core::contact::record::{self, ContactRecord};
+use stickslip_core::linear::norms::Norms;
+use stickslip_core::model::{Axis, Bond, Control, Jumps, Model, Watched};
+use stickslip_core::step::event::{Event, Failure, Outcome};
+use stickslip_core::step::state::State;
+use stickslip_debugger::explain::names;
+use stickslip_debugger::explain::report;
 use stickslip_exchange::attach::message::{
     self, Contact, Ended, Forced, Found, Friction, Id, Monitor, Scene, Surface, ToldKind, number,
 };
@@ -50,7 +50,7 @@ pub fn scene(model: &Model) -> Scene {
     }
 }
 
-fn surface(surface: &crate::model::Surface) -> Surface {
+fn surface(surface: &stickslip_core::model::Surface) -> Surface {
     let mut nodes: Vec<usize> = Vec::new();
     for element in &surface.elements {
         match nodes.last() {
@@ -92,7 +92,7 @@ fn of_contact(model: &Model, k: usize) -> Contact {
     }
 }
 
-fn monitor(monitor: &crate::model::Monitor) -> Monitor {
+fn monitor(monitor: &stickslip_core::model::Monitor) -> Monitor {
     let kind = match &monitor.of {
         Watched::Contact {
             axis: Axis::X | Axis::Y,

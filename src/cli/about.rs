@@ -1,18 +1,18 @@
 //! `stickslip --version --verbose`: what somebody who helps wants to know: the build, the machine, the terminal, the folders.
 
 use super::base::{Error, Exit, say};
-use crate::action::config;
-use crate::linear::estimate;
-use crate::outside::terminal::{self, Answers};
-use crate::record::journal;
-use crate::scene::memory;
-use crate::study::origin;
 use rustix::fs::Access;
 use std::env;
 use std::fmt::Write;
 use std::io::{IsTerminal, stderr, stdin, stdout};
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use stickslip_core::linear::estimate;
+use stickslip_debugger::action::config;
+use stickslip_debugger::record::journal;
+use stickslip_platform::terminal::{self, Answers};
+use stickslip_scene::memory;
+use stickslip_study::origin;
 
 pub fn main(verbose: bool) -> Result<Exit, Error> {
     let mut text = origin::program() + "\n";

@@ -4,10 +4,10 @@ use super::base::{Error, Exit, say, tell};
 use super::debugger::{DEBUGGER, needs_terminal};
 use super::front;
 use super::solver::SolverArgs;
-use crate::attach::{PYTHON, check};
-use crate::record::journal::Keep;
-use crate::session::Session;
 use std::path::PathBuf;
+use stickslip_attach::{PYTHON, check};
+use stickslip_debugger::record::journal::Keep;
+use stickslip_debugger::session::Session;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -32,7 +32,7 @@ pub struct Args {
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
     if args.python {
-        say(&PYTHON.text())?;
+        say(PYTHON)?;
         return Ok(Exit::Good);
     }
     if !args.solver.is_named() {

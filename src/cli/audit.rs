@@ -3,22 +3,22 @@
 use super::base::{Error, Exit, SetArgs, say, tell};
 use super::course::Course;
 use super::interrupt::Interrupt;
-use crate::contact::laws::Law;
-use crate::explain::audit::{Audit, Found};
-use crate::explain::judged;
-use crate::explain::names;
-use crate::explain::number::four;
-use crate::explain::report;
-use crate::explain::strain;
-use crate::format::kind::FileKind;
-use crate::model::Model;
-use crate::record::snapshot::Snapshot;
-use crate::scene::Scene;
-use crate::scene::solver::solver;
-use crate::step::drive::RunEnd;
-use crate::step::event::Outcome;
 use std::path::Path;
 use std::sync::Arc;
+use stickslip_core::contact::laws::Law;
+use stickslip_core::model::Model;
+use stickslip_core::step::drive::RunEnd;
+use stickslip_core::step::event::Outcome;
+use stickslip_debugger::explain::audit::{Audit, Found};
+use stickslip_debugger::explain::judged;
+use stickslip_debugger::explain::names;
+use stickslip_debugger::explain::report;
+use stickslip_debugger::explain::strain;
+use stickslip_debugger::record::snapshot::Snapshot;
+use stickslip_scene::Scene;
+use stickslip_scene::format::kind::FileKind;
+use stickslip_scene::number::four;
+use stickslip_scene::solver::solver;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

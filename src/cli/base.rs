@@ -1,14 +1,14 @@
 //! What all subcommands need: exit codes, errors, the scene that is named, and how the user is told.
 
-use crate::format::SceneError;
-use crate::outside::files::{self, FileError};
-use crate::outside::shown;
-use crate::record::journal::JournalError;
-use crate::record::snapshot::SnapshotError;
-use crate::scene::{Scene, builtin};
 use std::io::{self, Write};
 use std::path::Path;
 use std::process::ExitCode;
+use stickslip_debugger::record::journal::JournalError;
+use stickslip_debugger::record::snapshot::SnapshotError;
+use stickslip_platform::files::{self, FileError};
+use stickslip_scene::format::SceneError;
+use stickslip_scene::shown;
+use stickslip_scene::{Scene, builtin};
 
 /// How the program ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,12 +1,12 @@
-//! `stickslip study benchmarks`: scenes whose answers are known from elsewhere ([`crate::study::benchmarks`]).
+//! `stickslip study benchmarks`: scenes whose answers are known from elsewhere ([`stickslip_study::benchmarks`]).
 
 use super::base::{Error, Exit, tell};
 use super::interrupt::Interrupt;
 use super::outputs::{OutputArgs, Outputs};
-use crate::explain::number::six;
-use crate::outside::shown::aligned;
-use crate::study::Watch;
-use crate::study::benchmarks::{Benchmark, Benchmarks, Compared, Standing, table};
+use stickslip_scene::number::six;
+use stickslip_scene::shown::aligned;
+use stickslip_study::Watch;
+use stickslip_study::benchmarks::{Benchmark, Benchmarks, Compared, Standing, table};
 
 /// Runs a list, and tells how near each value came.
 pub fn main(list: &Benchmarks, out: &OutputArgs) -> Result<Exit, Error> {

@@ -4,15 +4,15 @@ use super::base::{Error, Exit, NoValue, SetArgs};
 use super::interrupt::Interrupt;
 use super::outputs::Outputs;
 use super::sweep::{Report, SweepArgs, failed};
-use crate::explain::number::six;
-use crate::format::kind::{FileKind, mistaken};
-use crate::outside::shown::aligned;
-use crate::study::chart_file::{Chart, Truth};
-use crate::study::chart_runs::{Planned, sweep};
-use crate::study::precision::{Cost, Measure, Point, Precision, PrecisionError, ROUND_OFF};
-use crate::study::precision_table;
-use crate::study::{Vary, precision_figure};
 use std::path::{Path, PathBuf};
+use stickslip_scene::format::kind::{FileKind, mistaken};
+use stickslip_scene::number::six;
+use stickslip_scene::shown::aligned;
+use stickslip_study::chart_file::{Chart, Truth};
+use stickslip_study::chart_runs::{Planned, sweep};
+use stickslip_study::precision::{Cost, Measure, Point, Precision, PrecisionError, ROUND_OFF};
+use stickslip_study::precision_table;
+use stickslip_study::{Vary, precision_figure};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\

@@ -1,11 +1,11 @@
 //! `stickslip check`: is the scene sound, and what does it cost.
 
 use super::base::{Error, Exit, SceneArgs, say, tell};
-use crate::format::paths;
-use crate::scene::Scene;
-use crate::scene::cost::Cost;
-use crate::scene::gaps;
-use crate::scene::precision;
+use stickslip_scene::Scene;
+use stickslip_scene::cost::Cost;
+use stickslip_scene::format::paths;
+use stickslip_scene::gaps;
+use stickslip_scene::precision;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

@@ -4,13 +4,6 @@
 //! program knows: scenes, studies, lessons, pages, and the paths and values of the scene that stands in the line.
 
 use super::base::{Error, Exit, put};
-use crate::format::paths::{self, Listed};
-use crate::format::read;
-use crate::model::Strategy;
-use crate::scene::builtin;
-use crate::study::precision::Cost;
-use crate::study::{benchmarks, builtin as studies};
-use crate::{manual, teach};
 use clap::{ValueEnum, ValueHint};
 use clap_complete::CompleteEnv;
 use clap_complete::engine::{
@@ -19,6 +12,14 @@ use clap_complete::engine::{
 use clap_complete::env::Shells;
 use std::ffi::{OsStr, OsString};
 use std::path::{Path, PathBuf};
+use stickslip_core::model::Strategy;
+use stickslip_debugger::teach;
+use stickslip_manual as manual;
+use stickslip_scene::builtin;
+use stickslip_scene::format::paths::{self, Listed};
+use stickslip_scene::format::read;
+use stickslip_study::precision::Cost;
+use stickslip_study::{benchmarks, builtin as studies};
 
 /// The variable of the environment by which a shell asks, and says which one it is.
 const ASKED: &str = "STICKSLIP_COMPLETE";
@@ -255,7 +256,7 @@ fn of_scene(words: &[OsString]) -> Option<Vec<Settable>> {
     let listed = words.iter().skip(1).find_map(|word| {
         let name = word.to_str()?;
         let text = match builtin::find(name) {
-            Some(scene) => scene.text(),
+            Some(scene) => scene.text.to_owned(),
             None if Path::new(name).is_file() => read::text(name).ok()?,
             None => return None,
         };

@@ -5,20 +5,20 @@
 //! otherwise, or its core cannot be written as a matrix.
 
 use super::base::{Error, Exit, SceneArgs, put, tell};
-use crate::explain::core::core;
-use crate::explain::diagnosis::cycling;
-use crate::explain::report;
-use crate::model::{AtCycle, AtLimit, Strategy};
-use crate::outside::files::Output;
-use crate::record::export::{self, NoExport, Origin};
-use crate::scene::Scene;
-use crate::scene::solver::solver;
-use crate::step::drive::{RunEnd, Until};
-use crate::step::event::Failure;
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::Arc;
+use stickslip_core::model::{AtCycle, AtLimit, Strategy};
+use stickslip_core::step::drive::{RunEnd, Until};
+use stickslip_core::step::event::Failure;
+use stickslip_debugger::explain::core::core;
+use stickslip_debugger::explain::diagnosis::cycling;
+use stickslip_debugger::explain::report;
+use stickslip_debugger::record::export::{self, NoExport, Origin};
+use stickslip_platform::files::Output;
+use stickslip_scene::Scene;
+use stickslip_scene::solver::solver;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

@@ -2,11 +2,11 @@
 
 use super::base::Error;
 use super::interrupt::Interrupt;
-use crate::record::snapshot::{Applied, Snapshot, SnapshotError};
-use crate::scene::Scene;
-use crate::step::drive::{RunEnd, Until};
-use crate::step::stepper::Stepper;
 use std::ops::ControlFlow;
+use stickslip_core::step::drive::{RunEnd, Until};
+use stickslip_core::step::stepper::Stepper;
+use stickslip_debugger::record::snapshot::{Applied, Snapshot, SnapshotError};
+use stickslip_scene::Scene;
 
 /// A scene, and of a snapshot what was done to it, and how far.
 pub struct Course {

@@ -3,11 +3,11 @@
 use super::base::{Error, Exit, SetArgs};
 use super::front;
 use super::groups;
-use crate::attach::recording::Recording;
-use crate::record::journal::Keep;
-use crate::session::Session;
 use std::io::IsTerminal;
 use std::path::PathBuf;
+use stickslip_debugger::record::journal::Keep;
+use stickslip_debugger::recorded::recording::Recording;
+use stickslip_debugger::session::Session;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

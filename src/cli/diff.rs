@@ -1,9 +1,9 @@
 //! `stickslip diff`: two snapshots, node by node.
 
 use super::base::{Error, Exit, say, scene_instead};
-use crate::record::differences::compare;
-use crate::record::snapshot::Snapshot;
 use std::path::PathBuf;
+use stickslip_debugger::record::differences::compare;
+use stickslip_debugger::record::snapshot::Snapshot;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

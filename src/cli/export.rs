@@ -1,5 +1,5 @@
 //! `stickslip export INPUT -o FILE`: pictures and other files of what is there, the kind by the extension
-//! ([`crate::record::export`]).
+//! ([`stickslip_debugger::record::export`]).
 
 use super::base::{Error, Exit, SetArgs, tell};
 use super::course::Course;
@@ -7,25 +7,25 @@ use super::front;
 use super::interrupt::Interrupt;
 use super::place::{At, seek, tell_missed};
 use super::solver::{SolverArgs, session_of};
-use crate::explain::{names, report};
-use crate::format::kind::FileKind;
-use crate::history::strip::Strip;
-use crate::outside::files::{self, Output};
-use crate::record::export::shown::{COLUMNS, Shown};
-use crate::record::export::skeleton::skeleton;
-use crate::record::export::{self, Kind, MadeOf, Origin};
-use crate::record::journal::Record;
-use crate::record::snapshot::Snapshot;
-use crate::scene::solver::solver;
-use crate::scene::{Scene, import};
-use crate::step::drive::RunEnd;
-use crate::step::event::{Failure, Position};
-use crate::step::state::{State, Status};
-use crate::step::stepper::Stepper;
-use crate::study::pen;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use stickslip_core::step::drive::RunEnd;
+use stickslip_core::step::event::{Failure, Position};
+use stickslip_core::step::state::{State, Status};
+use stickslip_core::step::stepper::Stepper;
+use stickslip_debugger::explain::{names, report};
+use stickslip_debugger::history::strip::Strip;
+use stickslip_debugger::record::export::shown::{COLUMNS, Shown};
+use stickslip_debugger::record::export::skeleton::skeleton;
+use stickslip_debugger::record::export::{self, Kind, MadeOf, Origin};
+use stickslip_debugger::record::journal::Record;
+use stickslip_debugger::record::snapshot::Snapshot;
 use stickslip_exchange::fclib;
+use stickslip_platform::files::{self, Output};
+use stickslip_scene::format::kind::FileKind;
+use stickslip_scene::solver::solver;
+use stickslip_scene::{Scene, import};
+use stickslip_study::pen;
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\

@@ -1,10 +1,10 @@
 //! The debugger in the terminal, as subcommands begin it. A build without the feature `tui` has `frontless.rs` instead.
 
 use super::base::Error;
-use crate::record::journal::{Keep, Record};
-use crate::session::Session;
-use crate::teach::Lesson;
-use crate::tui;
+use stickslip_debugger::record::journal::{Keep, Record};
+use stickslip_debugger::session::Session;
+use stickslip_debugger::teach::Lesson;
+use stickslip_tui as tui;
 
 /// That this build has the debugger.
 pub fn ready() -> Result<(), Error> {

@@ -1,9 +1,9 @@
 //! What stands for `front` in a build without the feature `tui`: all of it says that this build has no debugger.
 
 use super::base::Error;
-use crate::record::journal::{Keep, Record};
-use crate::session::Session;
-use crate::teach::Lesson;
+use stickslip_debugger::record::journal::{Keep, Record};
+use stickslip_debugger::session::Session;
+use stickslip_debugger::teach::Lesson;
 
 /// Whether this build has the debugger: it has not.
 pub fn ready() -> Result<(), Error> {

@@ -1,13 +1,13 @@
 //! `stickslip run --vtu DIR`: a file for ParaView after each increment, major or minor iteration, and a collection of them.
 
 use super::base::Error;
-use crate::outside::files::{self, FileError, Output};
-use crate::record::export::grid::grid;
-use crate::step::event::{Event, Outcome};
-use crate::step::state::State;
-use crate::step::stepper::Stepper;
 use std::path::{Path, PathBuf};
+use stickslip_core::step::event::{Event, Outcome};
+use stickslip_core::step::state::State;
+use stickslip_core::step::stepper::Stepper;
+use stickslip_debugger::record::export::grid::grid;
 use stickslip_exchange::vtu;
+use stickslip_platform::files::{self, FileError, Output};
 
 /// After what a file is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]

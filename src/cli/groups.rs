@@ -1,11 +1,11 @@
 //! `stickslip --help`: the subcommands in groups, and which one was meant by a word that is none.
 
-use crate::format::error::did_you_mean;
-use crate::outside::shown::wrap;
-use crate::scene::builtin;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use std::ffi::OsString;
 use std::path::Path;
+use stickslip_scene::builtin;
+use stickslip_scene::format::error::did_you_mean;
+use stickslip_scene::shown::wrap;
 
 /// What the subcommands are for, in the order of the work.
 const GROUPS: [(&str, &[&str]); 8] = [
@@ -93,7 +93,7 @@ pub fn unknown(word: &str) -> Option<String> {
         none if none.is_empty() => did_you_mean(word, builtin::list().iter().map(|own| own.name)),
         near => near,
     };
-    let word = crate::format::error::quoted(word);
+    let word = stickslip_scene::format::error::quoted(word);
     Some(format!(
         "{word} is no subcommand, no file and no built-in scene{near} (`stickslip --help`, `stickslip list`)"
     ))

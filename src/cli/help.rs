@@ -1,12 +1,12 @@
 //! `stickslip help [TOPIC]`: the manual's pages, searched or shown, and the help of subcommands.
 
 use super::base::{Error, Exit, print, say};
-use crate::manual::{self, Page, render};
-use crate::outside::terminal;
 use std::ffi::OsString;
 use std::io::{IsTerminal, Write};
 use std::process::{Command, Stdio};
 use std::sync::Arc;
+use stickslip_manual::{self as manual, Page, render};
+use stickslip_platform::terminal;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -47,7 +47,7 @@ fn subcommand(name: &str, program: clap::Command) -> Result<Exit, Error> {
 fn search(word: &str) -> Result<Exit, Error> {
     let hits = manual::search(word);
     if hits.is_empty() {
-        let word = crate::outside::shown::cut(word, 40);
+        let word = stickslip_scene::shown::cut(word, 40);
         return Err(Error::Usage(format!(
             "no page of the manual holds '{word}'"
         )));
@@ -123,7 +123,7 @@ fn show(page: &Page) -> Result<Exit, Error> {
         false => render::WIDTH,
     };
     let styled = terminal && std::env::var_os("NO_COLOR").is_none_or(|value| value.is_empty());
-    let lines = render::render(&page.text(), width);
+    let lines = render::render(page.text(), width);
     let line = |line: &render::Line| match styled {
         true => line.ansi() + "\n",
         false => line.plain() + "\n",

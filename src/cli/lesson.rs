@@ -3,12 +3,12 @@
 use super::base::{Error, Exit, say};
 use super::debugger::needs_terminal;
 use super::front;
-use crate::outside::shown;
-use crate::teach::play::play;
-use crate::teach::progress::{self, Progress};
-use crate::teach::{self, Lesson};
 use std::fmt::Write;
 use std::sync::Arc;
+use stickslip_debugger::teach::play::play;
+use stickslip_debugger::teach::progress::{self, Progress};
+use stickslip_debugger::teach::{self, Lesson};
+use stickslip_scene::shown;
 use unicode_width::UnicodeWidthStr;
 
 #[derive(Debug, clap::Args)]
@@ -45,7 +45,7 @@ fn list() -> Result<String, Error> {
     };
     let lessons: Vec<_> = teach::list()
         .iter()
-        .filter_map(|lesson| Lesson::from_text(lesson.name, &lesson.text()).ok())
+        .filter_map(|lesson| Lesson::from_text(lesson.name, lesson.text).ok())
         .collect();
     let done = |lesson: &Lesson| {
         progress

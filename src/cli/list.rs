@@ -1,7 +1,7 @@
 //! `stickslip list`: the built-in scenes, one line each.
 
 use super::base::{Error, Exit, say};
-use crate::scene::builtin;
+use stickslip_scene::builtin;
 
 pub fn main() -> Result<Exit, Error> {
     let scenes = builtin::list();

@@ -1,9 +1,9 @@
 //! `stickslip man`: manual pages for `man`, one of the program and one of each subcommand.
 
 use super::base::{Error, Exit, say, tell};
-use crate::outside::files;
 use clap_mangen::Man;
 use std::path::PathBuf;
+use stickslip_platform::files;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

@@ -3,19 +3,19 @@
 use super::base::{Error, Exit, NoValue, SetArgs, put};
 use super::interrupt::Interrupt;
 use super::sweep::{Report, SweepArgs};
-use crate::model::{BoundUpdate, Strategy};
-use crate::outside::shown::aligned;
-use crate::scene::builtin;
-use crate::strategy::method;
-use crate::study::map::{self, Cell, Map};
-use crate::study::plan::{MOST_CASES, product};
-use crate::study::random::{self, NODES, Population};
-use crate::study::survey::{self, Survey};
-use crate::study::trial::{Judged, TOLERANCE, Variant};
-use crate::study::{Plan, Study, Vary, verdict_figure};
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 use std::sync::Arc;
+use stickslip_core::model::{BoundUpdate, Strategy};
+use stickslip_core::strategy::method;
+use stickslip_scene::builtin;
+use stickslip_scene::shown::aligned;
+use stickslip_study::map::{self, Cell, Map};
+use stickslip_study::plan::{MOST_CASES, product};
+use stickslip_study::random::{self, NODES, Population};
+use stickslip_study::survey::{self, Survey};
+use stickslip_study::trial::{Judged, TOLERANCE, Variant};
+use stickslip_study::{Plan, Study, Vary, verdict_figure};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\

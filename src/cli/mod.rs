@@ -46,10 +46,10 @@ mod study;
 mod sweep;
 mod table;
 
-use crate::study::origin;
 use base::{Exit, say, tell};
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::process::ExitCode;
+use stickslip_study::origin;
 
 /// Steps through contact iterations of the finite element method, in a terminal.
 #[derive(Debug, Parser)]

@@ -2,14 +2,14 @@
 
 use super::base::{Error, distinct};
 use super::sink::Sink;
-use crate::outside::files::{Output, finish_all};
-use crate::study::drawn::PlotError;
-use crate::study::pen;
-use crate::study::sheet::Sheet;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, IsTerminal};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
+use stickslip_platform::files::{Output, finish_all};
+use stickslip_study::drawn::PlotError;
+use stickslip_study::pen;
+use stickslip_study::sheet::Sheet;
 
 /// What a sweep writes, and how it runs.
 #[derive(Debug, clap::Args)]

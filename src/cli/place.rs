@@ -2,14 +2,14 @@
 
 use super::base::{Exit, NoValue, tell};
 use super::interrupt::Interrupt;
-use crate::explain::{names, report};
-use crate::scene::Scene;
-use crate::step::drive::{RunEnd, Until, drive};
-use crate::step::event::{Event, Failure, Outcome};
-use crate::step::solver::{Lost, Solver};
 use std::fmt;
 use std::ops::ControlFlow;
 use std::str::FromStr;
+use stickslip_core::step::drive::{RunEnd, Until, drive};
+use stickslip_core::step::event::{Event, Failure, Outcome};
+use stickslip_core::step::solver::{Lost, Solver};
+use stickslip_debugger::explain::{names, report};
+use stickslip_scene::Scene;
 
 /// A place in a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

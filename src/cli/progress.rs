@@ -1,9 +1,9 @@
 //! The progress of `stickslip run` on a terminal.
 
-use crate::explain::names;
-use crate::step::event::Event;
 use std::io::{self, IsTerminal, Write};
 use std::time::{Duration, Instant};
+use stickslip_core::step::event::Event;
+use stickslip_debugger::explain::names;
 
 /// Interval between two progress lines.
 const INTERVAL: Duration = Duration::from_millis(100);

@@ -4,10 +4,10 @@ use super::base::{Error, Exit, say, tell};
 use super::interrupt::Interrupt;
 use super::place::{At, seek, tell_missed};
 use super::solver::{Subject, SubjectArgs};
-use crate::outside::files::{self, Output};
-use crate::record::snapshot::Snapshot;
-use crate::scene::Scene;
 use std::path::PathBuf;
+use stickslip_debugger::record::snapshot::Snapshot;
+use stickslip_platform::files::{self, Output};
+use stickslip_scene::Scene;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

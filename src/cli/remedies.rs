@@ -2,16 +2,16 @@
 //! costs and leaves.
 
 use super::base::{Error, Exit, SceneArgs, quoted, say, tell};
-use crate::explain::page;
-use crate::explain::remedies::{self, COLUMNS, TrialEnd};
-use crate::explain::report;
-use crate::outside::shown::aligned;
-use crate::scene::Scene;
-use crate::scene::solver::solver;
-use crate::step::drive::{RunEnd, Until};
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 use std::sync::Arc;
+use stickslip_core::step::drive::{RunEnd, Until};
+use stickslip_debugger::explain::page;
+use stickslip_debugger::explain::remedies::{self, COLUMNS, TrialEnd};
+use stickslip_debugger::explain::report;
+use stickslip_scene::Scene;
+use stickslip_scene::shown::aligned;
+use stickslip_scene::solver::solver;
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\

@@ -2,9 +2,9 @@
 
 use super::base::{Error, Exit, say, scene_instead, tell};
 use super::solver::SolverArgs;
-use crate::record::differences::compare;
-use crate::record::snapshot::{Snapshot, SnapshotError};
 use std::path::{Path, PathBuf};
+use stickslip_debugger::record::differences::compare;
+use stickslip_debugger::record::snapshot::{Snapshot, SnapshotError};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

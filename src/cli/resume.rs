@@ -4,8 +4,8 @@ use super::base::{Error, Exit, tell};
 use super::debugger::{DEBUGGER, needs_terminal};
 use super::front;
 use super::solver::{SolverArgs, session_of};
-use crate::record::journal::{self, Journal, JournalError, Record};
 use std::path::PathBuf;
+use stickslip_debugger::record::journal::{self, Journal, JournalError, Record};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

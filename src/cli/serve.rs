@@ -1,8 +1,8 @@
 //! `stickslip serve`: our own solver, to be attached to over standard input and output.
 
 use super::base::{Error, Exit, SceneArgs};
-use crate::attach::serve::serve;
 use std::io;
+use stickslip_attach::serve::serve;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

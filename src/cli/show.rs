@@ -2,13 +2,12 @@
 //! did, as text.
 
 use super::base::{Error, Exit, put};
-use crate::attach::recording::Recording;
-use crate::format::error::did_you_mean;
-use crate::outside::carried::Carried;
-use crate::scene::builtin;
-use crate::study::{benchmarks, builtin as studies, chart_file};
-use crate::teach;
 use std::path::PathBuf;
+use stickslip_debugger::recorded::recording::Recording;
+use stickslip_debugger::teach;
+use stickslip_scene::builtin;
+use stickslip_scene::format::error::did_you_mean;
+use stickslip_study::{benchmarks, builtin as studies, chart_file};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -39,14 +38,14 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     put(args.output.as_deref(), &text, args.force)
 }
 
-fn find(name: &str, chart: bool) -> Result<String, String> {
+fn find(name: &str, chart: bool) -> Result<&'static str, String> {
     let found = match chart {
         true => chart_file::text(name.strip_suffix(".ron").unwrap_or(name)),
         false => builtin::find(name)
-            .map(Carried::text)
-            .or_else(|| studies::find(name).map(Carried::text))
+            .map(|file| file.text)
+            .or_else(|| studies::find(name).map(|file| file.text))
             .or_else(|| (name == benchmarks::BUILTIN).then(benchmarks::builtin_text))
-            .or_else(|| teach::find(name).map(Carried::text)),
+            .or_else(|| teach::find(name).map(|file| file.text)),
     };
     found.ok_or_else(|| {
         let scenes = builtin::list().iter().map(|scene| scene.name);
@@ -60,7 +59,7 @@ fn find(name: &str, chart: bool) -> Result<String, String> {
                 did_you_mean(name, scenes.chain(others).chain(lessons)),
             ),
         };
-        let name = crate::outside::shown::cut(name, 60);
+        let name = stickslip_scene::shown::cut(name, 60);
         format!(
             "no built-in {what} is called '{name}'{near} (`stickslip list`, `stickslip lesson`)"
         )

@@ -1,10 +1,10 @@
 //! Where a table goes: to a file, or to standard output.
 
 use super::base::{Error, Sent, say};
-use crate::outside::files::Output;
-use crate::outside::shown;
 use std::io::{self, Write};
 use std::path::Path;
+use stickslip_platform::files::Output;
+use stickslip_scene::shown;
 
 /// A table's way out.
 pub enum Sink {

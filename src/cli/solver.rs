@@ -1,15 +1,16 @@
 //! What is solved, and by whom: a scene by our own solver, or what a solver solves that is attached.
 
 use super::base::{Error, SetArgs};
-use crate::attach::{Attached, Log, Start};
-use crate::record::journal::Record;
-use crate::scene::Scene;
-use crate::scene::solver::solver;
-use crate::session::Session;
-use crate::step::solver::Solver;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
+use stickslip_attach::{Attached, Start};
+use stickslip_core::step::solver::Solver;
+use stickslip_debugger::record::journal::Record;
+use stickslip_debugger::recorded::log::Log;
+use stickslip_debugger::session::Session;
+use stickslip_scene::Scene;
+use stickslip_scene::solver::solver;
 
 /// A solver that is attached, and how long it may take.
 #[derive(Debug, clap::Args)]

@@ -2,10 +2,10 @@
 //! an attached solver whose exchange was kept.
 
 use super::base::{Error, Exit, say};
-use crate::attach::recording::Recording;
-use crate::record::journal::Record;
-use crate::record::story::story;
 use std::path::PathBuf;
+use stickslip_debugger::record::journal::Record;
+use stickslip_debugger::record::story::story;
+use stickslip_debugger::recorded::recording::Recording;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {

@@ -4,11 +4,11 @@ use super::base::{Error, Exit, SetArgs};
 use super::benchmarks;
 use super::interrupt::Interrupt;
 use super::sweep::{Report, SweepArgs};
-use crate::explain::number::six;
-use crate::outside::shown::aligned;
-use crate::study::benchmarks::Benchmarks;
-use crate::study::figure;
-use crate::study::{AxisQuantity, CaseEnd, Plan, Run, Study, Vary, csv, run};
+use stickslip_scene::number::six;
+use stickslip_scene::shown::aligned;
+use stickslip_study::benchmarks::Benchmarks;
+use stickslip_study::figure;
+use stickslip_study::{AxisQuantity, CaseEnd, Plan, Run, Study, Vary, csv, run};
 
 /// Monitors shown in the table of runs.
 const MONITORS: usize = 2;

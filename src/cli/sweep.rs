@@ -3,14 +3,14 @@
 use super::base::{Error, Exit, quoted, tell};
 use super::interrupt::Interrupt;
 use super::outputs::{OutputArgs, Outputs};
-use crate::study::Watch;
-use crate::study::drawn::PlotError;
-use crate::study::log::{LogError, Outcome};
-use crate::study::origin;
-use crate::study::shard::{NoShard, Shard, ranges};
-use crate::study::sheet::Sheet;
-use crate::study::sweep::{Keeping, Missing, RunError, Store, Sweep};
 use std::path::PathBuf;
+use stickslip_study::Watch;
+use stickslip_study::drawn::PlotError;
+use stickslip_study::log::{LogError, Outcome};
+use stickslip_study::origin;
+use stickslip_study::shard::{NoShard, Shard, ranges};
+use stickslip_study::sheet::Sheet;
+use stickslip_study::sweep::{Keeping, Missing, RunError, Store, Sweep};
 
 /// Which part of a sweep is run, where its results are, and what is written.
 #[derive(Debug, clap::Args)]

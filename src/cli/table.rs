@@ -7,9 +7,9 @@
 //! is 1 where the increment leaves its branch of stable equilibrium (it ends on another branch or in an unstable state),
 //! else 0. `history.jumps: dynamic` adds three columns for the damped motion of a jump: `let_go`, the load factor of the
 //! last equilibrium, `steps`, and `dissipated`, the work of its viscosity. `--stability` adds a last column with the
-//! stability of the accepted state ([`crate::linear::stability`]): `stable`, `unstable(N)` with N negative eigenvalues,
+//! stability of the accepted state ([`stickslip_core::linear::stability`]): `stable`, `unstable(N)` with N negative eigenvalues,
 //! `divergence` or `not known`. Scenes with solids have `worst_stretch` as the very last column, the smallest principal
-//! stretch at their integration points ([`crate::fem::deformation`]). With `history.control: arc` the last
+//! stretch at their integration points ([`stickslip_core::fem::deformation`]). With `history.control: arc` the last
 //!
 //! `--trace`: one row per slave node and minor iteration. `residual` is the relative norm of the residual: at the
 //! start of the major iteration, about which the minor ones are linearised; on the rows that end a major iteration, at
@@ -21,15 +21,15 @@
 //! outside. Where the scene names a law, a stick stiffness or a pressure to report, `pressure` and `shear` come last: F_n / A and
 //! F_t / A of the row, with the undeformed tributary area A, and `NaN` without one. A minor iteration that could not be solved has no rows.
 
-use crate::contact::record::ContactRecord;
-use crate::explain::names;
-use crate::fem::deformation::deformation;
-use crate::linear::stability::Stability;
-use crate::model::{Control, Friction, Jumps, Model, Monitor, ToldKind, Watched};
-use crate::step::event::{Event, Failure, Outcome};
-use crate::step::recovery::motion::Motion;
-use crate::study::csv::field;
 use std::fmt::Write;
+use stickslip_core::contact::record::ContactRecord;
+use stickslip_core::fem::deformation::deformation;
+use stickslip_core::linear::stability::Stability;
+use stickslip_core::model::{Control, Friction, Jumps, Model, Monitor, ToldKind, Watched};
+use stickslip_core::step::event::{Event, Failure, Outcome};
+use stickslip_core::step::recovery::motion::Motion;
+use stickslip_debugger::explain::names;
+use stickslip_study::csv::field;
 
 /// The first line of `--csv`.
 pub fn csv_header(model: &Model, stability: bool) -> String {
@@ -68,8 +68,11 @@ pub fn csv_row(
     );
     for value in monitors {
         #[cfg(mutants)]
-        let value =
-            &crate::mutants::pick("csv-in-single-precision", *value, f64::from(*value as f32));
+        let value = &stickslip_core::mutants::pick(
+            "csv-in-single-precision",
+            *value,
+            f64::from(*value as f32),
+        );
         // Writing to a string does not fail.
         let _ = write!(line, ",{value:?}");
     }

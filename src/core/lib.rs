@@ -98,7 +98,9 @@
 //! how to pose an interface problem without bodies, how to write a strategy, how to force a mode, and how to run a study
 //! (`tests/examples` in its sources).
 //!
-//! # The rooms
+//! # Modules
+//!
+//! Each takes only from those above it:
 //!
 //! - [`words`](macro@words): words for the variants of an enum, each written once.
 //! - [`executor`]: work on bodies side by side, by whoever has threads to give.

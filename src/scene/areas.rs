@@ -12,9 +12,9 @@
 //! one pair. A node without such a side (one slave node by itself, say) has half of each side of its body that it is on.
 //! Bodies that are given by matrices have no sides.
 
-use crate::fem::lagrange::{gauss, shape};
-use crate::model::{Body, BodyKind, Elastic, Node, Solid};
 use std::collections::HashMap;
+use stickslip_core::fem::lagrange::{gauss, shape};
+use stickslip_core::model::{Body, BodyKind, Elastic, Node, Solid};
 
 /// Parts of a side's area that are round-off.
 const NONE: f64 = 1e-9;
@@ -169,7 +169,7 @@ fn integrals(side: &Side<'_>, nodes: &[Node], from: f64, to: f64) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::Beam;
+    use stickslip_core::model::Beam;
 
     fn beam(elements: Vec<Vec<usize>>) -> Body {
         let (ea, ei) = (1.0, 1.0);

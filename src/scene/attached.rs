@@ -9,12 +9,12 @@ use super::nodes::Names;
 use crate::format::contact_law::FrictionSpec;
 use crate::format::error::{Fault, at};
 use crate::format::spec::{History, Spec};
-use crate::model::{
+use crate::shown;
+use std::collections::{HashMap, HashSet};
+use stickslip_core::model::{
     Body, BodyKind, Bond, Contact, Control, Form, Friction, InitialState, Jumps, Linear, Model,
     Monitor, Node, Surface, ToldKind, Watched,
 };
-use crate::outside::shown;
-use std::collections::{HashMap, HashSet};
 use stickslip_exchange::attach::Answer;
 use stickslip_exchange::attach::message::{self, Scene};
 
@@ -61,7 +61,7 @@ pub fn friction(told: &message::Friction) -> Friction {
 }
 
 /// The scene message that a scene file holds.
-pub(super) fn told(text: &str) -> Result<Scene, Fault> {
+pub fn told(text: &str) -> Result<Scene, Fault> {
     let here = at!["attached"];
     match Answer::read(text) {
         Ok(Answer::Scene(scene)) => Ok(*scene),

@@ -9,7 +9,7 @@ use super::Scene;
 use super::compile::{Choices, Compiled, Groups, Loads, compile, renewed};
 use crate::format::error::at;
 use crate::format::{Spec, paths};
-use crate::model::Model;
+use stickslip_core::model::Model;
 
 /// A scene as its author wrote it, and what helps to change it.
 #[derive(Debug, Clone)]

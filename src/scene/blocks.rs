@@ -10,7 +10,7 @@ use super::geometry;
 use super::limits;
 use crate::format::error::{Fault, Path};
 use crate::format::spec::{Place, Point, Side, Sides};
-use crate::model::ElementKind;
+use stickslip_core::model::ElementKind;
 
 /// Edges of a block in the order of the walk around it.
 pub(crate) const EDGES: [&str; 4] = ["bottom", "right", "top", "left"];
@@ -521,7 +521,8 @@ mod tests {
                     assert_eq!((a.0 + c.0, a.1 + c.1), (2.0 * b.0, 2.0 * b.1), "{kind:?}");
                 }
             }
-            let outer = crate::model::boundary(elements.iter().map(|e| (kind, e.as_slice())));
+            let outer =
+                stickslip_core::model::boundary(elements.iter().map(|e| (kind, e.as_slice())));
             let mut expected = Vec::new();
             for edge in (0..4).map(|k| grid.edge(k)) {
                 let m = kind.per_face() - 1;

@@ -2,8 +2,8 @@
 
 use super::Scene;
 use crate::format::contact_law::ContactLaw;
-use crate::model::{Contact, Model, Surface};
 use std::collections::HashSet;
+use stickslip_core::model::{Contact, Model, Surface};
 
 /// A line for each law that any slave node has besides hard contact; empty where none has.
 pub fn words(scene: &Scene) -> Vec<String> {

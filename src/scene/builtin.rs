@@ -1,16 +1,17 @@
 //! The scenes that the program carries inside itself.
 
-use crate::outside::carried::{Carried, carried};
+use crate::embedded;
+use crate::embedded::EmbeddedFile;
 
 /// A scene by its name, and its folder below `problems`.
 macro_rules! scenes {
     ($($folder:literal: $($name:literal),+;)+) => {
-        &[$($(carried!($name, "problems/", $folder, $name, ".ron")),+),+]
+        &[$($(embedded!($name, "../../problems/", $folder, $name, ".ron")),+),+]
     };
 }
 
 /// In the order in which they are offered.
-const SCENES: &[Carried] = scenes![
+const SCENES: &[EmbeddedFile] = scenes![
     "":
     "01-pinned-beam-rough-floor",
     "02-two-cantilevers-smooth",
@@ -54,12 +55,12 @@ const SCENES: &[Carried] = scenes![
 ];
 
 /// All built-in scenes, in the order in which they are offered.
-pub fn list() -> &'static [Carried] {
+pub fn list() -> &'static [EmbeddedFile] {
     SCENES
 }
 
 /// The built-in scene with a name, with or without the ending `.ron`.
-pub fn find(name: &str) -> Option<&'static Carried> {
+pub fn find(name: &str) -> Option<&'static EmbeddedFile> {
     let name = name.strip_suffix(".ron").unwrap_or(name);
     SCENES.iter().find(|scene| scene.name == name)
 }
@@ -67,8 +68,8 @@ pub fn find(name: &str) -> Option<&'static Carried> {
 /// One line that says what a built-in scene is: its title.
 ///
 /// A built-in scene that cannot be read is a bug that the tests find; its description is empty then.
-pub fn title(scene: &Carried) -> String {
-    crate::format::read::spec(scene.name, &scene.text())
+pub fn title(scene: &EmbeddedFile) -> String {
+    crate::format::read::spec(scene.name, scene.text)
         .map(|spec| spec.title)
         .unwrap_or_default()
 }

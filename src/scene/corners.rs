@@ -1,8 +1,8 @@
 //! Masters that are cut at their convex corners, and the directions that their slave nodes face
-//! ([`crate::contact::facing`]).
+//! ([`stickslip_core::contact::facing`]).
 
-use crate::model::{Body, BodyKind, Contact, Facing, Node};
 use std::collections::HashMap;
+use stickslip_core::model::{Body, BodyKind, Contact, Facing, Node};
 
 /// Angle between two elements above which their border is a real corner rather than part of a curve (30 degrees).
 pub(super) const CORNER: f64 = std::f64::consts::FRAC_PI_6;

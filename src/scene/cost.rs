@@ -4,12 +4,12 @@ use super::Scene;
 use super::compile::increments;
 use super::{gaps, limits};
 use crate::format::error::some_of;
-use crate::linear::estimate::Estimate;
-use crate::model::{
+use std::fmt;
+use stickslip_core::linear::estimate::Estimate;
+use stickslip_core::model::{
     Beam, Body, BodyKind, Elastic, ElementKind, Form, Linear, Model, Solid, Surface,
 };
-use crate::model::{Solver, Update};
-use std::fmt;
+use stickslip_core::model::{Solver, Update};
 
 /// What a scene costs. It prints as a table for a person who is to decide whether that is what was meant.
 #[derive(Debug, Clone, PartialEq)]
@@ -166,7 +166,7 @@ fn beam_line(name: &str, beam: &Beam) -> String {
 }
 
 fn solid_line(name: &str, solid: &Solid) -> String {
-    use crate::model::{Law, Plane};
+    use stickslip_core::model::{Law, Plane};
     let made_of = |m: &Elastic| {
         let law = match (m.law, m.update) {
             (Law::NeoHookean, _) => "neo-Hookean",
@@ -234,7 +234,7 @@ fn kind(surface: &Surface) -> &'static str {
 }
 
 fn slaves_line(model: &Model) -> String {
-    use crate::model::Mode;
+    use stickslip_core::model::Mode;
     let starts = |mode| {
         model
             .contacts

@@ -1,13 +1,13 @@
 //! How the slave nodes stand over their surfaces before anything is solved: the gaps that a scene starts with, what is
 //! doubtful about them, and what `settings.initial_gaps` makes of them.
 
-use crate::contact::element::Element;
-use crate::contact::facing::{MOST as MOST_SURFACES, faced};
-use crate::contact::projection::{SurfacePoint, project, projection_at};
-use crate::fem::lagrange;
-use crate::model::{Body, BodyKind, Contact, InitialGaps, Model, Node, Surface};
-use crate::scene::pressed;
+use crate::pressed;
 use std::collections::HashSet;
+use stickslip_core::contact::element::Element;
+use stickslip_core::contact::facing::{MOST as MOST_SURFACES, faced};
+use stickslip_core::contact::projection::{SurfacePoint, project, projection_at};
+use stickslip_core::fem::lagrange;
+use stickslip_core::model::{Body, BodyKind, Contact, InitialGaps, Model, Node, Surface};
 
 /// Gaps below this part of the scene's length are none.
 const NONE: f64 = 1e-9;

@@ -1,9 +1,9 @@
 //! Whether elements are sound curves, and how far a point is from a chain of them.
 
 use super::limits;
-use crate::fem::continuum;
 use crate::format::error::{Fault, Path};
-use crate::model::{ElementKind, Node};
+use stickslip_core::fem::continuum;
+use stickslip_core::model::{ElementKind, Node};
 
 /// Refuses chains with an element whose nodes coincide, or whose curve folds back or stands still.
 ///

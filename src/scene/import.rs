@@ -10,11 +10,11 @@ use crate::format::error::{Fault, Path, at, quoted, some_of};
 use crate::format::given::{Cells, NodeSet, SideSet};
 use crate::format::spec::Nodes;
 use crate::format::{SceneError, Spec, read};
-use crate::model::ElementKind;
-use crate::outside::input;
 use std::collections::HashMap;
+use stickslip_core::model::ElementKind;
 use stickslip_exchange::gmsh;
 use stickslip_exchange::mesh::{Cell, CellKind, Mesh};
+use stickslip_platform::input;
 
 /// Most bytes of a mesh.
 pub const MESH_BYTES: u64 = 512 << 20;
@@ -126,7 +126,7 @@ pub(crate) fn given(
     scale: f64,
 ) -> Result<Nodes, (&'static str, String)> {
     #[cfg(mutants)]
-    let scale = crate::mutants::pick("import-without-its-scale", scale, 1.0);
+    let scale = stickslip_core::mutants::pick("import-without-its-scale", scale, 1.0);
     let label = |&n: &usize| mesh.labels[n] as usize;
     let mut used = vec![false; mesh.nodes.len()];
     mesh.cells

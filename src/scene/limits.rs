@@ -4,7 +4,7 @@
 //! matter of the memory that it takes ([`super::memory`], [`super::cost`]).
 
 use crate::format::error::{Fault, Path};
-use crate::linear::estimate::bytes;
+use stickslip_core::linear::estimate::bytes;
 
 /// Most nodes of a scene, after refinement: places in its stiffness have 32 bits.
 pub const NODES: usize = 50_000_000;
@@ -108,7 +108,7 @@ pub(crate) fn element_nodes(path: &Path, total: usize, setting: Option<f64>) -> 
 }
 
 /// A valid id for a single node with this name: the name, cut to the maximum length, with - for invalid characters.
-pub(crate) fn node_id_of(name: &str, most: usize) -> String {
+pub fn node_id_of(name: &str, most: usize) -> String {
     let letters: Vec<char> = name.chars().take(most).collect();
     let is_letter = |k: Option<usize>| k.and_then(|k| letters.get(k)).is_some_and(|c| *c != '.');
     let usable = |(k, c): (usize, &char)| match c {

@@ -1,9 +1,9 @@
 //! How much memory a scene may take: what `settings.memory` says, or what the machine has free.
 
-use crate::linear::estimate::GIGABYTE;
 use std::fs;
 use std::path::Path;
 use std::sync::OnceLock;
+use stickslip_core::linear::estimate::GIGABYTE;
 
 /// What may be taken where nothing tells what is free, in bytes.
 const UNTOLD: f64 = 4.0 * GIGABYTE;
@@ -86,7 +86,7 @@ fn available(text: &str) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linear::estimate::bytes;
+    use stickslip_core::linear::estimate::bytes;
 
     #[test]
     fn the_kernels_table_is_read() {

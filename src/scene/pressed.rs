@@ -5,9 +5,9 @@
 //! principal stretch is at most s, whatever happens sideways. A point is held by a support, by a prescribed displacement,
 //! or by a rigid surface that approaches it by more than its gap.
 
-use crate::contact::projection::{project, projection_at};
-use crate::fem::deformation::{Range, SOFTENING};
-use crate::model::{Body, BodyKind, Model, Solid};
+use stickslip_core::contact::projection::{project, projection_at};
+use stickslip_core::fem::deformation::{Range, SOFTENING};
+use stickslip_core::model::{Body, BodyKind, Model, Solid};
 
 /// Cosine above which a surface's normal counts as along an axis.
 const ALONG: f64 = 0.99;

@@ -3,10 +3,10 @@
 //! The core starts no threads; those are rayon's. What comes out has the same bits on one thread and on many. Where many scenes
 //! are solved at the same time (maps, studies) each has a solver of one thread instead.
 
-use crate::executor::Executor;
-use crate::model::Model;
-use crate::step::stepper::Stepper;
 use std::sync::Arc;
+use stickslip_core::executor::Executor;
+use stickslip_core::model::Model;
+use stickslip_core::step::stepper::Stepper;
 
 /// The threads that the program has.
 struct Threads;

@@ -25,28 +25,29 @@ use super::one::{Spare, Watch, one};
 use super::read::pairs;
 use super::result::{CaseEnd, Row, Run};
 use super::sweep::{RunError, side_by_side};
-use crate::format::error::{SceneError, did_you_mean};
-use crate::format::read::{text as file_text, value as from_ron};
-use crate::outside::carried::{Carried, carried};
-use crate::scene::{Scene, increments};
 use serde::Deserialize;
 use std::fmt;
 use std::fmt::Write;
 use std::num::NonZeroUsize;
 use std::path::Path;
 use std::sync::Arc;
+use stickslip_scene::embedded;
+use stickslip_scene::embedded::EmbeddedFile;
+use stickslip_scene::format::error::{SceneError, did_you_mean};
+use stickslip_scene::format::read::{text as file_text, value as from_ron};
+use stickslip_scene::{Scene, increments};
 
 /// Name of the list that the program carries.
 pub const BUILTIN: &str = "benchmarks";
-const TABLE: Carried = carried!(BUILTIN, "problems/benchmarks/table.ron");
+const TABLE: EmbeddedFile = embedded!(BUILTIN, "../../problems/benchmarks/table.ron");
 /// Default of [`Benchmark::drift`]: other processors round otherwise.
 const DRIFT: f64 = 1e-8;
 /// How near the end of an increment must be to a load factor that is named.
 const NEAR: f64 = 1e-9;
 
 /// The text of the list that the program carries.
-pub fn builtin_text() -> String {
-    TABLE.text()
+pub fn builtin_text() -> &'static str {
+    TABLE.text
 }
 
 /// A list of benchmarks.
@@ -239,7 +240,7 @@ impl Benchmarks {
 
 /// Whether a text is such a list, sound or not.
 fn is_list(text: &str) -> bool {
-    crate::format::kind::has_field(text, "benchmarks")
+    stickslip_scene::format::kind::has_field(text, "benchmarks")
 }
 
 impl Benchmark {

@@ -1,10 +1,11 @@
 //! The studies that the program carries inside itself.
 
-use crate::outside::carried::{Carried, carried_all};
+use stickslip_scene::embedded::EmbeddedFile;
+use stickslip_scene::embedded_all;
 
 /// In the order in which they are offered.
-const STUDIES: &[Carried] = carried_all![
-    "problems/studies/",
+const STUDIES: &[EmbeddedFile] = embedded_all![
+    "../../problems/studies/",
     ".ron",
     "fig-08-increment",
     "fig-09-majors",
@@ -19,12 +20,12 @@ const STUDIES: &[Carried] = carried_all![
 ];
 
 /// All built-in studies, in the order in which they are offered.
-pub fn list() -> &'static [Carried] {
+pub fn list() -> &'static [EmbeddedFile] {
     STUDIES
 }
 
 /// The built-in study with a name, with or without the ending `.ron`.
-pub fn find(name: &str) -> Option<&'static Carried> {
+pub fn find(name: &str) -> Option<&'static EmbeddedFile> {
     let name = name.strip_suffix(".ron").unwrap_or(name);
     STUDIES.iter().find(|study| study.name == name)
 }

@@ -15,11 +15,12 @@
 
 use super::read::{Vary, pairs, parse};
 use super::reference::Reference;
-use crate::format::error::SceneError;
-use crate::outside::carried::{Carried, carried_all};
-use crate::scene::{Scene, builtin};
 use serde::Deserialize;
 use std::path::PathBuf;
+use stickslip_scene::embedded::EmbeddedFile;
+use stickslip_scene::embedded_all;
+use stickslip_scene::format::error::SceneError;
+use stickslip_scene::{Scene, builtin};
 
 /// A chart before anything is run.
 #[derive(Debug, Clone, PartialEq)]
@@ -68,8 +69,8 @@ pub struct Series {
 }
 
 /// Charts of built-in scenes, by the scene's name.
-const CHARTS: &[Carried] = carried_all![
-    "problems/charts/",
+const CHARTS: &[EmbeddedFile] = embedded_all![
+    "../../problems/charts/",
     ".ron",
     "01-pinned-beam-rough-floor",
     "02-two-cantilevers-smooth",
@@ -87,9 +88,9 @@ pub fn names() -> impl Iterator<Item = &'static str> {
 }
 
 /// The file of a scene's chart.
-pub fn text(name: &str) -> Option<String> {
+pub fn text(name: &str) -> Option<&'static str> {
     let found = CHARTS.iter().find(|chart| chart.name == name);
-    found.map(Carried::text)
+    found.map(|chart| chart.text)
 }
 
 #[derive(Deserialize)]
@@ -115,7 +116,7 @@ impl Chart {
         let scene = Scene::open(name, &[])?;
         let known = CHARTS.iter().find(|chart| chart.name == scene.name);
         let mut chart = match known {
-            Some(file) => Chart::from_text(file.name, &file.text())?,
+            Some(file) => Chart::from_text(file.name, file.text)?,
             None => Chart {
                 title: String::new(),
                 scene: name.to_owned(),

@@ -9,10 +9,10 @@ use super::read::{Study, Vary};
 use super::result::Run;
 use super::sweep::{RunError, Sweep};
 use super::sweep_input::Input;
-use crate::format::SceneError;
-use rustix::time::{ClockId, clock_gettime};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
+use stickslip_platform::system;
+use stickslip_scene::format::SceneError;
 
 /// Runs that take this long altogether (seconds) are not repeated any more.
 const LONG: f64 = 20.0;
@@ -134,9 +134,9 @@ fn timed(case: &Case, repeats: usize, watch: &Watch) -> Result<Option<Timed>, Ru
     };
     let mut times = Vec::new();
     loop {
-        let start = thread_seconds();
+        let start = system::thread_time().as_secs_f64();
         let run = one(case.increments, model.clone(), &Spare::default(), &quiet);
-        times.push(thread_seconds() - start);
+        times.push(system::thread_time().as_secs_f64() - start);
         if !run.is_over() {
             return Ok(None);
         }
@@ -151,10 +151,4 @@ fn timed(case: &Case, repeats: usize, watch: &Watch) -> Result<Option<Timed>, Ru
             run,
         }));
     }
-}
-
-/// Processor time of this thread, in seconds.
-fn thread_seconds() -> f64 {
-    let time = clock_gettime(ClockId::ThreadCPUTime);
-    time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
 }

@@ -12,10 +12,10 @@
 
 use super::plan::Plan;
 use super::result::{CaseEnd, Run};
-use crate::outside::input::{MARK, Unreadable};
-use crate::outside::shown;
 use std::fmt::Write;
 use std::path::Path;
+use stickslip_platform::input::{MARK, Unreadable};
+use stickslip_scene::shown;
 
 /// Why a table cannot be read: where, and what is wrong.
 #[derive(Debug, thiserror::Error)]

@@ -4,7 +4,7 @@
 
 use super::drawn::PlotError;
 use super::sheet::{Anchor, Axes, BLACK, CROSS, ENTRY, GREY, LABEL, MARGIN, SMALL, Sheet, widest};
-use crate::explain::number::six;
+use stickslip_scene::number::six;
 
 /// The plot, without its axes' words, and its left end.
 const PLOT: (f64, f64) = (620.0, 440.0);

@@ -1,6 +1,6 @@
 //! Shapes on a sheet as plain data, and why they may not be drawn.
 
-use crate::outside::shown;
+use stickslip_scene::shown;
 
 /// Red, green and blue.
 pub type Colour = (u8, u8, u8);

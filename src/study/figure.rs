@@ -6,7 +6,7 @@ use super::origin;
 use super::plan::{Case, Plan};
 use super::read::{AxisQuantity, Study};
 use super::result::{CaseEnd, Run};
-use crate::explain::number::six;
+use stickslip_scene::number::six;
 
 /// The chart of a study: a curve per run, over the plan's axes.
 pub fn chart(plan: &Plan, runs: &[Run]) -> Chart {

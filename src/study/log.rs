@@ -11,18 +11,17 @@
 use super::origin;
 use super::shard::Key;
 use super::sweep_input::Input;
-use crate::format::kind::{FileKind, mistaken};
-use crate::format::notation;
-use crate::format::read::plainly;
-use crate::outside::input::{self, Unreadable};
-use rustix::fs::{FlockOperation, flock};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use std::fs::File;
+use std::fs::{File, TryLockError};
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use stickslip_exchange::seal::{Seal, opened as unsealed, sealed};
+use stickslip_platform::input::{self, Unreadable};
+use stickslip_scene::format::kind::{FileKind, mistaken};
+use stickslip_scene::format::notation;
+use stickslip_scene::format::read::plainly;
 
 /// Why results could not be kept, or taken up.
 #[derive(Debug, thiserror::Error)]
@@ -167,7 +166,7 @@ pub trait Outcome: Serialize + DeserializeOwned + Clone + Send + Sync {
 /// Whether two results are the same to the last bit. Compares their text, because NaN is not equal to itself.
 pub fn same<T: Serialize>(one: &T, other: &T) -> bool {
     #[cfg(mutants)]
-    let other = crate::mutants::pick("merge-keeps-the-first-result", other, one);
+    let other = stickslip_core::mutants::pick("merge-keeps-the-first-result", other, one);
     let text = |value: &T| ron::to_string(value).ok();
     text(one) == text(other)
 }
@@ -266,7 +265,7 @@ impl Lines<'_> {
             }
             Seal::Missing if !self.are_sealed => {}
             #[cfg(mutants)]
-            Seal::Broken if crate::mutants::is_active("changed-log-line-accepted") => {
+            Seal::Broken if stickslip_core::mutants::is_active("changed-log-line-accepted") => {
                 let end = text.rfind('\t').unwrap_or(text.len());
                 text.truncate(end);
             }
@@ -415,9 +414,7 @@ impl Log {
         let mut options = File::options();
         options.read(true).write(true).create(true).truncate(false);
         let mut file = opened(path, &mut options)?;
-        if flock(&file, FlockOperation::NonBlockingLockExclusive)
-            .is_err_and(|e| e == rustix::io::Errno::WOULDBLOCK)
-        {
+        if matches!(file.try_lock(), Err(TryLockError::WouldBlock)) {
             return Err(LogError::Busy(path.to_owned()));
         }
         let (found, whole) = content(&file, path, ours)?;

@@ -16,11 +16,11 @@ use super::result::{CaseEnd, Run};
 use super::sweep::Sweep;
 use super::sweep_input::Input;
 use super::verdict::RunVerdict;
-use crate::model::Model;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::fmt::Write;
 use std::sync::Arc;
+use stickslip_core::model::Model;
 
 /// Ends of two runs that differ by more than this part of the largest value are on different branches, where nobody
 /// says otherwise.

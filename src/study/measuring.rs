@@ -5,11 +5,11 @@ use super::chart_runs::{Planned, sweep};
 use super::precision::{self, Cost, Measure, Precision, PrecisionError};
 use super::sweep::RunError;
 use super::{Vary, Watch};
-use crate::scene::Scene;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread;
+use stickslip_scene::Scene;
 
 /// Why there is no chart.
 #[derive(Debug, thiserror::Error)]

@@ -1,7 +1,7 @@
 //! What monitors are measured in: those of one kind can be compared, and have one scale.
 
-use crate::model::{Model, ToldKind, Watched};
 use serde::{Deserialize, Serialize};
+use stickslip_core::model::{Model, ToldKind, Watched};
 
 /// What a monitor is: those of one kind have one scale.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]

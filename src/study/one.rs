@@ -4,13 +4,13 @@ use super::reason::Reason;
 use super::result::{CaseEnd, Failed, Row, Run};
 use super::room::Room;
 use super::verdict::RunVerdict;
-use crate::model::Model;
-use crate::step::drive::{RunEnd, Until};
-use crate::step::event::Outcome;
-use crate::step::stepper::Stepper;
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 use std::sync::{Arc, Mutex};
+use stickslip_core::model::Model;
+use stickslip_core::step::drive::{RunEnd, Until};
+use stickslip_core::step::event::Outcome;
+use stickslip_core::step::stepper::Stepper;
 
 /// Who watches a study from outside. Both are called from all threads.
 pub struct Watch<'a> {

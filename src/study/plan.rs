@@ -4,12 +4,12 @@ use super::read::{AxisQuantity, Study, Vary};
 use super::shard::Key;
 use super::sweep::Cell;
 use super::sweep_input::digest;
-use crate::format::error::{SceneError, did_you_mean, some_of};
-use crate::format::paths::{self, Listed};
-use crate::model::Model;
-use crate::scene::base::{Base, Place};
-use crate::scene::{Scene, increments};
 use std::sync::Arc;
+use stickslip_core::model::Model;
+use stickslip_scene::base::{Base, Place};
+use stickslip_scene::format::error::{SceneError, did_you_mean, some_of};
+use stickslip_scene::format::paths::{self, Listed};
+use stickslip_scene::{Scene, increments};
 
 /// Most cells of a sweep.
 pub const MOST_CASES: u64 = 10_000_000;

@@ -17,9 +17,9 @@ use super::origin;
 use super::reference::{self, Reference};
 use super::result::Run;
 use super::sweep::RunError;
-use crate::model::Model;
 use std::collections::HashMap;
 use std::num::NonZeroUsize;
+use stickslip_core::model::Model;
 
 /// Errors below this are round-off: a few thousand operations with the numbers' own.
 pub const ROUND_OFF: f64 = 4096.0 * f64::EPSILON;
@@ -191,7 +191,7 @@ fn measured(
         run,
     } = timed;
     let failed = run.failed().map(|failed| {
-        let load = crate::explain::number::six(failed.load);
+        let load = stickslip_scene::number::six(failed.load);
         format!("{} at load {load}", failed.verdict)
     });
     let point = Point {
@@ -454,10 +454,10 @@ impl Precision {
         let target = self.target?;
         let meets = |point: &Point| {
             let series = &self.series[point.series];
-            let cost = crate::explain::number::six(self.cost.of(point));
+            let cost = stickslip_scene::number::six(self.cost.of(point));
             let error = point
                 .error
-                .map(crate::explain::number::six)
+                .map(stickslip_scene::number::six)
                 .unwrap_or_default();
             format!(
                 "The cheapest run with an error of at most {target:?}: {series}, {}: error {error}, {} {cost}.",
@@ -499,7 +499,7 @@ fn origin(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::study::chart_file;
+    use crate::chart_file;
 
     fn point(seconds: f64, error: Option<f64>) -> Point {
         Point {

@@ -3,11 +3,11 @@
 use super::csv::{Table, TableError};
 use super::figure::assigned;
 use super::precision::{Cost, Point, Precision, mark_front};
-use crate::format::error::quoted;
-use crate::outside::input::{self, TABLE_BYTES};
-use crate::outside::shown;
 use std::fmt::Write;
 use std::path::Path;
+use stickslip_platform::input::{self, TABLE_BYTES};
+use stickslip_scene::format::error::quoted;
+use stickslip_scene::shown;
 
 /// Most characters of a name in a table that is read.
 const MOST_NAME: usize = 200;

@@ -12,12 +12,12 @@
 //!   0 to 1, too, and the problem may have no answer;
 //! - gaps: half of the nodes touch (0), the others are uniform in −0.25 to 0.75: some penetrate. All nodes start free.
 
-use crate::format::condensed::{Contact, HEAD, Matrix, Problem};
-use crate::model::{Friction, Mode, Settings};
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
 use std::fmt::Write;
 use std::ops::RangeInclusive;
+use stickslip_core::model::{Friction, Mode, Settings};
+use stickslip_scene::format::condensed::{Contact, HEAD, Matrix, Problem};
 
 /// The numbers of nodes that problems are drawn with where nobody says.
 pub const NODES: RangeInclusive<usize> = 1..=4;
@@ -215,7 +215,7 @@ pub fn text(problem: &Problem, head: &[String]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::Scene;
+    use stickslip_scene::Scene;
 
     fn population() -> Population {
         Population {

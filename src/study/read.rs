@@ -15,16 +15,16 @@
 //! that fit to the same value.
 
 use super::builtin;
-use crate::format::error::{Path, SceneError, Step, did_you_mean, quoted};
-use crate::format::kind::FileKind;
-use crate::format::locate::{locate, too_deep};
-use crate::format::notation;
-use crate::format::read::{or_mistaken, path_of, plainly, shallow, text};
-use crate::scene::Scene;
 use ron::error::SpannedError;
 use serde::Deserialize;
 use serde::de::{DeserializeOwned, Deserializer, Visitor};
 use std::fmt;
+use stickslip_scene::Scene;
+use stickslip_scene::format::error::{Path, SceneError, Step, did_you_mean, quoted};
+use stickslip_scene::format::kind::FileKind;
+use stickslip_scene::format::locate::{locate, too_deep};
+use stickslip_scene::format::notation;
+use stickslip_scene::format::read::{or_mistaken, path_of, plainly, shallow, text};
 
 /// What is to be run, before anybody has looked whether the scenes have it.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -185,9 +185,9 @@ impl Study {
             };
         }
         if let Some(builtin) = builtin::find(name) {
-            return Study::from_text(builtin.name, &builtin.text());
+            return Study::from_text(builtin.name, builtin.text);
         }
-        if crate::scene::builtin::find(name).is_some() {
+        if stickslip_scene::builtin::find(name).is_some() {
             return Ok(Study::of_scene(name));
         }
         Err(SceneError::whole(name, nothing_there(name)))
@@ -373,7 +373,7 @@ fn is_study(text: &str) -> bool {
 
 fn nothing_there(name: &str) -> String {
     let studies: Vec<&str> = builtin::list().iter().map(|s| s.name).collect();
-    let scenes: Vec<&str> = crate::scene::builtin::list()
+    let scenes: Vec<&str> = stickslip_scene::builtin::list()
         .iter()
         .map(|s| s.name)
         .collect();

@@ -1,8 +1,8 @@
 //! Why an increment failed, in a word.
 
-use crate::step::event::Failure;
 use serde::{Deserialize, Serialize};
 use std::fmt;
+use stickslip_core::step::event::Failure;
 
 /// Why an increment failed, in a word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]

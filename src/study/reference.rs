@@ -6,10 +6,11 @@
 
 use super::csv::{Table, TableError};
 use super::result::Run;
-use crate::format::error::{quoted, shortened};
-use crate::outside::carried::{Carried, carried_all};
-use crate::outside::input::{self, TABLE_BYTES};
 use std::path::Path;
+use stickslip_platform::input::{self, TABLE_BYTES};
+use stickslip_scene::embedded::EmbeddedFile;
+use stickslip_scene::embedded_all;
+use stickslip_scene::format::error::{quoted, shortened};
 
 /// Loads that differ by less than this part of the largest are the same.
 pub const SAME_LOAD: f64 = 1e-9;
@@ -37,8 +38,8 @@ pub struct Point {
 }
 
 /// The references that the program carries, by their scene's name.
-const TABLES: &[Carried] = carried_all![
-    "problems/references/",
+const TABLES: &[EmbeddedFile] = embedded_all![
+    "../../problems/references/",
     ".csv",
     "01-pinned-beam-rough-floor",
     "02-two-cantilevers-smooth",
@@ -57,7 +58,7 @@ impl Reference {
         let table = TABLES.iter().find(|table| table.name == scene)?;
         Some(Reference::read(
             &format!("{}.csv", table.name),
-            &table.text(),
+            table.text,
             path,
         ))
     }
@@ -186,8 +187,8 @@ mod tests {
 
     #[test]
     fn every_built_in_table_reads_and_ends_where_its_scene_does() {
-        for Carried { name, .. } in TABLES {
-            let scene = crate::scene::Scene::open(name, &[]).unwrap();
+        for EmbeddedFile { name, .. } in TABLES {
+            let scene = stickslip_scene::Scene::open(name, &[]).unwrap();
             let path = &scene.model.path;
             let table = Reference::builtin(name, path).unwrap().unwrap();
             let known = |m: &String| scene.model.monitors.iter().any(|own| own.name == *m);

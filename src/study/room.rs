@@ -3,11 +3,11 @@
 //! What a run takes is estimated ([`Estimate`]), what there is is what the machine and the process's groups leave
 //! ([`memory::free`]). A run alone may always begin: whether it fits was decided when its scene was read. Bits do not depend on it.
 
-use crate::linear::estimate::Estimate;
-use crate::model::Model;
-use crate::scene::memory;
 use std::collections::HashMap;
 use std::sync::{Condvar, Mutex, MutexGuard};
+use stickslip_core::linear::estimate::Estimate;
+use stickslip_core::model::Model;
+use stickslip_scene::memory;
 
 /// What is taken, and by how many.
 #[derive(Debug, Default)]

@@ -4,7 +4,7 @@
 
 use super::drawn::label;
 use super::pen::{self, width_of};
-use crate::outside::shown;
+use stickslip_scene::shown;
 
 pub use super::drawn::{Anchor, Colour, PlotError, Shape};
 

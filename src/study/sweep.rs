@@ -7,11 +7,11 @@ use super::log::{self, Disagreement, Found, Log, LogError, Outcome};
 use super::one::{Spare, Watch};
 use super::shard::{Key, Shard};
 use super::sweep_input::Input;
-use crate::format::SceneError;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use std::num::{NonZeroU64, NonZeroUsize};
 use std::path::{Path, PathBuf};
+use stickslip_scene::format::SceneError;
 
 /// A scene is read by recursion; as much stack as a program starts with is enough for all that it accepts.
 const STACK: usize = 8 << 20;

@@ -1,8 +1,8 @@
 //! What a file of kept results is of, part by part, so that results of different sweeps are told apart, and why.
 
 use super::shard::{Key, Shard};
-use crate::outside::shown;
 use serde::{Deserialize, Serialize};
+use stickslip_scene::shown;
 
 /// What a file of results is of.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]

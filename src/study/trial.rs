@@ -14,18 +14,18 @@ use super::log::Outcome;
 use super::random::{Drawn, Population};
 use super::reason::Reason;
 use super::verdict::RunVerdict;
-use crate::format::condensed::{Matrix, Problem};
-use crate::format::{SceneError, paths};
-use crate::interface::census::census;
-use crate::model::{Model, Settings};
-use crate::scene::base::{Base, Method};
-use crate::scene::{Scene, increments};
-use crate::step::drive::{RunEnd, Until};
-use crate::step::stepper::Stepper;
 use serde::{Deserialize, Serialize};
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 use std::sync::Arc;
+use stickslip_core::interface::census::census;
+use stickslip_core::model::{Model, Settings};
+use stickslip_core::step::drive::{RunEnd, Until};
+use stickslip_core::step::stepper::Stepper;
+use stickslip_scene::base::{Base, Method};
+use stickslip_scene::format::condensed::{Matrix, Problem};
+use stickslip_scene::format::{SceneError, paths};
+use stickslip_scene::{Scene, increments};
 
 /// A run whose end breaks a condition by more than this, relatively, is no answer. It is far above what the solver leaves
 /// (its tolerance is 1e-11) and far below what a wrong state breaks.
@@ -296,8 +296,8 @@ fn broken(problem: &Problem, u: &[f64], f: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::format::condensed::Contact;
-    use crate::model::Friction;
+    use stickslip_core::model::Friction;
+    use stickslip_scene::format::condensed::Contact;
 
     /// A node on two unit springs, a load (−1, 1) along n and t, friction μ = 0.5: it slides, u_t = 0.5.
     fn slider() -> Problem {

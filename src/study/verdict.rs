@@ -1,10 +1,10 @@
 //! Verdicts on runs: the classes of convergence maps.
 
 use super::reason::Reason;
-use crate::interface::method::NotFound;
-use crate::step::event::Failure;
 use serde::{Deserialize, Serialize};
 use std::fmt;
+use stickslip_core::interface::method::NotFound;
+use stickslip_core::step::event::Failure;
 
 /// What a run came to. Its letter comes first wherever it is shown, its colour second.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]

@@ -3,7 +3,7 @@
 //!
 //! What only looks around is done at once, as long as nothing waits before it. Ctrl-C, Ctrl-Z and Ctrl-L never wait.
 
-use crate::tui::keys;
+use crate::keys;
 use crossterm::event::KeyEvent;
 use std::collections::VecDeque;
 

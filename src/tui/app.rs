@@ -1,26 +1,28 @@
 //! What the terminal alone knows, and what a key does to it. No drawing and no session here: a key changes the
 //! app and yields at most one [`Effect`], which the event loop carries out.
 
-use crate::action::{Action, ChartOf, Colours, Context, Filter, Keymap, Misread, Sort, Ui};
-use crate::outside::shown;
-use crate::record::command::Command;
-use crate::teach::{Guess, Tutor};
-use crate::tui::ahead::{Ahead, Typed};
-use crate::tui::camera::Camera;
-use crate::tui::chartpage::ChartPage;
-use crate::tui::choosing::{Chooser, Offer, Preview};
-use crate::tui::commandline::{CommandLine, Purpose};
-use crate::tui::hearing::Heard;
-use crate::tui::keys;
-use crate::tui::layout::{Choice, Pane};
-use crate::tui::panes::help::{Help, Listing};
-use crate::tui::panes::manual;
-use crate::tui::panes::solver;
-use crate::tui::theme::{self, Theme};
-use crate::tui::view::{View, context};
+use crate::ahead::{Ahead, Typed};
+use crate::camera::Camera;
+use crate::chartpage::ChartPage;
+use crate::choosing::{Chooser, Offer, Preview};
+use crate::commandline::{CommandLine, Purpose};
+use crate::hearing::Heard;
+use crate::keys;
+use crate::layout::{Choice, Pane};
+use crate::panes::help::{Help, Listing};
+use crate::panes::manual;
+use crate::panes::solver;
+use crate::theme::{self, Theme};
+use crate::view::{View, context};
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 use std::fmt;
+use stickslip_debugger::action::{
+    Action, ChartOf, Colours, Context, Filter, Keymap, Misread, Sort, Ui,
+};
+use stickslip_debugger::record::command::Command;
+use stickslip_debugger::teach::{Guess, Tutor};
+use stickslip_scene::shown;
 
 /// Nodes that a page key goes past.
 pub(super) const PAGE: isize = 10;

@@ -3,8 +3,8 @@
 //! The library's own canvas knows colours only; this one carries whole styles, so that what is faint stays faint
 //! without colour too. The last to draw in a cell gives it its style.
 
-use crate::explain::outline::{clip, mix};
 use ratatui::{buffer::Buffer, layout::Rect, style::Style};
+use stickslip_debugger::explain::outline::{clip, mix};
 
 /// Dots in a rectangle of cells. The dot (0, 0) is the upper left one.
 #[derive(Debug, Clone)]

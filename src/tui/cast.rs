@@ -3,19 +3,19 @@
 //! The times are made up, so that the same journal gives the same bytes: a screen stays as long as it takes to read what
 //! is said on it. What was done is a marker at which a player can stop. Only the rows that change are written.
 
-use crate::model::Model;
-use crate::outside::shown;
-use crate::record::journal::{Entry, JournalError, Record};
-use crate::record::story;
-use crate::session::Session;
-use crate::tui::app::App;
-use crate::tui::screen;
-use crate::tui::theme::Theme;
-use crate::tui::view::View;
+use crate::app::App;
+use crate::screen;
+use crate::theme::Theme;
+use crate::view::View;
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier};
 use std::fmt::Write;
+use stickslip_core::model::Model;
+use stickslip_debugger::record::journal::{Entry, JournalError, Record};
+use stickslip_debugger::record::story;
+use stickslip_debugger::session::Session;
+use stickslip_scene::shown;
 
 /// Columns and rows of the film.
 pub const SIZE: (u16, u16) = (120, 36);

@@ -1,10 +1,10 @@
 //! What the work-precision page shows, and what keys do to it.
 
-use crate::study::csv::TableError;
-use crate::study::measuring::NotMeasured;
-use crate::study::precision::{Cost, Precision};
-use crate::study::precision_table;
 use std::path::Path;
+use stickslip_study::csv::TableError;
+use stickslip_study::measuring::NotMeasured;
+use stickslip_study::precision::{Cost, Precision};
+use stickslip_study::precision_table;
 
 /// Why there is no page.
 #[derive(Debug, thiserror::Error)]

@@ -1,18 +1,18 @@
 //! What the chooser offers, in groups, and which of it a typed text leaves.
 
-use crate::format::SceneError;
-use crate::history::frame::Frame;
-use crate::model::Model;
-use crate::outside::carried::Carried;
-use crate::scene::{Scene, builtin};
-use crate::step::stepper::Stepper;
-use crate::teach::progress::{Progress, Reached};
-use crate::teach::{self, Lesson};
-use crate::tui::view::View;
+use crate::view::View;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
 use std::thread;
+use stickslip_core::model::Model;
+use stickslip_core::step::stepper::Stepper;
+use stickslip_debugger::history::frame::Frame;
+use stickslip_debugger::teach::progress::{Progress, Reached};
+use stickslip_debugger::teach::{self, Lesson};
+use stickslip_scene::embedded::EmbeddedFile;
+use stickslip_scene::format::SceneError;
+use stickslip_scene::{Scene, builtin};
 
 /// Most files of a folder that are offered, and most entries that are looked at.
 const MOST: usize = 200;
@@ -233,7 +233,7 @@ fn glance(model: Model, title: String, about: String, is_lesson: bool) -> Glance
 
 /// What the program itself has, and the files of the folder in which it runs.
 pub fn offers(progress: &Progress) -> Vec<Offer> {
-    let scene = |scene: &Carried| Offer {
+    let scene = |scene: &EmbeddedFile| Offer {
         group: match scene.name.split('-').next() {
             Some("osc") => Group::Oscillations,
             Some("bench") => Group::Benchmarks,
@@ -243,7 +243,7 @@ pub fn offers(progress: &Progress) -> Vec<Offer> {
         title: builtin::title(scene),
         reached: None,
     };
-    let lesson = |lesson: &Carried| Offer {
+    let lesson = |lesson: &EmbeddedFile| Offer {
         group: Group::Lessons,
         name: lesson.name.into(),
         title: teach::lesson::title(lesson),

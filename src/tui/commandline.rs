@@ -1,13 +1,13 @@
 //! A line being typed at the bottom of the screen: `:` commands, and the answers to `i` and `/`.
 
-use crate::action::{self, Context, Entry};
-use crate::outside::shown;
-use crate::tui::paint;
-use crate::tui::theme::Theme;
+use crate::paint;
+use crate::theme::Theme;
 use crossterm::event::{Event, KeyEvent};
 use ratatui::style::Modifier;
 use ratatui::text::{Line, Span};
 use std::borrow::Cow;
+use stickslip_debugger::action::{self, Context, Entry};
+use stickslip_scene::shown;
 use tui_input::{Input, InputRequest, backend::crossterm::EventHandler};
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
@@ -322,7 +322,7 @@ fn choices(text: &str, context: &Context) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tui::keys;
+    use crate::keys;
 
     fn typed(text: &str) -> CommandLine {
         CommandLine::new(Purpose::Command, text)

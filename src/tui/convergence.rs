@@ -1,8 +1,8 @@
 //! A chart of how iterations converge: two numbers of each on a log scale, with the limits that they must get under.
 
-use crate::tui::canvas::Canvas;
-use crate::tui::chartframe::ChartFrame;
-use crate::tui::theme::Theme;
+use crate::canvas::Canvas;
+use crate::chartframe::ChartFrame;
+use crate::theme::Theme;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 

@@ -1,15 +1,15 @@
 //! What `Y` copies: what is selected in the pane with the focus, as text for the terminal's clipboard.
 
-use crate::action::Copied;
-use crate::explain::names;
-use crate::explain::remedies;
-use crate::history::verdicts::{self, summaries};
-use crate::history::watches::{Watch, WatchQuantity};
-use crate::outside::shown;
-use crate::tui::app::{App, Effect};
-use crate::tui::layout::Pane;
-use crate::tui::screen;
-use crate::tui::view::View;
+use crate::app::{App, Effect};
+use crate::layout::Pane;
+use crate::screen;
+use crate::view::View;
+use stickslip_debugger::action::Copied;
+use stickslip_debugger::explain::names;
+use stickslip_debugger::explain::remedies;
+use stickslip_debugger::history::verdicts::{self, summaries};
+use stickslip_debugger::history::watches::{Watch, WatchQuantity};
+use stickslip_scene::shown;
 
 /// Most bytes that are copied: terminals take no more than about this in one order.
 const MOST: usize = 50_000;

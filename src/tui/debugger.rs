@@ -1,30 +1,30 @@
 //! The debugger without its terminal: an app, a session, and what waits for the solver. Keys in, screens out.
 
-use crate::action::{self, ChartOf};
-use crate::attach::calculix::words::GREETING;
-use crate::explain::report;
-use crate::outside::shown;
-use crate::record::command::Command;
-use crate::session::{Reply, Session};
-use crate::step::state::Status;
-use crate::study::measuring::Measuring;
-use crate::teach::progress::{self, Keeper, Progress};
-use crate::teach::{Lesson, Tutor};
-use crate::tui::app::{App, Effect, Opens, Overlay, Reading};
-use crate::tui::chartpage::{ChartPage, NoPage};
-use crate::tui::choosing::{self, Looking, Offer};
-use crate::tui::keys;
-use crate::tui::layout::Pane;
-use crate::tui::loading::{Loaded, Loading};
-use crate::tui::terminal;
-use crate::tui::theme::Theme;
-use crate::tui::view::View;
+use crate::app::{App, Effect, Opens, Overlay, Reading};
+use crate::chartpage::{ChartPage, NoPage};
+use crate::choosing::{self, Looking, Offer};
+use crate::keys;
+use crate::layout::Pane;
+use crate::loading::{Loaded, Loading};
+use crate::terminal;
+use crate::theme::Theme;
+use crate::view::View;
 use crossterm::event::{Event, KeyEvent};
 use std::collections::VecDeque;
 use std::io::{self, Write};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
+use stickslip_core::step::state::Status;
+use stickslip_debugger::action::{self, ChartOf};
+use stickslip_debugger::explain::report;
+use stickslip_debugger::record::command::Command;
+use stickslip_debugger::recorded::calculix::words::GREETING;
+use stickslip_debugger::session::{Reply, Session};
+use stickslip_debugger::teach::progress::{self, Keeper, Progress};
+use stickslip_debugger::teach::{Lesson, Tutor};
+use stickslip_scene::shown;
+use stickslip_study::measuring::Measuring;
 
 /// How long a step may take for the next key to wait for it, so that quick steps neither flicker nor pile up.
 const QUICK: Duration = Duration::from_millis(30);
@@ -304,7 +304,7 @@ impl Debugger {
 
     /// The screen as plain text.
     pub fn text(&self, width: u16, height: u16) -> String {
-        crate::tui::screen::text(&self.app, self.view().as_ref(), width, height)
+        crate::screen::text(&self.app, self.view().as_ref(), width, height)
     }
 
     fn submit(&mut self, command: Command) {

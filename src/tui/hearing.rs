@@ -1,7 +1,7 @@
 //! What an attached solver says while one looks at something else: its warnings and errors are counted, and shown once.
 
-use crate::attach::Log;
-use crate::attach::log::How;
+use stickslip_debugger::recorded::log::How;
+use stickslip_debugger::recorded::log::Log;
 use stickslip_exchange::attach::message::Level;
 
 /// What of a solver's log was heard.

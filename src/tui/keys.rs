@@ -107,7 +107,7 @@ fn spelled(code: KeyCode) -> Option<&'static str> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::action::ACTIONS;
+    use stickslip_debugger::action::ACTIONS;
 
     #[test]
     fn every_key_of_the_table_can_be_pressed() {

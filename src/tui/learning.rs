@@ -1,11 +1,11 @@
 //! Lessons and free mode: what may be done, what is hidden, and what is answered.
 
-use crate::action::{Action, Whose};
-use crate::attach::calculix::words::{NO_MODES, READ_ONLY};
-use crate::teach::refusal::NotNow;
-use crate::teach::{Guess, Tutor};
-use crate::tui::app::App;
-use crate::tui::view::View;
+use crate::app::App;
+use crate::view::View;
+use stickslip_debugger::action::{Action, Whose};
+use stickslip_debugger::recorded::calculix::words::{NO_MODES, READ_ONLY};
+use stickslip_debugger::teach::refusal::NotNow;
+use stickslip_debugger::teach::{Guess, Tutor};
 
 impl App {
     /// On with the lesson.

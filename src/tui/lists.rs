@@ -1,13 +1,13 @@
 //! Panes and what is selected in them: the focus, steps inside a pane, and what is taken from a list.
 
-use crate::action::{Page, Step};
-use crate::explain::remedy::How;
-use crate::history::verdicts::{self, summaries};
-use crate::record::command::{Command, To};
-use crate::tui::app::{App, Effect, PAGE};
-use crate::tui::layout::Pane;
-use crate::tui::screen;
-use crate::tui::view::View;
+use crate::app::{App, Effect, PAGE};
+use crate::layout::Pane;
+use crate::screen;
+use crate::view::View;
+use stickslip_debugger::action::{Page, Step};
+use stickslip_debugger::explain::remedy::How;
+use stickslip_debugger::history::verdicts::{self, summaries};
+use stickslip_debugger::record::command::{Command, To};
 
 impl App {
     pub(super) fn turn(&mut self, places: usize) {

@@ -1,14 +1,14 @@
 //! What is read for the debugger, on a thread of its own: a file can be large and its disk slow, and keys are answered all the
 //! while.
 
-use crate::format::SceneError;
-use crate::record::journal::{self, Journal, JournalError, Record};
-use crate::session::Session;
-use crate::teach::Lesson;
-use crate::tui::chartpage::{ChartPage, NoPage};
+use crate::chartpage::{ChartPage, NoPage};
 use std::path::Path;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread;
+use stickslip_debugger::record::journal::{self, Journal, JournalError, Record};
+use stickslip_debugger::session::Session;
+use stickslip_debugger::teach::Lesson;
+use stickslip_scene::format::SceneError;
 
 /// Why a scene or a lesson cannot be had.
 #[derive(Debug, thiserror::Error)]

@@ -1,15 +1,15 @@
 //! The mouse: a click selects what it is on, the wheel scrolls what it is over. Nothing can be done with it alone.
 
-use crate::action::{Action, Step, Ui};
-use crate::record::command::Command;
-use crate::tui::ahead::Typed;
-use crate::tui::app::{App, Effect, Overlay};
-use crate::tui::layout::Pane;
-use crate::tui::panes::{branches, nodes, remedies, shape, timeline};
-use crate::tui::screen;
-use crate::tui::view::View;
+use crate::ahead::Typed;
+use crate::app::{App, Effect, Overlay};
+use crate::layout::Pane;
+use crate::panes::{branches, nodes, remedies, shape, timeline};
+use crate::screen;
+use crate::view::View;
 use crossterm::event::{MouseButton, MouseEvent, MouseEventKind};
 use ratatui::layout::{Position, Rect};
+use stickslip_debugger::action::{Action, Step, Ui};
+use stickslip_debugger::record::command::Command;
 
 /// Lines that a turn of the wheel scrolls a page of text.
 const LINES: usize = 3;

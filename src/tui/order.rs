@@ -1,10 +1,10 @@
 //! Which slave nodes the table shows, and in which order.
 
-use crate::action::{Filter, Sort};
-use crate::contact::table2::{Rule, Tested};
-use crate::model::Mode;
-use crate::tui::app::App;
-use crate::tui::view::View;
+use crate::app::App;
+use crate::view::View;
+use stickslip_core::contact::table2::{Rule, Tested};
+use stickslip_core::model::Mode;
+use stickslip_debugger::action::{Filter, Sort};
 
 impl App {
     /// The slave nodes that the table shows, in its order. The selected one is always among them.

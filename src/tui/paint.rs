@@ -1,13 +1,13 @@
 //! The brush: what all panes draw with.
 
-use crate::outside::shown;
-pub use crate::outside::shown::wrap;
-use crate::tui::theme::Theme;
+use crate::theme::Theme;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 use ratatui::text::Line;
 use ratatui::widgets::{Block, BorderType, Clear, Widget};
+use stickslip_scene::shown;
+pub use stickslip_scene::shown::wrap;
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
 /// A pane's border and title; returns what is inside. The focus is a thick border, colour or not.

@@ -1,20 +1,20 @@
 //! What waits for keys before the panes do: questions, lists, and a line that is typed.
 
-use crate::action::{self, Action, Context, Question};
-use crate::explain::number;
-use crate::model::Mode;
-use crate::record::command::Command;
-use crate::teach::Tutor;
-use crate::teach::tutor::AnswerKind;
-use crate::tui::ahead::Typed;
-use crate::tui::app::{App, Effect, Overlay, PAGE};
-use crate::tui::choosing::{Chooser, Group};
-use crate::tui::commandline::{CommandLine, Purpose};
-use crate::tui::screen;
-use crate::tui::theme;
-use crate::tui::view::{View, context};
+use crate::ahead::Typed;
+use crate::app::{App, Effect, Overlay, PAGE};
+use crate::choosing::{Chooser, Group};
+use crate::commandline::{CommandLine, Purpose};
+use crate::screen;
+use crate::theme;
+use crate::view::{View, context};
 use crossterm::event::KeyEvent;
 use ratatui::layout::Margin;
+use stickslip_core::model::Mode;
+use stickslip_debugger::action::{self, Action, Context, Question};
+use stickslip_debugger::record::command::Command;
+use stickslip_debugger::teach::Tutor;
+use stickslip_debugger::teach::tutor::AnswerKind;
+use stickslip_scene::number;
 
 impl App {
     pub(super) fn ask(&mut self, question: Question, view: Option<&View>) {

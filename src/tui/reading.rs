@@ -1,12 +1,12 @@
 //! Reading a lesson on a screen that is too small for its words: they are turned page by page, and the lesson does not go on
 //! before all of them were shown.
 
-use crate::teach::refusal::NotNow;
-use crate::tui::app::{App, Overlay};
-use crate::tui::layout::Pane;
-use crate::tui::panes::lesson;
-use crate::tui::screen;
-use crate::tui::view::View;
+use crate::app::{App, Overlay};
+use crate::layout::Pane;
+use crate::panes::lesson;
+use crate::screen;
+use crate::view::View;
+use stickslip_debugger::teach::refusal::NotNow;
 
 /// What of a lesson's page is to be seen.
 struct Shown {

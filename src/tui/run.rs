@@ -1,20 +1,20 @@
 //! The event loop, and how one gets into it: with a scene, a session that goes on, a lesson, or nothing yet.
 
-use crate::action::config::Config;
-use crate::format::SceneError;
-use crate::record::journal::{JournalError, Keep};
-use crate::scene::Scene;
-use crate::session::Session;
-use crate::teach::Lesson;
-use crate::tui::app::App;
-use crate::tui::debugger::{Debugger, Outside, offers};
-use crate::tui::terminal::{self, Signals, Terminal};
-use crate::tui::theme::Theme;
+use crate::app::App;
+use crate::debugger::{Debugger, Outside, offers};
+use crate::terminal::{self, Signals, Terminal};
+use crate::theme::Theme;
 use crossterm::event::{self, Event};
 use ratatui::layout::Rect;
 use signal_hook::consts::SIGHUP;
 use std::io::{self, IsTerminal};
 use std::time::{Duration, Instant};
+use stickslip_debugger::action::config::Config;
+use stickslip_debugger::record::journal::{JournalError, Keep};
+use stickslip_debugger::session::Session;
+use stickslip_debugger::teach::Lesson;
+use stickslip_scene::Scene;
+use stickslip_scene::format::SceneError;
 
 /// Why the debugger could not start, or had to end.
 #[derive(Debug, thiserror::Error)]

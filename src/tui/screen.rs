@@ -1,34 +1,34 @@
 //! The whole screen from the app and the view: who draws where.
 
-use crate::outside::shown;
-use crate::session::Session;
-use crate::tui::app::{App, Overlay};
-use crate::tui::choosing::Preview;
-use crate::tui::layout::{self, Pane, Places};
-use crate::tui::paint;
-use crate::tui::panes::branches;
-use crate::tui::panes::chooser;
-use crate::tui::panes::curve;
-use crate::tui::panes::decision;
-use crate::tui::panes::diagnosis;
-use crate::tui::panes::footer;
-use crate::tui::panes::help;
-use crate::tui::panes::lesson;
-use crate::tui::panes::manual;
-use crate::tui::panes::nodes;
-use crate::tui::panes::remedies;
-use crate::tui::panes::residual;
-use crate::tui::panes::shape;
-use crate::tui::panes::solver;
-use crate::tui::panes::status;
-use crate::tui::panes::timeline;
-use crate::tui::panes::workprecision;
-use crate::tui::theme::Theme;
-use crate::tui::view::View;
+use crate::app::{App, Overlay};
+use crate::choosing::Preview;
+use crate::layout::{self, Pane, Places};
+use crate::paint;
+use crate::panes::branches;
+use crate::panes::chooser;
+use crate::panes::curve;
+use crate::panes::decision;
+use crate::panes::diagnosis;
+use crate::panes::footer;
+use crate::panes::help;
+use crate::panes::lesson;
+use crate::panes::manual;
+use crate::panes::nodes;
+use crate::panes::remedies;
+use crate::panes::residual;
+use crate::panes::shape;
+use crate::panes::solver;
+use crate::panes::status;
+use crate::panes::timeline;
+use crate::panes::workprecision;
+use crate::theme::Theme;
+use crate::view::View;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::Line;
 use ratatui::widgets::Widget;
+use stickslip_debugger::session::Session;
+use stickslip_scene::shown;
 
 /// What a page over the panes covers.
 pub fn body(places: &Places, view: Option<&View>) -> Rect {

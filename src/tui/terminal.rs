@@ -5,9 +5,9 @@
 //! it, stop the process as the shell expects, and take it over again with a full redraw when the process continues. Taking
 //! over and restoring exclude each other, so a signal in between cannot leave either half done.
 
-use crate::tui::app::App;
-use crate::tui::screen;
-use crate::tui::view::View;
+use crate::app::App;
+use crate::screen;
+use crate::view::View;
 use crossterm::clipboard::CopyToClipboard;
 use crossterm::cursor::{Hide, Show};
 use crossterm::event::{DisableBracketedPaste, EnableBracketedPaste};

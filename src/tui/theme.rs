@@ -5,9 +5,9 @@
 //! hide their grey in the background. Cyan, yellow and magenta tell the modes apart for
 //! colour-blind eyes too; red and green are left to failure and success.
 
-use crate::action::Colours;
-use crate::model::Mode;
 use ratatui::style::{Color, Modifier, Style};
+use stickslip_core::model::Mode;
+use stickslip_debugger::action::Colours;
 
 /// The styles that the panes draw with.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,24 +1,24 @@
 //! What the panes show: a borrowed, read-only look at a session.
 
-use crate::action::Context;
-use crate::attach::Log;
-use crate::contact::record::{ContactRecord, Forced};
-use crate::explain::examination::Examination;
-use crate::explain::influence::Push;
-use crate::explain::number;
-use crate::explain::round_off::RoundOff;
-use crate::history::frame::Frame;
-use crate::history::strip::Strip;
-use crate::history::tree::Tree;
-use crate::linear::norms::Norms;
-use crate::model::{Mode, Model};
-use crate::scene::Scene;
-use crate::session::Session;
-use crate::session::background::Background;
-use crate::step::event::{Event, Outcome, Position};
-use crate::step::intervene::Intervention;
-use crate::step::solver::Offers;
-use crate::teach;
+use stickslip_core::contact::record::{ContactRecord, Forced};
+use stickslip_core::linear::norms::Norms;
+use stickslip_core::model::{Mode, Model};
+use stickslip_core::step::event::{Event, Outcome, Position};
+use stickslip_core::step::intervene::Intervention;
+use stickslip_core::step::solver::Offers;
+use stickslip_debugger::action::Context;
+use stickslip_debugger::explain::examination::Examination;
+use stickslip_debugger::explain::influence::Push;
+use stickslip_debugger::explain::round_off::RoundOff;
+use stickslip_debugger::history::frame::Frame;
+use stickslip_debugger::history::strip::Strip;
+use stickslip_debugger::history::tree::Tree;
+use stickslip_debugger::recorded::log::Log;
+use stickslip_debugger::session::Session;
+use stickslip_debugger::session::background::Background;
+use stickslip_debugger::teach;
+use stickslip_scene::Scene;
+use stickslip_scene::number;
 
 /// Everything that drawing needs to know about the session. Plain data, so that tests can make one by hand.
 #[derive(Debug, Clone)]

@@ -1,11 +1,11 @@
 //! Who waits, and for what: keys and lines that ask something of a session that is at work are put off, and done in their turn.
 
-use crate::action::{Action, Page, Step, Ui};
-use crate::tui::ahead::{Awaited, Typed};
-use crate::tui::app::{App, Effect, Opens, Overlay};
-use crate::tui::keys;
-use crate::tui::layout::Pane;
-use crate::tui::view::View;
+use crate::ahead::{Awaited, Typed};
+use crate::app::{App, Effect, Opens, Overlay};
+use crate::keys;
+use crate::layout::Pane;
+use crate::view::View;
+use stickslip_debugger::action::{Action, Page, Step, Ui};
 
 impl App {
     /// What any key waits for, whatever it means: a page that is about to come is the one that it is meant for.

@@ -4,8 +4,8 @@ use super::program::{code, err, out, program};
 use super::served::{start, stickslip};
 use super::side::Rude;
 use libtest_mimic::Trial;
-use stickslip::attach::Log;
 use stickslip::attach::check::{Report, Verdict, check};
+use stickslip::recorded::log::Log;
 
 pub fn tests() -> Vec<Trial> {
     crate::tests![

@@ -4,8 +4,9 @@ use super::served::{script, seen, session, start};
 use super::side::{Rude, does, minor};
 use libtest_mimic::Trial;
 use std::path::Path;
-use stickslip::attach::{Attached, Log, past};
+use stickslip::attach::Attached;
 use stickslip::record::command::{Command, To};
+use stickslip::recorded::{log::Log, past};
 use stickslip::session::Session;
 
 pub fn tests() -> Vec<Trial> {

@@ -3,9 +3,10 @@
 use rustix::process::{Pid, test_kill_process};
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
-use stickslip::attach::{Attached, Fault, Log, Start};
-use stickslip::outside::shown;
+use stickslip::attach::{Attached, Start};
 use stickslip::record::command::{Command, Unit};
+use stickslip::recorded::{fault::Fault, log::Log};
+use stickslip::scene::shown;
 use stickslip::session::{Reply, Session};
 use tempfile::TempDir;
 

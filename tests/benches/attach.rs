@@ -8,9 +8,10 @@
 use std::io::{BufRead, Write};
 use std::path::Path;
 use std::time::Instant;
-use stickslip::attach::{Attached, Log, Start};
+use stickslip::attach::{Attached, Start};
 use stickslip::model::Mode;
 use stickslip::record::command::{Command, Unit};
+use stickslip::recorded::log::Log;
 use stickslip::session::Session;
 use stickslip::step::Solver;
 use stickslip_exchange::attach::message::{

@@ -21,7 +21,7 @@ use stickslip::tui::{keys, screen};
 
 const BLOCKS: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
-    "/tests/benches/two-blocks-pressed-sheared.ron"
+    "/benches/two-blocks-pressed-sheared.ron"
 );
 const CIRCLE: &str = "04-cantilever-rigid-circle";
 /// Pairs of runs that are compared.

@@ -14,7 +14,7 @@ use stickslip::step::event::Outcome;
 
 const BLOCKS: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
-    "/tests/benches/two-blocks-pressed-sheared.ron"
+    "/benches/two-blocks-pressed-sheared.ron"
 );
 /// Steps of a median.
 const SOME: usize = 5;

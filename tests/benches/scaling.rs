@@ -18,7 +18,7 @@ use stickslip::step::stepper::Stepper;
 
 const BLOCKS: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
-    "/tests/benches/two-blocks-pressed-sheared.ron"
+    "/benches/two-blocks-pressed-sheared.ron"
 );
 
 fn main() {

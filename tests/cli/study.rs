@@ -342,7 +342,10 @@ fn a_study_file_and_the_scene_beside_it_are_found_and_arguments_go_over_it() {
     let directory = tempfile::tempdir().unwrap();
     let folder = directory.path().join("mine");
     std::fs::create_dir(&folder).unwrap();
-    let scene = stickslip::scene::builtin::find(ROUGH).unwrap().text();
+    let scene = stickslip::scene::builtin::find(ROUGH)
+        .unwrap()
+        .text
+        .to_owned();
     std::fs::write(folder.join("scene.ron"), scene).unwrap();
     let text = "(title: \"T\", scene: \"scene.ron\", vary: [(\"history.increment\", [0.5, 1.25])])";
     std::fs::write(folder.join("study.ron"), text).unwrap();
@@ -406,7 +409,10 @@ fn what_a_study_names_lies_beside_it_or_below_or_is_built_in() {
     let directory = tempfile::tempdir().unwrap();
     let folder = directory.path().join("mine");
     std::fs::create_dir(&folder).unwrap();
-    let scene = stickslip::scene::builtin::find(ROUGH).unwrap().text();
+    let scene = stickslip::scene::builtin::find(ROUGH)
+        .unwrap()
+        .text
+        .to_owned();
     std::fs::write(folder.join("scene.ron"), &*scene).unwrap();
     // What lies where the program runs is not what the study means.
     std::fs::write(directory.path().join("other.ron"), &*scene).unwrap();

@@ -84,7 +84,7 @@ fn what_the_lessons_teach_is_what_the_solver_does() {
 
 #[test]
 fn right_answers_follow_the_scene_and_stand_in_no_file() {
-    let text = teach::find("3-by-hand").unwrap().text();
+    let text = teach::find("3-by-hand").unwrap().text.to_owned();
     let rough = text.replace("friction: (angle: 30.0)", "friction: (angle: 40.0)");
     assert_ne!(text, rough);
     let rule = |text: &str| {
@@ -481,7 +481,7 @@ fn the_scene_of_a_lesson_is_checked_like_any_other() {
         "{}",
         fault(&text)
     );
-    let by_hand = teach::find("3-by-hand").unwrap().text();
+    let by_hand = teach::find("3-by-hand").unwrap().text.to_owned();
     let broken = by_hand.replace(
         "(nodes: [\"beam.end\"], on: [\"floor\"]",
         "(nodes: [\"beam.end\"], on: [\"flor\"]",

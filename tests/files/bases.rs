@@ -96,7 +96,7 @@ fn try_all(name: &str, text: &str) {
 #[test]
 fn whatever_is_set_a_base_has_the_model_of_the_scene_read_with_it_or_none() {
     for name in ["osc-two3", "osc-lag4", "02-two-cantilevers-rough"] {
-        try_all(name, &builtin::find(name).unwrap().text());
+        try_all(name, builtin::find(name).unwrap().text);
     }
     try_all("all", EVERYTHING);
     let problem = stickslip::study::random::Population {

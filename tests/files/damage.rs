@@ -119,7 +119,10 @@ fn damaged(text: &str, damage: &Damage) -> String {
 }
 
 fn a_good_scene() -> impl Strategy<Value = String> {
-    let mut texts: Vec<String> = builtin::list().iter().map(|scene| scene.text()).collect();
+    let mut texts: Vec<String> = builtin::list()
+        .iter()
+        .map(|scene| scene.text.to_owned())
+        .collect();
     texts.push(EVERYTHING.into());
     prop::sample::select(texts)
 }

@@ -54,7 +54,7 @@ pub fn put(directory: &TempDir, name: &str, text: &str) {
 }
 
 pub fn scene(name: &str) -> String {
-    builtin::find(name).unwrap().text()
+    builtin::find(name).unwrap().text.to_owned()
 }
 
 pub const STUDY: &str = r#"(title: "ORDERSA study", about: "Why ORDERS not", scene: "osc-two6",

@@ -170,7 +170,7 @@ fn read(folder: &Path, into: &mut String) {
 
 /// The RON examples of a page.
 fn examples(topic: &str) -> Vec<&'static str> {
-    let text: &str = manual::page(topic).unwrap().text().leak();
+    let text: &str = manual::page(topic).unwrap().text();
     let blocks = text.split("```ron\n").skip(1);
     blocks
         .map(|after| after.split("```").next().unwrap())
@@ -314,9 +314,9 @@ fn show_prints_what_is_built_in_byte_for_byte() {
         benchmarks::builtin_text()
     );
     let study = studies::list()[0];
-    assert_eq!(out(&stickslip(&["show", study.name])), study.text());
+    assert_eq!(out(&stickslip(&["show", study.name])), study.text);
     let lesson = teach::list()[0];
-    assert_eq!(out(&stickslip(&["show", lesson.name])), lesson.text());
+    assert_eq!(out(&stickslip(&["show", lesson.name])), lesson.text);
     let name = chart_file::names().next().unwrap();
     assert_eq!(
         out(&stickslip(&["show", "--chart", name])),
@@ -335,14 +335,14 @@ fn show_writes_a_file_but_never_over_another_unasked() {
     );
     assert_eq!(
         fs::read_to_string(&file).unwrap(),
-        builtin::find("osc-two6").unwrap().text()
+        builtin::find("osc-two6").unwrap().text.to_owned()
     );
     let again = stickslip(&["show", "osc-two3", "-o", path]);
     assert_eq!(again.status.code(), Some(2));
     assert!(err(&again).contains("--force"), "{}", err(&again));
     assert_eq!(
         fs::read_to_string(&file).unwrap(),
-        builtin::find("osc-two6").unwrap().text()
+        builtin::find("osc-two6").unwrap().text.to_owned()
     );
     assert_eq!(
         stickslip(&["show", "osc-two3", "-o", path, "--force"])
@@ -352,7 +352,7 @@ fn show_writes_a_file_but_never_over_another_unasked() {
     );
     assert_eq!(
         fs::read_to_string(&file).unwrap(),
-        builtin::find("osc-two3").unwrap().text()
+        builtin::find("osc-two3").unwrap().text.to_owned()
     );
 }
 

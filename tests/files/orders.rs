@@ -5,9 +5,9 @@
 use crate::hostile::{CHART, CYCLES, LESSON, REFERENCE, STUDY, put, run, scene};
 use crate::program::{code, err, names, out, rows, well};
 use std::fs;
-use stickslip::outside::shown;
 use stickslip::record::journal::Journal;
 use stickslip::scene::Scene;
+use stickslip::scene::shown;
 use stickslip::session::Session;
 use tempfile::TempDir;
 

@@ -8,7 +8,9 @@ use stickslip::scene::{Scene, builtin};
 pub const PINNED: &str = "01-pinned-beam-rough-floor";
 
 pub fn pinned() -> String {
-    builtin::find(PINNED).map(|scene| scene.text()).unwrap()
+    builtin::find(PINNED)
+        .map(|scene| scene.text.to_owned())
+        .unwrap()
 }
 
 /// The pinned beam with a piece replaced; without its settings, so that they can be given.

@@ -1,4 +1,4 @@
-//! The house keeps its floors: who may know whom, as `lib.rs` has it, and how much may stand in one place.
+//! The house keeps its floors: who may know whom, as each `lib.rs` has it, and how much may stand in one place.
 //!
 //! Imports are read from the code itself ([`imports`]). What is not reached yet is listed by name, and a list that says
 //! too much fails as one that says too little.
@@ -16,12 +16,10 @@ const PACKAGES: &[Package] = &[
     Package {
         name: "stickslip",
         folder: "src",
-        others: &["linalg", "core", "exchange"],
-    },
-    Package {
-        name: "stickslip_core",
-        folder: "src/core",
-        others: &[],
+        others: &[
+            "attach", "core", "debugger", "exchange", "linalg", "manual", "platform", "scene",
+            "study", "tui",
+        ],
     },
     Package {
         name: "stickslip_linalg",
@@ -29,12 +27,54 @@ const PACKAGES: &[Package] = &[
         others: &[],
     },
     Package {
+        name: "stickslip_core",
+        folder: "src/core",
+        others: &[],
+    },
+    Package {
         name: "stickslip_exchange",
         folder: "src/exchange",
-        others: &["core"],
+        others: &[],
+    },
+    Package {
+        name: "stickslip_platform",
+        folder: "src/platform",
+        others: &[],
+    },
+    Package {
+        name: "stickslip_scene",
+        folder: "src/scene",
+        others: &[],
+    },
+    Package {
+        name: "stickslip_study",
+        folder: "src/study",
+        others: &[],
+    },
+    Package {
+        name: "stickslip_manual",
+        folder: "src/manual",
+        others: &[],
+    },
+    Package {
+        name: "stickslip_debugger",
+        folder: "src/debugger",
+        others: &[],
+    },
+    Package {
+        name: "stickslip_attach",
+        folder: "src/attach",
+        others: &[],
+    },
+    Package {
+        name: "stickslip_tui",
+        folder: "src/tui",
+        others: &[],
     },
 ];
 
+/// The sentence before a list of floors in a `lib.rs`.
+const FLOORS: &str = "ach takes only from those above it";
 /// Most lines of a file.
 const MOST_LINES: usize = 700;
 /// Largest part of all lines that a folder below a package may have.
@@ -131,6 +171,9 @@ fn arrows_of_use_only_point_down_the_list_in_lib_rs() {
         let Ok(text) = fs::read_to_string(lib) else {
             continue;
         };
+        if !text.contains(FLOORS) {
+            continue;
+        }
         let floors = floors(&text);
         assert!(floors.len() > 2, "{floors:?}");
         assert_eq!(upward(&ties, package.folder, &floors), [""; 0]);

@@ -193,7 +193,10 @@ fn several_nodes_on_one_element_give_together() {
 /// Without a shear stiffness there is nothing to put back.
 #[test]
 fn without_shear_flexibility_the_setting_changes_no_bit() {
-    let text = stickslip::scene::builtin::find(SMOOTH).unwrap().text();
+    let text = stickslip::scene::builtin::find(SMOOTH)
+        .unwrap()
+        .text
+        .to_owned();
     let rigid = text.replace(", GA: 32.0512820513", "");
     let ends = ["exact", "shear", "plain"].map(|point_force| {
         let set = [("settings.point_force".to_owned(), point_force.to_owned())];

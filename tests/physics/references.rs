@@ -134,7 +134,10 @@ fn problem_02_smooth_slides_along_the_reference() {
 /// Largest errors of problem 02 smooth for each refinement, with plain elements.
 fn smooth_errors(rows: &[Row], refine: &[&str], shear_rigid: bool, per_element: &str) -> Vec<f64> {
     let name = "02-two-cantilevers-smooth";
-    let text = stickslip::scene::builtin::find(name).unwrap().text();
+    let text = stickslip::scene::builtin::find(name)
+        .unwrap()
+        .text
+        .to_owned();
     let text = if shear_rigid {
         let without = text.replace(", GA: 32.0512820513", "");
         assert_ne!(without, text);

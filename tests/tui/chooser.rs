@@ -107,7 +107,8 @@ fn files_of_a_folder_are_offered_and_those_that_cannot_be_opened_say_why() {
     let scene = Scene::open("osc-touch2", &[]).unwrap();
     let text = stickslip::scene::builtin::find("osc-touch2")
         .unwrap()
-        .text();
+        .text
+        .to_owned();
     std::fs::write(at("接触の例.ron"), text).unwrap();
     std::fs::write(at("broken.ron"), "(title: \"x\"").unwrap();
     std::fs::write(at("notes.txt"), "").unwrap();
@@ -140,7 +141,8 @@ fn tab_completes_files_and_goes_on_into_folders() {
     std::fs::create_dir(&deep).unwrap();
     let text = stickslip::scene::builtin::find("osc-touch2")
         .unwrap()
-        .text();
+        .text
+        .to_owned();
     std::fs::write(deep.join("one node.ron"), text).unwrap();
     std::fs::write(deep.join("one node.txt"), "").unwrap();
     let mut debugger = choosing();

@@ -179,7 +179,7 @@ fn pipes_devices_and_folders_never_block_the_keys() {
 #[test]
 fn a_scene_that_takes_long_to_read_leaves_the_keys_alive_and_can_be_given_up() {
     let mut session = open(OSCILLATES);
-    let mut text = builtin::find(FLOOR).unwrap().text();
+    let mut text = builtin::find(FLOOR).unwrap().text.to_owned();
     // Some seconds of reading: the most that a file may have, and an error at its end.
     let rest = (8 << 20) - text.len() - 16;
     let row = "/* ( [ */ ";
@@ -202,7 +202,7 @@ const CHART: &str = "scene,series,run,status,error,seconds\n\
 fn orders_in_files_and_their_names_are_shown_on_the_screen_and_not_obeyed() {
     let directory = tempfile::tempdir().unwrap();
     let file = directory.path().join("n\u{1b}]0;PWN\u{7}.ron");
-    std::fs::write(&file, builtin::find(OSCILLATES).unwrap().text()).unwrap();
+    std::fs::write(&file, builtin::find(OSCILLATES).unwrap().text.to_owned()).unwrap();
     std::fs::write(directory.path().join("lesson"), LESSON).unwrap();
     std::fs::write(directory.path().join("chart"), CHART).unwrap();
     let mut session = Start::debugger(&[file.to_str().unwrap()])

@@ -1,11 +1,11 @@
 //! Whether states that a solver keeps are the same when it comes back to them.
 
-use super::super::fault::Fault;
 use super::report::{Outcome, fails, good, not_offered};
 use super::steps::otherwise;
 use super::trial::{Trial, at, is_last};
-use crate::model::Mode;
 use serde_json::Value;
+use stickslip_core::model::Mode;
+use stickslip_debugger::recorded::fault::Fault;
 use stickslip_exchange::attach::message::{Ended, Restore, State};
 
 /// Iterations that are looked at after each state.

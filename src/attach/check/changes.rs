@@ -1,14 +1,14 @@
 //! Whether a solver does what it is told between two iterations: forced modes, holds, parameters.
 
-use super::super::fault::Fault;
-use super::super::orders::{FRICTION, INCREMENT};
 use super::report::{Outcome, fails, good, not_offered};
 use super::trial::{Trial, at, is_last};
-use crate::explain::names::{self, MODES};
-use crate::model::Mode;
-use crate::outside::shown;
 use serde_json::Value;
+use stickslip_core::model::Mode;
+use stickslip_debugger::explain::names::{self, MODES};
+use stickslip_debugger::recorded::fault::Fault;
+use stickslip_debugger::recorded::orders::{FRICTION, INCREMENT};
 use stickslip_exchange::attach::message::{Ended, Id, Parameter, ParameterKind, State};
+use stickslip_scene::shown;
 
 /// Contacts that are forced, each in every mode.
 const FORCED: usize = 100;

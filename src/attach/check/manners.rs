@@ -1,11 +1,11 @@
 //! Requests that are wrong, that come in between, and the last one.
 
-use super::super::fault::Fault;
 use super::super::link::name;
 use super::report::{Outcome, fails, good, not_offered};
 use super::trial::{Trial, millis};
-use crate::model::Mode;
 use std::time::Instant;
+use stickslip_core::model::Mode;
+use stickslip_debugger::recorded::fault::Fault;
 use stickslip_exchange::attach::message::{Id, State};
 use stickslip_exchange::attach::{Answer, Request};
 

@@ -13,10 +13,10 @@ pub mod report;
 mod steps;
 mod trial;
 
-use super::fault::Fault;
 use super::link::Start;
-use super::log::Log;
 pub use report::{Checked, Outcome, Report, Verdict};
+use stickslip_debugger::recorded::fault::Fault;
+use stickslip_debugger::recorded::log::Log;
 use stickslip_exchange::attach::message::State;
 use trial::{Trial, millis};
 

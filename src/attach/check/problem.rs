@@ -6,18 +6,18 @@
 //! problem is held to it in states that are accepted with settled modes, with forces that are in balance. Sticking nodes do
 //! not move: u = (W f + q)_t = 0 at contacts that were fixed through the whole increment.
 
-use super::super::fault::Fault;
 use super::super::meeting::other;
-use super::super::posed::posed;
 use super::report::{Outcome, fails, good, not_offered, not_tried};
 use super::steps::is_settled;
 use super::trial::{Trial, is_last};
-use crate::model::Mode;
-use crate::outside::shown;
-use crate::step::solver::Posed;
 use nalgebra::DVector;
+use stickslip_core::model::Mode;
+use stickslip_core::step::solver::Posed;
+use stickslip_debugger::recorded::fault::Fault;
+use stickslip_debugger::recorded::posed::posed;
 use stickslip_exchange::attach::message::{Ended, Id, State};
 use stickslip_exchange::attach::{Answer, Request};
+use stickslip_scene::shown;
 
 /// What an iteration that solves the problem as it is posed may differ by, in parts of the lengths that go into it.
 const EXACT: f64 = 1e-6;

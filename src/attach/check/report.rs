@@ -1,7 +1,7 @@
 //! What was tried of a solver, and what was found.
 
-use super::super::fault::Fault;
 use std::fmt::Write;
+use stickslip_debugger::recorded::fault::Fault;
 
 /// How a check ended.
 #[derive(Debug, Clone, PartialEq, Eq)]

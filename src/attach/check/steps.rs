@@ -1,18 +1,18 @@
 //! What a solver tells as it steps: whether it fits its scene and follows from what it told before, whether it keeps to the signs
 //! of the protocol, and whether it is the same when started again.
 
-use super::super::fault::Fault;
-use super::super::judged::ALLOWED;
-use super::super::told::Frame;
 use super::report::{Outcome, Report, fails, good, not_tried};
 use super::trial::{Trial, is_last, millis};
-use crate::explain::names;
-use crate::model::{Mode, Model};
-use crate::outside::shown;
+use stickslip_core::model::{Mode, Model};
+use stickslip_debugger::explain::names;
+use stickslip_debugger::recorded::fault::Fault;
+use stickslip_debugger::recorded::judged::ALLOWED;
+use stickslip_debugger::recorded::told::Frame;
+use stickslip_scene::shown;
 
-use crate::step::event::Position;
-use crate::step::state::State as OurState;
 use std::time::Instant;
+use stickslip_core::step::event::Position;
+use stickslip_core::step::state::State as OurState;
 use stickslip_exchange::attach::message::{Ended, Found, Scene, State};
 use stickslip_exchange::attach::{Answer, Request};
 
@@ -103,7 +103,7 @@ fn prompt(trial: &mut Trial) -> Result<Outcome, Fault> {
 
 /// Looks at states, as the debugger does.
 fn look(report: &mut Report, scene: &Scene, name: &str, states: &[State]) {
-    let sound = match crate::scene::Scene::told(name, scene, None) {
+    let sound = match stickslip_scene::Scene::told(name, scene, None) {
         Ok(sound) => sound,
         Err(why) => {
             let mend = "`stickslip help attach` says what a scene is";

@@ -1,14 +1,14 @@
 //! A solver that is tried, from its start.
 
-use super::super::fault::Fault;
 use super::super::link::{Link, Start};
-use super::super::log::Log;
 use super::super::meeting::{Met, meet, other};
-use crate::model::Mode;
 use serde_json::Value;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
+use stickslip_core::model::Mode;
+use stickslip_debugger::recorded::fault::Fault;
+use stickslip_debugger::recorded::log::Log;
 use stickslip_exchange::attach::message::{Ended, Found, Hello, Id, Scene, State};
 use stickslip_exchange::attach::{Answer, Request};
 

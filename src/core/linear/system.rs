@@ -61,7 +61,7 @@ pub struct System {
     pub(super) pressures: Pressures,
     /// What `stiffness` is laid out for.
     pub(super) layout: Option<Layout>,
-    pub(super) whole: Option<Factors>,
+    pub whole: Option<Factors>,
     /// Displacements about which `stiffness` was taken, what the elements remembered then, and its values before the interface's
     /// part; where it may be used again.
     taken: Vec<f64>,

@@ -3,7 +3,7 @@
 use super::super::nodes::Names;
 use crate::format::error::{Fault, Path, at, some_of};
 use crate::format::spec::Spec;
-use crate::model::{
+use stickslip_core::model::{
     ArcLength, Bound, Contact, Control, InitialGaps, Measured, Monitor, Solver, Watched,
 };
 

@@ -8,9 +8,9 @@ use super::super::nodes::{Entry, Mesh, Names};
 use super::linear;
 use crate::format::error::{Fault, Path, at, did_you_mean, quoted, some_of};
 use crate::format::spec::{BodySpec, Material, Point, Region, Spec};
-use crate::model::{Beam, Body, BodyKind, Elastic, Node, Solid, SolidElement, boundary};
-use crate::model::{Law, Plane, Update};
 use std::collections::HashSet;
+use stickslip_core::model::{Beam, Body, BodyKind, Elastic, Node, Solid, SolidElement, boundary};
+use stickslip_core::model::{Law, Plane, Update};
 
 /// Refuses materials without usable stiffnesses.
 pub(super) fn materials(spec: &Spec) -> Result<(), Fault> {

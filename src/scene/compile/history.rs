@@ -3,7 +3,7 @@
 use super::super::limits;
 use crate::format::error::{Fault, at};
 use crate::format::spec::History;
-use crate::model::{Body, BodyKind, Control, Settings, Touch};
+use stickslip_core::model::{Body, BodyKind, Control, Settings, Touch};
 
 /// Refuses a path that goes nowhere, or that has no end.
 pub(super) fn history(history: &History) -> Result<(), Fault> {
@@ -95,7 +95,7 @@ fn of_legs(history: &History) -> Result<(), Fault> {
 }
 
 /// Number of increments along a path: each leg is cut into whole ones of its size, and what is left.
-pub(crate) fn increments(path: &[f64], size: impl Fn(usize) -> f64) -> f64 {
+pub fn increments(path: &[f64], size: impl Fn(usize) -> f64) -> f64 {
     // A leg of ten tenths has ten increments, whatever the last bit of the sum says.
     const ROUNDING: f64 = 1e-9;
     let of_leg = |(leg, pair): (usize, &[f64])| {

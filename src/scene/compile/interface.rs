@@ -7,14 +7,14 @@ use super::super::nodes::Names;
 use super::super::nodes::checks::unique;
 use super::bodies::{chain, check_chain};
 use super::laws;
-use crate::contact::element::closed;
-use crate::contact::smooth::smooth;
 use crate::format::contact_law::FrictionSpec;
 use crate::format::error::{Fault, Path, at, did_you_mean, quoted, some_of};
 use crate::format::spec::{Nodes, Side, SlaveSpec, Spec};
-use crate::model::{Component, Friction, InitialState};
-use crate::model::{Contact, Dofs, Surface};
 use std::collections::HashSet;
+use stickslip_core::contact::element::closed;
+use stickslip_core::contact::smooth::smooth;
+use stickslip_core::model::{Component, Friction, InitialState};
+use stickslip_core::model::{Contact, Dofs, Surface};
 
 /// The surfaces of a scene: those of its list, in its order, one for each piece.
 pub(super) struct Surfaces {

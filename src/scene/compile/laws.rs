@@ -3,13 +3,15 @@
 use super::super::areas::tributary;
 use super::super::limits;
 use super::super::nodes::Names;
-use crate::contact::facing::is_piece;
-use crate::contact::projection::{project, projection_at};
 use crate::format::contact_law::{ContactLaw, FrictionSpec};
 use crate::format::error::{Fault, Path, at};
 use crate::format::spec::{SlaveSpec, Spec};
-use crate::model::{Body, Bond, Contact, Dofs, Friction, InitialState, Mode, Node, Surface};
 use std::collections::HashSet;
+use stickslip_core::contact::facing::is_piece;
+use stickslip_core::contact::projection::{project, projection_at};
+use stickslip_core::model::{
+    Body, Bond, Contact, Dofs, Friction, InitialState, Mode, Node, Surface,
+};
 
 /// Most that a tied node is moved, as a part of the scene's length: what is farther away was not meant to be joined.
 const JOINED: f64 = 0.05;

@@ -5,9 +5,9 @@ use super::super::nodes::Names;
 use super::{pressures, tractions, volumes};
 use crate::format::error::{Fault, Path, at};
 use crate::format::spec::{LoadSpec, Point, Spec};
-use crate::model::Component;
-use crate::model::{Body, BodyKind, Dofs, Factor, Form, Load, Prescribed, Pressure};
 use std::collections::HashMap;
+use stickslip_core::model::Component;
+use stickslip_core::model::{Body, BodyKind, Dofs, Factor, Form, Load, Prescribed, Pressure};
 
 /// What the loads of a scene make of a model's degrees of freedom.
 #[derive(Debug, Clone, PartialEq, Default)]

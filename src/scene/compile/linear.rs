@@ -4,8 +4,8 @@ use super::super::limits;
 use super::super::nodes::Names;
 use crate::format::error::{Fault, Path};
 use crate::format::spec::{Bar, BodySpec, Spec};
-use crate::model::{Body, BodyKind, Dofs, Factor, Form, Linear, Load, Truss};
 use std::collections::{BTreeMap, HashMap, HashSet};
+use stickslip_core::model::{Body, BodyKind, Dofs, Factor, Form, Linear, Load, Truss};
 
 /// A body given by a stiffness or a compliance. Where the forces of a compliance stand is found later, with the other
 /// degrees of freedom.

@@ -25,12 +25,12 @@ use super::limits;
 use super::nodes::Names;
 use crate::format::error::{Fault, at};
 use crate::format::spec::Spec;
-use crate::linear::estimate::Estimate;
-use crate::model::{InitialGaps, Model};
-pub(crate) use history::increments;
+pub use history::increments;
 use layout::Layout;
 pub(crate) use layout::Loads;
 pub(crate) use renewed::{Choices, Compiled, Groups, renewed};
+use stickslip_core::linear::estimate::Estimate;
+use stickslip_core::model::{InitialGaps, Model};
 
 /// Checks a scene.
 pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
@@ -130,7 +130,7 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
         arc,
         settings,
         monitors,
-        budget: crate::scene::memory::free(),
+        budget: crate::memory::free(),
         length,
         finished: None,
     };

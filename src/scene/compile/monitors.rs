@@ -5,8 +5,8 @@ use super::super::nodes::Names;
 use super::layout::no_rotation;
 use crate::format::error::{Fault, Path, at, quoted, some_of};
 use crate::format::spec::{Quantity, Spec};
-use crate::model::{Contact, Control, Dofs, Monitor, Watched};
 use std::collections::HashMap;
+use stickslip_core::model::{Contact, Control, Dofs, Monitor, Watched};
 
 /// The last monitor of a history that follows the path.
 const ARC: &str = "arc";

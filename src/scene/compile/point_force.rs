@@ -1,9 +1,9 @@
-//! Compliance of surface elements under point forces ([`crate::contact::point_force`]): those of a beam with a shear
+//! Compliance of surface elements under point forces ([`stickslip_core::contact::point_force`]): those of a beam with a shear
 //! stiffness.
 
-use crate::fem::lagrange::{gauss, shape};
-use crate::model::{Beam, Body, BodyKind, Node, PointForce, PointGive, Surface};
 use std::collections::HashMap;
+use stickslip_core::fem::lagrange::{gauss, shape};
+use stickslip_core::model::{Beam, Body, BodyKind, Node, PointForce, PointGive, Surface};
 
 /// Gauss points for the length of an element, which may be strongly curved.
 const POINTS: usize = 36;

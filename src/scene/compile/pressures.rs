@@ -3,8 +3,8 @@
 use super::super::nodes::Names;
 use super::tractions;
 use crate::format::error::{Fault, Path};
-use crate::model::{Body, BodyKind, Elastic, Plane, PressedFace, Update};
 use std::collections::{BTreeMap, HashMap, HashSet};
+use stickslip_core::model::{Body, BodyKind, Elastic, Plane, PressedFace, Update};
 
 /// Faces under a pressure, of bodies with large displacements and with small ones.
 #[derive(Default)]

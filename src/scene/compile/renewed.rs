@@ -9,8 +9,8 @@ use super::{history, interface};
 use crate::format::error::{Path, Step};
 use crate::format::paths::Found;
 use crate::format::spec::{SlaveSpec, Spec};
-use crate::linear::estimate::Estimate;
-use crate::model::{Control, Model};
+use stickslip_core::linear::estimate::Estimate;
+use stickslip_core::model::{Control, Model};
 
 /// Settings that are used outside the solver, too: they move nodes, create surfaces, or make the scene invalid.
 const DEEP: [&str; 4] = ["initial_gaps", "adjust_gap", "point_force", "memory"];
@@ -165,7 +165,7 @@ impl Choices {
     }
 
     /// Number of increments of their history.
-    pub(crate) fn increments(&self) -> f64 {
+    pub fn increments(&self) -> f64 {
         let history = &self.spec.history;
         history::increments(&history.path, |leg| history.on_leg(leg))
     }

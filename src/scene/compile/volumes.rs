@@ -2,10 +2,10 @@
 
 use super::super::limits;
 use super::super::nodes::Names;
-use crate::fem::continuum::{self, Sample};
 use crate::format::error::{Fault, Path, did_you_mean, quoted, some_of};
-use crate::model::{Body, BodyKind, Elastic, ElementKind, Solid, SolidElement};
 use std::collections::{BTreeMap, HashMap, HashSet};
+use stickslip_core::fem::continuum::{self, Sample};
+use stickslip_core::model::{Body, BodyKind, Elastic, ElementKind, Solid, SolidElement};
 
 /// Consistent forces ∫ N_i b w dA of a force b by volume, in the order of the nodes' numbers, where w is the width across the
 /// plane; `on` names a solid, or a block or mesh that solids stand on.

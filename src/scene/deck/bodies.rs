@@ -4,8 +4,8 @@ use super::{Fault, MESH, Made};
 use crate::format::error::at;
 use crate::format::given::Cells;
 use crate::format::spec::{BodySpec, Material, Nodes};
-use crate::model::{ElementKind, Law, Plane, Update};
 use std::collections::BTreeMap;
+use stickslip_core::model::{ElementKind, Law, Plane, Update};
 use stickslip_exchange::inp::deck::{Element, ElementType, Family, Form, Section};
 use stickslip_exchange::mesh::CellKind;
 

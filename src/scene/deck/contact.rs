@@ -7,8 +7,8 @@ use crate::format::contact_law::{ContactLaw, FrictionSpec};
 use crate::format::error::at;
 use crate::format::given::SideSet;
 use crate::format::spec::{Nodes, SlaveSpec, SurfaceSpec};
-use crate::model::{InitialGaps, Mode};
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+use stickslip_core::model::{InitialGaps, Mode};
 use stickslip_exchange::inp::Place;
 use stickslip_exchange::inp::deck::{Adjust, Faces, Family, Normal, Tie};
 

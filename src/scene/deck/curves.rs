@@ -194,7 +194,7 @@ impl Acting<'_> {
 
 /// Piecewise linear, constant beyond the ends.
 fn interpolated(points: &[(f64, f64)], time: f64) -> f64 {
-    crate::model::Factor(points.to_vec()).at(time)
+    stickslip_core::model::Factor(points.to_vec()).at(time)
 }
 
 /// A curve as a value and a scale: the largest size that it has, and what part of it acts. `None` where nothing ever acts.

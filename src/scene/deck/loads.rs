@@ -5,8 +5,8 @@ use super::{Fault, MESH, Made};
 use crate::format::error::at;
 use crate::format::given::NodeSet;
 use crate::format::spec::{LoadSpec, MonitorSpec, Nodes, Quantity, SupportSpec};
-use crate::model::{Axis, Component};
 use std::collections::{BTreeMap, HashMap};
+use stickslip_core::model::{Axis, Component};
 use stickslip_exchange::inp::Place;
 use stickslip_exchange::inp::deck::{Direction, Family, Step, Value, Volume};
 
@@ -179,7 +179,7 @@ impl Made<'_> {
         let given = |k: usize| course.is_some_and(|course| !course.given[k].values.is_empty());
         for (k, step) in self.deck.steps.iter().enumerate() {
             #[cfg(mutants)]
-            let step = &match crate::mutants::is_active("op-new-ignored") {
+            let step = &match stickslip_core::mutants::is_active("op-new-ignored") {
                 true => Step {
                     new_motions: false,
                     ..step.clone()

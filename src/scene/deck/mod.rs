@@ -22,10 +22,10 @@ mod tests;
 use crate::format::error::{self, Path, SceneError, Step, at};
 
 use crate::format::spec::Spec;
-use crate::outside::input::{self, Unreadable};
-use crate::outside::shown::cut;
+use crate::shown::cut;
 use std::collections::HashSet;
 use std::path::Path as FilePath;
+use stickslip_platform::input::{self, Unreadable};
 
 use stickslip_exchange::inp::deck::Direction;
 use stickslip_exchange::inp::{self, DECK_BYTES, Deck, Place, Wrong};

@@ -1,9 +1,9 @@
 //! What decks become, and where what is wrong with them stands.
 
+use crate::Scene;
 use crate::format::spec::LoadSpec;
-use crate::model::{Bond, Plane, Update};
-use crate::scene::Scene;
 use proptest::prelude::*;
+use stickslip_core::model::{Bond, Plane, Update};
 
 const BLOCK: &str = include_str!("../../../tests/decks/press-and-push.inp");
 const PLATES: &str = include_str!("../../../tests/decks/pressed-plates.inp");

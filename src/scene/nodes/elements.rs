@@ -2,7 +2,7 @@
 
 use super::super::geometry::Folds;
 use crate::format::error::{Fault, Path};
-use crate::model::{ElementKind, Node};
+use stickslip_core::model::{ElementKind, Node};
 
 /// An element: its kind and its node numbers, anticlockwise.
 pub(crate) type Element = (ElementKind, Vec<usize>);
@@ -42,7 +42,7 @@ pub(super) fn sound(
         // From its first corner the other way round, so that the middle of its last side comes first.
         own[1..count].reverse();
         #[cfg(mutants)]
-        if crate::mutants::is_active("middle-nodes-not-turned") {
+        if stickslip_core::mutants::is_active("middle-nodes-not-turned") {
             return Ok((kind, own));
         }
         if own.len() >= 2 * count {

@@ -9,8 +9,8 @@ use super::{Entry, EntryKind, Names};
 use crate::format::error::{Fault, Path, at, quoted};
 use crate::format::given::{Cells, NodeSet, SideSet};
 use crate::format::spec::Nodes;
-use crate::model::Node;
 use std::collections::HashMap;
+use stickslip_core::model::Node;
 
 impl Names {
     /// Enters a mesh that is given node by node: the whole of it, then its parts, sets and sides.

@@ -8,7 +8,7 @@ use super::super::limits;
 use super::{EntryKind, Names};
 use crate::format::error::{Fault, at};
 use crate::format::spec::{Nodes, Point};
-use crate::model::Node;
+use stickslip_core::model::Node;
 
 impl Names {
     pub(super) fn generate(

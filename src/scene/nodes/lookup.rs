@@ -3,7 +3,7 @@
 use super::given::nodes_of;
 use super::{Entry, EntryKind, Mesh, Names};
 use crate::format::error::{did_you_mean, quoted, some_of};
-use crate::outside::shown::first_of;
+use crate::shown::first_of;
 
 impl Names {
     /// The number of a node by any of its names.

@@ -17,9 +17,9 @@ use super::blocks::Grid;
 use super::limits;
 use crate::format::error::{Fault, at};
 use crate::format::spec::{Nodes, Spec};
-use crate::model::{ElementKind, Node};
 use checks::{check_ids, check_total};
 use elements::Element;
+use stickslip_core::model::{ElementKind, Node};
 
 use sides::Line as Sides;
 use std::collections::HashMap;

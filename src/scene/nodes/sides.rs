@@ -2,9 +2,9 @@
 
 use super::elements::{Element, named};
 use crate::format::error::{Fault, Path};
-use crate::model::Node;
-use crate::outside::shown::first_of;
+use crate::shown::first_of;
 use std::collections::{HashMap, HashSet};
+use stickslip_core::model::Node;
 
 /// Sides in walking order.
 #[derive(Debug, Clone, PartialEq, Default)]

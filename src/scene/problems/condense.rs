@@ -5,9 +5,9 @@
 //! K_cc u_c + K_ci u_i = f_c + r, ...:    S = K_cc − K_ci K_ii⁻¹ K_ic,  and  f_c − K_ci K_ii⁻¹ f_i
 //! ```
 
-use crate::linalg::{Factors, Pattern, SolveError};
 use std::sync::Arc;
 use stickslip_exchange::problem::Matrix;
+use stickslip_linalg::{Factors, Pattern, SolveError};
 
 /// Norm of the inverse (of the matrix scaled to entries of about 1) from which on it counts as singular.
 const SINGULAR: f64 = 1e12;

@@ -15,9 +15,9 @@ use super::fits;
 use super::siconos::{contacts, settings};
 use crate::format::condensed::{Matrix, Problem};
 use crate::format::{SceneError, read};
-use crate::outside::input;
 use std::path::{Path, PathBuf};
 use stickslip_exchange::matrix_market;
+use stickslip_platform::input;
 
 /// Files that make a problem, besides the matrix.
 const PARTS: [&str; 3] = ["q", "mu", "f"];

@@ -15,8 +15,8 @@ pub mod stored;
 
 use super::limits;
 use crate::format::{SceneError, error, read};
-use crate::outside::input;
 use std::path::Path;
+use stickslip_platform::input;
 
 /// Refuses a matrix of so many contacts that takes more memory than there is.
 fn fits(contacts: usize, memory: Option<f64>) -> Result<(), String> {

@@ -4,15 +4,15 @@ use super::siconos::{self, Friction2d};
 use super::title;
 use crate::format::condensed::Problem;
 use crate::format::{SceneError, read};
-use crate::outside::input;
 use std::path::Path;
 use stickslip_exchange::fclib;
+use stickslip_platform::input;
 
 /// A file that is no text: its problem, if it is one.
 ///
 /// # Errors
 /// If it is one, and unsound.
-pub(in crate::scene) fn from_file(
+pub(crate) fn from_file(
     name: &str,
     overrides: &[(String, String)],
 ) -> Option<Result<Problem, SceneError>> {
@@ -38,11 +38,7 @@ pub(in crate::scene) fn from_file(
 ///
 /// # Errors
 /// If it is unsound.
-pub(in crate::scene) fn siconos(
-    name: &str,
-    text: &str,
-    memory: Option<f64>,
-) -> Result<Problem, SceneError> {
+pub(crate) fn siconos(name: &str, text: &str, memory: Option<f64>) -> Result<Problem, SceneError> {
     match siconos::read_within(text, memory) {
         Ok(problem) => Ok(problem.problem(&title(name))),
         Err(broken) => Err(SceneError {
@@ -53,7 +49,7 @@ pub(in crate::scene) fn siconos(
 }
 
 /// What `settings.memory` is set to from outside.
-pub(in crate::scene) fn memory(overrides: &[(String, String)]) -> Option<f64> {
+pub(crate) fn memory(overrides: &[(String, String)]) -> Option<f64> {
     let set = overrides
         .iter()
         .rev()

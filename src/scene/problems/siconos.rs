@@ -8,8 +8,8 @@
 //! and free, and takes the unloaded motion q, and so u and r, in one increment.
 
 use crate::format::condensed::{Contact, Matrix, Problem};
-use crate::model::{Friction, InitialState, Mode, Settings, Solver};
-use crate::scene::limits;
+use crate::limits;
+use stickslip_core::model::{Friction, InitialState, Mode, Settings, Solver};
 use stickslip_exchange::problem::{self, Local};
 use stickslip_exchange::siconos;
 pub use stickslip_exchange::siconos::Storage;

@@ -15,12 +15,12 @@ use crate::format::condensed::{Contact, Matrix, Problem};
 use crate::format::error::{Fault, Path, at, quoted};
 use crate::format::stored::{Stored, Touching};
 use crate::format::{SceneError, read};
-use crate::model::InitialState;
-use crate::outside::input;
-use crate::scene::placed;
+use crate::placed;
 use std::collections::HashMap;
+use stickslip_core::model::InitialState;
 use stickslip_exchange::calculix::stiffness::{self, Unknown};
 use stickslip_exchange::problem;
+use stickslip_platform::input;
 
 /// Reads such a file and those that it names, and condenses what they say.
 ///
@@ -324,7 +324,7 @@ fn points<'s>(spec: &'s Stored, numbers: &Numbers) -> Result<Vec<Point<'s>>, Fau
 }
 
 fn finite(path: &Path, value: f64) -> Result<(), Fault> {
-    crate::scene::limits::finite(path, value, "the value")
+    crate::limits::finite(path, value, "the value")
 }
 
 /// Where the components of each node stand among the unknowns.

@@ -1,7 +1,7 @@
 //! Shapes as PNG: every pixel is as dark as the part of it that a shape covers.
 
 use super::font::{self, EM};
-use crate::study::drawn::{Anchor, Colour, PlotError, Shape};
+use crate::drawn::{Anchor, Colour, PlotError, Shape};
 use ab_glyph::{Font, point};
 use ab_glyph_rasterizer::Rasterizer;
 

@@ -1,6 +1,6 @@
-//! DejaVu Sans, which is carried compressed (`build.rs`): how wide texts are, and where their glyphs stand.
+//! DejaVu Sans: how wide texts are, and where their glyphs stand.
 
-use crate::study::drawn::PlotError;
+use crate::drawn::PlotError;
 use ab_glyph::{Font, FontRef, GlyphId, PxScale, ScaleFont};
 use std::sync::OnceLock;
 
@@ -9,11 +9,8 @@ pub(super) const EM: f64 = 1.0 / 1.24;
 
 /// The font.
 pub(super) fn font() -> Result<&'static FontRef<'static>, PlotError> {
-    static BYTES: OnceLock<Option<Vec<u8>>> = OnceLock::new();
     static FONT: OnceLock<Option<FontRef<'static>>> = OnceLock::new();
-    const PACKED: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/font.deflate"));
-    let bytes = || BYTES.get_or_init(|| miniz_oxide::inflate::decompress_to_vec(PACKED).ok());
-    let font = FONT.get_or_init(|| FontRef::try_from_slice(bytes().as_deref()?).ok());
+    let font = FONT.get_or_init(|| FontRef::try_from_slice(dejavu::sans::regular()).ok());
     font.as_ref()
         .ok_or_else(|| PlotError::new("its font cannot be read"))
 }

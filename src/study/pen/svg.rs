@@ -1,7 +1,7 @@
 //! Shapes as SVG.
 
 use super::font::EM;
-use crate::study::drawn::{Anchor, Colour, PlotError, Shape};
+use crate::drawn::{Anchor, Colour, PlotError, Shape};
 use std::fmt::Write;
 
 /// The shapes on a white sheet of a size.

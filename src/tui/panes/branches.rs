@@ -1,20 +1,20 @@
 //! The branches as a tree, each with its end and its cost, and the selected one beside the current one.
 
-use crate::explain::names;
-use crate::explain::number;
-use crate::history::compare::{self, Sameness, Side};
-use crate::history::tree::Tree;
-use crate::history::verdicts::{BranchEnd, Summary};
-use crate::history::{branches, verdicts};
-use crate::outside::shown;
-use crate::tui::app::App;
-use crate::tui::layout::Pane;
-use crate::tui::paint;
-use crate::tui::view::View;
+use crate::app::App;
+use crate::layout::Pane;
+use crate::paint;
+use crate::view::View;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
 use ratatui::text::{Line, Span};
+use stickslip_debugger::explain::names;
+use stickslip_debugger::history::compare::{self, Sameness, Side};
+use stickslip_debugger::history::tree::Tree;
+use stickslip_debugger::history::verdicts::{BranchEnd, Summary};
+use stickslip_debugger::history::{branches, verdicts};
+use stickslip_scene::number;
+use stickslip_scene::shown;
 use unicode_width::UnicodeWidthStr;
 
 /// Width of one side of the comparison.

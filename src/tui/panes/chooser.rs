@@ -1,8 +1,8 @@
 //! The list of what can be opened: scenes, lessons, files; with a look at the selected one where there is room.
 
-use crate::tui::app::App;
-use crate::tui::choosing::{Chooser, Glance, Offer, Preview};
-use crate::tui::paint;
+use crate::app::App;
+use crate::choosing::{Chooser, Glance, Offer, Preview};
+use crate::paint;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::text::{Line, Span};

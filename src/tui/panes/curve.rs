@@ -1,17 +1,17 @@
 //! The load factor over a monitor, at the end of every accepted increment up to the shown frame.
 
-use crate::explain::number::{plain, short};
-use crate::history::frame;
-use crate::tui::app::App;
-use crate::tui::canvas::Canvas;
-use crate::tui::chartframe::ChartFrame;
-use crate::tui::layout::Pane;
-use crate::tui::paint;
-use crate::tui::theme::Theme;
-use crate::tui::view::View;
+use crate::app::App;
+use crate::canvas::Canvas;
+use crate::chartframe::ChartFrame;
+use crate::layout::Pane;
+use crate::paint;
+use crate::theme::Theme;
+use crate::view::View;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
+use stickslip_debugger::history::frame;
+use stickslip_scene::number::{plain, short};
 
 /// Width of the labels at the axis, the axis included.
 const LABELS: u16 = 9;

@@ -1,25 +1,25 @@
 //! The decision on the selected node: Table 2 with the cell that fired, and the inequality with its numbers.
 
-use crate::contact::record::{ContactRecord, Forced, SideForce};
-use crate::contact::table2::{Decision, Rule, Test, Tested};
-use crate::explain::bond;
-use crate::explain::influence::Push;
-use crate::explain::names::{self, MODES, TABLE_2};
-use crate::explain::number::{self, four, long};
-use crate::explain::pushes_told;
-use crate::explain::report;
-use crate::explain::round_off::NOTE;
-use crate::model::Mode;
-use crate::model::Ties;
-use crate::tui::app::App;
-use crate::tui::layout::Pane;
-use crate::tui::paint;
-use crate::tui::theme::Theme;
-use crate::tui::view::View;
+use crate::app::App;
+use crate::layout::Pane;
+use crate::paint;
+use crate::theme::Theme;
+use crate::view::View;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span};
+use stickslip_core::contact::record::{ContactRecord, Forced, SideForce};
+use stickslip_core::contact::table2::{Decision, Rule, Test, Tested};
+use stickslip_core::model::Mode;
+use stickslip_core::model::Ties;
+use stickslip_debugger::explain::bond;
+use stickslip_debugger::explain::influence::Push;
+use stickslip_debugger::explain::names::{self, MODES, TABLE_2};
+use stickslip_debugger::explain::pushes_told;
+use stickslip_debugger::explain::report;
+use stickslip_debugger::explain::round_off::NOTE;
+use stickslip_scene::number::{self, four, long};
 use unicode_width::UnicodeWidthStr;
 
 /// Width of the rows' headings.

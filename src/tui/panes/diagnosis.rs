@@ -1,18 +1,18 @@
 //! The diagnosis: why the minor iterations cycle from the shown state, or which states are consistent; the consistent
 //! ones side by side, one of them selected, to start from.
 
-use crate::explain::examination::Examination;
-use crate::explain::number;
-use crate::interface::census::Census;
-use crate::interface::problem::NodeAnswer;
-use crate::outside::shown;
-use crate::tui::app::App;
-use crate::tui::layout::Pane;
-use crate::tui::paint;
-use crate::tui::view::View;
+use crate::app::App;
+use crate::layout::Pane;
+use crate::paint;
+use crate::view::View;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
+use stickslip_core::interface::census::Census;
+use stickslip_core::interface::problem::NodeAnswer;
+use stickslip_debugger::explain::examination::Examination;
+use stickslip_scene::number;
+use stickslip_scene::shown;
 
 /// Width of a consistent state's column: a letter and three numbers.
 const CELL: usize = 34;
@@ -180,13 +180,13 @@ fn differs(census: &Census, place: usize) -> bool {
 fn cell(answer: &NodeAnswer, app: &App) -> [Span<'static>; 2] {
     let mode = answer.assumed.mode();
     let letter = match answer.assumed {
-        crate::interface::problem::Assumed::Plus => "S+",
-        crate::interface::problem::Assumed::Minus => "S-",
-        crate::interface::problem::Assumed::Free => "F ",
-        crate::interface::problem::Assumed::Fixed => "X ",
+        stickslip_core::interface::problem::Assumed::Plus => "S+",
+        stickslip_core::interface::problem::Assumed::Minus => "S-",
+        stickslip_core::interface::problem::Assumed::Free => "F ",
+        stickslip_core::interface::problem::Assumed::Fixed => "X ",
     };
     let last = match mode {
-        crate::model::Mode::Free => answer.gap,
+        stickslip_core::model::Mode::Free => answer.gap,
         _ => answer.slip,
     };
     let numbers = [answer.f_n, answer.f_t, last].map(|value| number::cell(value, 10));

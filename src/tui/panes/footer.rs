@@ -1,14 +1,14 @@
 //! The last two rows: what was said last, or what is being asked; and the keys that matter now, from the table.
 
-use crate::action::{ACTIONS, Entry, Group};
-use crate::tui::app::{App, Overlay, Tone};
-use crate::tui::layout::{Pane, Places};
-use crate::tui::paint::{self, wrapped};
-use crate::tui::theme::Theme;
-use crate::tui::view::View;
+use crate::app::{App, Overlay, Tone};
+use crate::layout::{Pane, Places};
+use crate::paint::{self, wrapped};
+use crate::theme::Theme;
+use crate::view::View;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
+use stickslip_debugger::action::{ACTIONS, Entry, Group};
 use unicode_width::UnicodeWidthStr;
 
 /// Actions that the footer never leaves out, however narrow the screen.
@@ -38,7 +38,7 @@ pub fn draw(buffer: &mut Buffer, places: &Places, app: &App, view: Option<&View>
 fn message(app: &App, view: Option<&View>, places: &Places, width: usize) -> Vec<Line<'static>> {
     let theme = &app.theme;
     if let Overlay::Line(line) = &app.overlay {
-        use crate::tui::commandline::Purpose;
+        use crate::commandline::Purpose;
         let prompt = match line.purpose {
             Purpose::Command => ":".into(),
             Purpose::Node => "/".into(),

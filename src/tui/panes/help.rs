@@ -1,14 +1,14 @@
 //! The `?` page: every action with its keys, and what the marks on the screen mean; and the page of the present keys, as the
 //! file has them that changes them.
 
-use crate::action::config;
-use crate::action::{ACTIONS, Context, Group, Keymap};
-use crate::manual::search::Search;
-use crate::tui::paint;
-use crate::tui::theme::Theme;
+use crate::paint;
+use crate::theme::Theme;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
+use stickslip_debugger::action::config;
+use stickslip_debugger::action::{ACTIONS, Context, Group, Keymap};
+use stickslip_manual::search::Search;
 
 /// What the glyphs mean.
 const MARKS: &[(&str, &str)] = &[

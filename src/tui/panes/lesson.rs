@@ -1,15 +1,15 @@
 //! The lesson: what the tutor says, and what to do next.
 
-use crate::outside::shown;
-use crate::teach::Tutor;
-use crate::teach::tutor::Paragraph;
-use crate::tui::app::App;
-use crate::tui::paint;
-use crate::tui::theme::Theme;
+use crate::app::App;
+use crate::paint;
+use crate::theme::Theme;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 use ratatui::text::{Line, Span};
+use stickslip_debugger::teach::Tutor;
+use stickslip_debugger::teach::tutor::Paragraph;
+use stickslip_scene::shown;
 use unicode_width::UnicodeWidthStr;
 
 /// Rows that the lesson wants at a width, border included; 0 without a lesson.

@@ -1,14 +1,14 @@
 //! A page of the manual over the whole screen: scrolled, searched, and turned to the next page.
 
-use crate::manual::render::{self, Line as Shown, Style};
-use crate::manual::search::Search;
-use crate::manual::{PAGES, Page};
-use crate::tui::paint;
-use crate::tui::theme::Theme;
+use crate::paint;
+use crate::theme::Theme;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, Borders, Widget};
+use stickslip_manual::render::{self, Line as Shown, Style};
+use stickslip_manual::search::Search;
+use stickslip_manual::{PAGES, Page};
 
 /// Lines that a page key goes past.
 const PAGE: usize = 16;
@@ -28,7 +28,7 @@ impl Reader {
     pub fn new(page: &'static Page) -> Reader {
         Reader {
             page,
-            lines: render::render(&page.text(), render::WIDTH),
+            lines: render::render(page.text(), render::WIDTH),
             top: 0,
             search: Search::default(),
         }

@@ -1,5 +1,5 @@
 //! What stands on the screen, one file a pane, a page or a bar. Each is a function from the app and the view into its
-//! part of the screen, and knows the brush ([`crate::tui::paint`]) but no other pane.
+//! part of the screen, and knows the brush ([`crate::paint`]) but no other pane.
 
 pub mod branches;
 pub mod chooser;

@@ -1,21 +1,21 @@
 //! The slave-node table: what the shown minor iteration found at every slave node.
 
-use crate::action::{Filter, Sort};
-use crate::contact::record::{ContactRecord, Forced};
-use crate::contact::table2::Tested;
-use crate::explain::names;
-use crate::explain::number;
-use crate::explain::round_off::RoundOff;
-use crate::outside::shown;
-use crate::tui::app::App;
-use crate::tui::layout::Pane;
-use crate::tui::paint;
-use crate::tui::theme;
-use crate::tui::view::View;
+use crate::app::App;
+use crate::layout::Pane;
+use crate::paint;
+use crate::theme;
+use crate::view::View;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span};
+use stickslip_core::contact::record::{ContactRecord, Forced};
+use stickslip_core::contact::table2::Tested;
+use stickslip_debugger::action::{Filter, Sort};
+use stickslip_debugger::explain::names;
+use stickslip_debugger::explain::round_off::RoundOff;
+use stickslip_scene::number;
+use stickslip_scene::shown;
 use unicode_width::UnicodeWidthStr;
 
 /// How wide the columns are.

@@ -1,15 +1,15 @@
 //! The remedies that were tried: what each costs and what it leaves; one of them selected, to be taken.
 
-use crate::explain::remedies::{self, CLEAN, COLUMNS, Trial, TrialEnd};
-use crate::outside::shown;
-use crate::tui::app::App;
-use crate::tui::layout::Pane;
-use crate::tui::paint;
-use crate::tui::view::View;
+use crate::app::App;
+use crate::layout::Pane;
+use crate::paint;
+use crate::view::View;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
 use ratatui::text::{Line, Span};
+use stickslip_debugger::explain::remedies::{self, CLEAN, COLUMNS, Trial, TrialEnd};
+use stickslip_scene::shown;
 use unicode_width::UnicodeWidthStr;
 
 /// Columns by [`COLUMNS`], the most telling first: a narrow screen shows as many as fit.

@@ -1,17 +1,17 @@
 //! The residual over the major iterations of the shown increment, on a log scale, with the limit it must get under.
 
-use crate::explain::names;
-use crate::explain::number;
-use crate::linear::norms::Norms;
-use crate::tui::app::App;
-use crate::tui::convergence::{self, Point};
-use crate::tui::layout::Pane;
-use crate::tui::paint;
-use crate::tui::theme::Theme;
-use crate::tui::view::View;
+use crate::app::App;
+use crate::convergence::{self, Point};
+use crate::layout::Pane;
+use crate::paint;
+use crate::theme::Theme;
+use crate::view::View;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
+use stickslip_core::linear::norms::Norms;
+use stickslip_debugger::explain::names;
+use stickslip_scene::number;
 
 /// Height from which on there is a line for the judge.
 const ROOM_FOR_JUDGE: u16 = 7;

@@ -3,22 +3,13 @@
 //! between its materials are drawn, and its elements where they are large enough to be told apart. Drawn at the start
 //! of the shown major iteration.
 
-use crate::contact::element::Element;
-use crate::contact::projection::tangent;
-use crate::explain::examination::Examination;
-use crate::explain::number;
-use crate::explain::outline::{self, Bounds, Point, bounds, curve};
-use crate::explain::strain;
-use crate::fem::deformation::{PointDeformation, deformation};
-use crate::fem::lagrange;
-use crate::model::{BodyKind, Contact, Model, Solid, SolidElement};
-use crate::tui::app::App;
-use crate::tui::camera::Camera;
-use crate::tui::canvas::{Canvas, Dot};
-use crate::tui::layout::Pane;
-use crate::tui::paint;
-use crate::tui::theme;
-use crate::tui::view::View;
+use crate::app::App;
+use crate::camera::Camera;
+use crate::canvas::{Canvas, Dot};
+use crate::layout::Pane;
+use crate::paint;
+use crate::theme;
+use crate::view::View;
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::{Margin, Position, Rect};
 use ratatui::style::Modifier;
@@ -26,6 +17,15 @@ use ratatui::text::{Line, Span};
 use ratatui::widgets::Widget;
 use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_4;
+use stickslip_core::contact::element::Element;
+use stickslip_core::contact::projection::tangent;
+use stickslip_core::fem::deformation::{PointDeformation, deformation};
+use stickslip_core::fem::lagrange;
+use stickslip_core::model::{BodyKind, Contact, Model, Solid, SolidElement};
+use stickslip_debugger::explain::examination::Examination;
+use stickslip_debugger::explain::outline::{self, Bounds, Point, bounds, curve};
+use stickslip_debugger::explain::strain;
+use stickslip_scene::number;
 use unicode_width::UnicodeWidthStr;
 
 /// Length of the longest force, and of a normal, as parts of what is seen.

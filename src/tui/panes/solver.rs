@@ -1,21 +1,21 @@
 //! Two pages of an attached solver: what it says besides (its messages, its standard error, and what happened to it), which
 //! follows the end while it is there; and the parameters that `:set` changes, with what they are now.
 
-use crate::action::present;
-use crate::attach::log::How;
-use crate::explain::number;
-use crate::manual::search::Search;
-use crate::outside::shown;
-use crate::step::intervene::Value;
-use crate::step::solver::Parameter;
-use crate::tui::paint;
-use crate::tui::theme::Theme;
-use crate::tui::view::{View, context};
+use crate::paint;
+use crate::theme::Theme;
+use crate::view::{View, context};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 use ratatui::text::Line;
+use stickslip_core::step::intervene::Value;
+use stickslip_core::step::solver::Parameter;
+use stickslip_debugger::action::present;
+use stickslip_debugger::recorded::log::How;
 use stickslip_exchange::attach::message::Level;
+use stickslip_manual::search::Search;
+use stickslip_scene::number;
+use stickslip_scene::shown;
 
 /// Rows that a page key goes past, and columns that a sideways key does.
 const PAGE: usize = 10;
@@ -170,7 +170,7 @@ fn rows(page: Page, width: usize, view: Option<&View>) -> Vec<Row> {
 }
 
 /// A finished run as text; sentences are wrapped, tables are not.
-fn printed(lines: Vec<crate::attach::log::Said>, width: usize) -> Vec<Row> {
+fn printed(lines: Vec<stickslip_debugger::recorded::log::Said>, width: usize) -> Vec<Row> {
     let printed = lines.into_iter().filter(|said| said.how == How::Printed);
     let wrapped = printed.flat_map(|said| match said.text.contains("  ") {
         true => vec![said.text],
@@ -184,7 +184,7 @@ fn printed(lines: Vec<crate::attach::log::Said>, width: usize) -> Vec<Row> {
 }
 
 /// What was said, a row a line, the newest last.
-fn said((first, lines): (usize, Vec<crate::attach::log::Said>)) -> Vec<Row> {
+fn said((first, lines): (usize, Vec<stickslip_debugger::recorded::log::Said>)) -> Vec<Row> {
     let faint = |text: String| Row {
         text,
         style: |theme| theme.faint,

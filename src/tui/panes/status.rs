@@ -1,23 +1,23 @@
 //! The top of the screen: which scene, where the solver is, and what the last minor iteration led to.
 
-use crate::action::by_name;
-use crate::contact::record::Forced;
-use crate::explain::names;
-use crate::explain::number;
-use crate::explain::report;
-use crate::model::Model;
-use crate::model::Strategy;
-use crate::step::event::{Event, Outcome};
-use crate::step::solver::GoesBack;
-use crate::step::state::Status;
-use crate::tui::app::{App, Overlay};
-use crate::tui::layout::Places;
-use crate::tui::paint;
-use crate::tui::view::{Guest, View};
+use crate::app::{App, Overlay};
+use crate::layout::Places;
+use crate::paint;
+use crate::view::{Guest, View};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 use ratatui::text::{Line, Span};
+use stickslip_core::contact::record::Forced;
+use stickslip_core::model::Model;
+use stickslip_core::model::Strategy;
+use stickslip_core::step::event::{Event, Outcome};
+use stickslip_core::step::solver::GoesBack;
+use stickslip_core::step::state::Status;
+use stickslip_debugger::action::by_name;
+use stickslip_debugger::explain::names;
+use stickslip_debugger::explain::report;
+use stickslip_scene::number;
 use unicode_width::UnicodeWidthStr;
 
 /// Draws the status. What its rows have no room for stands over the rows below.

@@ -3,19 +3,19 @@
 //! Majors and increments are ruled off, a cycle is bracketed, forced modes are small letters. Only the columns around
 //! the cursor are looked at, so that the length of the history costs nothing.
 
-use crate::explain::names;
-use crate::history::strip::{PointKind, Strip};
-use crate::model::Mode;
-use crate::step::event::{Failure, Outcome};
-use crate::tui::app::App;
-use crate::tui::columns::{self, Column, rows_shown};
-use crate::tui::layout::Pane;
-use crate::tui::paint;
-use crate::tui::view::View;
+use crate::app::App;
+use crate::columns::{self, Column, rows_shown};
+use crate::layout::Pane;
+use crate::paint;
+use crate::view::View;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Margin, Position, Rect};
 use ratatui::style::{Modifier, Style};
 use std::ops::Range;
+use stickslip_core::model::Mode;
+use stickslip_core::step::event::{Failure, Outcome};
+use stickslip_debugger::explain::names;
+use stickslip_debugger::history::strip::{PointKind, Strip};
 use unicode_width::UnicodeWidthStr;
 
 /// Rows that are no nodes: increments, majors, the cursor's mark, what each iteration led to, brackets.
@@ -165,7 +165,7 @@ fn title(view: &View) -> String {
 fn rule(view: &View, at: usize) -> Option<&'static str> {
     let before = view.strips.get(at.checked_sub(1)?)?;
     let (then, now) = (before.position, view.strips[at].position);
-    let of = |at: crate::step::event::Position| (at.increment, at.attempt);
+    let of = |at: stickslip_core::step::event::Position| (at.increment, at.attempt);
     match before.kind == PointKind::Start {
         false if view.model.finished.is_some() => match then.increment == now.increment {
             false => Some("║"),

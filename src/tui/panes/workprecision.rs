@@ -4,17 +4,17 @@
 //! Each run is its series' letter, a capital where no other run beats it in both; failures stand as ✗ on a rail above. One
 //! run is selected, and told in full below.
 
-use crate::explain::number;
-use crate::study::log_axis::{LogAxis, written};
-use crate::study::precision::{Point, Precision, ROUND_OFF};
-use crate::tui::chartframe::ChartFrame;
-use crate::tui::chartpage::ChartPage;
-use crate::tui::paint;
-use crate::tui::theme::Theme;
+use crate::chartframe::ChartFrame;
+use crate::chartpage::ChartPage;
+use crate::paint;
+use crate::theme::Theme;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 use ratatui::text::{Line, Span};
+use stickslip_scene::number;
+use stickslip_study::log_axis::{LogAxis, written};
+use stickslip_study::precision::{Point, Precision, ROUND_OFF};
 
 /// Columns left of the plot, for the numbers of the axis.
 const LEFT: u16 = 7;

@@ -1,0 +1,399 @@
+//! Arguments of actions: what is typed after a name, read.
+
+use super::context::{Context, any_or_exact, chosen, exact, find, model, several};
+use super::meaning::{Action, ChartOf, Colours, Copied, Filter, Question, Sort, Ui, Whose};
+use super::misread::Misread;
+use super::parameters::{parameter, set_paths};
+use super::table::{Entry, Verb};
+use crate::history::breakpoints::Condition;
+use crate::history::watches::{Watch, WatchQuantity};
+use crate::record::command::{Command, Exported, To};
+use std::path::PathBuf;
+use stickslip_core::model::Mode;
+use stickslip_manual as manual;
+use stickslip_study::Vary;
+
+/// Most characters of what follows an action's name.
+const LONGEST_REST: usize = 1000;
+
+/// Reads a line: an action's name and its arguments.
+pub fn parse(line: &str, context: &Context) -> Result<Action, Misread> {
+    let line = line.trim();
+    let (word, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
+    if word.is_empty() {
+        return Err(Misread::Nothing);
+    }
+    context.entry(word)?.act(rest.trim(), context)
+}
+
+impl Entry {
+    /// The action that this entry is with these arguments.
+    pub fn act(&self, rest: &str, context: &Context) -> Result<Action, Misread> {
+        if rest.chars().count() > LONGEST_REST {
+            return Err(Misread::LongRest {
+                name: self.name,
+                most: LONGEST_REST,
+            });
+        }
+        let words: Vec<&str> = rest.split_whitespace().collect();
+        if words.len() > self.most_words() {
+            return Err(self.misused());
+        }
+        let command = match &self.verb {
+            Verb::Forward(unit) => Command::Forward {
+                unit: *unit,
+                count: self.count(&words)?,
+            },
+            Verb::Back(unit) => Command::Back {
+                unit: *unit,
+                count: self.count(&words)?,
+            },
+            Verb::Force { hold } => return self.force(&words, *hold, context),
+            Verb::Release => Command::Release {
+                slave: chosen(words.first().copied(), context)?,
+            },
+            Verb::Increment if words.is_empty() => {
+                return Ok(Action::Ui(Ui::Ask(Question::Increment)));
+            }
+            Verb::Increment => Command::Increment(increment(rest)?),
+            Verb::Set => self.set(rest, &words, context)?,
+            Verb::SetPath(path) => match words[..] {
+                [value] => Command::Set {
+                    path: path.to_string(),
+                    value: value.into(),
+                },
+                _ => return Err(self.misused()),
+            },
+            Verb::Goto => match words[..] {
+                [word] => Command::Goto {
+                    step: word
+                        .parse()
+                        .map_err(|_| Misread::no_value(word, "step's number", self.usage()))?,
+                },
+                _ => return Err(self.misused()),
+            },
+            Verb::Branch(Some(to)) => Command::Branch(to.clone()),
+            Verb::Branch(None) | Verb::Rename | Verb::Unwatch if rest.is_empty() => {
+                return Err(self.misused());
+            }
+            Verb::Branch(None) => Command::Branch(To::Named(rest.into())),
+            Verb::Rename => Command::Rename(rest.into()),
+            Verb::Unwatch => Command::Unwatch(rest.into()),
+            Verb::Compare => Command::Compare((!rest.is_empty()).then(|| rest.into())),
+            Verb::Break if words.is_empty() => return Ok(Action::Ui(Ui::Ask(Question::Break))),
+            Verb::Break => Command::Break(condition(&words, context)?),
+            Verb::Delete => Command::Delete(self.number_or_all(&words)?),
+            Verb::Enable { on } => Command::Enable {
+                id: self.number_or_all(&words)?,
+                on: *on,
+            },
+            Verb::Watch => Command::Watch(self.watch(&words, context)?),
+            Verb::Plain(command) => command.clone(),
+            Verb::Census => Command::Census(several(&words, context)?),
+            Verb::Export { what, overwrite } => {
+                let frozen = match what {
+                    Exported::Shown => rest.strip_prefix("--frozen"),
+                    _ => None,
+                };
+                let frozen = frozen.filter(|file| file.is_empty() || file.starts_with(' '));
+                let file = frozen.map_or(rest, str::trim_start);
+                if file.is_empty() {
+                    return Err(self.misused());
+                }
+                Command::Export {
+                    what: frozen.map_or(*what, |_| Exported::Whole),
+                    file: PathBuf::from(file),
+                    overwrite: *overwrite,
+                }
+            }
+            Verb::Snapshot { overwrite: true } if rest.is_empty() => return Err(self.misused()),
+            Verb::Snapshot { overwrite } => {
+                let file = (!rest.is_empty()).then(|| PathBuf::from(rest));
+                Command::Snapshot {
+                    file,
+                    overwrite: *overwrite,
+                }
+            }
+            Verb::Journal => Command::Journal((!rest.is_empty()).then(|| PathBuf::from(rest))),
+            Verb::Node if rest.is_empty() => return Ok(Action::Ui(Ui::Ask(Question::Node))),
+            Verb::Node => return Ok(Action::Ui(Ui::Select(find(rest, context)?))),
+            Verb::Open if rest.is_empty() => return Ok(Action::Ui(Ui::Ask(Question::Scene))),
+            Verb::Open => return Ok(Action::Ui(Ui::Open(rest.into()))),
+            Verb::Sort => {
+                let sort = one_of(&words, Sort::ALL, Sort::word)?;
+                return Ok(Action::Ui(Ui::Sort(sort)));
+            }
+            Verb::Filter => {
+                let filter = one_of(&words, Filter::ALL, Filter::word)?;
+                return Ok(Action::Ui(Ui::Filter(filter)));
+            }
+            Verb::Copy => {
+                let what = one_of(&words, Copied::all(), Copied::word)?;
+                return Ok(Action::Ui(Ui::Copy(what)));
+            }
+            Verb::Colours => {
+                let rest = words.join(" ");
+                let rest = (!rest.is_empty()).then_some(rest.as_str());
+                let colours = one_of(rest.as_slice(), Colours::ALL, Colours::word)?;
+                return Ok(Action::Ui(Ui::Colours(colours)));
+            }
+            Verb::Mouse => {
+                let word = |on: bool| if on { "on" } else { "off" };
+                let on = one_of(&words, [true, false], word)?;
+                return Ok(Action::Ui(Ui::Mouse(on)));
+            }
+            Verb::Chart => return Ok(Action::Ui(Ui::Chart(chart_of(rest, &words)?))),
+            Verb::Lesson if rest.is_empty() => return Ok(Action::Ui(Ui::Ask(Question::Lesson))),
+            Verb::Lesson => return Ok(Action::Ui(Ui::Lesson(rest.into()))),
+            Verb::Answer if rest.is_empty() => return Ok(Action::Ui(Ui::Ask(Question::Answer))),
+            Verb::Answer => return Ok(Action::Ui(Ui::Answer(rest.into()))),
+            Verb::Predict => {
+                let whose = one_of(&words, Whose::ALL, Whose::word)?;
+                return Ok(Action::Ui(Ui::Predict(whose)));
+            }
+            Verb::Monitor if rest.is_empty() => return Ok(Action::Ui(Ui::Monitor(None))),
+            Verb::Monitor => return Ok(Action::Ui(Ui::Monitor(Some(monitor(rest, context)?)))),
+            Verb::Help if rest.is_empty() => return Ok(Action::Ui(Ui::Help)),
+            Verb::Help => return Ok(Action::Ui(Ui::Manual(manual::page(rest)?))),
+            Verb::StartFrom => return Ok(Action::Ui(Ui::StartFrom(self.number(&words)?))),
+            Verb::Apply => return Ok(Action::Ui(Ui::Apply(self.number(&words)?))),
+            Verb::Do(ui) => return Ok(Action::Ui(ui.clone())),
+        };
+        Ok(Action::Session(command))
+    }
+
+    /// That the words are too many or too few.
+    fn misused(&self) -> Misread {
+        Misread::Usage(self.usage())
+    }
+
+    fn count(&self, words: &[&str]) -> Result<u32, Misread> {
+        let Some(word) = words.first() else {
+            return Ok(1);
+        };
+        match word.parse() {
+            Ok(count) if count > 0 => Ok(count),
+            _ => Err(Misread::no_value(word, "count", self.usage())),
+        }
+    }
+
+    /// A number of a list, from 0.
+    fn number(&self, words: &[&str]) -> Result<usize, Misread> {
+        let [word] = words[..] else {
+            return Err(self.misused());
+        };
+        match word.parse::<usize>() {
+            Ok(number) if number > 0 => Ok(number - 1),
+            _ => Err(Misread::no_value(word, "number of the list", self.usage())),
+        }
+    }
+
+    /// The number of a breakpoint; `None` for all.
+    fn number_or_all(&self, words: &[&str]) -> Result<Option<u32>, Misread> {
+        match words[..] {
+            ["all"] => Ok(None),
+            [word] => match word.parse() {
+                Ok(number) => Ok(Some(number)),
+                Err(_) => Err(Misread::no_value(word, "breakpoint's number", self.usage())),
+            },
+            _ => Err(self.misused()),
+        }
+    }
+
+    fn watch(&self, words: &[&str], context: &Context) -> Result<Watch, Misread> {
+        let (what, name) = match words.iter().position(|word| *word == "as") {
+            Some(at) if at + 1 == words.len() => return Err(self.misused()),
+            Some(at) => (&words[..at], Some(words[at + 1..].join(" "))),
+            None => (words, None),
+        };
+        let Some((word, rest)) = what.split_first() else {
+            return Err(self.misused());
+        };
+        let model = model(context)?;
+        let quantity = WatchQuantity::of_word(word).ok_or_else(|| {
+            let all = WatchQuantity::NAMES.join(", ");
+            Misread::NotWatched(word.to_string(), all)
+        })?;
+        let slave = match (quantity.is_nodal(), rest) {
+            (true, []) => chosen(None, context)?,
+            (true, [node]) => exact(node, context)?,
+            (false, []) => 0,
+            _ => return Err(self.misused()),
+        };
+        let watch = Watch::new(model, quantity, slave);
+        Ok(match name {
+            Some(name) => Watch { name, ..watch },
+            None => watch,
+        })
+    }
+
+    fn force(&self, words: &[&str], hold: bool, context: &Context) -> Result<Action, Misread> {
+        let (node, word) = match words[..] {
+            [] if !hold => return Ok(Action::Ui(Ui::Ask(Question::Mode))),
+            [word] => (None, word),
+            [node, word] => (Some(node), word),
+            _ => return Err(self.misused()),
+        };
+        let mode = mode(word).ok_or_else(|| Misread::no_mode(word))?;
+        Ok(Action::Session(Command::Force {
+            slave: chosen(node, context)?,
+            mode,
+            hold,
+        }))
+    }
+
+    fn set(&self, rest: &str, words: &[&str], context: &Context) -> Result<Command, Misread> {
+        // Names and texts of attached solvers may hold blanks.
+        if let Some((known, value)) = parameter(rest, context)
+            && !value.is_empty()
+        {
+            return Ok(Command::Set {
+                path: known.name.clone(),
+                value: value.into(),
+            });
+        }
+        let [path, value] = words[..] else {
+            let paths = set_paths(context).join(", ");
+            return Err(Misread::Usage(format!("{}; paths: {paths}", self.usage())));
+        };
+        Ok(Command::Set {
+            path: path.into(),
+            value: value.into(),
+        })
+    }
+}
+
+/// What a breakpoint can wait for.
+pub(super) const CONDITIONS: [&str; 8] = [
+    "mode", "leaves", "margin", "element", "cycle", "residual", "failure", "at",
+];
+
+/// A breakpoint's condition. A node may be left out, or be `any`, for any node.
+fn condition(words: &[&str], context: &Context) -> Result<Condition, Misread> {
+    let (word, rest) = words
+        .split_first()
+        .map_or(("", words), |(w, rest)| (*w, rest));
+    let usage = |how: &str| Misread::Usage(format!("usage: break {word} {how}"));
+    match (word, rest) {
+        ("mode" | "leaves", _) if rest.len() <= 2 => {
+            let (node, mode) = node_and_mode(rest, context)?;
+            let (from, to) = match word {
+                "mode" => (None, mode),
+                _ if mode.is_none() => return Err(usage("[NODE] MODE")),
+                _ => (mode, None),
+            };
+            Ok(Condition::Mode { node, from, to })
+        }
+        ("mode" | "leaves", _) => Err(usage("[NODE] [MODE]")),
+        ("margin", [.., value]) if rest.len() <= 2 => {
+            let below = value.parse::<f64>().ok().filter(|below| below.is_finite());
+            let below = below
+                .ok_or_else(|| Misread::no_value(value, "margin", "a number would be".into()))?;
+            let node = any_or_exact(rest.get(rest.len().wrapping_sub(2)), context)?;
+            Ok(Condition::Margin { node, below })
+        }
+        ("margin", _) => Err(usage("[NODE] VALUE")),
+        ("element", [] | [_]) => Ok(Condition::Element {
+            node: any_or_exact(rest.first(), context)?,
+        }),
+        ("element", _) => Err(usage("[NODE]")),
+        ("cycle", []) => Ok(Condition::Cycle),
+        ("residual", []) => Ok(Condition::Residual),
+        ("failure", []) => Ok(Condition::Failure),
+        ("cycle" | "residual" | "failure", _) => Err(usage("")),
+        ("at", [place]) => Ok(Condition::At(place.parse()?)),
+        ("at", _) => Err(usage("INC[.MAJOR[.MINOR]]")),
+        _ => Err(Misread::NoCondition(word.into(), CONDITIONS.join(", "))),
+    }
+}
+
+/// `[NODE] [MODE]`: a single word that is a mode is one, anything else is a node.
+fn node_and_mode(
+    words: &[&str],
+    context: &Context,
+) -> Result<(Option<usize>, Option<Mode>), Misread> {
+    match words {
+        [] => Ok((None, None)),
+        [word] => match mode(word) {
+            Some(mode) => Ok((None, Some(mode))),
+            None => Ok((any_or_exact(Some(word), context)?, None)),
+        },
+        [node, word, ..] => {
+            let mode = mode(word).ok_or_else(|| Misread::no_mode(word))?;
+            Ok((any_or_exact(Some(node), context)?, Some(mode)))
+        }
+    }
+}
+
+/// A mode by its letter (f, s, x) or the beginning of its name.
+pub fn mode(word: &str) -> Option<Mode> {
+    let word = word.to_lowercase();
+    match word.as_str() {
+        "f" => Some(Mode::Free),
+        "s" => Some(Mode::Sliding),
+        "x" => Some(Mode::Fixed),
+        _ if word.len() < 2 => None,
+        _ if "free".starts_with(&word) => Some(Mode::Free),
+        _ if "sliding".starts_with(&word) => Some(Mode::Sliding),
+        _ if "fixed".starts_with(&word) => Some(Mode::Fixed),
+        _ => None,
+    }
+}
+
+/// An increment's size.
+pub fn increment(word: &str) -> Result<f64, Misread> {
+    match word.trim().parse::<f64>() {
+        Ok(size) if size.is_finite() && size > 0.0 => Ok(size),
+        _ => {
+            let instead = "a positive number such as 0.005 would be".into();
+            Err(Misread::no_value(word.trim(), "increment", instead))
+        }
+    }
+}
+
+/// A file, or settings with their values; nothing is the scene's own chart.
+fn chart_of(rest: &str, words: &[&str]) -> Result<ChartOf, Misread> {
+    if rest.is_empty() {
+        return Ok(ChartOf::Scene);
+    }
+    if !words.iter().all(|word| word.contains('=')) {
+        return Ok(ChartOf::File(rest.into()));
+    }
+    let over: Result<_, _> = words.iter().map(|word| Vary::parse(word)).collect();
+    over.map(ChartOf::Settings).map_err(Misread::NoChart)
+}
+
+/// The choice that a word, or its beginning, stands for; `None` without a word.
+fn one_of<T: Copy>(
+    words: &[&str],
+    all: impl IntoIterator<Item = T>,
+    spell: fn(T) -> &'static str,
+) -> Result<Option<T>, Misread> {
+    let Some(word) = words.first() else {
+        return Ok(None);
+    };
+    let all: Vec<T> = all.into_iter().collect();
+    let found = all.iter().find(|&&one| spell(one) == *word);
+    let begun = || all.iter().find(|&&one| spell(one).starts_with(word));
+    found.or_else(begun).copied().map(Some).ok_or_else(|| {
+        let (word, all) = (
+            word.to_string(),
+            all.iter().map(|&one| spell(one)).collect(),
+        );
+        Misread::NoneOf { word, all }
+    })
+}
+
+/// The number of the monitor of this name.
+fn monitor(name: &str, context: &Context) -> Result<usize, Misread> {
+    let monitors = &model(context)?.monitors;
+    let found = monitors.iter().position(|monitor| monitor.name == name);
+    found.ok_or_else(|| match monitors.is_empty() {
+        true => Misread::NoMonitors,
+        false => {
+            let names: Vec<_> = monitors.iter().map(|m| m.name.as_str()).collect();
+            let (name, monitors) = (name.to_string(), names.join(", "));
+            Misread::NoMonitor { name, monitors }
+        }
+    })
+}

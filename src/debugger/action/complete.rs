@@ -1,0 +1,144 @@
+//! Completion: what a line that is being typed could go on as.
+
+use super::arguments::CONDITIONS;
+use super::context::{Context, names};
+use super::meaning::{Colours, Copied, Filter, Sort, Whose};
+use super::parameters::{parameter_lines, set_paths};
+use super::paths::beginning_with;
+use super::table::{ACTIONS, Entry, Verb, by_name};
+use crate::history::tree::Tree;
+use crate::history::watches::WatchQuantity;
+use stickslip_core::model::Mode;
+use stickslip_manual as manual;
+use stickslip_scene::format::paths;
+
+/// What a line could go on as: whole lines, of which the first is the likeliest.
+pub fn complete(line: &str, context: &Context) -> Vec<String> {
+    let first = line.split_whitespace().next();
+    let entry = first.and_then(|name| context.entry(name).ok());
+    let sets = entry.is_some_and(|entry| entry.verb == Verb::Set) && context.offers.is_some();
+    let start = match entry.filter(|entry| entry.takes_rest() || sets) {
+        // What is one argument, blanks and all, goes on as a whole.
+        Some(_) => line.find(char::is_whitespace),
+        None => line.rfind(|c: char| c.is_whitespace() || (c == ',' && is_list(entry))),
+    };
+    let (before, word) = line.split_at(start.map_or(0, |at| at + 1));
+    let candidates: Vec<String> = match before.split_whitespace().next() {
+        None => ACTIONS.iter().map(|entry| entry.name.to_string()).collect(),
+        Some(name) => context.entry(name).map_or(Vec::new(), |entry| {
+            let mut all = entry.candidates(before, context);
+            all.extend(entry.paths(word));
+            if sets {
+                all.extend(parameter_lines(word, context));
+            }
+            all
+        }),
+    };
+    candidates
+        .iter()
+        .filter(|c| c.starts_with(word))
+        .map(|c| format!("{before}{c}"))
+        .collect()
+}
+
+/// Whether what follows an action's name is a path, blanks and all.
+pub fn takes_path(name: &str) -> bool {
+    by_name(name).is_ok_and(|entry| entry.endings().is_some())
+}
+
+/// Whether an action takes nodes apart by commas.
+fn is_list(entry: Option<&Entry>) -> bool {
+    entry.is_some_and(|entry| entry.verb == Verb::Census)
+}
+
+impl Entry {
+    /// Whether all that stands after its name is one argument that can be completed.
+    fn takes_rest(&self) -> bool {
+        matches!(
+            self.verb,
+            Verb::Branch(None) | Verb::Compare | Verb::Colours
+        ) || self.endings().is_some()
+    }
+
+    /// Endings of the files that it takes, any where there are none; `None` if it takes no path.
+    fn endings(&self) -> Option<&'static [&'static str]> {
+        match self.verb {
+            Verb::Open => Some(&["ron", "dat", "journal"]),
+            Verb::Lesson => Some(&["ron"]),
+            Verb::Chart => Some(&["csv"]),
+            Verb::Journal | Verb::Export { .. } | Verb::Snapshot { .. } => Some(&[]),
+            _ => None,
+        }
+    }
+
+    /// Files and folders that its path could go on as.
+    fn paths(&self, word: &str) -> Vec<String> {
+        self.endings()
+            .map_or(Vec::new(), |endings| beginning_with(word, endings))
+    }
+
+    /// What can stand as the next argument after the text before it.
+    fn candidates(&self, before: &str, context: &Context) -> Vec<String> {
+        let given = before.split_whitespace().count() - 1;
+        let nodes = || context.model.into_iter().flat_map(names).map(String::from);
+        let modes = Mode::NAMES.map(String::from);
+        match (&self.verb, given) {
+            (Verb::Force { .. }, 0) => modes.into_iter().chain(nodes()).collect(),
+            (Verb::Force { .. }, 1) => modes.into(),
+            (Verb::Release | Verb::Node, 0) => nodes().collect(),
+            (Verb::Census, _) => nodes().collect(),
+            (Verb::Branch(None) | Verb::Compare, 0) => {
+                let branches = context.tree.map_or(&[][..], Tree::branches);
+                let numbers = (1..=branches.len()).map(|number| format!("b{number}"));
+                let labels = branches.iter().map(|branch| branch.label.clone());
+                numbers.chain(labels).collect()
+            }
+            (Verb::Break, 0) => CONDITIONS.map(String::from).into(),
+            (Verb::Break, _) => {
+                let any = || std::iter::once("any".into()).chain(nodes());
+                match (before.split_whitespace().nth(1), given) {
+                    (Some("mode" | "leaves"), 1) => modes.into_iter().chain(any()).collect(),
+                    (Some("mode" | "leaves"), 2) => modes.into(),
+                    (Some("margin" | "element"), 1) => any().collect(),
+                    _ => Vec::new(),
+                }
+            }
+            (Verb::Delete | Verb::Enable { .. }, 0) => vec!["all".into()],
+            (Verb::Watch, 0) => WatchQuantity::ALL
+                .map(|quantity| quantity.word().into())
+                .into(),
+            (Verb::Watch, 1) => nodes().chain(std::iter::once("as".into())).collect(),
+            (Verb::Set, 0) if context.offers.is_none() => set_paths(context),
+            (Verb::Set, 1) => values(before)
+                .iter()
+                .map(|value| value.to_string())
+                .collect(),
+            (Verb::Open, 0) => context.scenes.to_vec(),
+            (Verb::Help, 0) => manual::PAGES.iter().map(|page| page.topic.into()).collect(),
+            (Verb::Lesson, 0) => {
+                let names = context.lessons.iter();
+                names.map(|lesson| lesson.name.into()).collect()
+            }
+            (Verb::Predict, 0) => Whose::ALL.map(|whose| whose.word().into()).into(),
+            (Verb::Copy, 0) => Copied::all().map(|what| what.word().into()).collect(),
+            (Verb::Colours, 0) => Colours::ALL.map(|colours| colours.word().into()).into(),
+            (Verb::Mouse, 0) => ["on", "off"].map(String::from).into(),
+            (Verb::Sort, 0) => Sort::ALL.map(|sort| sort.word().into()).into(),
+            (Verb::Filter, 0) => Filter::ALL.map(|filter| filter.word().into()).into(),
+            (Verb::Monitor, 0) => {
+                let monitors = context.model.into_iter().flat_map(|model| &model.monitors);
+                monitors.map(|monitor| monitor.name.clone()).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+}
+
+/// Values that a setting can take, where they are words.
+fn values(before: &str) -> &'static [&'static str] {
+    let path = before.split_whitespace().nth(1).unwrap_or_default();
+    let found = paths::of_settings()
+        .into_iter()
+        .find(|(own, _)| own == path);
+    found.map_or(&[], |(_, words)| words)
+}

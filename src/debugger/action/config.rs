@@ -1,0 +1,162 @@
+//! What the user has set for the debugger: two files in the user's configuration folder, each of which may be missing.
+//!
+//! `debugger.ron`, and `keys.ron` ([`Keymap`]):
+//!
+//! ```ron
+//! (
+//!     colours: light,     // dark (default), light, high_contrast, none; NO_COLOR wins
+//!     mouse: false,       // default: true
+//! )
+//! ```
+
+use super::keymap::Keymap;
+use super::meaning::Colours;
+use serde::Deserialize;
+use std::path::{Path, PathBuf};
+use stickslip_platform::input;
+use stickslip_scene::format::SceneError;
+use stickslip_scene::format::read;
+
+/// The files, in the folder.
+pub const KEYS: &str = "keys.ron";
+const DEBUGGER: &str = "debugger.ron";
+/// Most bytes of each.
+const MOST: u64 = 1 << 20;
+
+/// What the user has set.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Config {
+    /// The keys.
+    pub keymap: Keymap,
+    /// The colours.
+    pub colours: Colours,
+    /// Whether the mouse is heeded.
+    pub mouse: bool,
+}
+
+impl Default for Config {
+    fn default() -> Self {
+        Config {
+            keymap: Keymap::default(),
+            colours: Colours::default(),
+            mouse: true,
+        }
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Written {
+    #[serde(default)]
+    colours: WrittenColours,
+    #[serde(default = "on")]
+    mouse: bool,
+}
+
+#[derive(Deserialize, Default)]
+#[serde(rename_all = "snake_case")]
+enum WrittenColours {
+    #[default]
+    Dark,
+    Light,
+    HighContrast,
+    None,
+}
+
+fn on() -> bool {
+    true
+}
+
+/// The user's folder for configurations, where the system names one.
+pub fn folder() -> Option<PathBuf> {
+    let ours = directories::ProjectDirs::from("", "", "stickslip")?;
+    Some(ours.config_dir().to_owned())
+}
+
+impl Config {
+    /// What the files in the user's folder say.
+    ///
+    /// # Errors
+    /// If one is there and cannot be read, or says what does not make sense.
+    pub fn open() -> Result<Config, SceneError> {
+        match folder() {
+            Some(folder) => Config::from(&folder),
+            None => Ok(Config::default()),
+        }
+    }
+
+    /// What the files in a folder say.
+    ///
+    /// # Errors
+    /// If one is there and cannot be read, or says what does not make sense.
+    pub fn from(folder: &Path) -> Result<Config, SceneError> {
+        let mut config = Config::default();
+        if let Some((file, text)) = text(&folder.join(DEBUGGER))? {
+            let written: Written = read::value(&file, &text, "configuration")?;
+            config.mouse = written.mouse;
+            config.colours = match written.colours {
+                WrittenColours::Dark => Colours::Dark,
+                WrittenColours::Light => Colours::Light,
+                WrittenColours::HighContrast => Colours::HighContrast,
+                WrittenColours::None => Colours::None,
+            };
+        }
+        if let Some((file, text)) = text(&folder.join(KEYS))? {
+            config.keymap = Keymap::read(&file, &text)?;
+        }
+        Ok(config)
+    }
+}
+
+/// The name and the text of a file that may be missing.
+fn text(path: &Path) -> Result<Option<(String, String)>, SceneError> {
+    let file = path.display().to_string();
+    // Anything but a name that nothing has is worth a message.
+    if !path.exists() && !path.is_symlink() {
+        return Ok(None);
+    }
+    match input::text(path, MOST, "a configuration is a page") {
+        Ok(text) => Ok(Some((file, text))),
+        Err(why) => Err(read::unread(&file, why)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_that_are_missing_change_nothing_and_those_that_are_there_are_heeded() {
+        let folder = tempfile::tempdir().unwrap();
+        let config = || Config::from(folder.path());
+        assert_eq!(config(), Ok(Config::default()));
+        std::fs::write(
+            folder.path().join(DEBUGGER),
+            "(colours: high_contrast, mouse: false)",
+        )
+        .unwrap();
+        std::fs::write(folder.path().join(KEYS), "{\"copy\": [\"x\"]}").unwrap();
+        let config = config().unwrap();
+        assert_eq!(
+            (config.colours, config.mouse),
+            (Colours::HighContrast, false)
+        );
+        assert_eq!(config.keymap.by_key("x").map(|e| e.name), Some("copy"));
+    }
+
+    #[test]
+    fn what_is_wrong_is_told_with_file_line_column_and_what_would_be_right() {
+        let folder = tempfile::tempdir().unwrap();
+        let told = |text: &str| {
+            std::fs::write(folder.path().join(DEBUGGER), text).unwrap();
+            Config::from(folder.path()).unwrap_err().to_string()
+        };
+        let wrong = told("(\n  colour: light)");
+        assert!(wrong.contains("debugger.ron:2:"), "{wrong}");
+        assert!(wrong.contains("did you mean \"colours\"?"), "{wrong}");
+        let wrong = told("(colours: ligth)");
+        assert!(wrong.contains("did you mean \"light\"?"), "{wrong}");
+        let wrong = told("(mouse: 3)");
+        assert!(wrong.contains("it must be true or false"), "{wrong}");
+    }
+}

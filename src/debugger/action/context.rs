@@ -1,0 +1,167 @@
+//! What an action needs to know to understand its arguments, and slave nodes by the names that are typed.
+
+use super::keymap::Keymap;
+use super::misread::Misread;
+use super::table::{Entry, begun, by_name};
+use crate::history::tree::Tree;
+use stickslip_core::interface::census::MOST;
+use stickslip_core::model::Model;
+use stickslip_core::step::solver::Offers;
+use stickslip_core::step::state::State;
+use stickslip_scene::Scene;
+use stickslip_scene::embedded::EmbeddedFile;
+
+/// What an action needs to know to understand its arguments.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Context<'a> {
+    /// The model, if a scene is open.
+    pub model: Option<&'a Model>,
+    /// The scene itself, which knows more names of its nodes than the model does (`beam.end` for `beam.5`).
+    pub scene: Option<&'a Scene>,
+    /// The history, whose branches have names.
+    pub tree: Option<&'a Tree>,
+    /// The selected slave node, by slave number.
+    pub selected: usize,
+    /// Names of the built-in scenes, and of the built-in lessons.
+    pub scenes: &'a [String],
+    /// Lessons that the program carries.
+    pub lessons: &'a [EmbeddedFile],
+    /// What an attached solver offers; none is a solver of ours.
+    pub offers: Option<&'a Offers>,
+    /// The shown state.
+    pub state: Option<&'a State>,
+    /// The present keys; none are those of the table.
+    pub keymap: Option<&'a Keymap>,
+}
+
+impl Context<'_> {
+    /// The entry that a word names: its name, its one-letter key, or the beginning of one name only.
+    pub fn entry(&self, word: &str) -> Result<&'static Entry, Misread> {
+        let key = (word.chars().count() == 1).then_some(word);
+        match (self.keymap, key) {
+            (Some(keymap), Some(key)) => match keymap.by_key(key) {
+                Some(entry) => Ok(entry),
+                None => begun(word),
+            },
+            _ => by_name(word),
+        }
+    }
+}
+
+/// The slave node that a word names, or the selected one where there is no word.
+pub(super) fn chosen(word: Option<&str>, context: &Context) -> Result<usize, Misread> {
+    match word {
+        Some(word) => exact(word, context),
+        None if context.selected < model(context)?.contacts.len() => Ok(context.selected),
+        None => Err(Misread::NoSlaves),
+    }
+}
+
+/// The model of the scene that is open.
+pub(super) fn model<'a>(context: &Context<'a>) -> Result<&'a Model, Misread> {
+    context.model.ok_or(Misread::NoScene)
+}
+
+/// The slave node of exactly this name. No guesses here: what follows changes the solve.
+pub fn exact(word: &str, context: &Context) -> Result<usize, Misread> {
+    let model = model(context)?;
+    let alias = context.scene.and_then(|scene| scene.node(word).ok());
+    let node = model
+        .nodes
+        .iter()
+        .position(|node| node.name == word)
+        .or(alias)
+        .or_else(|| respelled(word, model));
+    if let Some(slave) = model
+        .contacts
+        .iter()
+        .position(|slave| Some(slave.node) == node)
+    {
+        return Ok(slave);
+    }
+    let (word, slaves) = (word.to_string(), some_names(model));
+    Err(match node.is_some() {
+        true => Misread::NoSlave { word, slaves },
+        false => Misread::NoNode { word, slaves },
+    })
+}
+
+/// The only node whose name differs from a word just by dots and dashes: earlier versions wrote node.1 as node-1 in places.
+fn respelled(word: &str, model: &Model) -> Option<usize> {
+    let plain = |name: &str| name.replace('-', ".");
+    let nodes = model.nodes.iter().enumerate();
+    let mut called = nodes.filter(|(_, node)| plain(&node.name) == plain(word));
+    called
+        .next()
+        .filter(|_| called.next().is_none())
+        .map(|(node, _)| node)
+}
+
+/// Slave nodes apart by blanks or commas, ascending and each once: by name, or, where no node is called so, by the place in
+/// the scene's list, from 1.
+pub(super) fn several(words: &[&str], context: &Context) -> Result<Vec<usize>, Misread> {
+    let words = words.iter().flat_map(|word| word.split(','));
+    let mut nodes = Vec::new();
+    for word in words.filter(|word| !word.is_empty()) {
+        let counted = word.parse::<usize>().ok().and_then(|n| n.checked_sub(1));
+        let count = model(context)?.contacts.len();
+        let slave = match (exact(word, context), counted) {
+            (Ok(slave), _) => slave,
+            (Err(_), Some(place)) if place < count => place,
+            (Err(why), _) => return Err(why),
+        };
+        if !nodes.contains(&slave) {
+            nodes.push(slave);
+        }
+    }
+    nodes.sort_unstable();
+    match nodes.len() {
+        0..=MOST => Ok(nodes),
+        n => Err(Misread::ManyNodes(n)),
+    }
+}
+
+/// The next slave node after the selected one whose name is, or else contains, the word.
+pub(super) fn find(word: &str, context: &Context) -> Result<usize, Misread> {
+    if let Ok(slave) = exact(word, context) {
+        return Ok(slave);
+    }
+    let model = model(context)?;
+    let count = model.contacts.len();
+    let hit = |slave: &usize| model.nodes[model.contacts[*slave].node].name.contains(word);
+    (1..=count)
+        .map(|step| (context.selected + step) % count)
+        .find(hit)
+        .ok_or_else(|| Misread::NotFound {
+            word: word.to_string(),
+            slaves: some_names(model),
+        })
+}
+
+/// Names of the slave nodes, by slave number.
+pub(super) fn names(model: &Model) -> impl Iterator<Item = &str> {
+    model
+        .contacts
+        .iter()
+        .map(|slave| model.nodes[slave.node].name.as_str())
+}
+
+/// The first few slave nodes' names, for messages.
+fn some_names(model: &Model) -> String {
+    const SHOWN: usize = 4;
+    let mut list = names(model).take(SHOWN).collect::<Vec<_>>().join(", ");
+    if model.contacts.len() > SHOWN {
+        list += ", …";
+    }
+    list
+}
+
+pub(super) fn any_or_exact(
+    word: Option<&&str>,
+    context: &Context,
+) -> Result<Option<usize>, Misread> {
+    match word {
+        None | Some(&"any") => Ok(None),
+        Some(word) => exact(word, context).map(Some),
+    }
+}

@@ -1,0 +1,67 @@
+//! What is typed after `set`: paths of our own scenes, or parameters of an attached solver, by name, which may hold blanks, with
+//! their present values.
+
+use super::context::Context;
+use stickslip_core::step::intervene::Value;
+use stickslip_core::step::solver::{Parameter, Range};
+use stickslip_scene::format::paths;
+use stickslip_scene::number;
+use stickslip_scene::shown;
+
+/// The parameter with whose name a text begins, the longest such, and what follows.
+pub fn parameter<'a, 'b>(text: &'b str, context: &Context<'a>) -> Option<(&'a Parameter, &'b str)> {
+    let all = context.offers?.parameters.iter();
+    let begun = all.filter_map(|known| {
+        let rest = text.trim_start().strip_prefix(known.name.as_str())?;
+        let apart = rest.is_empty() || rest.starts_with(char::is_whitespace);
+        apart.then_some((known, rest.trim()))
+    });
+    begun.max_by_key(|(known, _)| known.name.len())
+}
+
+/// What a parameter is now, as a person would write it.
+pub fn present(known: &Parameter, context: &Context) -> String {
+    let now = match (context.model, context.state) {
+        (Some(model), Some(state)) => known.now(model, state),
+        _ => known.value.clone(),
+    };
+    match now {
+        Value::Number(value) => number::plain(value),
+        other => other.to_string(),
+    }
+}
+
+/// What can follow `set` where a solver is attached: the names of its parameters, and after a name its choices, or what it is now.
+pub(super) fn parameter_lines(rest: &str, context: &Context) -> Vec<String> {
+    let Some((known, _)) =
+        parameter(rest, context).filter(|(known, _)| rest.trim_start().len() > known.name.len())
+    else {
+        return set_paths(context);
+    };
+    let values = match &known.range {
+        Range::Choice(choices) => choices.clone(),
+        Range::Flag => ["true", "false"].map(String::from).into(),
+        Range::Numbers { .. } | Range::Text => vec![present(known, context)],
+    };
+    values
+        .iter()
+        .map(|value| format!("{} {value}", known.name))
+        .collect()
+}
+
+/// What `set` can change during a run.
+pub(super) fn set_paths(context: &Context) -> Vec<String> {
+    if let Some(offers) = context.offers {
+        let names = offers.parameters.iter();
+        return names
+            .map(|known| shown::line(&known.name).into_owned())
+            .collect();
+    }
+    let others = ["history.increment", "friction.angle", "friction.cohesion"];
+    let settings = paths::of_settings().into_iter().map(|(path, _)| path);
+    others
+        .map(String::from)
+        .into_iter()
+        .chain(settings)
+        .collect()
+}

@@ -1,0 +1,134 @@
+//! What can be told of an attached solver's state from the interface problem that it offers: which states are consistent, and
+//! whether Table 2 (or Newton's method) would cycle on it.
+//!
+//! The problem becomes a scene of contacts ([`mod@stickslip_scene::format::condensed`]), in total forces from zero load to one; it is
+//! examined as a frozen problem of our own bodies is, and what is found is told in the numbers of the solver's scene.
+
+use super::examination::{DONE, Examination, examine_nodes, frozen};
+use super::names;
+use std::sync::Arc;
+use stickslip_core::model::{InitialState, Mode, Model, Strategy};
+use stickslip_core::step::solver::{Posed, PosedForm};
+use stickslip_core::step::state::{State, Status};
+use stickslip_core::step::stepper::Stepper;
+use stickslip_scene::Scene;
+use stickslip_scene::format::SceneError;
+use stickslip_scene::format::condensed::{Contact, Matrix, Problem};
+use stickslip_scene::limits;
+
+/// The scene that a problem is, with the modes of a state to start from.
+pub fn problem(model: &Model, state: &State, posed: &Posed) -> Problem {
+    let contacts = posed.contacts.iter().enumerate().map(|(place, &slave)| {
+        let (node, friction) = (&state.nodes[slave], posed.friction[place]);
+        let bound = friction.coefficient() * node.f_n + friction.cohesion;
+        let sign = if node.f_t < 0.0 { -1.0 } else { 1.0 };
+        let t_max = match node.mode {
+            Mode::Sliding if node.t_max.is_finite() && node.t_max != 0.0 => node.t_max,
+            Mode::Sliding if bound.is_finite() && bound > 0.0 => sign * bound,
+            Mode::Sliding => sign * f64::MIN_POSITIVE,
+            _ => 0.0,
+        };
+        Contact {
+            id: id(names::slave(model, slave), place),
+            gap: posed.q[2 * place],
+            friction,
+            load: [posed.load[2 * place], posed.load[2 * place + 1]],
+            start: node.mode,
+            state: InitialState {
+                t_max,
+                ..InitialState::default()
+            },
+        }
+    });
+    let rows = posed.matrix.clone();
+    let free = (0..posed.q.len()).map(|k| if k % 2 == 0 { 0.0 } else { posed.q[k] });
+    Problem {
+        title: format!("Interface problem of {}", model.title)
+            .chars()
+            .filter(|c| !c.is_control())
+            .take(limits::TITLE)
+            .collect(),
+        about: String::new(),
+        contacts: contacts.collect(),
+        matrix: match posed.form {
+            PosedForm::Compliance => Matrix::Compliance(rows),
+            PosedForm::Stiffness => Matrix::Stiffness(rows),
+        },
+        free: free.collect(),
+        spacing: None,
+        history: Default::default(),
+        settings: stickslip_core::model::Settings {
+            strategy: Strategy::Table2,
+            ..Default::default()
+        },
+    }
+}
+
+/// The id of a contact in such a scene: its name, with characters that ids cannot have replaced.
+fn id(name: &str, place: usize) -> String {
+    match limits::node_id_of(name, limits::NAME - 8) {
+        name if name.is_empty() || name.split('.').next() == Some("floor") => {
+            format!("contact-{}", place + 1)
+        }
+        name => name,
+    }
+}
+
+/// The scene that a problem is, and a solver of ours at its start.
+///
+/// # Errors
+/// If the problem is unsound.
+pub fn stepper(
+    model: &Model,
+    state: &State,
+    posed: &Posed,
+) -> Result<(Scene, Stepper), SceneError> {
+    let spec = problem(model, state, posed).spec();
+    let scene = Scene::from_spec("the interface problem", spec)?;
+    let stepper = Stepper::new(Arc::new(scene.model.clone()));
+    Ok((scene, stepper))
+}
+
+/// What is known of the problem that is solved next from a state: of these contacts, or (none) of all that matter. It ends where
+/// `stop` says so.
+pub fn examine(
+    model: &Model,
+    state: &State,
+    posed: &Posed,
+    contacts: &[usize],
+    stop: &dyn Fn() -> bool,
+) -> Examination {
+    let told = |line: String| Examination {
+        lines: vec![line],
+        ..Examination::default()
+    };
+    if state.status == Status::Finished {
+        return told(DONE.into());
+    }
+    let mut stepper = match stepper(model, state, posed) {
+        Ok((_, stepper)) => stepper,
+        Err(why) => {
+            return told(format!(
+                "The interface problem that it tells is unsound: {why}."
+            ));
+        }
+    };
+    let start = stepper.state().clone();
+    let mut found = match contacts {
+        [] => frozen(&mut stepper, &start, stop),
+        some => {
+            let place = |slave: &usize| posed.contacts.iter().position(|known| known == slave);
+            let places: Vec<usize> = some.iter().filter_map(place).collect();
+            examine_nodes(&mut stepper, &start, &places, stop)
+        }
+    };
+    // From places in the problem to contacts of the scene.
+    let slave = |place: usize| posed.contacts.get(place).copied().unwrap_or(place);
+    found.nodes = found.nodes.iter().map(|&place| slave(place)).collect();
+    if let Some(problem) = &mut found.problem {
+        for node in &mut problem.nodes {
+            node.slave = slave(node.slave);
+        }
+    }
+    found
+}

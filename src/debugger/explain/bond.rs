@@ -1,0 +1,40 @@
+//! The law of a slave node's pair in words, with its numbers.
+
+use stickslip_core::contact::record::ContactRecord;
+use stickslip_core::model::{Bond, Contact};
+use stickslip_scene::number::four;
+
+/// What the law is called.
+pub fn name(contact: &Contact) -> &'static str {
+    match contact.bond {
+        Bond::Hard => "hard",
+        Bond::Tied { .. } => "tied",
+        Bond::Giving([normal, tangential]) => match (normal > 0.0, tangential > 0.0) {
+            (true, true) => "penalty, stick stiffness",
+            (true, false) => "penalty",
+            (false, _) => "stick stiffness",
+        },
+    }
+}
+
+/// What the law did in a minor iteration, a line for each direction; empty where contact is hard.
+pub fn lines(contact: &Contact, record: &ContactRecord) -> Vec<String> {
+    let [normal, tangential] = contact.bond.give();
+    let mut lines = Vec::new();
+    if contact.bond.is_tied() {
+        lines.push(format!(
+            "tied: F_n {}, F_t {}, whatever they are",
+            four(record.f_n),
+            four(record.f_t)
+        ));
+    }
+    if normal > 0.0 {
+        let (give, inside) = (four(normal), four(normal * record.f_n));
+        lines.push(format!("penalty: inside by c F_n = {inside}, c = {give}"));
+    }
+    if tangential > 0.0 {
+        let (give, slip) = (four(tangential), four(tangential * record.f_t));
+        lines.push(format!("elastic slip c F_t = {slip}, c = {give}"));
+    }
+    lines
+}

@@ -1,0 +1,168 @@
+//! The core of a cycle: the fewest nodes that still cycle when all others go on for ever with what they do.
+//!
+//! A frozen interface problem that cycles is shrunk by giving every node outside a trial set the equations of what it
+//! brings ([`InterfaceProblem::reduced`]) and running Table 2 over what is left.
+
+use stickslip_core::contact::state::ContactState;
+use stickslip_core::interface::minor_history::Cycle;
+use stickslip_core::interface::minor_history::MinorHistory;
+use stickslip_core::interface::problem::InterfaceProblem;
+use stickslip_core::interface::spiral::{Fate, spiral};
+use stickslip_core::interface::trials::Trials;
+use stickslip_core::model::Mode;
+use stickslip_core::strategy::method;
+
+/// Most members over which all sets are tried, smallest first; among more, each member is dropped once if it can be.
+const EXHAUSTIVE: usize = 10;
+/// Most members of which a core is looked for; among more, of those whose modes change.
+const MOST: usize = 40;
+/// Numbers of two iterations that differ by less than this, relatively, are the same.
+const SAME_ITERATION: f64 = 1e-12;
+
+/// Iterations that are run in search of a cycle into which T_max spirals.
+const AHEAD: usize = 600;
+/// Most rounds until the T_max of a cycle has come to rest.
+const ROUNDS: usize = 1000;
+
+/// The fewest nodes that still cycle.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Core {
+    /// Places of its nodes among those of the whole problem.
+    pub places: Vec<usize>,
+    /// The problem of these nodes alone; their states are where the cycle starts from.
+    pub problem: InterfaceProblem,
+    /// Its cycle; members by place in `problem`.
+    pub cycle: Cycle,
+}
+
+impl Core {
+    /// Its problem at a point of the cycle, where the T_max of all rounds has come to rest: of the points of one round,
+    /// that into which the nodes bring least.
+    pub fn on_cycle(&self) -> InterfaceProblem {
+        let mut nodes = self.problem.states();
+        let mut around = vec![nodes.clone()];
+        if let Some(mut trials) = Trials::new(&self.problem) {
+            for _ in 0..ROUNDS {
+                for _ in 0..self.cycle.period {
+                    if trials
+                        .minor(&mut nodes, method(self.problem.settings.strategy))
+                        .is_some()
+                    {
+                        around.push(nodes.clone());
+                    }
+                }
+                let [first, .., last] = around.as_slice() else {
+                    break;
+                };
+                let limits =
+                    |nodes: &[ContactState]| nodes.iter().map(|n| n.t_max).collect::<Vec<_>>();
+                if limits(first) == limits(last) {
+                    break;
+                }
+                around.drain(..around.len() - 1);
+            }
+        }
+        let brings = |nodes: &&Vec<ContactState>| {
+            let of = |n: &ContactState| match n.mode {
+                Mode::Free => 0,
+                Mode::Fixed => 1 + u32::from(n.ratio != 0.0),
+                Mode::Sliding => 2 + u32::from(n.ratio != 0.0),
+            };
+            nodes.iter().map(of).sum::<u32>()
+        };
+        let mut problem = self.problem.clone();
+        if let Some(least) = around.iter().min_by_key(brings) {
+            for (node, state) in problem.nodes.iter_mut().zip(least) {
+                node.state = *state;
+            }
+        }
+        problem
+    }
+}
+
+/// Shrinks a problem that cycles from what its nodes bring; `None` if it does not, or if too many nodes take part.
+pub fn core(whole: &InterfaceProblem) -> Option<Core> {
+    let start = cycle(whole)?;
+    let mut members: Vec<usize> = start.members.iter().map(|(place, _)| *place).collect();
+    if members.len() > MOST {
+        // Where some modes change, the T_max of many other nodes follows; those go on with what they have.
+        let changing = start.members.iter().filter(|member| changes(&member.1));
+        members = changing.map(|(place, _)| *place).collect();
+    }
+    if members.is_empty() || members.len() > MOST {
+        return None;
+    }
+    let problem = whole.reduced(&members)?;
+    let of = |chosen: &[usize]| {
+        let problem = problem.reduced(chosen)?;
+        let cycle = cycle(&problem)?;
+        Some(Core {
+            places: chosen.iter().map(|&member| members[member]).collect(),
+            problem,
+            cycle,
+        })
+    };
+    if members.len() <= EXHAUSTIVE {
+        let mut sets: Vec<u32> = (1..1_u32 << members.len()).collect();
+        sets.sort_by_key(|set| set.count_ones());
+        let chosen = |set: u32| -> Vec<usize> {
+            (0..members.len())
+                .filter(|bit| set >> bit & 1 == 1)
+                .collect()
+        };
+        return sets.into_iter().find_map(|set| of(&chosen(set)));
+    }
+    let mut chosen: Vec<usize> = (0..members.len()).collect();
+    let mut best = of(&chosen)?;
+    for member in 0..members.len() {
+        let fewer: Vec<usize> = chosen.iter().copied().filter(|&m| m != member).collect();
+        if let Some(smaller) = of(&fewer) {
+            (best, chosen) = (smaller, fewer);
+        }
+    }
+    Some(best)
+}
+
+/// Whether a mode of a pattern is another than the rest.
+fn changes(pattern: &[Mode]) -> bool {
+    pattern.windows(2).any(|pair| pair[0] != pair[1])
+}
+
+/// The cycle into which the minor iterations of a frozen problem run; `None` if they settle or cannot be solved, or
+/// where the settings' limit of minor iterations is too few to tell. Members are places in the problem.
+pub fn cycle(problem: &InterfaceProblem) -> Option<Cycle> {
+    let mut nodes = problem.states();
+    let mut trials = Trials::new(problem)?;
+    let mut trail = MinorHistory::default();
+    for minor in 1..=problem.settings.minors {
+        trail.push(&nodes);
+        let (_, settled) = trials.minor(&mut nodes, method(problem.settings.strategy))?;
+        if settled {
+            return None;
+        }
+        if let Some(cycle) = trail.cycle(
+            &nodes,
+            minor,
+            SAME_ITERATION * problem.force,
+            SAME_ITERATION,
+        ) {
+            return Some(cycle);
+        }
+    }
+    spiralling(problem)
+}
+
+/// The cycle of modes that goes round while T_max still spirals in, so slowly that it has not come back within the limit.
+fn spiralling(problem: &InterfaceProblem) -> Option<Cycle> {
+    let found = spiral(problem, method(problem.settings.strategy), AHEAD)?;
+    let takes_part =
+        |(place, modes): &(usize, &Vec<Mode>)| changes(modes) || found.places.contains(place);
+    let members = found.modes.iter().enumerate().filter(takes_part);
+    (found.fate == Fate::Cycles).then(|| Cycle {
+        start: found.start + 1 - found.period,
+        period: found.period,
+        members: members
+            .map(|(place, modes)| (place, modes.clone()))
+            .collect(),
+    })
+}

@@ -1,0 +1,653 @@
+//! Why the minor iterations cycle, and what gets out: everything that can be said of a cycle from its frozen interface
+//! problem, as data and in words.
+
+use crate::explain::core::{Core, core, cycle};
+use crate::explain::influence::{Influence, influences};
+use crate::explain::names;
+use crate::explain::proven;
+use stickslip_core::contact::record::ContactRecord;
+use stickslip_core::contact::state::ContactState;
+use stickslip_core::contact::table2::{Rule, Tested};
+use stickslip_core::interface::census::{self, Census, MOST, MOST_SEARCHED, search};
+use stickslip_core::interface::minor_history::Cycle;
+use stickslip_core::interface::problem::{Assumed, Condition, InterfaceProblem, NodeAnswer};
+use stickslip_core::interface::trials::Trials;
+use stickslip_core::model::{BoundUpdate, SlipCount};
+use stickslip_core::model::{Mode, Model};
+use stickslip_core::strategy::method;
+
+/// Most nodes of a problem that is diagnosed: each iteration of its cycle costs dense solves of twice that size. Of a scene
+/// with more, those that take part in the cycle are looked at ([`cycling`]).
+pub const MOST_NODES: usize = 200;
+/// Branches that are looked at to count the states of a cycle that has no small core.
+const BRANCHES: usize = census::BUDGET / 10;
+/// Nodes with which all of them are looked at; with more, fewer, by the square.
+const AT_FULL: f64 = 20.0;
+/// Most consistent states that are told one by one.
+const MOST_TOLD: usize = 12;
+/// Most iterations of a period that are told one by one.
+const MOST_PHASES: usize = 12;
+
+/// What is known of a cycle.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Diagnosis {
+    /// The cycle that the nodes' states start. Nodes are places in the problem.
+    pub cycle: Cycle,
+    /// What happens in each iteration of one period.
+    pub phases: Vec<Phase>,
+    /// The fewest nodes that still cycle; `None` if that cannot be told.
+    pub core: Option<Core>,
+    /// The problem of all nodes that take part, or of those whose modes change where those are too many to try all that they
+    /// can do, or else of the core; the other nodes go on with what they do. Where nothing is consistent with that, the problem of all nodes that can touch, if these are
+    /// few enough.
+    pub problem: InterfaceProblem,
+    /// What is consistent in it; `None` if even the core is too large.
+    pub census: Option<Census>,
+    /// Why it cycles.
+    pub cause: Cause,
+    /// What was tried on it, and whether it settles there.
+    pub ways: Vec<(Way, bool)>,
+}
+
+/// One iteration of a cycle.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Phase {
+    /// What it found at each node.
+    pub records: Vec<ContactRecord>,
+    /// For each node whose mode it changes, in the first `MOST_PHASES` of them: the change, since the iteration before, that did most to what was tested.
+    pub pushes: Vec<Push>,
+}
+
+/// What made a node's mode change.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Push {
+    /// Place of the node whose mode changes.
+    pub node: usize,
+    /// The modes that the pushing node had in the iteration before and in this one.
+    pub from_modes: [Mode; 2],
+    /// Which change pushed which node.
+    pub influence: Influence,
+    /// What was tested.
+    pub tested: Tested,
+}
+
+/// Why Table 2 cycles.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Cause {
+    /// No state of these nodes obeys Coulomb's law.
+    NoAnswer,
+    /// In the answer these nodes slide, as they never do in the cycle: Table 2 sends a rough node that touches to fixed,
+    /// and from there it opens. Places in the diagnosed problem.
+    NoWayToSliding(Vec<usize>),
+    /// The modes have settled; T_max, taken from the iteration before, swings to and fro.
+    Lag,
+    /// Several states obey the law, and Table 2 passes by them all.
+    Several,
+    /// One state obeys the law, and Table 2 passes by it.
+    Passed,
+    /// Too many nodes for a census.
+    Unknown,
+}
+
+/// A change that can be tried on the frozen problem.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Way {
+    /// Start from the consistent state of this number in the census.
+    Answer(usize),
+    /// `settings.t_max=consistent`.
+    ConsistentLimit,
+    /// `settings.slip` the other way.
+    OtherSlip,
+}
+
+impl Diagnosis {
+    /// Diagnoses a problem whose nodes' states start a cycle; `None` if they do not, or if it has more than
+    /// [`MOST_NODES`] nodes. The count of states ends where `stop` says so.
+    pub fn of(problem: &InterfaceProblem, stop: &dyn Fn() -> bool) -> Option<Diagnosis> {
+        if problem.nodes.len() > MOST_NODES {
+            return None;
+        }
+        let cycle = cycle(problem)?;
+        let phases = phases(problem, cycle.period)?;
+        let core = core(problem);
+        let members: Vec<usize> = cycle.members.iter().map(|member| member.0).collect();
+        let changes = |member: &&(usize, Vec<Mode>)| member.1.iter().any(|m| *m != member.1[0]);
+        let changing = cycle.members.iter().filter(changes).map(|member| member.0);
+        let changing: Vec<usize> = changing.collect();
+        let mut studied = match members.len() > MOST && !changing.is_empty() {
+            true => problem.reduced(&changing)?,
+            false => problem.reduced(&members)?,
+        };
+        let counted = |problem: &InterfaceProblem| {
+            let few = (AT_FULL / (problem.nodes.len() as f64).max(AT_FULL)).powi(2);
+            search(problem, (BRANCHES as f64 * few) as usize, stop).ok()
+        };
+        let mut found = counted(&studied);
+        // Of too many nodes nothing is known, or no more than that none was found so far.
+        let unknown = |found: &Census| found.answers.is_empty() && !found.exact;
+        if found.as_ref().is_none_or(unknown)
+            && let Some(core) = &core
+            && core.problem.nodes.len() < studied.nodes.len()
+        {
+            studied = core.problem.clone();
+            found = counted(&studied);
+        }
+        // What is inconsistent with what the others do may be consistent with something else that they could do.
+        let all = undecided(problem);
+        let none = found.as_ref().is_some_and(|found| found.answers.is_empty());
+        if none
+            && (studied.nodes.len() + 1..=MOST_SEARCHED).contains(&all.len())
+            && let Some(wider) = problem.reduced(&all)
+            && let Some(of_all) = counted(&wider)
+            && (of_all.exact || !of_all.answers.is_empty())
+        {
+            found = Some(of_all);
+            studied = wider;
+        }
+        let census = found;
+        let cause = cause(problem, &phases, &studied, census.as_ref());
+        let ways = ways(&studied, census.as_ref());
+        Some(Diagnosis {
+            cycle,
+            phases,
+            core,
+            problem: studied,
+            census,
+            cause,
+            ways,
+        })
+    }
+}
+
+/// The problem that goes round in a cycle: the whole one, or where that has many nodes only those that take part, all others
+/// going on with what they do. `None` if that is singular, or too large still. The states are where the cycle starts.
+pub fn cycling(problem: InterfaceProblem, cycle: &Cycle) -> Option<InterfaceProblem> {
+    if problem.nodes.len() <= MOST_NODES {
+        return Some(problem);
+    }
+    let takes_part = |place: &usize| {
+        let slave = problem.nodes[*place].slave;
+        cycle.members.iter().any(|(member, _)| *member == slave)
+    };
+    let members: Vec<usize> = (0..problem.nodes.len()).filter(takes_part).collect();
+    if members.len() > MOST_NODES {
+        return None;
+    }
+    problem.reduced(&members)
+}
+
+/// The nodes that can do one thing or another, by place.
+pub fn undecided(problem: &InterfaceProblem) -> Vec<usize> {
+    let choices = |place: &usize| problem.nodes[*place].choices().len();
+    let all = 0..problem.nodes.len();
+    all.filter(|place| choices(place) > 1).collect()
+}
+
+/// That so many nodes take part in a cycle that they cannot be looked at.
+pub fn too_many(cycle: &Cycle) -> String {
+    let count = cycle.members.len();
+    format!(
+        "{count} nodes take part in the cycle: too many, or with what all others do they are singular"
+    )
+}
+
+/// One period of the iterations, with who pushed whom.
+fn phases(problem: &InterfaceProblem, period: u32) -> Option<Vec<Phase>> {
+    let mut trials = Trials::new(problem)?;
+    let mut nodes = problem.states();
+    // The iteration before the first is the last of the period.
+    let mut states = vec![nodes.clone()];
+    let mut all = Vec::new();
+    for _ in 0..period {
+        let (records, _) = trials.minor(&mut nodes, method(problem.settings.strategy))?;
+        states.push(nodes.clone());
+        all.push(records);
+    }
+    let before = |phase: usize| match phase {
+        0 => &states[period as usize - 1],
+        phase => &states[phase - 1],
+    };
+    let found = all.into_iter().enumerate().map(|(phase, records)| {
+        let changed = |s: &usize| records[*s].decision.changes();
+        let changed: Vec<usize> = (0..records.len()).filter(changed).collect();
+        let told = phase < MOST_PHASES && !changed.is_empty();
+        let all = told.then(|| influences(problem, before(phase), &states[phase], &changed));
+        let all = all.flatten().unwrap_or_default();
+        let pushes = changed.iter().zip(&all);
+        let pushes = pushes
+            .filter_map(|(&node, all)| push(all, before(phase), &states[phase], &records, node))
+            .collect();
+        Phase { records, pushes }
+    });
+    Some(found.collect())
+}
+
+fn push(
+    all: &[Influence],
+    before: &[ContactState],
+    now: &[ContactState],
+    records: &[ContactRecord],
+    node: usize,
+) -> Option<Push> {
+    let tested = fired(records[node].decision.rule)?;
+    let of = |i: &Influence| match tested {
+        Tested::Gap => i.gap,
+        Tested::NormalForce | Tested::Pressure | Tested::Cover | Tested::Change | Tested::Own => {
+            i.f_n
+        }
+        Tested::ShearForce | Tested::LeastFriction | Tested::Drag => i.f_t,
+        Tested::Slip | Tested::Room => i.slip,
+    };
+    let most = all
+        .iter()
+        .max_by(|a, b| of(a).abs().total_cmp(&of(b).abs()))?;
+    Some(Push {
+        node,
+        from_modes: [before[most.from].mode, now[most.from].mode],
+        influence: *most,
+        tested,
+    })
+}
+
+/// The inequality that changed a node's mode.
+fn fired(rule: Rule) -> Option<Tested> {
+    match rule {
+        Rule::FixedOpens | Rule::SlidingOpens | Rule::CornerOpens => Some(Tested::NormalForce),
+        Rule::FixedSlides | Rule::CornerSlides => Some(Tested::ShearForce),
+        Rule::CornerReleases => Some(Tested::LeastFriction),
+        Rule::FixedDragged => Some(Tested::Slip),
+        Rule::SlidingSticks => Some(Tested::Slip),
+        Rule::FreeSticks | Rule::FreeSlides | Rule::FreeEnters => Some(Tested::Gap),
+        Rule::NewtonOpens => Some(Tested::NormalForce),
+        Rule::NewtonSticks | Rule::NewtonSlides => Some(Tested::ShearForce),
+        _ => None,
+    }
+}
+
+fn cause(
+    whole: &InterfaceProblem,
+    phases: &[Phase],
+    problem: &InterfaceProblem,
+    census: Option<&Census>,
+) -> Cause {
+    let Some(census) = census else {
+        return Cause::Unknown;
+    };
+    if census.answers.is_empty() && !census.exact {
+        return Cause::Unknown;
+    }
+    if census.answers.is_empty() {
+        return Cause::NoAnswer;
+    }
+    let settled = |phase: &Phase| phase.records.iter().all(|r| !r.decision.changes());
+    if phases.iter().all(settled) {
+        return Cause::Lag;
+    }
+    let [answer] = census.answers.as_slice() else {
+        return Cause::Several;
+    };
+    let never_slides = |place: usize| {
+        let slave = problem.nodes[place].slave;
+        let slides = |phase: &Phase| {
+            let mut records = whole.nodes.iter().zip(&phase.records);
+            records.any(|(n, r)| n.slave == slave && r.decision.before == Mode::Sliding)
+        };
+        let assumed = answer.answer.nodes[place].assumed;
+        assumed.mode() == Mode::Sliding && !phases.iter().any(slides)
+    };
+    let nodes: Vec<usize> = (0..problem.nodes.len())
+        .filter(|&p| never_slides(p))
+        .collect();
+    match nodes.first() {
+        Some(_) => Cause::NoWayToSliding(nodes),
+        None => Cause::Passed,
+    }
+}
+
+/// Tries what can be tried on the frozen problem alone.
+fn ways(problem: &InterfaceProblem, census: Option<&Census>) -> Vec<(Way, bool)> {
+    let settles = |changed: &InterfaceProblem| cycle(changed).is_none() && runs(changed);
+    let mut ways = Vec::new();
+    for number in 0..census.map_or(0, |c| c.answers.len().min(MOST_TOLD)) {
+        if let Some(started) = census.and_then(|census| started(problem, census, number)) {
+            ways.push((Way::Answer(number), settles(&started)));
+        }
+    }
+    let mut other = problem.clone();
+    if problem.settings.t_max == BoundUpdate::Lagged {
+        other.settings.t_max = BoundUpdate::Consistent;
+        ways.push((Way::ConsistentLimit, settles(&other)));
+    }
+    let mut other = problem.clone();
+    other.settings.slip = match problem.settings.slip {
+        SlipCount::Increment => SlipCount::Major,
+        SlipCount::Major => SlipCount::Increment,
+    };
+    ways.push((Way::OtherSlip, settles(&other)));
+    ways
+}
+
+/// The problem with its nodes' states at a consistent state of the census.
+pub fn started(
+    problem: &InterfaceProblem,
+    census: &Census,
+    number: usize,
+) -> Option<InterfaceProblem> {
+    let answer = &census.answers.get(number)?.answer;
+    let mut started = problem.clone();
+    for (node, found) in started.nodes.iter_mut().zip(&answer.nodes) {
+        node.state.mode = found.assumed.mode();
+        node.state.ratio = 0.0;
+        node.state.sign = found.f_t.signum();
+        node.state.t_max = found.limit * node.state.sign;
+    }
+    Some(started)
+}
+
+/// Whether the minor iterations settle within the settings' limit.
+fn runs(problem: &InterfaceProblem) -> bool {
+    let mut nodes = problem.states();
+    let Some(mut trials) = Trials::new(problem) else {
+        return false;
+    };
+    (0..problem.settings.minors)
+        .map_while(|_| trials.minor(&mut nodes, method(problem.settings.strategy)))
+        .any(|(_, settled)| settled)
+}
+
+/// The diagnosis in words, a line each, most important first. Nodes are named as the scene names them.
+pub fn words(model: &Model, problem: &InterfaceProblem, diagnosis: &Diagnosis) -> Vec<String> {
+    let name = |place: usize| names::slave(model, problem.nodes[place].slave);
+    let studied = |place: usize| names::slave(model, diagnosis.problem.nodes[place].slave);
+    // Nodes that were left out of the problem, and those of it that were left out of the census.
+    let left_out = model.contacts.len() > problem.nodes.len()
+        || undecided(problem).len() > diagnosis.problem.nodes.len();
+    let mut lines = vec![format!(
+        "why: {}",
+        cause_words(diagnosis, left_out, &studied)
+    )];
+    for (k, phase) in diagnosis.phases.iter().enumerate().take(MOST_PHASES) {
+        for push in &phase.pushes {
+            let at = format!("minor {} of the cycle", k + 1);
+            lines.push(format!("{at}: {}", push_words(push, phase, &name)));
+        }
+    }
+    if diagnosis.phases.len() > MOST_PHASES {
+        let more = diagnosis.phases.len() - MOST_PHASES;
+        lines.push(format!("and so on for {more} more minor iterations"));
+    }
+    lines.extend(proven::cycle_words(problem, &name));
+    if let Some(core) = &diagnosis.core
+        && core.places.len() < diagnosis.cycle.members.len()
+    {
+        let names: Vec<_> = core.places.iter().map(|&place| name(place)).collect();
+        lines.push(format!(
+            "core: {} still cycle{}, period {}, when all other nodes go on with what they do",
+            list(&names),
+            if names.len() == 1 { "s" } else { "" },
+            core.cycle.period
+        ));
+    }
+    if let Some(census) = &diagnosis.census {
+        lines.extend(of_which_words(problem, diagnosis));
+        lines.extend(census_words(census, &studied));
+        lines.extend(proven::family_words(&diagnosis.problem, census, &studied));
+    }
+    lines.extend(
+        diagnosis
+            .ways
+            .iter()
+            .map(|&(way, settles)| way_words(way, settles)),
+    );
+    lines
+}
+
+/// Over which nodes states are counted, where those are fewer than take part.
+fn of_which_words(problem: &InterfaceProblem, diagnosis: &Diagnosis) -> Option<String> {
+    let (counted, part) = (&diagnosis.problem.nodes, diagnosis.cycle.members.len());
+    if counted.len() >= part {
+        return None;
+    }
+    let of = |place: usize| problem.nodes[place].slave;
+    let in_core = |core: &Core| {
+        core.places.len() == counted.len()
+            && core
+                .places
+                .iter()
+                .zip(counted)
+                .all(|(&place, node)| of(place) == node.slave)
+    };
+    let which = match diagnosis.core.as_ref().is_some_and(in_core) {
+        true => "nodes of the core",
+        false => "whose modes change",
+    };
+    Some(format!(
+        "of {part} nodes that take part, the states of the {} {which} are counted; all others go on with what they do",
+        counted.len()
+    ))
+}
+
+fn list(names: &[&str]) -> String {
+    match names {
+        [] => String::new(),
+        [one] => one.to_string(),
+        [some @ .., last] => format!("{} and {last}", some.join(", ")),
+    }
+}
+
+fn cause_words<'a>(
+    diagnosis: &Diagnosis,
+    left_out: bool,
+    name: &impl Fn(usize) -> &'a str,
+) -> String {
+    let members: Vec<&str> = (0..diagnosis.problem.nodes.len()).map(name).collect();
+    let nodes = list(&members);
+    match &diagnosis.cause {
+        Cause::NoAnswer if left_out => format!(
+            "no state of {nodes} obeys contact and friction as long as all other nodes go on with what they do"
+        ),
+        Cause::NoAnswer => format!(
+            "no state of {nodes} obeys contact and friction at this increment, so no iteration can find one"
+        ),
+        Cause::NoWayToSliding(sliding) => {
+            let sliding: Vec<&str> = sliding.iter().map(|&place| name(place)).collect();
+            format!(
+                "in the one consistent state {} slide{}, and Table 2 has no way there: a rough node that touches is \
+                 sent to fixed, and from there it opens",
+                list(&sliding),
+                if sliding.len() == 1 { "s" } else { "" }
+            )
+        }
+        Cause::Lag => format!(
+            "the modes have settled, but T_max of {nodes}, lagged by one iteration, swings to and fro"
+        ),
+        Cause::Several => format!(
+            "{} states of {nodes} are consistent, and Table 2 passes by them all",
+            diagnosis.census.as_ref().map_or(0, |c| c.answers.len())
+        ),
+        Cause::Passed => {
+            format!("one state of {nodes} is consistent, and Table 2 passes by it")
+        }
+        Cause::Unknown => {
+            format!(
+                "{} nodes take part, too many to try all of their states",
+                members.len()
+            )
+        }
+    }
+}
+
+fn push_words<'a>(push: &Push, phase: &Phase, name: &impl Fn(usize) -> &'a str) -> String {
+    let record = &phase.records[push.node];
+    let from = &push.influence;
+    let (what, value) = match push.tested {
+        Tested::Gap => ("Δg", from.gap),
+        Tested::NormalForce | Tested::Pressure | Tested::Cover | Tested::Change | Tested::Own => {
+            ("ΔF_n", from.f_n)
+        }
+        Tested::ShearForce | Tested::LeastFriction | Tested::Drag => ("ΔF_t", from.f_t),
+        Tested::Slip | Tested::Room => ("Δslip", from.slip),
+    };
+    let whom = if from.from == push.node {
+        "it"
+    } else {
+        name(push.node)
+    };
+    let source = name(from.from);
+    let doing = match push.from_modes {
+        [a, b] if a == b => format!("the new T_max of {source}"),
+        [_, Mode::Free] => format!("opening {source}"),
+        [Mode::Free, _] => format!("closing {source}"),
+        [_, Mode::Sliding] => format!("letting {source} slide"),
+        [_, Mode::Fixed] => format!("sticking {source}"),
+    };
+    let did = match record.decision.next {
+        Mode::Free => "open",
+        Mode::Sliding => "slide",
+        Mode::Fixed => "stick",
+    };
+    format!("{doing} made {whom} {did}: {what} = {value:.4e}")
+}
+
+pub(super) fn census_words<'a>(census: &Census, name: &impl Fn(usize) -> &'a str) -> Vec<String> {
+    let all = match (census.tried, census.answers.first()) {
+        (usize::MAX, Some(found)) => format!("up to 4^{}", found.answer.nodes.len()),
+        (usize::MAX, None) => "more than 10^19".to_owned(),
+        (tried, _) => tried.to_string(),
+    };
+    let count = census.answers.len();
+    let mut lines = vec![match (count, census.exact) {
+        (0, true) => format!("census: none of {all} assignments is consistent"),
+        (1, true) => format!("census: of {all} assignments one is consistent"),
+        (n, true) => format!("census: of {all} assignments {n} are consistent"),
+        (0, false) => format!("census: of {all} assignments none was found consistent so far"),
+        (n, false) => format!("census: of {all} assignments at least {n} are consistent"),
+    }];
+    match (census.visited, census.exact) {
+        (0, true) => {}
+        (n, true) => lines.push(format!(
+            "  branch and bound: {n} branches rule all others out"
+        )),
+        (n, false) => lines.push(format!(
+            "  branch and bound: not done after {n} branches, so there may be more"
+        )),
+    }
+    for (number, found) in census.answers.iter().enumerate().take(MOST_TOLD) {
+        let nodes: Vec<String> = found
+            .answer
+            .nodes
+            .iter()
+            .enumerate()
+            .map(|(place, node)| format!("{} {}", name(place), answer_words(node)))
+            .collect();
+        let margin = found
+            .answer
+            .worst()
+            .map_or(String::new(), |(place, margin)| {
+                format!(
+                    "; closest to failing: {} at {} by {:.4e}",
+                    condition_words(margin.condition),
+                    name(place),
+                    margin.value
+                )
+            });
+        let ties = match found.ties.as_slice() {
+            [] => String::new(),
+            ties => format!(" (a tie: {} leads to the same)", ties.join(", ")),
+        };
+        lines.push(format!(
+            "  {}: {}{ties}{margin}",
+            number + 1,
+            nodes.join(", ")
+        ));
+    }
+    if count > MOST_TOLD {
+        lines.push(format!("  and {} more", count - MOST_TOLD));
+    }
+    lines.extend(differing(census, name));
+    if let Some((answer, place, margin)) = &census.nearest {
+        lines.push(format!(
+            "  nearest: {}, which breaks \"{}\" at {} by {:.4e}",
+            answer.letters(),
+            condition_words(margin.condition),
+            name(*place),
+            -margin.value
+        ));
+    }
+    lines
+}
+
+/// Where several consistent states differ, a line a node.
+fn differing<'a>(census: &Census, name: &impl Fn(usize) -> &'a str) -> Vec<String> {
+    let all = &census.answers;
+    let [first, _, ..] = all.as_slice() else {
+        return Vec::new();
+    };
+    let mut lines = vec!["how they differ:".to_owned()];
+    for place in 0..first.answer.nodes.len() {
+        let of = |number: usize| &all[number].answer.nodes[place];
+        if (1..all.len()).all(|number| of(number).assumed == of(0).assumed) {
+            continue;
+        }
+        let each = (0..all.len().min(MOST_TOLD)).map(|number| {
+            let node = of(number);
+            let (does, f_n, f_t) = (assumed_words(node.assumed), node.f_n, node.f_t);
+            match node.assumed {
+                Assumed::Free => format!("{does} in {}, gap {:.4e}", number + 1, node.gap),
+                _ => format!("{does} in {}, F_n {f_n:.4e}, F_t {f_t:.4e}", number + 1),
+            }
+        });
+        lines.push(format!(
+            "  {}: {}",
+            name(place),
+            each.collect::<Vec<_>>().join("; ")
+        ));
+    }
+    lines
+}
+
+/// What a node is assumed to do, in words.
+pub fn assumed_words(assumed: Assumed) -> &'static str {
+    match assumed {
+        Assumed::Free => "free",
+        Assumed::Fixed => "fixed",
+        Assumed::Plus => "sliding with F_t > 0",
+        Assumed::Minus => "sliding with F_t < 0",
+    }
+}
+
+/// What a node does in a state, in words: without friction, sliding has no direction.
+pub fn answer_words(node: &NodeAnswer) -> &'static str {
+    match node.assumed.mode() {
+        Mode::Sliding if node.limit == 0.0 && node.f_n != 0.0 => "sliding",
+        _ => assumed_words(node.assumed),
+    }
+}
+
+/// A condition of contact or friction, in words.
+pub fn condition_words(condition: Condition) -> &'static str {
+    match condition {
+        Condition::NoPenetration => "no penetration",
+        Condition::NoTension => "no tension",
+        Condition::WithinLimit => "friction within its limit",
+        Condition::Dissipation => "friction against the slip",
+    }
+}
+
+fn way_words(way: Way, settles: bool) -> String {
+    let ends = if settles {
+        "settles"
+    } else {
+        "does not settle"
+    };
+    match way {
+        Way::Answer(number) => {
+            format!(
+                "tried: starting from consistent state {}: {ends}",
+                number + 1
+            )
+        }
+        Way::ConsistentLimit => format!("tried: settings.t_max=consistent: {ends}"),
+        Way::OtherSlip => format!("tried: settings.slip the other way: {ends}"),
+    }
+}

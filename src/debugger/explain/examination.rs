@@ -1,0 +1,243 @@
+//! What is known of the frozen problem that is solved next from a state: the diagnosis of the cycle that it runs into, or
+//! else the census of its consistent states.
+
+use super::core::cycle;
+use super::diagnosis::{self, Cause, Diagnosis, MOST_NODES, cycling, started, too_many};
+use super::names;
+use super::proven;
+use super::smaller::smaller;
+use stickslip_core::interface::census::{BUDGET, Census, MOST_SEARCHED, search};
+use stickslip_core::interface::minor_history::Cycle;
+use stickslip_core::interface::problem::InterfaceProblem;
+use stickslip_core::interface::trials::Trials;
+use stickslip_core::interface::uniqueness::uniqueness;
+use stickslip_core::model::Model;
+use stickslip_core::step::event::Failure;
+use stickslip_core::step::intervene::Start;
+use stickslip_core::step::state::{State, Status};
+use stickslip_core::step::stepper::Stepper;
+use stickslip_core::strategy::method;
+
+/// What is said at the end of the history.
+pub const DONE: &str = "The history is done; nothing is solved next from here.";
+/// What is said where there is no small problem.
+pub const NOT_CONDENSED: &str =
+    "The bodies cannot be condensed to the interface here, so there is no small problem to study.";
+
+/// Why it cannot be told whether the minor iterations cycle.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum Untold {
+    /// The solver does not condense, so that there is no interface problem.
+    #[error("{NOT_CONDENSED}")]
+    NotCondensed,
+    /// There are too many nodes; the text says how many.
+    #[error("{0}")]
+    TooMany(String),
+}
+
+/// What is known at a place.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Examination {
+    /// In words, a line each: what happened, where, why, what to do, and then the details.
+    pub lines: Vec<String>,
+    /// Whether the minor iterations cycle from here, or the increment failed.
+    pub fails: bool,
+    /// Slave numbers of the nodes that it is about.
+    pub nodes: Vec<usize>,
+    /// Where bodies move that nothing holds: a place, and a direction of at most length one.
+    pub arrows: Vec<[[f64; 2]; 2]>,
+    /// What is being found out still; empty where that is all.
+    pub going_on: String,
+    /// The problem that the census was held over.
+    pub problem: Option<InterfaceProblem>,
+    /// All consistent states; `None` if they were not counted.
+    pub census: Option<Census>,
+}
+
+impl Examination {
+    /// The starts that lead to a consistent state of the census; `None` if there is no such state.
+    pub fn starts(&self, number: usize) -> Option<Vec<Start>> {
+        let started = started(self.problem.as_ref()?, self.census.as_ref()?, number)?;
+        let start = |node: &stickslip_core::interface::problem::ProblemNode| Start {
+            slave: node.slave,
+            mode: node.state.mode,
+            t_max: node.state.t_max,
+        };
+        Some(started.nodes.iter().map(start).collect())
+    }
+}
+
+fn nothing(why: &str) -> Examination {
+    Examination {
+        lines: vec![why.into()],
+        ..Examination::default()
+    }
+}
+
+/// What is known of the frozen problem that is solved next from a state: the diagnosis of its cycle, or else its census,
+/// which ends where `stop` says so.
+pub fn frozen(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -> Examination {
+    if state.status == Status::Finished {
+        return nothing(DONE);
+    }
+    stepper.restore(state);
+    let Some(problem) = stepper.interface_problem() else {
+        return nothing(NOT_CONDENSED);
+    };
+    let round = match going_round(stepper, state, &problem) {
+        Err(why) => return nothing(&why.to_string()),
+        Ok(round) => round,
+    };
+    let model = stepper.model();
+    if let Some((problem, cycle)) = round
+        && let Some(diagnosis) = Diagnosis::of(&problem, stop)
+    {
+        let mut lines = diagnosis::words(model, &problem, &diagnosis);
+        if diagnosis.cause == Cause::NoAnswer {
+            lines.extend(smaller(stepper, state).map(|found| found.words()));
+        }
+        return Examination {
+            lines,
+            fails: true,
+            nodes: cycle.members.iter().map(|member| member.0).collect(),
+            problem: Some(diagnosis.problem),
+            census: diagnosis.census,
+            ..Examination::default()
+        };
+    }
+    let undecided = diagnosis::undecided(&problem);
+    let name = |place: usize| names::slave(model, problem.nodes[place].slave);
+    let mut proven = Vec::new();
+    if problem.nodes.len() <= MOST_NODES {
+        proven = proven::slow_words(&problem, &name);
+        if let Status::Failed(Failure::MinorLimit { .. }) = state.status
+            && let Some(first) = proven.first_mut()
+        {
+            first.insert_str(0, "why: ");
+        }
+        proven.push(proven::uniqueness_words(uniqueness(&problem), &name));
+    }
+    if undecided.len() > MOST_SEARCHED {
+        let mut found = nothing("The minor iterations do not cycle from here.");
+        found.lines.extend(proven);
+        found.lines.push(proven::too_many(undecided.len()));
+        return found;
+    }
+    let Some(studied) = problem.reduced(&undecided) else {
+        return nothing("The frozen interface problem is singular here.");
+    };
+    let head = "The minor iterations do not cycle from here.";
+    let mut found = counted(model, &studied, head, stop);
+    found.lines.extend(proven);
+    if found
+        .census
+        .as_ref()
+        .is_some_and(|census| census.answers.is_empty())
+    {
+        found
+            .lines
+            .extend(smaller(stepper, state).map(|found| found.words()));
+    }
+    found
+}
+
+/// Census of these slave nodes at a state, all others going on with what they do; it ends where `stop` says so.
+pub fn examine_nodes(
+    stepper: &mut Stepper,
+    state: &State,
+    slaves: &[usize],
+    stop: &dyn Fn() -> bool,
+) -> Examination {
+    if state.status == Status::Finished {
+        return nothing(DONE);
+    }
+    stepper.restore(state);
+    let Some(problem) = stepper.interface_problem() else {
+        return nothing(NOT_CONDENSED);
+    };
+    let wanted = |place: &usize| slaves.contains(&problem.nodes[*place].slave);
+    let places: Vec<usize> = (0..problem.nodes.len()).filter(wanted).collect();
+    let Some(studied) = problem.reduced(&places) else {
+        return nothing("With what all other nodes do, the frozen interface problem is singular.");
+    };
+    let model = stepper.model();
+    let names = slaves.iter().map(|&slave| names::slave(model, slave));
+    let names = names.collect::<Vec<_>>().join(", ");
+    let head = format!("Of {names}, all other nodes going on with what they do:");
+    counted(model, &studied, &head, stop)
+}
+
+/// What a census finds.
+fn counted(
+    model: &Model,
+    studied: &InterfaceProblem,
+    head: &str,
+    stop: &dyn Fn() -> bool,
+) -> Examination {
+    let census = match search(studied, BUDGET, stop) {
+        Err(why) => return nothing(&why.to_string()),
+        Ok(census) => census,
+    };
+    let name = |place: usize| names::slave(model, studied.nodes[place].slave);
+    let mut lines = vec![head.to_owned()];
+    lines.extend(diagnosis::census_words(&census, &name));
+    lines.extend(proven::family_words(studied, &census, &name));
+    Examination {
+        lines,
+        census: Some(census),
+        problem: Some(studied.clone()),
+        ..Examination::default()
+    }
+}
+
+/// The problem that goes round in a cycle from a state that the stepper stands at, and the cycle by slave number; none
+/// where there is no cycle. The states of the problem are where the cycle starts. A large problem is stepped on to its cycle, so that only those nodes are looked at that take
+/// part.
+///
+/// # Errors
+/// Why that cannot be told.
+pub fn going_round(
+    stepper: &mut Stepper,
+    state: &State,
+    problem: &InterfaceProblem,
+) -> Result<Option<(InterfaceProblem, Cycle)>, Untold> {
+    let by_slave = |cycle: Cycle| Cycle {
+        members: cycle
+            .members
+            .into_iter()
+            .map(|(place, modes)| (problem.nodes[place].slave, modes))
+            .collect(),
+        ..cycle
+    };
+    if problem.nodes.len() <= MOST_NODES {
+        return Ok(cycle(problem).map(|cycle| (at_start(problem, &cycle), by_slave(cycle))));
+    }
+    let known = match &state.status {
+        Status::Failed(Failure::Cycle(cycle)) => Some(cycle.clone()),
+        _ => stepper.cycle_ahead(),
+    };
+    let Some(cycle) = known else {
+        return Ok(None);
+    };
+    let problem = stepper.interface_problem().ok_or(Untold::NotCondensed)?;
+    match cycling(problem, &cycle) {
+        Some(problem) => Ok(Some((problem, cycle))),
+        None => Err(Untold::TooMany(too_many(&cycle))),
+    }
+}
+
+/// The problem with its nodes' states where its cycle starts.
+fn at_start(problem: &InterfaceProblem, cycle: &Cycle) -> InterfaceProblem {
+    let mut nodes = problem.states();
+    if let Some(mut trials) = Trials::new(problem) {
+        for _ in 1..cycle.start {
+            // It can be solved up to the cycle, since that was found.
+            let _ = trials.minor(&mut nodes, method(problem.settings.strategy));
+        }
+    }
+    let mut started = problem.clone();
+    for (node, state) in started.nodes.iter_mut().zip(nodes) {
+        node.state = state;
+    }
+    started
+}

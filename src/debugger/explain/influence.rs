@@ -1,0 +1,177 @@
+//! Who pushed whom: what the changes at other nodes did to one node's gap and forces, from one minor iteration to the next.
+//!
+//! On the frozen interface problem both iterations are linear systems that differ only in the equations of the nodes
+//! that changed. With M the matrix of the later one, and δ_j the amount by which the earlier answer misses row j of it,
+//! the answers differ by `Σ_j M⁻¹ e_j δ_j`, exactly: each term is what node j's change did.
+
+use stickslip_core::contact::state::ContactState;
+use stickslip_core::contact::table1::{Equation, Motion};
+use stickslip_core::interface::kinematics::NodeIncrement;
+use stickslip_core::interface::problem::InterfaceProblem;
+use stickslip_core::interface::rows;
+use stickslip_core::interface::trials::Trials;
+use stickslip_core::model::Mode;
+use stickslip_core::step::intervene::Intervention;
+use stickslip_core::step::state::State;
+use stickslip_core::step::stepper::Stepper;
+
+/// What one node's change did to another node.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Influence {
+    /// Place of the node that changed.
+    pub from: usize,
+    /// Change of the other node's gap and slip (length) and forces that is due to it.
+    pub gap: f64,
+    /// Change of its slip, length.
+    pub slip: f64,
+    /// Change of its normal force; compression is positive.
+    pub f_n: f64,
+    /// Change of its tangential force.
+    pub f_t: f64,
+}
+
+/// What the change of every node did to each of the nodes `targets`, from the iteration that the nodes go into with
+/// `before` to that with `after`; nodes that changed nothing are left out. `None` if either has no solution.
+pub fn influences(
+    problem: &InterfaceProblem,
+    before: &[ContactState],
+    after: &[ContactState],
+    targets: &[usize],
+) -> Option<Vec<Vec<Influence>>> {
+    let mut trials = Trials::new(problem)?;
+    let old = trials.given(before)?;
+    trials.given(after)?;
+    spread(&mut trials, after, targets, |from, row| {
+        row.value - left_side(row, &old[from])
+    })
+}
+
+/// The same, where `missed` tells by how much the earlier answer misses an equation of a node. `trials` has solved for `after`.
+pub(super) fn spread(
+    trials: &mut Trials<'_>,
+    after: &[ContactState],
+    targets: &[usize],
+    mut missed: impl FnMut(usize, &Equation) -> f64,
+) -> Option<Vec<Vec<Influence>>> {
+    let problem = trials.problem();
+    let mut found = vec![Vec::new(); targets.len()];
+    for (from, node) in problem.nodes.iter().enumerate() {
+        let rows = rows::rows(
+            &after[from],
+            node.kinematics.as_ref(),
+            &node.friction,
+            &problem.settings,
+            0.0,
+        );
+        let none = Influence {
+            from,
+            ..Influence::default()
+        };
+        let mut on = vec![none; targets.len()];
+        for (k, row) in rows.iter().enumerate() {
+            let missed = missed(from, row);
+            if missed == 0.0 {
+                continue;
+            }
+            let changes = trials.answers_to(from, k)?;
+            for (influence, &target) in on.iter_mut().zip(targets) {
+                let change = changes[target];
+                influence.gap -= missed * change.motion[0];
+                influence.slip += missed * change.motion[1];
+                influence.f_n += missed * change.force[0];
+                influence.f_t += missed * change.force[1];
+            }
+        }
+        for (all, influence) in found.iter_mut().zip(on) {
+            all.push(influence);
+        }
+    }
+    let tiny = f64::EPSILON * 64.0;
+    for all in &mut found {
+        all.retain(|i| {
+            i.gap.abs().max(i.slip.abs()) > tiny * problem.length
+                || i.f_n.abs().max(i.f_t.abs()) > tiny * problem.force
+        });
+    }
+    Some(found)
+}
+
+/// What an equation gives a value to, at a node that has come this far.
+pub(super) fn left_side(row: &Equation, given: &NodeIncrement) -> f64 {
+    let motion = match row.motion {
+        Motion::None => 0.0,
+        Motion::Normal => given.motion[0],
+        Motion::Tangential => given.motion[1],
+    };
+    motion + row.d_n * given.force[0] + row.d_t * given.force[1]
+}
+
+/// What the change of one node did to the node that is looked at.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Push {
+    /// Slave number of the node that changed.
+    pub slave: usize,
+    /// Its modes in the iteration before and in this one.
+    pub modes: [Mode; 2],
+    /// What the changes of other nodes do to it.
+    pub influence: Influence,
+}
+
+/// How to come to the iteration that is looked at: from a state, by steps done before.
+pub struct Way {
+    /// The state after the way.
+    pub state: Box<State>,
+    /// Minor iterations (none) and interventions, up to the state that the shown iteration started from.
+    pub steps: Vec<Option<Intervention>>,
+    /// Which of the steps is the minor iteration before the shown one.
+    pub before: usize,
+}
+
+/// The frozen problem between two minor iterations, and what the nodes came with into the first of them.
+pub struct Between {
+    problem: InterfaceProblem,
+    before: Vec<ContactState>,
+}
+
+/// What pushed a node in the iteration that comes after the way; `None` if that cannot be told.
+pub fn pushes(stepper: &mut Stepper, slave: usize, way: &Way) -> Option<Vec<Push>> {
+    pushed(&between(stepper, way)?, slave)
+}
+
+/// Goes the way, up to the iteration after it.
+pub fn between(stepper: &mut Stepper, way: &Way) -> Option<Between> {
+    stepper.restore(&way.state);
+    let mut before: Vec<ContactState> = Vec::new();
+    for (place, step) in way.steps.iter().enumerate() {
+        if place == way.before {
+            before.clone_from(&stepper.state().nodes);
+        }
+        match step {
+            Some(intervention) => stepper.intervene(intervention).ok()?,
+            None => {
+                stepper.step()?;
+            }
+        }
+    }
+    let problem = stepper.interface_problem()?;
+    Some(Between { problem, before })
+}
+
+/// What pushed a node between two minor iterations.
+pub fn pushed(Between { problem, before }: &Between, slave: usize) -> Option<Vec<Push>> {
+    let after = problem.states();
+    let target = problem.nodes.iter().position(|node| node.slave == slave)?;
+    let of = |node: usize| problem.nodes[node].slave;
+    let found = influences(problem, &pick(problem, before), &after, &[target])?;
+    let push = |influence: Influence| Push {
+        slave: of(influence.from),
+        modes: [before[of(influence.from)].mode, after[influence.from].mode],
+        influence,
+    };
+    Some(found.into_iter().flatten().map(push).collect())
+}
+
+/// States of a problem's nodes among those of all slave nodes.
+fn pick(problem: &InterfaceProblem, nodes: &[ContactState]) -> Vec<ContactState> {
+    problem.nodes.iter().map(|node| nodes[node.slave]).collect()
+}

@@ -1,0 +1,322 @@
+//! What moves where nothing holds it: the motion of a body, which way the loads push it, what would stop it, and since when
+//! it is loose.
+
+use super::names::slave;
+use std::collections::HashSet;
+use stickslip_core::contact::projection::{Projection, projection_at, tangent};
+use stickslip_core::fem::pressure::Pressures;
+use stickslip_core::linear::singular::{Motion, RigidMotion, Singular};
+use stickslip_core::model::{Factor, Mode, Model};
+use stickslip_core::step::state::State;
+use stickslip_core::step::stepper::Stepper;
+use stickslip_scene::number::four;
+use stickslip_scene::shown::first_of;
+
+/// Most motions that are told one by one.
+const MOST: usize = 3;
+/// Most nodes that are named.
+const MOST_NODES: usize = 4;
+/// Arrows that show the motion of a body.
+const ARROWS: usize = 8;
+/// Rates below this part of the largest are none.
+const NONE: f64 = 1e-9;
+
+/// What is told of bodies that come loose, and drawn.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Loose {
+    /// In words.
+    pub lines: Vec<String>,
+    /// A place on a body that moves, and the direction in which it does, of at most length one.
+    pub arrows: Vec<[[f64; 2]; 2]>,
+}
+
+/// A rigid motion of a body, with the sign in which the loads push it.
+pub(super) struct Moving<'a> {
+    model: &'a Model,
+    places: &'a [[f64; 2]],
+    body: usize,
+    /// Numbers of its nodes.
+    nodes: HashSet<usize>,
+    motion: Motion,
+    sign: f64,
+}
+
+/// Explains rigid motions that nothing resists in a state. The stepper is left at the state.
+pub fn loose(stepper: &mut Stepper, state: &State, motions: &[RigidMotion]) -> Loose {
+    stepper.restore(state);
+    // The places of the contacts are needed, not the matrix; it may be singular.
+    stepper.norms();
+    let at_start = stepper.loose(&state.start.nodes);
+    let still = matches!(stepper.loose(&state.nodes), Singular::Rigid { .. });
+    let model = stepper.model();
+    let places = model.places(&state.u);
+    let mut told = Loose::default();
+    for motion in motions.iter().take(MOST) {
+        let Some(moving) = Moving::new(model, &places, state, motion) else {
+            continue;
+        };
+        told.lines.push(moving.pushed(state));
+        told.lines.push(moving.contacts(state, still));
+        told.lines.push(moving.stopped(state));
+        told.arrows.extend(moving.arrows());
+    }
+    told.lines.push(since(model, state, &at_start));
+    told
+}
+
+impl<'a> Moving<'a> {
+    pub(super) fn new(
+        model: &'a Model,
+        places: &'a [[f64; 2]],
+        state: &State,
+        motion: &RigidMotion,
+    ) -> Option<Self> {
+        let body = model
+            .bodies
+            .iter()
+            .position(|body| body.name == motion.body)?;
+        let mut moving = Moving {
+            model,
+            places,
+            body,
+            nodes: model.bodies[body].nodes.iter().copied().collect(),
+            motion: motion.motion,
+            sign: 1.0,
+        };
+        if moving.power(state) < 0.0 {
+            moving.sign = -1.0;
+        }
+        Some(moving)
+    }
+
+    pub(super) fn name(&self) -> &str {
+        &self.model.bodies[self.body].name
+    }
+
+    /// How fast a place of the body moves: along a unit vector, or turning by one.
+    fn velocity(&self, at: [f64; 2]) -> [f64; 2] {
+        let v = match self.motion {
+            Motion::Translation(along) => along,
+            Motion::Rotation(about) => [about[1] - at[1], at[0] - about[0]],
+        };
+        v.map(|x| self.sign * x)
+    }
+
+    /// Power of the loads on the body in this motion: a force, or a moment.
+    fn power(&self, state: &State) -> f64 {
+        let (model, dofs) = (self.model, &self.model.dofs);
+        let nodes = &model.bodies[self.body].nodes;
+        let of = |load: &stickslip_core::model::Load| {
+            let on = |node: &&usize| {
+                let first = dofs.first[**node];
+                (first..first + usize::from(dofs.count[**node])).contains(&load.dof)
+            };
+            let node = *nodes.iter().find(on)?;
+            let v = self.velocity(self.places[node]);
+            let rate = match (load.dof - dofs.first[node], self.motion) {
+                (axis @ 0..=1, _) => v[axis],
+                (_, Motion::Rotation(_)) => self.sign,
+                _ => 0.0,
+            };
+            Some(load.value * load.scale.at(state.load_factor) * rate)
+        };
+        let dead: f64 = model.loads.iter().filter_map(of).sum();
+        let mut following = 0.0;
+        let factor = |scale: &Factor| scale.at(state.load_factor);
+        Pressures::new(model).each(model, &state.u, factor, |dof, force| {
+            let on = |node: &&usize| (dofs.first[**node]..dofs.first[**node] + 2).contains(&dof);
+            if let Some(&node) = nodes.iter().find(on) {
+                following += force * self.velocity(self.places[node])[dof - dofs.first[node]];
+            }
+        });
+        dead + following
+    }
+
+    fn pushed(&self, state: &State) -> String {
+        let power = self.power(state);
+        let moves = match self.motion {
+            Motion::Translation([x, y]) => {
+                let [x, y] = [x, y].map(|x| four(self.sign * x));
+                format!("moves along ({x}, {y})")
+            }
+            Motion::Rotation([x, y]) => {
+                let way = if self.sign > 0.0 {
+                    "anticlockwise"
+                } else {
+                    "clockwise"
+                };
+                format!("turns {way} about ({}, {})", four(x), four(y))
+            }
+        };
+        let loads = match (power > 0.0, self.motion) {
+            (false, _) => "no load pushes it that way, and none could be carried".to_owned(),
+            (true, Motion::Translation(_)) => format!("the loads push it with {}", four(power)),
+            (true, Motion::Rotation(_)) => {
+                format!("the loads turn it with a moment of {}", four(power))
+            }
+        };
+        format!(
+            "where: body {} {moves} (→ in the shape); {loads}",
+            self.name()
+        )
+    }
+
+    /// What its contacts do: how many are open, slide, stick; `still` where nothing holds it in these modes.
+    fn contacts(&self, state: &State, still: bool) -> String {
+        let own: Vec<usize> = self.own().collect();
+        let count = |mode: Mode| own.iter().filter(|s| state.nodes[**s].mode == mode).count();
+        let (free, sliding, fixed) = (count(Mode::Free), count(Mode::Sliding), count(Mode::Fixed));
+        if own.is_empty() {
+            return "why: it has no contact, and its supports leave this motion free".into();
+        }
+        let why = match (free, sliding, fixed) {
+            (_, 0, 0) if still => "an open node resists nothing",
+            (_, _, 0) if still => {
+                "a sliding node resists along its normal only: its friction is a force, T_max, that does not grow with the motion"
+            }
+            _ if !still => "the modes that were tried before these held it still less",
+            _ => "where they stick, they leave this motion free",
+        };
+        format!(
+            "why: of its {} contacts {free} are open, {sliding} slide, {fixed} stick; {why}",
+            own.len()
+        )
+    }
+
+    /// The contacts of the body, as slave or as master.
+    fn own(&self) -> impl Iterator<Item = usize> {
+        let model = self.model;
+        let masters: Vec<bool> = model
+            .surfaces
+            .iter()
+            .map(|surface| surface.elements.iter().flatten().any(|&n| self.has(n)))
+            .collect();
+        (0..model.contacts.len()).filter(move |&s| {
+            let contact = &model.contacts[s];
+            self.has(contact.node) || contact.surfaces.iter().any(|&k| masters[k])
+        })
+    }
+
+    /// Whether a node is one of the body's.
+    fn has(&self, node: usize) -> bool {
+        self.nodes.contains(&node)
+    }
+
+    /// Projection of a contact onto its surface.
+    fn over(&self, state: &State, s: usize) -> Option<Projection> {
+        let at = self.places[self.model.contacts[s].node];
+        let spot = state.nodes[s].spot?;
+        Some(projection_at(&self.model.surfaces, spot, self.places, at))
+    }
+
+    fn gap(&self, state: &State, s: usize) -> f64 {
+        self.over(state, s).map_or(0.0, |over| over.gap)
+    }
+
+    /// The contacts of the body above a surface, each with its velocity relative to the surface along n and t.
+    pub(super) fn rates(&self, state: &State) -> Vec<(usize, [f64; 2])> {
+        let rate = |s: usize| {
+            let (node, over) = (self.model.contacts[s].node, self.over(state, s)?);
+            let (v, side) = match self.has(node) {
+                true => (self.velocity(self.places[node]), 1.0),
+                false => (self.velocity(over.foot), -1.0),
+            };
+            let [n, t] = [over.normal, tangent(over.normal)];
+            let along = |d: [f64; 2]| side * (v[0] * d[0] + v[1] * d[1]);
+            Some((s, [along(n), along(t)]))
+        };
+        self.own().filter_map(rate).collect()
+    }
+
+    /// Which contact or support would stop the motion.
+    fn stopped(&self, state: &State) -> String {
+        let mut closing: Vec<(f64, usize)> = Vec::new();
+        let mut sliding = Vec::new();
+        for (s, [rate, along]) in self.rates(state) {
+            let (node, size) = (&state.nodes[s], rate.hypot(along));
+            if node.mode == Mode::Free && rate < -NONE * size {
+                let gap = self.gap(state, s).max(0.0);
+                closing.push((gap / -rate * size, s));
+            }
+            if node.mode == Mode::Sliding && size > 0.0 {
+                sliding.push(s);
+            }
+        }
+        closing.sort_by(|a, b| a.0.total_cmp(&b.0));
+        if let Some(&(way, s)) = closing.first() {
+            return format!(
+                "what would stop it: contact of {}, after a way of {}; a load does not move it there in equilibrium, a prescribed displacement does",
+                slave(self.model, s),
+                four(way)
+            );
+        }
+        let support = match self.motion {
+            Motion::Translation([x, y]) => {
+                let axis = if x.abs() >= y.abs() { "x" } else { "y" };
+                format!("a support of one of its nodes in {axis}")
+            }
+            Motion::Rotation(_) => "a support of one of its nodes away from that point".into(),
+        };
+        if sliding.is_empty() {
+            return format!("what would stop it: {support}; this motion brings no contact nearer");
+        }
+        let nodes = sliding.iter().map(|&s| slave(self.model, s));
+        format!(
+            "what would stop it: sticking of {}, as far as friction carries it (start: fixed); or {support}",
+            first_of(nodes, MOST_NODES, ", ")
+        )
+    }
+
+    /// Arrows on nodes that are spread over the body.
+    fn arrows(&self) -> Vec<[[f64; 2]; 2]> {
+        let nodes: Vec<usize> = match self.model.bodies[self.body].kind.lines() {
+            [] => self.model.bodies[self.body].nodes.clone(),
+            lines => lines.iter().flatten().copied().collect(),
+        };
+        let every = nodes.len().div_ceil(ARROWS).max(1);
+        let chosen = nodes.iter().step_by(every);
+        let moves = |&node: &usize| (self.places[node], self.velocity(self.places[node]));
+        let all: Vec<([f64; 2], [f64; 2])> = chosen.map(moves).collect();
+        let largest = all
+            .iter()
+            .map(|(_, v)| v[0].hypot(v[1]))
+            .fold(0.0, f64::max);
+        all.into_iter()
+            .filter(|_| largest > 0.0)
+            .map(|(at, v)| [at, v.map(|x| x / largest)])
+            .collect()
+    }
+}
+
+/// Since when it is loose.
+fn since(model: &Model, state: &State, at_start: &Singular) -> String {
+    let load = state.start.load_factor;
+    if matches!(at_start, Singular::Rigid { .. }) {
+        return match state.next.increment {
+            0 | 1 => {
+                "since when: from the start; nothing held it in the modes that the nodes start with"
+                    .into()
+            }
+            _ => format!(
+                "since when: it is loose in the modes of the last equilibrium, load {load}, already"
+            ),
+        };
+    }
+    let rank = |mode: Mode| match mode {
+        Mode::Free => 0,
+        Mode::Sliding => 1,
+        Mode::Fixed => 2,
+    };
+    let let_go: Vec<&str> = (0..model.contacts.len())
+        .filter(|&s| rank(state.nodes[s].mode) < rank(state.start.nodes[s].mode))
+        .map(|s| slave(model, s))
+        .collect();
+    match let_go.is_empty() {
+        true => format!("since when: at load {load} it was held"),
+        false => format!(
+            "since when: at load {load} it was held; on the way to {} {} let go",
+            state.load_factor,
+            first_of(let_go, MOST_NODES, ", ")
+        ),
+    }
+}

@@ -1,0 +1,162 @@
+//! The shape of a state as lines, for all who draw it: where nodes are, the curves of elements, what is to be seen, and
+//! what of a line lies in a window.
+
+use stickslip_core::contact::element::Element;
+use stickslip_core::fem::lagrange;
+use stickslip_core::model::Model;
+
+/// A place in the scene or on paper.
+pub type Point = [f64; 2];
+
+/// Straight pieces that an element's curve is drawn with.
+const PIECES: usize = 12;
+
+/// The Lagrange curve through the nodes of an element.
+pub fn curve(nodes: &[Point]) -> Vec<Point> {
+    if nodes.len() < 2 || nodes.len() > lagrange::MAX_NODES {
+        return nodes.to_vec();
+    }
+    let pieces = if nodes.len() == 2 { 1 } else { PIECES };
+    (0..=pieces)
+        .map(|piece| {
+            let shape = lagrange::shape(nodes.len(), -1.0 + 2.0 * piece as f64 / pieces as f64);
+            [0, 1].map(|axis| {
+                nodes
+                    .iter()
+                    .zip(shape.n)
+                    .map(|(node, n)| n * node[axis])
+                    .sum()
+            })
+        })
+        .collect()
+}
+
+/// The points whose Lagrange curve is that of an element of a master surface, whose nodes are at `place`.
+pub fn element(element: Element<'_>, place: impl Fn(usize) -> Point) -> Vec<Point> {
+    let nodes: Vec<Point> = element.nodes.iter().map(|&node| place(node)).collect();
+    if !element.is_smooth() {
+        return nodes;
+    }
+    let count = element.degree() + 1;
+    let at = |k: usize| {
+        let shares = element.shape(lagrange::node(count, k)).n;
+        [0, 1].map(|axis| nodes.iter().zip(shares).map(|(x, n)| n * x[axis]).sum())
+    };
+    (0..count).map(at).collect()
+}
+
+/// A rectangle in the scene.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bounds {
+    /// Least x and y.
+    pub low: Point,
+    /// Greatest x and y.
+    pub high: Point,
+}
+
+impl Bounds {
+    /// Holds no point yet.
+    pub const NOTHING: Bounds = Bounds {
+        low: [f64::INFINITY; 2],
+        high: [f64::NEG_INFINITY; 2],
+    };
+
+    /// About the origin, where there is nothing to be seen.
+    pub const UNIT: Bounds = Bounds {
+        low: [-1.0, -1.0],
+        high: [1.0, 1.0],
+    };
+
+    /// Grows to hold a point; what is no number is left out.
+    pub fn add(&mut self, point: Point) {
+        for (axis, x) in point.into_iter().enumerate().filter(|(_, x)| x.is_finite()) {
+            self.low[axis] = self.low[axis].min(x);
+            self.high[axis] = self.high[axis].max(x);
+        }
+    }
+
+    /// Width and height.
+    pub fn size(&self) -> Point {
+        [self.high[0] - self.low[0], self.high[1] - self.low[1]]
+    }
+
+    /// Length from corner to corner.
+    pub fn diagonal(&self) -> f64 {
+        let [x, y] = self.size();
+        x.hypot(y)
+    }
+}
+
+/// What is to be seen of a scene whose nodes are at `place`: the bodies as they were and as they are, and what of the
+/// surfaces is near. `None` where it has no size.
+pub fn extent(model: &Model, place: &dyn Fn(usize) -> Point) -> Option<Bounds> {
+    let mut bodies = Bounds::NOTHING;
+    for node in model.bodies.iter().flat_map(|body| &body.nodes) {
+        bodies.add(model.nodes[*node].at);
+        bodies.add(place(*node));
+    }
+    if bodies.diagonal() <= 0.0 || !bodies.diagonal().is_finite() {
+        model.nodes.iter().for_each(|node| bodies.add(node.at));
+    }
+    let reach = 0.2 * bodies.diagonal();
+    let mut all = bodies;
+    for node in model
+        .surfaces
+        .iter()
+        .flat_map(|surface| surface.elements.iter().flatten())
+    {
+        let at = place(*node);
+        let clamped =
+            |axis: usize| at[axis].clamp(bodies.low[axis] - reach, bodies.high[axis] + reach);
+        if bodies.diagonal().is_finite() {
+            all.add([clamped(0), clamped(1)]);
+        }
+    }
+    (all.diagonal() > 0.0 && all.diagonal().is_finite()).then_some(all)
+}
+
+/// The same, rounded to coarse steps, so that the picture does not breathe while it is stepped through.
+pub fn bounds(model: &Model, place: &dyn Fn(usize) -> Point) -> Bounds {
+    let all = extent(model, place);
+    let step = all.map_or(0.0, |all| all.diagonal() / 16.0);
+    let Some(all) = all.filter(|_| step > 0.0 && step.is_finite()) else {
+        return Bounds::UNIT;
+    };
+    // A power of two is a step that itself seldom changes.
+    let step = 2f64.powf(step.log2().ceil());
+    let down = |x: f64| (x / step).floor() * step;
+    let up = |x: f64| (x / step).ceil() * step;
+    Bounds {
+        low: all.low.map(down),
+        high: all.high.map(up),
+    }
+}
+
+/// The part of a line inside the rectangle from `low` to `high` (Liang and Barsky). `None` if there is none, or if an end
+/// is not a number.
+pub fn clip(from: Point, to: Point, low: Point, high: Point) -> Option<(Point, Point)> {
+    if !from.iter().chain(&to).all(|x| x.is_finite()) {
+        return None;
+    }
+    let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
+    for axis in 0..2 {
+        let run = to[axis] - from[axis];
+        for (p, q) in [
+            (-run, from[axis] - low[axis]),
+            (run, high[axis] - from[axis]),
+        ] {
+            match p {
+                0.0 if q < 0.0 => return None,
+                0.0 => {}
+                _ if p < 0.0 => enter = enter.max(q / p),
+                _ => leave = leave.min(q / p),
+            }
+        }
+    }
+    (enter <= leave).then(|| (mix(from, to, enter), mix(from, to, leave)))
+}
+
+/// The place on the way from one point to another.
+pub fn mix(from: Point, to: Point, part: f64) -> Point {
+    [0, 1].map(|axis| from[axis] + (to[axis] - from[axis]) * part)
+}

@@ -1,0 +1,151 @@
+//! Who pushed whom in an attached solver: from the numbers that it told of two iterations, and the interface problem between them.
+//!
+//! With total forces f, (gap, u) = W f + q is linear, and each contact's mode says which two numbers its equations fix. By how much
+//! their values differ between the two iterations is what the contact's change did ([`influence`](super::influence)). What a
+//! fixed contact sticks to, or at which bound one slides, need not be known: the numbers that were told say it.
+//!
+//! It is told only where W f + q gives the gaps of both iterations, and nothing but modes and friction bounds has changed
+//! between them.
+
+use super::attached;
+use super::influence::{Push, left_side, spread};
+use nalgebra::DVector;
+use std::sync::Arc;
+use stickslip_core::contact::record::ContactRecord;
+use stickslip_core::contact::table1::{Equation, Motion};
+use stickslip_core::interface::kinematics::NodeIncrement;
+use stickslip_core::interface::trials::Trials;
+use stickslip_core::model::{BoundUpdate, Mode, Model};
+use stickslip_core::step::event::Event;
+use stickslip_core::step::solver::{GoesBack, Offers, Posed};
+use stickslip_core::step::state::State;
+
+/// Most contacts whose problem is asked for at every look: its numbers go through a pipe, as text.
+const MOST: usize = 100;
+/// What numbers may differ by that should be equal, in parts of the largest of their kind.
+const SAME: f64 = 1e-6;
+
+/// Two minor iterations in the same frozen problem, one after the other.
+pub struct Iterations {
+    /// The state that the later one started from.
+    pub start: Box<State>,
+    /// What each of the two found.
+    pub found: [Arc<Event>; 2],
+}
+
+/// Whether a solver is asked for its problem at every look: it offers it, goes back to any state, and has not too many contacts.
+pub fn are_told(model: &Model, offers: &Offers) -> bool {
+    let few = model.contacts.len() <= MOST;
+    offers.problem && offers.goes_back == GoesBack::ToAny && few
+}
+
+/// What pushed a contact from one iteration to the next, where `posed` is the problem at the start of the later one. `None`
+/// where the problem gives other numbers than the solver told.
+pub fn pushes(
+    model: &Model,
+    iterations: &Iterations,
+    posed: &Posed,
+    slave: usize,
+) -> Option<Vec<Push>> {
+    let Some(target) = posed.contacts.iter().position(|&known| known == slave) else {
+        // What the problem leaves out, nothing pushes that is in it.
+        return Some(Vec::new());
+    };
+    let [before, after] = &iterations.found;
+    let earlier = Told::new(posed, &before.nodes)?;
+    let later = Told::new(posed, &after.nodes)?;
+    let (_, mut stepper) = attached::stepper(model, &iterations.start, posed).ok()?;
+    let mut problem = stepper.interface_problem()?;
+    if earlier.follows_law(posed) && later.follows_law(posed) {
+        problem.settings.t_max = BoundUpdate::Consistent;
+    }
+    problem.length = earlier.motion.amax().max(later.motion.amax());
+    problem.force = earlier.forces.amax().max(later.forces.amax());
+    let mut states = problem.states();
+    for (place, state) in states.iter_mut().enumerate() {
+        state.mode = later.modes[place];
+        state.sign = 1_f64.copysign(later.forces[2 * place + 1]);
+    }
+    let modes = |place: usize| [earlier.modes[place], later.modes[place]];
+    let mut is_explained = true;
+    let change = |place: usize, row: &Equation| {
+        let change = left_side(row, &later.given(place)) - left_side(row, &earlier.given(place));
+        let scale = match row.motion {
+            Motion::None => problem.force,
+            Motion::Normal | Motion::Tangential => problem.length,
+        };
+        let [then, now] = modes(place);
+        if then != now {
+            return change;
+        }
+        if change.abs() <= SAME * scale {
+            return 0.0;
+        }
+        // What keeps its mode can have another bound, and nothing else.
+        is_explained &= then == Mode::Sliding && row.motion == Motion::None;
+        change
+    };
+    let mut trials = Trials::new(&problem)?;
+    trials.given(&states)?;
+    let found = spread(&mut trials, &states, &[target], change)?;
+    let push = |influence: super::influence::Influence| Push {
+        slave: posed.contacts[influence.from],
+        modes: modes(influence.from),
+        influence,
+    };
+    is_explained.then(|| found.into_iter().flatten().map(push).collect())
+}
+
+/// What an iteration told of the problem's contacts.
+struct Told {
+    modes: Vec<Mode>,
+    /// f_n and f_t of each.
+    forces: DVector<f64>,
+    /// gap and u of each, by the problem.
+    motion: DVector<f64>,
+}
+
+impl Told {
+    /// `None` where forces were not told, or the problem gives other gaps.
+    fn new(posed: &Posed, nodes: &[ContactRecord]) -> Option<Told> {
+        let records = posed.contacts.iter().map(|&slave| nodes.get(slave));
+        let records: Vec<&ContactRecord> = records.collect::<Option<_>>()?;
+        let forces = records.iter().flat_map(|record| [record.f_n, record.f_t]);
+        let forces = DVector::from_iterator(2 * records.len(), forces);
+        let motion = posed.motion(&forces)?;
+        let q = DVector::from_column_slice(&posed.q);
+        let scale = (&motion - &q).amax().max(q.amax());
+        let other = |(place, record): (usize, &&ContactRecord)| {
+            (record.gap - motion[2 * place]).abs() > SAME * scale
+        };
+        let sound = forces.iter().all(|force| force.is_finite());
+        (sound && !records.iter().enumerate().any(other)).then(|| Told {
+            modes: records
+                .iter()
+                .map(|record| record.decision.before)
+                .collect(),
+            forces,
+            motion,
+        })
+    }
+
+    /// Forces and motions of a contact, as its equations have them.
+    fn given(&self, place: usize) -> NodeIncrement {
+        let of = |numbers: &DVector<f64>| [numbers[2 * place], numbers[2 * place + 1]];
+        NodeIncrement {
+            force: of(&self.forces),
+            // Those of the surface relative to the node.
+            motion: of(&self.motion).map(|x| -x),
+        }
+    }
+
+    /// Whether all contacts that slide do so at f_t = ± (μ f_n + c), with the present normal force.
+    fn follows_law(&self, posed: &Posed) -> bool {
+        let most = SAME * self.forces.amax();
+        (0..self.modes.len()).all(|place| {
+            let (friction, force) = (posed.friction[place], self.given(place).force);
+            let bound = friction.coefficient() * force[0] + friction.cohesion;
+            self.modes[place] != Mode::Sliding || (force[1].abs() - bound).abs() <= most
+        })
+    }
+}

@@ -1,0 +1,446 @@
+//! Remedies for an increment that does not converge: each is tried from the same state, and measured.
+//!
+//! What there is to try is in [`super::remedy`]. A trial ends where the load that failed is accepted, where it fails, or
+//! after [`BUDGET`] minor iterations. What it did is kept as steps, so that the chosen one can be done again in a branch.
+
+use super::advice::{Advice, advice};
+use super::examination::{Examination, frozen};
+use super::remedy::{How, Kind, Remedy};
+use super::restart;
+use std::cmp::Ordering;
+use std::ops::ControlFlow;
+use std::time::Instant;
+use stickslip_core::contact::laws::Law;
+use stickslip_core::contact::record::{ContactRecord, Forced};
+use stickslip_core::interface::method::NotFound;
+use stickslip_core::linear::norms::Norms;
+use stickslip_core::model::{Mode, Model, Strategy};
+use stickslip_core::step::drive::{RunEnd, Until, drive};
+use stickslip_core::step::event::{Event, Failure, Outcome};
+use stickslip_core::step::intervene::Intervention;
+use stickslip_core::step::solver::{Offers, Solver};
+use stickslip_core::step::state::{State, Status};
+use stickslip_core::step::stepper::Stepper;
+use stickslip_scene::format::paths;
+use stickslip_scene::format::spec::Spec;
+
+/// Most minor iterations of a trial.
+pub const BUDGET: u32 = 400;
+/// Most iterations of a trial on an attached solver, which may take its time.
+const BUDGET_ATTACHED: u32 = 60;
+/// A node keeps its mode while the inequality is violated by less than this, relatively.
+pub const HYSTERESIS: f64 = 1e-3;
+/// Violations below this, relatively, are round-off.
+pub const CLEAN: f64 = 1e-8;
+
+/// How a trial ended.
+#[derive(Debug, Clone, PartialEq)]
+pub enum TrialEnd {
+    /// The load that failed was accepted.
+    Converged,
+    /// A state was accepted, as held modes or the settings want it, that the judge found against this law.
+    Against(Law),
+    /// It failed.
+    Failed(Failure),
+    /// The budget is used up.
+    Budget,
+}
+
+/// Amounts below this are round-off, and none.
+const ROUND_OFF: f64 = 1e-14;
+
+/// What is left of violations in the accepted state, over the scale of forces and the length of the scene.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Left {
+    /// Deepest penetration, or largest distance over which a force acts (length).
+    pub penetration: f64,
+    /// Largest tension of a touching node (force).
+    pub tension: f64,
+    /// Largest |F_t| beyond what friction can give (force).
+    pub shear: f64,
+    /// Nodes whose mode Table 2 would change, were they not held.
+    pub held: usize,
+    /// Relative residual.
+    pub residual: f64,
+    /// The largest of the first three, relatively.
+    pub worst: f64,
+}
+
+/// What a remedy did.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Trial {
+    /// What was tried, as the list calls it.
+    pub label: String,
+    /// What is typed to take it.
+    pub how: How,
+    /// How it ended.
+    pub end: TrialEnd,
+    /// Minor iterations that it took.
+    pub minors: u32,
+    /// Major iterations that it took.
+    pub majors: u32,
+    /// Factorizations of the bodies: one a major iteration, or one a minor where the system is not condensed.
+    pub factorizations: u32,
+    /// Wall time of the solves.
+    pub seconds: f64,
+    /// Violations in the state that was accepted.
+    pub left: Option<Left>,
+    /// Minor iterations (none) and interventions, in order.
+    pub steps: Vec<Option<Intervention>>,
+}
+
+impl Trial {
+    /// One that has not begun.
+    fn new(remedy: &Remedy) -> Trial {
+        Trial {
+            label: remedy.label.clone(),
+            how: remedy.how.clone(),
+            end: TrialEnd::Budget,
+            minors: 0,
+            majors: 0,
+            factorizations: 0,
+            seconds: 0.0,
+            left: None,
+            steps: Vec::new(),
+        }
+    }
+}
+
+/// Everything that is tried from a state, whatever it failed of, in the order of the list.
+const KINDS: [Kind; 19] = [
+    Kind::Strategy(Strategy::Sliding),
+    Kind::Strategy(Strategy::Least),
+    Kind::Strategy(Strategy::SlidingLeast),
+    Kind::Strategy(Strategy::Block),
+    Kind::Strategy(Strategy::Newton),
+    Kind::Strategy(Strategy::Lemke),
+    Kind::Strategy(Strategy::Ladder),
+    Kind::ConsistentLimit,
+    Kind::ConsistentGeometry,
+    Kind::OtherResidual,
+    Kind::OtherSticking,
+    Kind::TouchAtStart,
+    Kind::Damp,
+    Kind::Part(0.5),
+    Kind::Part(0.37),
+    Kind::Part(0.1),
+    Kind::Start(Mode::Fixed),
+    Kind::Start(Mode::Sliding),
+    Kind::Hysteresis,
+];
+
+/// All that there is to try from a state: the consistent states, what helps against its failure, and everything else. The
+/// count of states ends where `stop` says so.
+pub fn all(
+    stepper: &mut Stepper,
+    state: &State,
+    spec: Option<&Spec>,
+    stop: &dyn Fn() -> bool,
+) -> Vec<Remedy> {
+    if state.status == Status::Finished {
+        return Vec::new();
+    }
+    let found = frozen(stepper, state, stop);
+    let model = stepper.model();
+    let mut all = Remedy::answers(model, &found);
+    let mut add = |remedy: Remedy| {
+        if all.iter().all(|known: &Remedy| known.kind != remedy.kind) {
+            all.push(remedy);
+        }
+    };
+    for kind in KINDS {
+        if let Some(remedy) = Remedy::of(kind, model, state) {
+            add(remedy);
+        }
+    }
+    if let Status::Failed(failure) = &state.status {
+        for advice in advice(model, state, failure) {
+            if let Advice::Remedy(remedy) = advice
+                && (spec.is_some() || !matches!(remedy.how, How::Restart(_)))
+            {
+                add(remedy);
+            }
+        }
+    }
+    all
+}
+
+/// What there is to try on an attached solver: it takes modes to start from, and perhaps another increment.
+pub fn offered(model: &Model, state: &State, offers: &Offers, found: &Examination) -> Vec<Remedy> {
+    let parts = [Kind::Part(0.5), Kind::Part(0.1)];
+    let parts = parts
+        .into_iter()
+        .filter_map(|kind| Remedy::of(kind, model, state));
+    let touching = [Mode::Fixed, Mode::Sliding]
+        .into_iter()
+        .filter_map(|mode| Remedy::touching(state, mode));
+    let answers = Remedy::answers(model, found).into_iter();
+    let all = answers.chain(touching).chain(parts);
+    let takes = |remedy: &Remedy| remedy.first.iter().all(|first| offers.check(first).is_ok());
+    all.filter(takes).collect()
+}
+
+/// Tries a remedy that changes the scene from its start; `None` if interrupted, or if there is no such scene.
+fn attempt_restart(
+    spec: &Spec,
+    state: &State,
+    (remedy, changes): (&Remedy, &[(String, &str)]),
+    stop: &dyn Fn() -> bool,
+) -> Option<Trial> {
+    let mut spec = spec.clone();
+    for (path, value) in changes {
+        paths::set(&mut spec, path, value).ok()?;
+    }
+    let mut stepper = restart::changed(spec, state)?;
+    let began = Instant::now();
+    let run = restart::restart(&mut stepper, state, stop)?;
+    let count = |n: u64| u32::try_from(n).unwrap_or(u32::MAX);
+    let mut trial = Trial::new(remedy);
+    trial.seconds = began.elapsed().as_secs_f64();
+    (trial.minors, trial.majors) = (count(run.minors), count(run.majors));
+    trial.factorizations = count(run.factorizations);
+    trial.end = match run.failure {
+        None => TrialEnd::Converged,
+        Some(None) => TrialEnd::Budget,
+        Some(Some(failure)) => TrialEnd::Failed(failure),
+    };
+    if trial.end == TrialEnd::Converged
+        && let Outcome::Increment { after, .. } = &stepper.event().outcome
+    {
+        trial.left = Some(left(&stepper, stepper.event(), after));
+    }
+    Some(trial)
+}
+
+/// Tries a remedy; `None` if interrupted, or if an attached solver is lost. `spec` is the original scene, for remedies that change
+/// it.
+pub fn attempt(
+    solver: &mut dyn Solver,
+    state: &State,
+    spec: Option<&Spec>,
+    remedy: &Remedy,
+    stop: &dyn Fn() -> bool,
+) -> Option<Trial> {
+    if let How::Restart(changes) = &remedy.how {
+        return attempt_restart(spec?, state, (remedy, changes), stop);
+    }
+    solver.restore(state).ok()?;
+    let target = (state.start.leg, state.load_factor);
+    let mut trial = Trial::new(remedy);
+    let change = |solver: &mut dyn Solver, trial: &mut Trial, what: Intervention| {
+        // What cannot be done is not a part of the trial: a node past its surface cannot touch.
+        if solver.intervene(&what).is_ok() {
+            trial.steps.push(Some(what));
+        }
+    };
+    for first in &remedy.first {
+        change(solver, &mut trial, first.clone());
+    }
+    let is_own = solver.stepper().is_some();
+    let budget = if is_own { BUDGET } else { BUDGET_ATTACHED };
+    let until = Until::end().minors(budget.into()).interrupted_by(stop);
+    let mut began = Instant::now();
+    let end = drive(solver, until, |solver| {
+        trial.seconds += began.elapsed().as_secs_f64();
+        trial.minors += 1;
+        trial.steps.push(None);
+        let event = solver.event();
+        let ends = event.outcome.ends_major();
+        trial.majors += u32::from(ends);
+        let is_there = is_there(solver.state(), event, target);
+        let mut changes = Vec::new();
+        if let Some(stepper) = solver.stepper() {
+            let event = stepper.event();
+            trial.factorizations += u32::from(ends || !stepper.condenses());
+            match &event.outcome {
+                Outcome::Increment { after, marked, .. } if is_there || marked.is_some() => {
+                    trial.left = Some(left(stepper, event, after));
+                    let against = marked.as_ref().map(|found| TrialEnd::Against(found.law));
+                    return ControlFlow::Break(against.unwrap_or(TrialEnd::Converged));
+                }
+                Outcome::Minor if remedy.kind == Kind::Hysteresis => {
+                    changes = hysteresis(stepper, event);
+                }
+                _ => {}
+            }
+        } else if is_there {
+            return ControlFlow::Break(TrialEnd::Converged);
+        }
+        for what in changes {
+            change(solver, &mut trial, what);
+        }
+        began = Instant::now();
+        ControlFlow::Continue(())
+    });
+    trial.end = match end.ok()? {
+        RunEnd::Interrupted => return None,
+        RunEnd::Stopped(end) => end,
+        RunEnd::Failed(failure) => TrialEnd::Failed(failure),
+        RunEnd::Finished => TrialEnd::Converged,
+        RunEnd::Spent => TrialEnd::Budget,
+    };
+    // The last major iteration, where the trial ended within it.
+    if is_own && trial.end == TrialEnd::Budget {
+        trial.factorizations += 1;
+    }
+    Some(trial)
+}
+
+/// Whether an increment was accepted that has come to the load that failed.
+fn is_there(state: &State, event: &Event, (leg, load): (usize, f64)) -> bool {
+    let accepted = matches!(event.outcome, Outcome::Increment { .. });
+    #[cfg(mutants)]
+    if stickslip_core::mutants::is_active("remedy-ends-at-its-first-increment") {
+        return accepted;
+    }
+    let close = (event.load_factor - load).abs() <= 1e-9 * state.controls.increment;
+    accepted && (state.status == Status::Finished || state.start.leg > leg || close)
+}
+
+/// What is held, and released, after a minor iteration that did not settle.
+fn hysteresis(stepper: &Stepper, event: &Event) -> Vec<Intervention> {
+    let near = |record: &ContactRecord| {
+        let margins = record.decision.tests.iter().flatten();
+        let size = |tested| scale_of(tested, stepper, event);
+        margins
+            .filter(|test| test.margin < 0.0)
+            .all(|test| -test.margin < HYSTERESIS * size(test.tested))
+    };
+    let records = || event.nodes.iter().enumerate();
+    let hold = records()
+        .filter(|(_, record)| record.decision.changes() && near(record))
+        .map(|(slave, record)| Intervention::Force {
+            slave,
+            mode: record.decision.before,
+            hold: true,
+        });
+    let held = records().filter(|(_, record)| {
+        matches!(record.forced, Forced::Held(_))
+            && record.decision.wanted != record.decision.next
+            && !near(record)
+    });
+    let release = held.map(|(slave, _)| Intervention::Release { slave });
+    hold.chain(release).collect()
+}
+
+/// The scale of what is tested: a force or a length.
+fn scale_of(
+    tested: stickslip_core::contact::table2::Tested,
+    stepper: &Stepper,
+    event: &Event,
+) -> f64 {
+    use stickslip_core::contact::table2::Tested;
+    match tested {
+        Tested::NormalForce
+        | Tested::ShearForce
+        | Tested::LeastFriction
+        | Tested::Pressure
+        | Tested::Drag => event.before.scale,
+        Tested::Slip | Tested::Room | Tested::Gap => stepper.model().length,
+        Tested::Cover | Tested::Change | Tested::Own => 1.0,
+    }
+}
+
+/// What the judge found of the state that was accepted last.
+fn left(stepper: &Stepper, event: &Event, after: &Norms) -> Left {
+    let verdict = stepper.state().start.verdict.as_ref();
+    let amount = |law: Law| {
+        let found = verdict.and_then(|verdict| verdict.of(law));
+        let amount = found.map_or(0.0, |found| found.amount);
+        if amount < ROUND_OFF { 0.0 } else { amount }
+    };
+    let gap = amount(Law::Gap)
+        .max(amount(Law::Penalty))
+        .max(amount(Law::Tied));
+    let inside = amount(Law::Penetration).max(gap);
+    let (tension, shear) = (amount(Law::Tension), amount(Law::Cone));
+    let decisions = event.nodes.iter().map(|record| &record.decision);
+    Left {
+        penetration: inside * stepper.model().length,
+        tension: tension * after.scale,
+        shear: shear * after.scale,
+        held: decisions.filter(|d| d.wanted != d.next).count(),
+        residual: after.relative,
+        worst: inside.max(tension).max(shear),
+    }
+}
+
+/// Best first: those that converged and leave no violation, by cost; those that leave one, by its size; then the others.
+pub fn sort(trials: &mut [Trial]) {
+    let class = |trial: &Trial| match (&trial.end, &trial.left) {
+        (TrialEnd::Converged, Some(left)) if left.worst > CLEAN || left.held > 0 => 1,
+        (TrialEnd::Converged, _) => 0,
+        (TrialEnd::Against(_), _) => 1,
+        _ => 2,
+    };
+    let worst = |trial: &Trial| trial.left.map_or(0.0, |left| left.worst);
+    trials.sort_by(|a, b| {
+        let by_size = match class(a) {
+            1 => worst(a).total_cmp(&worst(b)),
+            _ => Ordering::Equal,
+        };
+        (class(a).cmp(&class(b)))
+            .then(by_size)
+            .then(a.factorizations.cmp(&b.factorizations))
+            .then(a.minors.cmp(&b.minors))
+    });
+}
+
+/// An end in a word or two.
+pub fn end_words(end: &TrialEnd) -> String {
+    match end {
+        TrialEnd::Converged => "converged".into(),
+        TrialEnd::Against(law) => format!("breaks {}", law.name()),
+        TrialEnd::Budget => format!("{BUDGET} minors"),
+        TrialEnd::Failed(Failure::Cycle(cycle)) => format!("{}-cycle", cycle.period),
+        TrialEnd::Failed(Failure::MinorLimit { .. }) => "minors' limit".into(),
+        TrialEnd::Failed(Failure::MajorLimit { .. }) => "majors' limit".into(),
+        TrialEnd::Failed(Failure::MajorCycle(_)) => "majors cycle".into(),
+        TrialEnd::Failed(Failure::Singular(_)) => "singular".into(),
+        TrialEnd::Failed(Failure::Diverged { .. }) => "diverged".into(),
+        TrialEnd::Failed(Failure::OverConstrained { .. }) => "jammed".into(),
+        TrialEnd::Failed(Failure::Refused(_)) => "refused".into(),
+        TrialEnd::Failed(Failure::Inverted(_)) => "inverted".into(),
+        TrialEnd::Failed(Failure::CutTooOften { .. }) => "cut too often".into(),
+        TrialEnd::Failed(Failure::Restless { .. }) => "no rest".into(),
+        TrialEnd::Failed(Failure::Leapt { .. }) => "jumps".into(),
+        TrialEnd::Failed(Failure::DoubledBack) => "doubles back".into(),
+        TrialEnd::Failed(Failure::Unmoved) => "does not move".into(),
+        TrialEnd::Failed(Failure::RoundOff { .. }) => "round-off".into(),
+        TrialEnd::Failed(Failure::Reported { .. }) => "failed".into(),
+        TrialEnd::Failed(Failure::NoAnswer { .. }) => "no answer".into(),
+        TrialEnd::Failed(Failure::NotFound(NotFound::Ray)) => "ray".into(),
+        TrialEnd::Failed(Failure::LadderEnded { .. } | Failure::NotFound(_)) => "none found".into(),
+    }
+}
+
+/// Headings of the table, and what each column of [`row`] is.
+pub const COLUMNS: [&str; 10] = [
+    "end", "minors", "majors", "factors", "ms", "penetr.", "tension", "shear", "residual", "held",
+];
+
+/// A trial as the cells of a table, in the order of [`COLUMNS`].
+pub fn row(trial: &Trial) -> [String; 10] {
+    let tiny = |value: f64| match value {
+        value if value <= 0.0 => "0".into(),
+        value => format!("{value:.0e}"),
+    };
+    let number = |of: fn(&Left) -> f64| {
+        trial
+            .left
+            .as_ref()
+            .map_or("-".into(), |left| tiny(of(left)))
+    };
+    [
+        end_words(&trial.end),
+        trial.minors.to_string(),
+        trial.majors.to_string(),
+        trial.factorizations.to_string(),
+        format!("{:.1}", trial.seconds * 1e3),
+        number(|left| left.penetration),
+        number(|left| left.tension),
+        number(|left| left.shear),
+        number(|left| left.residual),
+        trial.left.map_or("-".into(), |left| left.held.to_string()),
+    ]
+}

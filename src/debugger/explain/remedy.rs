@@ -1,0 +1,340 @@
+//! What can be tried against an increment that fails: every remedy by its full name, with what is typed to take it.
+//!
+//! A remedy is what is done before the first minor iteration (a consistent state of the census, a strategy or another
+//! setting, another increment, other modes to start from), and perhaps hysteresis, which corrects the verdict after each.
+//! [`super::remedies`] tries them; [`super::advice`] says which of them help against what.
+
+use super::examination::Examination;
+use super::names;
+use super::strain::{self, MaterialCause};
+use stickslip_core::contact::projection::projection_at;
+use stickslip_core::model::{
+    AtCycle, BoundUpdate, Geometry, InitialGaps, Mode, Model, ResidualMethod, Settings, Sticking,
+    Strategy, Touch,
+};
+use stickslip_core::step::event::Failure;
+use stickslip_core::step::intervene::{Intervention, Start};
+use stickslip_core::step::state::State;
+use stickslip_scene::gaps::{StartGaps, start_gaps, turned};
+use stickslip_scene::number;
+
+/// Limits of iterations are raised this many times.
+const MORE: u32 = 10;
+
+/// Something that can be tried.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Kind {
+    /// Start from the consistent state of this number in the census.
+    Answer(usize),
+    /// Another strategy.
+    Strategy(Strategy),
+    /// T_max in the matrix.
+    ConsistentLimit,
+    /// The tangent knows how the geometry changes.
+    ConsistentGeometry,
+    /// The other residual method.
+    OtherResidual,
+    /// What a fixed node holds on to, the other way.
+    OtherSticking,
+    /// A node that touches is held where it was.
+    TouchAtStart,
+    /// A cycle aims at half the load first.
+    Damp,
+    /// This part of the increment.
+    Part(f64),
+    /// More minor iterations.
+    MoreMinors,
+    /// More major iterations.
+    MoreMajors,
+    /// The nodes that stand on a surface start in this mode; where none does, the one that is nearest to its surface.
+    Start(Mode),
+    /// A node keeps its mode while it misses its condition by little.
+    Hysteresis,
+    /// Treatment of nodes that start inside their surface; tried from the start of the scene.
+    Gaps(InitialGaps),
+    /// A material law whose range contains the state of a solid; tried from the start of the scene.
+    Law,
+}
+
+/// What is typed to take a remedy.
+#[derive(Debug, Clone, PartialEq)]
+pub enum How {
+    /// A setting, by path and value.
+    Set(&'static str, String),
+    /// An increment size.
+    Increment(f64),
+    /// An increment size where each leg of the path has its own: the leg, and the size.
+    IncrementOn(usize, f64),
+    /// A consistent state of the census, by its number from 0.
+    StartFrom(usize),
+    /// Values to change in the scene, by path, for a restart.
+    Restart(Vec<(String, &'static str)>),
+    /// Only from the list of remedies.
+    Listed,
+}
+
+impl How {
+    /// What is typed in the debugger.
+    pub fn typed(&self) -> String {
+        match self {
+            How::Set(path, value) => format!(":set {path} {value}"),
+            How::Increment(size) | How::IncrementOn(_, size) => {
+                format!(":increment {}", number::plain(*size))
+            }
+            How::StartFrom(answer) => format!(":start-from {}", answer + 1),
+            How::Restart(changes) => {
+                let option = |(path, value): &(String, &str)| format!("--set {path}={value}");
+                changes.iter().map(option).collect::<Vec<_>>().join(" ")
+            }
+            How::Listed => "r, then Enter on it".into(),
+        }
+    }
+}
+
+/// Something to try from a state.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Remedy {
+    /// What kind it is.
+    pub kind: Kind,
+    /// In a few words; the name of its branch.
+    pub label: String,
+    /// What is typed to take it.
+    pub how: How,
+    /// What is done before the first minor iteration.
+    pub first: Vec<Intervention>,
+}
+
+impl Remedy {
+    /// What touches in a state, and not as its surface tells, goes on in another mode; `None` where it has that mode.
+    pub fn touching(state: &State, mode: Mode) -> Option<Remedy> {
+        let nodes = state.nodes.iter().enumerate();
+        let others = nodes.filter(|(_, node)| node.mode != Mode::Free && node.mode != mode);
+        let first: Vec<Intervention> = others
+            .map(|(slave, _)| Intervention::Force {
+                slave,
+                mode,
+                hold: false,
+            })
+            .collect();
+        (!first.is_empty()).then(|| Remedy {
+            kind: Kind::Start(mode),
+            label: format!("start what touches {}", names::mode(mode)),
+            how: How::Listed,
+            first,
+        })
+    }
+
+    /// The remedy of a kind at a state; `None` where it would change nothing, or there is nothing to start from.
+    pub fn of(kind: Kind, model: &Model, state: &State) -> Option<Remedy> {
+        let remedy = |label: &str, how: How, first: Vec<Intervention>| Remedy {
+            kind,
+            label: label.to_owned(),
+            how,
+            first,
+        };
+        match kind {
+            Kind::Answer(_) | Kind::Law => None,
+            Kind::Gaps(gaps) => {
+                // Later increments do not begin with the overlap.
+                let starts = state.next.increment == 1;
+                let keeps = model.settings.initial_gaps == InitialGaps::Keep;
+                let inside = |found: &StartGaps| !found.inside.is_empty();
+                let (word, label) = match gaps {
+                    InitialGaps::Adjust => ("adjust", "initial_gaps: adjust"),
+                    InitialGaps::Ramp => ("ramp", "initial_gaps: ramp"),
+                    InitialGaps::Keep => return None,
+                };
+                let how = How::Restart(vec![("settings.initial_gaps".to_owned(), word)]);
+                let overlaps = starts && keeps && start_gaps(model).iter().any(inside);
+                // If a surface has the wrong orientation, all nodes are inside.
+                (overlaps && turned(model).is_empty()).then(|| remedy(label, how, Vec::new()))
+            }
+            Kind::Hysteresis => Some(remedy("hysteresis of 1e-3", How::Listed, Vec::new())),
+            Kind::Part(part) => {
+                let size = state.controls.increment * part;
+                let label = match part {
+                    0.5 => "half the increment".to_owned(),
+                    0.1 => "a tenth of the increment".to_owned(),
+                    part => format!("{part} of the increment"),
+                };
+                let first = vec![Intervention::Increment(size)];
+                let how = match model.increments.is_empty() {
+                    true => How::Increment(size),
+                    false => How::IncrementOn(state.start.leg, size),
+                };
+                Some(remedy(&label, how, first))
+            }
+            Kind::Start(mode) => {
+                let first = starts(model, state, mode);
+                let label = format!("start what touches {}", names::mode(mode));
+                (!first.is_empty()).then(|| remedy(&label, How::Listed, first))
+            }
+            _ => {
+                let mut settings = state.controls.settings;
+                let (label, path, value) = change(kind, &mut settings)?;
+                let first = vec![Intervention::Settings(settings)];
+                (settings != state.controls.settings)
+                    .then(|| remedy(label, How::Set(path, value), first))
+            }
+        }
+    }
+
+    /// Another law for materials outside the range of theirs in a failed state, and whether the law is certainly the cause.
+    /// `None` if all are inside.
+    pub fn law(model: &Model, state: &State, failure: &Failure) -> Option<(Remedy, bool)> {
+        let cause = MaterialCause::of(model, state, failure)?;
+        let points = cause.before.into_iter().chain([cause.point]);
+        let mut changes: Vec<(String, &'static str)> = Vec::new();
+        for change in points.filter_map(|point| strain::other_law(model, &point)) {
+            if !changes.contains(&change) {
+                changes.push(change);
+            }
+        }
+        let told = |(path, value): &(String, &str)| {
+            let (_, field) = path.rsplit_once('.').unwrap_or(("", path));
+            format!("{field}: {value}")
+        };
+        let label = changes.first().map(told)?;
+        let law = Remedy {
+            kind: Kind::Law,
+            label,
+            how: How::Restart(changes),
+            first: Vec::new(),
+        };
+        Some((law, cause.is_certain()))
+    }
+
+    /// Starting from each consistent state that was found.
+    pub fn answers(model: &Model, found: &Examination) -> Vec<Remedy> {
+        let count = found.census.as_ref().map_or(0, |c| c.answers.len());
+        let answer = |number: usize| {
+            let starts = found.starts(number)?;
+            const SHOWN: usize = 2;
+            let name =
+                |s: &Start| format!("{} {}", names::slave(model, s.slave), names::mode(s.mode));
+            let some: Vec<String> = starts.iter().take(SHOWN).map(name).collect();
+            let more = if starts.len() > SHOWN { ", …" } else { "" };
+            Some(Remedy {
+                kind: Kind::Answer(number),
+                label: format!("answer {}: {}{more}", number + 1, some.join(", ")),
+                how: How::StartFrom(number),
+                first: vec![Intervention::Assume(starts)],
+            })
+        };
+        (0..count).filter_map(answer).collect()
+    }
+}
+
+/// Changes the settings as a kind wants, and says so: label, path, and value.
+fn change(kind: Kind, settings: &mut Settings) -> Option<(&'static str, &'static str, String)> {
+    let told = match kind {
+        Kind::Strategy(strategy) => {
+            settings.strategy = strategy;
+            let label = match strategy {
+                Strategy::Ladder => "the ladder of strategies",
+                Strategy::Table2 => "Table 2 as printed",
+                Strategy::Sliding => "enter contact as sliding",
+                Strategy::Least => "one change at a time, least index",
+                Strategy::SlidingLeast => "enter as sliding, one change at a time",
+                Strategy::Block => "block changes, least-index fallback",
+                Strategy::Newton => "semismooth Newton",
+                Strategy::Lemke => "Lemke's pivoting",
+                Strategy::Census => "a census of all assignments",
+                Strategy::Copositive => "pivoting with the friction force in two parts",
+                Strategy::GaussSeidel => "Gauss-Seidel, and a solve for its modes",
+            };
+            (label, "settings.strategy", strategy.name().to_owned())
+        }
+        Kind::ConsistentLimit => {
+            settings.t_max = BoundUpdate::Consistent;
+            ("t_max consistent", "settings.t_max", "consistent".into())
+        }
+        Kind::ConsistentGeometry => {
+            settings.geometry = Geometry::Consistent;
+            let value = "consistent".into();
+            ("geometry consistent", "settings.geometry", value)
+        }
+        Kind::OtherResidual => {
+            let (method, label, value) = match settings.residual {
+                ResidualMethod::Stress => {
+                    let method = ResidualMethod::Accumulate;
+                    (method, "residual accumulate", "accumulate")
+                }
+                ResidualMethod::Accumulate => (ResidualMethod::Stress, "residual stress", "stress"),
+            };
+            settings.residual = method;
+            (label, "settings.residual", value.into())
+        }
+        Kind::OtherSticking => {
+            let (sticking, label, value) = match settings.sticking {
+                Sticking::Anchored => {
+                    let sticking = Sticking::Increments;
+                    (sticking, "sticking increments", "increments")
+                }
+                Sticking::Increments => (Sticking::Anchored, "sticking anchored", "anchored"),
+            };
+            settings.sticking = sticking;
+            (label, "settings.sticking", value.into())
+        }
+        Kind::TouchAtStart => {
+            settings.touch = Touch::Start;
+            ("touch at the start", "settings.touch", "start".into())
+        }
+        Kind::Damp => {
+            settings.at_cycle = AtCycle::Damp;
+            ("at_cycle damp", "settings.at_cycle", "damp".into())
+        }
+        Kind::MoreMinors => {
+            settings.minors = settings.minors.saturating_mul(MORE);
+            let value = settings.minors.to_string();
+            ("ten times the minors", "settings.minors", value)
+        }
+        Kind::MoreMajors => {
+            settings.majors = settings.majors.saturating_mul(MORE);
+            let value = settings.majors.to_string();
+            ("ten times the majors", "settings.majors", value)
+        }
+        Kind::Answer(_)
+        | Kind::Part(_)
+        | Kind::Start(_)
+        | Kind::Hysteresis
+        | Kind::Gaps(_)
+        | Kind::Law => return None,
+    };
+    Some(told)
+}
+
+/// Modes to start the increment again with: of the nodes that stand on their surface, or else of the nearest one.
+fn starts(model: &Model, state: &State, mode: Mode) -> Vec<Intervention> {
+    let places = model.places(&state.start.u);
+    let over = |slave: usize| {
+        let contact = &model.contacts[slave];
+        let spot = state.start.nodes[slave].spot?;
+        let found = projection_at(&model.surfaces, spot, &places, places[contact.node]);
+        Some((slave, found.gap))
+    };
+    let gaps: Vec<(usize, f64)> = (0..model.contacts.len()).filter_map(over).collect();
+    let touches = |gap: f64| gap <= TOUCHES * model.length;
+    let mut chosen: Vec<usize> = gaps
+        .iter()
+        .filter(|(_, gap)| touches(*gap))
+        .map(|(slave, _)| *slave)
+        .collect();
+    if chosen.is_empty() {
+        let nearest = gaps.iter().min_by(|a, b| a.1.total_cmp(&b.1));
+        chosen.extend(nearest.map(|(slave, _)| *slave));
+    }
+    let differs = |slave: &usize| state.start.nodes[*slave].mode != mode;
+    let force = |slave: usize| Intervention::Force {
+        slave,
+        mode,
+        hold: false,
+    };
+    let forced = chosen.into_iter().filter(differs).map(force);
+    let mut all = vec![Intervention::Increment(state.controls.increment)];
+    all.extend(forced);
+    if all.len() == 1 { Vec::new() } else { all }
+}
+
+/// A node this near to its surface, over the scene's length, stands on it.
+const TOUCHES: f64 = 1e-6;

@@ -1,0 +1,693 @@
+//! What happened, in words: the sentences that the command line and the debugger share.
+
+use crate::explain::accuracy;
+use crate::explain::judged;
+use crate::explain::jumped;
+use crate::explain::names::{mode, position_in, slave};
+use crate::explain::strain;
+use stickslip_core::contact::record::ContactRecord;
+use stickslip_core::contact::table2::{Decision, Rule, Tested};
+use stickslip_core::interface::census;
+use stickslip_core::interface::method::NotFound;
+use stickslip_core::interface::minor_history::Cycle;
+use stickslip_core::linear::norms::Norms;
+use stickslip_core::linear::singular::{Motion, RigidMotion, Singular};
+use stickslip_core::model::{Mode, Model};
+use stickslip_core::step::event::{Event, Failure, Moves, Outcome, Position, Slow};
+use stickslip_core::step::intervene::Intervention;
+use stickslip_core::step::major_history::{MajorCycle, Stop};
+use stickslip_core::step::state::State;
+use stickslip_core::step::way::Change;
+use stickslip_scene::number::{four, six};
+use stickslip_scene::shown::first_of;
+
+/// Why Table 2 decided as it did; `friction` says whether there is any.
+pub fn reason(decision: &Decision, friction: bool) -> String {
+    let text = match decision.rule {
+        Rule::FixedStays => "Stays fixed: the surface pushes, and friction can carry F_t.",
+        Rule::FixedSlides => "Fixed → sliding: F_t is more than friction can carry.",
+        Rule::FixedDragged => {
+            "Fixed → sliding: its supports drag it along, and nothing could stick it there."
+        }
+        Rule::FixedOpens => "Fixed → free: the surface would have to pull.",
+        Rule::SlidingSticks => "Sliding → fixed: friction would drive the slip, not oppose it.",
+        Rule::SlidingStays if !friction => {
+            "Stays sliding: there is no friction that could hold it."
+        }
+        Rule::SlidingStays => "Stays sliding: friction opposes the slip.",
+        Rule::SlidingPasses if !friction => {
+            "Stays sliding, and goes on past the end of its side: there is no friction that could hold it."
+        }
+        Rule::SlidingPasses => {
+            "Stays sliding, since friction opposes the slip, and goes on past the end of its side."
+        }
+        Rule::CornerStays => {
+            "Stays where two sides meet: they push, and together they can carry F_t."
+        }
+        Rule::CornerSlides => {
+            "Two sides → sliding along one: F_t is more than both together can carry."
+        }
+        Rule::CornerOpens => "Two sides → free: they would have to pull.",
+        Rule::CornerReleases => {
+            "Two sides → sliding along the one it came along: it slid into the corner, and F_t opposes that slip by less than friction must."
+        }
+        Rule::SlidingOpens => "Sliding → free: the surface would have to pull.",
+        Rule::FreeSticks => "Free → fixed: the node has gone into the surface.",
+        Rule::FreeSlides => "Free → sliding: the node has gone into a smooth surface.",
+        Rule::FreeStays => "Stays free: the gap is open.",
+        Rule::FreeEnters => {
+            "Free → sliding: the node has gone into the surface, and the strategy lets it slide against its travel."
+        }
+        Rule::Waits => {
+            let (next, wanted) = (mode(decision.next), mode(decision.wanted));
+            return format!(
+                "Waits {next}: one change at a time, and another node comes first; {wanted} is wanted (◁)."
+            );
+        }
+        Rule::NewtonOpens => "Newton: free, since F_n does not exceed k·g.",
+        Rule::NewtonSticks => "Newton: fixed, since force and slip keep within the friction.",
+        Rule::NewtonSlides if !friction => {
+            "Newton: slides; there is no friction that could hold it."
+        }
+        Rule::NewtonSlides => "Newton: slides, since force and slip exceed the friction.",
+        Rule::Pivots => {
+            let here = format!(
+                "Lemke: {} in this basis of the problem relaxed by z.",
+                mode(decision.next)
+            );
+            let first = match decision.tests[1].map(|test| test.tested) {
+                Some(Tested::Gap) => " Its gap was the first to close.",
+                Some(Tested::NormalForce) => " Its F_n was the first to vanish.",
+                Some(Tested::ShearForce) => " It was the first to come to its friction limit.",
+                Some(Tested::Slip) => " Its slip was the first to come to an end.",
+                _ => "",
+            };
+            return here + first;
+        }
+        Rule::Sweeps => {
+            return format!(
+                "Gauss-Seidel: {} by Coulomb's law at this node, the forces of all others held.",
+                mode(decision.next)
+            );
+        }
+        Rule::Found => {
+            return format!(
+                "Found {} in a consistent state; checked next.",
+                mode(decision.next)
+            );
+        }
+        Rule::OffSurface => {
+            "Free: the projection lies past an end of every surface, so there is nothing to touch."
+        }
+        Rule::Tied => {
+            "Tied: it is held at its point of the surface, in tension too. Table 2 is not asked."
+        }
+        Rule::Held if decision.wanted == decision.next => {
+            return format!(
+                "You hold it {}; Table 2 wants the same.",
+                mode(decision.next)
+            );
+        }
+        Rule::Held => {
+            let (next, wanted) = (mode(decision.next), mode(decision.wanted));
+            return format!("You hold it {next}; Table 2 (◁) wanted {wanted}. M releases it.");
+        }
+        Rule::Theirs if decision.wanted == decision.next => {
+            "The solver decided by rules of its own, which are not Table 2's."
+        }
+        Rule::Theirs => {
+            let (next, wanted) = (mode(decision.next), mode(decision.wanted));
+            return format!(
+                "The solver takes {next}; on the same numbers its rules, as we know them (◁), want {wanted}."
+            );
+        }
+    };
+    text.into()
+}
+
+/// What a minor iteration led to.
+pub fn outcome(model: &Model, event: &Event) -> String {
+    let at = position_in(model, event.position);
+    if !event.words.iteration.is_empty() {
+        return format!("{at}: {}", event.words.iteration);
+    }
+    match &event.outcome {
+        Outcome::Minor if together(event, Rule::Found) => {
+            format!("{at}: a consistent state is found; it is checked next")
+        }
+        Outcome::Minor if together(event, Rule::Pivots) => format!("{at}: {}", pivot(model, event)),
+        Outcome::Minor if together(event, Rule::Sweeps) => format!("{at}: {}", sweeps(event)),
+        Outcome::Minor => match changes(model, event).as_str() {
+            // Of an attached solver it is not known what else moves.
+            "" if event
+                .nodes
+                .iter()
+                .all(|node| node.t_max_used == node.t_max || node.t_max.is_nan()) =>
+            {
+                format!("{at}: no mode changes")
+            }
+            "" => format!("{at}: modes settled, T_max still moves"),
+            changes => format!("{at}: {changes}"),
+        },
+        Outcome::Damped {
+            cycle: c,
+            target: aim,
+        } => format!(
+            "{at}: {}; damped: aims at load {aim} first",
+            cycle(model, c)
+        ),
+        Outcome::Climbed { why, to } => format!(
+            "{at}: {}; goes on with strategy {}",
+            describe_failure(model, why),
+            to.name()
+        ),
+        Outcome::Cut { why, size } => format!(
+            "{at}: {}; the increment is cut to {size}",
+            describe_failure(model, why)
+        ),
+        Outcome::Leaps { why, size } => format!(
+            "{at}: {}; nothing is near: the increment is taken whole, {size}",
+            describe_failure(model, why)
+        ),
+        Outcome::Turns { why, changes } => {
+            let change = |change: &Change| {
+                let (name, to) = (slave(model, change.contact), mode(change.to));
+                format!("{name} is {to}")
+            };
+            let changes: Vec<String> = changes.iter().map(change).collect();
+            format!(
+                "{at}: {}; the path turns a corner, behind which {}",
+                describe_failure(model, why),
+                changes.join(", ")
+            )
+        }
+        Outcome::HeldBack { why, stiffness } => {
+            let why = why.as_ref().map_or_else(
+                || "a node slides too far, or against its force".to_owned(),
+                |why| describe_failure(model, why),
+            );
+            format!(
+                "{at}: {why}; the major iteration begins again, sliding held back by {}",
+                four(*stiffness)
+            )
+        }
+        Outcome::Moves(moves) => format!("{at}: {}", self::moves(model, moves)),
+        Outcome::Fallback { why, by, size } => format!(
+            "{at}: {}; the halves have failed: tries {}, from {size} on",
+            describe_failure(model, why),
+            by.words()
+        ),
+        Outcome::Major { after, settled } => {
+            let leaves = |node: &ContactRecord| node.decision.rule == Rule::CornerReleases;
+            let how = match (settled, event.nodes.iter().any(leaves)) {
+                (true, false) => "minors settled".to_owned(),
+                (true, true) => format!("minors settled, then {}", changes(model, event)),
+                (false, _) => "minors cut off unsettled".to_owned(),
+            };
+            format!(
+                "{at}: {how}; residual {:.3e}, wanted {:.1e}",
+                after.relative.max(after.interface),
+                after.limit
+            )
+        }
+        Outcome::Refused { why, .. } => format!(
+            "{at}: refused: {}; goes on, and from here on net slip counts",
+            judged::finding(model, why)
+        ),
+        Outcome::Increment { after, last, .. } => {
+            let end = if *last { jumped::end(model, event) } else { "" };
+            let left = accuracy::left(after).map_or(String::new(), |left| format!("; {left}"));
+            format!(
+                "{at}: load {} accepted{}{left}{end}",
+                event.load_factor,
+                reservations(model, event)
+            )
+        }
+        Outcome::Failed(failure) => format!("{at}: {}", describe_failure(model, failure)),
+    }
+}
+
+/// What a damped motion does.
+fn moves(model: &Model, moves: &Moves) -> String {
+    match moves {
+        Moves::LetsGo { why, load } => format!(
+            "{}; no equilibrium is near that of load {load}: a damped motion goes on from there",
+            describe_failure(model, why)
+        ),
+        Moves::Step { motion, number } => {
+            format!("step {number} of a damped motion: it moves by {motion:.3e}")
+        }
+        Moves::Slower(slow) => {
+            let why = match slow {
+                Slow::Failed(why) => describe_failure(model, why),
+                Slow::Far { motion } => format!("it would move by {motion:.3e} at once"),
+                Slow::Unstable => "it would end in an unstable state".to_owned(),
+            };
+            format!("{why}; the damped motion goes on slower")
+        }
+    }
+}
+
+/// Whether all nodes were looked at together, by this rule.
+fn together(event: &Event, rule: Rule) -> bool {
+    event.nodes.iter().any(|node| node.decision.rule == rule)
+}
+
+/// A step of Lemke's: what reached its bound, and what is left to go.
+fn pivot(model: &Model, event: &Event) -> String {
+    let tests = |s: usize| event.nodes[s].decision.tests;
+    let mut nodes = 0..event.nodes.len();
+    let what = nodes.find_map(|s| {
+        let what = match tests(s)[1]?.tested {
+            Tested::Gap => "the gap closed",
+            Tested::NormalForce => "F_n vanished",
+            Tested::ShearForce => "the friction limit was reached",
+            Tested::Slip | Tested::Room => "the slip ended",
+            _ => return None,
+        };
+        Some(format!("at {} {what}", slave(model, s)))
+    });
+    let cover = (0..event.nodes.len()).find_map(|s| Some(tests(s)[0]?.value));
+    let left = cover.map_or(String::new(), |z| format!("relaxed by z = {z:.3e}"));
+    match what {
+        Some(what) => format!("a pivot: {what}; {left}"),
+        None => format!("a pivot; {left}"),
+    }
+}
+
+/// Sweeps of Gauss-Seidel: how much the forces still change.
+fn sweeps(event: &Event) -> String {
+    let change = event
+        .nodes
+        .iter()
+        .find_map(|n| Some(n.decision.tests[0]?.value));
+    let left = change.map_or(String::new(), |c| {
+        format!("; the last one changed forces by {c:.3e}")
+    });
+    format!("sweeps{left}")
+}
+
+/// What an accepted increment was accepted in spite of; empty where there is nothing.
+pub fn reservations(model: &Model, event: &Event) -> String {
+    let Outcome::Increment {
+        unsettled,
+        marked,
+        jumped,
+        unstable,
+        motion,
+        left_range,
+        ..
+    } = &event.outcome
+    else {
+        return String::new();
+    };
+    let mut text = match unsettled {
+        0 => String::new(),
+        1 => ", although one loop was cut off unsettled".into(),
+        n => format!(", although {n} loops were cut off unsettled"),
+    };
+    let defied = |rule: fn(Rule) -> bool| -> Vec<&str> {
+        (0..event.nodes.len())
+            .filter(|&s| {
+                let decision = &event.nodes[s].decision;
+                decision.wanted != decision.next && rule(decision.rule)
+            })
+            .map(|s| slave(model, s))
+            .collect()
+    };
+    let otherwise = defied(|rule| rule == Rule::Theirs);
+    if !otherwise.is_empty() {
+        text += &format!(
+            ", although its rules, as we know them, want another mode at {}",
+            otherwise.join(", ")
+        );
+    }
+    let defied = defied(|rule| rule != Rule::Theirs);
+    if !defied.is_empty() {
+        text += &format!(
+            ", although Table 2 rejects the mode held at {}",
+            defied.join(", ")
+        );
+    }
+    if let Some(found) = marked {
+        text += &format!(", although {}", judged::finding(model, found));
+    }
+    if let Some(point) = left_range {
+        text += &format!(", although {}", strain::left(model, point));
+    }
+    text += &jumped::reservation(*jumped, unstable.as_ref());
+    if let Some(motion) = motion {
+        text += &format!(
+            ", by a damped motion of {} steps from the equilibrium at load {}, viscosity took {}",
+            motion.steps,
+            motion.from,
+            six(motion.dissipated)
+        );
+    }
+    text
+}
+
+fn changes(model: &Model, event: &Event) -> String {
+    let changed = |s: &usize| event.nodes[*s].decision.changes();
+    let all: Vec<usize> = (0..event.nodes.len()).filter(changed).collect();
+    let told = |&s: &usize| {
+        let d = &event.nodes[s].decision;
+        format!("{} {} > {}", slave(model, s), mode(d.before), mode(d.next))
+    };
+    // Three fit in the place of two and a number.
+    let most = if all.len() == 3 { 3 } else { 2 };
+    first_of(all.iter().map(told), most, ", ")
+}
+
+/// What the user did.
+pub fn intervention(model: &Model, intervention: &Intervention) -> String {
+    match intervention {
+        Intervention::Force {
+            slave: s,
+            mode: m,
+            hold: false,
+        } => {
+            format!(
+                "{} is {} in the next minor iteration",
+                slave(model, *s),
+                mode(*m)
+            )
+        }
+        Intervention::Force {
+            slave: s,
+            mode: m,
+            hold: true,
+        } => {
+            format!("{} is held {} until released", slave(model, *s), mode(*m))
+        }
+        Intervention::Assume(starts) => {
+            let told: Vec<String> = starts
+                .iter()
+                .map(|start| format!("{} {}", slave(model, start.slave), mode(start.mode)))
+                .collect();
+            format!("the next minor iteration starts with {}", told.join(", "))
+        }
+        Intervention::Release { slave: s } => format!("{} obeys Table 2 again", slave(model, *s)),
+        Intervention::Increment(increment) => {
+            format!("the increment starts again with size {increment}")
+        }
+        Intervention::Friction(f) => format!(
+            "friction angle {} degrees, cohesion {}",
+            f.angle, f.cohesion
+        ),
+        Intervention::Frictions(all) => {
+            let angle = all.first().map_or(0.0, |first| first.angle);
+            format!("friction angle {angle} degrees, cohesion of each node by its area")
+        }
+        Intervention::Settings(_) => "settings changed".into(),
+        Intervention::Parameter { name, value } => format!("{name} is {value} from now on"),
+    }
+}
+
+/// Where and why a run ended, and the last load with a sound state. `at` and `load` belong to the failed minor iteration,
+/// and `state` is the state after it.
+pub fn failure(model: &Model, state: &State, at: Position, load: f64, failure: &Failure) -> String {
+    let again = match at.attempt {
+        0 | 1 => String::new(),
+        n => format!(" in attempt {n}"),
+    };
+    format!(
+        "increment {} (load {load}){again}, major {}, minor {}: {}; {}",
+        at.increment,
+        at.major,
+        at.minor,
+        describe_failure(model, failure),
+        sound(at, state)
+    )
+}
+
+/// Up to which load a failed run is sound.
+pub fn sound(at: Position, state: &State) -> String {
+    let accepted = state.start.load_factor;
+    match at.increment {
+        0 | 1 => format!("no equilibrium was accepted beyond the start, load {accepted}"),
+        n => format!(
+            "the last equilibrium is that of increment {}, load {accepted}",
+            n - 1
+        ),
+    }
+}
+
+/// Why an increment failed.
+pub fn describe_failure(model: &Model, failure: &Failure) -> String {
+    match failure {
+        Failure::Cycle(c) => cycle(model, c),
+        Failure::Reported { reason, .. } if reason.is_empty() => {
+            "the solver failed, and does not say why".into()
+        }
+        Failure::Reported { reason, .. } => format!("the solver failed: {reason}"),
+        Failure::MinorLimit { limit, changing } => {
+            let nodes = changing.iter().map(|&s| slave(model, s).to_owned());
+            format!(
+                "the minor iterations did not settle within {limit}; still changing: {}",
+                some(nodes.collect(), ", ")
+            )
+        }
+        Failure::MajorLimit {
+            limit,
+            relative,
+            interface,
+        } => format!(
+            "no equilibrium within {limit} major iterations; relative residual {relative:.3e}, interface {interface:.3e}"
+        ),
+        Failure::MajorCycle(round) => major_cycle(model, round),
+        Failure::NoAnswer { first, tried } => {
+            let none =
+                format!("no consistent state at this increment: all {tried} assignments were tried");
+            match first {
+                None => none,
+                Some(first) => format!("{none} (at first: {})", describe_failure(model, first)),
+            }
+        }
+        Failure::LadderEnded {
+            first,
+            last,
+            scales,
+        } => format!(
+            "no strategy of the ladder found a consistent state (at first: {}; at last: {}){}",
+            describe_failure(model, first),
+            describe_failure(model, last),
+            match scales {
+                true => "; without gaps all scales with the load, so a smaller increment is the same problem and was not tried",
+                false => "",
+            }
+        ),
+        Failure::NotFound(why) => not_found(*why),
+        Failure::Singular(Singular::Rigid { motions }) => {
+            let motions = motions.iter().map(motion).collect();
+            format!("nothing holds a rigid motion: {}", some(motions, "; "))
+        }
+        Failure::Singular(Singular::Unexplained) => {
+            "the equations are singular, though every body is held: a limit point, or constraints that repeat each other".into()
+        }
+        Failure::Diverged { relative } => {
+            format!("diverged: displacements beyond all bounds, relative residual {relative:.3e}")
+        }
+        Failure::Refused(found) => {
+            format!("refused, since {}", judged::finding(model, found))
+        }
+        Failure::Inverted(point) => {
+            format!("refused, since {}", strain::inverted(model, point))
+        }
+        Failure::CutTooOften { slave: s, cuts, last } => format!(
+            "the increment was cut {cuts} times because of {}: {}",
+            slave(model, *s),
+            describe_failure(model, last)
+        ),
+        Failure::Restless { steps } => {
+            format!("a damped motion of {steps} steps came to no rest")
+        }
+        Failure::Leapt {
+            motion,
+            predicted,
+            unstable,
+        } => jumped::jump(*motion, *predicted, *unstable),
+        Failure::DoubledBack => {
+            "along the path, the increment would go back the way that it came".into()
+        }
+        Failure::Unmoved => {
+            "along the path, what is measured does not move while the load does: no size can be given to the increment".into()
+        }
+        Failure::RoundOff { noise } => format!(
+            "double precision cannot carry this scene: the round-off of its stiffest forces is {noise:.1e} of the loads; at most {:.0e} is accepted",
+            Norms::LOUDEST
+        ),
+        Failure::OverConstrained { slave: s, gap } => format!(
+            "{} penetrates by {:.3e}, and neither it nor its surface can move to close that",
+            slave(model, *s),
+            -gap
+        ),
+    }
+}
+
+/// Why pivoting, or the census, found nothing.
+fn not_found(why: NotFound) -> String {
+    match why {
+        NotFound::Ray => {
+            "pivoting ended on a ray from every start, so it found no consistent state".into()
+        }
+        NotFound::Astray { pivots } => {
+            format!("pivoting was given up after {pivots} pivots; its path might still end in a consistent state")
+        }
+        NotFound::NoStart => {
+            "pivoting has no start: the equations of every one that it knows are singular".into()
+        }
+        NotFound::Unsettled { sweeps } => {
+            format!("{sweeps} sweeps of Gauss-Seidel came to no modes that last")
+        }
+        NotFound::TooMany { nodes } => format!(
+            "{nodes} nodes can touch, too many to try what each does: a census is held over at most {}",
+            census::MOST
+        ),
+        NotFound::Loose => {
+            "no census can be held: the equations of the nodes that cannot touch are singular".into()
+        }
+        NotFound::NotCondensed => {
+            "the bodies cannot be condensed to the interface, so pivoting and census have nothing to work on".into()
+        }
+        NotFound::Unconfirmed { states } => format!(
+            "{states} state{} found consistent, and no minor iteration that checked {} agreed",
+            if states == 1 { " was" } else { "s were" },
+            if states == 1 { "it" } else { "one" }
+        ),
+    }
+}
+
+fn motion(rigid: &RigidMotion) -> String {
+    let body = &rigid.body;
+    match rigid.motion {
+        Motion::Translation([x, y]) => {
+            format!(
+                "body {body} can move along ({}, {})",
+                rounded(x),
+                rounded(y)
+            )
+        }
+        Motion::Rotation([x, y]) => {
+            format!(
+                "body {body} can turn about ({}, {})",
+                rounded(x),
+                rounded(y)
+            )
+        }
+    }
+}
+
+/// Four decimals without trailing zeros: for a place that a person is to find.
+fn rounded(x: f64) -> f64 {
+    let rounded = (x * 1e4).round() / 1e4;
+    // Neither a minus before a zero, nor infinity in place of what is only large.
+    match rounded.is_finite() {
+        true => rounded + 0.0,
+        false => x,
+    }
+}
+
+/// The first few of many.
+fn some(mut all: Vec<String>, between: &str) -> String {
+    const MOST: usize = 6;
+    let more = all.len().saturating_sub(MOST);
+    all.truncate(MOST);
+    let shown = all.join(between);
+    match more {
+        0 => shown,
+        n => format!("{shown} and {n} more"),
+    }
+}
+
+/// Modes one after the other; long stays are counted.
+fn pattern(modes: &[Mode]) -> String {
+    let stays = modes.chunk_by(|a, b| a == b).map(|stay| {
+        let word = mode(stay[0]);
+        match stay.len() {
+            1 => word.to_string(),
+            2 => format!("{word} > {word}"),
+            n => format!("{word} ({n} times)"),
+        }
+    });
+    stays.collect::<Vec<_>>().join(" > ")
+}
+
+/// Most stops of a node in a cycle of major iterations that are named.
+const MOST_STOPS: usize = 4;
+
+/// A cycle of major iterations.
+pub fn major_cycle(model: &Model, round: &MajorCycle) -> String {
+    let member = |(s, stops): &(usize, Vec<Stop>)| {
+        let elements: Vec<_> = stops.iter().map(|stop| stop.element).collect();
+        let modes: Vec<_> = stops.iter().map(|stop| stop.mode).collect();
+        let moves = elements.iter().any(|e| *e != elements[0]);
+        let switches = modes.iter().any(|m| *m != modes[0]);
+        let stop = |stop: &Stop| match (moves, switches) {
+            (true, false) => place(model, stop.element),
+            (false, true) => mode(stop.mode).to_string(),
+            _ => format!("{} on {}", mode(stop.mode), place(model, stop.element)),
+        };
+        let words: Vec<String> = stops.iter().take(MOST_STOPS).map(stop).collect();
+        match (moves, switches) {
+            (false, false) => format!("{} stays {}", slave(model, *s), words[0]),
+            _ => format!("{} {} > …", slave(model, *s), words.join(" > ")),
+        }
+    };
+    format!(
+        "the major iterations {}-cycle since major {}: {}",
+        round.period,
+        round.start,
+        some(round.members.iter().map(member).collect(), "; ")
+    )
+}
+
+/// A master element's name: its surface, and its number from 1.
+pub fn place(model: &Model, element: Option<(usize, usize)>) -> String {
+    match element {
+        Some((surface, element)) => {
+            let name = model.surfaces.get(surface).map_or("?", |s| s.name.as_str());
+            format!("{name} element {}", element + 1)
+        }
+        None => "no surface".into(),
+    }
+}
+
+/// Most nodes of a cycle that are named though their modes stay.
+const MOST_FOLLOWING: usize = 3;
+
+/// A cycle of modes.
+pub fn cycle(model: &Model, cycle: &Cycle) -> String {
+    let member = |(s, modes): &(usize, Vec<Mode>)| {
+        let name = slave(model, *s);
+        match modes.as_slice() {
+            [first, rest @ ..] if rest.iter().all(|m| m == first) => {
+                format!("{name} stays {} while its T_max repeats", mode(*first))
+            }
+            modes => format!("{name} {} > …", pattern(modes)),
+        }
+    };
+    // Those whose modes change come first: the T_max of many others may follow.
+    let changes = |modes: &[Mode]| modes.windows(2).any(|pair| pair[0] != pair[1]);
+    let (changing, following): (Vec<_>, Vec<_>) =
+        cycle.members.iter().partition(|(_, modes)| changes(modes));
+    let mut told = Vec::new();
+    if !changing.is_empty() {
+        told.push(some(changing.into_iter().map(member).collect(), "; "));
+    }
+    match following.len() {
+        0 => {}
+        n if n > MOST_FOLLOWING => {
+            told.push(format!(
+                "{n} nodes keep their modes while their T_max repeats"
+            ));
+        }
+        _ => told.extend(following.into_iter().map(member)),
+    }
+    format!(
+        "the modes {}-cycle since minor {}: {}",
+        cycle.period,
+        cycle.start,
+        told.join("; ")
+    )
+}

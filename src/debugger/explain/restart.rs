@@ -1,0 +1,103 @@
+//! Tries a changed scene from its start to the load of a failure: for changes that are impossible within a run, such as
+//! another mesh or material law.
+
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use stickslip_core::model::Settings;
+use stickslip_core::step::drive::{RunEnd, Until};
+use stickslip_core::step::event::{Failure, Outcome};
+use stickslip_core::step::intervene::Intervention;
+use stickslip_core::step::state::{State, Status};
+use stickslip_core::step::stepper::Stepper;
+use stickslip_scene::Scene;
+use stickslip_scene::format::spec::Spec;
+
+/// Maximum number of minor iterations in the trial.
+const BUDGET: u64 = 4000;
+
+/// Result of the trial.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Restart {
+    /// Minor iterations from the start.
+    pub minors: u64,
+    /// Major iterations from the start.
+    pub majors: u64,
+    /// Factorizations from the start.
+    pub factorizations: u64,
+    /// The failure. `Some(None)`: the budget was used up; `None`: the load was reached.
+    pub failure: Option<Option<Failure>>,
+}
+
+/// The solver of a changed scene at its start, with the settings and friction of a failed state. `None` if the scene cannot
+/// be built.
+pub fn changed(spec: Spec, state: &State) -> Option<Stepper> {
+    let own = spec.slaves.iter().filter_map(|group| group.friction);
+    let by_area = own
+        .chain([spec.friction])
+        .any(|friction| friction.adhesion != 0.0);
+    let model = Scene::from_spec("changed", spec).ok()?.model;
+    let mut stepper = Stepper::new(Arc::new(model));
+    let own = stepper.model().settings;
+    let settings = Settings {
+        initial_gaps: own.initial_gaps,
+        adjust_gap: own.adjust_gap,
+        ..state.controls.settings
+    };
+    stepper.intervene(&Intervention::Settings(settings)).ok()?;
+    // A friction change for all nodes applies to the new nodes, too. Node groups and cohesion by area keep the scene's
+    // values.
+    if !by_area
+        && let [first, rest @ ..] = state.controls.friction.as_slice()
+        && rest.iter().all(|friction| friction == first)
+        && stepper
+            .model()
+            .contacts
+            .iter()
+            .any(|contact| contact.friction != *first)
+    {
+        stepper.intervene(&Intervention::Friction(*first)).ok()?;
+    }
+    Some(stepper)
+}
+
+/// Runs a changed scene to the load at which a state failed. `None` if interrupted.
+pub fn restart(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -> Option<Restart> {
+    let target = (state.start.leg, state.load_factor);
+    let (mut minors, mut majors) = (0, 0);
+    let until = Until::end().minors(BUDGET).interrupted_by(stop);
+    let end = stepper.drive(until, |stepper| {
+        minors += 1;
+        let outcome = &stepper.event().outcome;
+        majors += u64::from(outcome.ends_major());
+        let accepted = matches!(outcome, Outcome::Increment { .. });
+        match accepted && is_past(stepper, target) {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        }
+    });
+    let failure = match end {
+        RunEnd::Stopped(()) | RunEnd::Finished => None,
+        RunEnd::Failed(failure) => Some(Some(failure)),
+        RunEnd::Spent => Some(None),
+        RunEnd::Interrupted => return None,
+    };
+    Some(Restart {
+        minors,
+        majors,
+        factorizations: stepper.work().factorizations,
+        failure,
+    })
+}
+
+/// Whether the last accepted state has reached a load on a leg of the path.
+fn is_past(stepper: &Stepper, (leg, load): (usize, f64)) -> bool {
+    let (state, path) = (stepper.state(), &stepper.model().path);
+    let start = &state.start;
+    let way = match path.get(leg..leg + 2) {
+        Some([from, to]) => (to - from).signum(),
+        _ => 1.0,
+    };
+    let slack = 1e-9 * state.controls.increment;
+    let on_leg = start.leg == leg && (start.load_factor - load) * way >= -slack;
+    state.status == Status::Finished || start.leg > leg || on_leg
+}

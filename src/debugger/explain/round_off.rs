@@ -1,0 +1,79 @@
+//! Round-off is not physics: the one place that decides whether a number is anything but the round-off of its own sum.
+//!
+//! A force, gap, slip or drift is a sum of terms that are as large as the forces at work, or as the coordinates of the
+//! scene. Double precision leaves of such a sum no less than a few ε = 2^-52 times its largest term. Below [`TIMES`] of
+//! these, and below what the stiffest forces leave ([`Norms::noise`]), a number is shown as 0, no arrow is drawn from it,
+//! and no lesson asks about it. A number that decided a mode is shown as it is all the same, with [`NOTE`].
+
+use stickslip_core::linear::norms::Norms;
+use stickslip_core::model::Model;
+use stickslip_scene::number;
+
+/// Round-off in units of the machine precision times the largest term of a sum.
+pub const TIMES: f64 = 64.0;
+/// What is said of a number that decided something though it is no larger than round-off.
+pub const NOTE: &str = "(round-off)";
+
+/// Below which size forces and lengths are round-off.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct RoundOff {
+    /// Force.
+    pub force: f64,
+    /// Length.
+    pub length: f64,
+}
+
+impl RoundOff {
+    /// Of a scene where its forces are as large as these norms say.
+    pub fn of(model: &Model, norms: &Norms) -> RoundOff {
+        let ulps = TIMES * f64::EPSILON;
+        let coordinates = model.nodes.iter().flat_map(|node| node.at);
+        let largest = coordinates.fold(model.length, |m, x| m.max(x.abs()));
+        RoundOff {
+            force: norms.scale * norms.noise.max(ulps),
+            length: ulps * largest,
+        }
+    }
+
+    /// A force, or 0 where it is round-off.
+    pub fn force(&self, value: f64) -> f64 {
+        clean(value, self.force)
+    }
+
+    /// A length, or 0 where it is round-off.
+    pub fn length(&self, value: f64) -> f64 {
+        clean(value, self.length)
+    }
+
+    /// |F_t| over |T_max| as a cell of a table; a dash where T_max is round-off, and F_t too.
+    pub fn ratio(&self, f_t: f64, t_max: f64) -> String {
+        number::ratio(self.force(f_t), self.force(t_max))
+    }
+}
+
+/// A value, or 0 where it is no larger than round-off; what is not a number stays what it is.
+fn clean(value: f64, round_off: f64) -> f64 {
+    match value.abs() <= round_off {
+        true => 0.0,
+        false => value,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_no_larger_than_round_off_is_nothing_and_all_else_is_itself() {
+        let round_off = RoundOff {
+            force: 1e-12,
+            length: 1e-15,
+        };
+        assert_eq!(round_off.force(1e-12), 0.0);
+        assert_eq!(round_off.force(-1.1e-12), -1.1e-12);
+        assert_eq!(round_off.length(f64::INFINITY), f64::INFINITY);
+        assert!(round_off.length(f64::NAN).is_nan());
+        assert_eq!(round_off.ratio(1e-13, 1e-14), "–");
+        assert_eq!(round_off.ratio(0.5, 1.0), "0.5000");
+    }
+}

@@ -1,0 +1,166 @@
+//! Describes solids outside the range of their law: which element, its deformation, and which law to use instead
+//! ([`stickslip_core::fem::deformation`]).
+
+use stickslip_core::fem::deformation::{Deformation, PointDeformation, Range, deformation};
+use stickslip_core::model::{BodyKind, Elastic, Law, Model, Update};
+use stickslip_core::step::event::Failure;
+use stickslip_core::step::state::State;
+use stickslip_scene::number::four;
+
+/// Displacements beyond this multiple of the scene's length are meaningless as a shape.
+const LOST: f64 = 10.0;
+
+/// The material of an element: its number data and its name in the scene.
+fn material<'a>(model: &'a Model, point: &PointDeformation) -> Option<(&'a Elastic, &'a str)> {
+    let BodyKind::Solid(solid) = &model.bodies.get(point.body)?.kind else {
+        return None;
+    };
+    let number = solid.elements.get(point.element)?.material;
+    let name = solid.material_names.get(number)?;
+    Some((solid.materials.get(number)?, name))
+}
+
+/// Names an element by number and body.
+pub fn element(model: &Model, point: &PointDeformation) -> String {
+    let body = model.bodies.get(point.body).map_or("?", |body| &body.name);
+    format!("element {} of {body}", point.element + 1)
+}
+
+/// Names an element and the location of its worst point.
+fn place(model: &Model, point: &PointDeformation) -> String {
+    let [x, y] = point.at.map(four);
+    format!("{} at ({x}, {y})", element(model, point))
+}
+
+/// Describes an inverted element, as part of a sentence.
+pub fn inverted(model: &Model, point: &PointDeformation) -> String {
+    format!(
+        "{} is inverted: det F = {}, smallest principal stretch {}",
+        place(model, point),
+        four(point.determinant),
+        four(point.stretch)
+    )
+}
+
+/// Describes an element outside the range of its law, as part of a sentence.
+pub fn outside(model: &Model, point: &PointDeformation) -> String {
+    let stretch = four(point.stretch);
+    format!(
+        "{} is {}: {}",
+        place(model, point),
+        match range(model, point) {
+            Range::Volume(_) => format!("swollen to det F = {}", four(point.determinant)),
+            _ => format!("pressed to a stretch of {stretch}"),
+        },
+        limit(model, point)
+    )
+}
+
+fn range(model: &Model, point: &PointDeformation) -> Range {
+    material(model, point).map_or(Range::Unlimited, |(elastic, _)| Range::of(elastic))
+}
+
+/// Describes the range of an element's law and the behaviour outside.
+pub fn limit(model: &Model, point: &PointDeformation) -> String {
+    match (range(model, point), material(model, point)) {
+        (Range::Stretch(least), Some((elastic, _))) if elastic.update == Update::Small => format!(
+            "below {} linear elasticity (update: small) neglects more than 5 % of the strain",
+            four(least)
+        ),
+        (Range::Stretch(least), _) => format!(
+            "St Venant-Kirchhoff (law: svk) softens below {} under compression",
+            four(least)
+        ),
+        (Range::Volume(most), _) => {
+            format!("law: neohookean may soften beyond det F = {}", four(most))
+        }
+        (Range::Unlimited, _) => "its stress update has no limit of its own".into(),
+    }
+}
+
+/// The scene value, as path and value, that gives an element a law valid there. `None` if there is no such law.
+pub fn other_law(model: &Model, point: &PointDeformation) -> Option<(String, &'static str)> {
+    let (elastic, name) = material(model, point)?;
+    match (elastic.update, elastic.law) {
+        (Update::Total, Law::Svk) => Some((format!("materials.{name}.law"), "neohookean")),
+        (Update::Small, _) => Some((format!("materials.{name}.update"), "total")),
+        _ => None,
+    }
+}
+
+/// Reports that an accepted increment leaves the range, with the law to use instead.
+pub fn left(model: &Model, point: &PointDeformation) -> String {
+    let suggested = other_law(model, point).map_or(String::new(), |(path, value)| {
+        format!(" (suggested, not tried: {path}={value})")
+    });
+    format!("{}{suggested}", outside(model, point))
+}
+
+/// Role of a solid's law in a failure.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MaterialCause {
+    /// The worst point of the failed iterate if outside the range, else of the last equilibrium.
+    pub point: PointDeformation,
+    /// The worst point of the last equilibrium, if it was already outside.
+    pub before: Option<PointDeformation>,
+}
+
+impl MaterialCause {
+    /// The element of a failed state that is outside the range of its law. `None` if all are inside, or if the failure
+    /// certainly has another cause.
+    pub fn of(model: &Model, state: &State, failure: &Failure) -> Option<MaterialCause> {
+        use stickslip_core::linear::singular::Singular;
+        if matches!(
+            failure,
+            Failure::Singular(Singular::Rigid { .. })
+                | Failure::RoundOff { .. }
+                | Failure::OverConstrained { .. }
+                | Failure::Reported { .. }
+        ) {
+            return None;
+        }
+        let bounded = state.u.iter().all(|u| u.abs() < LOST * model.length);
+        let failed = bounded.then(|| deformation(model, &state.u)).flatten();
+        let worst = |found: Deformation| found.outside.or(found.inverted());
+        let before = deformation(model, &state.start.u).and_then(worst);
+        let point = match failure {
+            Failure::Inverted(point) => Some(*point),
+            _ => failed.and_then(worst).or(before),
+        };
+        Some(MaterialCause {
+            point: point?,
+            before,
+        })
+    }
+
+    /// Whether the law is the cause: the accepted state is already outside its range, or an element is inverted. An iterate
+    /// may be outside for other reasons.
+    pub fn is_certain(&self) -> bool {
+        let upright = self.point.determinant > 0.0;
+        self.before.is_some() || !upright
+    }
+
+    /// Describes the cause.
+    pub fn words(&self, model: &Model) -> String {
+        let before = match &self.before {
+            Some(before) if before.stretch != self.point.stretch => format!(
+                "; in the last equilibrium, {} was pressed to {}",
+                element(model, before),
+                four(before.stretch)
+            ),
+            _ => String::new(),
+        };
+        let head = match self.is_certain() {
+            true => "why",
+            false => "where",
+        };
+        let told = match self.point.determinant > 0.0 {
+            true => outside(model, &self.point),
+            false => {
+                let (point, limit) = (inverted(model, &self.point), limit(model, &self.point));
+                format!("{point}; {limit}")
+            }
+        };
+        format!("{head}: {told}{before}")
+    }
+}

@@ -1,0 +1,137 @@
+//! Branches by name: what each is called, what it cost, and where it accepted increments.
+
+use crate::explain::names;
+use crate::history::strip::Strip;
+use crate::history::tree::Tree;
+use stickslip_core::model::Model;
+use stickslip_core::step::intervene::Intervention;
+
+/// What a stretch of the history cost.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Cost {
+    /// Minor iterations.
+    pub minors: u64,
+    /// Major iterations.
+    pub majors: u64,
+    /// Accepted increments.
+    pub increments: u64,
+    /// Wall time of the solves.
+    pub seconds: f64,
+}
+
+/// Why a word names no branch.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum NoBranch {
+    /// No branch has this name; what branches there are.
+    #[error("no branch is called '{0}'; there are {1}")]
+    Unknown(String, String),
+    /// Several branches have names like this; which.
+    #[error("'{0}' could be {1}")]
+    Ambiguous(String, String),
+}
+
+/// The name of a branch: `b2: beam.5 sliding`.
+pub fn name(tree: &Tree, branch: usize) -> String {
+    let label = tree
+        .branches()
+        .get(branch)
+        .map_or("?", |b| b.label.as_str());
+    format!("b{}: {label}", branch + 1)
+}
+
+/// The branch that a word stands for: `b2`, its label, its whole name, or the beginning of one label only.
+///
+/// # Errors
+/// A message that lists the branches.
+pub fn find(tree: &Tree, word: &str) -> Result<usize, NoBranch> {
+    let all = 0..tree.branches().len();
+    let label = |b: usize| tree.branches()[b].label.as_str();
+    let exact =
+        |b: &usize| word == format!("b{}", b + 1) || word == label(*b) || word == name(tree, *b);
+    if let Some(found) = all.clone().find(exact) {
+        return Ok(found);
+    }
+    let begun: Vec<usize> = all
+        .clone()
+        .filter(|&b| label(b).starts_with(word))
+        .collect();
+    let list = |some: &[usize]| {
+        let names: Vec<String> = some.iter().map(|&b| name(tree, b)).collect();
+        names.join(", ")
+    };
+    match begun[..] {
+        [found] => Ok(found),
+        [] => {
+            let all: Vec<usize> = all.collect();
+            Err(NoBranch::Unknown(word.into(), list(&all)))
+        }
+        _ => Err(NoBranch::Ambiguous(word.into(), list(&begun))),
+    }
+}
+
+/// What was done, in the few words of a branch's name.
+pub fn label(model: &Model, intervention: &Intervention, setting: Option<(&str, &str)>) -> String {
+    if let Some((path, value)) = setting {
+        let path = path.strip_prefix("settings.").unwrap_or(path);
+        return format!("{path} {value}");
+    }
+    match intervention {
+        Intervention::Force { slave, mode, hold } => {
+            let held = if *hold { "held " } else { "" };
+            let slave = names::slave(model, *slave);
+            format!("{slave} {held}{}", names::mode(*mode))
+        }
+        Intervention::Assume(starts) => {
+            const SHOWN: usize = 3;
+            let some = starts.iter().take(SHOWN).map(|start| {
+                format!(
+                    "{} {}",
+                    names::slave(model, start.slave),
+                    names::mode(start.mode)
+                )
+            });
+            let more = if starts.len() > SHOWN { ", …" } else { "" };
+            some.collect::<Vec<_>>().join(", ") + more
+        }
+        Intervention::Release { slave } => format!("{} released", names::slave(model, *slave)),
+        Intervention::Increment(size) => format!("increment {size}"),
+        Intervention::Friction(friction) => format!("friction {}", friction.angle),
+        Intervention::Frictions(all) => match all.first() {
+            Some(friction) => format!("friction {}", friction.angle),
+            None => "friction".into(),
+        },
+        Intervention::Settings(_) => "settings".into(),
+        Intervention::Parameter { name, value } => format!("{name} {value}"),
+    }
+}
+
+/// What points of a branch's line cost.
+pub fn cost(tree: &Tree, branch: usize, places: std::ops::Range<usize>) -> Cost {
+    let strips = places
+        .filter_map(|at| tree.point(branch, at))
+        .map(|(_, strip)| strip);
+    let mut cost = Cost::default();
+    for strip in strips.filter(|strip| strip.kind.is_solved()) {
+        cost.minors += 1;
+        cost.majors += u64::from(strip.kind.ends_major());
+        cost.increments += u64::from(strip.kind.is_accepted());
+        cost.seconds += f64::from(strip.seconds);
+    }
+    cost
+}
+
+/// The last place on a branch's line where an increment was accepted at the same load on the same leg of the path.
+pub(super) fn accepted_like(tree: &Tree, branch: usize, like: &Strip) -> Option<usize> {
+    let same = |strip: &Strip| (strip.load_factor, strip.leg) == (like.load_factor, like.leg);
+    accepted(tree, branch)
+        .find(|(_, strip)| same(strip))
+        .map(|(at, _)| at)
+}
+
+/// Places of a branch's line where an increment was accepted, last first.
+pub(super) fn accepted(tree: &Tree, branch: usize) -> impl Iterator<Item = (usize, &Strip)> {
+    (0..tree.len(branch))
+        .rev()
+        .filter_map(move |at| tree.point(branch, at).map(|(_, strip)| (at, strip)))
+        .filter(|(_, strip)| strip.kind.is_accepted())
+}

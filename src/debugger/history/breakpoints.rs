@@ -1,0 +1,193 @@
+//! Breakpoints: conditions at which a run stops, forward or backward.
+//!
+//! A condition looks at nothing but the [`Strip`] of a minor iteration and of the point before it. Strips are kept for
+//! ever, so a run backward finds exactly what a run forward stopped at, without solving anything.
+
+use crate::explain::names;
+use crate::history::strip::{PointKind, Strip};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::str::FromStr;
+use stickslip_core::model::{Mode, Model};
+
+/// When to stop. A node is a slave number; none stands for any node.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Condition {
+    /// A node is solved in another mode next: from a given one or any, to a given one or any.
+    Mode {
+        /// Slave number, from 0; `None` for any.
+        node: Option<usize>,
+        /// The mode before; `None` for any.
+        from: Option<Mode>,
+        /// The mode after; `None` for any.
+        to: Option<Mode>,
+    },
+    /// A node's margin falls below a value (force or length), in single precision.
+    Margin {
+        /// Slave number, from 0; `None` for any.
+        node: Option<usize>,
+        /// The value, force or length as the test that is nearest to switching has it.
+        below: f64,
+    },
+    /// A node changes its interface element, or loses or finds one.
+    Element {
+        /// Slave number, from 0; `None` for any.
+        node: Option<usize>,
+    },
+    /// The minor iterations cycle.
+    Cycle,
+    /// A major iteration leaves a larger relative residual than it started from.
+    Residual,
+    /// The increment fails.
+    Failure,
+    /// A place is reached or passed.
+    At(RunPlace),
+}
+
+/// A place in a run; without a minor or major iteration the first one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename = "Place")]
+pub struct RunPlace {
+    /// From 1.
+    pub increment: u32,
+    /// From 1.
+    pub major: u32,
+    /// From 1.
+    pub minor: u32,
+}
+
+/// A word that is no place in a run.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("'{0}' is no place; INC, INC.MAJOR or INC.MAJOR.MINOR would be")]
+pub struct NoPlace(String);
+
+impl FromStr for RunPlace {
+    type Err = NoPlace;
+
+    fn from_str(text: &str) -> Result<RunPlace, NoPlace> {
+        let wrong = || NoPlace(text.into());
+        let number = |part: &str| part.parse::<u32>().ok().filter(|number| *number > 0);
+        let numbers: Option<Vec<u32>> = text.split('.').map(number).collect();
+        match numbers.ok_or_else(wrong)?[..] {
+            [increment, ref rest @ ..] if rest.len() <= 2 => Ok(RunPlace {
+                increment,
+                major: rest.first().copied().unwrap_or(1),
+                minor: rest.get(1).copied().unwrap_or(1),
+            }),
+            _ => Err(wrong()),
+        }
+    }
+}
+
+impl fmt::Display for RunPlace {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}.{}.{}", self.increment, self.major, self.minor)
+    }
+}
+
+/// A breakpoint.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Breakpoint {
+    /// Its number, from 1; never used twice in a session.
+    pub id: u32,
+    /// When it stops a run.
+    pub condition: Condition,
+    /// Whether it stops one at present.
+    pub enabled: bool,
+}
+
+/// The enabled breakpoints that hold at a point, by number. `before` is the point before it on the same line.
+pub fn hits(breakpoints: &[Breakpoint], before: &Strip, now: &Strip) -> Vec<u32> {
+    let hit = |b: &&Breakpoint| b.enabled && b.condition.holds(before, now);
+    breakpoints.iter().filter(hit).map(|b| b.id).collect()
+}
+
+impl Condition {
+    /// Whether it holds at a minor iteration; never at the start or at an intervention.
+    pub fn holds(&self, before: &Strip, now: &Strip) -> bool {
+        if !now.kind.is_solved() {
+            return false;
+        }
+        let any = |node: &Option<usize>, holds: &dyn Fn(usize) -> bool| match node {
+            Some(node) => *node < now.slaves() && holds(*node),
+            None => (0..now.slaves()).any(holds),
+        };
+        match self {
+            Condition::Mode { node, from, to } => any(node, &|s| {
+                now.changes(s)
+                    && from.is_none_or(|mode| mode == now.before(s))
+                    && to.is_none_or(|mode| mode == now.next(s))
+            }),
+            Condition::Margin { node, below } => any(node, &|s| {
+                let below = *below as f32;
+                now.margin(s) < below && !(before.kind.is_solved() && before.margin(s) < below)
+            }),
+            Condition::Element { node } => any(node, &|s| now.element(s) != before.element(s)),
+            Condition::Cycle => matches!(
+                now.kind,
+                PointKind::Cycle | PointKind::Damped | PointKind::Climbed
+            ),
+            Condition::Residual => now
+                .after
+                .as_ref()
+                .is_some_and(|after| after.relative > now.residual),
+            Condition::Failure => {
+                now.kind.is_failure() || matches!(now.kind, PointKind::Cut | PointKind::Refused)
+            }
+            Condition::At(place) => {
+                let place = (place.increment, place.major, place.minor);
+                let at = |strip: &Strip| {
+                    let at = strip.position;
+                    (at.increment, at.major, at.minor)
+                };
+                at(now) >= place && (!before.kind.is_solved() || at(before) < place)
+            }
+        }
+    }
+
+    /// It in words.
+    pub fn describe(&self, model: &Model) -> String {
+        let name = |node: &Option<usize>| match node {
+            Some(node) => names::slave(model, *node),
+            None => "any node",
+        };
+        let mode = |mode: &Option<Mode>| mode.map_or("any mode", |mode| names::status(model, mode));
+        match self {
+            Condition::Mode { node, from, to } => match (from, to) {
+                (None, None) => format!("{} changes mode", name(node)),
+                (Some(_), None) => format!("{} leaves {}", name(node), mode(from)),
+                (None, Some(_)) => format!("{} becomes {}", name(node), mode(to)),
+                _ => format!("{} goes from {} to {}", name(node), mode(from), mode(to)),
+            },
+            Condition::Margin { node, below } => format!("margin of {} below {below}", name(node)),
+            Condition::Element { node } => format!("{} changes element", name(node)),
+            Condition::Cycle => "a cycle closes".into(),
+            Condition::Residual => "the residual rises".into(),
+            Condition::Failure => "an increment fails".into(),
+            Condition::At(place) => format!("at {place}"),
+        }
+    }
+}
+
+/// One breakpoint in words: `2 (any node leaves sliding)`.
+pub fn describe(model: &Model, breakpoint: &Breakpoint) -> String {
+    let off = if breakpoint.enabled { "" } else { ", disabled" };
+    let condition = breakpoint.condition.describe(model);
+    format!("{} ({condition}{off})", breakpoint.id)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_read_with_the_first_iteration_where_none_is_given() {
+        let read = |text: &str| text.parse::<RunPlace>().map(|place| place.to_string());
+        assert_eq!(read("3"), Ok("3.1.1".into()));
+        assert_eq!(read("3.2"), Ok("3.2.1".into()));
+        assert_eq!(read("3.2.7"), Ok("3.2.7".into()));
+        for wrong in ["", "0", "1.0", "1.2.3.4", "a", "1.", "-1"] {
+            assert!(read(wrong).is_err(), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,249 @@
+//! Two branches side by side: modes, forces, residuals and cost, at their tips and where they can be compared.
+//!
+//! The common place is the last load at which both accepted an increment after they parted (on a path that goes to and
+//! fro, on the same leg); without one, the last minor iteration of the same position. States are the same
+//! where displacements differ by less than [`SAME_STATE`] of the scene's length, and forces by less than [`SAME_STATE`] of the
+//! larger branch's largest force; modes may differ between them only in ties, and are told beside.
+
+use crate::explain::names;
+use crate::history::branches::{self, Cost};
+use crate::history::frame::Frame;
+use crate::history::strip::Strip;
+use crate::history::tree::Tree;
+use stickslip_core::model::{Mode, Model};
+use stickslip_core::step::event::Position;
+use stickslip_scene::shown::first_of;
+
+/// States that differ by less, relatively, are the same.
+pub const SAME_STATE: f64 = 1e-7;
+
+/// Whether two states are the same.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sameness {
+    /// They are.
+    Same,
+    /// They are not.
+    Different,
+}
+
+/// A slave node on one side. Compression positive.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NodeSide {
+    /// Mode of the iteration, and of the next.
+    pub mode: Mode,
+    /// Mode of the next iteration.
+    pub next: Mode,
+    /// Total forces after it, and the gap; `None` if the frame is thinned, or nothing was solved.
+    pub forces: Option<[f64; 2]>,
+    /// Gap, length; negative is penetration.
+    pub gap: Option<f64>,
+}
+
+/// One branch at one place.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Side {
+    /// Its number in [`Tree::branches`].
+    pub branch: usize,
+    /// Place on the branch's line.
+    pub at: usize,
+    /// Increment, major and minor iteration there.
+    pub position: Position,
+    /// λ there.
+    pub load_factor: f64,
+    /// One entry a slave node.
+    pub nodes: Vec<NodeSide>,
+    /// Relative residual and violation of the interface: after the major iteration where it ended here, else before.
+    pub residual: f64,
+    /// Relative violation of the interface conditions at the same time; `None` if it was not measured.
+    pub interface: Option<f64>,
+    /// From the root to here.
+    pub cost: Cost,
+}
+
+/// Two branches.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Comparison {
+    /// Both at their ends.
+    pub tips: [Side; 2],
+    /// Where both can be compared.
+    pub common: Option<[Side; 2]>,
+    /// Whether the states there are the same; `None` if there is no such place, or a frame is thinned.
+    pub sameness: Option<Sameness>,
+}
+
+/// Compares two branches; `None` if one does not exist.
+pub fn compare(tree: &Tree, a: usize, b: usize) -> Option<Comparison> {
+    let tip = |branch: usize| side(tree, branch, tree.len(branch).checked_sub(1)?);
+    let places = common(tree, a, b);
+    let common = match places {
+        Some([at_a, at_b]) => Some([side(tree, a, at_a)?, side(tree, b, at_b)?]),
+        None => None,
+    };
+    Some(Comparison {
+        tips: [tip(a)?, tip(b)?],
+        common,
+        sameness: places.and_then(|[at_a, at_b]| same(tree, (a, at_a), (b, at_b))),
+    })
+}
+
+/// Whether a branch has the same state as another where both accepted the same load, and that load.
+pub(super) fn sameness(tree: &Tree, a: usize, b: usize) -> Option<(Sameness, f64)> {
+    let [at_a, at_b] = common_load(tree, a, b)?;
+    let (_, strip) = tree.point(a, at_a)?;
+    Some((same(tree, (a, at_a), (b, at_b))?, strip.load_factor))
+}
+
+fn side(tree: &Tree, branch: usize, at: usize) -> Option<Side> {
+    let (frame, strip) = tree.point(branch, at)?;
+    let node = |s: usize| {
+        let found = frame.event.as_ref().and_then(|event| event.nodes.get(s));
+        NodeSide {
+            mode: strip.before(s),
+            next: strip.next(s),
+            forces: found.map(|found| [found.f_n, found.f_t]),
+            gap: found.map(|found| found.gap),
+        }
+    };
+    let after = strip.after.as_deref().copied();
+    let before = frame.event.as_ref().map(|event| event.before);
+    Some(Side {
+        branch,
+        at,
+        position: strip.position,
+        load_factor: strip.load_factor,
+        nodes: (0..strip.slaves()).map(node).collect(),
+        residual: after.map_or(strip.residual, |after| after.relative),
+        interface: after.or(before).map(|norms| norms.interface),
+        cost: branches::cost(tree, branch, 0..at + 1),
+    })
+}
+
+/// Number of points that two lines share.
+fn parting(tree: &Tree, a: usize, b: usize) -> usize {
+    let owner = |branch: usize, at: usize| {
+        let mut owner = branch;
+        while let Some(found) = tree.branches().get(owner)
+            && found.from > at
+            && let Some(parent) = found.parent
+        {
+            owner = parent;
+        }
+        owner
+    };
+    let both = tree.len(a).min(tree.len(b));
+    (0..both)
+        .find(|&at| owner(a, at) != owner(b, at))
+        .unwrap_or(both)
+}
+
+fn common(tree: &Tree, a: usize, b: usize) -> Option<[usize; 2]> {
+    common_load(tree, a, b).or_else(|| {
+        let start = parting(tree, a, b);
+        let places = |branch: usize| {
+            let own = (start..tree.len(branch)).rev();
+            own.filter_map(move |at| tree.point(branch, at).map(|(_, strip)| (at, strip)))
+                .filter(|(_, strip)| strip.kind.is_solved())
+        };
+        let place = |strip: &Strip| {
+            let at = strip.position;
+            (at.increment, at.major, at.minor)
+        };
+        places(a).find_map(|(at_a, x)| {
+            let (at_b, _) = places(b).find(|(_, y)| place(x) == place(y))?;
+            Some([at_a, at_b])
+        })
+    })
+}
+
+/// The last load that both accepted after they parted.
+fn common_load(tree: &Tree, a: usize, b: usize) -> Option<[usize; 2]> {
+    let start = parting(tree, a, b);
+    branches::accepted(tree, a)
+        .take_while(|(at, _)| *at >= start)
+        .find_map(|(at_a, strip)| {
+            let at_b = branches::accepted_like(tree, b, strip)?;
+            (at_b >= start).then_some([at_a, at_b])
+        })
+}
+
+fn same(tree: &Tree, a: (usize, usize), b: (usize, usize)) -> Option<Sameness> {
+    let (x, _) = tree.point(a.0, a.1)?;
+    let (y, _) = tree.point(b.0, b.1)?;
+    if !(x.is_whole() && y.is_whole()) {
+        return None;
+    }
+    let apart = |x: &[f64], y: &[f64], size: f64| {
+        x.len() != y.len()
+            || x.iter()
+                .zip(y)
+                .any(|(x, y)| (x - y).abs() > SAME_STATE * size)
+    };
+    let forces = |frame: &Frame| -> Vec<f64> {
+        let nodes = frame.state.nodes.iter();
+        nodes.flat_map(|node| node.force()).collect()
+    };
+    let (f, g) = (forces(x), forces(y));
+    let scale = |frame: &Frame| frame.event.as_ref().map_or(0.0, |event| event.before.scale);
+    let largest = f
+        .iter()
+        .chain(&g)
+        .fold(scale(x).max(scale(y)), |m, f| m.max(f.abs()));
+    let moved = apart(&x.state.u, &y.state.u, tree.model().length);
+    Some(match moved || apart(&f, &g, largest) {
+        true => Sameness::Different,
+        false => Sameness::Same,
+    })
+}
+
+/// A comparison in one line.
+pub fn describe(tree: &Tree, comparison: &Comparison) -> String {
+    let model = tree.model();
+    let cost = |side: &Side| {
+        let Cost {
+            minors,
+            majors,
+            seconds,
+            ..
+        } = side.cost;
+        format!(
+            "{} at load {}, residual {:.1e}, {minors} minors, {majors} majors, {seconds:.3} s",
+            branches::name(tree, side.branch),
+            side.load_factor,
+            side.residual
+        )
+    };
+    let [a, b] = &comparison.tips;
+    let state = match (&comparison.common, comparison.sameness) {
+        (None, _) => "no place in common since they parted".into(),
+        (Some([a, _]), Some(Sameness::Same)) => format!("same state at load {}", a.load_factor),
+        (Some([a, b]), Some(Sameness::Different)) => format!(
+            "at load {} they differ{}",
+            a.load_factor,
+            differing(model, a, b)
+        ),
+        (Some([a, _]), None) => {
+            format!(
+                "at load {} one of them is not kept; go there first",
+                a.load_factor
+            )
+        }
+    };
+    format!("{}; {}; {state}", cost(a), cost(b))
+}
+
+/// The first nodes whose modes differ.
+fn differing(model: &Model, a: &Side, b: &Side) -> String {
+    const SHOWN: usize = 3;
+    let differ = |&s: &usize| a.nodes[s].next != b.nodes[s].next;
+    let nodes: Vec<usize> = (0..a.nodes.len().min(b.nodes.len()))
+        .filter(differ)
+        .collect();
+    let told = |&s: &usize| {
+        let [a, b] = [a.nodes[s].next, b.nodes[s].next].map(names::mode);
+        format!("{} {a}, {b}", names::slave(model, s))
+    };
+    match nodes.is_empty() {
+        true => ", with the same modes".into(),
+        false => format!(": {}", first_of(nodes.iter().map(told), SHOWN, "; ")),
+    }
+}

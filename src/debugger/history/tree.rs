@@ -1,0 +1,481 @@
+//! The history as a tree of branches, with a bounded memory.
+//!
+//! A branch is a name and the points that are its own, from where it left its parent. The *line* of the current branch
+//! is all points from the root to its tip, in one slice; the own points of other branches are put away beside it.
+//!
+//! Every point has a [`Strip`], for ever. Its [`Frame`] is whole (state and event) as long as the budget of
+//! [`BUDGET`] bytes allows; beyond it frames are thinned: first those inside major iterations, far from the cursor
+//! before near, then ends of majors, then every second end of an increment. A thinned frame keeps its place, its
+//! intervention and its monitors, and is computed again from the nearest whole one before it when it is wanted.
+//! The root, the cursor's frame and the tip of every branch are always whole. [`BRANCH_BUDGET`] bounds these frames and the
+//! strips; beyond it no branch can begin.
+
+use crate::history::frame::Frame;
+use crate::history::strip::{PointKind, Strip};
+use std::collections::HashMap;
+use std::sync::Arc;
+use stickslip_core::contact::record::ContactRecord;
+use stickslip_core::contact::state::ContactState;
+use stickslip_core::model::Model;
+use stickslip_core::step::event::Event;
+use stickslip_core::step::intervene::Intervention;
+use stickslip_core::step::state::IncrementStart;
+use stickslip_core::step::state::State;
+
+/// Most bytes that whole frames may take.
+pub const BUDGET: usize = 256 << 20;
+/// Maximum size in bytes of the data that is never thinned (tips of all branches, strips of all points) at which a branch
+/// can begin.
+pub const BRANCH_BUDGET: usize = 256 << 20;
+/// Once over the budget, frames are thinned until this part of it is used, so that it is not done at every iteration.
+const AFTER_THINNING: f64 = 0.75;
+
+/// Points one after another.
+#[derive(Debug, Default)]
+struct Points {
+    frames: Vec<Frame>,
+    strips: Vec<Strip>,
+}
+
+impl Points {
+    fn split_off(&mut self, at: usize) -> Points {
+        Points {
+            frames: self.frames.split_off(at),
+            strips: self.strips.split_off(at),
+        }
+    }
+
+    fn append(&mut self, mut other: Points) {
+        self.frames.append(&mut other.frames);
+        self.strips.append(&mut other.strips);
+    }
+
+    fn len(&self) -> usize {
+        self.frames.len()
+    }
+}
+
+/// A branch: what it is called, and where it left which other.
+#[derive(Debug)]
+pub struct Branch {
+    /// What was done in it, or the user's name for it.
+    pub label: String,
+    /// Whether the user gave it its name.
+    pub named: bool,
+    /// The branch that it left; `None` for the first.
+    pub parent: Option<usize>,
+    /// Place on the line of the first point that is its own.
+    pub from: usize,
+    /// Own points that are not on the present line.
+    away: Points,
+}
+
+/// The history.
+#[derive(Debug)]
+pub struct Tree {
+    model: Arc<Model>,
+    line: Points,
+    branches: Vec<Branch>,
+    current: usize,
+    ledger: Ledger,
+    budget: usize,
+    /// What is left of a state in a thinned frame.
+    hollow: State,
+}
+
+impl Tree {
+    /// The tree of a session at its start.
+    pub fn new(model: Arc<Model>, start: State, budget: usize) -> Tree {
+        let strip = Strip::of(&model, &start, None, None, 0.0);
+        let empty = Arc::new(Vec::new());
+        let hollow = State {
+            nodes: Vec::new(),
+            u: empty.clone(),
+            start: Arc::new(IncrementStart {
+                nodes: Vec::new(),
+                u: empty,
+                history: Vec::new(),
+                ..(*start.start).clone()
+            }),
+            ..start.clone()
+        };
+        let frame = Frame {
+            state: start,
+            event: None,
+            intervention: None,
+            monitors: None,
+        };
+        let mut ledger = Ledger::default();
+        ledger.add(&frame);
+        Tree {
+            model,
+            line: Points {
+                frames: vec![frame],
+                strips: vec![strip],
+            },
+            branches: vec![Branch {
+                label: "start".into(),
+                named: false,
+                parent: None,
+                from: 0,
+                away: Points::default(),
+            }],
+            current: 0,
+            ledger,
+            budget,
+            hollow,
+        }
+    }
+
+    /// The scene.
+    pub fn model(&self) -> &Arc<Model> {
+        &self.model
+    }
+
+    /// Frames from the root to the tip of the current branch.
+    pub fn frames(&self) -> &[Frame] {
+        &self.line.frames
+    }
+
+    /// Their strips.
+    pub fn strips(&self) -> &[Strip] {
+        &self.line.strips
+    }
+
+    /// All branches, oldest first.
+    pub fn branches(&self) -> &[Branch] {
+        &self.branches
+    }
+
+    /// Number of the current branch.
+    pub fn current(&self) -> usize {
+        self.current
+    }
+
+    /// Gives the current branch another label.
+    pub fn rename(&mut self, label: String, named: bool) {
+        let branch = &mut self.branches[self.current];
+        (branch.label, branch.named) = (label, named);
+    }
+
+    /// Bytes that whole frames take now.
+    pub fn bytes(&self) -> usize {
+        self.ledger.bytes
+    }
+
+    /// Size in bytes of the data that is never thinned: the place and the strip of every point, and a whole frame at the
+    /// tip of every branch. It depends on the tree alone, so a replay computes the same value.
+    pub fn kept(&self) -> usize {
+        let away: usize = self.branches.iter().map(|branch| branch.away.len()).sum();
+        let strip = Strip::BYTES_PER_ITERATION + self.model.contacts.len() * Strip::BYTES_PER_NODE;
+        let point = size_of::<Frame>() + strip;
+        let tip = self.line.frames.last().map_or(0, whole_bytes);
+        (self.line.len() + away) * point + self.branches.len() * tip
+    }
+
+    /// Adds a point to the tip, to be looked at from now on.
+    pub fn push(&mut self, mut frame: Frame, strip: Strip) {
+        if let Some(tip) = self.line.frames.last() {
+            copy(&mut frame, tip);
+        }
+        self.ledger.add(&frame);
+        self.line.frames.push(frame);
+        self.line.strips.push(strip);
+        let tip = self.line.len() - 1;
+        self.thin([tip, tip]);
+    }
+
+    /// Adds an intervention after a place of the line: at the tip of the current branch, or in a new one that starts
+    /// there. The place's frame is whole. Returns whether a branch was started.
+    pub fn intervene(&mut self, at: usize, state: State, intervention: Intervention) -> bool {
+        let forks = at + 1 < self.line.len();
+        if forks {
+            self.fork(at);
+        }
+        let strip = Strip::intervention(&self.model, &state, &self.line.strips[at]);
+        let frame = Frame {
+            state,
+            event: self.line.frames[at].event.clone(),
+            intervention: Some(intervention),
+            monitors: None,
+        };
+        self.push(frame, strip);
+        forks
+    }
+
+    /// Starts a new branch after a place of the line, whose frame is whole, and makes it the current one. It has no
+    /// points of its own yet.
+    pub fn fork(&mut self, at: usize) {
+        let away = self.line.split_off(at + 1);
+        // The nearest branch of the line that owns the next place is the parent.
+        let chain = self.chain(self.current);
+        self.put_away(&chain, at + 1, away);
+        let parent = chain
+            .into_iter()
+            .rev()
+            .find(|&b| self.branches[b].from <= at);
+        self.branches.push(Branch {
+            label: String::new(),
+            named: false,
+            parent,
+            from: at + 1,
+            away: Points::default(),
+        });
+        self.current = self.branches.len() - 1;
+    }
+
+    /// Branches from the first to this one, each the parent of the next.
+    fn chain(&self, branch: usize) -> Vec<usize> {
+        let mut chain: Vec<usize> =
+            std::iter::successors(Some(branch), |&b| self.branches[b].parent).collect();
+        chain.reverse();
+        chain
+    }
+
+    /// Gives points that stood on the line from a place on back to the branches of the chain that own them.
+    fn put_away(&mut self, chain: &[usize], start: usize, mut points: Points) {
+        for &branch in chain.iter().rev() {
+            let branch = &mut self.branches[branch];
+            let own = branch.from.max(start) - start;
+            if own >= points.len() {
+                continue;
+            }
+            let mut own = points.split_off(own);
+            own.append(std::mem::take(&mut branch.away));
+            branch.away = own;
+        }
+    }
+
+    /// Makes a branch the current one; its line is the line then.
+    pub fn switch(&mut self, to: usize) {
+        let line = std::mem::take(&mut self.line);
+        self.put_away(&self.chain(self.current), 0, line);
+        let chain = self.chain(to);
+        for (k, &branch) in chain.iter().enumerate() {
+            let end = chain.get(k + 1).map(|&child| self.branches[child].from);
+            let branch = &mut self.branches[branch];
+            let rest = match end {
+                Some(end) => branch.away.split_off(end - branch.from),
+                None => Points::default(),
+            };
+            let own = std::mem::replace(&mut branch.away, rest);
+            self.line.append(own);
+        }
+        self.current = to;
+    }
+
+    /// Number of points on a branch's line, from the root to its tip.
+    pub fn len(&self, branch: usize) -> usize {
+        if branch == self.current {
+            return self.line.len();
+        }
+        self.on_line_until(branch) + self.branches[branch].away.len()
+    }
+
+    /// Where the own points of a branch that are put away begin.
+    fn on_line_until(&self, branch: usize) -> usize {
+        let chain = self.chain(self.current);
+        match chain.iter().position(|&b| b == branch) {
+            Some(at) => chain
+                .get(at + 1)
+                .map_or(self.line.len(), |&child| self.branches[child].from),
+            None => self.branches[branch].from,
+        }
+    }
+
+    /// A point on a branch's line.
+    pub fn point(&self, branch: usize, at: usize) -> Option<(&Frame, &Strip)> {
+        if at < self.branches[branch].from {
+            return self.point(self.branches[branch].parent?, at);
+        }
+        let start = self.on_line_until(branch);
+        let (points, at) = match at.checked_sub(start) {
+            Some(at) => (&self.branches[branch].away, at),
+            None => (&self.line, at),
+        };
+        Some((points.frames.get(at)?, points.strips.get(at)?))
+    }
+
+    /// The last point of a branch's line; its frame is whole.
+    pub fn tip(&self, branch: usize) -> Option<(&Frame, &Strip)> {
+        self.point(branch, self.len(branch).checked_sub(1)?)
+    }
+
+    /// The nearest whole frame of the line at or before a place.
+    pub fn whole_before(&self, at: usize) -> usize {
+        let whole = |k: &usize| self.line.frames[*k].is_whole();
+        (0..=at).rev().find(whole).unwrap_or(0)
+    }
+
+    /// Fills a thinned frame of the line again. False where that tells something else than its strip does.
+    pub fn refill(&mut self, at: usize, state: State, event: Option<Arc<Event>>) -> bool {
+        let before = at.checked_sub(1).map(|k| &self.line.strips[k]);
+        let (frame, strip) = (&mut self.line.frames[at], &self.line.strips[at]);
+        let again = match (&frame.intervention, before) {
+            (Some(_), Some(before)) => Strip::intervention(&self.model, &state, before),
+            _ => Strip::of(&self.model, &state, event.as_deref(), before, 0.0),
+        };
+        if frame.is_whole() {
+            return true;
+        }
+        (frame.state, frame.event) = (state, event);
+        self.ledger.add(frame);
+        again.tells_the_same(strip)
+    }
+
+    /// Thins frames until the budget is kept again, but neither of two that are looked at.
+    pub fn thin(&mut self, looked_at: [usize; 2]) {
+        if self.ledger.bytes <= self.budget {
+            return;
+        }
+        let enough = (self.budget as f64 * AFTER_THINNING) as usize;
+        for (_, _, branch, at) in self.candidates(looked_at) {
+            if self.ledger.bytes <= enough {
+                return;
+            }
+            let points = match branch {
+                Some(branch) => &mut self.branches[branch].away,
+                None => &mut self.line,
+            };
+            let frame = &mut points.frames[at];
+            self.ledger.remove(frame);
+            empty(frame, &self.hollow);
+        }
+    }
+
+    /// Whole frames that may be thinned, in the order in which they are: class, nearness, and where they are.
+    fn candidates(&self, looked_at: [usize; 2]) -> Vec<(u8, usize, Option<usize>, usize)> {
+        let mut found = Vec::new();
+        // A branch that another one left at its tip ends on the line.
+        let ending: Vec<usize> = self
+            .chain(self.current)
+            .into_iter()
+            .filter(|&b| self.branches[b].away.len() == 0)
+            .map(|b| self.on_line_until(b).saturating_sub(1))
+            .collect();
+        let mut gather = |points: &Points, branch: Option<usize>| {
+            // The last one is a tip; the root is the first of the line.
+            let last = points.len().saturating_sub(1);
+            for (at, (frame, strip)) in points.frames.iter().zip(&points.strips).enumerate() {
+                let on_line = || at == 0 || looked_at.contains(&at) || ending.contains(&at);
+                let kept = at == last || (branch.is_none() && on_line());
+                if kept || !frame.is_whole() {
+                    continue;
+                }
+                let class = match strip.kind {
+                    PointKind::Minor | PointKind::Damped | PointKind::Climbed => 0,
+                    PointKind::Major | PointKind::Refused => 1,
+                    _ => 2 + (at % 2) as u8,
+                };
+                let near = match branch {
+                    Some(_) => 0,
+                    None => usize::MAX - at.abs_diff(looked_at[0]),
+                };
+                found.push((class, near, branch, at));
+            }
+        };
+        for (number, branch) in self.branches.iter().enumerate() {
+            gather(&branch.away, Some(number));
+        }
+        gather(&self.line, None);
+        found.sort_unstable();
+        found
+    }
+}
+
+/// Gives a frame memory of this thread's, shared with the frame before where both hold the same. What it came in goes back
+/// to the solver's thread, which fills it again, instead of waiting for new pages at every iteration.
+fn copy(frame: &mut Frame, before: &Frame) {
+    fn part<T: Clone + PartialEq>(own: &mut Arc<T>, before: &Arc<T>) {
+        *own = if own == before {
+            before.clone()
+        } else {
+            Arc::new(T::clone(own))
+        };
+    }
+    let state = &mut frame.state;
+    state.nodes = state.nodes.clone();
+    part(&mut state.u, &before.state.u);
+    part(&mut state.start, &before.state.start);
+    part(&mut state.minor_history, &before.state.minor_history);
+    part(&mut state.major_history, &before.state.major_history);
+    if let Some(event) = &mut frame.event {
+        *event = Arc::new(Event::clone(event));
+    }
+}
+
+/// Takes state and event out of a frame.
+fn empty(frame: &mut Frame, hollow: &State) {
+    let mut left = State {
+        next: frame.state.next,
+        load_factor: frame.state.load_factor,
+        ..hollow.clone()
+    };
+    if frame.monitors.is_some() {
+        // The curve of a monitor is over the load factor that was accepted here.
+        Arc::make_mut(&mut left.start).load_factor = frame.state.start.load_factor;
+    }
+    (frame.state, frame.event) = (left, None);
+}
+
+/// What whole frames take in memory. Parts that several frames share are counted once, for as long as one has them.
+#[derive(Debug, Default)]
+struct Ledger {
+    bytes: usize,
+    /// Frames that have a shared part, by its address.
+    shared: HashMap<usize, usize>,
+}
+
+impl Ledger {
+    fn add(&mut self, frame: &Frame) {
+        self.bytes += frame.state.nodes.capacity() * size_of::<ContactState>();
+        each_shared(frame, &mut |address, bytes| {
+            let frames = self.shared.entry(address).or_insert(0);
+            *frames += 1;
+            if *frames == 1 {
+                self.bytes += bytes;
+            }
+        });
+    }
+
+    fn remove(&mut self, frame: &Frame) {
+        self.bytes -= frame.state.nodes.capacity() * size_of::<ContactState>();
+        each_shared(frame, &mut |address, bytes| {
+            if let Some(frames) = self.shared.get_mut(&address) {
+                *frames -= 1;
+                if *frames == 0 {
+                    self.shared.remove(&address);
+                    self.bytes -= bytes;
+                }
+            }
+        });
+    }
+}
+
+/// Size of a whole frame that shares no data.
+fn whole_bytes(frame: &Frame) -> usize {
+    let mut bytes = size_of_val(&frame.state.nodes[..]);
+    each_shared(frame, &mut |_, part| bytes += part);
+    bytes
+}
+
+/// The parts of a frame that others may share: address and bytes.
+fn each_shared(frame: &Frame, tell: &mut impl FnMut(usize, usize)) {
+    fn address<T>(part: &Arc<T>) -> usize {
+        Arc::as_ptr(part).addr()
+    }
+    let state = &frame.state;
+    let floats = |values: &[f64]| size_of_val(values) + size_of::<Vec<f64>>();
+    tell(address(&state.u), floats(&state.u));
+    let start = &state.start;
+    tell(address(&start.u), floats(&start.u));
+    let own = size_of::<IncrementStart>()
+        + size_of_val(&start.nodes[..])
+        + size_of_val(&start.history[..]);
+    tell(address(start), own);
+    tell(address(&state.minor_history), state.minor_history.bytes());
+    if let Some(event) = &frame.event {
+        let bytes = size_of::<Event>() + event.nodes.capacity() * size_of::<ContactRecord>();
+        tell(address(event), bytes);
+    }
+}

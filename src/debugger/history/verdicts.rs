@@ -1,0 +1,253 @@
+//! How each branch ended: verdicts, found by comparing it with the branches before it.
+
+use super::branches::{Cost, cost, name};
+use super::compare::{self, Sameness};
+use super::strip::PointKind;
+use super::tree::Tree;
+use stickslip_core::interface::minor_history::Cycle;
+use stickslip_core::step::event::{Failure, Outcome, Position};
+
+/// How a branch ends, as far as it goes. Branches are numbers in [`Tree::branches`].
+#[derive(Debug, Clone, PartialEq)]
+pub enum BranchEnd {
+    /// In the middle of an increment, or nothing is solved in it yet.
+    Running,
+    /// At an accepted increment that no other branch has reached; nothing to compare with.
+    Accepted,
+    /// Displacements and forces are those of an earlier branch at the same load.
+    Same {
+        /// The earlier branch.
+        branch: usize,
+        /// λ at which both were compared.
+        load: f64,
+    },
+    /// At an accepted increment whose state the judge finds wrong, and no earlier branch has the same.
+    Marked,
+    /// An earlier branch accepted another state at the same load; this one is as valid.
+    Other {
+        /// The earlier branch.
+        branch: usize,
+        /// λ at which both were compared.
+        load: f64,
+    },
+    /// The cycle that an earlier branch ends in, too, in the same increment.
+    SameCycle {
+        /// The earlier branch.
+        branch: usize,
+    },
+    /// A cycle.
+    Cycle,
+    /// The residual or the displacements grew out of all bounds.
+    Diverged,
+    /// Failed for another reason.
+    Failed,
+}
+
+/// A branch, summed up.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Summary {
+    /// Number in the order of making, from 0; `b1` is number 0.
+    pub number: usize,
+    /// `b2: beam.5 sliding`
+    pub name: String,
+    /// Number of the branch that it left; `None` for the first.
+    pub parent: Option<usize>,
+    /// Place on its line of the first point of its own.
+    pub from: usize,
+    /// Number of points on its line, those that it shares included.
+    pub length: usize,
+    /// Whether it is the one that the session is on.
+    pub is_current: bool,
+    /// The last minor iteration on it.
+    pub position: Position,
+    /// λ there.
+    pub load_factor: f64,
+    /// How it ends.
+    pub verdict: BranchEnd,
+    /// What its own points cost, and its whole line.
+    pub own: Cost,
+    /// What its whole line cost.
+    pub whole: Cost,
+}
+
+/// All branches, summed up.
+pub fn summaries(tree: &Tree) -> Vec<Summary> {
+    (0..tree.branches().len())
+        .filter_map(|branch| summary(tree, branch))
+        .collect()
+}
+
+fn summary(tree: &Tree, number: usize) -> Option<Summary> {
+    let (_, tip) = tree.tip(number)?;
+    let branch = tree.branches().get(number)?;
+    let length = tree.len(number);
+    Some(Summary {
+        number,
+        name: name(tree, number),
+        parent: branch.parent,
+        from: branch.from,
+        length,
+        is_current: number == tree.current(),
+        position: tip.position,
+        load_factor: tip.load_factor,
+        verdict: verdict(tree, number),
+        own: cost(tree, number, branch.from..length),
+        whole: cost(tree, number, 0..length),
+    })
+}
+
+/// How a branch ends. It is compared with earlier branches only, so that the first of several alike is the one that
+/// the others are like.
+pub fn verdict(tree: &Tree, branch: usize) -> BranchEnd {
+    let Some((frame, tip)) = tree.tip(branch) else {
+        return BranchEnd::Running;
+    };
+    let others = || (0..tree.branches().len()).filter(|&other| other < branch);
+    match tip.kind {
+        PointKind::Start
+        | PointKind::Intervention
+        | PointKind::Minor
+        | PointKind::Damped
+        | PointKind::Climbed
+        | PointKind::Cut
+        | PointKind::Refused
+        | PointKind::Major => BranchEnd::Running,
+        PointKind::Cycle => {
+            let own = frame
+                .event
+                .as_deref()
+                .and_then(|event| cycle(&event.outcome));
+            let same = |&other: &usize| {
+                let Some((frame, strip)) = tree.tip(other) else {
+                    return false;
+                };
+                let theirs = frame
+                    .event
+                    .as_deref()
+                    .and_then(|event| cycle(&event.outcome));
+                strip.position.increment == tip.position.increment
+                    && own.zip(theirs).is_some_and(|(a, b)| alike(a, b))
+            };
+            others()
+                .find(same)
+                .map_or(BranchEnd::Cycle, |branch| BranchEnd::SameCycle { branch })
+        }
+        PointKind::Failed => match frame.event.as_deref().map(|event| &event.outcome) {
+            Some(Outcome::Failed(Failure::Diverged { .. })) => BranchEnd::Diverged,
+            _ => BranchEnd::Failed,
+        },
+        PointKind::Increment | PointKind::Jumped | PointKind::Last | PointKind::LastJumped => {
+            let mut other = None;
+            for earlier in others() {
+                match compare::sameness(tree, branch, earlier) {
+                    Some((Sameness::Same, load)) => {
+                        return BranchEnd::Same {
+                            branch: earlier,
+                            load,
+                        };
+                    }
+                    // A state that is wrong is nothing that another would be as valid as.
+                    Some((Sameness::Different, load)) if !ends_marked(tree, earlier) => {
+                        other.get_or_insert(BranchEnd::Other {
+                            branch: earlier,
+                            load,
+                        });
+                    }
+                    _ => {}
+                }
+            }
+            match ends_marked(tree, branch) {
+                true => BranchEnd::Marked,
+                false => other.unwrap_or(BranchEnd::Accepted),
+            }
+        }
+    }
+}
+
+/// Whether the judge finds the last state of a branch wrong.
+fn ends_marked(tree: &Tree, branch: usize) -> bool {
+    let event = tree
+        .tip(branch)
+        .and_then(|(frame, _)| frame.event.as_deref());
+    event.is_some_and(|event| {
+        matches!(
+            &event.outcome,
+            Outcome::Increment {
+                marked: Some(_),
+                ..
+            }
+        )
+    })
+}
+
+fn cycle(outcome: &Outcome) -> Option<&Cycle> {
+    match outcome {
+        Outcome::Failed(Failure::Cycle(cycle)) => Some(cycle),
+        _ => None,
+    }
+}
+
+/// Whether two cycles have the same period and members with the same patterns, wherever in the period they start.
+fn alike(a: &Cycle, b: &Cycle) -> bool {
+    if a.period != b.period || a.members.len() != b.members.len() {
+        return false;
+    }
+    let period = a.period as usize;
+    let turned = |by: usize| {
+        a.members
+            .iter()
+            .zip(&b.members)
+            .all(|((s, modes), (t, others))| {
+                s == t && (0..period).all(|k| modes.get((k + by) % period) == others.get(k))
+            })
+    };
+    (0..period).any(turned)
+}
+
+/// A verdict in words.
+pub fn describe(tree: &Tree, verdict: &BranchEnd) -> String {
+    let b = |branch: &usize| format!("b{}", branch + 1);
+    match verdict {
+        BranchEnd::Running => "running".into(),
+        BranchEnd::Accepted => "accepted".into(),
+        BranchEnd::Marked => "accepted, but judged wrong".into(),
+        BranchEnd::Same { branch, load } => format!("same state as {} at load {load}", b(branch)),
+        BranchEnd::Other { branch, load } => {
+            format!("another valid state than {} at load {load}", b(branch))
+        }
+        BranchEnd::SameCycle { branch } => format!("same cycle as {}", name(tree, *branch)),
+        BranchEnd::Cycle => "cycle".into(),
+        BranchEnd::Diverged => "diverged".into(),
+        BranchEnd::Failed => "failed".into(),
+    }
+}
+
+/// The branches as the tree shows them: number and depth, children after their parent.
+pub fn order(all: &[Summary]) -> Vec<(usize, usize)> {
+    let mut order = Vec::with_capacity(all.len());
+    let mut left: Vec<(usize, usize)> = all
+        .iter()
+        .filter(|branch| branch.parent.is_none())
+        .map(|branch| (branch.number, 0))
+        .collect();
+    while let Some((number, depth)) = left.pop() {
+        order.push((number, depth));
+        let children = all.iter().rev().filter(|b| b.parent == Some(number));
+        left.extend(children.map(|b| (b.number, depth + 1)));
+    }
+    order
+}
+
+/// All branches in one line.
+pub fn listed(tree: &Tree) -> String {
+    let one = |summary: Summary| {
+        let mark = if summary.is_current { "▸" } else { "" };
+        let verdict = describe(tree, &summary.verdict);
+        format!(
+            "{mark}{} ({verdict}, {} minors)",
+            summary.name, summary.whole.minors
+        )
+    };
+    let all: Vec<String> = summaries(tree).into_iter().map(one).collect();
+    all.join("; ")
+}

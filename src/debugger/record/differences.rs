@@ -1,0 +1,349 @@
+//! What differs between two snapshots, node by node.
+//!
+//! Exact: position, number of minor iterations, status, modes, rules, what is forced, interventions, and the scalars of
+//! the scenes. Within 1e-9 of a scale: numbers, since another processor may add in another order. The scale is
+//! the force scale of the residual norms for forces, the diagonal of the scene's bodies for lengths, 1 for rotations
+//! and for residuals, which are relative already; and always the number itself where that is larger. NaN equals NaN.
+//! Names of scenes are not compared.
+
+use super::snapshot::{Displacement, Recorded, SlaveRecord, Snapshot};
+use crate::explain::names;
+use std::collections::BTreeMap;
+use std::fmt::{self, Debug};
+use stickslip_core::contact::table2::Rule;
+use stickslip_core::linear::norms::Norms;
+use stickslip_core::linear::singular::{Motion, Singular};
+use stickslip_core::step::event::Failure;
+use stickslip_core::step::state::Status;
+use stickslip_scene::Scene;
+use stickslip_scene::format::paths;
+use stickslip_scene::shown;
+
+/// How far numbers may be apart, relative to their scale.
+pub const TOLERANCE: f64 = 1e-9;
+
+/// One thing that differs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Difference {
+    /// What it is, as `beam.end f_n`.
+    pub what: String,
+    /// What the left one has, as text.
+    pub left: String,
+    /// What the right one has, as text.
+    pub right: String,
+    /// For numbers: how far they are apart, and how far they may be.
+    pub apart: Option<(f64, f64)>,
+}
+
+/// All that differs; prints as a table.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Differences {
+    /// What differs.
+    pub rows: Vec<Difference>,
+}
+
+/// What numbers are measured by.
+struct Scales {
+    force: f64,
+    length: f64,
+}
+
+/// Compares two snapshots, node by node.
+pub fn compare(a: &Snapshot, b: &Snapshot) -> Differences {
+    Differences::between(a, b)
+}
+
+impl Differences {
+    /// All that differs.
+    fn between(a: &Snapshot, b: &Snapshot) -> Differences {
+        let mut found = Differences::default();
+        found.scenes(a, b);
+        found.exact("interventions", &told(a), &told(b));
+        found.exact("minor iterations done", &a.steps, &b.steps);
+        for (what, left, right) in [
+            ("increment", a.position.increment, b.position.increment),
+            ("attempt", a.position.attempt, b.position.attempt),
+            ("major", a.position.major, b.position.major),
+            ("minor", a.position.minor, b.position.minor),
+        ] {
+            found.exact(what, &left, &right);
+        }
+        let scales = Scales {
+            force: force(&a.state).max(force(&b.state)),
+            length: length(a).max(length(b)),
+        };
+        found.states(&a.state, &b.state, &scales);
+        found
+    }
+
+    /// Whether nothing differs.
+    pub fn is_empty(&self) -> bool {
+        self.rows.is_empty()
+    }
+
+    fn scenes(&mut self, a: &Snapshot, b: &Snapshot) {
+        if a.scene == b.scene {
+            return;
+        }
+        let before = self.rows.len();
+        let values = |s: &Snapshot| -> BTreeMap<String, String> {
+            paths::list(&s.scene)
+                .into_iter()
+                .map(|l| (l.path, l.value))
+                .collect()
+        };
+        let (left, right) = (values(a), values(b));
+        for (path, pair) in paired(&left, &right) {
+            let text = |value: Option<&String>| value.map_or(ABSENT.to_owned(), Clone::clone);
+            self.exact_text(&format!("scene {path}"), text(pair.0), text(pair.1));
+        }
+        if self.rows.len() == before {
+            self.exact_text(
+                "scene",
+                "as it is".into(),
+                "another, but for no scalar".into(),
+            );
+        }
+    }
+
+    fn states(&mut self, a: &Recorded, b: &Recorded, scales: &Scales) {
+        self.number("load factor", a.load_factor, b.load_factor, 1.0);
+        self.exact_text("status", status(&a.status), status(&b.status));
+        self.norms("before", a.before.as_ref(), b.before.as_ref(), scales);
+        self.norms("after", a.after.as_ref(), b.after.as_ref(), scales);
+        let (left, right) = (
+            by_name(&a.slaves, |s| &s.node),
+            by_name(&b.slaves, |s| &s.node),
+        );
+        for (node, pair) in paired(&left, &right) {
+            if let Some((left, right)) = self.both(&format!("slave {node}"), pair) {
+                self.slave(left, right, scales);
+            }
+        }
+        let (left, right) = (
+            by_name(&a.displacements, |d| &d.node),
+            by_name(&b.displacements, |d| &d.node),
+        );
+        for (node, pair) in paired(&left, &right) {
+            if let Some((left, right)) = self.both(&format!("node {node}"), pair) {
+                self.displacement(left, right, scales);
+            }
+        }
+        self.exact("number of shear forces", &a.shear.len(), &b.shear.len());
+        for (k, (left, right)) in a.shear.iter().zip(&b.shear).enumerate() {
+            self.number(
+                &format!("shear force {}", k + 1),
+                *left,
+                *right,
+                scales.force,
+            );
+        }
+    }
+
+    fn slave(&mut self, a: &SlaveRecord, b: &SlaveRecord, scales: &Scales) {
+        let name = &a.node;
+        let rule = |s: &SlaveRecord| s.rule.map_or(ABSENT, Rule::name).to_owned();
+        for (what, left, right) in [
+            ("mode", names::mode(a.mode), names::mode(b.mode)),
+            ("next", names::mode(a.next), names::mode(b.next)),
+        ] {
+            self.exact_text(&format!("{name} {what}"), left.into(), right.into());
+        }
+        self.exact_text(&format!("{name} rule"), rule(a), rule(b));
+        self.exact(&format!("{name} forced"), &a.forced, &b.forced);
+        match (a.gap, b.gap) {
+            (Some(left), Some(right)) => {
+                self.number(&format!("{name} gap"), left, right, scales.length);
+            }
+            (left, right) => self.exact(&format!("{name} gap"), &left, &right),
+        }
+        for (what, left, right, scale) in [
+            ("f_n", a.f_n, b.f_n, scales.force),
+            ("f_t", a.f_t, b.f_t, scales.force),
+            ("t_max", a.t_max, b.t_max, scales.force),
+            ("slip", a.slip, b.slip, scales.length),
+        ] {
+            self.number(&format!("{name} {what}"), left, right, scale);
+        }
+    }
+
+    fn displacement(&mut self, a: &Displacement, b: &Displacement, scales: &Scales) {
+        let name = &a.node;
+        self.number(&format!("{name} x"), a.x, b.x, scales.length);
+        self.number(&format!("{name} y"), a.y, b.y, scales.length);
+        match (a.rotation, b.rotation) {
+            (Some(left), Some(right)) => {
+                self.number(&format!("{name} rotation"), left, right, 1.0);
+            }
+            (left, right) => self.exact(&format!("{name} rotation"), &left, &right),
+        }
+    }
+
+    fn norms(&mut self, when: &str, a: Option<&Norms>, b: Option<&Norms>, scales: &Scales) {
+        let (Some(a), Some(b)) = (a, b) else {
+            self.exact(&format!("residual {when}"), &a.is_some(), &b.is_some());
+            return;
+        };
+        for (what, left, right, scale) in [
+            ("force", a.force, b.force, scales.force),
+            ("relative", a.relative, b.relative, 1.0),
+            ("interface", a.interface, b.interface, 1.0),
+            ("correction", a.correction, b.correction, 1.0),
+        ] {
+            self.number(&format!("residual {when}, {what}"), left, right, scale);
+        }
+    }
+
+    /// A thing that only one of the two has is a difference; what both have is for the caller to compare.
+    fn both<'a, T>(
+        &mut self,
+        what: &str,
+        pair: (Option<&&'a T>, Option<&&'a T>),
+    ) -> Option<(&'a T, &'a T)> {
+        match pair {
+            (Some(left), Some(right)) => Some((left, right)),
+            (left, right) => {
+                let text = |there: bool| if there { "there" } else { ABSENT }.to_owned();
+                self.exact_text(what, text(left.is_some()), text(right.is_some()));
+                None
+            }
+        }
+    }
+
+    fn exact<T: PartialEq + Debug>(&mut self, what: &str, left: &T, right: &T) {
+        if left != right {
+            self.exact_text(what, word(left), word(right));
+        }
+    }
+
+    fn exact_text(&mut self, what: &str, left: String, right: String) {
+        if left != right {
+            self.rows.push(Difference {
+                what: what.to_owned(),
+                left,
+                right,
+                apart: None,
+            });
+        }
+    }
+
+    fn number(&mut self, what: &str, left: f64, right: f64, scale: f64) {
+        // Equality covers the infinities, whose distance is no number.
+        if left == right || (left.is_nan() && right.is_nan()) {
+            return;
+        }
+        let allowed = TOLERANCE * scale.max(left.abs()).max(right.abs());
+        let apart = (left - right).abs();
+        #[cfg(mutants)]
+        let apart =
+            stickslip_core::mutants::pick("snapshots-compared-one-way", apart, left - right);
+        if apart <= allowed && apart.is_finite() {
+            return;
+        }
+        self.rows.push(Difference {
+            what: what.to_owned(),
+            left: format!("{left:?}"),
+            right: format!("{right:?}"),
+            apart: Some((apart, allowed)),
+        });
+    }
+}
+
+const ABSENT: &str = "-";
+
+/// A value as a word: `Some(FixedSlides)` is FixedSlides.
+fn word<T: Debug>(value: &T) -> String {
+    let text = format!("{value:?}");
+    match text.strip_prefix("Some(").and_then(|t| t.strip_suffix(')')) {
+        Some(inner) => inner.to_owned(),
+        None if text == "None" => ABSENT.to_owned(),
+        None => text,
+    }
+}
+
+fn told(snapshot: &Snapshot) -> Vec<String> {
+    snapshot
+        .interventions
+        .iter()
+        .map(|a| format!("after {}: {:?}", a.step, a.intervention))
+        .collect()
+}
+
+fn by_name<T>(all: &[T], name: impl Fn(&T) -> &String) -> BTreeMap<String, &T> {
+    all.iter().map(|one| (name(one).clone(), one)).collect()
+}
+
+type Pairs<'a, T> = Vec<(&'a String, (Option<&'a T>, Option<&'a T>))>;
+
+/// What either has by its name, from both.
+fn paired<'a, T>(a: &'a BTreeMap<String, T>, b: &'a BTreeMap<String, T>) -> Pairs<'a, T> {
+    let only_b = b.keys().filter(|key| !a.contains_key(*key));
+    a.keys()
+        .chain(only_b)
+        .map(|key| (key, (a.get(key), b.get(key))))
+        .collect()
+}
+
+fn force(state: &Recorded) -> f64 {
+    let norms = state.before.iter().chain(&state.after);
+    norms.map(|n| n.scale).fold(0.0, f64::max)
+}
+
+fn length(snapshot: &Snapshot) -> f64 {
+    // An unsound scene has no size; its numbers are then measured by themselves.
+    Scene::from_spec(&snapshot.name, snapshot.scene.clone()).map_or(0.0, |s| s.model.length)
+}
+
+/// A status without its numbers, which need not be the same to the last bit.
+fn status(status: &Status) -> String {
+    let Status::Failed(failure) = status else {
+        return format!("{status:?}").to_lowercase();
+    };
+    let plain = match failure.clone() {
+        Failure::MajorLimit { limit, .. } => Failure::MajorLimit {
+            limit,
+            relative: 0.0,
+            interface: 0.0,
+        },
+        Failure::Diverged { .. } => return "diverged".into(),
+        Failure::Leapt { .. } => return "jumps".into(),
+        Failure::RoundOff { .. } => return "round-off".into(),
+        Failure::Inverted(point) => {
+            return format!("element {} of body {} inverted", point.element, point.body);
+        }
+        Failure::OverConstrained { slave, .. } => Failure::OverConstrained { slave, gap: 0.0 },
+        Failure::Singular(Singular::Rigid { motions }) => {
+            let motion = |m: &Motion| match m {
+                Motion::Translation(_) => "moves",
+                Motion::Rotation(_) => "turns",
+            };
+            let all: Vec<String> = motions
+                .iter()
+                .map(|m| format!("{} {}", m.body, motion(&m.motion)))
+                .collect();
+            return format!("singular: {}", all.join(", "));
+        }
+        other => other,
+    };
+    format!("failed: {plain:?}")
+}
+
+impl fmt::Display for Differences {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let apart = |row: &Difference| {
+            row.apart.map_or(String::new(), |(apart, allowed)| {
+                format!("{apart:.3e} > {allowed:.1e}")
+            })
+        };
+        let mut lines = vec![["", "left", "right", "apart > allowed"].map(str::to_owned)];
+        lines.extend(
+            self.rows
+                .iter()
+                .map(|r| [r.what.clone(), r.left.clone(), r.right.clone(), apart(r)]),
+        );
+        for line in shown::aligned(&lines, lines[0].len()) {
+            writeln!(f, "{line}")?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,327 @@
+//! A state as ParaView shows it (`.vtu`): the undeformed mesh, and on its nodes what moved, what is stressed and what touches.
+//!
+//! | on nodes | |
+//! | --- | --- |
+//! | `node` | number of the node, from 1; its name stands in that line of `node_names` |
+//! | `displacement` | x, y and 0; "Warp By Vector" shows the deformed shape |
+//! | `rotation` | of beams, anticlockwise (radians) |
+//! | `stress` | Cauchy stress of solids as VTK orders it: XX, YY, ZZ, XY, YZ, XZ ([`recovery`]) |
+//! | `contact_mode` | −1 no slave node, 0 free, 1 sliding, 2 fixed |
+//! | `contact_force` | force on the slave node, x, y and 0; zero elsewhere |
+//! | `F_n`, `F_t`, `T_max`, `gap`, `slip` | of slave nodes, as in the trace |
+//! | `pressure`, `shear` | F_n and F_t by the area of the slave node; NaN where it has none |
+//!
+//! | on cells | |
+//! | --- | --- |
+//! | `body` | number of the body, from 1; 0 for the lines of surfaces |
+//! | `surface` | number of the master surface, from 1; 0 for what is none |
+//! | `rigid` | 1 for the lines of rigid surfaces |
+//! | `stretch` | of solids: smallest principal stretch at the element's integration points |
+//! | `det_F` | of solids: smallest det F at its integration points and nodes |
+//!
+//! Where there is none of it, a number is NaN. Names stand in `node_names`, `body_names` and `surface_names`, lines of text by
+//! bytes, since readers other than VTK's know no arrays of text. Elements of beams with more than three nodes are lines from
+//! node to node, and so are surfaces.
+
+use super::shown::{ExportError, Shown};
+use stickslip_core::contact::record::ContactRecord;
+use stickslip_core::fem::deformation;
+use stickslip_core::fem::recovery::{self, Configuration};
+use stickslip_core::model::{BodyKind, Component, ElementKind, Mode, Model};
+use stickslip_core::step::event::{Event, Position};
+use stickslip_core::step::state::State;
+use stickslip_core::step::stepper::Stepper;
+use stickslip_exchange::mesh::{Cell, CellKind};
+use stickslip_exchange::vtu::{self, Array, Grid, Values};
+
+const VECTOR: &[&str] = &["X", "Y", "Z"];
+const TENSOR: &[&str] = &["XX", "YY", "ZZ", "XY", "YZ", "XZ"];
+
+/// The file.
+pub(super) fn vtu(shown: &Shown, _: &mut Stepper) -> Result<Vec<u8>, ExportError> {
+    let (at, load) = match shown.event {
+        Some(event) => (event.position, event.load_factor),
+        None => (shown.origin.at, shown.state.start.load_factor),
+    };
+    let grid = grid(&shown.scene.model, shown.state, shown.event, at, load);
+    Ok(vtu::write(&grid).into_bytes())
+}
+
+/// The grid of a state; the last minor iteration, where there was one, knows the gaps.
+pub fn grid(model: &Model, state: &State, event: Option<&Event>, at: Position, load: f64) -> Grid {
+    let mut grid = Grid {
+        points: model.nodes.iter().map(|node| node.at).collect(),
+        ..Grid::default()
+    };
+    cells(model, &mut grid);
+    deformations(model, state, &mut grid);
+    motion(model, state, &mut grid);
+    stresses(model, state, &mut grid);
+    contacts(model, state, event, &mut grid);
+    let whole = |value: u32| Values::Wholes(vec![i32::try_from(value).unwrap_or(i32::MAX)]);
+    let lines =
+        |names: Vec<&str>| Values::Text(names.iter().flat_map(|name| [name, "\n"]).collect());
+    grid.fields = vec![
+        array("TimeValue", &[], Values::Numbers(vec![load])),
+        array("increment", &[], whole(at.increment)),
+        array("major", &[], whole(at.major)),
+        array("minor", &[], whole(at.minor)),
+        array(
+            "node_names",
+            &[],
+            lines(model.nodes.iter().map(|n| &*n.name).collect()),
+        ),
+        array(
+            "body_names",
+            &[],
+            lines(model.bodies.iter().map(|b| &*b.name).collect()),
+        ),
+        array(
+            "surface_names",
+            &[],
+            lines(model.surfaces.iter().map(|s| &*s.name).collect()),
+        ),
+    ];
+    grid
+}
+
+fn array(name: &str, components: &'static [&'static str], values: Values) -> Array {
+    Array {
+        name: name.to_owned(),
+        components,
+        values,
+    }
+}
+
+/// The cells of all bodies and surfaces, and whose they are.
+fn cells(model: &Model, grid: &mut Grid) {
+    let (mut body, mut surface, mut rigid) = (Vec::new(), Vec::new(), Vec::new());
+    let mut add = |grid: &mut Grid, cell: Cell, of: [i32; 3]| {
+        grid.cells.push(cell);
+        body.push(of[0]);
+        surface.push(of[1]);
+        rigid.push(of[2]);
+    };
+    for (number, one) in (1..).zip(&model.bodies) {
+        match &one.kind {
+            BodyKind::Solid(solid) => {
+                for element in &solid.elements {
+                    let kind = cell_kind(element.kind);
+                    let nodes = element.nodes.clone();
+                    add(grid, Cell { kind, nodes }, [number, 0, 0]);
+                }
+            }
+            kind => {
+                let mut lone: Vec<usize> = one.nodes.clone();
+                for line in kind.lines() {
+                    lone.retain(|node| !line.contains(node));
+                    for cell in lines(line) {
+                        add(grid, cell, [number, 0, 0]);
+                    }
+                }
+                for node in lone {
+                    let cell = Cell {
+                        kind: CellKind::Point,
+                        nodes: vec![node],
+                    };
+                    add(grid, cell, [number, 0, 0]);
+                }
+            }
+        }
+    }
+    for (number, one) in (1..).zip(&model.surfaces) {
+        for (place, element) in one.elements.iter().enumerate() {
+            let nodes = match one.smooth.get(place) {
+                Some(piece) => &element[piece.first..piece.first + 2],
+                None => element,
+            };
+            for cell in lines(nodes) {
+                add(grid, cell, [0, number, i32::from(one.rigid)]);
+            }
+        }
+    }
+    grid.on_cells = vec![
+        array("body", &[], Values::Wholes(body)),
+        array("surface", &[], Values::Wholes(surface)),
+        array("rigid", &[], Values::Wholes(rigid)),
+    ];
+}
+
+/// Deformation of the elements of solids, one value per cell; the cells of bodies come first, in order.
+fn deformations(model: &Model, state: &State, grid: &mut Grid) {
+    if !model.has_solids() {
+        return;
+    }
+    let mut numbers = [0, 1].map(|_| vec![f64::NAN; grid.cells.len()]);
+    let found = deformation::by_element(model, &state.u);
+    let found = found.iter().flatten();
+    let of_line = |cell: &Cell| {
+        matches!(
+            cell.kind,
+            CellKind::Line2 | CellKind::Line3 | CellKind::Point
+        )
+    };
+    let places = (0..grid.cells.len()).filter(|&place| !of_line(&grid.cells[place]));
+    for (place, measures) in places.zip(found) {
+        for (list, value) in numbers.iter_mut().zip(measures) {
+            list[place] = *value;
+        }
+    }
+    for (name, values) in ["stretch", "det_F"].into_iter().zip(numbers) {
+        grid.on_cells
+            .push(array(name, &[], Values::Numbers(values)));
+    }
+}
+
+fn cell_kind(kind: ElementKind) -> CellKind {
+    match kind {
+        ElementKind::Triangle3 => CellKind::Triangle3,
+        ElementKind::Triangle6 => CellKind::Triangle6,
+        ElementKind::Quad4 => CellKind::Quad4,
+        ElementKind::Quad8 | ElementKind::Quad8Reduced => CellKind::Quad8,
+        ElementKind::Quad9 => CellKind::Quad9,
+    }
+}
+
+/// The cells of a line through nodes in walking order.
+fn lines(nodes: &[usize]) -> Vec<Cell> {
+    if let &[one, middle, other] = nodes {
+        return vec![Cell {
+            kind: CellKind::Line3,
+            nodes: vec![one, other, middle],
+        }];
+    }
+    let pairs = nodes.windows(2).map(|pair| Cell {
+        kind: CellKind::Line2,
+        nodes: pair.to_vec(),
+    });
+    pairs.collect()
+}
+
+fn motion(model: &Model, state: &State, grid: &mut Grid) {
+    let component = |node: usize, component: Component| {
+        let known = node < model.dofs.count.len();
+        let dof = known.then(|| model.dofs.dof(node, component))??;
+        state.u.get(dof).copied()
+    };
+    let nodes = 0..model.nodes.len();
+    let moved = |node: usize| {
+        let of = |axis| component(node, axis).unwrap_or(0.0);
+        [of(Component::X), of(Component::Y), 0.0]
+    };
+    let moved = nodes.clone().flat_map(moved).collect();
+    let turned: Vec<Option<f64>> = nodes
+        .map(|node| component(node, Component::Rotation))
+        .collect();
+    let number = (1..).take(model.nodes.len()).collect();
+    grid.on_points
+        .push(array("node", &[], Values::Wholes(number)));
+    grid.on_points
+        .push(array("displacement", VECTOR, Values::Numbers(moved)));
+    if turned.iter().any(Option::is_some) {
+        let turned = turned
+            .iter()
+            .map(|angle| angle.unwrap_or(f64::NAN))
+            .collect();
+        grid.on_points
+            .push(array("rotation", &[], Values::Numbers(turned)));
+    }
+}
+
+fn stresses(model: &Model, state: &State, grid: &mut Grid) {
+    let solid = |kind: &BodyKind| matches!(kind, BodyKind::Solid(_));
+    if !model.bodies.iter().any(|body| solid(&body.kind)) {
+        return;
+    }
+    let known = recovery::nodal_stresses(
+        model,
+        Configuration {
+            u: &state.u,
+            before: &state.start.u,
+            history: &state.start.history,
+        },
+    );
+    let mut all = vec![f64::NAN; TENSOR.len() * model.nodes.len()];
+    for (body, stresses) in model.bodies.iter().zip(known) {
+        for (&node, stress) in body.nodes.iter().zip(stresses) {
+            if let Some([xx, yy, zz, xy]) = stress {
+                let place = TENSOR.len() * node;
+                all[place..place + TENSOR.len()].copy_from_slice(&[xx, yy, zz, xy, 0.0, 0.0]);
+            }
+        }
+    }
+    grid.on_points
+        .push(array("stress", TENSOR, Values::Numbers(all)));
+}
+
+/// What is told of a slave node: mode, force, and F_n, F_t, T_max, gap and slip.
+type Told = (Mode, [f64; 2], [f64; 5]);
+
+fn contacts(model: &Model, state: &State, event: Option<&Event>, grid: &mut Grid) {
+    if model.contacts.is_empty() {
+        return;
+    }
+    let nodes = model.nodes.len();
+    let mut modes = vec![-1; nodes];
+    let mut force = vec![0.0; VECTOR.len() * nodes];
+    let names = ["F_n", "F_t", "T_max", "gap", "slip"];
+    let mut numbers = names.map(|_| vec![f64::NAN; nodes]);
+    for (place, contact) in model.contacts.iter().enumerate() {
+        let found = event.and_then(|event| event.nodes.get(place));
+        let told = found.map_or_else(|| at_start(state, place), of_record);
+        let Some((mode, [x, y], values)) = told else {
+            continue;
+        };
+        let node = contact.node;
+        modes[node] = match mode {
+            Mode::Free => 0,
+            Mode::Sliding => 1,
+            Mode::Fixed => 2,
+        };
+        force[VECTOR.len() * node..][..2].copy_from_slice(&[x, y]);
+        for (list, value) in numbers.iter_mut().zip(values) {
+            list[node] = value;
+        }
+    }
+    grid.on_points
+        .push(array("contact_mode", &[], Values::Wholes(modes)));
+    grid.on_points
+        .push(array("contact_force", VECTOR, Values::Numbers(force)));
+    let by_area = [&numbers[0], &numbers[1]].map(|forces| {
+        let mut stresses = vec![f64::NAN; nodes];
+        for contact in &model.contacts {
+            if let Some(area) = contact.area.filter(|area| *area > 0.0) {
+                stresses[contact.node] = forces[contact.node] / area;
+            }
+        }
+        stresses
+    });
+    let names = names.into_iter().chain(["pressure", "shear"]);
+    for (name, values) in names.zip(numbers.into_iter().chain(by_area)) {
+        grid.on_points
+            .push(array(name, &[], Values::Numbers(values)));
+    }
+}
+
+fn of_record(record: &ContactRecord) -> Option<Told> {
+    let [c, s] = record.normal;
+    let force = [
+        c * record.f_n - s * record.f_t,
+        s * record.f_n + c * record.f_t,
+    ];
+    let values = [
+        record.f_n,
+        record.f_t,
+        record.t_max,
+        record.gap,
+        record.slip,
+    ];
+    Some((record.decision.before, force, values))
+}
+
+/// Before the first minor iteration no gap is known.
+fn at_start(state: &State, place: usize) -> Option<Told> {
+    let node = state.nodes.get(place)?;
+    let values = [node.f_n, node.f_t, node.t_max, f64::NAN, node.slip];
+    Some((node.mode, node.force(), values))
+}

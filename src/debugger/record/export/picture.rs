@@ -1,0 +1,601 @@
+//! A state as a picture for paper: the deformed shape with the nodes' modes, the masters' normals, contact forces and
+//! gaps, a table of the slave nodes, and the timeline below.
+//!
+//! Displacements are drawn as large as they are. Forces have a scale of their own, which stands below the shape with its
+//! number. Modes are told by shapes first, and by colours that differ in grey, too.
+
+use super::pressures::pressures;
+use super::shown::{ExportError, Shown};
+use super::timeline::{self, chosen, colour};
+use super::window::{FORCE, Window};
+use crate::explain::names;
+use crate::explain::outline::{self, Bounds, Point, curve, extent};
+use crate::explain::round_off::RoundOff;
+use stickslip_core::contact::element::Element;
+use stickslip_core::contact::projection::tangent;
+use stickslip_core::contact::record::ContactRecord;
+use stickslip_core::model::{BodyKind, Mode, Model, SolidElement};
+use stickslip_core::step::event::Outcome;
+use stickslip_core::step::state::Status;
+use stickslip_core::step::stepper::Stepper;
+use stickslip_scene::number::{plain, short};
+use stickslip_study::drawn::PlotError;
+use stickslip_study::origin;
+use stickslip_study::placing::{Patch, Placing};
+use stickslip_study::sheet::{
+    Anchor, BLACK, Colour, GREY, LABEL, MARGIN, PALE, SMALL, Sheet, widest,
+};
+
+/// The whole picture's width, and the height of the shape.
+const WIDTH: f64 = 980.0;
+const HIGH: f64 = 400.0;
+/// Length of a normal, in pixels.
+const NORMAL: f64 = 13.0;
+/// Pixels between two normals.
+const SPACING: f64 = 46.0;
+/// Least diagonal of an element whose edges are drawn, in pixels.
+const ELEMENT: f64 = 7.0;
+/// Slave nodes in the table, and nodes whose names or numbers stand in the shape.
+const ROWS: usize = 14;
+/// Forces.
+const VERMILION: Colour = (213, 94, 0);
+/// Bodies.
+const DARK: Colour = (60, 60, 60);
+
+/// The picture as SVG.
+pub(super) fn svg(shown: &Shown, _: &mut Stepper) -> Result<Vec<u8>, ExportError> {
+    Ok(sheet(shown)?.svg()?.into_bytes())
+}
+
+/// The picture as PNG.
+pub(super) fn png(shown: &Shown, _: &mut Stepper) -> Result<Vec<u8>, ExportError> {
+    Ok(sheet(shown)?.png()?)
+}
+
+/// The marker of a mode: a ring for free, a triangle for sliding, a square for fixed.
+fn marker(sheet: &mut Sheet, at: (f64, f64), mode: Mode, r: f64) {
+    let kind = match mode {
+        Mode::Free => 0,
+        Mode::Sliding => 2,
+        Mode::Fixed => 1,
+    };
+    sheet.ringed(at, kind, r, colour(mode));
+}
+
+/// The picture as plain data.
+///
+/// # Errors
+/// If the font cannot be read.
+pub fn sheet(shown: &Shown) -> Result<Sheet, PlotError> {
+    let model = &shown.scene.model;
+    let mut sheet = Sheet::new(WIDTH, &title(shown))?;
+    sheet.paragraph(&[caption(shown)], LABEL, BLACK)?;
+    let rows = chosen(model, shown.strips, ROWS);
+    shape(&mut sheet, shown, &rows)?;
+    table(&mut sheet, shown, &rows)?;
+    timeline::draw(&mut sheet, model, shown.strips)?;
+    sheet.paragraph(&footer(shown), SMALL, GREY)?;
+    Ok(sheet)
+}
+
+fn title(shown: &Shown) -> String {
+    match shown.scene.model.title.as_str() {
+        "" => shown.scene.name.clone(),
+        title => title.to_owned(),
+    }
+}
+
+/// Which state it is, and how it came about.
+fn caption(shown: &Shown) -> String {
+    let Some(event) = shown.event else {
+        return "The start, before the first minor iteration.".to_owned();
+    };
+    let at = names::position(event.position);
+    let load = plain(event.load_factor);
+    let what = match (&event.outcome, &shown.state.status) {
+        (_, Status::Failed(_)) | (Outcome::Failed(_), _) => {
+            format!(
+                "the last state reached, the increment failed: {}",
+                shown.ended
+            )
+        }
+        (Outcome::Increment { .. }, Status::Finished) => {
+            "accepted, the end of the history".to_owned()
+        }
+        (Outcome::Increment { .. }, _) => "accepted".to_owned(),
+        (Outcome::Major { .. } | Outcome::Refused { .. }, _) => "not in equilibrium yet".to_owned(),
+        (Outcome::Moves(_), _) => "moves on against a drag, not in equilibrium".to_owned(),
+        (
+            Outcome::Cut { .. }
+            | Outcome::Leaps { .. }
+            | Outcome::Fallback { .. }
+            | Outcome::Turns { .. },
+            _,
+        ) => "the increment begins again".to_owned(),
+        _ => "modes or T_max change".to_owned(),
+    };
+    let more = match shown.ended.as_str() {
+        "" => String::new(),
+        _ if matches!(shown.state.status, Status::Failed(_)) => String::new(),
+        ended => format!("; {ended}"),
+    };
+    let text = format!("{at}, load {load}: {what}{more}");
+    match text.ends_with('…') {
+        true => text,
+        false => text + ".",
+    }
+}
+
+/// What it was made from, and by what.
+fn footer(shown: &Shown) -> Vec<String> {
+    let mut from = format!("Scene: {}", shown.origin.scene);
+    if !shown.origin.changes.is_empty() {
+        from += &format!(", with {}", shown.origin.changes.join(", "));
+    }
+    let settings = &shown.state.controls.settings;
+    let strategy = settings.strategy.name();
+    vec![format!(
+        "{from}; strategy {strategy}. {}.",
+        origin::program()
+    )]
+}
+
+/// What is drawn of a line.
+struct Pen {
+    width: f64,
+    colour: Colour,
+    dashed: bool,
+}
+
+fn pen(width: f64, colour: Colour) -> Pen {
+    Pen {
+        width,
+        colour,
+        dashed: false,
+    }
+}
+
+fn stroke(sheet: &mut Sheet, window: &Window, points: &[Point], pen: &Pen) {
+    for chain in window.inside(&curve(points)) {
+        match pen.dashed {
+            true => sheet.dashed(&chain, pen.width, pen.colour),
+            false => sheet.line(&chain, pen.width, pen.colour),
+        }
+    }
+}
+
+fn shape(sheet: &mut Sheet, shown: &Shown, rows: &[usize]) -> Result<(), PlotError> {
+    let model = &shown.scene.model;
+    let now = |node: usize| model.place(&shown.state.u, node);
+    let top = sheet.height;
+    let patch = Patch {
+        from: (MARGIN, top),
+        to: (WIDTH - MARGIN, top + HIGH),
+    };
+    let seen = extent(model, &now).unwrap_or(Bounds::UNIT);
+    let window = Window::new(&seen, patch, room(shown));
+    let mut taken = Placing::within(patch);
+    bodies(sheet, &window, model, &now, &mut taken);
+    surfaces(sheet, &window, model, &now, &mut taken);
+    gaps(sheet, &window, shown, &now);
+    let pressure = pressures(sheet, &window, shown, &now);
+    let marked = radius(&window, model, &now);
+    let largest = forces(sheet, &window, shown, &now, marked, &mut taken);
+    slaves(sheet, &window, shown, &now, rows, marked, &mut taken)?;
+    sheet.height = top + HIGH + 0.5 * MARGIN;
+    legend(sheet, &window, shown, largest)?;
+    if pressure > 0.0 {
+        let told = format!(
+            "blue: contact pressure F_n / A by undeformed areas, largest {}",
+            short(pressure)
+        );
+        sheet.paragraph(&[told], SMALL, GREY)?;
+    }
+    Ok(())
+}
+
+/// Elements as they were (dashed) and as they are.
+fn bodies(
+    sheet: &mut Sheet,
+    window: &Window,
+    model: &Model,
+    now: &dyn Fn(usize) -> Point,
+    taken: &mut Placing,
+) {
+    let lines = || model.bodies.iter().flat_map(|body| body.kind.lines());
+    let before = Pen {
+        dashed: true,
+        ..pen(1.0, (150, 150, 150))
+    };
+    for element in lines() {
+        let points: Vec<Point> = element.iter().map(|&node| model.nodes[node].at).collect();
+        stroke(sheet, window, &points, &before);
+    }
+    for body in &model.bodies {
+        let BodyKind::Solid(solid) = &body.kind else {
+            continue;
+        };
+        for SolidElement { kind, nodes, .. } in &solid.elements {
+            let across = kind.faces().len() / 2;
+            let (a, b) = (now(nodes[0]), now(nodes[across]));
+            if (a[0] - b[0]).hypot(a[1] - b[1]) * window.scale < ELEMENT {
+                continue;
+            }
+            for face in kind.faces_of(nodes) {
+                let points: Vec<Point> = face.iter().map(|&node| now(node)).collect();
+                stroke(sheet, window, &points, &pen(0.7, PALE));
+            }
+        }
+    }
+    for element in lines() {
+        let points: Vec<Point> = element.iter().map(|&node| now(node)).collect();
+        stroke(sheet, window, &points, &pen(2.0, DARK));
+        for chain in window.inside(&curve(&points)) {
+            for pair in chain.windows(2) {
+                taken.take_line(pair[0], pair[1]);
+            }
+        }
+    }
+}
+
+/// Master surfaces, with arrows to their outward side: on the right of the walk.
+fn surfaces(
+    sheet: &mut Sheet,
+    window: &Window,
+    model: &Model,
+    now: &dyn Fn(usize) -> Point,
+    taken: &mut Placing,
+) {
+    for surface in &model.surfaces {
+        let mut walked = 0.5 * SPACING;
+        for element in Element::all(surface) {
+            let points = outline::element(element, now);
+            stroke(sheet, window, &points, &pen(2.6, BLACK));
+            for chain in window.inside(&curve(&points)) {
+                for pair in chain.windows(2) {
+                    taken.take_line(pair[0], pair[1]);
+                    normals(sheet, pair[0], pair[1], &mut walked, taken);
+                }
+            }
+        }
+    }
+}
+
+fn normals(
+    sheet: &mut Sheet,
+    from: (f64, f64),
+    to: (f64, f64),
+    walked: &mut f64,
+    taken: &mut Placing,
+) {
+    let (x, y) = (to.0 - from.0, to.1 - from.1);
+    let length = x.hypot(y);
+    if length <= 0.0 || !length.is_finite() {
+        return;
+    }
+    let (x, y) = (x / length, y / length);
+    while *walked < length {
+        let foot = (from.0 + *walked * x, from.1 + *walked * y);
+        // Right of the walk, on paper, whose y points downwards.
+        let tip = (foot.0 - NORMAL * y, foot.1 + NORMAL * x);
+        sheet.arrow(foot, tip, 1.0, GREY);
+        taken.take_line(foot, tip);
+        *walked += SPACING;
+    }
+    *walked -= length;
+}
+
+/// Open gaps as lines from the node to the surface, where they are wide enough to be seen.
+fn gaps(sheet: &mut Sheet, window: &Window, shown: &Shown, now: &dyn Fn(usize) -> Point) {
+    let Some(event) = shown.event else { return };
+    for (contact, found) in shown.scene.model.contacts.iter().zip(&event.nodes) {
+        if found.spot.is_none() || found.decision.before != Mode::Free {
+            continue;
+        }
+        let at = now(contact.node);
+        let foot = [0, 1].map(|axis| at[axis] - found.gap * found.normal[axis]);
+        let (from, to) = (window.at(at), window.at(foot));
+        let wide = (from.0 - to.0).hypot(from.1 - to.1);
+        if wide > 2.0 && window.holds(from) && window.holds(to) {
+            sheet.dashed(&[from, to], 1.0, (0, 114, 178));
+        }
+    }
+}
+
+/// Room that the arrows of forces need beyond the shape: at the left, above, at the right, and below.
+fn room(shown: &Shown) -> [f64; 4] {
+    let (largest, mut room) = (largest(shown), [0.0_f64; 4]);
+    let Some(event) = shown.event.filter(|_| largest > 0.0) else {
+        return room;
+    };
+    for found in event.nodes.iter().filter(|found| size(found).is_finite()) {
+        let (n, t) = (found.normal, tangent(found.normal));
+        let along = |axis: usize| FORCE / largest * (found.f_n * n[axis] + found.f_t * t[axis]);
+        let (x, y) = (along(0), along(1));
+        for (room, reach) in room.iter_mut().zip([x, -y, -x, y]) {
+            *room = room.max(reach);
+        }
+    }
+    room
+}
+
+fn size(found: &ContactRecord) -> f64 {
+    found.f_n.hypot(found.f_t)
+}
+
+/// The largest contact force that is none of round-off; 0 where there is none.
+fn largest(shown: &Shown) -> f64 {
+    let Some(event) = shown.event else { return 0.0 };
+    let round_off = RoundOff::of(&shown.scene.model, &event.before);
+    let sizes = event.nodes.iter().map(|found| round_off.force(size(found)));
+    sizes.filter(|f| f.is_finite()).fold(0.0, f64::max)
+}
+
+/// Contact forces on the slave nodes as arrows that end at the node; returns the largest.
+fn forces(
+    sheet: &mut Sheet,
+    window: &Window,
+    shown: &Shown,
+    now: &dyn Fn(usize) -> Point,
+    marked: f64,
+    taken: &mut Placing,
+) -> f64 {
+    let largest = largest(shown);
+    let Some(event) = shown.event.filter(|_| largest > 0.0) else {
+        return 0.0;
+    };
+    for (contact, found) in shown.scene.model.contacts.iter().zip(&event.nodes) {
+        let (n, t) = (found.normal, tangent(found.normal));
+        let scale = FORCE / largest;
+        let tip = window.at(now(contact.node));
+        let along = |axis: usize| scale * (found.f_n * n[axis] + found.f_t * t[axis]);
+        let tail = (tip.0 - along(0), tip.1 + along(1));
+        let long = scale * size(found) >= 1.0;
+        if long && window.holds(tip) {
+            // The head ends beside the node's marker, which lies above it.
+            let back = (marked + 1.5) / (scale * size(found));
+            let beside = |from: f64, to: f64| to + back * (from - to);
+            let shift = (beside(tail.0, tip.0) - tip.0, beside(tail.1, tip.1) - tip.1);
+            let (tail, tip) = (
+                (tail.0 + shift.0, tail.1 + shift.1),
+                (tip.0 + shift.0, tip.1 + shift.1),
+            );
+            sheet.arrow(tail, tip, 2.0, VERMILION);
+            taken.take_line(tail, tip);
+        }
+    }
+    largest
+}
+
+/// The slave nodes by the markers of their modes; those in the table with their names, or else their numbers there.
+fn slaves(
+    sheet: &mut Sheet,
+    window: &Window,
+    shown: &Shown,
+    now: &dyn Fn(usize) -> Point,
+    rows: &[usize],
+    r: f64,
+    taken: &mut Placing,
+) -> Result<(), PlotError> {
+    let model = &shown.scene.model;
+    let at = |slave: usize| window.at(now(model.contacts[slave].node));
+    let slaves = || (0..model.contacts.len()).filter(|s| window.holds(at(*s)));
+    for slave in slaves() {
+        marker(sheet, at(slave), mode(shown, slave), r);
+        taken.take(Patch::about(at(slave), (2.0 * r + 4.0, 2.0 * r + 4.0)));
+    }
+    for (row, &slave) in rows
+        .iter()
+        .enumerate()
+        .filter(|(_, s)| window.holds(at(**s)))
+    {
+        for text in [
+            names::slave(model, slave).to_owned(),
+            format!("({})", row + 1),
+        ] {
+            let size = (widest([text.as_str()], SMALL)? + 4.0, 1.1 * SMALL);
+            if let Some(patch) = taken.place(at(slave), size, 60.0) {
+                leader(sheet, at(slave), &patch, r);
+                sheet.text(patch.middle(), &text, SMALL, BLACK, Anchor::Middle);
+                break;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// How large markers can be without covering each other.
+fn radius(window: &Window, model: &Model, now: &dyn Fn(usize) -> Point) -> f64 {
+    let at: Vec<(f64, f64)> = model
+        .contacts
+        .iter()
+        .map(|c| window.at(now(c.node)))
+        .collect();
+    let apart = at.windows(2).map(|pair| {
+        let (a, b) = (pair[0], pair[1]);
+        (a.0 - b.0).hypot(a.1 - b.1)
+    });
+    let apart = apart.filter(|d| *d > 0.0).fold(f64::INFINITY, f64::min);
+    (0.34 * apart).clamp(2.0, 5.0)
+}
+
+/// A line from a node to a label that does not stand beside it.
+fn leader(sheet: &mut Sheet, at: (f64, f64), patch: &Patch, r: f64) {
+    let near = (
+        at.0.clamp(patch.from.0, patch.to.0),
+        at.1.clamp(patch.from.1, patch.to.1),
+    );
+    if (near.0 - at.0).hypot(near.1 - at.1) > r + 12.0 {
+        sheet.line(&[at, near], 0.6, GREY);
+    }
+}
+
+/// The mode of the shown minor iteration; before the first one that with which the node starts.
+fn mode(shown: &Shown, slave: usize) -> Mode {
+    let found = shown.event.and_then(|event| event.nodes.get(slave));
+    found.map_or(shown.state.nodes[slave].mode, |found| found.decision.before)
+}
+
+/// The keys of the shape: modes, and the scales of lengths and forces with their numbers.
+fn legend(
+    sheet: &mut Sheet,
+    window: &Window,
+    shown: &Shown,
+    largest: f64,
+) -> Result<(), PlotError> {
+    let y = sheet.height + 0.7 * LABEL;
+    let mut x = MARGIN + 6.0;
+    for mode in [Mode::Free, Mode::Sliding, Mode::Fixed] {
+        marker(sheet, (x, y), mode, 5.0);
+        let word = names::mode(mode);
+        sheet.text((x + 12.0, y), word, SMALL, BLACK, Anchor::Left);
+        x += 12.0 + widest([word], SMALL)? + 22.0;
+    }
+    let unit = round(90.0 / window.scale);
+    if unit.is_finite() && unit > 0.0 {
+        let wide = unit * window.scale;
+        sheet.line(&[(x, y), (x + wide, y)], 2.0, BLACK);
+        for end in [x, x + wide] {
+            sheet.line(&[(end, y - 5.0), (end, y + 5.0)], 1.5, BLACK);
+        }
+        x += wide + 8.0;
+        let text = format!("length {}", plain(unit));
+        sheet.text((x, y), &text, SMALL, BLACK, Anchor::Left);
+        x += widest([text.as_str()], SMALL)? + 22.0;
+    }
+    if largest > 0.0 {
+        let unit = round(0.8 * largest);
+        let wide = FORCE * unit / largest;
+        sheet.arrow((x, y), (x + wide, y), 2.0, VERMILION);
+        x += wide + 8.0;
+        let text = format!("contact force {}", plain(unit));
+        sheet.text((x, y), &text, SMALL, BLACK, Anchor::Left);
+        x += widest([text.as_str()], SMALL)? + 22.0;
+    }
+    sheet.arrow((x, y + 6.0), (x, y - 7.0), 1.0, GREY);
+    sheet.text((x + 10.0, y), "outward side", SMALL, BLACK, Anchor::Left);
+    let moved = moved(shown);
+    let told = format!(
+        "Displacements to scale, the largest {}; dashed: unloaded.",
+        plain_four(moved)
+    );
+    sheet.height = y + 1.2 * LABEL;
+    sheet.paragraph(&[told], SMALL, GREY)
+}
+
+/// Four digits, as short as they are.
+fn plain_four(value: f64) -> String {
+    match format!("{value:.3e}").parse::<f64>() {
+        Ok(rounded) => plain(rounded),
+        Err(_) => short(value),
+    }
+}
+
+/// The largest displacement of a node.
+fn moved(shown: &Shown) -> f64 {
+    let model = &shown.scene.model;
+    let far = |node: usize| {
+        let (at, now) = (model.nodes[node].at, model.place(&shown.state.u, node));
+        (now[0] - at[0]).hypot(now[1] - at[1])
+    };
+    let all = (0..model.nodes.len()).map(far).filter(|d| d.is_finite());
+    all.fold(0.0, f64::max)
+}
+
+/// The largest of 1, 2 and 5 times a power of ten that is not above a number.
+fn round(value: f64) -> f64 {
+    if !(value > 0.0 && value.is_finite()) {
+        return 0.0;
+    }
+    let power = 10f64.powf(value.log10().floor());
+    let step = [5.0, 2.0, 1.0]
+        .into_iter()
+        .find(|step| step * power <= value);
+    // Written and read, so that it is the number that it says.
+    format!("{:.0e}", step.unwrap_or(1.0) * power)
+        .parse()
+        .unwrap_or(value)
+}
+
+/// The numbers of some slave nodes.
+fn table(sheet: &mut Sheet, shown: &Shown, rows: &[usize]) -> Result<(), PlotError> {
+    let Some(event) = shown.event.filter(|event| !event.nodes.is_empty()) else {
+        return Ok(());
+    };
+    let model = &shown.scene.model;
+    /// Right ends of the columns of numbers.
+    const COLUMNS: [(&str, f64); 5] = [
+        ("gap", 430.0),
+        ("F_n", 560.0),
+        ("F_t", 690.0),
+        ("T_max", 820.0),
+        ("F_n / A", 950.0),
+    ];
+    let mut y = sheet.height + 0.6 * SMALL;
+    sheet.text((MARGIN + 40.0, y), "slave node", SMALL, GREY, Anchor::Left);
+    sheet.text((MARGIN + 214.0, y), "mode", SMALL, GREY, Anchor::Left);
+    let areas = model.contacts.iter().any(|contact| contact.area.is_some());
+    let heads = if areas { &COLUMNS[..] } else { &COLUMNS[..4] };
+    for &(head, x) in heads {
+        sheet.text((x, y), head, SMALL, GREY, Anchor::Right);
+    }
+    for (row, &slave) in rows.iter().enumerate() {
+        let Some(found) = event.nodes.get(slave) else {
+            continue;
+        };
+        y += 1.45 * SMALL;
+        let mode = mode(shown, slave);
+        sheet.text(
+            (MARGIN + 32.0, y),
+            &format!("({})", row + 1),
+            SMALL,
+            GREY,
+            Anchor::Right,
+        );
+        sheet.text(
+            (MARGIN + 40.0, y),
+            names::slave(model, slave),
+            SMALL,
+            BLACK,
+            Anchor::Left,
+        );
+        marker(sheet, (MARGIN + 202.0, y), mode, 4.0);
+        sheet.text(
+            (MARGIN + 214.0, y),
+            names::mode(mode),
+            SMALL,
+            BLACK,
+            Anchor::Left,
+        );
+        let round_off = RoundOff::of(model, &event.before);
+        let forces = [found.f_n, found.f_t, found.t_max];
+        let mut values = vec![short(round_off.length(found.gap))];
+        values.extend(forces.map(|force| short(round_off.force(force))));
+        let by_area = model.contacts[slave].pressure(round_off.force(found.f_n), 0.0);
+        values.extend(by_area.map(|[pressure, _]| short(pressure)));
+        for ((_, x), value) in COLUMNS.iter().zip(values) {
+            sheet.text((*x, y), &value, SMALL, BLACK, Anchor::Right);
+        }
+    }
+    sheet.height = y + SMALL;
+    let left = model.contacts.len() - rows.len();
+    if left > 0 {
+        let told = format!("and {left} slave nodes more");
+        sheet.paragraph(&[told], SMALL, GREY)?;
+    }
+    sheet.height += 0.5 * SMALL;
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scales_are_round_numbers_below_what_there_is_room_for() {
+        for (value, wanted) in [(0.37, 0.2), (5.0, 5.0), (99.0, 50.0), (1.2e-4, 1e-4)] {
+            assert_eq!(round(value), wanted);
+        }
+        assert_eq!(round(0.0), 0.0);
+    }
+}

@@ -1,0 +1,60 @@
+//! Contact pressures in a picture.
+
+use super::shown::Shown;
+use super::window::{FORCE, Window};
+use crate::explain::outline::Point;
+use crate::explain::round_off::RoundOff;
+use stickslip_study::sheet::{Colour, Sheet};
+
+/// Pressures.
+const BLUE: Colour = (86, 180, 233);
+
+/// Contact pressure along the sides of bodies whose nodes are all slaves, drawn from the nodes along the master's normal; the
+/// largest is half as long as the longest force. Returns the largest.
+pub(super) fn pressures(
+    sheet: &mut Sheet,
+    window: &Window,
+    shown: &Shown,
+    now: &dyn Fn(usize) -> Point,
+) -> f64 {
+    let (model, Some(event)) = (&shown.scene.model, shown.event) else {
+        return 0.0;
+    };
+    let round_off = RoundOff::of(model, &event.before);
+    let mut of_node = vec![None; model.nodes.len()];
+    for (contact, found) in model.contacts.iter().zip(&event.nodes) {
+        let pressure = contact.pressure(round_off.force(found.f_n), 0.0);
+        of_node[contact.node] = pressure.map(|[pressure, _]| (pressure, found.normal));
+    }
+    let sizes = of_node.iter().flatten().map(|(pressure, _)| pressure.abs());
+    let largest = sizes.filter(|p| p.is_finite()).fold(0.0, f64::max);
+    if largest == 0.0 {
+        return 0.0;
+    }
+    let scale = 0.5 * FORCE / largest;
+    let lines = model.bodies.iter().flat_map(|body| body.kind.lines());
+    for line in lines {
+        let ends: Option<Vec<[(f64, f64); 2]>> = line
+            .iter()
+            .map(|&node| {
+                let (pressure, n) = of_node[node]?;
+                let foot = window.at(now(node));
+                let tip = (
+                    foot.0 + scale * pressure * n[0],
+                    foot.1 - scale * pressure * n[1],
+                );
+                Some([foot, tip])
+            })
+            .collect();
+        let Some(ends) = ends.filter(|ends| ends.iter().flatten().all(|at| window.holds(*at)))
+        else {
+            continue;
+        };
+        let tips: Vec<(f64, f64)> = ends.iter().map(|end| end[1]).collect();
+        sheet.line(&tips, 1.6, BLUE);
+        for end in &ends {
+            sheet.line(end, 0.8, BLUE);
+        }
+    }
+    largest
+}

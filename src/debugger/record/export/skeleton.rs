@@ -1,0 +1,206 @@
+//! A scene around a mesh, to be edited: its bodies, every line of sides that has a name, and a guess of what touches, what is
+//! held and what is pressed.
+//!
+//! The guess is simple. Of two lines of different bodies those touch whose nodes lie nearest, in the mean of a few; the line that
+//! lies level at the bottom of all is held, the one at the top moves down by a hundredth of the height.
+
+use stickslip_scene::Scene;
+use stickslip_scene::format::SceneError;
+use stickslip_scene::nodes::lines::Line;
+use stickslip_scene::shown;
+
+/// Id of the mesh.
+const ID: &str = "m";
+
+/// The text of a scene that imports a mesh; `scene` is the file where it will stand, `file` the mesh as that names it, and
+/// `parts` the bodies.
+///
+/// # Errors
+/// If the mesh cannot be read from there, or is unsound.
+pub fn skeleton(scene: &str, file: &str, parts: &[String]) -> Result<String, SceneError> {
+    let bare = text(file, parts, &[], &Guess::default());
+    let lines = Scene::from_text(scene, &bare, &[])?.names().lines(ID);
+    let guessed = text(file, parts, &lines, &Guess::of(&lines));
+    match Scene::from_text(scene, &guessed, &[]) {
+        Ok(_) => Ok(guessed),
+        // What was guessed makes no sense, and is left to the author.
+        Err(_) => Ok(text(file, parts, &lines, &Guess::default())),
+    }
+}
+
+/// Lines by their places in the list.
+#[derive(Default)]
+struct Guess {
+    /// Slave and master.
+    contact: Option<(usize, usize)>,
+    held: Option<usize>,
+    /// What moves down, and how far.
+    pressed: Option<(usize, f64)>,
+}
+
+impl Guess {
+    fn of(lines: &[Line]) -> Guess {
+        let ends = |axis: usize| {
+            let all = || lines.iter().flat_map(|line| &line.at).map(|at| at[axis]);
+            (
+                all().fold(f64::INFINITY, f64::min),
+                all().fold(f64::NEG_INFINITY, f64::max),
+            )
+        };
+        let (low, high) = ends(1);
+        let height = high - low;
+        let level = |y: f64| {
+            lines
+                .iter()
+                .position(|line| line.at.iter().all(|at| (at[1] - y).abs() <= 1e-6 * height))
+        };
+        let mut best: Option<(f64, usize, usize)> = None;
+        for (a, slave) in lines.iter().enumerate() {
+            for (b, master) in lines.iter().enumerate() {
+                let apart =
+                    slave.part.is_some() && master.part.is_some() && slave.part != master.part;
+                if !apart || slave.is_inside || master.is_inside {
+                    continue;
+                }
+                let far = mean_distance(slave, master);
+                if best.is_none_or(|(least, ..)| far < least) {
+                    best = Some((far, a, b));
+                }
+            }
+        }
+        Guess {
+            contact: best.map(|(_, a, b)| (a, b)),
+            held: level(low).filter(|_| height > 0.0),
+            pressed: level(high)
+                .filter(|_| height > 0.0)
+                .map(|k| (k, 0.01 * height)),
+        }
+    }
+}
+
+/// Mean distance of a few nodes of a line from the nearest node of another.
+fn mean_distance(line: &Line, other: &Line) -> f64 {
+    const FEW: usize = 16;
+    let few = |at: &[[f64; 2]], most: usize| -> Vec<[f64; 2]> {
+        at.iter()
+            .step_by(at.len().div_ceil(most).max(1))
+            .copied()
+            .collect()
+    };
+    let (own, others) = (few(&line.at, FEW), few(&other.at, 16 * FEW));
+    let nearest = |a: &[f64; 2]| {
+        let far = others.iter().map(|b| (a[0] - b[0]).hypot(a[1] - b[1]));
+        far.fold(f64::INFINITY, f64::min)
+    };
+    own.iter().map(nearest).sum::<f64>() / own.len().max(1) as f64
+}
+
+fn text(file: &str, parts: &[String], lines: &[Line], guess: &Guess) -> String {
+    let mut out = String::new();
+    let mut put = |line: &str| {
+        out += line;
+        out.push('\n');
+    };
+    let name = |k: usize| &lines[k].name;
+    put("(");
+    put(&format!(
+        "    title: {:?},",
+        format!("A mesh: {}", shown::cut(file, 80))
+    ));
+    put(&format!("    nodes: [Import(id: {ID:?}, file: {file:?})],"));
+    put("    // Stand-ins, as are all numbers here: E in force by area.");
+    put("    materials: [Elastic(id: \"material\", E: 1000, nu: 0.3)],");
+    put("    bodies: [");
+    for (k, part) in parts.iter().enumerate() {
+        put(&format!(
+            "        Solid(id: \"{}\", mesh: \"{ID}.{part}\", material: \"material\"),",
+            body(parts, k)
+        ));
+    }
+    put("    ],");
+    if !lines.is_empty() {
+        put(
+            "    // Lines of sides, each with its body on the left, for surfaces, slaves, supports and loads:",
+        );
+        for line in lines {
+            put(&format!("    //   {}", line.words));
+        }
+    }
+    match guess.contact {
+        Some((slave, master)) => {
+            put("    // Guessed: the lines of two bodies that lie nearest.");
+            put(&format!(
+                "    surfaces: [(id: \"master\", along: {:?})],",
+                name(master)
+            ));
+            put(&format!(
+                "    slaves: [(nodes: [{:?}], on: [\"master\"])],",
+                name(slave)
+            ));
+        }
+        None => {
+            put(&format!(
+                "    // surfaces: [(id: \"master\", along: \"{ID}.LINE\")],"
+            ));
+            put(&format!(
+                "    // slaves: [(nodes: [\"{ID}.LINE\"], on: [\"master\"])],"
+            ));
+        }
+    }
+    put("    friction: (angle: 0),");
+    match guess.held {
+        Some(held) => {
+            put("    // Guessed: what lies lowest is held.");
+            put(&format!(
+                "    supports: [(node: {:?}, fix: [x, y])],",
+                name(held)
+            ));
+        }
+        None => put(&format!(
+            "    // supports: [(node: \"{ID}.LINE\", fix: [x, y])],"
+        )),
+    }
+    match guess.pressed {
+        Some((pressed, far)) => {
+            put("    // Guessed: what lies highest is pressed down.");
+            put("    loads: [");
+            let line = name(pressed);
+            put(&format!(
+                "        Displacement(node: {line:?}, component: x, value: 0),"
+            ));
+            put(&format!(
+                "        Displacement(node: {line:?}, component: y, value: {:?}),",
+                -far
+            ));
+            put("    ],");
+        }
+        None => put(&format!(
+            "    // loads: [Displacement(node: \"{ID}.LINE\", component: y, value: -0.1)],"
+        )),
+    }
+    put("    history: (path: [0, 1], increment: 0.25),");
+    if guess.contact.is_some() {
+        put("    monitors: [(name: \"force\", of: Contact(component: y))],");
+    }
+    put(")");
+    out
+}
+
+/// The id of a body: the name of its part as far as an id can have it.
+fn body(parts: &[String], k: usize) -> String {
+    let id = |part: &String| -> String {
+        let usable = |c: char| {
+            if c.is_alphanumeric() || c == '-' {
+                c
+            } else {
+                '_'
+            }
+        };
+        part.chars().map(usable).collect()
+    };
+    let own = id(&parts[k]);
+    match parts.iter().filter(|part| id(part) == own).count() {
+        1 => own,
+        _ => format!("{own}-{}", k + 1),
+    }
+}

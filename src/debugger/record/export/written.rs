@@ -1,0 +1,88 @@
+//! Scenes as text (`.ron`), and frozen problems in the forms of other programs: `.dat`, `.mtx`, `.h5`.
+
+use super::frozen::{self, Origin};
+use super::shown::{ExportError, Shown, problem};
+use crate::explain::names;
+use stickslip_core::step::stepper::Stepper;
+use stickslip_exchange::fclib;
+use stickslip_scene::Scene;
+use stickslip_scene::format::notation;
+use stickslip_scene::problems::market;
+use stickslip_scene::shown as outside;
+use stickslip_scene::siconos::{Friction2d, Storage};
+
+/// The scene, with what was set from outside; or its frozen problem, where that is wanted.
+pub(super) fn ron(shown: &Shown, stepper: &mut Stepper) -> Result<Vec<u8>, ExportError> {
+    if !shown.frozen {
+        return Ok(scene(shown.scene)?.into_bytes());
+    }
+    let (problem, state) = problem(shown, stepper)?;
+    let origin = Origin {
+        at: match state.next == shown.state.next {
+            true => shown.origin.at,
+            false => state.next,
+        },
+        ..shown.origin.clone()
+    };
+    Ok(frozen::whole(&shown.scene.model, &origin, &problem)?.into_bytes())
+}
+
+/// The frozen problem in the form of Siconos.
+pub(super) fn dat(shown: &Shown, stepper: &mut Stepper) -> Result<Vec<u8>, ExportError> {
+    let friction = condensed(shown, stepper)?;
+    Ok(friction.write(Storage::Dense).into_bytes())
+}
+
+/// The same as matrices of the Matrix Market.
+pub(super) fn mtx(shown: &Shown, stepper: &mut Stepper) -> Result<Vec<Vec<u8>>, ExportError> {
+    let friction = condensed(shown, stepper)?;
+    let texts = market::texts(&friction, &from(shown));
+    Ok(texts.map(String::into_bytes).into())
+}
+
+/// The same for fclib.
+pub(super) fn h5(shown: &Shown, stepper: &mut Stepper) -> Result<Vec<u8>, ExportError> {
+    let friction = condensed(shown, stepper)?;
+    fclib::write(&friction.local(), &from(shown)).map_err(|e| ExportError::NoFile(e.to_string()))
+}
+
+fn condensed(shown: &Shown, stepper: &mut Stepper) -> Result<Friction2d, ExportError> {
+    let (problem, _) = problem(shown, stepper)?;
+    Ok(frozen::siconos(&shown.scene.model, &problem)?)
+}
+
+/// Where the problem comes from, on a line.
+fn from(shown: &Shown) -> String {
+    let text = format!(
+        "From {}, {}",
+        shown.scene.name,
+        names::position(shown.origin.at)
+    );
+    outside::line(&text).into_owned()
+}
+
+/// The file of a scene: its author's where nothing was set from outside and no mesh stands in another file, else one that says
+/// the same with all of that in it.
+///
+/// # Errors
+/// If it does not read back as the scene that it was made of.
+pub fn scene(scene: &Scene) -> Result<String, ExportError> {
+    if !scene.text.is_empty() && scene.overrides().next().is_none() && !scene.imports() {
+        return Ok(scene.text.clone());
+    }
+    let layout = ron::ser::PrettyConfig::new().new_line("\n").depth_limit(3);
+    let unwritable =
+        |why| ExportError::NoFile(format!("the scene cannot be written as text: {why}"));
+    let text = notation::lines(&scene.spec, layout).map_err(|e| unwritable(e.to_string()))?;
+    let set: Vec<String> = scene.overrides().map(|(p, v)| format!("{p}={v}")).collect();
+    let mut head = format!("// From {}", scene.name.replace('\n', " "));
+    if !set.is_empty() {
+        head += &format!(", with {}", set.join(", ").replace('\n', " "));
+    }
+    let text = format!("{head}.\n{text}\n");
+    let read = Scene::from_text(&scene.name, &text, &[]).map_err(|e| unwritable(e.to_string()))?;
+    match read.spec == scene.spec {
+        true => Ok(text),
+        false => Err(unwritable("it does not read back as it is".to_owned())),
+    }
+}

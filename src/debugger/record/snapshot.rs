@@ -1,0 +1,399 @@
+//! Recorded states: a RON file that stands alone, can be computed again, and can be compared.
+//!
+//! A snapshot holds the scene, what the user did and after how many minor iterations, and the state that this led to.
+//! Computing it again means to start the scene and to do the same; nothing of the recorded state goes into that.
+//! Floats are written so that they read back to the same bits, NaN and the infinities included.
+
+use serde::{Deserialize, Serialize};
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::Arc;
+use stickslip_core::contact::record::Forced;
+use stickslip_core::contact::table2::Rule;
+use stickslip_core::linear::norms::Norms;
+use stickslip_core::model::{Mode, Model};
+use stickslip_core::step::drive::{RunEnd, Until, drive};
+use stickslip_core::step::event::{Event, Outcome, Position};
+use stickslip_core::step::intervene::Intervention;
+use stickslip_core::step::solver::Solver;
+use stickslip_core::step::state::{State, Status};
+use stickslip_platform::files::{self, FileError};
+use stickslip_platform::input::{self, RECORD_BYTES};
+use stickslip_scene::Scene;
+use stickslip_scene::format::kind::FileKind;
+use stickslip_scene::format::{SceneError, Spec, notation, read};
+use stickslip_scene::solver::solver;
+
+/// The format that this program writes, and the only one that it reads.
+pub const FORMAT: u32 = 1;
+
+/// A recorded state.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Snapshot {
+    /// Version of this format.
+    pub format: u32,
+    /// What the scene was called.
+    pub name: String,
+    /// The whole scene, with what was set from outside.
+    pub scene: Spec,
+    /// What the user did, in order.
+    pub interventions: Vec<Applied>,
+    /// Number of minor iterations done.
+    pub steps: u64,
+    /// The last minor iteration; the first to come where none was done.
+    pub position: Position,
+    /// What there is then.
+    pub state: Recorded,
+}
+
+/// An intervention and the number of minor iterations that had been done before it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Applied {
+    /// Minor iterations that had been done before it.
+    pub step: u64,
+    /// What was done.
+    pub intervention: Intervention,
+}
+
+/// The state after a minor iteration.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Recorded {
+    /// Load factor at the end of the last minor iteration's increment.
+    pub load_factor: f64,
+    /// How the iterations stand.
+    pub status: Status,
+    /// Residual at the start of the last major iteration.
+    pub before: Option<Norms>,
+    /// Residual at its end, if it has ended.
+    pub after: Option<Norms>,
+    /// One a slave node, in the order of the scene.
+    pub slaves: Vec<SlaveRecord>,
+    /// One a node that moves.
+    pub displacements: Vec<Displacement>,
+    /// Shear forces of shear-rigid beams, body by body.
+    pub shear: Vec<f64>,
+}
+
+/// A slave node, as the last minor iteration found it. Forces are on the slave node, compression positive.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SlaveRecord {
+    /// The node's name.
+    pub node: String,
+    /// Mode of the last minor iteration.
+    pub mode: Mode,
+    /// Mode of the next one.
+    pub next: Mode,
+    /// The cell of Table 2 that fired, by the name that traces give it; `None` if nothing was solved.
+    #[serde(with = "rule_name")]
+    pub rule: Option<Rule>,
+    /// Gap, negative where the node penetrates; `None` if nothing was solved.
+    pub gap: Option<f64>,
+    /// Normal force; compression is positive.
+    pub f_n: f64,
+    /// Tangential force.
+    pub f_t: f64,
+    /// The friction bound T_max, force.
+    pub t_max: f64,
+    /// Slip, length.
+    pub slip: f64,
+    /// Whether its mode was forced by hand.
+    pub forced: Forced,
+}
+
+/// A rule by its name: RON has no bare words with hyphens.
+mod rule_name {
+    use serde::de::IntoDeserializer;
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+    use stickslip_core::contact::table2::Rule;
+
+    pub fn serialize<S: Serializer>(rule: &Option<Rule>, to: S) -> Result<S::Ok, S::Error> {
+        rule.map(Rule::name).serialize(to)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<Option<Rule>, D::Error> {
+        let name = Option::<String>::deserialize(from)?;
+        name.map(|name| Rule::deserialize(name.as_str().into_deserializer()))
+            .transpose()
+    }
+}
+
+/// Displacement of a node at the start of the major iteration to come.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Displacement {
+    /// The node's name.
+    pub node: String,
+    /// Along x, length.
+    pub x: f64,
+    /// Along y, length.
+    pub y: f64,
+    /// Only beam nodes turn.
+    pub rotation: Option<f64>,
+}
+
+/// Why a snapshot cannot be written, read or computed again.
+#[derive(Debug, thiserror::Error)]
+pub enum SnapshotError {
+    /// It cannot be written.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// It cannot be read, is no snapshot, or is a damaged one.
+    #[error(transparent)]
+    Read(Box<SceneError>),
+    /// The state cannot be written as text.
+    #[error("the snapshot cannot be written as text: {0}")]
+    Unwritable(ron::Error),
+    /// The scene in it is unsound.
+    #[error("the snapshot's scene is unsound: {0}")]
+    Scene(#[from] SceneError),
+    /// It is of an attached solver.
+    #[error(
+        "it was taken of the attached solver {name}; replay FILE -- COMMAND does it again with that"
+    )]
+    Attached {
+        /// What the solver is called.
+        name: String,
+    },
+    /// Its steps cannot be done again.
+    #[error("it cannot be computed again: {0}")]
+    Replay(String),
+}
+
+impl Snapshot {
+    /// Records a state. `applied` is what the user did so far, `steps` the number of minor iterations done, and
+    /// `event` the last of them.
+    pub fn take(
+        scene: &Scene,
+        applied: &[Applied],
+        steps: u64,
+        state: &State,
+        event: Option<&Event>,
+    ) -> Snapshot {
+        Snapshot {
+            format: FORMAT,
+            name: scene.name.clone(),
+            scene: scene.spec.clone(),
+            interventions: applied.to_vec(),
+            steps,
+            position: event.map_or(state.next, |e| e.position),
+            state: Recorded::of(&scene.model, state, event),
+        }
+    }
+
+    /// The snapshot as text.
+    ///
+    /// # Errors
+    /// If it cannot be put into RON, which no snapshot is known to do.
+    pub fn to_text(&self) -> Result<String, SnapshotError> {
+        let layout = ron::ser::PrettyConfig::new()
+            .new_line("\n")
+            // Lists of slaves and nodes are tables: one row, one line.
+            .depth_limit(3);
+        let text = notation::lines(self, layout).map_err(SnapshotError::Unwritable)?;
+        Ok(text + "\n")
+    }
+
+    /// Writes the snapshot to a file, whole or not at all.
+    ///
+    /// # Errors
+    /// If the file exists and `overwrite` is not set, or cannot be written.
+    pub fn write(&self, path: &Path, overwrite: bool) -> Result<(), SnapshotError> {
+        Ok(files::write(path, &self.to_text()?, overwrite)?)
+    }
+
+    /// Reads a snapshot from a file.
+    ///
+    /// # Errors
+    /// If the file cannot be read, is damaged, or has a format that this program does not know.
+    pub fn read(path: &Path) -> Result<Snapshot, SnapshotError> {
+        let file = path.display().to_string();
+        let text = input::text(path, RECORD_BYTES, "no snapshot has")
+            .map_err(|why| SnapshotError::Read(Box::new(read::not_read(&file, &why))))?;
+        Snapshot::from_text(&file, &text)
+    }
+
+    /// Reads a snapshot from a text; `file` is what messages call it.
+    ///
+    /// # Errors
+    /// If the text is damaged, or has a format that this program does not know.
+    pub fn from_text(file: &str, text: &str) -> Result<Snapshot, SnapshotError> {
+        /// What any format has.
+        #[derive(Deserialize)]
+        struct Header {
+            format: u32,
+        }
+        let text = text.strip_prefix(input::MARK).unwrap_or(text);
+        let read = || {
+            read::shallow(file, text, "snapshot")?;
+            if let Ok(header) = notation::read::<Header>(text)
+                && header.format != FORMAT
+            {
+                return Err(SceneError::whole(
+                    file,
+                    format!(
+                        "the snapshot has format {}, and this program knows only format {FORMAT}; read it with the version that wrote it",
+                        header.format
+                    ),
+                ));
+            }
+            notation::read(text).map_err(|e| {
+                let error = read::refused(file, 1, "", &e);
+                read::or_mistaken(error, file, text, FileKind::Snapshot)
+            })
+        };
+        read().map_err(|error| SnapshotError::Read(Box::new(error)))
+    }
+
+    /// Computes the snapshot again, from the start of its scene.
+    ///
+    /// # Errors
+    /// If the scene is unsound, or the run does not come that far.
+    pub fn replay(&self) -> Result<Snapshot, SnapshotError> {
+        if self.scene.attached.is_some() {
+            let name = self.name.clone();
+            return Err(SnapshotError::Attached { name });
+        }
+        let scene = Scene::from_spec(&self.name, self.scene.clone())?;
+        self.replay_on(&scene, &mut solver(Arc::new(scene.model.clone())))
+    }
+
+    /// The same with an attached solver, from its start.
+    ///
+    /// # Errors
+    /// As [`Snapshot::replay`]; if the solver solves something else, or cannot go on.
+    pub fn replay_with(&self, solver: &mut dyn Solver) -> Result<Snapshot, SnapshotError> {
+        let scene = Scene::from_spec(&self.name, self.scene.clone())?;
+        if scene.model != **solver.model() {
+            return Err(SnapshotError::Replay(
+                "the solver's scene is not that of the snapshot".into(),
+            ));
+        }
+        self.replay_on(&scene, solver)
+    }
+
+    fn replay_on(&self, scene: &Scene, solver: &mut dyn Solver) -> Result<Snapshot, SnapshotError> {
+        let mut applied = self.interventions.iter().peekable();
+        let mut intervene = |stepper: &mut dyn Solver, done: u64| {
+            while let Some(next) = applied.next_if(|a| a.step == done) {
+                stepper
+                    .intervene(&next.intervention)
+                    .map_err(|e| SnapshotError::Replay(format!("after step {done}: {e}")))?;
+            }
+            Ok(())
+        };
+        intervene(solver, 0)?;
+        let mut done = 0;
+        let until = Until::end().minors(self.steps).past_failures();
+        let end = drive(solver, until, |stepper| {
+            done += 1;
+            match intervene(stepper, done) {
+                Ok(()) => ControlFlow::Continue(()),
+                Err(error) => ControlFlow::Break(error),
+            }
+        });
+        match end.map_err(|lost| SnapshotError::Replay(lost.to_string()))? {
+            RunEnd::Stopped(error) => return Err(error),
+            RunEnd::Spent => {}
+            RunEnd::Finished | RunEnd::Failed(_) | RunEnd::Interrupted => {
+                return Err(SnapshotError::Replay(format!(
+                    "the history ends after {done} minor iterations, and the snapshot was taken after {}",
+                    self.steps
+                )));
+            }
+        }
+        if applied.peek().is_some() {
+            return Err(SnapshotError::Replay(
+                "its interventions are not in order, or lie beyond its last step".into(),
+            ));
+        }
+        let event = (self.steps > 0).then(|| solver.event());
+        Ok(Snapshot::take(
+            scene,
+            &self.interventions,
+            self.steps,
+            solver.state(),
+            event,
+        ))
+    }
+}
+
+impl Recorded {
+    fn of(model: &Model, state: &State, event: Option<&Event>) -> Recorded {
+        let slaves = (0..model.contacts.len())
+            .map(|s| SlaveRecord::of(model, state, event, s))
+            .collect();
+        let displacements = (0..model.nodes.len())
+            .map(|n| displacement(model, &state.u, n))
+            .collect();
+        let dofs = &model.dofs;
+        let nodal: usize = dofs.count.iter().map(|&count| usize::from(count)).sum();
+        Recorded {
+            load_factor: event.map_or(state.start.load_factor, |e| e.load_factor),
+            status: state.status.clone(),
+            before: event.map(|e| e.before),
+            after: event.and_then(|e| after(&e.outcome)),
+            slaves,
+            displacements,
+            shear: state.u[nodal..].to_vec(),
+        }
+    }
+}
+
+fn after(outcome: &Outcome) -> Option<Norms> {
+    match outcome {
+        Outcome::Major { after, .. }
+        | Outcome::Refused { after, .. }
+        | Outcome::Increment { after, .. } => Some(*after),
+        _ => None,
+    }
+}
+
+impl SlaveRecord {
+    fn of(model: &Model, state: &State, event: Option<&Event>, slave: usize) -> SlaveRecord {
+        let now = &state.nodes[slave];
+        let node = model.nodes[model.contacts[slave].node].name.clone();
+        // A minor iteration that could not be solved has no records.
+        match event.and_then(|e| e.nodes.get(slave)) {
+            Some(found) => SlaveRecord {
+                node,
+                mode: found.decision.before,
+                next: now.mode,
+                rule: Some(found.decision.rule),
+                gap: Some(found.gap),
+                f_n: found.f_n,
+                f_t: found.f_t,
+                t_max: found.t_max,
+                slip: found.slip,
+                forced: now.forced,
+            },
+            None => SlaveRecord {
+                node,
+                mode: now.mode,
+                next: now.mode,
+                rule: None,
+                gap: None,
+                f_n: now.f_n,
+                f_t: now.f_t,
+                t_max: now.t_max,
+                slip: now.slip,
+                forced: now.forced,
+            },
+        }
+    }
+}
+
+fn displacement(model: &Model, u: &[f64], node: usize) -> Displacement {
+    let first = model.dofs.first[node];
+    let count = usize::from(model.dofs.count[node]);
+    let at = |k: usize| (k < count).then(|| u[first + k]);
+    Displacement {
+        node: model.nodes[node].name.clone(),
+        x: at(0).unwrap_or(0.0),
+        y: at(1).unwrap_or(0.0),
+        rotation: at(2),
+    }
+}

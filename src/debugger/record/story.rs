@@ -1,0 +1,160 @@
+//! A journal as text to read: what was seen, what was done, what happened.
+
+use crate::explain::names;
+use crate::record::command::{Command, To, Unit};
+use crate::record::journal::{Entry, JournalError, Record, date};
+use stickslip_core::model::Model;
+
+/// The story of a session.
+///
+/// # Errors
+/// If this version finds the journal's scene unsound.
+pub fn story(record: &Record) -> Result<String, JournalError> {
+    let model = record.scene()?.model;
+    let header = &record.header;
+    let [year, month, day, hour, minute, _] = date(header.began);
+    let mut text = format!("{}: {}\n", header.name, model.title);
+    text += &format!(
+        "A session of {year:04}-{month:02}-{day:02} {hour:02}:{minute:02} UTC with stickslip {}.\n",
+        header.version
+    );
+    let slaves = model.contacts.len();
+    let names: Vec<&str> = (0..slaves.min(6))
+        .map(|s| names::slave(&model, s))
+        .collect();
+    let more = if slaves > names.len() { ", …" } else { "" };
+    text += &format!("Slave nodes: {}{more}.\n\n", names.join(", "));
+    let told: Vec<&Entry> = record.entries.iter().map(|(_, entry)| entry).collect();
+    let mut number = 0;
+    for (k, entry) in told.iter().enumerate() {
+        // Of steps over known iterations only the last tells where the user went.
+        let next = told.get(k + 1);
+        if is_look(entry) && next.is_some_and(|next| is_look(next)) {
+            continue;
+        }
+        number += 1;
+        text += &format!("{number:>3}. {}\n", done(&model, entry));
+        for line in seen(entry) {
+            text += &format!("     {line}\n");
+        }
+    }
+    if number == 0 {
+        text += "Nothing was done.\n";
+    }
+    text += &end(record);
+    Ok(text)
+}
+
+/// Whether an entry only moved the cursor.
+fn is_look(entry: &Entry) -> bool {
+    let motion = matches!(
+        entry.command,
+        Command::Forward { .. } | Command::Back { .. } | Command::Goto { .. }
+    );
+    motion && entry.solved == 0
+}
+
+/// What the user did, in a sentence.
+pub fn done(model: &Model, entry: &Entry) -> String {
+    let slave = |s: &usize| names::slave(model, *s);
+    match &entry.command {
+        _ if is_look(entry) => "Looked at another iteration.".into(),
+        Command::Forward { unit, count } => format!("{}.", forward(*unit, *count)),
+        Command::Back { .. } | Command::Goto { .. } => "Looked at another iteration.".into(),
+        Command::Force {
+            slave: s,
+            mode,
+            hold,
+        } => {
+            let how = if *hold {
+                "until released"
+            } else {
+                "for one minor iteration"
+            };
+            format!("Forced {} to {} {how}.", slave(s), names::mode(*mode))
+        }
+        Command::Assume(starts) => {
+            let told: Vec<String> = starts
+                .iter()
+                .map(|start| format!("{} {}", slave(&start.slave), names::mode(start.mode)))
+                .collect();
+            format!("Started from a consistent state: {}.", told.join(", "))
+        }
+        Command::Follow { label, steps } => {
+            format!("Took a remedy, {} steps: {label}.", steps.len())
+        }
+        Command::Release { slave: s } => format!("Gave {} back to Table 2.", slave(s)),
+        Command::Increment(size) => format!("Started the increment again with size {size}."),
+        Command::Set { path, value } => format!("Set {path} to {value}."),
+        Command::Branch(To::Named(name)) => format!("Went to branch {name}."),
+        Command::Branch(_) => "Went to another branch.".into(),
+        Command::Rename(name) => format!("Called the branch '{name}'."),
+        Command::Break(condition) => {
+            format!("Set a breakpoint: {}.", condition.describe(model))
+        }
+        Command::Delete(id) => format!("Deleted {}.", breakpoint(*id)),
+        Command::Enable { id, on: true } => format!("Enabled {}.", breakpoint(*id)),
+        Command::Enable { id, on: false } => format!("Disabled {}.", breakpoint(*id)),
+        Command::Watch(watch) => format!("Watched {}.", watch.name),
+        Command::Unwatch(name) => format!("Watched {name} no more."),
+        Command::Branches
+        | Command::Compare(_)
+        | Command::Breakpoints
+        | Command::Census(_)
+        | Command::Remedies
+        | Command::Export { .. }
+        | Command::Journal(_)
+        | Command::Snapshot { .. } => "Looked around.".into(),
+    }
+}
+
+fn breakpoint(id: Option<u32>) -> String {
+    id.map_or("all breakpoints".into(), |id| format!("breakpoint {id}"))
+}
+
+fn forward(unit: Unit, count: u32) -> String {
+    let what = match unit {
+        Unit::Minor => "minor iteration",
+        Unit::Major => "major iteration",
+        Unit::Increment => "increment",
+        Unit::Run => return "Ran on".into(),
+    };
+    match count {
+        1 => format!("Went on by a {what}").replace("a increment", "an increment"),
+        n => format!("Went on by {n} {what}s"),
+    }
+}
+
+/// What it led to.
+fn seen(entry: &Entry) -> Vec<String> {
+    let mut lines = Vec::new();
+    if entry.solved > 0 {
+        let plural = |n: u64| if n == 1 { "" } else { "s" };
+        let increments = match entry.accepted {
+            0 => String::new(),
+            n => format!(", {n} increment{} accepted", plural(n)),
+        };
+        lines.push(format!(
+            "Solved {} minor iteration{}{increments}.",
+            entry.solved,
+            plural(entry.solved)
+        ));
+    }
+    lines.push(format!("Seen: {}", entry.said));
+    lines
+}
+
+fn end(record: &Record) -> String {
+    let mut text = String::new();
+    if let Some((_, last)) = record.entries.last() {
+        text += &format!(
+            "\nIt ended in branch b{} at step {}, state {}",
+            last.branch.saturating_add(1),
+            last.cursor,
+            last.digest
+        );
+        text += &record.reservations();
+        text += ".\n";
+    }
+    text
+}

@@ -1,0 +1,153 @@
+//! Cycles of CalculiX's iterations, found as our own ([`stickslip_core::interface::cycle`]).
+//!
+//! An iteration is the same as an earlier one if it has the same contact elements, and residual and correction differ by at
+//! most the last of the four printed digits.
+
+use std::ops::Range;
+use stickslip_core::interface::cycle;
+use stickslip_exchange::calculix::cel::Closed;
+use stickslip_exchange::calculix::past::{Attempt, End, PastRun};
+
+/// Digits of a printed number.
+const DIGITS: i32 = 4;
+/// Numbers that differ by no more than this in their last digit are the same.
+const SAME: f64 = 1.0;
+/// Those that differ by more than this are different; between the two, an iteration may still converge.
+const DIFFERENT: f64 = 10.0;
+
+/// A cycle of iterations.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Cycle {
+    /// The iterations of its first turn, by their position in the run.
+    pub iterations: Range<usize>,
+    /// Slaves whose contact elements change in it, by their position in the run.
+    pub members: Vec<usize>,
+}
+
+impl Cycle {
+    /// Number of iterations after which it repeats, at least 2.
+    pub fn period(&self) -> usize {
+        self.iterations.len()
+    }
+}
+
+/// The first cycle that closes in an attempt. Where there are no residuals, contact elements alone are compared, and only in an
+/// attempt that did not converge: on the way to a solution they may return too.
+pub fn first(run: &PastRun, attempt: &Attempt) -> Option<Cycle> {
+    let of = |k: usize| attempt.iterations.start + k;
+    let found = (0..attempt.iterations.len()).find_map(|here| {
+        let (same, elsewhere) = (
+            |then: usize| differ(run, attempt, of(then), of(here), SAME) == Some(false),
+            |then: usize| differ(run, attempt, of(then), of(here), DIFFERENT) == Some(true),
+        );
+        cycle::closed(here, 2, same, elsewhere)
+    })?;
+    let iterations = of(found.start)..of(found.end);
+    let mut members: Vec<usize> = iterations
+        .clone()
+        .filter_map(|k| Some(changed(run.closed(k)?, run.closed(iterations.start)?)))
+        .flatten()
+        .collect();
+    members.sort_unstable();
+    members.dedup();
+    Some(Cycle {
+        iterations,
+        members,
+    })
+}
+
+/// Whether two iterations differ by more than so much in the last digit, or in contact elements; `None` where that is not told.
+fn differ(run: &PastRun, attempt: &Attempt, a: usize, b: usize, limit: f64) -> Option<bool> {
+    let (one, other) = (&run.iterations[a], &run.iterations[b]);
+    let touches = run.closed(a)? != run.closed(b)?;
+    match (one.norms, other.norms) {
+        (Some(one), Some(other)) => {
+            let far = |a: f64, b: f64| apart(a, b).is_none_or(|apart| apart > limit);
+            let numbers =
+                far(one.residual, other.residual) || far(one.correction, other.correction);
+            Some(touches || numbers)
+        }
+        (None, None) if attempt.end != End::Converged => Some(touches),
+        _ => None,
+    }
+}
+
+/// By how much two printed numbers differ, in units of the last digit of the larger; `None` where one is no number.
+fn apart(a: f64, b: f64) -> Option<f64> {
+    if a == b {
+        return Some(0.0);
+    }
+    let size = a.abs().max(b.abs());
+    let unit = 10_f64.powi(size.log10().floor() as i32 + 1 - DIGITS);
+    let units = (a - b).abs() / unit;
+    // Decimals are not exact in binary.
+    units.is_finite().then(|| (units * 1e3).round() / 1e3)
+}
+
+/// The slaves whose contact elements are not the same in two iterations, ascending.
+pub fn changed(one: &[Closed], other: &[Closed]) -> Vec<usize> {
+    let groups = |closed: &'_ [Closed]| -> Vec<(u32, Range<usize>)> {
+        let mut start = 0;
+        let parts = closed.chunk_by(|a, b| a.slave == b.slave);
+        parts
+            .map(|part| {
+                let range = start..start + part.len();
+                start = range.end;
+                (part[0].slave, range)
+            })
+            .collect()
+    };
+    let (a, b) = (groups(one), groups(other));
+    let (mut i, mut j) = (0, 0);
+    let mut found = Vec::new();
+    while i < a.len() || j < b.len() {
+        let left = a.get(i).map_or(u32::MAX, |group| group.0);
+        let right = b.get(j).map_or(u32::MAX, |group| group.0);
+        let slave = left.min(right);
+        let both = left == right;
+        if !both || one[a[i].1.clone()] != other[b[j].1.clone()] {
+            found.push(slave as usize);
+        }
+        i += usize::from(left == slave);
+        j += usize::from(right == slave);
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn printed_numbers_are_apart_by_units_of_their_last_digit() {
+        for (a, b, units) in [
+            (1081.0, 1082.0, Some(1.0)),
+            (0.9988e2, 0.9987e2, Some(1.0)),
+            (0.0, 0.0, Some(0.0)),
+            (0.0, 0.1, Some(1000.0)),
+            (1e30, 1e30, Some(0.0)),
+            (f64::NAN, f64::NAN, None),
+        ] {
+            assert_eq!(apart(a, b), units, "{a} {b}");
+        }
+    }
+
+    #[test]
+    fn who_changed_is_found_whoever_is_there_only_once() {
+        let of = |slaves: &[(u32, u32)]| -> Vec<Closed> {
+            let closed = |&(slave, master): &(u32, u32)| Closed {
+                slave,
+                master,
+                elements: 1,
+            };
+            slaves.iter().map(closed).collect()
+        };
+        let (a, b) = (
+            of(&[(0, 0), (2, 0), (3, 1), (3, 2)]),
+            of(&[(1, 0), (2, 0), (3, 1)]),
+        );
+        assert_eq!(changed(&a, &b), [0, 1, 3]);
+        assert_eq!(changed(&a, &a), [0; 0]);
+        assert_eq!(changed(&a, &[]), [0, 2, 3]);
+    }
+}

@@ -1,0 +1,285 @@
+//! A finished CalculiX run as a read-only solver: each iteration that its files contain is one minor iteration.
+//!
+//! - [`run`]: the iterations; `cycle`: the cycles in them; [`words`]: sentences about them, and the whole run as text.
+
+mod cycle;
+pub mod run;
+pub mod words;
+
+use super::log::Log;
+use run::CalculixRun;
+use std::path::Path;
+use std::sync::Arc;
+use stickslip_core::contact::projection::SurfacePoint;
+use stickslip_core::contact::record::ContactRecord;
+use stickslip_core::linear::norms::Norms;
+use stickslip_core::model::{FinishedRun, Mode, Model};
+use stickslip_core::step::event::{Event, Failure, Outcome, Position, Words};
+use stickslip_core::step::intervene::{Intervention, Refusal};
+use stickslip_core::step::solver::{GoesBack, Lost, Offers, Solver};
+use stickslip_core::step::state::{State, Status};
+use stickslip_exchange::attach::message::{self, Friction, Id, Level};
+use stickslip_exchange::calculix::past::End;
+use stickslip_scene::Scene;
+use stickslip_scene::calculix;
+
+/// A run that was read.
+pub struct Opened {
+    /// Its contacts, without geometry.
+    pub scene: Scene,
+    /// The run.
+    pub run: Arc<CalculixRun>,
+    /// What the files lack, and the run as text.
+    pub log: Log,
+}
+
+/// Opens a run by the name of its .cel; `None` if the name is not that of a .cel.
+pub fn file(name: &str) -> Option<Result<Opened, String>> {
+    calculix::is_cel(name).then(|| {
+        let files = calculix::read(Path::new(name))?;
+        open(CalculixRun::new(name, files))
+    })
+}
+
+/// Opens a run.
+///
+/// # Errors
+/// If it has too many contacts.
+pub fn open(run: CalculixRun) -> Result<Opened, String> {
+    let slaves = 0..run.files.slaves.len();
+    let contact = |slave: usize| message::Contact {
+        id: Id::Number(slave as i64),
+        name: run.slave(slave),
+        node: slave,
+        surface: None,
+        friction: Friction::default(),
+        mode: message::Mode::Free,
+        area: None,
+        gives: None,
+        tied: false,
+    };
+    let node = |slave: usize| message::Node {
+        name: run.slave(slave),
+        at: [0.0, 0.0],
+    };
+    let scene = message::Scene {
+        title: Path::new(&run.name)
+            .file_name()
+            .map_or_else(String::new, |name| name.to_string_lossy().into_owned()),
+        about: words::NO_MODES_IN_FULL.into(),
+        nodes: slaves.clone().map(node).collect(),
+        lines: Vec::new(),
+        surfaces: Vec::new(),
+        contacts: slaves.map(contact).collect(),
+        load: None,
+        monitors: Vec::new(),
+        arc: false,
+        drag: false,
+    };
+    let mut scene = Scene::told(&run.name, &scene, None).map_err(|why| why.to_string())?;
+    scene.model.finished = Some(FinishedRun {
+        increments: increments(&run)
+            .map(|(step, k)| format!("{step}.{k}"))
+            .collect(),
+        cycles: run
+            .cycles
+            .iter()
+            .flatten()
+            .map(|cycle| cycle.iterations.clone())
+            .collect(),
+        correction_limit: run::CORRECTION_LIMIT / 100.0,
+    });
+    let log = Log::default();
+    // The status names the run.
+    for line in words::text(&run).lines().skip(1) {
+        log.printed(line);
+    }
+    for note in words::notes(&run) {
+        log.told(Level::Warning, &note);
+    }
+    Ok(Opened {
+        scene,
+        run: Arc::new(run),
+        log,
+    })
+}
+
+/// Step and increment of all increments, in order.
+fn increments(run: &CalculixRun) -> impl Iterator<Item = (u32, u32)> {
+    let mut all: Vec<_> = run
+        .files
+        .attempts
+        .iter()
+        .map(|a| (a.step, a.increment))
+        .collect();
+    all.dedup();
+    all.into_iter()
+}
+
+/// A run as a solver that does what the run did. The place of a state is the number of iterations before it.
+pub struct Recorded {
+    run: Arc<CalculixRun>,
+    /// Number of the increment of each attempt, from 1.
+    increments: Vec<u32>,
+    model: Arc<Model>,
+    state: State,
+    event: Event,
+}
+
+impl Recorded {
+    /// At the start of the run.
+    pub fn new(opened: &Opened) -> Recorded {
+        let run = opened.run.clone();
+        let all: Vec<(u32, u32)> = increments(&run).collect();
+        let number = |a: &stickslip_exchange::calculix::past::Attempt| {
+            all.partition_point(|increment| *increment <= (a.step, a.increment)) as u32
+        };
+        let model = Arc::new(opened.scene.model.clone());
+        Recorded {
+            increments: run.files.attempts.iter().map(number).collect(),
+            state: State::outside_start(&model),
+            event: Event::nothing_yet(&model),
+            run,
+            model,
+        }
+    }
+
+    /// Whether a slave is closed in an iteration; unknown counts as open.
+    fn mode(&self, iteration: usize, slave: usize) -> Mode {
+        match self.run.contact(iteration, slave) {
+            Some([_, ..]) => Mode::Fixed,
+            _ => Mode::Free,
+        }
+    }
+
+    fn record(&self, iteration: usize, slave: usize) -> ContactRecord {
+        let attempt = &self.run.files.attempts[self.run.attempt(iteration)];
+        let next = (iteration + 1).min(attempt.iterations.end - 1);
+        let modes = [iteration, next].map(|k| self.mode(k, slave));
+        let master = self.run.contact(iteration, slave).and_then(<[_]>::first);
+        ContactRecord {
+            f_n: f64::NAN,
+            f_t: f64::NAN,
+            t_max: f64::NAN,
+            t_max_used: f64::NAN,
+            slip: f64::NAN,
+            drift: f64::NAN,
+            spot: master.map(|closed| SurfacePoint {
+                surface: 0,
+                element: closed.master as usize,
+                xi: 0.0,
+            }),
+            ..ContactRecord::of_modes(modes[0], modes[1], &self.state.nodes[slave])
+        }
+    }
+
+    /// The event of an iteration.
+    fn event_of(&self, iteration: usize) -> Event {
+        let run = &*self.run;
+        let index = run.attempt(iteration);
+        let (this, attempt) = (&run.files.iterations[iteration], &run.files.attempts[index]);
+        let percent = |value: Option<f64>| value.map_or(f64::NAN, |percent| percent / 100.0);
+        let norms = Norms {
+            force: f64::NAN,
+            relative: percent(this.norms.map(|norms| norms.residual)),
+            interface: f64::NAN,
+            correction: percent(this.norms.map(|norms| norms.correction)),
+            scale: f64::NAN,
+            limit: run::residual_limit(this.number) / 100.0,
+            noise: 0.0,
+        };
+        let why = || Failure::Reported {
+            reason: words::attempt(run, index),
+            relative: this.norms.map(|norms| norms.residual / 100.0),
+        };
+        let last_attempt = index + 1 == run.files.attempts.len();
+        let outcome = match attempt.end {
+            _ if iteration + 1 < attempt.iterations.end => Outcome::Minor,
+            End::Converged => Outcome::accepted(norms, last_attempt),
+            End::NotConverged if run.is_tried_again(index) => Outcome::Cut {
+                why: why(),
+                size: f64::NAN,
+            },
+            End::NotConverged => Outcome::Failed(why()),
+            End::Unknown => Outcome::Minor,
+        };
+        let slaves = 0..run.files.slaves.len();
+        let row = attempt.row;
+        Event {
+            position: Position {
+                increment: self.increments[index],
+                attempt: attempt.attempt,
+                major: 1,
+                minor: this.number,
+            },
+            load_factor: row.map_or(f64::NAN, |row| match row.converged {
+                true => row.total_time,
+                false => row.total_time + row.size,
+            }),
+            arc: None,
+            drag: 0.0,
+            nodes: slaves
+                .clone()
+                .map(|slave| self.record(iteration, slave))
+                .collect(),
+            before: norms,
+            words: Arc::new(Words {
+                iteration: words::iteration(run, iteration),
+                contacts: slaves
+                    .clone()
+                    .map(|slave| words::contact(run, iteration, slave))
+                    .collect(),
+                letters: slaves
+                    .map(|slave| words::letter(run, iteration, slave))
+                    .collect(),
+            }),
+            outcome,
+        }
+    }
+}
+
+impl Solver for Recorded {
+    fn model(&self) -> &Arc<Model> {
+        &self.model
+    }
+
+    fn state(&self) -> &State {
+        &self.state
+    }
+
+    fn event(&self) -> &Event {
+        &self.event
+    }
+
+    fn step(&mut self) -> Result<bool, Lost> {
+        let iteration = self.state.place().unwrap_or(0) as usize;
+        if self.state.status == Status::Finished {
+            return Ok(false);
+        }
+        if iteration >= self.run.files.iterations.len() {
+            let told = format!("this is the last iteration of a {}", words::READ_ONLY);
+            return Err(Lost::new(told));
+        }
+        self.event = self.event_of(iteration);
+        self.state.follow(&self.event, iteration as u64 + 1);
+        Ok(true)
+    }
+
+    fn restore(&mut self, state: &State) -> Result<(), Lost> {
+        self.state.clone_from(state);
+        Ok(())
+    }
+
+    fn intervene(&mut self, intervention: &Intervention) -> Result<(), Refusal> {
+        self.offers().check(intervention)
+    }
+
+    fn offers(&self) -> Offers {
+        Offers {
+            name: "CalculiX".into(),
+            past: Some(words::READ_ONLY),
+            goes_back: GoesBack::ToAny,
+            ..Offers::default()
+        }
+    }
+}

@@ -1,0 +1,283 @@
+//! Sentences about a finished CalculiX run, and the run as text.
+
+use super::run::{CORRECTION_LIMIT, CalculixRun, Status, face, residual_limit};
+use std::fmt::Write;
+use stickslip_exchange::calculix::Stop;
+use stickslip_exchange::calculix::cel::Slave;
+use stickslip_exchange::calculix::past::Beside;
+use stickslip_scene::number::plain;
+use stickslip_scene::shown::{aligned, first_of};
+
+/// What the record of a run is.
+pub const READ_ONLY: &str = "finished CalculiX run (read-only)";
+/// What the debugger says when it opens one.
+pub const GREETING: &str = "O shows the run as text; ? lists the keys";
+/// What the files do not contain.
+pub const NO_MODES: &str = "stick and slip are not in the file";
+/// The same in full.
+pub const NO_MODES_IN_FULL: &str = "Stick and slip are not in CalculiX's files: a contact is closed, where it has contact elements, \
+    or open. Nor is the reason for which an attempt was given up: CalculiX prints that on its screen only.";
+/// Most members of a cycle that are named.
+const MOST_MEMBERS: usize = 4;
+
+/// `1 iteration`, `2 iterations`.
+fn counted(count: usize, what: &str) -> String {
+    let end = if count == 1 { "" } else { "s" };
+    format!("{count} {what}{end}")
+}
+
+/// Numbers of steps, increments, attempts, iterations and contacts.
+fn size(run: &CalculixRun) -> String {
+    let files = &run.files;
+    let attempts = files.attempts.iter();
+    let mut increments: Vec<_> = attempts.map(|a| (a.step, a.increment)).collect();
+    increments.dedup();
+    let mut steps: Vec<_> = increments.iter().map(|(step, _)| step).collect();
+    steps.dedup();
+    [
+        (steps.len(), "step"),
+        (increments.len(), "increment"),
+        (files.attempts.len(), "attempt"),
+        (files.iterations.len(), "iteration"),
+        (files.slaves.len(), "contact"),
+    ]
+    .map(|(count, what)| counted(count, what))
+    .join(", ")
+}
+
+/// Files that are missing, break off, or do not agree.
+pub fn notes(run: &CalculixRun) -> Vec<String> {
+    let files = &run.files;
+    let stem = run
+        .name
+        .rsplit_once('.')
+        .map_or(&*run.name, |(stem, _)| stem);
+    let stopped = |end: &str, stop: Option<Stop>| {
+        stop.map(|stop| match stop {
+            Stop::Cut(line) => format!(
+                "{stem}.{end} breaks off in line {line}: the run was stopped while it wrote, and is shown up to there"
+            ),
+            Stop::NoRoom(line) => format!(
+                "{stem}.{end} has a number without room in line {line}, and is read up to there"
+            ),
+        })
+    };
+    let beside = |end: &str, file: Beside, without: &str| match file {
+        Beside::Missing => Some(format!("{stem}.{end} is not there: {without}")),
+        Beside::Read(stop) => stopped(end, stop),
+    };
+    let differs = files.differs.map(|(at, count)| {
+        format!(
+            "{stem}.cel and {stem}.cvg count different numbers of contact elements in {}, first in step {}, increment {}, attempt {}, iteration {}: they may be of different runs, or *CONTACT FILE may stand in a later step only",
+            counted(count, "iteration"), at.step, at.increment, at.attempt, at.iteration
+        )
+    });
+    let sta = "times are unknown, and the end of an attempt is inferred from what follows it";
+    let cvg = "there are no residuals, and iterations that have no contact element, or keep those before, are left out";
+    let notes = [
+        stopped("cel", files.cel),
+        beside("sta", files.sta, sta),
+        beside("cvg", files.cvg, cvg),
+        differs,
+    ];
+    notes.into_iter().flatten().collect()
+}
+
+/// How an attempt ended, its time, and its cycle.
+pub fn attempt(run: &CalculixRun, attempt: usize) -> String {
+    let this = &run.files.attempts[attempt];
+    let iterations = counted(run.iterations(attempt), "iteration");
+    let mut text = match run.end(attempt) {
+        "converged" => format!("converged after {iterations}"),
+        "cut" => {
+            let next = run.files.attempts[attempt + 1].row;
+            let size = next.map_or(String::new(), |row| format!(" to {}", plain(row.size)));
+            format!("not converged in {iterations}, and cut{size}")
+        }
+        "failed" => format!("not converged in {iterations}, and the run ends there"),
+        _ => format!(
+            "{iterations}, and no file contains how it ended: the run was stopped there, or continues"
+        ),
+    };
+    if let Some(row) = this.row {
+        let start = match row.converged {
+            true => row.total_time - row.size,
+            false => row.total_time,
+        };
+        // The difference of two printed numbers.
+        let start = (start * 1e6).round() / 1e6;
+        let _ = write!(text, "; time {} + {}", plain(start), plain(row.size));
+    }
+    if let Some(cycle) = cycle(run, attempt) {
+        let _ = write!(text, "; {cycle}");
+    }
+    text
+}
+
+/// The cycle of an attempt.
+fn cycle(run: &CalculixRun, attempt: usize) -> Option<String> {
+    let cycle = run.cycles[attempt].as_ref()?;
+    let number = run.files.iterations[cycle.iterations.start].number;
+    let residual = |k| Some(plain(run.norms(k)?.residual));
+    let residuals: Vec<String> = cycle.iterations.clone().filter_map(residual).collect();
+    let residuals = match residuals.is_empty() {
+        true => String::new(),
+        false => format!(", residual {} % in turn", residuals.join(", ")),
+    };
+    let members = match cycle.members.is_empty() {
+        true => format!("no contact element changes in it, and {NO_MODES}"),
+        false => {
+            let names = cycle.members.iter().map(|slave| run.slave(*slave));
+            format!("{} change", first_of(names, MOST_MEMBERS, ", "))
+        }
+    };
+    Some(format!(
+        "{}-cycle from iteration {number} on{residuals}; {members}",
+        cycle.period()
+    ))
+}
+
+/// An iteration: closed contacts, residual and correction with their limits; then its attempt.
+pub fn iteration(run: &CalculixRun, iteration: usize) -> String {
+    let this = &run.files.iterations[iteration];
+    let mut text = match run.closed(iteration) {
+        Some(closed) => format!("closed {closed} of {}", run.files.slaves.len()),
+        None => "no file contains the contacts".into(),
+    };
+    if this.kept {
+        text += ", held fixed";
+    }
+    if let Some(norms) = this.norms {
+        let _ = write!(
+            text,
+            ", residual {} % (limit {}), correction {} % (limit {CORRECTION_LIMIT})",
+            plain(norms.residual),
+            residual_limit(this.number),
+            plain(norms.correction)
+        );
+    }
+    let attempt = run.attempt(iteration);
+    format!("{text}. Attempt: {}", self::attempt(run, attempt))
+}
+
+/// A contact in an iteration: the master faces that it touches, with the number of integration points of a slave face; then
+/// how often it switches.
+pub fn contact(run: &CalculixRun, iteration: usize, slave: usize) -> String {
+    let points = matches!(run.files.slaves[slave], Slave::Face(_));
+    let mut text = match run.contact(iteration, slave) {
+        None => "no file contains its contact elements".to_owned(),
+        Some([]) => "open".to_owned(),
+        Some(closed) => {
+            let face = |closed: &stickslip_exchange::calculix::cel::Closed| {
+                let face = face(&run.files.masters[closed.master as usize]);
+                match points {
+                    true => format!("{face} at {}", counted(closed.elements as usize, "point")),
+                    false => face,
+                }
+            };
+            let faces: Vec<String> = closed.iter().map(face).collect();
+            format!("closed on {}", faces.join("; "))
+        }
+    };
+    if let Some(switching) = run.switching_of(slave) {
+        let attempt = run.attempt(iteration);
+        let here = switching.attempts.iter().find(|(own, _)| *own == attempt);
+        let here = here.map_or(0, |(_, count)| *count);
+        let (place, most) = switching.most();
+        let _ = write!(
+            text,
+            "; switches: {here} in this attempt, {} in all, at most {most} ({})",
+            switching.total(),
+            run.attempt_name(place)
+        );
+    }
+    text
+}
+
+/// The letter of a contact on the timeline; of one that CalculiX held fixed a small one.
+pub fn letter(run: &CalculixRun, iteration: usize, slave: usize) -> u8 {
+    let letter = match run.status(iteration, slave) {
+        Status::Unknown => b'?',
+        Status::Open => b'.',
+        Status::Closed => b'C',
+        Status::Moved => b'M',
+        Status::Part(tenths) => b'0' + tenths,
+    };
+    match run.files.iterations[iteration].kept {
+        true => letter.to_ascii_lowercase(),
+        false => letter,
+    }
+}
+
+/// The whole run as text: its attempts, their cycles, and the contacts that switch.
+pub fn text(run: &CalculixRun) -> String {
+    let mut text = format!("{}: {READ_ONLY}\n{}\n", run.name, size(run));
+    for note in notes(run) {
+        let _ = writeln!(text, "note: {note}");
+    }
+    let _ = write!(text, "{NO_MODES_IN_FULL}\n\n{}", attempts(run));
+    let attempts = 0..run.files.attempts.len();
+    let cycles = attempts.filter_map(|k| Some((k, cycle(run, k)?)));
+    let cycles: Vec<String> = cycles
+        .map(|(k, cycle)| format!("{}: {cycle}\n", run.attempt_name(k)))
+        .collect();
+    text += &match cycles.is_empty() {
+        true => "\nNo attempt cycles.\n".into(),
+        false => format!("\nCycles\n{}", cycles.concat()),
+    };
+    text + &switching(run)
+}
+
+/// A row for every attempt.
+fn attempts(run: &CalculixRun) -> String {
+    let mut switches = vec![0; run.files.attempts.len()];
+    for (attempt, count) in run.switching.iter().flat_map(|found| &found.attempts) {
+        switches[*attempt] += count;
+    }
+    let headings = [
+        "attempt",
+        "iterations",
+        "ended",
+        "residual %",
+        "correction %",
+        "closed",
+        "switches",
+    ];
+    let mut rows = vec![headings.map(str::to_owned)];
+    for (index, attempt) in run.files.attempts.iter().enumerate() {
+        let last = attempt.iterations.clone().last();
+        let norms = last.and_then(|last| run.norms(last));
+        let number = |value: Option<f64>| value.map_or("-".into(), plain);
+        let closed = last.and_then(|last| run.closed(last));
+        rows.push([
+            run.attempt_name(index),
+            run.iterations(index).to_string(),
+            run.end(index).to_owned(),
+            number(norms.map(|norms| norms.residual)),
+            number(norms.map(|norms| norms.correction)),
+            closed.map_or("-".into(), |closed| closed.to_string()),
+            switches[index].to_string(),
+        ]);
+    }
+    aligned(&rows, 1).join("\n") + "\n"
+}
+
+/// The contacts that switch, those with the most switches in one attempt first.
+fn switching(run: &CalculixRun) -> String {
+    if run.switching.is_empty() {
+        return "\nNo contact switches between the iterations of an attempt.\n".into();
+    }
+    let mut rows = vec![["contact", "switches", "most", "in", "attempts"].map(str::to_owned)];
+    for found in &run.switching {
+        let (place, most) = found.most();
+        rows.push([
+            run.slave_with_corners(found.slave),
+            found.total().to_string(),
+            most.to_string(),
+            run.attempt_name(place),
+            found.attempts.len().to_string(),
+        ]);
+    }
+    let head = "\nContacts that switch between the iterations of an attempt: how often, most in one attempt, and in how many\n";
+    head.to_owned() + &aligned(&rows, 1).join("\n") + "\n"
+}

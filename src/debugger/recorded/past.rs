@@ -1,0 +1,310 @@
+//! An exchange that was kept in a file: everything that an attached solver did, to be looked at without it.
+//!
+//! The file is gone through once; what it tells is a tree of states, as the session had it. Stepping goes along the tree and nowhere
+//! else: there is no solver that could.
+
+use super::fault::Fault;
+use super::log::Log;
+use super::orders;
+use super::told::{self, Frame, Led};
+use std::collections::HashMap;
+use std::path::Path;
+use std::sync::Arc;
+use stickslip_core::model::Model;
+use stickslip_core::step::event::Event;
+use stickslip_core::step::intervene::{Intervention, Refusal};
+use stickslip_core::step::places::Places;
+use stickslip_core::step::solver::{GoesBack, Lost, Offers, Solver};
+use stickslip_core::step::state::{State, Status};
+use stickslip_exchange::attach::conversation::{HEAD, STARTED};
+use stickslip_exchange::attach::message::{Hello, Id};
+use stickslip_exchange::attach::{Answer, Kept, Request, Side};
+use stickslip_exchange::broken::Broken;
+use stickslip_platform::input::{self, Unreadable};
+use stickslip_scene::Scene;
+use stickslip_scene::format::{SceneError, read};
+
+/// Steps from the start: each an iteration (`None`), or something that was changed.
+pub type Line = Vec<Option<Intervention>>;
+
+/// A solver that is no more.
+pub struct Past {
+    start: State,
+    model: Arc<Model>,
+    places: Places<Option<Led>>,
+    offers: Offers,
+    /// The present state, and the iteration that led to it.
+    now: Led,
+}
+
+/// An exchange that was read.
+pub struct Opened {
+    /// What was solved.
+    pub scene: Scene,
+    /// The solver that is no more.
+    pub past: Past,
+    /// All ways that were gone to their ends, in the order in which these were reached.
+    pub lines: Vec<Line>,
+    /// What the solver said besides.
+    pub log: Log,
+}
+
+/// What a kept exchange is.
+pub const READ_ONLY: &str = "kept exchange, read-only";
+/// Most bytes of a kept exchange.
+const MOST_BYTES: u64 = 1 << 30;
+
+/// Reads the file of a kept exchange; `None` where it is the name of something else.
+pub fn file(name: &str) -> Option<Result<Opened, SceneError>> {
+    let path = Path::new(name);
+    let head = input::start(path, HEAD.len() as u64).ok()?;
+    (head == HEAD.as_bytes()).then(|| {
+        let not_read = |why: Unreadable| read::not_read(name, &why);
+        let large = "no exchange that was kept whole is so large";
+        let mut bytes = input::bytes(path, MOST_BYTES, large).map_err(not_read)?;
+        // Who wrote it may have been ended in the middle of a letter; such a line is left out in any case.
+        bytes.truncate(
+            bytes
+                .iter()
+                .rposition(|byte| *byte == b'\n')
+                .map_or(0, |end| end + 1),
+        );
+        open(name, &input::utf8(bytes).map_err(not_read)?)
+    })
+}
+
+/// Reads a kept exchange; `name` is the file's.
+///
+/// # Errors
+/// What is wrong with it.
+pub fn open(name: &str, text: &str) -> Result<Opened, SceneError> {
+    let kept = Kept::read(text).map_err(|broken| read::of_file(name, broken))?;
+    let log = Log::default();
+    let mut reader = Reader::new();
+    for (number, line) in kept.iter().enumerate() {
+        let broken = |broken: Broken| {
+            let column = broken.at.map_or(1, |(_, column)| column + 2);
+            read::of_file(name, Broken::at(number + 2, column, broken.message))
+        };
+        match line.side {
+            Side::Noted => {
+                if line.text.starts_with(STARTED) {
+                    reader.begin();
+                }
+                log.noted(&line.text);
+            }
+            Side::Logged => log.printed(&line.text),
+            Side::Asked => reader.asked(Request::read(&line.text).map_err(broken)?),
+            // A solver may have written what is no message: that was its end.
+            Side::Answered => match Answer::read(&line.text) {
+                Ok(Answer::Message { level, text }) => log.told(level, &text),
+                Ok(answer) => reader
+                    .answered(name, answer)
+                    .map_err(|fault| SceneError::whole(name, fault.to_string()))?,
+                Err(_) => log.noted(&format!("no message: {}", line.text)),
+            },
+        }
+    }
+    let Reader {
+        met: Some(met),
+        places,
+        ..
+    } = reader
+    else {
+        return Err(SceneError::whole(name, Fault::NoScene.to_string()));
+    };
+    let past = Past {
+        offers: Offers {
+            name: met.hello.name,
+            version: met.hello.version,
+            past: Some(READ_ONLY),
+            goes_back: GoesBack::ToAny,
+            ..Offers::default()
+        },
+        start: met.start.state.clone(),
+        now: met.start,
+        model: Arc::new(met.scene.model.clone()),
+        places,
+    };
+    Ok(Opened {
+        lines: past
+            .places
+            .ends()
+            .map(|end| past.places.steps(end))
+            .collect(),
+        scene: met.scene,
+        past,
+        log,
+    })
+}
+
+/// A file as far as it is read.
+struct Reader {
+    hello: Option<Hello>,
+    met: Option<Met>,
+    places: Places<Option<Led>>,
+    /// Where the solver is, and what was changed there.
+    at: u64,
+    changed: Vec<Intervention>,
+    tokens: HashMap<String, u64>,
+    /// What was asked and is not yet answered.
+    pending: Option<Request>,
+}
+
+/// Who it is and what it solves.
+struct Met {
+    scene: Scene,
+    hello: Hello,
+    ids: Vec<Id>,
+    start: Led,
+}
+
+impl Reader {
+    fn new() -> Reader {
+        Reader {
+            hello: None,
+            met: None,
+            places: Places::new(None),
+            at: 0,
+            changed: Vec::new(),
+            tokens: HashMap::new(),
+            pending: None,
+        }
+    }
+
+    /// A solver is started.
+    fn begin(&mut self) {
+        self.at = 0;
+        self.changed.clear();
+        self.tokens.clear();
+        self.pending = None;
+    }
+
+    fn asked(&mut self, request: Request) {
+        if !matches!(request, Request::Interrupt | Request::Bye) {
+            self.pending = Some(request);
+        }
+    }
+
+    fn answered(&mut self, name: &str, answer: Answer) -> Result<(), Fault> {
+        let pending = self.pending.take();
+        match (answer, pending) {
+            (Answer::Hello(hello), _) => self.hello = Some(*hello),
+            (Answer::Scene(told), _) if self.met.is_none() => {
+                let hello = self.hello.clone().ok_or(Fault::NoScene)?;
+                let (scene, ids, start) = told::start(name, &told, None)?;
+                self.met = Some(Met {
+                    scene,
+                    hello,
+                    ids,
+                    start,
+                });
+            }
+            (Answer::State(told), _) => self.led(&told)?,
+            (Answer::Saved { token }, _) => {
+                self.tokens.insert(token.to_string(), self.at);
+            }
+            (Answer::Ok, Some(Request::Restore { token })) => {
+                self.at = self.tokens.get(&token.to_string()).copied().unwrap_or(0);
+                self.changed.clear();
+            }
+            (Answer::Ok, Some(request)) => {
+                let met = self.met.as_ref().ok_or(Fault::NoScene)?;
+                let friction = self.state(met).controls.friction.first();
+                let now = friction.copied().unwrap_or_default();
+                orders::add(&mut self.changed, &request, &met.ids, now);
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// The state at which the solver is, without what was changed there.
+    fn state<'a>(&'a self, met: &'a Met) -> &'a State {
+        let led = self.places.get(self.at).and_then(Option::as_ref);
+        &led.unwrap_or(&met.start).state
+    }
+
+    fn led(&mut self, told: &stickslip_exchange::attach::message::State) -> Result<(), Fault> {
+        let met = self.met.as_ref().ok_or(Fault::NoScene)?;
+        let asked = std::mem::take(&mut self.changed);
+        if let Some(place) = self.places.follows(self.at, &asked) {
+            self.at = place;
+            return Ok(());
+        }
+        let mut from = self.state(met).clone();
+        for intervention in &asked {
+            // It was taken then.
+            let _ = from.intervene(&met.scene.model, intervention);
+        }
+        let frame = Frame {
+            model: &met.scene.model,
+            ids: &met.ids,
+            decides: met.hello.decides,
+        };
+        let led = frame.led(&from, told)?;
+        self.at = self.places.add(self.at, asked, Some(led));
+        if let Some(Some(led)) = self.places.get_mut(self.at) {
+            led.state_at(self.at);
+        }
+        Ok(())
+    }
+}
+
+impl Past {
+    /// Goes back to the start.
+    pub fn rewind(&mut self) {
+        self.now.state.clone_from(&self.start);
+        self.now.event = Event::nothing_yet(&self.model);
+    }
+
+    /// The place to which the present state leads.
+    fn next(&self) -> Option<&Led> {
+        let place = self
+            .places
+            .follows(self.now.state.place()?, self.now.state.asked())?;
+        self.places.get(place)?.as_ref()
+    }
+}
+
+impl Solver for Past {
+    fn model(&self) -> &Arc<Model> {
+        &self.model
+    }
+
+    fn state(&self) -> &State {
+        &self.now.state
+    }
+
+    fn event(&self) -> &Event {
+        &self.now.event
+    }
+
+    fn step(&mut self) -> Result<bool, Lost> {
+        if self.now.state.status == Status::Finished {
+            return Ok(false);
+        }
+        let Some(led) = self.next().cloned() else {
+            return Err(Lost::new(Fault::Past.to_string()));
+        };
+        self.now = led;
+        Ok(true)
+    }
+
+    fn restore(&mut self, state: &State) -> Result<(), Lost> {
+        self.now.state.clone_from(state);
+        Ok(())
+    }
+
+    fn intervene(&mut self, intervention: &Intervention) -> Result<(), Refusal> {
+        self.now.state.intervene(&self.model, intervention)
+    }
+
+    fn monitors(&mut self, out: &mut Vec<f64>) {
+        out.extend_from_slice(&self.now.monitors);
+    }
+
+    fn offers(&self) -> Offers {
+        self.offers.clone()
+    }
+}

@@ -1,0 +1,98 @@
+//! The frozen interface problem that a solver tells, checked.
+
+use super::fault::Fault;
+use stickslip_core::model::Friction;
+use stickslip_core::step::solver::{Posed, PosedForm};
+use stickslip_exchange::attach::message::{Id, Matrix, Problem};
+
+/// The problem, of contacts with these ids.
+///
+/// # Errors
+/// [`Fault::Unfit`] where its parts do not fit together.
+pub fn posed(problem: &Problem, ids: &[Id]) -> Result<Posed, Fault> {
+    let unfit = |why: String| Fault::Unfit {
+        message: "problem",
+        why,
+    };
+    let count = problem.contacts.len();
+    let place = |id: &Id| ids.iter().position(|known| known == id);
+    let mut contacts = Vec::with_capacity(count);
+    for id in &problem.contacts {
+        match place(id) {
+            Some(contact) if !contacts.contains(&contact) => contacts.push(contact),
+            Some(_) => return Err(unfit(format!("contact {id} stands there twice"))),
+            None => return Err(unfit(format!("there is no contact {id}"))),
+        }
+    }
+    let size = 2 * count;
+    let cohesion = match problem.cohesion.as_slice() {
+        [] => vec![0.0; count],
+        all => all.to_vec(),
+    };
+    let or_zeros = |numbers: &[f64]| match numbers {
+        [] => vec![0.0; size],
+        all => all.to_vec(),
+    };
+    let (q, load) = (or_zeros(&problem.q), or_zeros(&problem.load));
+    if problem.q.is_empty() && problem.load.is_empty() {
+        return Err(unfit("it has neither q nor load".into()));
+    }
+    if !problem.load.is_empty() && problem.kind == PosedForm::Compliance {
+        return Err(unfit("load stands with a stiffness only".into()));
+    }
+    let lengths = [
+        ("q", q.len(), size),
+        ("load", load.len(), size),
+        ("mu", problem.mu.len(), count),
+        ("cohesion", cohesion.len(), count),
+    ];
+    if let Some((name, found, wanted)) = lengths.iter().find(|(_, found, wanted)| found != wanted) {
+        return Err(unfit(format!(
+            "{name} has {found} numbers; it must have {wanted}"
+        )));
+    }
+    let matrix = match &problem.matrix {
+        Matrix::Rows(rows) => rows.clone(),
+        Matrix::Triplets {
+            size: told,
+            triplets,
+        } => {
+            if *told != size {
+                return Err(unfit(format!(
+                    "the matrix has size {told}; it must have {size}"
+                )));
+            }
+            let mut rows = vec![vec![0.0; size]; size];
+            for &(i, j, value) in triplets {
+                let entry = rows.get_mut(i).and_then(|row| row.get_mut(j));
+                *entry.ok_or_else(|| unfit(format!("there is no entry ({i}, {j})")))? += value;
+            }
+            rows
+        }
+    };
+    if matrix.len() != size || matrix.iter().any(|row| row.len() != size) {
+        return Err(unfit(format!(
+            "the matrix must have {size} rows of {size} numbers"
+        )));
+    }
+    let friction = problem.mu.iter().zip(&cohesion);
+    let friction: Vec<Friction> = friction
+        .map(|(&mu, &cohesion)| Friction::from_coefficient(mu, cohesion))
+        .collect();
+    if friction
+        .iter()
+        .any(|f| !(0.0..90.0).contains(&f.angle) || !(0.0..f64::INFINITY).contains(&f.cohesion))
+    {
+        return Err(unfit(
+            "mu and cohesion must be finite, and not negative".into(),
+        ));
+    }
+    Ok(Posed {
+        contacts,
+        form: problem.kind,
+        matrix,
+        q,
+        load,
+        friction,
+    })
+}

@@ -1,0 +1,145 @@
+//! What a kept exchange tells, as text: the iterations, what was changed between them, and where the modes went round.
+
+use super::log::How;
+use super::past::{Line, Opened};
+use crate::explain::{names, report};
+use crate::history::rounds::{Rounds, rounds, words};
+use crate::history::strip::Strip;
+use std::fmt::Write;
+use stickslip_core::model::Model;
+use stickslip_core::step::solver::Solver;
+use stickslip_exchange::attach::message::Level;
+
+/// Contacts that are named, and messages that are told.
+const NAMED: usize = 6;
+const TOLD: usize = 20;
+
+/// The story of a file of this name.
+pub fn story(file: &str, opened: &mut Opened) -> String {
+    let model = opened.past.model().clone();
+    let offers = opened.past.offers();
+    let who = format!("{} {}", offers.name, offers.version);
+    let mut text = format!(
+        "{file}: {}\nA kept exchange with {}; it can be looked at, and not gone on with.\n",
+        model.title,
+        who.trim()
+    );
+    let slaves = model.contacts.len();
+    let named: Vec<&str> = (0..slaves.min(NAMED))
+        .map(|s| names::slave(&model, s))
+        .collect();
+    let more = if slaves > NAMED { ", …" } else { "" };
+    let _ = writeln!(text, "Contacts: {}{more}.", named.join(", "));
+    if opened.lines.is_empty() {
+        text += "\nNothing was solved.\n";
+    }
+    for number in 0..opened.lines.len() {
+        let (before, line) = (&opened.lines[..number], &opened.lines[number]);
+        let common = before
+            .iter()
+            .enumerate()
+            .map(|(k, other)| (in_common(line, other), k));
+        let (along, whose) = common
+            .max_by_key(|&(along, k)| (along, std::cmp::Reverse(k)))
+            .unwrap_or((0, 0));
+        text += "\n";
+        let _ = match (number, opened.lines.len()) {
+            (0, 1) => Ok(()),
+            (0, _) => writeln!(text, "Way b1:"),
+            _ => writeln!(
+                text,
+                "Way b{}, which leaves b{} after step {along}:",
+                number + 1,
+                whose + 1
+            ),
+        };
+        text += &way(&model, &mut opened.past, line, along);
+    }
+    text += &said(opened);
+    text
+}
+
+/// How many steps two ways have in common.
+pub fn in_common(a: &Line, b: &Line) -> usize {
+    a.iter().zip(b).take_while(|(a, b)| a == b).count()
+}
+
+/// A way, told from a step on.
+fn way(model: &Model, past: &mut super::past::Past, line: &Line, from: usize) -> String {
+    past.rewind();
+    let mut strips = vec![Strip::of(model, past.state(), None, None, 0.0)];
+    let mut text = String::new();
+    for (number, step) in line.iter().enumerate() {
+        let before = &strips[strips.len() - 1];
+        let (strip, told) = match step {
+            Some(intervention) => {
+                // It was taken then.
+                let _ = past.intervene(intervention);
+                let strip = Strip::intervention(model, past.state(), before);
+                (
+                    strip,
+                    format!("◇ {}", report::intervention(model, intervention)),
+                )
+            }
+            None => {
+                if !past.step().is_ok_and(|solved| solved) {
+                    break;
+                }
+                let event = past.event();
+                let strip = Strip::of(model, past.state(), Some(event), Some(before), 0.0);
+                let differ: Vec<&str> = (0..model.contacts.len())
+                    .filter(|&slave| strip.differs(slave))
+                    .map(|slave| names::slave(model, slave))
+                    .collect();
+                let more = if differ.len() > NAMED { ", …" } else { "" };
+                let differ = match differ.is_empty() {
+                    true => String::new(),
+                    false => format!(
+                        "; ≠ the rules that it names at {}{more}",
+                        differ[..differ.len().min(NAMED)].join(", ")
+                    ),
+                };
+                (strip, report::outcome(model, event) + &differ)
+            }
+        };
+        let next = strip.position;
+        let then = before.position;
+        let begins = (next.increment, next.attempt) != (then.increment, then.attempt);
+        if begins && strips.len() > 1 && number > from {
+            text += &cycle(model, &strips);
+        }
+        strips.push(strip);
+        if number >= from {
+            let _ = writeln!(text, "{:>5}. {told}", number + 1);
+        }
+    }
+    text + &cycle(model, &strips)
+}
+
+/// Where the modes go round at the end of an increment's attempt, in a line.
+fn cycle(model: &Model, strips: &[Strip]) -> String {
+    match rounds(strips) {
+        Some(found @ Rounds::Cycle { .. }) => format!("       ↺ {}\n", words(model, &found, true)),
+        _ => String::new(),
+    }
+}
+
+/// Its last warnings and errors, and what was noted last.
+fn said(opened: &Opened) -> String {
+    let (_, lines) = opened.log.lines();
+    let grave = |how: How| matches!(how, How::Told(Level::Warning | Level::Error));
+    let all: Vec<String> = lines
+        .iter()
+        .filter(|said| grave(said.how))
+        .map(|said| format!("  {}: {}\n", said.how.word(), said.text))
+        .collect();
+    let mut text = String::new();
+    if !all.is_empty() {
+        let _ = writeln!(text, "\nIt warned {} times:", all.len());
+        text += &all[all.len().saturating_sub(TOLD)..].concat();
+    }
+    if let Some(last) = lines.iter().rev().find(|said| said.how == How::Noted) {
+        let _ = writeln!(text, "\nLast noted: {}", last.text);
+    }
+    text
+}

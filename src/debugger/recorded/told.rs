@@ -1,0 +1,437 @@
+//! What an attached solver told, as the debugger knows it: from messages of the protocol to states and events of the core.
+//!
+//! Numbers that a solver does not know are NaN; a gap and a margin that it does not tell are infinite, as they are where nothing
+//! is near. Where it says by which rules it decides, every decision is made again here on its numbers ([`decide`], or Newton's
+//! on the projections), so that the user sees where the two differ.
+
+use super::fault::Fault;
+use super::judged::{self, Sizes};
+use serde::Deserialize;
+use serde::de::IntoDeserializer;
+use serde::de::value::{Error as NoName, StrDeserializer};
+use std::sync::Arc;
+use stickslip_core::contact::projection::SurfacePoint;
+use stickslip_core::contact::record::{ContactRecord, Forced};
+use stickslip_core::contact::table2::{Decision, Entry, Numbers, Rule, Test, Tested, Ties, decide};
+use stickslip_core::interface::method::Known;
+use stickslip_core::linear::norms::Norms;
+use stickslip_core::model::{Friction, Mode, Model, Strategy};
+use stickslip_core::step::event::{Event, Failure, Outcome, Position, Words};
+use stickslip_core::step::state::State;
+use stickslip_core::strategy::method;
+use stickslip_exchange::attach::message::{self, Decides, Ended, Found, Id};
+use stickslip_scene::Scene;
+use stickslip_scene::shown;
+
+/// Forces and lengths that differ by less than this part of the scene's are a tie in decisions that are made again.
+const TIE: f64 = 1e-9;
+
+/// Most iterations of any kind that are counted.
+const MOST_COUNT: u32 = 1_000_000_000;
+/// Within what a normal has length 1.
+const UNIT: f64 = 1e-3;
+/// Most characters that are kept of a solver's words for a decision, and for what failed.
+const MOST_WORDS: usize = 400;
+
+/// What states are made with.
+pub struct Frame<'a> {
+    /// The scene.
+    pub model: &'a Model,
+    /// What the solver calls the contacts.
+    pub ids: &'a [Id],
+    /// By which rules it decides.
+    pub decides: Option<Decides>,
+}
+
+/// What an iteration led to.
+#[derive(Clone)]
+pub struct Led {
+    /// What it did.
+    pub event: Event,
+    /// What the next one goes on from, under a number that is still to be given.
+    pub state: State,
+    /// The monitors, as far as they were told.
+    pub monitors: Vec<f64>,
+}
+
+/// The scene of an attached solver, with its names of the contacts, and the state at its start. `increment` is the first increment,
+/// if the solver reports it.
+///
+/// # Errors
+/// [`Fault::Unfit`].
+pub fn start(
+    name: &str,
+    told: &message::Scene,
+    increment: Option<f64>,
+) -> Result<(Scene, Vec<Id>, Led), Fault> {
+    let scene = Scene::told(name, told, increment).map_err(|error| Fault::Unfit {
+        message: "scene",
+        why: error.message,
+    })?;
+    let ids = told.contacts.iter().map(|contact| contact.id.clone());
+    let start = Led {
+        state: State::outside_start(&scene.model),
+        event: Event::nothing_yet(&scene.model),
+        monitors: Vec::new(),
+    };
+    Ok((scene, ids.collect(), start))
+}
+
+fn unfit<T>(why: impl Into<String>) -> Result<T, Fault> {
+    Err(Fault::Unfit {
+        message: "state",
+        why: why.into(),
+    })
+}
+
+impl Frame<'_> {
+    /// What a state message says of the iteration that was made from `from`.
+    ///
+    /// # Errors
+    /// [`Fault::Unfit`] for one that is not of this scene.
+    pub fn led(&self, from: &State, told: &message::State) -> Result<Led, Fault> {
+        let at = self.check(told)?;
+        let load = told.load.unwrap_or(from.load_factor);
+        let ties = self.ties(told);
+        let mut nodes = Vec::with_capacity(told.contacts.len());
+        let mut words = Vec::new();
+        for (k, found) in told.contacts.iter().enumerate() {
+            let (record, word) = self.record(from, k, found, told.spring, &ties);
+            if !word.is_empty() {
+                words.resize(told.contacts.len(), String::new());
+                words[k] = word;
+            }
+            nodes.push(record);
+        }
+        let before = from
+            .outside
+            .as_ref()
+            .map_or(0.0, |outside| outside.largest_force);
+        let force = before.max(judged::largest_force(&nodes));
+        let mut outcome = outcome(told);
+        if let Outcome::Increment { marked, .. } = &mut outcome {
+            let sizes = Sizes {
+                force: force.max(judged::ROUND_OFF * told.residual.scale.unwrap_or(0.0)),
+                length: largest(told.displacements.as_deref()),
+            };
+            *marked = judged::broken(self.model, &nodes, &sizes);
+        }
+        let event = Event {
+            position: at,
+            load_factor: load,
+            arc: told.arc,
+            drag: told.drag.unwrap_or(0.0),
+            nodes,
+            before: norms(&told.residual),
+            words: Arc::new(Words {
+                contacts: words,
+                ..Words::default()
+            }),
+            outcome,
+        };
+        let mut state = self.next(from, told, &event);
+        if let Some(outside) = &mut state.outside {
+            outside.largest_force = force;
+        }
+        let monitors = self.model.monitors.iter().enumerate();
+        let monitor = |(k, _)| told.monitors.get(k).copied().flatten().unwrap_or(f64::NAN);
+        Ok(Led {
+            state,
+            monitors: monitors.map(monitor).collect(),
+            event,
+        })
+    }
+
+    /// Whether a message is of this scene; where its iteration was.
+    ///
+    /// # Errors
+    /// [`Fault::Unfit`].
+    pub fn check(&self, told: &message::State) -> Result<Position, Fault> {
+        let at = told.at;
+        let counts = [at.increment, at.attempt, at.major, at.minor];
+        if counts.iter().any(|count| !(1..=MOST_COUNT).contains(count)) {
+            return unfit(format!("at: all counts are from 1 to {MOST_COUNT}"));
+        }
+        if told.size.is_some_and(|size| size <= 0.0) {
+            return unfit("size: that of an increment is positive");
+        }
+        let count = self.ids.len();
+        let solved = told.ended != Ended::Failure && told.ended != Ended::Cut;
+        if told.contacts.len() != count && (solved || !told.contacts.is_empty()) {
+            return unfit(format!(
+                "it has {} contacts, and the scene {count}",
+                told.contacts.len()
+            ));
+        }
+        for (k, (found, id)) in told.contacts.iter().zip(self.ids).enumerate() {
+            if found.id != *id {
+                return unfit(format!(
+                    "contacts[{k}].id is {}; it must be {id}, as in the scene",
+                    found.id
+                ));
+            }
+            let is_unit = |n: &[f64; 2]| (n[0].hypot(n[1]) - 1.0).abs() < UNIT;
+            if !found.normal.as_ref().is_none_or(is_unit) {
+                return unfit(format!("contacts[{k}].normal: it must be of length 1"));
+            }
+        }
+        let nodes = self.model.nodes.len();
+        match &told.displacements {
+            Some(all) if all.len() != nodes => unfit(format!(
+                "it has {} displacements, and the scene {nodes} nodes",
+                all.len()
+            )),
+            _ => Ok(at),
+        }
+    }
+
+    /// What counts as a tie, by the size of the forces.
+    fn ties(&self, told: &message::State) -> Ties {
+        let forces = told
+            .contacts
+            .iter()
+            .flat_map(|found| [found.f_n, found.f_t]);
+        let largest = forces.flatten().fold(0.0, |most: f64, f| most.max(f.abs()));
+        Ties {
+            force: TIE * largest,
+            length: TIE * self.model.length,
+            keep: true,
+        }
+    }
+
+    /// What was found at a contact, and the solver's own words for it.
+    fn record(
+        &self,
+        from: &State,
+        k: usize,
+        found: &Found,
+        spring: Option<f64>,
+        ties: &Ties,
+    ) -> (ContactRecord, String) {
+        let friction = &from.controls.friction[k];
+        let named = rule(&found.rule);
+        let word = match named {
+            Some(_) => String::new(),
+            None => shown::cut(&found.rule, MOST_WORDS),
+        };
+        let forced = forced(from, k, found);
+        let known = |x: Option<f64>| x.unwrap_or(f64::NAN);
+        let t_max = known(found.limit);
+        #[cfg(mutants)]
+        let known = |x: Option<f64>| {
+            x.unwrap_or(stickslip_core::mutants::pick(
+                "unknown-number-as-zero",
+                f64::NAN,
+                0.0,
+            ))
+        };
+        let record = ContactRecord {
+            decision: self.decision(found, friction, spring, ties, (named, forced)),
+            forced,
+            gap: found.gap.unwrap_or(f64::INFINITY),
+            f_n: known(found.f_n),
+            f_t: known(found.f_t),
+            t_max,
+            t_max_used: found.limit_used.unwrap_or(t_max),
+            slip: known(found.slip),
+            drift: known(found.drift.or(found.slip)),
+            spot: self.spot(k, found),
+            normal: found.normal.unwrap_or(from.nodes[k].normal),
+            foot: found
+                .foot
+                .unwrap_or(self.model.nodes[self.model.contacts[k].node].at),
+            corner: found.corner,
+            carried: found.carried,
+        };
+        (record, word)
+    }
+
+    /// Somewhere on its surface; nowhere past its ends. Which element it is on, the solver alone knows.
+    fn spot(&self, k: usize, found: &Found) -> Option<SurfacePoint> {
+        found.over.then(|| SurfacePoint {
+            surface: self.model.contacts[k]
+                .surfaces
+                .first()
+                .copied()
+                .unwrap_or(0),
+            element: 0,
+            xi: 0.0,
+        })
+    }
+
+    /// The decision, with what our rules make of the solver's numbers.
+    fn decision(
+        &self,
+        found: &Found,
+        friction: &Friction,
+        spring: Option<f64>,
+        ties: &Ties,
+        (named, forced): (Option<Rule>, Forced),
+    ) -> Decision {
+        let ours = match self.decides {
+            _ if !found.tests.is_empty() => None,
+            Some(Decides::Table2) => by_table_2(found, friction, ties),
+            Some(Decides::Newton) => by_newton(found, friction, spring, ties),
+            None => None,
+        };
+        let own = found.margin.map(|margin| Test {
+            tested: Tested::Own,
+            value: margin,
+            bound: 0.0,
+            margin,
+            tie: false,
+        });
+        let mut told = found.tests.iter().copied();
+        let (next, wanted) = (found.next, ours.map_or(found.next, |ours| ours.next));
+        Decision {
+            before: found.mode,
+            next,
+            rule: match (named, ours) {
+                (Some(rule), _) => rule,
+                (None, Some(ours)) if ours.next == next => ours.rule,
+                (None, None) if !found.over => Rule::OffSurface,
+                (None, _) if forced != Forced::No => Rule::Held,
+                (None, _) => Rule::Theirs,
+            },
+            tests: ours.map_or([told.next().or(own), told.next()], |ours| ours.tests),
+            wanted: found.wanted.unwrap_or(wanted),
+        }
+    }
+
+    /// The state from which the solver goes on.
+    fn next(&self, from: &State, told: &message::State, event: &Event) -> State {
+        let mut state = from.clone();
+        if let Some(displacements) = &told.displacements {
+            let u = displacements.iter().flatten().copied().collect();
+            state.u = Arc::new(u);
+        }
+        state.follow(event, from.place().unwrap_or(0));
+        if let Some(size) = told.size {
+            Arc::make_mut(&mut state.controls).increment = size;
+        }
+        state
+    }
+}
+
+/// The largest displacement (length); 0 where none is told.
+fn largest(displacements: Option<&[[f64; 2]]>) -> f64 {
+    let all = displacements.unwrap_or_default().iter();
+    all.fold(0.0, |most: f64, [x, y]| most.max(x.hypot(*y)))
+}
+
+impl Led {
+    /// Gives the state its number.
+    pub fn state_at(&mut self, place: u64) {
+        if let Some(outside) = &mut self.state.outside {
+            outside.place = place;
+        }
+    }
+}
+
+/// Whether a node is forced: as the solver says, or as it was told.
+fn forced(from: &State, k: usize, found: &Found) -> Forced {
+    match found.forced {
+        Some(message::Forced::Once) => Forced::Once(found.mode),
+        Some(message::Forced::Held) => Forced::Held(found.next),
+        None => from.nodes[k].forced,
+    }
+}
+
+fn by_table_2(found: &Found, friction: &Friction, ties: &Ties) -> Option<Decision> {
+    let before = found.mode;
+    // What a row does not look at may be missing.
+    let rest = |x: Option<f64>, needed: bool| match (x, needed) {
+        (Some(x), _) => Some(x),
+        (None, false) => Some(0.0),
+        (None, true) => None,
+    };
+    let touches = before != Mode::Free;
+    let numbers = Numbers {
+        mode: before,
+        gap: rest(found.gap, !touches)?,
+        f_n: rest(found.f_n, touches)?,
+        f_t: rest(found.f_t, before == Mode::Fixed)?,
+        t_max: rest(found.limit, touches)?,
+        slip: rest(found.slip, before == Mode::Sliding)?,
+        entry: if friction.is_smooth() {
+            Entry::Smooth
+        } else {
+            Entry::Fixed
+        },
+    };
+    Some(decide(&numbers, ties))
+}
+
+fn by_newton(
+    found: &Found,
+    friction: &Friction,
+    spring: Option<f64>,
+    ties: &Ties,
+) -> Option<Decision> {
+    let before = found.mode;
+    let sticks = before == Mode::Fixed;
+    let numbers = Numbers {
+        mode: before,
+        gap: found.gap.unwrap_or(if sticks { 0.0 } else { f64::NAN }),
+        f_n: found.f_n?,
+        f_t: found.f_t?,
+        t_max: found.limit?,
+        slip: found.slip?,
+        entry: Entry::Fixed,
+    };
+    if numbers.gap.is_nan() {
+        return None;
+    }
+    let known = Known {
+        spring: spring?,
+        friction,
+        ties,
+        slip: numbers.slip,
+        sign: if numbers.t_max < 0.0 { -1.0 } else { 1.0 },
+    };
+    Some(method(Strategy::Newton).choose(&numbers, &known).decision)
+}
+
+/// A row of Table 2, or of another strategy of ours, by its name.
+fn rule(name: &str) -> Option<Rule> {
+    let name: StrDeserializer<'_, NoName> = name.into_deserializer();
+    Rule::deserialize(name).ok()
+}
+
+/// Norms; those that are not told are NaN.
+fn norms(told: &message::Norms) -> Norms {
+    let known = |x: Option<f64>| x.unwrap_or(f64::NAN);
+    Norms {
+        force: known(told.force),
+        relative: known(told.relative),
+        interface: known(told.interface),
+        correction: known(told.correction),
+        scale: known(told.scale),
+        limit: known(told.limit),
+        noise: told.noise.unwrap_or(0.0),
+    }
+}
+
+fn outcome(told: &message::State) -> Outcome {
+    let after = norms(told.after.as_ref().unwrap_or(&told.residual));
+    let why = || Failure::Reported {
+        reason: shown::cut(told.reason.trim(), MOST_WORDS),
+        // JSON has no word for one that grew out of all bounds.
+        relative: told
+            .after
+            .map(|after| after.relative.unwrap_or(f64::INFINITY)),
+    };
+    match told.ended {
+        Ended::Iteration => Outcome::Minor,
+        Ended::Equilibrium => Outcome::Major {
+            after,
+            settled: true,
+        },
+        Ended::Cut => Outcome::Cut {
+            why: why(),
+            size: told.size.unwrap_or(f64::NAN),
+        },
+        Ended::Failure => Outcome::Failed(why()),
+        Ended::Increment | Ended::Done => Outcome::accepted(after, told.ended == Ended::Done),
+    }
+}

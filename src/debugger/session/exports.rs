@@ -1,0 +1,143 @@
+//! Files of a state, made beside the session: pictures, the frozen problem, the core of its cycle ([`export`]).
+
+use crate::explain::attached;
+use crate::explain::core::core;
+use crate::explain::diagnosis::too_many;
+use crate::explain::examination::{Untold, going_round};
+use crate::explain::report;
+use crate::history::strip::Strip;
+use crate::record::command::Exported;
+use crate::record::export::shown::{ExportError, Shown};
+use crate::record::export::{self, Kind, Origin};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use stickslip_core::model::Model;
+use stickslip_core::step::event::Event;
+use stickslip_core::step::solver::Posed;
+use stickslip_core::step::state::{State, Status};
+use stickslip_core::step::stepper::Stepper;
+use stickslip_platform::files;
+use stickslip_scene::Scene;
+
+/// A file to be made of a state.
+pub struct Export {
+    /// What is written.
+    pub what: Exported,
+    /// Where to.
+    pub file: PathBuf,
+    /// Whether a file of that name may be overwritten.
+    pub overwrite: bool,
+    /// What the file says of where it comes from.
+    pub origin: Origin,
+    /// The shown state.
+    pub state: Box<State>,
+    /// What a picture shows of it besides.
+    pub shown: Option<Box<Seen>>,
+}
+
+/// What there is to be seen of a state.
+pub struct Seen {
+    /// The scene that led there.
+    pub scene: Scene,
+    /// The last minor iteration.
+    pub event: Option<Arc<Event>>,
+    /// The last ones.
+    pub strips: Vec<Strip>,
+    /// The state in which the last major iteration began, if it is known.
+    pub last_major: Option<State>,
+}
+
+/// Makes a file of a state.
+pub(super) fn write(stepper: &mut Stepper, ask: &Export) -> Result<(), ExportError> {
+    let bytes = match ask.what {
+        Exported::Core => {
+            let text = core_of(stepper, &ask.state, &ask.origin)?;
+            return Ok(files::write(&ask.file, text, ask.overwrite)?);
+        }
+        // Any name will do for it, as it always did.
+        Exported::Whole => match export::kind(&ask.file) {
+            Ok(kind) if kind.may_be_frozen => shown(stepper, ask, kind)?,
+            _ => shown(stepper, ask, export::kind(Path::new("a.ron"))?)?,
+        },
+        Exported::Shown => shown(stepper, ask, export::kind(&ask.file)?)?,
+    };
+    let kind = export::kind(&ask.file).ok();
+    let names = match kind.filter(|_| bytes.len() > 1) {
+        Some(kind) => kind.files(&ask.file).map_err(ExportError::NoFile)?,
+        None => vec![ask.file.clone()],
+    };
+    let whole: Vec<_> = names.into_iter().zip(bytes).collect();
+    Ok(files::write_all(&whole, ask.overwrite)?)
+}
+
+/// The scene of the core of the cycle that a state runs into.
+fn core_of(stepper: &mut Stepper, state: &State, origin: &Origin) -> Result<String, ExportError> {
+    if state.status == Status::Finished {
+        return Err(ExportError::Finished);
+    }
+    stepper.restore(state);
+    let problem = stepper.interface_problem().ok_or(Untold::NotCondensed)?;
+    let (problem, cycle) = going_round(stepper, state, &problem)?.ok_or(ExportError::NoCycle)?;
+    let core = core(&problem).ok_or_else(|| Untold::TooMany(too_many(&cycle)))?;
+    Ok(export::core(stepper.model(), origin, &cycle, &core)?)
+}
+
+/// What is in the files of a kind.
+fn shown(stepper: &mut Stepper, ask: &Export, kind: &Kind) -> Result<Vec<Vec<u8>>, ExportError> {
+    let Some(seen) = &ask.shown else {
+        return Err(ExportError::Finished);
+    };
+    let ended = match &ask.state.status {
+        Status::Failed(failure) => report::describe_failure(stepper.model(), failure),
+        _ => String::new(),
+    };
+    let shown = Shown {
+        scene: &seen.scene,
+        origin: &ask.origin,
+        state: &ask.state,
+        event: seen.event.as_deref(),
+        strips: &seen.strips,
+        last_major: seen.last_major.as_ref(),
+        ended,
+        frozen: ask.what == Exported::Whole,
+    };
+    kind.made(&shown, stepper).ok_or(ExportError::OfJournal)?
+}
+
+/// Writes the interface problem that an attached solver tells, in the form of another program too, or its core.
+pub(super) fn write_posed(model: &Model, posed: &Posed, ask: &Export) -> Result<(), ExportError> {
+    let solver = || attached::stepper(model, &ask.state, posed).map_err(Box::new);
+    let text = match (ask.what, export::kind(&ask.file)) {
+        (Exported::Core, _) => {
+            let (_, mut stepper) = solver()?;
+            let start = stepper.state().clone();
+            core_of(&mut stepper, &start, &ask.origin)?
+        }
+        (_, Ok(kind)) if kind.may_be_frozen && kind.extension != "ron" => {
+            let (scene, mut stepper) = solver()?;
+            let shown = Seen {
+                scene,
+                event: None,
+                strips: Vec::new(),
+                last_major: None,
+            };
+            let of_problem = Export {
+                shown: Some(Box::new(shown)),
+                state: Box::new(stepper.state().clone()),
+                origin: ask.origin.clone(),
+                file: ask.file.clone(),
+                ..*ask
+            };
+            return write(&mut stepper, &of_problem);
+        }
+        _ => attached::problem(model, &ask.state, posed).text(&[ask.origin.words()]),
+    };
+    Ok(files::write(&ask.file, text, ask.overwrite)?)
+}
+
+/// Whether a file is made of the frozen interface problem.
+pub(super) fn is_of_problem(ask: &Export) -> bool {
+    let kind = export::kind(&ask.file);
+    ask.what != Exported::Shown
+        || kind.is_ok_and(|kind| kind.may_be_frozen && kind.extension != "ron")
+}

@@ -1,0 +1,93 @@
+//! Sessions on finished runs, to which nothing can be added: all iterations are in the tree, and all ways that an attached solver
+//! went are branches.
+
+use super::machine::Session;
+use crate::history::branches;
+use crate::history::strip::{PointKind, Strip};
+use crate::recorded::calculix::{self, Recorded};
+use crate::recorded::past::{Line, Opened};
+use crate::recorded::recording::Recording;
+use crate::recorded::story::in_common;
+use stickslip_scene::Scene;
+
+impl Session {
+    /// The session at the start of a scene, or on a finished run, by the name of a file or of a built-in scene.
+    ///
+    /// # Errors
+    /// A message with the file and the reason.
+    pub fn open(name: &str) -> Result<Session, String> {
+        match Recording::open(name)? {
+            Some(recording) => Ok(Session::recorded(recording)),
+            None => Scene::open(name, &[])
+                .map(Session::new)
+                .map_err(|why| why.to_string()),
+        }
+    }
+
+    /// The session on a finished run.
+    pub fn recorded(recording: Recording) -> Session {
+        match recording {
+            Recording::Exchange(opened) => Session::kept(*opened),
+            Recording::Calculix(opened) => Session::finished(*opened),
+        }
+    }
+
+    /// The session on a CalculiX run, at the end of the first attempt that did not converge, or at the start.
+    fn finished(opened: calculix::Opened) -> Session {
+        let solver = Recorded::new(&opened);
+        let iterations = opened.run.files.iterations.len();
+        let mut session = Session::attached(opened.scene, Box::new(solver), opened.log);
+        session.take_steps(vec![None; iterations]);
+        session.wait();
+        let given_up = |strip: &Strip| strip.kind.is_failure() || strip.kind == PointKind::Cut;
+        let first = session.strips().iter().position(given_up);
+        session.rest_at(first.unwrap_or(0));
+        session
+    }
+
+    /// The session at the start of the first way, with all others as branches that leave the nearest one before.
+    pub fn kept(opened: Opened) -> Session {
+        let mut session = Session::attached(opened.scene, Box::new(opened.past), opened.log);
+        let mut done: Vec<(usize, Line)> = Vec::new();
+        for line in opened.lines {
+            session.go_along(&line, &done);
+            done.push((session.tree.current(), line));
+        }
+        if done.len() > 1 {
+            session.tree.switch(0);
+        }
+        session.rest_at(0);
+        session
+    }
+
+    /// Goes a way, from where it leaves those before.
+    fn go_along(&mut self, line: &Line, done: &[(usize, Line)]) {
+        let common = |(branch, before): &(usize, Line)| (in_common(line, before), *branch);
+        let Some((along, branch)) = done.iter().map(common).max_by_key(|&(along, _)| along) else {
+            self.take_steps(line.clone());
+            self.wait();
+            return;
+        };
+        self.tree.switch(branch);
+        let along = along.min(self.frames().len() - 1);
+        self.cursor = self.frames().len() - 1;
+        self.rest_at(along);
+        let rest = line[along..].to_vec();
+        let first = rest.iter().flatten().next();
+        let label = match first {
+            Some(first) => branches::label(self.model(), first, None),
+            None => "otherwise".into(),
+        };
+        // What is kept was done, and can be gone along.
+        if self.follow(label, rest).is_ok() {
+            self.wait();
+        }
+    }
+
+    /// Puts the cursor on a step that there is.
+    fn rest_at(&mut self, step: usize) {
+        if self.jump(step).is_ok() {
+            self.wait();
+        }
+    }
+}

@@ -1,0 +1,390 @@
+//! The thread on which a session's solver runs: one of ours, or one that is attached.
+
+use crate::history::breakpoints::{self, Breakpoint};
+use crate::history::frame::Frame;
+use crate::history::rounds;
+use crate::history::strip::Strip;
+use crate::record::command::Unit;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::{Receiver, Sender, SyncSender, TryRecvError, channel, sync_channel};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant};
+use stickslip_core::step::drive::{RunEnd, Until, drive};
+use stickslip_core::step::event::Event;
+use stickslip_core::step::intervene::Intervention;
+use stickslip_core::step::solver::{Lost, Solver};
+use stickslip_core::step::state::State;
+
+/// How long who waits for the worker sleeps between two looks: were it woken by every message, the solver would pay for
+/// that at every iteration.
+const NAP: Duration = Duration::from_millis(1);
+/// Most messages that wait to be gathered: a solver that is faster than who watches it waits, and takes no more memory.
+const AHEAD: usize = 1024;
+
+/// What the worker is to do.
+pub enum Job {
+    /// Steps from a state.
+    Steps(Box<State>, Steps),
+    /// A look at the solver, between two other jobs.
+    Look(Look),
+    /// Nothing more: the thread ends.
+    End,
+}
+
+/// Steps of the solver. `before` is the strip of the frame from which they set out; a step that is given is a minor iteration
+/// (`None`) or an intervention.
+pub enum Steps {
+    /// Minor iterations until so many of a unit are complete, or a breakpoint holds, or a failure, or the end.
+    Run {
+        /// Strip of the frame that it starts from.
+        before: Strip,
+        /// What is counted.
+        unit: Unit,
+        /// How many of it.
+        count: u32,
+        /// Where it stops before.
+        breakpoints: Vec<Breakpoint>,
+    },
+    /// Steps that are given.
+    Follow {
+        /// Strip of the frame that it starts from.
+        before: Strip,
+        /// In order.
+        steps: Vec<Option<Intervention>>,
+    },
+    /// The same steps as once before.
+    Again {
+        /// The last minor iteration before them.
+        event: Option<Arc<Event>>,
+        /// In order.
+        steps: Vec<Option<Intervention>>,
+    },
+}
+
+/// What is done with the solver, and told by whoever does it. It may leave the solver at another state, since every job goes to
+/// its own first.
+pub type Look = Box<dyn FnOnce(&mut dyn Solver) + Send>;
+
+/// Where others may look at the worker's solver while it has nothing to do.
+pub struct Lender {
+    jobs: Sender<Job>,
+    busy: Arc<AtomicBool>,
+}
+
+impl Lender {
+    /// Has the solver looked at, and waits for what is seen; `None` where the solver is busy, or gone.
+    pub fn look<T: Send + 'static>(
+        &self,
+        look: impl FnOnce(&mut dyn Solver) -> T + Send + 'static,
+    ) -> Option<T> {
+        if self.busy.load(Ordering::Relaxed) {
+            return None;
+        }
+        let (reply, answer) = channel();
+        let look: Look = Box::new(move |solver| {
+            // Who asked waits for it.
+            let _ = reply.send(look(solver));
+        });
+        self.jobs.send(Job::Look(look)).ok()?;
+        answer.recv().ok()
+    }
+}
+
+/// What the worker tells.
+pub enum Message {
+    /// A new minor iteration.
+    Made(Box<Frame>, Box<Strip>),
+    /// A new intervention.
+    Changed(Box<State>, Intervention),
+    /// A step done again.
+    Again(Box<State>, Option<Arc<Event>>),
+    /// The job is over; the breakpoints at which it stopped.
+    Done {
+        /// Whether it was stopped from outside.
+        interrupted: bool,
+        /// Numbers of the breakpoints at which it stopped.
+        hits: Vec<u32>,
+        /// What the solver has to say besides.
+        remark: Option<String>,
+    },
+    /// The solver cannot go on. What was told before stands.
+    Lost(Lost),
+    /// The thread is gone.
+    Died,
+}
+
+/// Handle of the thread; it ends when this is dropped, after the minor iteration at hand.
+pub struct Worker {
+    jobs: Sender<Job>,
+    messages: Receiver<Message>,
+    /// How often the running job was asked to stop.
+    stop: Arc<AtomicUsize>,
+    /// Whether it is at a job that takes its time.
+    busy: Arc<AtomicBool>,
+    /// The thread, where its end is waited for.
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Worker {
+    /// Starts an idle worker with the solver that this makes on its thread.
+    pub fn new(make: impl FnOnce() -> Box<dyn Solver> + Send + 'static) -> Self {
+        let (jobs, orders) = channel::<Job>();
+        let (news, messages) = sync_channel(AHEAD);
+        let stop = Arc::new(AtomicUsize::new(0));
+        let flag = stop.clone();
+        let busy = Arc::new(AtomicBool::new(false));
+        let at_work = busy.clone();
+        let thread = thread::spawn(move || {
+            let mut solver = make();
+            solver.heed(flag.clone());
+            let solver = &mut *solver;
+            while let Ok(job) = orders.recv() {
+                at_work.store(!matches!(job, Job::Look(_)), Ordering::Relaxed);
+                let done = match job {
+                    Job::Steps(state, steps) => match solver.restore(&state) {
+                        Ok(()) => take(solver, steps, &news, &flag),
+                        Err(lost) => news.send(Message::Lost(lost)).ok(),
+                    },
+                    Job::Look(look) => {
+                        look(solver);
+                        Some(())
+                    }
+                    Job::End => None,
+                };
+                at_work.store(false, Ordering::Relaxed);
+                if done.is_none() {
+                    return;
+                }
+            }
+        });
+        Worker {
+            jobs,
+            messages,
+            stop,
+            busy,
+            thread: Some(thread),
+        }
+    }
+
+    /// Lets its thread end by itself when this is dropped: only what runs outside has to be ended.
+    pub fn unattended(mut self) -> Worker {
+        self.thread = None;
+        self
+    }
+
+    /// Where a look may be asked for.
+    pub fn lender(&self) -> Lender {
+        Lender {
+            jobs: self.jobs.clone(),
+            busy: self.busy.clone(),
+        }
+    }
+
+    /// Starts a job. A dead worker answers [`Message::Died`].
+    pub fn start(&self, from: State, steps: Steps) {
+        self.stop.store(0, Ordering::Relaxed);
+        self.busy.store(true, Ordering::Relaxed);
+        // A failing send means that the thread is gone, which the next message says.
+        let _ = self.jobs.send(Job::Steps(Box::new(from), steps));
+    }
+
+    /// Asks the running job to stop after the present minor iteration.
+    pub fn interrupt(&self) {
+        self.stop.fetch_add(1, Ordering::Relaxed);
+    }
+
+    /// The next message; waits for it.
+    pub fn next(&self) -> Message {
+        loop {
+            match self.try_next() {
+                Some(message) => return message,
+                None => thread::sleep(NAP),
+            }
+        }
+    }
+
+    /// The next message, if there is one.
+    pub fn try_next(&self) -> Option<Message> {
+        match self.messages.try_recv() {
+            Ok(message) => Some(message),
+            Err(TryRecvError::Empty) => None,
+            Err(TryRecvError::Disconnected) => Some(Message::Died),
+        }
+    }
+}
+
+impl Drop for Worker {
+    fn drop(&mut self) {
+        // As often as it takes to end what is outside.
+        self.stop.store(usize::MAX, Ordering::Relaxed);
+        if let Some(thread) = self.thread.take() {
+            // Who looks may hold another end of the channel.
+            let _ = self.jobs.send(Job::End);
+            // Nor may it wait for somebody to gather what it did.
+            drop(std::mem::replace(&mut self.messages, channel().1));
+            // A thread that has panicked is gone, which is all that is wanted.
+            let _ = thread.join();
+        }
+    }
+}
+
+/// Takes steps from where the solver is; `None` if nobody listens any more.
+fn take(
+    solver: &mut dyn Solver,
+    steps: Steps,
+    news: &SyncSender<Message>,
+    stop: &AtomicUsize,
+) -> Option<()> {
+    match steps {
+        Steps::Run {
+            before,
+            unit,
+            count,
+            breakpoints,
+        } => run(solver, before, (unit, count), &breakpoints, news, stop),
+        Steps::Follow { mut before, steps } => {
+            follow(solver, steps, news, stop, |solver, step, began| {
+                made(solver, &mut before, step, began)
+            })
+        }
+        Steps::Again { mut event, steps } => {
+            follow(solver, steps, news, stop, |solver, step, _| {
+                if step.is_none() {
+                    event = Some(Arc::new(solver.event().clone()));
+                }
+                Message::Again(Box::new(solver.state().clone()), event.clone())
+            })
+        }
+    }
+}
+
+/// Goes on; `None` if nobody listens any more.
+fn run(
+    solver: &mut dyn Solver,
+    mut before: Strip,
+    (unit, count): (Unit, u32),
+    breakpoints: &[Breakpoint],
+    news: &SyncSender<Message>,
+    stop: &AtomicUsize,
+) -> Option<()> {
+    let (mut left, mut hits) = (count, Vec::new());
+    let interrupted = || stop.load(Ordering::Relaxed) > 0;
+    let most = if count == 0 { 0 } else { u64::MAX };
+    let until = Until::end().minors(most).past_failures();
+    let until = until.interrupted_by(&interrupted);
+    let mut began = Instant::now();
+    // Ours say themselves that they cycle.
+    let mut watch = solver.stepper().is_none().then(rounds::Watch::default);
+    let mut round = None;
+    let end = drive(solver, until, |solver| {
+        let (frame, strip) = seen(solver, &before, began);
+        left -= u32::from(unit.ends(strip.kind));
+        if strip.kind.is_failure() {
+            left = 0;
+        }
+        hits = breakpoints::hits(breakpoints, &before, &strip);
+        before = strip.clone();
+        round = watch.as_mut().and_then(|watch| watch.see(&strip));
+        let heard = news.send(Message::Made(Box::new(frame), Box::new(strip)));
+        if heard.is_err() || left == 0 || !hits.is_empty() || round.is_some() {
+            return ControlFlow::Break(heard.ok());
+        }
+        began = Instant::now();
+        ControlFlow::Continue(())
+    });
+    let end = match end {
+        Ok(RunEnd::Stopped(heard)) => {
+            heard?;
+            RunEnd::Spent
+        }
+        Ok(end) => end,
+        Err(lost) => return news.send(Message::Lost(lost)).ok(),
+    };
+    let interrupted = matches!(end, RunEnd::Interrupted);
+    let round = round.map(|round| rounds::words(solver.model(), &round, false));
+    let parts: Vec<String> = solver.remark().into_iter().chain(round).collect();
+    let remark = (!parts.is_empty()).then(|| parts.join("; "));
+    news.send(Message::Done {
+        interrupted,
+        hits,
+        remark,
+    })
+    .ok()
+}
+
+/// The last minor iteration, which began then, as a frame and its strip.
+fn seen(solver: &mut dyn Solver, before: &Strip, began: Instant) -> (Frame, Strip) {
+    let seconds = began.elapsed().as_secs_f32();
+    let event = Arc::new(solver.event().clone());
+    let strip = Strip::of(
+        solver.model(),
+        solver.state(),
+        Some(&event),
+        Some(before),
+        seconds,
+    );
+    let frame = Frame {
+        state: solver.state().clone(),
+        event: Some(event),
+        intervention: None,
+        monitors: strip.kind.is_accepted().then(|| {
+            let mut values = Vec::new();
+            solver.monitors(&mut values);
+            Arc::new(values)
+        }),
+    };
+    (frame, strip)
+}
+
+/// Takes given steps, as far as they can be taken, and sends what `message` makes of each; `None` if nobody listens any more.
+fn follow(
+    solver: &mut dyn Solver,
+    steps: Vec<Option<Intervention>>,
+    news: &SyncSender<Message>,
+    stop: &AtomicUsize,
+    mut message: impl FnMut(&mut dyn Solver, Option<Intervention>, Instant) -> Message,
+) -> Option<()> {
+    let mut interrupted = false;
+    for step in steps {
+        if stop.load(Ordering::Relaxed) > 0 {
+            interrupted = true;
+            break;
+        }
+        let began = Instant::now();
+        let taken = match &step {
+            Some(intervention) => Ok(solver.intervene(intervention).is_ok()),
+            None => solver.step(),
+        };
+        match taken {
+            Ok(true) => news.send(message(solver, step, began)).ok()?,
+            Ok(false) => break,
+            Err(lost) => return news.send(Message::Lost(lost)).ok(),
+        }
+    }
+    let (hits, remark) = (Vec::new(), solver.remark());
+    news.send(Message::Done {
+        interrupted,
+        hits,
+        remark,
+    })
+    .ok()
+}
+
+/// A step that was taken for the first time.
+fn made(
+    solver: &mut dyn Solver,
+    before: &mut Strip,
+    step: Option<Intervention>,
+    began: Instant,
+) -> Message {
+    let Some(intervention) = step else {
+        let (frame, strip) = seen(solver, before, began);
+        before.clone_from(&strip);
+        return Message::Made(Box::new(frame), Box::new(strip));
+    };
+    let state = Box::new(solver.state().clone());
+    *before = Strip::intervention(solver.model(), &state, before);
+    Message::Changed(state, intervention)
+}

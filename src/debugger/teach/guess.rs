@@ -1,0 +1,140 @@
+//! Free mode: what Table 2 decides stays hidden until the user has said it.
+
+use super::refusal::NotNow;
+use crate::action::{Action, Whose, mode};
+use crate::explain::names;
+use crate::explain::report;
+use crate::history::frame::Frame;
+use crate::record::command::Command;
+use std::collections::{BTreeMap, BTreeSet};
+use stickslip_core::model::{Mode, Model};
+
+/// Predictions, right and wrong.
+#[derive(Debug, Clone)]
+pub struct Guess {
+    whose: Whose,
+    /// Frames up to here, and these, were seen.
+    start: usize,
+    seen: BTreeSet<usize>,
+    /// The frame that predictions are about, and the nodes predicted there.
+    at: usize,
+    said: BTreeMap<usize, Mode>,
+    /// Predictions that were right.
+    pub right: u32,
+    /// Predictions that were wrong.
+    pub wrong: u32,
+}
+
+impl Guess {
+    /// Hides what comes after this frame.
+    pub fn new(whose: Whose, cursor: usize) -> Self {
+        Guess {
+            whose,
+            start: cursor,
+            seen: BTreeSet::new(),
+            at: cursor,
+            said: BTreeMap::new(),
+            right: 0,
+            wrong: 0,
+        }
+    }
+
+    /// Whether a decision is still hidden in this frame.
+    pub fn is_open(&self, cursor: usize, frame: &Frame) -> bool {
+        let decided = frame
+            .event
+            .as_ref()
+            .is_some_and(|event| !event.nodes.is_empty());
+        decided
+            && frame.intervention.is_none()
+            && cursor > self.start
+            && !self.seen.contains(&cursor)
+    }
+
+    /// Whether the decision on this slave node is hidden.
+    pub fn hides(&self, cursor: usize, frame: &Frame, slave: usize) -> bool {
+        let said = self.at == cursor && self.said.contains_key(&slave);
+        self.is_open(cursor, frame) && !said
+    }
+
+    /// Whether an action may be done now: not forward while something is hidden. An intervention forgets what came after
+    /// it.
+    ///
+    /// # Errors
+    /// A message that says what is to be predicted first.
+    pub fn permits(&mut self, action: &Action, cursor: usize, frame: &Frame) -> Result<(), NotNow> {
+        match action {
+            Action::Session(Command::Forward { .. }) if self.is_open(cursor, frame) => {
+                Err(NotNow::PredictFirst)
+            }
+            Action::Session(Command::Forward { .. } | Command::Back { .. }) => Ok(()),
+            Action::Session(_) => {
+                self.forget_after(cursor);
+                Ok(())
+            }
+            Action::Ui(_) => Ok(()),
+        }
+    }
+
+    /// An intervention in this frame: what came after it is forgotten.
+    fn forget_after(&mut self, cursor: usize) {
+        self.start = self.start.min(cursor);
+        self.seen.retain(|frame| *frame <= cursor);
+        // What was seen before stays seen, whichever way it was.
+        if self.at > cursor {
+            self.said.clear();
+        }
+    }
+
+    /// Takes a prediction of the next mode of a slave node, and tells what Table 2 did; true where they agree.
+    ///
+    /// # Errors
+    /// Where there is nothing to predict, or the word is no mode.
+    pub fn predict(
+        &mut self,
+        model: &Model,
+        cursor: usize,
+        frame: &Frame,
+        slave: usize,
+        word: &str,
+    ) -> Result<(bool, String), NotNow> {
+        let said = mode(word).ok_or_else(|| NotNow::NoMode(word.into()))?;
+        let event = frame.event.as_ref().filter(|_| self.is_open(cursor, frame));
+        let Some(record) = event.and_then(|event| event.nodes.get(slave)) else {
+            return Err(NotNow::NothingHidden);
+        };
+        if self.at != cursor {
+            self.at = cursor;
+            self.said.clear();
+        }
+        if self.said.insert(slave, said).is_some() {
+            return Err(NotNow::Predicted(names::slave(model, slave).into()));
+        }
+        let (next, reason) = (
+            record.decision.next,
+            report::reason(&record.decision, record.t_max != 0.0),
+        );
+        let right = said == next;
+        self.right += u32::from(right);
+        self.wrong += u32::from(!right);
+        let changed = |&(_, node): &(usize, &stickslip_core::contact::record::ContactRecord)| {
+            node.decision.changes()
+        };
+        let nodes = event
+            .into_iter()
+            .flat_map(|event| event.nodes.iter().enumerate());
+        let left = nodes
+            .filter(changed)
+            .filter(|(slave, _)| !self.said.contains_key(slave));
+        let more = self.whose == Whose::Changed && left.count() > 0;
+        if !more {
+            self.seen.insert(cursor);
+        }
+        let verdict = if right { "right" } else { "no" };
+        let more = if more { " Other nodes change too." } else { "" };
+        Ok((
+            right,
+            format!("{verdict}: {}: {reason}{more}", names::slave(model, slave)),
+        ))
+    }
+}

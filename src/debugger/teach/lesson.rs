@@ -1,0 +1,473 @@
+//! A lesson: read from its file, checked against its scene; and the built-in ones.
+
+use super::quantity::{self, LessonQuantity, Template};
+use super::refusal::NoPress;
+use super::runs::Runs;
+use super::spec::{AnswerSpec, LessonSpec, SceneSpec, StepSpec, When};
+use crate::action::{self, Action, Context};
+use crate::record::command::Command;
+use std::sync::Arc;
+use stickslip_core::contact::laws::Law;
+use stickslip_core::model::{Mode, Model};
+use stickslip_scene::embedded::EmbeddedFile;
+use stickslip_scene::embedded_all;
+use stickslip_scene::format::error::{Path, SceneError, at, did_you_mean};
+use stickslip_scene::format::kind::FileKind;
+use stickslip_scene::format::{Fault, read};
+use stickslip_scene::{Scene, placed};
+use stickslip_study::Vary;
+
+/// A lesson that was read and found to fit its scene.
+#[derive(Debug, Clone)]
+pub struct Lesson {
+    /// Path of the file, or name of the built-in lesson.
+    pub name: String,
+    /// One line that says what the lesson is about.
+    pub title: String,
+    /// What it teaches, in a line.
+    pub about: String,
+    /// The scene that it is played on.
+    pub scene: Scene,
+    /// Its model.
+    pub model: Arc<Model>,
+    /// What is told, asked and done, one after the other.
+    pub steps: Vec<Step>,
+    /// The runs of its chart, where it has one.
+    pub runs: Option<Arc<Runs>>,
+    /// Its file, to name lines.
+    text: String,
+}
+
+/// A step of a lesson.
+#[derive(Debug, Clone)]
+pub enum Step {
+    /// Something to read.
+    Text(Template),
+    /// Something to press.
+    Press {
+        /// What is told before.
+        text: Template,
+        /// What is to be pressed.
+        action: Action,
+        /// How to do that, in words.
+        how: String,
+    },
+    /// A question.
+    Ask(Ask),
+    /// Decisions to predict.
+    Predict {
+        /// What is told before.
+        text: Template,
+        /// How many must be right, one after the other.
+        right: u32,
+    },
+}
+
+/// A question.
+#[derive(Debug, Clone)]
+pub struct Ask {
+    /// The question.
+    pub text: Template,
+    /// What is right.
+    pub answer: Answer,
+    /// Minor iterations that it looks ahead.
+    pub ahead: u32,
+    /// What is told after a wrong answer.
+    pub hint: Template,
+    /// What is told after the right one.
+    pub then: Template,
+}
+
+/// What is asked for; nodes by slave number.
+#[derive(Debug, Clone)]
+pub enum Answer {
+    /// The mode that this slave node (by number) takes next.
+    Mode(usize),
+    /// The cell of Table 2 that decides at this slave node.
+    Rule(usize),
+    /// A number, and how far off an answer may be, relatively.
+    Number(LessonQuantity, f64),
+    /// One of several sentences, each with what makes it true.
+    Choice(Vec<(Template, Truth)>),
+}
+
+/// What makes a choice right.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Truth {
+    /// The increment ends in a cycle.
+    Cycles,
+    /// The increment is accepted.
+    Accepted,
+    /// So many states are consistent.
+    Answers(usize),
+    /// This slave node (by number) takes this mode next.
+    Becomes(usize, Mode),
+    /// The residuals end with digits that double; false: with a factor that stays.
+    Quadratic(bool),
+    /// Every law is obeyed.
+    Obeys,
+    /// This law is broken.
+    Breaks(Law),
+    /// The first number is clearly less than the second.
+    Less(LessonQuantity, LessonQuantity),
+    /// The numbers are about the same.
+    Close(LessonQuantity, LessonQuantity),
+    /// The run with these settings is the cheapest of those with an error of at most this.
+    Cheapest(Vec<(String, String)>, f64),
+    /// True or not, as the author says.
+    Known(bool),
+}
+
+/// Longest texts, in characters: what a screen of 80x24 has room for.
+const LONGEST_TEXT: usize = 480;
+const LONGEST_REMARK: usize = 320;
+/// Most choices, one digit each.
+const MOST_CHOICES: usize = 9;
+/// Longest look ahead, in minor iterations.
+const FARTHEST: u32 = 100;
+
+/// In the order in which they are to be taken.
+const LESSONS: &[EmbeddedFile] = embedded_all![
+    "../../problems/lessons/",
+    ".ron",
+    "1-modes",
+    "2-table-2",
+    "3-by-hand",
+    "4-oscillation",
+    "5-increment",
+    "6-no-answer",
+    "7-several-answers",
+    "8-t-max",
+    "9-majors",
+    "10-slip",
+    "11-judge",
+    "12-chart",
+    "13-two-sides",
+];
+
+/// All built-in lessons, in the order in which they are to be taken.
+pub fn list() -> &'static [EmbeddedFile] {
+    LESSONS
+}
+
+/// The title of a built-in lesson; empty if it cannot be read, which is a bug that the tests find.
+pub fn title(lesson: &EmbeddedFile) -> String {
+    let spec = read::value::<LessonSpec>(lesson.name, lesson.text, "lesson");
+    spec.map(|spec| spec.title).unwrap_or_default()
+}
+
+/// The built-in lesson with a name, with or without the ending `.ron`, or with the number or the word of a name alone.
+pub fn find(name: &str) -> Option<&'static EmbeddedFile> {
+    let name = name.strip_suffix(".ron").unwrap_or(name);
+    let called = |lesson: &&EmbeddedFile| {
+        let (number, word) = lesson.name.split_once('-').unwrap_or((lesson.name, ""));
+        [lesson.name, number, word].contains(&name)
+    };
+    LESSONS.iter().find(called)
+}
+
+impl Lesson {
+    /// Opens a lesson file, or a built-in lesson by its name; a file of that name wins.
+    ///
+    /// # Errors
+    /// If there is no such lesson, or it does not fit its scene: one message, with line and column.
+    pub fn open(name: &str) -> Result<Lesson, SceneError> {
+        if !std::path::Path::new(name).is_file()
+            && let Some(builtin) = find(name)
+        {
+            return Lesson::from_text(builtin.name, builtin.text);
+        }
+        let text = read::text(name).map_err(|mut error| {
+            if !std::path::Path::new(name).exists() {
+                let names = || LESSONS.iter().map(|lesson| lesson.name);
+                error.message = format!(
+                    "there is no such file, and no built-in lesson of that name{} (built-in: {})",
+                    did_you_mean(name, names()),
+                    names().collect::<Vec<_>>().join(", ")
+                );
+            }
+            error
+        })?;
+        Lesson::from_text(name, &text)
+    }
+
+    /// Reads a lesson from a text; `name` is what messages call it.
+    ///
+    /// # Errors
+    /// As [`Lesson::open`].
+    pub fn from_text(name: &str, text: &str) -> Result<Lesson, SceneError> {
+        let spec: LessonSpec = read::value(name, text, "lesson")
+            .map_err(|error| read::or_mistaken(error, name, text, FileKind::Lesson))?;
+        let scene = scene(name, text, &spec)?;
+        let reader = Reader { scene: &scene };
+        let steps = reader
+            .steps(&spec)
+            .map_err(|fault| placed(name, text, &[], fault))?;
+        let runs = runs(&spec, &scene).map_err(|fault| placed(name, text, &[], fault))?;
+        Ok(Lesson {
+            name: name.to_owned(),
+            title: spec.title,
+            about: spec.about,
+            model: Arc::new(scene.model.clone()),
+            runs,
+            scene,
+            steps,
+            text: text.to_owned(),
+        })
+    }
+
+    /// An error about a step, with its place in the file.
+    pub(super) fn fault(&self, step: usize, message: String) -> SceneError {
+        let fault = Fault::new(at!["steps", step], message);
+        placed(&self.name, &self.text, &[], fault)
+    }
+}
+
+/// The scene that a lesson is about.
+fn scene(name: &str, text: &str, spec: &LessonSpec) -> Result<Scene, SceneError> {
+    let at = |path: Path, message: String| placed(name, text, &[], Fault::new(path, message));
+    let mut scene = match &spec.scene {
+        SceneSpec::Scene(spec) => Scene::within(name, text, &at!["scene"], (**spec).clone())?,
+        SceneSpec::Name(scene) => {
+            let scene = Scene::named_in(name, scene).map_err(|why| at(at!["scene"], why))?;
+            Scene::open(&scene, &[]).map_err(|error| at(at!["scene"], error.to_string()))?
+        }
+    };
+    for (index, (path, value)) in spec.set.iter().enumerate() {
+        scene = scene
+            .with(path, value)
+            .map_err(|error| at(at!["set", index], error.message))?;
+    }
+    Ok(scene)
+}
+
+/// The runs of a lesson's chart.
+fn runs(spec: &LessonSpec, scene: &Scene) -> Result<Option<Arc<Runs>>, Fault> {
+    if spec.chart.is_empty() {
+        return Ok(None);
+    }
+    if matches!(spec.scene, SceneSpec::Scene(_)) {
+        let message = "a chart is measured of a scene that has a name of its own: scene: Name(…)";
+        return Err(Fault::new(at!["chart"], message));
+    }
+    let over = spec.chart.iter().enumerate().map(|(index, text)| {
+        Vary::parse(text).map_err(|why| Fault::new(at!["chart", index], why.to_string()))
+    });
+    let over = over.collect::<Result<Vec<_>, Fault>>()?;
+    let runs = Runs::new(scene.name.clone(), over, spec.set.clone());
+    Ok(Some(Arc::new(runs)))
+}
+
+/// Reads steps against a scene.
+struct Reader<'a> {
+    scene: &'a Scene,
+}
+
+impl Reader<'_> {
+    fn context(&self) -> Context<'_> {
+        Context {
+            model: Some(&self.scene.model),
+            scene: Some(self.scene),
+            ..Context::default()
+        }
+    }
+
+    fn steps(&self, spec: &LessonSpec) -> Result<Vec<Step>, Fault> {
+        if spec.steps.is_empty() {
+            return Err(Fault::new(at!["steps"], "a lesson needs a step at least"));
+        }
+        let steps = spec.steps.iter().enumerate();
+        steps
+            .map(|(k, step)| self.step(at!["steps", k], step))
+            .collect()
+    }
+
+    fn step(&self, path: Path, step: &StepSpec) -> Result<Step, Fault> {
+        let text = |text: &str| self.template(path.then("text"), text, LONGEST_TEXT);
+        match step {
+            StepSpec::Text(text) => Ok(Step::Text(self.template(path, text, LONGEST_TEXT)?)),
+            StepSpec::Press { text: words, press } => {
+                let (action, how) = press_of(press, &self.context())
+                    .map_err(|why| Fault::new(path.then("press"), why.to_string()))?;
+                let text = text(words)?;
+                Ok(Step::Press { text, action, how })
+            }
+            StepSpec::Predict { right: 0, .. } => Err(Fault::new(
+                path.then("right"),
+                "one right prediction at least",
+            )),
+            StepSpec::Predict { text: words, right } => Ok(Step::Predict {
+                text: text(words)?,
+                right: *right,
+            }),
+            StepSpec::Ask {
+                text: words,
+                answer,
+                ahead,
+                hint,
+                then,
+            } => {
+                if *ahead > FARTHEST {
+                    let message = format!("a question looks ahead by {FARTHEST} at most");
+                    return Err(Fault::new(path.then("ahead"), message));
+                }
+                let answer = self.answer(path.then("answer"), answer)?;
+                let hint = self.template(path.then("hint"), hint, LONGEST_REMARK)?;
+                let asked = match &answer {
+                    Answer::Number(quantity, _) if *ahead == 0 => Some(quantity),
+                    _ => None,
+                };
+                hint.check_hint(asked)
+                    .map_err(|why| Fault::new(path.then("hint"), why.to_string()))?;
+                Ok(Step::Ask(Ask {
+                    text: text(words)?,
+                    answer,
+                    ahead: *ahead,
+                    hint,
+                    then: self.template(path.then("then"), then, LONGEST_REMARK)?,
+                }))
+            }
+        }
+    }
+
+    fn template(&self, path: Path, text: &str, longest: usize) -> Result<Template, Fault> {
+        let length = text
+            .split_whitespace()
+            .map(|word| word.chars().count() + 1)
+            .sum::<usize>();
+        let message = match Template::read(text, &self.context()) {
+            Ok(template) if length <= longest => return Ok(template),
+            Ok(_) => format!(
+                "{length} characters are more than a small screen shows at once; make it two steps of at most {longest}"
+            ),
+            Err(why) => why.to_string(),
+        };
+        Err(Fault::new(path, message))
+    }
+
+    fn node(&self, path: Path, name: &str) -> Result<usize, Fault> {
+        action::exact(name, &self.context()).map_err(|why| Fault::new(path, why.to_string()))
+    }
+
+    fn answer(&self, path: Path, answer: &AnswerSpec) -> Result<Answer, Fault> {
+        Ok(match answer {
+            AnswerSpec::Mode { node } => Answer::Mode(self.node(path.then("node"), node)?),
+            AnswerSpec::Rule { node } => Answer::Rule(self.node(path.then("node"), node)?),
+            AnswerSpec::Number { of, tolerance } => {
+                let quantity = LessonQuantity::read(of, &self.context())
+                    .map_err(|why| Fault::new(path.then("of"), why.to_string()))?;
+                if !quantity.is_number() {
+                    return Err(Fault::new(path.then("of"), format!("{of} is no number")));
+                }
+                if !(0.0..1.0).contains(tolerance) {
+                    let message = "a tolerance is relative: 0 for exact, 0.01 for one per cent";
+                    return Err(Fault::new(path.then("tolerance"), message));
+                }
+                Answer::Number(quantity, *tolerance)
+            }
+            AnswerSpec::Choice(choices) => {
+                if !(2..=MOST_CHOICES).contains(&choices.len()) {
+                    let message = format!("there must be 2 to {MOST_CHOICES} choices");
+                    return Err(Fault::new(path, message));
+                }
+                let all = choices.iter().enumerate();
+                let read = all.map(|(k, (text, when))| {
+                    let path = path.then(k);
+                    let text = self.template(path.then(0), text, LONGEST_REMARK)?;
+                    Ok((text, self.truth(path.then(1), when)?))
+                });
+                Answer::Choice(read.collect::<Result<_, Fault>>()?)
+            }
+        })
+    }
+
+    fn number(&self, path: &Path, text: &str) -> Result<LessonQuantity, Fault> {
+        quantity::number(text, &self.context())
+            .map_err(|why| Fault::new(path.clone(), why.to_string()))
+    }
+
+    fn truth(&self, path: Path, when: &When) -> Result<Truth, Fault> {
+        Ok(match when {
+            When::Cycles => Truth::Cycles,
+            When::Accepted => Truth::Accepted,
+            When::Answers(count) => Truth::Answers(*count),
+            When::Becomes { node, mode } => {
+                Truth::Becomes(self.node(path.then("node"), node)?, *mode)
+            }
+            When::Linear => Truth::Quadratic(false),
+            When::Quadratic => Truth::Quadratic(true),
+            When::Obeys => Truth::Obeys,
+            When::Breaks(name) => {
+                let all = || Law::ALL.into_iter().chain(Law::OF_BONDS);
+                let law = all().find(|law| law.name() == name);
+                let names = || all().map(Law::name).collect::<Vec<_>>().join(", ");
+                let none = || {
+                    Fault::new(
+                        path,
+                        format!("the judge has no law {name:?}; it has {}", names()),
+                    )
+                };
+                Truth::Breaks(law.ok_or_else(none)?)
+            }
+            When::Less(a, b) => Truth::Less(self.number(&path, a)?, self.number(&path, b)?),
+            When::Close(a, b) => Truth::Close(self.number(&path, a)?, self.number(&path, b)?),
+            When::Cheapest { run, error } => {
+                let settings = quantity::settings(run);
+                Truth::Cheapest(
+                    settings.map_err(|why| Fault::new(path, why.to_string()))?,
+                    *error,
+                )
+            }
+            When::Right => Truth::Known(true),
+            When::Wrong => Truth::Known(false),
+        })
+    }
+}
+
+/// The action that a lesson wants, and how to do it, in words.
+fn press_of(press: &str, context: &Context) -> Result<(Action, String), NoPress> {
+    let press = press.trim();
+    let digits = press.len() - press.trim_start_matches(|c: char| c.is_ascii_digit()).len();
+    let (count, key) = press.split_at(digits);
+    if let Some(entry) = action::by_key(key) {
+        if !count.is_empty() && !entry.takes_count() {
+            return Err(NoPress::NoCount(key.into()));
+        }
+        let action = entry.act(count, context)?;
+        return Ok((action, format!("press {press} ({})", entry.name)));
+    }
+    let (word, rest) = press.split_once(' ').unwrap_or((press, ""));
+    let found = action::by_name(word).map_err(|why| {
+        // To words as short as `up` almost anything is near.
+        let names = action::ACTIONS.iter().map(|entry| entry.name);
+        let names = names.filter(|name| name.len() > 3);
+        NoPress::NoAction(why, did_you_mean(word, names))
+    })?;
+    let action = action::parse(press, context)?;
+    let how = match found.keys.first() {
+        Some(key) if rest.is_empty() => format!("press {key} ({})", found.name),
+        _ => format!("type :{press} and Enter{}", by_keys(&action)),
+    };
+    Ok((action, how))
+}
+
+/// The shorter way to some actions that take an argument.
+fn by_keys(action: &Action) -> String {
+    match action {
+        Action::Session(Command::Force { mode, hold, .. }) => {
+            let letter = match mode {
+                Mode::Free => 'f',
+                Mode::Sliding => 's',
+                Mode::Fixed => 'x',
+            };
+            let letter = if *hold {
+                letter.to_ascii_uppercase()
+            } else {
+                letter
+            };
+            format!(" (or press m, then {letter})")
+        }
+        Action::Session(Command::Increment(size)) => format!(" (or press i, then {size}, Enter)"),
+        _ => String::new(),
+    }
+}

@@ -1,0 +1,226 @@
+//! What the solver says about a state: now, some minor iterations on, or at the end of the increment.
+
+use super::refusal::Unknown;
+use super::runs::Runs;
+use crate::history::frame::Frame;
+use std::convert::Infallible;
+use std::ops::ControlFlow;
+use std::sync::Arc;
+use stickslip_core::contact::laws::Verdict;
+use stickslip_core::contact::record::ContactRecord;
+use stickslip_core::interface::census::census;
+use stickslip_core::interface::minor_history::Cycle;
+use stickslip_core::linear::norms::Norms;
+use stickslip_core::model::{Mode, Model};
+use stickslip_core::step::drive::{RunEnd, Until};
+use stickslip_core::step::event::{Event, Failure, Outcome};
+use stickslip_core::step::stepper::Stepper;
+
+/// Minor iterations after which an increment counts as endless.
+const ENDLESS: u32 = 20_000;
+
+/// A frame of the history, and the scene that it belongs to.
+#[derive(Debug, Clone)]
+pub struct Look {
+    /// The scene's model.
+    pub model: Arc<Model>,
+    /// The iteration that is looked at.
+    pub frame: Frame,
+    /// The runs of the lesson's chart, where it has one.
+    pub runs: Option<Arc<Runs>>,
+}
+
+/// How an increment ends.
+#[derive(Debug, Clone, PartialEq)]
+pub struct IncrementEnd {
+    /// Minor iterations to there.
+    pub minors: u32,
+    /// Whether it is accepted.
+    pub accepted: bool,
+    /// The cycle that ends it, if one does.
+    pub cycle: Option<Cycle>,
+    /// Its major iterations, also those before here.
+    pub majors: u32,
+    /// Relative residuals: the one that is known here, and those at the ends of the major iterations from here on.
+    pub residuals: Vec<f64>,
+}
+
+/// Residuals in which a rate of convergence is looked for: larger ones are far from the solution, smaller ones near the
+/// round-off.
+const NEAR: f64 = 1e-2;
+const FAR: f64 = 1e-7;
+/// A major iteration that leaves less than this power of the residual counts as one that doubles the digits.
+const DOUBLING: f64 = 1.5;
+
+impl IncrementEnd {
+    /// Whether the residuals near the solution fall ever faster; else by a factor that stays.
+    ///
+    /// # Errors
+    /// Where none is near.
+    pub fn is_quadratic(&self) -> Result<bool, Unknown> {
+        let near = |pair: &&[f64]| (FAR..NEAR).contains(&pair[0]);
+        let mut pairs = self.residuals.windows(2).filter(near).peekable();
+        pairs.peek().ok_or(Unknown::NoRate)?;
+        Ok(pairs.any(|pair| pair[1] < pair[0].powf(DOUBLING)))
+    }
+}
+
+impl Look {
+    /// This frame, after so many minor iterations more.
+    ///
+    /// # Errors
+    /// Where the history is done before.
+    pub fn ahead(&self, minors: u32) -> Result<Look, Unknown> {
+        let mut look = self.clone();
+        if minors == 0 {
+            return Ok(look);
+        }
+        let mut stepper = self.stepper();
+        let until = Until::end().minors(minors.into()).past_failures();
+        let end = stepper.drive(until, |_| ControlFlow::<Infallible>::Continue(()));
+        if end == RunEnd::Finished {
+            return Err(Unknown::Done);
+        }
+        look.frame.event = Some(Arc::new(stepper.event().clone()));
+        look.frame.state = stepper.state().clone();
+        look.frame.intervention = None;
+        Ok(look)
+    }
+
+    /// How this increment ends, if nobody interferes.
+    ///
+    /// # Errors
+    /// Where it does not within reason.
+    pub fn end(&self) -> Result<IncrementEnd, Unknown> {
+        let mut stepper = self.stepper();
+        let mut minors = 0;
+        let (mut majors, mut residuals) = (0, Vec::new());
+        residuals.extend(self.residual().ok());
+        let end = stepper.drive(Until::end().minors(ENDLESS.into()), |stepper| {
+            minors += 1;
+            majors = stepper.event().position.major;
+            residuals.extend(after(&stepper.event().outcome).map(|after| after.relative));
+            match stepper.event().outcome {
+                Outcome::Increment { .. } => ControlFlow::Break(()),
+                _ => ControlFlow::Continue(()),
+            }
+        });
+        let (accepted, cycle) = match end {
+            RunEnd::Stopped(()) => (true, None),
+            RunEnd::Failed(Failure::Cycle(cycle)) => (false, Some(cycle)),
+            RunEnd::Failed(_) => (false, None),
+            RunEnd::Finished | RunEnd::Interrupted => return Err(Unknown::Done),
+            RunEnd::Spent => return Err(Unknown::Endless(ENDLESS)),
+        };
+        Ok(IncrementEnd {
+            minors,
+            accepted,
+            cycle,
+            majors,
+            residuals,
+        })
+    }
+
+    /// What the judge found in the increment that was accepted last.
+    ///
+    /// # Errors
+    /// Where none was yet.
+    pub fn verdict(&self) -> Result<&Verdict, Unknown> {
+        self.frame
+            .state
+            .start
+            .verdict
+            .as_ref()
+            .ok_or(Unknown::NotJudged)
+    }
+
+    /// The relative residual that is known last: at the end of the major iteration where it ends here, else at its start.
+    ///
+    /// # Errors
+    /// Where nothing is solved yet.
+    pub fn residual(&self) -> Result<f64, Unknown> {
+        let event = self.event()?;
+        Ok(after(&event.outcome).unwrap_or(&event.before).relative)
+    }
+
+    /// By which factor a sliding node's T_max comes nearer to what its pressure gives, or goes away from it, in the next solve.
+    ///
+    /// # Errors
+    /// Where it does not slide with a lagging T_max now and after the next solve.
+    pub fn lag(&self, slave: usize) -> Result<f64, Unknown> {
+        let off = |look: &Look| -> Result<f64, Unknown> {
+            let record = look.record(slave)?;
+            let slides = record.decision.before == Mode::Sliding;
+            slides
+                .then_some(record.t_max - record.t_max_used)
+                .ok_or(Unknown::NoLag)
+        };
+        let lag = off(&self.ahead(1)?)? / off(self)?;
+        Some(lag)
+            .filter(|lag| lag.is_finite())
+            .ok_or(Unknown::NoLag)
+    }
+
+    /// The runs of the lesson's chart.
+    ///
+    /// # Errors
+    /// Where it has none.
+    pub fn runs(&self) -> Result<&Runs, Unknown> {
+        self.runs.as_deref().ok_or(Unknown::NoRuns)
+    }
+
+    /// Consistent states of the frozen problem of this major iteration.
+    ///
+    /// # Errors
+    /// Where the bodies cannot be condensed, or there are too many nodes for a census.
+    pub fn answers(&self) -> Result<usize, Unknown> {
+        let frozen = self.stepper().interface_problem();
+        let frozen = frozen.ok_or(Unknown::NotCondensed)?;
+        Ok(census(&frozen).map_err(Unknown::NoCensus)?.answers.len())
+    }
+
+    fn stepper(&self) -> Stepper {
+        let mut stepper = Stepper::new(self.model.clone());
+        stepper.restore(&self.frame.state);
+        stepper
+    }
+
+    /// The minor iteration that led here.
+    ///
+    /// # Errors
+    /// Where there is none.
+    pub fn event(&self) -> Result<&Event, Unknown> {
+        let event = self.frame.event.as_deref();
+        event.ok_or(Unknown::Unsolved)
+    }
+
+    /// What it found at a slave node.
+    ///
+    /// # Errors
+    /// Where there is none.
+    pub fn record(&self, slave: usize) -> Result<&ContactRecord, Unknown> {
+        let record = self.event()?.nodes.get(slave);
+        record.ok_or(Unknown::Failed)
+    }
+
+    /// The mode that a slave node had in it; at the start the one that it starts with.
+    pub fn before(&self, slave: usize) -> Mode {
+        let record = self.record(slave);
+        record.map_or(self.next(slave), |record| record.decision.before)
+    }
+
+    /// The mode that it takes next.
+    pub fn next(&self, slave: usize) -> Mode {
+        self.frame.state.nodes[slave].mode
+    }
+}
+
+/// Norms at the end of a major iteration, where an outcome is that.
+fn after(outcome: &Outcome) -> Option<&Norms> {
+    match outcome {
+        Outcome::Major { after, .. }
+        | Outcome::Refused { after, .. }
+        | Outcome::Increment { after, .. } => Some(after),
+        _ => None,
+    }
+}

@@ -1,0 +1,133 @@
+//! A lesson played through by the program itself: the check that every step can be reached and every question has one
+//! answer.
+
+use super::lesson::{Lesson, Step};
+use super::refusal::Unplayable;
+use super::tutor::{AnswerKind, Question, Tutor};
+use crate::action::Action;
+use crate::explain::names;
+use crate::record::command::{Command, Unit};
+use crate::session::Session;
+use std::sync::Arc;
+use stickslip_scene::format::SceneError;
+use stickslip_scene::number::four;
+
+/// Minor iterations within which a step of free mode must find its predictions.
+const MOST_STEPS: u32 = 1000;
+
+/// A question with the solver's answer and the replies, numbers filled in.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Answered {
+    /// Place of the step, from 0.
+    pub step: usize,
+    /// What was asked.
+    pub question: String,
+    /// The right answer, as one would type it.
+    pub answer: String,
+    /// The reply to the right answer.
+    pub then: String,
+    /// The reply to a wrong answer.
+    pub hint: String,
+}
+
+/// Plays a lesson with the right keys and answers.
+///
+/// # Errors
+/// The first step that cannot be done, with its line and column.
+pub fn play(lesson: &Arc<Lesson>) -> Result<Vec<Answered>, SceneError> {
+    let mut session = Session::new(lesson.scene.clone());
+    let mut tutor = Tutor::new(lesson.clone(), session.cursor(), session.frame());
+    let mut answered = Vec::new();
+    while let Some(step) = lesson.steps.get(tutor.at()) {
+        let at = tutor.at();
+        let fault = |why: Unplayable| lesson.fault(at, why.to_string());
+        if let Some(message) = tutor.fault() {
+            return Err(lesson.fault(at, message.to_owned()));
+        }
+        match step {
+            Step::Text(_) => {}
+            Step::Press { action, .. } => {
+                tutor
+                    .permits(action, session.cursor(), session.frame())
+                    .map_err(|why| fault(why.into()))?;
+                perform(action, &mut session).map_err(fault)?;
+                tutor.settled(session.cursor(), session.frame());
+                continue;
+            }
+            Step::Ask(_) => {
+                let word = tutor.solution().unwrap_or_default();
+                let question = tutor.question();
+                answered.push(Answered {
+                    step: at,
+                    question: tutor.text().to_owned(),
+                    answer: readable(&tutor, &word),
+                    then: question.map_or(String::new(), Question::reply_to_right),
+                    hint: question.map_or(String::new(), Question::reply_to_wrong),
+                });
+                tutor
+                    .answer(&word, 0, session.cursor(), session.frame())
+                    .map_err(|why| fault(why.into()))?;
+            }
+            Step::Predict { right, .. } => {
+                predict(*right, &mut tutor, &mut session).map_err(fault)?
+            }
+        }
+        tutor
+            .on(session.cursor(), session.frame())
+            .map_err(|why| fault(why.into()))?;
+    }
+    Ok(answered)
+}
+
+/// Carries out what a lesson wants pressed; what concerns the screen alone needs no session.
+fn perform(action: &Action, session: &mut Session) -> Result<(), Unplayable> {
+    if let Action::Session(command) = action {
+        session.submit(command.clone())?;
+        session.wait();
+    }
+    Ok(())
+}
+
+/// Predicts as Table 2 decides, until that was right often enough.
+fn predict(right: u32, tutor: &mut Tutor, session: &mut Session) -> Result<(), Unplayable> {
+    let step = Action::Session(Command::Forward {
+        unit: Unit::Minor,
+        count: 1,
+    });
+    for _ in 0..MOST_STEPS {
+        tutor.permits(&step, session.cursor(), session.frame())?;
+        let before = session.cursor();
+        perform(&step, session)?;
+        if session.cursor() == before {
+            break;
+        }
+        let next = session
+            .frame()
+            .event
+            .as_ref()
+            .and_then(|event| event.nodes.first());
+        if let Some(node) = next {
+            let word = names::mode(node.decision.next);
+            tutor.answer(word, 0, session.cursor(), session.frame())?;
+        }
+        if tutor.guess().is_some_and(|guess| guess.right >= right) {
+            return Ok(());
+        }
+    }
+    Err(Unplayable::FewIterations(right))
+}
+
+/// An answer as the check lists it.
+fn readable(tutor: &Tutor, word: &str) -> String {
+    match tutor.question() {
+        Some(question) if question.kind == AnswerKind::Choice => {
+            let index = word.parse::<usize>().unwrap_or(1) - 1;
+            let text = question.options.get(index).map_or("", String::as_str);
+            format!("{word} ({text})")
+        }
+        Some(question) if question.kind == AnswerKind::Number => {
+            word.parse().map_or(word.to_owned(), four)
+        }
+        _ => word.to_owned(),
+    }
+}

@@ -1,0 +1,367 @@
+//! What the solver can be asked for by name: in a lesson's questions, and between braces in its texts.
+//!
+//! Of a slave node, `NAME NODE`: `gap`, `F_n`, `F_t`, `T_max`, `slip` (numbers of the minor iteration), `lag` (the factor by
+//! which a lagging T_max comes nearer or goes away in the next one), `mode` (the one
+//! that it had), `next` (the one that it takes next), `reason` (why, in a sentence). Of the solve: `load`, `increment`
+//! (its size), `angle`, `tan` and `cohesion` (of the first slave node), `answers` (consistent states that the census
+//! finds), `minors` (minor iterations to the end of this increment), `majors` (all its major ones), `residual` (relative, known
+//! last) and `period` (of the cycle in which it ends), `verdict` (what the judge found in the last accepted increment, in a
+//! sentence). Of a run of the lesson's chart, `NAME PATH=VALUE …`: `error` (relative) and `factorizations`. Besides, `right` is the right answer of the question before, and `key ACTION` the key that does an action.
+
+use super::look::Look;
+use super::refusal::Unknown;
+use crate::action::{self, Context};
+use crate::explain::judged;
+use crate::explain::names;
+use crate::explain::report;
+use crate::explain::round_off::RoundOff;
+use stickslip_scene::number::four;
+
+/// Something that the solver can tell.
+#[derive(Debug, Clone, PartialEq)]
+pub enum LessonQuantity {
+    /// Of a slave node, by slave number.
+    Of(Nodal, usize),
+    /// Of the solve.
+    Solve(Whole),
+    /// Of the run of the lesson's chart with these settings.
+    Run(OfRun, Vec<(String, String)>),
+    /// A number that is written out.
+    Written(f64),
+    /// The right answer of the question.
+    Right,
+    /// A key.
+    Key(&'static str),
+}
+
+/// What a slave node has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Nodal {
+    /// Gap, length; negative is penetration.
+    Gap,
+    /// Normal force; compression is positive.
+    Fn,
+    /// Tangential force.
+    Ft,
+    /// The friction bound T_max, force.
+    TMax,
+    /// Slip, length.
+    Slip,
+    /// By which factor the lag of T_max changes in the next solve.
+    Lag,
+    /// Mode of the shown iteration.
+    Mode,
+    /// Mode of the next iteration.
+    Next,
+    /// The cell of Table 2 that fired, in words.
+    Reason,
+}
+
+/// What the solve has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Whole {
+    /// The load factor λ.
+    Load,
+    /// Size of the increment, in load factors.
+    Increment,
+    /// Angle of friction, degrees.
+    Angle,
+    /// Coefficient of friction.
+    Tan,
+    /// Cohesion, force.
+    Cohesion,
+    /// Number of consistent states.
+    Answers,
+    /// Minor iterations until they settle or cycle.
+    Minors,
+    /// Iterations of one period of the cycle.
+    Period,
+    /// Major iterations of this increment.
+    Majors,
+    /// The residual that is known last, relative.
+    Residual,
+    /// What the judge found, in a sentence.
+    Verdict,
+}
+
+/// What a run of a chart has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum OfRun {
+    /// How far it is from the truth, relative.
+    Error,
+    /// What it costs.
+    Factorizations,
+}
+
+stickslip_core::words! {
+    Nodal, ALL, word:
+    Gap "gap",
+    Fn "F_n",
+    Ft "F_t",
+    TMax "T_max",
+    Slip "slip",
+    Lag "lag",
+    Mode "mode",
+    Next "next",
+    Reason "reason",
+}
+
+stickslip_core::words! {
+    OfRun, ALL, word:
+    Error "error",
+    Factorizations "factorizations",
+}
+
+stickslip_core::words! {
+    Whole, ALL, word:
+    Load "load",
+    Increment "increment",
+    Angle "angle",
+    Tan "tan",
+    Cohesion "cohesion",
+    Answers "answers",
+    Minors "minors",
+    Period "period",
+    Majors "majors",
+    Residual "residual",
+    Verdict "verdict",
+}
+
+impl LessonQuantity {
+    /// Reads a quantity: `F_n beam.end`, `load`.
+    ///
+    /// # Errors
+    /// A message that says what is wrong and what would be right.
+    pub fn read(text: &str, context: &Context) -> Result<LessonQuantity, Unknown> {
+        let (word, rest) = text.split_once(' ').unwrap_or((text, ""));
+        let rest = rest.trim();
+        if let Some(nodal) = Nodal::of_word(word) {
+            return match rest {
+                "" => Err(Unknown::WhichNode(word.into())),
+                node => Ok(LessonQuantity::Of(nodal, action::exact(node, context)?)),
+            };
+        }
+        if let Some(of) = OfRun::of_word(word) {
+            return Ok(LessonQuantity::Run(of, settings(rest)?));
+        }
+        let whole = Whole::of_word(word);
+        match (word, whole, rest) {
+            ("key", _, action) => {
+                let entry = action::ACTIONS.iter().find(|entry| entry.name == action);
+                let key = entry.and_then(|entry| entry.keys.first());
+                let none = || Unknown::NoKey(action.into());
+                key.map(|key| LessonQuantity::Key(key)).ok_or_else(none)
+            }
+            ("right", _, "") => Ok(LessonQuantity::Right),
+            (_, Some(whole), "") => Ok(LessonQuantity::Solve(whole)),
+            (_, Some(_), _) => Err(Unknown::NotNodal(word.into())),
+            _ => Err(unknown(word)),
+        }
+    }
+
+    /// Its value, where it is a number.
+    ///
+    /// # Errors
+    /// A message where it is none, or where it is not known.
+    pub fn number(&self, look: &Look) -> Result<f64, Unknown> {
+        match self {
+            LessonQuantity::Of(nodal, slave) => {
+                let record = look.record(*slave)?;
+                let round_off = RoundOff::of(&look.model, &look.event()?.before);
+                match nodal {
+                    Nodal::Gap => Ok(round_off.length(record.gap)),
+                    Nodal::Fn => Ok(round_off.force(record.f_n)),
+                    Nodal::Ft => Ok(round_off.force(record.f_t)),
+                    Nodal::TMax => Ok(round_off.force(record.t_max)),
+                    Nodal::Slip => Ok(round_off.length(record.slip)),
+                    Nodal::Lag => look.lag(*slave),
+                    Nodal::Mode | Nodal::Next | Nodal::Reason => Err(Unknown::NoNumber),
+                }
+            }
+            LessonQuantity::Solve(whole) => whole_number(*whole, look),
+            LessonQuantity::Run(of, settings) => {
+                let run = look.runs()?.of(settings)?;
+                match of {
+                    OfRun::Error => run.error.ok_or(Unknown::NoError),
+                    OfRun::Factorizations => Ok(run.factorizations as f64),
+                }
+            }
+            LessonQuantity::Written(number) => Ok(*number),
+            LessonQuantity::Right | LessonQuantity::Key(_) => Err(Unknown::NoNumber),
+        }
+    }
+
+    /// Whether it is a number at all.
+    pub fn is_number(&self) -> bool {
+        match self {
+            LessonQuantity::Of(nodal, _) => {
+                !matches!(nodal, Nodal::Mode | Nodal::Next | Nodal::Reason)
+            }
+            LessonQuantity::Solve(whole) => *whole != Whole::Verdict,
+            LessonQuantity::Run(..) | LessonQuantity::Written(_) => true,
+            LessonQuantity::Right | LessonQuantity::Key(_) => false,
+        }
+    }
+
+    /// Whether the quantity needs more than the shown state: the decision, the verdict, or later iterations. Hints cannot
+    /// contain it.
+    fn looks_ahead(&self) -> bool {
+        match self {
+            LessonQuantity::Right => true,
+            LessonQuantity::Of(of, _) => matches!(of, Nodal::Lag | Nodal::Next | Nodal::Reason),
+            LessonQuantity::Solve(whole) => matches!(
+                whole,
+                Whole::Answers | Whole::Minors | Whole::Period | Whole::Majors | Whole::Verdict
+            ),
+            LessonQuantity::Run(..) | LessonQuantity::Written(_) | LessonQuantity::Key(_) => false,
+        }
+    }
+
+    /// As it stands in a text; `right` is what stands for the right answer.
+    fn text(&self, look: &Look, right: &str) -> Result<String, Unknown> {
+        match self {
+            LessonQuantity::Right => Ok(right.into()),
+            LessonQuantity::Key(key) => Ok((*key).into()),
+            LessonQuantity::Of(Nodal::Mode, slave) => Ok(names::mode(look.before(*slave)).into()),
+            LessonQuantity::Of(Nodal::Next, slave) => Ok(names::mode(look.next(*slave)).into()),
+            LessonQuantity::Of(Nodal::Reason, slave) => {
+                let record = look.record(*slave)?;
+                Ok(report::reason(&record.decision, record.t_max != 0.0))
+            }
+            LessonQuantity::Of(..) => self.number(look).map(four),
+            LessonQuantity::Solve(Whole::Verdict) => {
+                let worst = look
+                    .verdict()?
+                    .broken()
+                    .max_by(|a, b| a.amount.total_cmp(&b.amount));
+                Ok(match worst {
+                    Some(finding) => judged::finding(&look.model, finding),
+                    None => "every law holds".into(),
+                })
+            }
+            LessonQuantity::Solve(_) | LessonQuantity::Run(..) | LessonQuantity::Written(_) => {
+                self.number(look).map(four)
+            }
+        }
+    }
+}
+
+fn whole_number(whole: Whole, look: &Look) -> Result<f64, Unknown> {
+    let controls = &look.frame.state.controls;
+    let friction = || controls.friction.first().ok_or(Unknown::NoSlaves);
+    Ok(match whole {
+        Whole::Load => match &look.frame.event {
+            Some(event) => event.load_factor,
+            None => look.frame.state.load_factor,
+        },
+        Whole::Increment => controls.increment,
+        Whole::Angle => friction()?.angle,
+        Whole::Tan => friction()?.coefficient(),
+        Whole::Cohesion => friction()?.cohesion,
+        Whole::Answers => look.answers()? as f64,
+        Whole::Minors => f64::from(look.end()?.minors),
+        Whole::Period => match look.end()?.cycle {
+            Some(cycle) => f64::from(cycle.period),
+            None => return Err(Unknown::NoCycle),
+        },
+        Whole::Majors => f64::from(look.end()?.majors),
+        Whole::Residual => look.residual()?,
+        Whole::Verdict => return Err(Unknown::NoNumber),
+    })
+}
+
+/// A quantity, or a number as it is written.
+///
+/// # Errors
+/// As [`LessonQuantity::read`], and if the quantity is no number.
+pub fn number(text: &str, context: &Context) -> Result<LessonQuantity, Unknown> {
+    match text.trim().parse() {
+        Ok(number) => Ok(LessonQuantity::Written(number)),
+        Err(_) => match LessonQuantity::read(text.trim(), context)? {
+            quantity if quantity.is_number() => Ok(quantity),
+            _ => Err(Unknown::NoNumber),
+        },
+    }
+}
+
+/// The settings of a run: `PATH=VALUE PATH=VALUE`.
+///
+/// # Errors
+/// If they are none.
+pub fn settings(text: &str) -> Result<Vec<(String, String)>, Unknown> {
+    let setting = |word: &str| {
+        let (path, value) = word.split_once('=')?;
+        Some((path.to_owned(), value.to_owned()))
+    };
+    let settings: Option<Vec<_>> = text.split_whitespace().map(setting).collect();
+    let none = || Unknown::NoRun(text.to_owned());
+    settings
+        .filter(|settings| !settings.is_empty())
+        .ok_or_else(none)
+}
+
+fn unknown(word: &str) -> Unknown {
+    let all = Nodal::NAMES.into_iter().chain(Whole::NAMES);
+    Unknown::NoQuantity {
+        word: word.into(),
+        known: all.chain(OfRun::NAMES).chain(["right", "key"]).collect(),
+    }
+}
+
+/// A text with quantities in it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Template(Vec<Piece>);
+
+#[derive(Debug, Clone, PartialEq)]
+enum Piece {
+    Words(String),
+    Value(LessonQuantity),
+}
+
+impl Template {
+    /// Reads a text; what stands between braces is a quantity. Line breaks become blanks, since the screen wraps.
+    ///
+    /// # Errors
+    /// A message about the first quantity that there is not.
+    pub fn read(text: &str, context: &Context) -> Result<Template, Unknown> {
+        let mut pieces = Vec::new();
+        let words: Vec<&str> = text.split_whitespace().collect();
+        let text = words.join(" ");
+        let mut rest = text.as_str();
+        while let Some((words, after)) = rest.split_once('{') {
+            let (name, after) = after.split_once('}').ok_or(Unknown::Brace)?;
+            pieces.push(Piece::Words(words.into()));
+            pieces.push(Piece::Value(LessonQuantity::read(name.trim(), context)?));
+            rest = after;
+        }
+        pieces.push(Piece::Words(rest.into()));
+        Ok(Template(pieces))
+    }
+
+    /// Whether the quantity is allowed in a hint: it must neither look ahead nor contain `asked`, the answer.
+    ///
+    /// # Errors
+    /// [`Unknown::TellsAnswer`] if it is not allowed.
+    pub fn check_hint(&self, asked: Option<&LessonQuantity>) -> Result<(), Unknown> {
+        let tells = |piece: &Piece| match piece {
+            Piece::Value(quantity) => quantity.looks_ahead() || Some(quantity) == asked,
+            Piece::Words(_) => false,
+        };
+        match self.0.iter().any(tells) {
+            true => Err(Unknown::TellsAnswer),
+            false => Ok(()),
+        }
+    }
+
+    /// The text with its values.
+    ///
+    /// # Errors
+    /// A message where one of them is not known.
+    pub fn fill(&self, look: &Look, right: &str) -> Result<String, Unknown> {
+        let piece = |piece: &Piece| match piece {
+            Piece::Words(words) => Ok(words.clone()),
+            Piece::Value(quantity) => quantity.text(look, right),
+        };
+        self.0.iter().map(piece).collect()
+    }
+}

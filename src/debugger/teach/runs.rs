@@ -1,0 +1,98 @@
+//! The runs of a lesson's chart: what each setting costs, and how far it is from the truth, measured once.
+
+use super::refusal::Unknown;
+use std::sync::OnceLock;
+use stickslip_study::chart_file::Chart;
+use stickslip_study::chart_runs::Planned;
+use stickslip_study::precision::{self, Cost, Measure, Point, Precision};
+use stickslip_study::{Vary, Watch};
+
+/// The runs of a lesson's chart, which are measured when they are first asked for.
+#[derive(Debug)]
+pub struct Runs {
+    scene: String,
+    over: Vec<Vary>,
+    set: Vec<(String, String)>,
+    measured: OnceLock<Result<Precision, String>>,
+}
+
+impl Runs {
+    /// The product of these settings, over a scene with others set.
+    pub fn new(scene: String, over: Vec<Vary>, set: Vec<(String, String)>) -> Runs {
+        Runs {
+            scene,
+            over,
+            set,
+            measured: OnceLock::new(),
+        }
+    }
+
+    /// Measures them, if that is not done yet.
+    ///
+    /// # Errors
+    /// If a scene of them is unsound, or the chart could not be measured.
+    pub fn measure(&self) -> Result<&Precision, Unknown> {
+        let measured = self.measured.get_or_init(|| {
+            let mut chart = Chart::open(&self.scene, &self.over).map_err(|e| e.to_string())?;
+            chart.set.extend(self.set.iter().cloned());
+            let planned = Planned::new(chart).map_err(|e| e.to_string())?;
+            let measure = Measure {
+                cost: Cost::Factorizations,
+                target: None,
+                repeats: 1,
+            };
+            let watch = Watch {
+                stop: &|| false,
+                done: &|_| {},
+            };
+            precision::run(&planned, measure, &watch).map_err(|e| e.to_string())
+        });
+        let failed = |why: &String| Unknown::NoChart(why.clone());
+        measured.as_ref().map_err(failed)
+    }
+
+    /// The one run with these settings.
+    ///
+    /// # Errors
+    /// If there is none, or more than one.
+    pub fn of(&self, settings: &[(String, String)]) -> Result<&Point, Unknown> {
+        let points = self.measure()?.points.iter();
+        let mut found = points.filter(|point| {
+            let has =
+                |wanted: &(String, String)| point.settings.iter().any(|own| same(own, wanted));
+            settings.iter().all(has)
+        });
+        match (found.next(), found.next()) {
+            (Some(point), None) => Ok(point),
+            _ => {
+                let settings = settings
+                    .iter()
+                    .map(|(path, value)| format!("{path}={value}"));
+                Err(Unknown::NoRun(settings.collect::<Vec<_>>().join(" ")))
+            }
+        }
+    }
+
+    /// Whether this is the run with the fewest factorizations of all that are as near to the truth as is wanted.
+    ///
+    /// # Errors
+    /// As [`Runs::of`].
+    pub fn is_cheapest(&self, settings: &[(String, String)], error: f64) -> Result<bool, Unknown> {
+        let own = self.of(settings)?;
+        let near = |point: &&Point| point.error.is_some_and(|own| own <= error);
+        let mut points = self.measure()?.points.iter().filter(near);
+        let cheaper = |other: &Point| other.factorizations < own.factorizations;
+        Ok(near(&own) && !points.any(cheaper))
+    }
+}
+
+/// Whether a setting is the wanted one; numbers may be written as one likes.
+fn same(own: &(String, String), wanted: &(String, String)) -> bool {
+    let number = |text: &str| text.parse::<f64>().ok();
+    let values = (number(&own.1), number(&wanted.1));
+    let equal = match values {
+        (Some(a), Some(b)) => a == b,
+        _ => own.1 == wanted.1,
+    };
+    own.0 == wanted.0 && equal
+}

@@ -1,0 +1,666 @@
+//! A lesson being taken: a state machine that knows no terminal.
+//!
+//! It stands at a step and waits: for a word to go on, for an action, for an answer, or for predictions. Whoever owns
+//! the session asks it before every action ([`Tutor::permits`]), tells it when that is done ([`Tutor::settled`]), and
+//! draws what it has to say ([`Tutor::page`], [`Tutor::todo`]). Right answers come from a solver of its own, which
+//! starts from the frame that is shown.
+
+use super::guess::Guess;
+use super::lesson::{self, Answer, Ask, Lesson, Step, Truth};
+use super::look::Look;
+use super::quantity::Template;
+use super::refusal::{NotNow, Unknown};
+use crate::action::{self, Action, Whose};
+use crate::explain::names::{self, MODES, TABLE_2};
+use crate::explain::report;
+use crate::history::frame::Frame;
+use crate::record::command::Command;
+use std::sync::Arc;
+use stickslip_core::contact::table2::{Decision, Rule, Test, Tested};
+use stickslip_core::model::Mode;
+use stickslip_core::step::state::Status;
+use stickslip_scene::number::four;
+
+/// Wrong answers after which the right one is told.
+const TRIES: u32 = 2;
+
+/// Numbers that differ by less than this, relatively, are about the same.
+const CLOSE: f64 = 0.05;
+
+/// A lesson being taken.
+#[derive(Debug, Clone)]
+pub struct Tutor {
+    lesson: Arc<Lesson>,
+    /// The step at which it stands; past the last one the lesson is over.
+    at: usize,
+    text: String,
+    question: Option<Question>,
+    remark: Option<Remark>,
+    /// Answers and predictions given in this step.
+    given: u32,
+    /// Whether the step is done and only waits for a word to go on.
+    done: bool,
+    /// Whether the action that was wanted is being carried out.
+    pending: bool,
+    /// What is wrong with the lesson itself.
+    fault: Option<String>,
+    guess: Option<Guess>,
+    /// Questions and predictions that were right at once, and all of them.
+    right: u32,
+    asked: u32,
+}
+
+/// A question that waits, with its answer.
+#[derive(Debug, Clone)]
+pub struct Question {
+    /// What is typed for an answer.
+    pub kind: AnswerKind,
+    /// What can be chosen, where the answer is a choice.
+    pub options: Vec<String>,
+    right: Right,
+    /// The decision at the node in question, if any, and whether there is friction.
+    node: Option<(usize, Decision, bool)>,
+    /// Whether the user has not reached that decision yet.
+    is_ahead: bool,
+    hint: String,
+    then: String,
+    tries: u32,
+}
+
+/// How a question is answered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AnswerKind {
+    /// By a mode.
+    Mode,
+    /// By the number of an option.
+    Choice,
+    /// By a number.
+    Number,
+}
+
+#[derive(Debug, Clone, PartialEq)]
+enum Right {
+    Mode(Mode),
+    Choice(usize),
+    Number { value: f64, tolerance: f64 },
+}
+
+/// What was said to the last answer.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Remark {
+    /// What is told.
+    pub text: String,
+    /// Whether it went well.
+    pub good: bool,
+}
+
+/// A part of what the tutor says.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Paragraph {
+    /// Something to read.
+    Text(String),
+    /// A choice, by its number.
+    Option(usize, String),
+    /// What is told after a right answer.
+    Right(String),
+    /// What is told after a wrong one.
+    Wrong(String),
+}
+
+impl Tutor {
+    /// Begins a lesson; the frame is that of its scene's start.
+    pub fn new(lesson: Arc<Lesson>, cursor: usize, frame: &Frame) -> Self {
+        let mut tutor = Tutor {
+            lesson,
+            at: 0,
+            text: String::new(),
+            question: None,
+            remark: None,
+            given: 0,
+            done: false,
+            pending: false,
+            fault: None,
+            guess: None,
+            right: 0,
+            asked: 0,
+        };
+        tutor.enter(cursor, frame);
+        tutor
+    }
+
+    /// The lesson.
+    pub fn lesson(&self) -> &Lesson {
+        &self.lesson
+    }
+
+    /// Place of the present step, from 0; as many as there are steps when it is over.
+    pub fn at(&self) -> usize {
+        self.at
+    }
+
+    /// The present step; `None` when it is over.
+    pub fn step(&self) -> Option<&Step> {
+        self.lesson.steps.get(self.at)
+    }
+
+    /// Questions answered right at once, and questions asked.
+    pub fn score(&self) -> (u32, u32) {
+        (self.right, self.asked)
+    }
+
+    /// The question that waits for an answer.
+    pub fn question(&self) -> Option<&Question> {
+        self.question.as_ref().filter(|_| !self.done)
+    }
+
+    /// What the lesson's author did not see: a question without an answer, a number that is not known.
+    pub fn fault(&self) -> Option<&str> {
+        self.fault.as_deref()
+    }
+
+    /// Free mode, where the step is that.
+    pub fn guess(&self) -> Option<&Guess> {
+        self.guess.as_ref()
+    }
+
+    fn enter(&mut self, cursor: usize, frame: &Frame) {
+        self.question = None;
+        self.remark = None;
+        self.given = 0;
+        self.guess = None;
+        self.fault = None;
+        self.done = false;
+        let lesson = self.lesson.clone();
+        let look = Look {
+            model: lesson.model.clone(),
+            frame: frame.clone(),
+            runs: lesson.runs.clone(),
+        };
+        let (text, question) = match lesson.steps.get(self.at) {
+            None => return self.text = self.farewell(),
+            Some(Step::Text(text) | Step::Press { text, .. }) => (text, None),
+            Some(Step::Predict { text, .. }) => {
+                self.guess = Some(Guess::new(Whose::Selected, cursor));
+                (text, None)
+            }
+            Some(Step::Ask(ask)) => (&ask.text, Some(ask)),
+        };
+        let filled = text.fill(&look, "…");
+        let question = question.map(|ask| Question::ask(ask, &look)).transpose();
+        match (filled, question) {
+            (Ok(text), Ok(question)) => (self.text, self.question) = (text, question),
+            (Err(why), _) | (_, Err(why)) => {
+                let message = why.to_string();
+                self.text = format!("This step of the lesson does not work: {message}.");
+                self.fault = Some(message);
+                self.done = true;
+            }
+        }
+    }
+
+    fn farewell(&self) -> String {
+        let score = match (self.right, self.asked) {
+            (_, 0) => String::new(),
+            (right, asked) if right == asked => format!(" All {asked} answers right at once."),
+            (right, asked) => format!(" {right} of {asked} answers right at once."),
+        };
+        let names = lesson::list().iter().map(|lesson| lesson.name);
+        let next = match names.skip_while(|name| *name != self.lesson.name).nth(1) {
+            Some(next) => format!(" The next lesson is {next} (:lesson {next})."),
+            None => String::new(),
+        };
+        format!("This is the end of the lesson.{score} The scene is yours now.{next}")
+    }
+
+    /// Whether an action may be done now; true where the lesson wants it, and [`Tutor::settled`] or
+    /// [`Tutor::failed`] must follow.
+    ///
+    /// # Errors
+    /// A message that says what the lesson waits for.
+    pub fn permits(
+        &mut self,
+        action: &Action,
+        cursor: usize,
+        frame: &Frame,
+    ) -> Result<bool, NotNow> {
+        match self.step() {
+            None => return Ok(false),
+            Some(Step::Press { action: wanted, .. }) if action == wanted && !self.pending => {
+                self.pending = true;
+                return Ok(true);
+            }
+            _ => {}
+        }
+        let Action::Session(command) = action else {
+            return Ok(false);
+        };
+        let moves = matches!(command, Command::Forward { .. } | Command::Back { .. });
+        match (command, self.step()) {
+            (Command::Snapshot { .. } | Command::Export { .. } | Command::Journal(_), _) => {
+                Ok(false)
+            }
+            (_, Some(Step::Predict { .. })) if moves && !self.done => match &mut self.guess {
+                Some(guess) => guess.permits(action, cursor, frame).map(|()| false),
+                None => Ok(false),
+            },
+            _ => Err(NotNow::Waits(self.todo())),
+        }
+    }
+
+    /// The action that was permitted is done, and this is the frame that is shown now.
+    pub fn settled(&mut self, cursor: usize, frame: &Frame) {
+        if std::mem::take(&mut self.pending) {
+            self.at += 1;
+            self.enter(cursor, frame);
+        }
+    }
+
+    /// The action that was permitted could not be done.
+    pub fn failed(&mut self) {
+        self.pending = false;
+    }
+
+    /// Whether there is nothing to do but read.
+    pub fn is_read(&self) -> bool {
+        self.done || matches!(self.step(), Some(Step::Text(_)))
+    }
+
+    /// Goes on where there is nothing to do but read.
+    ///
+    /// # Errors
+    /// A message that says what the lesson waits for.
+    pub fn on(&mut self, cursor: usize, frame: &Frame) -> Result<(), NotNow> {
+        match self.step() {
+            None => Err(NotNow::Over),
+            Some(_) if self.is_read() => {
+                self.at += 1;
+                self.enter(cursor, frame);
+                Ok(())
+            }
+            Some(_) => Err(NotNow::Waits(self.todo())),
+        }
+    }
+
+    /// Takes an answer, or a prediction for the selected node.
+    ///
+    /// # Errors
+    /// A message where nothing is asked, or the word cannot be an answer.
+    pub fn answer(
+        &mut self,
+        word: &str,
+        selected: usize,
+        cursor: usize,
+        frame: &Frame,
+    ) -> Result<(), NotNow> {
+        if let (Some(guess), false) = (&mut self.guess, self.done) {
+            let model = &self.lesson.model;
+            let (good, text) = guess.predict(model, cursor, frame, selected, word)?;
+            self.asked += 1;
+            self.right += u32::from(good);
+            let wanted = match self.lesson.steps.get(self.at) {
+                Some(Step::Predict { right, .. }) => *right,
+                _ => 0,
+            };
+            let enough = guess.right >= wanted;
+            // There is nothing to predict after the last iteration.
+            let over = frame.state.status == Status::Finished && !guess.is_open(cursor, frame);
+            self.done = enough || over;
+            let mut text = format!("{} ({} of {wanted})", capital(&text), guess.right);
+            if over && !enough {
+                text += " The history ends here, and so do the predictions.";
+            }
+            self.remark = Some(Remark { text, good });
+            self.given += 1;
+            return Ok(());
+        }
+        if self.done {
+            return Err(NotNow::Answered);
+        }
+        let question = self.question.as_mut().ok_or(NotNow::NothingAsked)?;
+        let good = question.is_right(word)?;
+        question.tries += 1;
+        self.done = good || question.tries >= TRIES;
+        self.asked += u32::from(question.tries == 1);
+        self.right += u32::from(good && question.tries == 1);
+        let text = match (good, self.done) {
+            (true, _) => question.reply_to_right(),
+            (false, true) => format!("No. It is {}", question.explained()),
+            (false, false) => question.reply_to_wrong(),
+        };
+        self.remark = Some(Remark { text, good });
+        self.given += 1;
+        Ok(())
+    }
+
+    /// Whether this is what the step waits for.
+    pub fn wants(&self, action: &Action) -> bool {
+        matches!(self.step(), Some(Step::Press { action: wanted, .. }) if action == wanted)
+    }
+
+    /// Which page of the lesson is open: the step, and how many answers were given in it. Another one says something else.
+    pub fn edition(&self) -> (usize, u32) {
+        (self.at, self.given)
+    }
+
+    /// Whether decisions must not be seen yet, at any node: a question about them is asked, or comes before the next
+    /// action.
+    pub fn hides(&self) -> bool {
+        self.asks_about(|ask| {
+            let becomes = |(_, truth): &(_, Truth)| matches!(truth, Truth::Becomes(..));
+            let decides = match &ask.answer {
+                Answer::Mode(_) | Answer::Rule(_) => true,
+                Answer::Choice(choices) => choices.iter().any(becomes),
+                Answer::Number(..) => false,
+            };
+            ask.ahead == 0 && decides
+        })
+    }
+
+    /// Whether to hide the judge's verdict, for the same reasons.
+    pub fn hides_verdict(&self) -> bool {
+        let judges = |(_, truth): &(_, Truth)| matches!(truth, Truth::Obeys | Truth::Breaks(_));
+        self.asks_about(|ask| match &ask.answer {
+            Answer::Choice(choices) => ask.ahead == 0 && choices.iter().any(judges),
+            _ => false,
+        })
+    }
+
+    /// Whether such a question is open, or comes before the next action.
+    fn asks_about(&self, about: impl Fn(&Ask) -> bool) -> bool {
+        if self.done && self.question.is_some() {
+            return false;
+        }
+        let begin = match self.step() {
+            Some(Step::Press { .. }) if self.pending => self.at + 1,
+            Some(Step::Press { .. } | Step::Predict { .. }) | None => return false,
+            Some(_) => self.at,
+        };
+        self.lesson.steps[begin..]
+            .iter()
+            .take_while(|step| matches!(step, Step::Text(_) | Step::Ask(_)))
+            .any(|step| matches!(step, Step::Ask(ask) if about(ask)))
+    }
+
+    /// What the step says.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// What is on the page.
+    pub fn page(&self) -> Vec<Paragraph> {
+        let mut page = vec![Paragraph::Text(self.text.clone())];
+        if let Some(question) = &self.question {
+            let options = question.options.iter().enumerate();
+            page.extend(options.map(|(k, text)| Paragraph::Option(k + 1, text.clone())));
+        }
+        if let Some(Remark { text, good }) = &self.remark {
+            page.push(match good {
+                true => Paragraph::Right(text.clone()),
+                false => Paragraph::Wrong(text.clone()),
+            });
+        }
+        page
+    }
+
+    /// What to do next, in a few words.
+    pub fn todo(&self) -> String {
+        let on = "Space goes on".to_owned();
+        match (
+            self.step(),
+            self.question.as_ref().map(|question| question.kind),
+        ) {
+            (None, _) => "the lesson is over".into(),
+            (Some(_), _) if self.done => on,
+            (Some(Step::Text(_)), _) => on,
+            (Some(Step::Press { how, .. }), _) => how.clone(),
+            (Some(Step::Predict { .. }), _) => {
+                "s steps; then a, and f free, s sliding, x fixed".into()
+            }
+            (Some(Step::Ask(_)), Some(AnswerKind::Mode)) => {
+                "answer: a, then f free, s sliding, x fixed".into()
+            }
+            (Some(Step::Ask(_)), Some(AnswerKind::Choice)) => "answer: a, then the number".into(),
+            (Some(Step::Ask(_)), _) => "answer: a, then a number and Enter".into(),
+        }
+    }
+
+    /// The word that answers the question right; for the program that plays a lesson through.
+    pub fn solution(&self) -> Option<String> {
+        self.question().map(|question| match question.right {
+            Right::Mode(mode) => names::mode(mode).into(),
+            Right::Choice(index) => (index + 1).to_string(),
+            Right::Number { value, .. } => value.to_string(),
+        })
+    }
+}
+
+impl Question {
+    /// Gets the right answer from the solver. Texts shown before the answer are filled from the current state `now`.
+    fn ask(ask: &Ask, now: &Look) -> Result<Question, Unknown> {
+        let look = now.ahead(ask.ahead)?;
+        let found = |slave: usize| -> Result<_, Unknown> {
+            let record = look.record(slave)?;
+            Ok((slave, record.decision, record.t_max != 0.0))
+        };
+        let (kind, options, right, node) = match &ask.answer {
+            Answer::Mode(slave) => {
+                let node = found(*slave)?;
+                (
+                    AnswerKind::Mode,
+                    Vec::new(),
+                    Right::Mode(node.1.next),
+                    Some(node),
+                )
+            }
+            Answer::Rule(slave) => {
+                let node = found(*slave)?;
+                let (options, right) = cells(&node.1)?;
+                (
+                    AnswerKind::Choice,
+                    options,
+                    Right::Choice(right),
+                    Some(node),
+                )
+            }
+            Answer::Number(quantity, tolerance) => {
+                let value = quantity.number(&look)?;
+                if !value.is_finite() {
+                    return Err(Unknown::NotFinite);
+                }
+                let tolerance = *tolerance;
+                (
+                    AnswerKind::Number,
+                    Vec::new(),
+                    Right::Number { value, tolerance },
+                    None,
+                )
+            }
+            Answer::Choice(choices) => {
+                let texts = choices.iter().map(|(text, _)| text.fill(now, "…"));
+                let options = texts.collect::<Result<_, _>>()?;
+                (
+                    AnswerKind::Choice,
+                    options,
+                    Right::Choice(chosen(choices, &look)?),
+                    None,
+                )
+            }
+        };
+        let mut question = Question {
+            kind,
+            options,
+            right,
+            node,
+            is_ahead: ask.ahead > 0,
+            hint: ask.hint.fill(now, "…")?,
+            then: String::new(),
+            tries: 0,
+        };
+        let told = question.told();
+        question.then = ask.then.fill(&look, &told)?;
+        Ok(question)
+    }
+
+    fn is_right(&self, word: &str) -> Result<bool, NotNow> {
+        let word = word.trim();
+        match &self.right {
+            Right::Mode(right) => match action::mode(word) {
+                Some(mode) => Ok(mode == *right),
+                None => Err(NotNow::NoMode(word.into())),
+            },
+            Right::Choice(right) => match word.parse::<usize>() {
+                Ok(number) if (1..=self.options.len()).contains(&number) => {
+                    Ok(number - 1 == *right)
+                }
+                _ => Err(NotNow::NoOption(word.into(), self.options.len())),
+            },
+            Right::Number { value, tolerance } => {
+                // People write a minus sign and a decimal comma as their keyboard has it.
+                let plain = word.replace('−', "-").replace(',', ".");
+                let given: f64 = plain.parse().map_err(|_| NotNow::NoNumber(word.into()))?;
+                Ok((given - value).abs() <= tolerance * value.abs())
+            }
+        }
+    }
+
+    /// The right answer.
+    fn told(&self) -> String {
+        match &self.right {
+            Right::Mode(mode) => names::mode(*mode).into(),
+            Right::Choice(index) => format!("{}", index + 1),
+            Right::Number { value, .. } => four(*value),
+        }
+    }
+
+    /// The reply to the right answer.
+    pub(super) fn reply_to_right(&self) -> String {
+        format!("Right: {}", self.explained())
+    }
+
+    /// The reply to a wrong answer that permits another attempt.
+    pub(super) fn reply_to_wrong(&self) -> String {
+        format!("No. {}", self.help())
+    }
+
+    /// The right answer, and why.
+    fn explained(&self) -> String {
+        let mut text = self.told() + ".";
+        if let Some((_, decision, friction)) = &self.node {
+            text += &format!(
+                " {}. {}",
+                compared(decision),
+                report::reason(decision, *friction)
+            );
+        }
+        if !self.then.is_empty() {
+            text += &format!(" {}", self.then);
+        }
+        text
+    }
+
+    /// Help without the answer: where to look, with the numbers of the decision.
+    fn help(&self) -> String {
+        let mut text = match &self.node {
+            Some((_, decision, _)) if !self.is_ahead => format!(
+                "Look at the row {} of Table 2: {}.",
+                names::mode(decision.before),
+                compared(decision)
+            ),
+            _ => String::new(),
+        };
+        text += if text.is_empty() || self.hint.is_empty() {
+            ""
+        } else {
+            " "
+        };
+        text += &self.hint;
+        if text.is_empty() {
+            "Once more.".into()
+        } else {
+            text
+        }
+    }
+}
+
+/// Cells of Table 2 in the row of the mode before, and which of them fired.
+fn cells(decision: &Decision) -> Result<(Vec<String>, usize), Unknown> {
+    if matches!(decision.rule, Rule::Held | Rule::OffSurface) {
+        return Err(Unknown::NoCell);
+    }
+    let place = |mode: Mode| MODES.iter().position(|m| *m == mode).unwrap_or(0);
+    let cell = |(column, mode): (usize, &Mode)| {
+        let [first, second] = TABLE_2[place(decision.before)][column];
+        let and = if second.is_empty() { "" } else { " and " };
+        format!("{first}{and}{second}: {}", names::mode(*mode))
+    };
+    let options = MODES.iter().enumerate().map(cell).collect();
+    Ok((options, place(decision.next)))
+}
+
+/// The one choice that is true.
+fn chosen(choices: &[(Template, Truth)], look: &Look) -> Result<usize, Unknown> {
+    let mut right = Vec::new();
+    for (index, (_, truth)) in choices.iter().enumerate() {
+        let holds = match truth {
+            Truth::Known(known) => *known,
+            Truth::Cycles => look.end()?.cycle.is_some(),
+            Truth::Accepted => look.end()?.accepted,
+            Truth::Answers(count) => look.answers()? == *count,
+            Truth::Becomes(slave, mode) => look.record(*slave)?.decision.next == *mode,
+            Truth::Quadratic(wanted) => look.end()?.is_quadratic()? == *wanted,
+            Truth::Obeys => look.verdict()?.broken().next().is_none(),
+            Truth::Breaks(law) => look.verdict()?.broken().any(|found| found.law == *law),
+            Truth::Less(a, b) => a.number(look)? < (1.0 - CLOSE) * b.number(look)?,
+            Truth::Close(a, b) => {
+                let (a, b) = (a.number(look)?, b.number(look)?);
+                (a - b).abs() <= CLOSE * a.abs().max(b.abs())
+            }
+            Truth::Cheapest(settings, error) => look.runs()?.is_cheapest(settings, *error)?,
+        };
+        right.extend(holds.then_some(index));
+    }
+    match right[..] {
+        [index] => Ok(index),
+        [] => Err(Unknown::NoneTrue),
+        _ => Err(Unknown::SeveralTrue),
+    }
+}
+
+/// The inequalities that were tested, with their numbers.
+fn compared(decision: &Decision) -> String {
+    let side = |test: &Test| {
+        let sign = match test.value.partial_cmp(&test.bound) {
+            _ if test.tie => "ties with",
+            Some(std::cmp::Ordering::Less) => "<",
+            Some(std::cmp::Ordering::Greater) => ">",
+            _ => "=",
+        };
+        let (name, bound) = match test.tested {
+            Tested::NormalForce => ("F_n", "0".into()),
+            Tested::ShearForce => ("|F_t|", format!("|T_max| = {}", four(test.bound))),
+            Tested::Slip => ("slip·sgn T_max", "0".into()),
+            Tested::LeastFriction => (
+                "F_t against the slip",
+                format!("the least friction, {}", four(test.bound)),
+            ),
+            Tested::Room => ("way", format!("the room, {}", four(test.bound))),
+            Tested::Gap => ("g", "0".into()),
+            Tested::Pressure => ("F_n − k·g", "0".into()),
+            Tested::Drag => ("|F_t + k·slip|", format!("the limit, {}", four(test.bound))),
+            Tested::Cover => ("z", "0".into()),
+            Tested::Change => ("the change", "0".into()),
+            Tested::Own => ("what it compares", "0".into()),
+        };
+        format!("{name} = {} {sign} {bound}", four(test.value))
+    };
+    let tests: Vec<String> = decision.tests.iter().flatten().map(side).collect();
+    tests.join(", and ")
+}
+
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    match letters.next() {
+        Some(first) => first.to_uppercase().chain(letters).collect(),
+        None => String::new(),
+    }
+}

@@ -1,0 +1,221 @@
+//! The one way in which files are read: regular ones only, without ever waiting for somebody to write, and never more of
+//! one than a stated size.
+
+use crate::system;
+use std::fs::{File, Metadata, OpenOptions};
+use std::io::{self, Read};
+use std::path::{Component, Path, PathBuf};
+
+/// Most bytes of a table: a chart's, or a reference's.
+pub const TABLE_BYTES: u64 = 64 << 20;
+/// Most bytes of a snapshot or a journal; the largest scenes need a tenth of it.
+pub const RECORD_BYTES: u64 = 256 << 20;
+
+/// Why a file is not read.
+#[derive(Debug, thiserror::Error)]
+pub enum Unreadable {
+    /// The system cannot read it.
+    #[error("the file cannot be read: {0}")]
+    Failed(#[from] io::Error),
+    /// What it is instead of a file.
+    #[error("it is {0}, and only a regular file is read")]
+    NoFile(&'static str),
+    /// It is larger than what is read.
+    #[error("the file has more than {} MiB; {what}", most >> 20)]
+    TooLarge {
+        /// Most bytes that are read.
+        most: u64,
+        /// What to do instead, as a part of the message.
+        what: &'static str,
+    },
+    /// It is not text.
+    #[error("the file is not text in UTF-8")]
+    NoText {
+        /// Line of the first byte that is not text, from 1.
+        line: usize,
+        /// Its column, from 1.
+        column: usize,
+    },
+}
+
+impl Unreadable {
+    /// The message about a file: its name, the place in it where there is one, and why.
+    pub fn of(&self, file: &str) -> String {
+        match self {
+            Unreadable::NoText { line, column } => format!("{file}:{line}:{column}: {self}"),
+            _ => format!("{file}: {self}"),
+        }
+    }
+}
+
+/// The bytes of a file that has no more than so many of them; `what` tells why no sound one has.
+///
+/// # Errors
+/// If it is no regular file, cannot be read, or is larger.
+pub fn bytes(path: &Path, most: u64, what: &'static str) -> Result<Vec<u8>, Unreadable> {
+    let file = open(path, OpenOptions::new().read(true))?;
+    let mut bytes = Vec::new();
+    file.take(most + 1).read_to_end(&mut bytes)?;
+    match bytes.len() as u64 > most {
+        true => Err(Unreadable::TooLarge { most, what }),
+        false => Ok(bytes),
+    }
+}
+
+/// The path of a file that another one names, which lies beside it or in a folder below: what somebody sends can name no other
+/// file of the machine, be it by a link.
+///
+/// # Errors
+/// A message that says why it is none.
+pub fn beside(own: &Path, named: &str) -> Result<PathBuf, String> {
+    let parts = || Path::new(named).components();
+    if named.is_empty() || !parts().all(|part| matches!(part, Component::Normal(_))) {
+        return Err("the file must lie beside this one or in a folder below, named without .. and without a / at its start".to_owned());
+    }
+    let folder = own.parent().unwrap_or(Path::new(""));
+    let path = folder.join(named);
+    let told = |error: io::Error| Unreadable::Failed(error).to_string();
+    let real = path.canonicalize().map_err(told)?;
+    let here = if folder == Path::new("") {
+        Path::new(".")
+    } else {
+        folder
+    };
+    match real.starts_with(here.canonicalize().map_err(told)?) {
+        true => Ok(path),
+        false => Err("the file is a link to one outside of the folder of this one".to_owned()),
+    }
+}
+
+/// The first bytes of a file, so many at most.
+///
+/// # Errors
+/// If it is no regular file, or cannot be read.
+pub fn start(path: &Path, most: u64) -> Result<Vec<u8>, Unreadable> {
+    let file = open(path, OpenOptions::new().read(true))?;
+    let mut bytes = Vec::new();
+    file.take(most).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+/// The text of a file, without the mark with which some editors begin one.
+///
+/// # Errors
+/// As [`bytes`], and if it is not UTF-8.
+pub fn text(path: &Path, most: u64, what: &'static str) -> Result<String, Unreadable> {
+    utf8(bytes(path, most, what)?)
+}
+
+/// The text that some bytes are, without the mark with which some editors begin one.
+///
+/// # Errors
+/// If they are not UTF-8.
+pub fn utf8(bytes: Vec<u8>) -> Result<String, Unreadable> {
+    let mut text = String::from_utf8(bytes).map_err(|e| {
+        let good = &e.as_bytes()[..e.utf8_error().valid_up_to()];
+        let start = good.iter().rposition(|&b| b == b'\n').map_or(0, |k| k + 1);
+        Unreadable::NoText {
+            line: 1 + good.iter().filter(|&&b| b == b'\n').count(),
+            column: 1 + String::from_utf8_lossy(&good[start..]).chars().count(),
+        }
+    })?;
+    if text.starts_with(MARK) {
+        text.drain(..MARK.len_utf8());
+    }
+    Ok(text)
+}
+
+/// The mark.
+pub const MARK: char = '\u{feff}';
+
+/// Opens a regular file as the options say, without waiting.
+///
+/// # Errors
+/// If it is something else, or cannot be opened.
+pub fn open(path: &Path, options: &mut OpenOptions) -> Result<File, Unreadable> {
+    // To open some devices does something, so that is asked first; and what it is can have changed until it is open.
+    match std::fs::metadata(path) {
+        Ok(found) => regular(&found)?,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+        Err(error) => return Err(error.into()),
+    }
+    let file = system::set_nonblocking(options).open(path)?;
+    regular(&file.metadata()?)?;
+    Ok(file)
+}
+
+fn regular(found: &Metadata) -> Result<(), Unreadable> {
+    match system::special_kind(found.file_type()) {
+        None => Ok(()),
+        Some(kind) => Err(Unreadable::NoFile(kind)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rustix::fs::{CWD, Mode, mkfifoat};
+
+    #[test]
+    fn what_is_no_file_is_refused_without_waiting() {
+        let directory = tempfile::tempdir().unwrap();
+        let pipe = directory.path().join("pipe");
+        mkfifoat(CWD, &pipe, Mode::RUSR | Mode::WUSR).unwrap();
+        for (path, kind) in [
+            (pipe.as_path(), "a pipe"),
+            (directory.path(), "a directory"),
+            (Path::new("/dev/zero"), "a device"),
+        ] {
+            let refused = bytes(path, 10, "").unwrap_err();
+            assert!(
+                matches!(refused, Unreadable::NoFile(k) if k == kind),
+                "{refused}"
+            );
+        }
+        let missing = bytes(&directory.path().join("none"), 10, "").unwrap_err();
+        assert!(matches!(missing, Unreadable::Failed(_)));
+    }
+
+    #[test]
+    fn a_named_file_lies_beside_or_below() {
+        let directory = tempfile::tempdir().unwrap();
+        let folder = directory.path().join("own");
+        std::fs::create_dir_all(folder.join("deep")).unwrap();
+        for file in ["own/a", "own/deep/b", "other"] {
+            std::fs::write(directory.path().join(file), "").unwrap();
+        }
+        std::os::unix::fs::symlink("../other", folder.join("out")).unwrap();
+        std::os::unix::fs::symlink("deep/b", folder.join("in")).unwrap();
+        let own = folder.join("scene");
+        for named in ["a", "deep/b", "in"] {
+            assert_eq!(beside(&own, named), Ok(folder.join(named)));
+        }
+        let absolute = folder.join("a");
+        let wrong = [
+            "../other",
+            "deep/../a",
+            "out",
+            "",
+            "none",
+            absolute.to_str().unwrap(),
+        ];
+        for named in wrong {
+            assert!(beside(&own, named).is_err(), "{named}");
+        }
+    }
+
+    #[test]
+    fn size_text_and_mark() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("file");
+        std::fs::write(&path, "\u{feff}ten bytes").unwrap();
+        assert_eq!(text(&path, 12, "").unwrap(), "ten bytes");
+        assert!(matches!(
+            text(&path, 11, ""),
+            Err(Unreadable::TooLarge { .. })
+        ));
+        std::fs::write(&path, b"a\nb\xc3\xbc\xff").unwrap();
+        let place = text(&path, 12, "").unwrap_err();
+        assert!(matches!(place, Unreadable::NoText { line: 2, column: 3 }));
+    }
+}

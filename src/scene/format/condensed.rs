@@ -1,0 +1,362 @@
+//! An interface problem by itself: contacts, and a matrix that says how what carries them answers.
+//!
+//! Everything is in the frame of each contact: n is the outward normal of its master, t is n turned 90 degrees
+//! anticlockwise; displacements u and forces f are those of the slave node, f_n > 0 pushes it away. Components come in
+//! pairs, (n, t) of the first contact, of the second, and so on:
+//!
+//! ```text
+//! K (u − free λ) = load λ + f        or        u = free λ + W (load λ + f),        gap = gap_0 + u_n
+//! ```
+//!
+//! A RON file that begins with `Contacts(` is one, with the fields of [`Problem`]; [`Problem::text`] writes it.
+//! [`Problem::spec`] makes a scene of it that everything else understands: the contacts in a row over one endless floor
+//! y = 0, where u_n = u_y and u_t = −u_x.
+
+use super::contact_law::ContactLaw;
+use super::error::{Path, Step, at};
+use super::notation;
+use super::spec::{BodySpec, History, LoadSpec, Nodes, SlaveSpec, Spec, SurfaceSpec};
+use serde::de::Error;
+use serde::{Deserialize, Deserializer, Serialize};
+use stickslip_core::model::{Friction, InitialState, Mode, Settings};
+
+/// What a file with an interface problem begins with.
+pub const HEAD: &str = "Contacts";
+
+/// How what carries the contacts answers; row by row.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Matrix {
+    /// K, force by length.
+    Stiffness(Vec<Vec<f64>>),
+    /// W, length by force; may be singular.
+    Compliance(Vec<Vec<f64>>),
+}
+
+/// One contact.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Contact {
+    /// What its node is called.
+    pub id: String,
+    /// Distance to the master, undeformed; negative is penetration. Default: 0.
+    #[serde(default)]
+    pub gap: f64,
+    /// Default: smooth.
+    #[serde(default)]
+    pub friction: Friction,
+    /// Load on the node along n and t, at load factor 1. Default: none.
+    #[serde(default)]
+    pub load: [f64; 2],
+    /// Default: free.
+    #[serde(default)]
+    pub start: Mode,
+    /// Default: nothing.
+    #[serde(default)]
+    pub state: InitialState,
+}
+
+/// An interface problem.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename = "Contacts", deny_unknown_fields)]
+pub struct Problem {
+    /// What it is, in one line.
+    pub title: String,
+    /// What there is to say of it. Default: empty.
+    #[serde(default)]
+    pub about: String,
+    /// The contacts, in the order of the rows and columns of `matrix`.
+    pub contacts: Vec<Contact>,
+    /// How what carries them answers.
+    pub matrix: Matrix,
+    /// Displacement under no force, at load factor 1: two components a contact, or none at all. Default: none.
+    #[serde(default)]
+    pub free: Vec<f64>,
+    /// Distance of neighbours in the row, a length that gaps and motions are comparable with: tolerances of lengths are
+    /// parts of it. Default: the largest gap or free motion.
+    #[serde(default, deserialize_with = "positive")]
+    pub spacing: Option<f64>,
+    /// Default: one increment from 0 to 1.
+    #[serde(default)]
+    pub history: History,
+    /// How it is solved. Default: as for a scene.
+    #[serde(default)]
+    pub settings: Settings,
+}
+
+fn positive<'de, D: Deserializer<'de>>(reader: D) -> Result<Option<f64>, D::Error> {
+    let value = Option::<f64>::deserialize(reader)?;
+    match value {
+        Some(x) if !(x > 0.0 && x.is_finite()) => Err(D::Error::custom(format!(
+            "the spacing is {x:?}; it must be a positive length"
+        ))),
+        _ => Ok(value),
+    }
+}
+
+impl Problem {
+    /// Where a value of the scene that it is comes from: the path in the problem's own file.
+    pub(crate) fn origin(&self, of_scene: &Path) -> Path {
+        let Some((Step::Key(list), rest)) = of_scene.0.split_first() else {
+            return Path::default();
+        };
+        let (number, rest) = match rest.split_first() {
+            Some((Step::Index(number), rest)) => (*number, rest),
+            _ => (0, rest),
+        };
+        let (key, rest) = match rest.split_first() {
+            Some((Step::Key(key), rest)) => (key.as_str(), rest),
+            _ => ("", rest),
+        };
+        let after = |path: Path, rest: &[Step]| Path([&path.0[..], rest].concat());
+        let contact = |k: usize| at!["contacts", k];
+        // Rows and components come as (n, t) there and as (x, y) = (-t, n) here.
+        let turned: Vec<Step> = rest.iter().map(other_of_pair).collect();
+        match (list.as_str(), key) {
+            ("nodes", _) if number >= self.contacts.len() => at!["spacing"],
+            ("nodes", "id") => contact(number).then("id"),
+            ("nodes", "at") => contact(number).then("gap"),
+            ("nodes" | "slaves", "" | "on") => contact(number),
+            ("slaves", "nodes") => contact(number).then("id"),
+            ("slaves", field) => after(contact(number).then(field), rest),
+            ("loads", _) => {
+                let mut loaded =
+                    (0..self.contacts.len()).filter(|&k| load(&self.contacts[k]).is_some());
+                contact(loaded.nth(number).unwrap_or(0)).then("load")
+            }
+            ("bodies", "free") => after(at!["free"], &turned),
+            ("bodies", "nodes") => match rest.first() {
+                Some(Step::Index(k)) => contact(*k).then("id"),
+                _ => at!["contacts"],
+            },
+            ("bodies", "") => at!["matrix"],
+            ("bodies", _) => after(at!["matrix"], &turned),
+            ("surfaces" | "friction" | "materials" | "supports" | "monitors", _) => Path::default(),
+            _ => of_scene.clone(),
+        }
+    }
+
+    /// The scene that it is; it is checked when it is compiled.
+    pub fn spec(&self) -> Spec {
+        let spacing = self.length();
+        let ids = || self.contacts.iter().map(|contact| contact.id.clone());
+        let mut nodes: Vec<Nodes> = self
+            .contacts
+            .iter()
+            .enumerate()
+            .map(|(k, contact)| Nodes::Node {
+                id: contact.id.clone(),
+                at: (k as f64 * spacing, contact.gap),
+            })
+            .collect();
+        // Walked towards -x, so that the outward side is up.
+        nodes.push(Nodes::Line {
+            id: FLOOR.to_owned(),
+            from: (self.contacts.len() as f64 * spacing, 0.0),
+            to: (-spacing, 0.0),
+            elements: 1,
+            per_element: 2,
+        });
+        let (stiffness, compliance) = match &self.matrix {
+            Matrix::Stiffness(rows) => (turned(rows), Vec::new()),
+            Matrix::Compliance(rows) => (Vec::new(), turned(rows)),
+        };
+        Spec {
+            title: self.title.clone(),
+            about: self.about.clone(),
+            nodes,
+            bodies: vec![BodySpec::Matrix {
+                id: "matrix".to_owned(),
+                nodes: ids().collect(),
+                stiffness,
+                compliance,
+                free: turned_row(&self.free, 1.0),
+            }],
+            surfaces: vec![SurfaceSpec {
+                id: FLOOR.to_owned(),
+                along: FLOOR.to_owned(),
+                reverse: false,
+                endless: true,
+                smooth: false,
+                cut: false,
+            }],
+            slaves: self.contacts.iter().map(slave).collect(),
+            loads: self.contacts.iter().filter_map(load).collect(),
+            history: self.history.clone(),
+            settings: self.settings,
+            ..Spec::default()
+        }
+    }
+
+    /// A length that its gaps and motions are comparable with.
+    fn length(&self) -> f64 {
+        if let Some(spacing) = self.spacing {
+            return spacing;
+        }
+        let gaps = self.contacts.iter().map(|contact| contact.gap);
+        let most = gaps.chain(self.free.iter().copied()).map(f64::abs);
+        let most = most.fold(0.0, f64::max);
+        if most > 0.0 { most } else { 1.0 }
+    }
+}
+
+impl Problem {
+    /// The file that it is: comment lines first, then every field that differs from its default. Numbers are written so
+    /// that they are read back to the last bit.
+    pub fn text(&self, comments: &[String]) -> String {
+        let mut text = String::new();
+        for line in comments {
+            let line: String = line.chars().filter(|c| !c.is_control()).collect();
+            text += format!("// {line}").trim_end();
+            text.push('\n');
+        }
+        text += &format!("{HEAD}(\n    title: {},\n", quoted(&self.title));
+        if !self.about.is_empty() {
+            text += &format!("    about: {},\n", quoted(&self.about));
+        }
+        text += "    contacts: [\n";
+        for contact in &self.contacts {
+            text += &format!("        ({}),\n", contact.fields().join(", "));
+        }
+        text += "    ],\n";
+        let (form, rows) = match &self.matrix {
+            Matrix::Stiffness(rows) => ("Stiffness", rows),
+            Matrix::Compliance(rows) => ("Compliance", rows),
+        };
+        text += &format!("    matrix: {form}([\n");
+        for row in rows {
+            text += &format!("        [{}],\n", list(row));
+        }
+        text += "    ]),\n";
+        if self.free.iter().any(|&u| u != 0.0) {
+            text += &format!("    free: [{}],\n", list(&self.free));
+        }
+        if let Some(spacing) = self.spacing {
+            text += &format!("    spacing: {spacing:?},\n");
+        }
+        let once = History::default();
+        if self.history != once {
+            let (path, increment) = (list(&self.history.path), self.history.increment);
+            let of_legs = match self.history.increments.as_slice() {
+                [] => String::new(),
+                sizes => format!(", increments: [{}]", list(sizes)),
+            };
+            text += &format!("    history: (path: [{path}], increment: {increment:?}{of_legs}),\n");
+        }
+        let set = differences(&self.settings, &Settings::default());
+        if !set.is_empty() {
+            text += &format!("    settings: ({}),\n", set.join(", "));
+        }
+        text + ")\n"
+    }
+}
+
+impl Contact {
+    /// Its fields that differ from their defaults.
+    fn fields(&self) -> Vec<String> {
+        let mut fields = vec![format!("id: {}", quoted(&self.id))];
+        if self.gap != 0.0 {
+            fields.push(format!("gap: {:?}", self.gap));
+        }
+        let friction = differences(&self.friction, &Friction::default());
+        if !friction.is_empty() {
+            fields.push(format!("friction: ({})", friction.join(", ")));
+        }
+        if self.load.iter().any(|&f| f != 0.0) {
+            fields.push(format!("load: ({})", list(&self.load)));
+        }
+        if let (Some(start), true) = (ron(&self.start), self.start != Mode::default()) {
+            fields.push(format!("start: {start}"));
+        }
+        let state = differences(&self.state, &InitialState::default());
+        if !state.is_empty() {
+            fields.push(format!("state: ({})", state.join(", ")));
+        }
+        fields
+    }
+}
+
+/// Numbers apart by commas; 0 has no sign.
+fn list(numbers: &[f64]) -> String {
+    let words = numbers.iter().map(|&x| format!("{:?}", x + 0.0));
+    words.collect::<Vec<_>>().join(", ")
+}
+
+fn quoted(text: &str) -> String {
+    ron(&text).unwrap_or_default()
+}
+
+fn ron(value: &impl Serialize) -> Option<String> {
+    notation::strict_line(value).ok()
+}
+
+/// The fields of a flat struct that differ from those of another, as `name: value`.
+fn differences<T: Serialize>(value: &T, other: &T) -> Vec<String> {
+    // Pretty-printed, each field has a line.
+    let pretty = || ron::ser::PrettyConfig::new().indentor("").new_line("\n");
+    let lines = |value: &T| notation::strict_lines(value, pretty()).unwrap_or_default();
+    let (ours, theirs) = (lines(value), lines(other));
+    let pairs = ours.lines().zip(theirs.lines());
+    let differing = pairs.filter(|(ours, theirs)| ours != theirs);
+    differing
+        .map(|(ours, _)| ours.trim_end_matches(',').to_owned())
+        .collect()
+}
+
+const FLOOR: &str = "floor";
+
+fn slave(contact: &Contact) -> SlaveSpec {
+    SlaveSpec {
+        nodes: vec![contact.id.clone()],
+        on: vec![FLOOR.to_owned()],
+        start: contact.start,
+        friction: Some(contact.friction.into()),
+        law: ContactLaw::Hard,
+        stick: None,
+        area: None,
+        state: contact.state,
+    }
+}
+
+fn load(contact: &Contact) -> Option<LoadSpec> {
+    let [n, t] = contact.load;
+    (n != 0.0 || t != 0.0).then(|| LoadSpec::Force {
+        node: contact.id.clone(),
+        x: negative(t),
+        y: n,
+        scale: Vec::new(),
+    })
+}
+
+/// A matrix over (n, t) as one over (x, y) = (−t, n).
+fn turned(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let pairs = rows.chunks(2).flat_map(|pair| {
+        let x = pair.get(1).map(|row| turned_row(row, -1.0));
+        let y = pair.first().map(|row| turned_row(row, 1.0));
+        x.into_iter().chain(y)
+    });
+    pairs.collect()
+}
+
+/// A row over (n, t), times a sign, as one over (x, y).
+fn turned_row(row: &[f64], sign: f64) -> Vec<f64> {
+    let times = |value: f64| if sign < 0.0 { negative(value) } else { value };
+    let pairs = row.chunks(2).flat_map(|pair| {
+        let x = pair.get(1).map(|&t| negative(times(t)));
+        let y = pair.first().map(|&n| times(n));
+        x.into_iter().chain(y)
+    });
+    pairs.collect()
+}
+
+/// The other one of a pair, where the step is a number.
+fn other_of_pair(step: &Step) -> Step {
+    match step {
+        Step::Index(k) => Step::Index(k ^ 1),
+        key => key.clone(),
+    }
+}
+
+/// −x, and 0 for 0.
+fn negative(x: f64) -> f64 {
+    if x == 0.0 { 0.0 } else { -x }
+}

@@ -1,0 +1,216 @@
+//! `described!`: a type of the scene file, its walk and its part of the reference, from one definition.
+
+/// Whether an attribute says that a field, or every field, may be left out.
+macro_rules! has_default {
+    (serde($($inside:tt)*)) => { $crate::format::described::macros::has_default!(@in $($inside)*) };
+    (@in default $($rest:tt)*) => { true };
+    (@in $other:tt $($rest:tt)*) => { $crate::format::described::macros::has_default!(@in $($rest)*) };
+    (@in) => { false };
+    ($($other:tt)*) => { false };
+}
+
+/// Visits a field, as its mark asks.
+macro_rules! walk_field {
+    ($field:ident, $place:ident, $visit:ident) => {
+        $crate::format::described::Described::walk(
+            $field,
+            &$place.field(stringify!($field)),
+            $visit,
+        )
+    };
+    ($field:ident, $place:ident, $visit:ident, given) => {
+        if let Some(given) = $field {
+            $crate::format::described::Described::walk(
+                given,
+                &$place.field(stringify!($field)),
+                $visit,
+            )
+        }
+    };
+    ($field:ident, $place:ident, $visit:ident, name) => {
+        let _ = $field;
+    };
+    ($field:ident, $place:ident, $visit:ident, skip) => {
+        let _ = $field;
+    };
+}
+
+/// The field's text, where its mark says that it is the name.
+macro_rules! name_field {
+    ($field:ident, name) => {
+        Some($field.as_str())
+    };
+    ($field:ident $(, $other:ident)?) => {{
+        let _ = $field;
+        None
+    }};
+}
+
+/// Variants of an enum have fields in braces, or none.
+macro_rules! described {
+    ($(#[$($meta:tt)*])* $vis:vis struct $name:ident {
+        $($(#[$($part_meta:tt)*])* $part_vis:vis $part:ident : $type:ty $(=> $mark:ident)?),* $(,)?
+    }) => {
+        $(#[$($meta)*])*
+        $vis struct $name {
+            $($(#[$($part_meta)*])* $part_vis $part: $type),*
+        }
+
+        #[allow(non_snake_case)]
+        impl $crate::format::described::Described for $name {
+            fn walk(
+                &mut self,
+                place: &$crate::format::described::ScalarPlace<'_>,
+                visit: &mut $crate::format::described::Visit<'_>,
+            ) {
+                let $name { $($part),* } = self;
+                $($crate::format::described::macros::walk_field!($part, place, visit $(, $mark)?);)*
+            }
+            fn called(&self) -> Option<&str> {
+                let $name { $($part),* } = self;
+                [$($crate::format::described::macros::name_field!($part $(, $mark)?)),*].into_iter().flatten().next()
+            }
+            fn kind() -> String {
+                $crate::format::described::link(stringify!($name))
+            }
+            fn blank() -> String {
+                let every = false $(|| $crate::format::described::macros::has_default!($($meta)*))*;
+                $crate::format::described::blank_form("", &[$((
+                    stringify!($part),
+                    every $(|| $crate::format::described::macros::has_default!($($part_meta)*))*,
+                    <$type as $crate::format::described::Described>::blank(),
+                )),*])
+            }
+            fn shown(&self) -> String {
+                $crate::format::described::OWN_DEFAULTS.to_owned()
+            }
+            fn types(into: &mut Vec<$crate::format::described::Type>) -> Result<(), String> {
+                if $crate::format::described::known(into, stringify!($name)) {
+                    return Ok(());
+                }
+                let every = false $(|| $crate::format::described::macros::has_default!($($meta)*))*;
+                let $name { $($part),* } = &$crate::format::described::read_blank(&Self::blank())?;
+                into.push($crate::format::described::Type {
+                    name: stringify!($name),
+                    docs: stickslip_core::model::documented::text(&[$(stickslip_core::doc_line!($($meta)*)),*]),
+                    forms: vec![$crate::format::described::Form {
+                        name: None,
+                        docs: String::new(),
+                        fields: vec![$($crate::format::described::field_of(
+                            stringify!($part),
+                            &[$(stickslip_core::doc_line!($($part_meta)*)),*],
+                            $part,
+                            every $(|| $crate::format::described::macros::has_default!($($part_meta)*))*,
+                        )),*],
+                    }],
+                });
+                $(<$type as $crate::format::described::Described>::types(into)?;)*
+                Ok(())
+            }
+        }
+    };
+    ($(#[$($meta:tt)*])* $vis:vis enum $name:ident {
+        $($(#[$($form_meta:tt)*])* $form:ident $({
+            $($(#[$($part_meta:tt)*])* $part:ident : $type:ty $(=> $mark:ident)?),* $(,)?
+        })?),* $(,)?
+    }) => {
+        $(#[$($meta)*])*
+        $vis enum $name {
+            $($(#[$($form_meta)*])* $form $({
+                $($(#[$($part_meta)*])* $part: $type),*
+            })?),*
+        }
+
+        #[allow(non_snake_case)]
+        impl $crate::format::described::Described for $name {
+            fn walk(
+                &mut self,
+                place: &$crate::format::described::ScalarPlace<'_>,
+                visit: &mut $crate::format::described::Visit<'_>,
+            ) {
+                match self {
+                    $($name::$form $({ $($part),* })? => {
+                        $($($crate::format::described::macros::walk_field!($part, place, visit $(, $mark)?);)*)?
+                    })*
+                }
+            }
+            fn called(&self) -> Option<&str> {
+                match self {
+                    $($name::$form $({ $($part),* })? => {
+                        let called: &[Option<&str>] =
+                            &[$($($crate::format::described::macros::name_field!($part $(, $mark)?)),*)?];
+                        called.iter().copied().flatten().next()
+                    })*
+                }
+            }
+            fn kind() -> String {
+                $crate::format::described::link(stringify!($name))
+            }
+            fn blank() -> String {
+                let all = [$($crate::format::described::macros::blank_variant!($form $({
+                    $((
+                        stringify!($part),
+                        false $(|| $crate::format::described::macros::has_default!($($part_meta)*))*,
+                        <$type as $crate::format::described::Described>::blank(),
+                    )),*
+                })?)),*];
+                all[0].clone()
+            }
+            fn shown(&self) -> String {
+                let name = match self {
+                    $($name::$form { .. } => stringify!($form)),*
+                };
+                name.to_owned()
+            }
+            fn types(into: &mut Vec<$crate::format::described::Type>) -> Result<(), String> {
+                if $crate::format::described::known(into, stringify!($name)) {
+                    return Ok(());
+                }
+                let mut forms = Vec::new();
+                $(
+                    let blank = $crate::format::described::macros::blank_variant!($form $({
+                        $((
+                            stringify!($part),
+                            false $(|| $crate::format::described::macros::has_default!($($part_meta)*))*,
+                            <$type as $crate::format::described::Described>::blank(),
+                        )),*
+                    })?);
+                    let $name::$form $({ $($part),* })? = &$crate::format::described::read_blank(&blank)? else {
+                        return Err(format!("{blank}: read as another form"));
+                    };
+                    forms.push($crate::format::described::Form {
+                        name: Some(stringify!($form)),
+                        docs: stickslip_core::model::documented::text(
+                            &[$(stickslip_core::doc_line!($($form_meta)*)),*],
+                        ),
+                        fields: vec![$($($crate::format::described::field_of(
+                            stringify!($part),
+                            &[$(stickslip_core::doc_line!($($part_meta)*)),*],
+                            $part,
+                            false $(|| $crate::format::described::macros::has_default!($($part_meta)*))*,
+                        )),*)?],
+                    });
+                )*
+                into.push($crate::format::described::Type {
+                    name: stringify!($name),
+                    docs: stickslip_core::model::documented::text(&[$(stickslip_core::doc_line!($($meta)*)),*]),
+                    forms,
+                });
+                $($($(<$type as $crate::format::described::Described>::types(into)?;)*)?)*
+                Ok(())
+            }
+        }
+    };
+}
+
+/// The shortest text of a variant: its name alone where it has no fields.
+macro_rules! blank_variant {
+    ($form:ident) => {
+        stringify!($form).to_owned()
+    };
+    ($form:ident { $($fields:tt)* }) => {
+        $crate::format::described::blank_form(stringify!($form), &[$($fields)*])
+    };
+}
+
+pub(crate) use {blank_variant, described, has_default, name_field, walk_field};

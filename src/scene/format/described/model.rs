@@ -1,0 +1,139 @@
+//! What the scene file shares with the solver: types that are defined with
+//! [`documented!`](stickslip_core::model::documented) and listed here.
+
+use super::types::{Form, OWN_DEFAULTS, Type, known, lines_of, link, of_words, read_blank};
+use super::words::{of_word, word, words};
+use super::{Choice, Described, Scalar, ScalarPlace, Visit, field_of, one_of, types_of};
+use stickslip_core::model::documented::text;
+use stickslip_core::model::{
+    AtCycle, AtLimit, Axis, BoundUpdate, Component, Control, ElementKind, Friction, Geometry,
+    InitialGaps, InitialState, Jumps, Law, Mode, Plane, PointForce, Refactor, ResidualMethod,
+    Settings, SlipCount, Solver, Sticking, Strategy, Ties, Touch, Update,
+};
+
+macro_rules! fields {
+    ($name:ident { $($part:ident),* $(,)? }) => {
+        impl Described for $name {
+            fn walk(&mut self, place: &ScalarPlace<'_>, visit: &mut Visit<'_>) {
+                let $name { $($part),* } = self;
+                $($part.walk(&place.field(stringify!($part)), visit);)*
+            }
+            fn kind() -> String {
+                link($name::DOCS.name)
+            }
+            fn blank() -> String {
+                "()".to_owned()
+            }
+            fn shown(&self) -> String {
+                OWN_DEFAULTS.to_owned()
+            }
+            fn types(into: &mut Vec<Type>) -> Result<(), String> {
+                if known(into, $name::DOCS.name) {
+                    return Ok(());
+                }
+                let $name { $($part),* } = &read_blank(&Self::blank())?;
+                let fields = vec![$(field_of(stringify!($part), lines_of(&$name::DOCS, stringify!($part)), $part, true)),*];
+                let form = Form { name: None, docs: String::new(), fields };
+                into.push(Type { name: $name::DOCS.name, docs: text($name::DOCS.lines), forms: vec![form] });
+                $(types_of($part, into)?;)*
+                Ok(())
+            }
+        }
+    };
+}
+
+macro_rules! words {
+    ($($type:ident),* $(,)?) => {
+        $(
+            impl Choice for $type {
+                fn names(&self) -> &'static [&'static str] {
+                    words::<$type>()
+                }
+                fn name(&self) -> &'static str {
+                    word(self)
+                }
+                fn choose(&mut self, name: &str) -> bool {
+                    of_word(name).map(|value| *self = value).is_some()
+                }
+            }
+
+            impl Described for $type {
+                fn walk(&mut self, place: &ScalarPlace<'_>, visit: &mut Visit<'_>) {
+                    visit(place, Scalar::Choice(self));
+                }
+                fn kind() -> String {
+                    one_of(words::<$type>())
+                }
+                fn blank() -> String {
+                    words::<$type>().first().copied().unwrap_or_default().to_owned()
+                }
+                fn shown(&self) -> String {
+                    word(self).to_owned()
+                }
+                fn types(into: &mut Vec<Type>) -> Result<(), String> {
+                    if !known(into, $type::DOCS.name) {
+                        into.push(of_words(&$type::DOCS, words::<$type>()));
+                    }
+                    Ok(())
+                }
+            }
+        )*
+    };
+}
+
+fields!(Friction { angle, cohesion });
+fields!(InitialState {
+    f_n,
+    f_t,
+    t_max,
+    slip,
+    ratio
+});
+fields!(Settings {
+    strategy,
+    residual,
+    solver,
+    factor,
+    geometry,
+    point_force,
+    t_max,
+    slip,
+    sticking,
+    touch,
+    ties,
+    minors,
+    majors,
+    at_minor_limit,
+    at_cycle,
+    at_major_limit,
+    tolerance,
+    limit_load,
+    initial_gaps,
+    adjust_gap,
+    memory,
+});
+words!(
+    AtCycle,
+    AtLimit,
+    Axis,
+    Component,
+    BoundUpdate,
+    Geometry,
+    InitialGaps,
+    Control,
+    ElementKind,
+    Jumps,
+    Law,
+    Mode,
+    Plane,
+    PointForce,
+    Refactor,
+    ResidualMethod,
+    SlipCount,
+    Solver,
+    Sticking,
+    Strategy,
+    Ties,
+    Touch,
+    Update,
+);

@@ -1,0 +1,264 @@
+//! What is wrong with a scene, and where.
+
+use crate::shown;
+use crate::shown::first_of;
+use std::fmt;
+
+/// One step from a value of the scene file to a value inside it.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub enum Step {
+    /// A field of a struct, or a key of a map.
+    Key(String),
+    /// An element of a list or of a tuple, from 0.
+    Index(usize),
+}
+
+impl From<&str> for Step {
+    fn from(key: &str) -> Self {
+        Step::Key(key.to_owned())
+    }
+}
+
+impl From<usize> for Step {
+    fn from(index: usize) -> Self {
+        Step::Index(index)
+    }
+}
+
+/// The way from the root of a scene file to a value: `slaves[0].nodes[1]`. Names of enum variants are no steps.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Hash)]
+pub struct Path(pub Vec<Step>);
+
+impl Path {
+    /// This path and one step more.
+    pub fn then(&self, step: impl Into<Step>) -> Path {
+        let mut steps = self.0.clone();
+        steps.push(step.into());
+        Path(steps)
+    }
+
+    /// Whether `other` is this value or lies in it.
+    pub fn contains(&self, other: &Path) -> bool {
+        other.0.starts_with(&self.0)
+    }
+}
+
+impl fmt::Display for Path {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (k, step) in self.0.iter().enumerate() {
+            match step {
+                Step::Index(index) => write!(f, "[{index}]")?,
+                Step::Key(key) if k == 0 => f.write_str(&shortened(key))?,
+                Step::Key(key) => write!(f, ".{}", shortened(key))?,
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A [`Path`] from keys and indices: `at!["slaves", 0, "nodes", 1]`.
+#[macro_export]
+macro_rules! at {
+    ($($step:expr),* $(,)?) => {
+        $crate::format::error::Path(vec![$($crate::format::error::Step::from($step)),*])
+    };
+}
+pub use at;
+
+/// Why a scalar of a scene cannot be set.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum NotSet {
+    /// No scalar has this path; the message says what is near it.
+    #[error("{0}")]
+    NoScalar(String),
+    /// The value cannot be read as one of the scalar's kind.
+    #[error("{value} will not do; it must be {kind}")]
+    NoValue {
+        /// What was typed, in quotes.
+        value: String,
+        /// What would do: "a number", "one of lagged, consistent".
+        kind: String,
+    },
+}
+
+/// Something wrong at a place of a [`Spec`](super::Spec), before anybody has looked for its line.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fault {
+    /// The place.
+    pub path: Path,
+    /// What is wrong.
+    pub message: String,
+}
+
+impl Fault {
+    /// From the place and the message.
+    pub fn new(path: Path, message: impl Into<String>) -> Self {
+        Fault {
+            path,
+            message: message.into(),
+        }
+    }
+}
+
+/// A scene that cannot be used: one message, with the place in the file where there is one.
+///
+/// It prints as one line, `file:line:column: path: message`; a value that was set from outside is named instead of a
+/// line.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub struct SceneError {
+    /// Path of the file, or name of the built-in scene.
+    pub file: String,
+    /// Line and column, both from 1; columns count characters.
+    pub at: Option<(usize, usize)>,
+    /// The setting from outside to which the fault is due, as `friction.angle=95`.
+    pub set: Option<String>,
+    /// Path of the value, as `slaves[0].nodes[1]`; empty where no value is to blame.
+    pub path: String,
+    /// What is wrong, and what would be right.
+    pub message: String,
+}
+
+impl SceneError {
+    /// An error about a file as a whole.
+    pub fn whole(file: &str, message: impl Into<String>) -> Self {
+        SceneError {
+            file: file.to_owned(),
+            at: None,
+            set: None,
+            path: String::new(),
+            message: message.into(),
+        }
+    }
+}
+
+impl fmt::Display for SceneError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&shown::cut(&self.file, LONGEST_NAME))?;
+        if let Some((line, column)) = self.at {
+            write!(f, ":{line}:{column}")?;
+        }
+        f.write_str(": ")?;
+        if let Some(set) = &self.set {
+            write!(f, "--set {set}: ")?;
+        } else if !self.path.is_empty() {
+            write!(f, "{}: ", self.path)?;
+        }
+        f.write_str(&shown::cut(&self.message, LONGEST_MESSAGE))
+    }
+}
+
+/// `; did you mean "beam.end"?` where a candidate is near enough to be a slip of the finger, else nothing.
+pub fn did_you_mean<'a>(wrong: &str, candidates: impl IntoIterator<Item = &'a str>) -> String {
+    match nearest(wrong, candidates) {
+        Some(right) => format!("; did you mean {right:?}?"),
+        None => String::new(),
+    }
+}
+
+/// The candidate with the smallest edit distance, if that is at most a third of what differs.
+///
+/// Only what follows the common beginning counts: `settings.foo` is not near to `settings.slip`, long as they are.
+pub(crate) fn nearest<'a>(
+    wrong: &str,
+    candidates: impl IntoIterator<Item = &'a str>,
+) -> Option<&'a str> {
+    // Longer words are no slips, and the distance costs the square of the length.
+    const LONGEST: usize = 64;
+    let wrong: Vec<char> = wrong.chars().take(LONGEST + 1).collect();
+    let far = |right: &str| {
+        let right: Vec<char> = right.chars().take(LONGEST + 1).collect();
+        let same = wrong.iter().zip(&right).take_while(|(a, b)| a == b).count();
+        let (a, b) = (&wrong[same..], &right[same..]);
+        let most = a
+            .len()
+            .div_ceil(3)
+            .max(1)
+            .min(wrong.len().saturating_sub(1));
+        let possible = wrong.len().max(right.len()) <= LONGEST && a.len().abs_diff(b.len()) <= most;
+        possible.then(|| distance(a, b)).filter(|far| *far <= most)
+    };
+    candidates
+        .into_iter()
+        .filter_map(|right| far(right).map(|far| (far, right)))
+        .min_by_key(|(far, _)| *far)
+        .map(|(_, right)| right)
+}
+
+/// Edit distance in which swapping two neighbours counts as one change.
+fn distance(a: &[char], b: &[char]) -> usize {
+    let mut rows = vec![(0..=b.len()).collect::<Vec<usize>>()];
+    for i in 1..=a.len() {
+        let mut row = vec![i];
+        for j in 1..=b.len() {
+            let same = usize::from(a[i - 1] != b[j - 1]);
+            let mut best = (rows[i - 1][j] + 1)
+                .min(row[j - 1] + 1)
+                .min(rows[i - 1][j - 1] + same);
+            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
+                best = best.min(rows[i - 2][j - 2] + 1);
+            }
+            row.push(best);
+        }
+        rows.push(row);
+    }
+    rows[a.len()][b.len()]
+}
+
+/// A few names for a message, in quotes; the rest is counted.
+pub fn some_of<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+    let quoted = names.into_iter().map(|name| format!("{name:?}"));
+    match first_of(quoted, 8, ", ") {
+        none if none.is_empty() => "none".into(),
+        some => some,
+    }
+}
+
+/// Most characters of a message; lists of choices are half as long.
+const LONGEST_MESSAGE: usize = 1500;
+/// Most characters of a file's name in a message.
+const LONGEST_NAME: usize = 300;
+/// Most characters that a message repeats of a text from outside.
+const MOST: usize = 60;
+
+/// A text from outside for a message: quoted, and not longer than a line can bear.
+pub fn quoted(text: &str) -> String {
+    match text.char_indices().nth(MOST) {
+        Some((end, _)) => format!("{:?}…", &text[..end]),
+        None => format!("{text:?}"),
+    }
+}
+
+/// A text from outside, on one line and not longer than a line can bear.
+pub fn shortened(text: &str) -> String {
+    shown::cut(text, MOST)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_path_reads_like_the_file() {
+        assert_eq!(
+            at!["slaves", 0, "nodes", 1].to_string(),
+            "slaves[0].nodes[1]"
+        );
+        assert_eq!(Path::default().to_string(), "");
+    }
+
+    #[test]
+    fn slips_are_recognised_and_strangers_are_not() {
+        assert_eq!(
+            nearest("beam.edn", ["floor.end", "beam.end", "beam.start"]),
+            Some("beam.end")
+        );
+        assert_eq!(nearest("refin", ["refine"]), Some("refine"));
+        assert_eq!(nearest("wall", ["beam.end", "floor"]), None);
+        assert_eq!(nearest("settings.foo", ["settings.slip"]), None);
+        assert_eq!(nearest("z", ["x"]), None);
+        assert_eq!(nearest("", ["x"]), None);
+        let chars = |text: &str| text.chars().collect::<Vec<_>>();
+        assert_eq!(distance(&chars("abcd"), &chars("abdc")), 1);
+        assert_eq!(distance(&[], &chars("abc")), 3);
+    }
+}

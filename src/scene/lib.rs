@@ -1,0 +1,431 @@
+//! What to solve: from the scene file, as [`format`](mod@format) reads it, to the checked model made of it.
+//!
+//! - `compile`, with [`nodes`], `curves`, `blocks`, `geometry` and [`limits`]: from a [`Spec`] to a [`Model`], or to what
+//!   is wrong.
+//! - [`cost`]: what a scene costs in time and memory, and what it does without; [`memory`]: what there is of that.
+//! - [`base`]: a scene that is read once, to be had with many settings; [`solver`]: the solver of one, on all threads.
+//! - `deck`: decks of CalculiX and Abaqus; [`import`]: meshes of other programs.
+//! - [`attached`]: scenes that attached solvers told.
+//! - `pressed`: prescribed motions that compress a solid beyond the range of its law.
+//! - [`problems`]: interface problems that other programs have written.
+//! - [`builtin`]: the scenes that are part of the program; [`embedded`]: files that are.
+//! - [`shown`]: texts of others in a terminal, a table or a picture; [`number`]: numbers for a person.
+//! - [`calculix`]: the files of a finished CalculiX run.
+
+#![forbid(unsafe_code)]
+
+pub mod attached;
+pub mod base;
+pub mod bonds;
+pub mod builtin;
+pub mod calculix;
+pub mod cost;
+pub mod embedded;
+pub mod format;
+pub mod gaps;
+pub mod import;
+pub mod limits;
+pub mod memory;
+pub mod nodes;
+pub mod number;
+pub mod precision;
+pub mod problems;
+pub mod shown;
+pub mod solver;
+
+mod areas;
+mod blocks;
+mod compile;
+mod corners;
+mod curves;
+mod deck;
+mod geometry;
+mod pressed;
+
+use crate::format::condensed::Problem;
+use crate::format::kind;
+use crate::format::paths::Override;
+use crate::format::{Fault, SceneError, Spec, condensed, error, locate, paths, read, stored};
+pub use problems::siconos;
+use stickslip_core::model::Model;
+use stickslip_exchange::attach::message;
+use stickslip_exchange::matrix_market;
+use stickslip_platform::input;
+
+pub use compile::increments;
+use nodes::Names;
+
+/// A scene that has been read and found sound.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    /// Path of the file, or name of the built-in scene.
+    pub name: String,
+    /// The file as it stands; empty for a scene that came as a [`Spec`].
+    pub text: String,
+    /// What the author wrote, with what was set from outside.
+    pub spec: Spec,
+    /// What the solver uses.
+    pub model: Model,
+    /// What was passed over in the file, or read as something else: place and words.
+    pub remarks: Vec<String>,
+    names: Names,
+    overrides: Vec<Override>,
+    imports: bool,
+}
+
+impl Scene {
+    /// Opens a scene file, or a built-in scene by its name; a file of that name wins. `overrides` are pairs of a path
+    /// and a value, as `--set` gives them.
+    ///
+    /// # Errors
+    /// If there is no such scene, or it is unsound.
+    pub fn open(name: &str, overrides: &[(String, String)]) -> Result<Scene, SceneError> {
+        if !std::path::Path::new(name).is_file()
+            && let Some(builtin) = builtin::find(name)
+        {
+            return Scene::from_text(builtin.name, builtin.text, overrides);
+        }
+        if import::is_mesh(name) {
+            return Err(SceneError::whole(name, import::no_scene(name)));
+        }
+        if let Some(problem) = problems::opened::from_file(name, overrides) {
+            return Scene::assemble(name, "", problem?.spec(), overrides, Vec::new());
+        }
+        let text = match deck::is_called_so(name) {
+            true => {
+                deck::text(std::path::Path::new(name)).map_err(|error| read::unread(name, error))
+            }
+            false => read::text(name),
+        };
+        let text = text.map_err(|mut error| {
+            if !std::path::Path::new(name).exists() {
+                error.message = no_such_scene(name);
+            }
+            error
+        })?;
+        Scene::from_text(name, &text, overrides)
+    }
+
+    /// Opens a scene that the file `own` names: a file in the same folder or below, as for the files named in scenes and
+    /// decks, or a built-in scene.
+    ///
+    /// # Errors
+    /// A message with the reason.
+    pub fn named_in(own: &str, named: &str) -> Result<String, String> {
+        let own = std::path::Path::new(own);
+        let found = match input::beside(own, named.trim_start_matches("./")) {
+            Ok(path) if path.is_file() => return Ok(path.to_string_lossy().into_owned()),
+            Ok(_) => "it is no file".to_owned(),
+            Err(why) => why,
+        };
+        if builtin::find(named).is_some() {
+            return Ok(named.to_owned());
+        }
+        let names = builtin::list().iter().map(|scene| scene.name);
+        let (quoted, meant) = (error::quoted(named), error::did_you_mean(named, names));
+        Err(format!(
+            "no scene {quoted} beside this file or in a folder below, and none is built in{meant}: {found}"
+        ))
+    }
+
+    /// Reads a scene from a text, or what [`condensed`] and [`problems`] make one of; `name` is what messages call it, and the
+    /// files that it names lie beside a file of that name.
+    ///
+    /// # Errors
+    /// If the scene is unsound.
+    pub fn from_text(
+        name: &str,
+        text: &str,
+        overrides: &[(String, String)],
+    ) -> Result<Scene, SceneError> {
+        let source = Source {
+            name,
+            text,
+            overrides,
+        };
+        match FORMS.iter().find(|(recognise, _)| recognise(text)) {
+            Some((_, read)) => read(&source),
+            None => source.ron(),
+        }
+    }
+
+    /// Checks a scene that came without a text, as from a snapshot.
+    ///
+    /// # Errors
+    /// If the scene is unsound; there are no lines to name then.
+    pub fn from_spec(name: &str, spec: Spec) -> Result<Scene, SceneError> {
+        Scene::assemble(name, "", spec, &[], Vec::new())
+    }
+
+    /// The scene that an attached solver tells, under a name; `increment` is the one that it begins with, if it tells that.
+    ///
+    /// # Errors
+    /// What is unsound in it.
+    pub fn told(
+        name: &str,
+        told: &message::Scene,
+        increment: Option<f64>,
+    ) -> Result<Scene, SceneError> {
+        Scene::from_spec(name, attached::spec(told, increment))
+    }
+
+    /// Checks a scene that stands inside another file, at a path of its text; `name` is what messages call the file.
+    ///
+    /// # Errors
+    /// If the scene is unsound, with the place in that file.
+    pub fn within(
+        name: &str,
+        text: &str,
+        path: &error::Path,
+        mut spec: Spec,
+    ) -> Result<Scene, SceneError> {
+        let at = |fault: Fault| {
+            let whole = error::Path(path.0.iter().chain(&fault.path.0).cloned().collect());
+            placed(name, text, &[], Fault::new(whole, fault.message))
+        };
+        imported(&mut spec, name, at)?;
+        Scene::compiled(name, "", spec, Vec::new(), |_, fault| at(fault))
+    }
+
+    /// This scene with one scalar set, as `--set` or the debugger's `:set` does it.
+    ///
+    /// # Errors
+    /// If there is no such path, or the value is unsound there.
+    pub fn with(&self, path: &str, value: &str) -> Result<Scene, SceneError> {
+        self.with_all(&[(path.to_owned(), value.to_owned())])
+    }
+
+    /// This scene with several scalars set, one after the other.
+    ///
+    /// # Errors
+    /// As [`Scene::with`].
+    pub fn with_all(&self, changes: &[(String, String)]) -> Result<Scene, SceneError> {
+        let scene = Scene::assemble(
+            &self.name,
+            &self.text,
+            self.spec.clone(),
+            changes,
+            self.overrides.clone(),
+        )?;
+        Ok(Scene {
+            remarks: self.remarks.clone(),
+            imports: self.imports,
+            ..scene
+        })
+    }
+
+    /// The number of a node by any of its names: `ID.3`, `ID.end`, `ID@0.5`, or the id of a single node.
+    ///
+    /// # Errors
+    /// A message that tells which names there are.
+    pub fn node(&self, name: &str) -> Result<usize, String> {
+        self.names.node(name)
+    }
+
+    /// Whether its text names meshes in other files, which the spec has inside.
+    pub fn imports(&self) -> bool {
+        self.imports
+    }
+
+    /// All names by which nodes can be called, and what they stand for.
+    pub fn names(&self) -> &Names {
+        &self.names
+    }
+
+    /// What was set from outside, in order: path and value.
+    pub fn overrides(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.overrides
+            .iter()
+            .map(|o| (o.path.as_str(), o.value.as_str()))
+    }
+
+    fn assemble(
+        name: &str,
+        text: &str,
+        spec: Spec,
+        changes: &[(String, String)],
+        overrides: Vec<Override>,
+    ) -> Result<Scene, SceneError> {
+        let (spec, overrides) = changed(name, spec, changes, overrides)?;
+        let place = |overrides: &[Override], fault| placed(name, text, overrides, fault);
+        Scene::compiled(name, text, spec, overrides, place)
+    }
+
+    fn compiled(
+        name: &str,
+        text: &str,
+        spec: Spec,
+        overrides: Vec<Override>,
+        place: impl Fn(&[Override], Fault) -> SceneError,
+    ) -> Result<Scene, SceneError> {
+        let (model, names) = compile::compile(&spec).map_err(|fault| place(&overrides, fault))?;
+        Ok(Scene {
+            name: name.to_owned(),
+            text: text.to_owned(),
+            spec,
+            model,
+            remarks: Vec::new(),
+            names,
+            overrides,
+            imports: false,
+        })
+    }
+}
+
+/// A form of a scene's text: how it is recognised, and how it is read.
+type Form = (fn(&str) -> bool, fn(&Source) -> Result<Scene, SceneError>);
+
+/// The forms, in the order in which they are tried; every other text is read as RON.
+const FORMS: [Form; 5] = [
+    // The contact elements of a run begin as a deck does.
+    (
+        |text| deck::is_one(text) && !kind::is_contacts(text),
+        |source| source.deck(),
+    ),
+    (
+        |text| text.starts_with(matrix_market::MARK),
+        |source| source.problem(problems::market::read),
+    ),
+    (
+        |text| locate::head(text) == Some(stored::HEAD),
+        |source| source.problem(problems::stored::read),
+    ),
+    (siconos::is_one, |source| {
+        source.problem(problems::opened::siconos)
+    }),
+    (
+        |text| locate::head(text) == Some(condensed::HEAD),
+        |source| source.condensed(),
+    ),
+];
+
+/// The text of a scene, and what is set from outside.
+struct Source<'a> {
+    name: &'a str,
+    text: &'a str,
+    overrides: &'a [(String, String)],
+}
+
+impl Source<'_> {
+    fn problem(
+        &self,
+        read: fn(&str, &str, Option<f64>) -> Result<Problem, SceneError>,
+    ) -> Result<Scene, SceneError> {
+        let problem = read(
+            self.name,
+            self.text,
+            problems::opened::memory(self.overrides),
+        )?;
+        Scene::assemble(self.name, "", problem.spec(), self.overrides, Vec::new())
+    }
+
+    fn condensed(&self) -> Result<Scene, SceneError> {
+        let (name, text) = (self.name, self.text);
+        let problem = read::problem(name, text)?;
+        let place = |overrides: &[Override], fault: Fault| {
+            let own = Fault::new(problem.origin(&fault.path), fault.message.clone());
+            match placed(name, "", overrides, fault) {
+                set if set.set.is_some() => set,
+                _ => placed(name, text, &[], own),
+            }
+        };
+        // Its text is no scene's: no value that is set later could be found there.
+        let (spec, overrides) = changed(name, problem.spec(), self.overrides, Vec::new())?;
+        Scene::compiled(name, "", spec, overrides, place)
+    }
+
+    fn ron(&self) -> Result<Scene, SceneError> {
+        let (name, text) = (self.name, self.text);
+        let spec = read::spec(name, text)?;
+        let place = |overrides: &[Override], fault| placed(name, text, overrides, fault);
+        if spec.attached.is_some() {
+            let why = "it is the scene of an attached solver, which alone can solve it: stickslip attach -- COMMAND";
+            return Err(place(&[], Fault::new(error::at!["attached"], why)));
+        }
+        let (mut spec, overrides) = changed(name, spec, self.overrides, Vec::new())?;
+        let imports = imported(&mut spec, name, |fault| place(&overrides, fault))?;
+        let scene = Scene::compiled(name, text, spec, overrides, place)?;
+        Ok(Scene { imports, ..scene })
+    }
+
+    fn deck(&self) -> Result<Scene, SceneError> {
+        let name = self.name;
+        let read = deck::read(name, self.text)?;
+        let place = |overrides: &[Override], fault: Fault| {
+            let own = read.origin.of(&fault.path);
+            let own = own.map(|(file, at)| (file.to_owned(), at));
+            match (placed(name, "", overrides, fault), own) {
+                (fault, Some((file, at))) if fault.set.is_none() => SceneError {
+                    file,
+                    at: Some(at),
+                    ..fault
+                },
+                (fault, _) => fault,
+            }
+        };
+        let (spec, overrides) = changed(name, read.spec.clone(), self.overrides, Vec::new())?;
+        let mut scene = Scene::compiled(name, "", spec, overrides, place)?;
+        scene.remarks = read.remarks;
+        Ok(scene)
+    }
+}
+
+/// Reads what a scene imports, and tells whether it imports anything; `name` is the scene's file, and `place` finds what is wrong in it.
+fn imported(
+    spec: &mut Spec,
+    name: &str,
+    place: impl Fn(Fault) -> SceneError,
+) -> Result<bool, SceneError> {
+    import::resolve(spec, name).map_err(|refused| match refused {
+        import::Refused::Here(fault) => place(fault),
+        import::Refused::There(error) => error,
+    })
+}
+
+/// A scene's file with more set from outside.
+fn changed(
+    name: &str,
+    mut spec: Spec,
+    changes: &[(String, String)],
+    mut overrides: Vec<Override>,
+) -> Result<(Spec, Vec<Override>), SceneError> {
+    for (path, value) in changes {
+        let change = paths::set(&mut spec, path, value).map_err(|why| SceneError {
+            set: Some(error::shortened(&format!("{path}={value}"))),
+            ..SceneError::whole(name, why.to_string())
+        })?;
+        overrides.retain(|earlier| earlier.at != change.at);
+        overrides.push(change);
+    }
+    Ok((spec, overrides))
+}
+
+/// Finds out where a fault comes from: a setting from outside, or a line of the file.
+pub fn placed(file: &str, text: &str, overrides: &[Override], fault: Fault) -> SceneError {
+    let Fault { path, message } = fault;
+    // What was set last is the likelier culprit; a fault of a whole is due to a part of it that was set.
+    let blamed = |o: &&Override| path == o.at || (!path.0.is_empty() && path.contains(&o.at));
+    let set = overrides
+        .iter()
+        .rev()
+        .find(blamed)
+        .map(|o| error::shortened(&format!("{}={}", o.path, o.value)));
+    let at = (set.is_none() && !text.is_empty())
+        .then(|| locate::line_and_column(text, locate::locate(text, &path).start));
+    SceneError {
+        file: file.to_owned(),
+        at,
+        set,
+        path: path.to_string(),
+        message,
+    }
+}
+
+fn no_such_scene(name: &str) -> String {
+    let names = || builtin::list().iter().map(|scene| scene.name);
+    format!(
+        "there is no such file, and no built-in scene of that name{} (built-in: {})",
+        error::did_you_mean(name, names()),
+        names().collect::<Vec<_>>().join(", ")
+    )
+}
