@@ -65,6 +65,7 @@ pages! {
     paraview "paraview" "pages/paraview.md" "Results in ParaView, of each increment, major or minor iteration";
     command_line "command-line" "pages/command-line.md" "Subcommands, files, exit codes";
     keys "keys" "pages/keys.md" "Keys and actions of the debugger; branches, breakpoints, journals";
+    glossary "glossary" "pages/glossary.md" "Terms of this program and the paper, and what other codes call them";
     studies "studies" "pages/studies.md" "Many runs of a scene; the paper's figures";
     maps_and_charts "maps-and-charts" "pages/maps-and-charts.md" "Where it converges; random problems; error over cost";
     cluster "cluster" "pages/cluster.md" "Past one machine: shards, logs, merging; HyperQueue, Slurm, parallel";
