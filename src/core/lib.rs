@@ -12,69 +12,25 @@
 //!
 //! ```
 //! use std::sync::Arc;
-//! use stickslip_core::model::{
-//!     Body, BodyKind, Contact, Dofs, Factor, Form, Friction, InitialState, Jumps, Linear, Load, Model, Node, Settings,
-//!     Surface,
-//! };
+//! use stickslip_core::model::{BodyKind, Component, Contact, Form, Friction, Linear, Model, Surface};
 //! use stickslip_core::{Mode, Outcome, Stepper};
 //!
 //! let (spring, gap, push, press) = (100.0, 0.1, 30.0, 30.0);
-//! let node = |name: &str, at| Node { name: name.into(), at };
-//! let load = |dof, value| Load { dof, value, scale: Factor::default() };
-//! let model = Model {
-//!     title: "A node on two springs".into(),
-//!     about: String::new(),
-//!     nodes: vec![
-//!         node("slave", [0.0, gap]),
-//!         node("floor.1", [1.0, 0.0]),
-//!         node("floor.2", [-1.0, 0.0]),
-//!     ],
-//!     // f = K u, with K = spring times the unit matrix.
-//!     bodies: vec![Body {
-//!         name: "springs".into(),
-//!         nodes: vec![0],
-//!         kind: BodyKind::Linear(Linear {
-//!             form: Form::Stiffness,
-//!             entries: vec![(0, 0, spring), (1, 1, spring)],
-//!             bars: Vec::new(),
-//!         }),
-//!     }],
-//!     surfaces: vec![Surface { name: "floor".into(), elements: vec![vec![1, 2]], rigid: true, endless: true, smooth: Vec::new(), gives: Vec::new() }],
-//!     contacts: vec![Contact {
-//!         node: 0,
-//!         surfaces: vec![0],
-//!         friction: Friction { angle: 20.0, cohesion: 0.0 },
-//!         start: Mode::Free,
-//!         state: InitialState::default(),
-//!         overlap: 0.0,
-//!         bond: Default::default(),
-//!         area: None,
-//!         facing: None,
-//!     }],
-//!     // Only the slave node has unknowns: its x and its y.
-//!     dofs: Dofs {
-//!         first: vec![0, 2, 4],
-//!         count: vec![2, 2, 2],
-//!         equation: vec![Some(0), Some(1), None, None, None, None],
-//!         equations: 2,
-//!         inner: 0,
-//!     },
-//!     loads: vec![load(0, push), load(1, -press)],
-//!     pressures: Vec::new(),
-//!     prescribed: Vec::new(),
-//!     path: vec![0.0, 1.0],
-//!     increment: 0.5,
-//!     increments: Vec::new(),
-//!     least: None,
-//!     jumps: Jumps::default(),
-//!     control: Default::default(),
-//!     arc: Default::default(),
-//!     settings: Settings::default(),
-//!     monitors: Vec::new(),
-//!     budget: f64::INFINITY,
-//!     finished: None,
-//!     length: 1.0,
+//! let mut model = Model::builder("A node on two springs");
+//! let slave = model.node("slave", [0.0, gap]);
+//! let floor = [model.node("floor.1", [1.0, 0.0]), model.node("floor.2", [-1.0, 0.0])];
+//! // f = K u, with K = spring times the unit matrix.
+//! let springs = Linear {
+//!     form: Form::Stiffness,
+//!     entries: vec![(0, 0, spring), (1, 1, spring)],
+//!     bars: Vec::new(),
 //! };
+//! model.body("springs", vec![slave], BodyKind::Linear(springs));
+//! let floor = model.surface(Surface::endless("floor", floor));
+//! model.contact(Contact::new(slave, vec![floor], Friction { angle: 20.0, cohesion: 0.0 }));
+//! model.load(slave, Component::X, push).load(slave, Component::Y, -press);
+//! model.history(vec![0.0, 1.0], 0.5);
+//! let model = model.build()?;
 //!
 //! let mut stepper = Stepper::new(Arc::new(model));
 //! while let Some(event) = stepper.step() {
@@ -92,6 +48,7 @@
 //! assert_eq!(state.nodes[0].mode, Mode::Sliding);
 //! assert!((state.nodes[0].f_n - f_n).abs() < 1e-9);
 //! assert!((state.u[0] - (push - friction) / spring).abs() < 1e-9);
+//! # Ok::<(), stickslip_core::model::ModelError>(())
 //! ```
 //!
 //! A scene file is a shorter way to a model; the package `stickslip` reads those. Its examples show how to step a scene,

@@ -18,12 +18,12 @@ macro_rules! words {
             }
         }
     };
-    ($type:ident, $word:ident: $($variant:ident $text:literal),* $(,)?) => {
+    ($type:ident, $word:ident: $($variant:ident $(($($field:tt)*))? $text:literal),* $(,)?) => {
         impl $type {
             /// Its word in files and messages.
             pub const fn $word(self) -> &'static str {
                 match self {
-                    $($type::$variant => $text),*
+                    $($type::$variant $(($($field)*))? => $text),*
                 }
             }
         }

@@ -181,19 +181,6 @@ fn distance_to_segment(p: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
     distance(p, [a[0] + share * along[0], a[1] + share * along[1]])
 }
 
-/// Diagonal of the bounding box of nodes; 0 for none.
-pub(crate) fn diagonal<'a>(nodes: impl Iterator<Item = &'a Node>) -> f64 {
-    let mut corners: Option<([f64; 2], [f64; 2])> = None;
-    for Node { at, .. } in nodes {
-        let (low, high) = corners.get_or_insert((*at, *at));
-        for k in 0..2 {
-            low[k] = low[k].min(at[k]);
-            high[k] = high[k].max(at[k]);
-        }
-    }
-    corners.map_or(0.0, |(low, high)| distance(low, high))
-}
-
 /// Whether all nodes of a chain's elements lie on the line from the first to the last, one behind the other; `length` is
 /// the scene's.
 pub(crate) fn straight(nodes: &[Node], elements: &[Vec<usize>], length: f64) -> bool {

@@ -64,6 +64,9 @@ pub enum Rule {
     Found,
     /// An attached solver decided by rules of its own.
     Theirs,
+    /// A strategy outside this package decided; the text is its reason ([`crate::step::Stepper::with_strategy`]).
+    #[serde(skip_deserializing)]
+    Custom(Reason),
 }
 
 crate::words! {
@@ -95,7 +98,12 @@ crate::words! {
     Sweeps "sweeps",
     Found "found",
     Theirs "theirs",
+    Custom(..) "custom",
 }
+
+/// A sentence for a decision, such as "Fixed → sliding: a fixed node never opens at once."
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize)]
+pub struct Reason(pub &'static str);
 
 /// What an inequality of Table 2 compares.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]

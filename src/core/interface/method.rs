@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use std::any::Any;
 
 /// A strategy. Each method that it does not implement does what Table 2 does.
-pub trait Method: Sync {
+pub trait Method: Send + Sync {
     /// How T_max enters the equations; `wanted` is what the settings say.
     fn bound(&self, wanted: BoundUpdate) -> BoundUpdate {
         wanted

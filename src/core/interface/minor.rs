@@ -14,11 +14,11 @@ use crate::model::{Bond, BoundUpdate, Friction, Mode, Settings, SlipCount, Touch
 
 /// What modes are checked with.
 #[derive(Clone, Copy)]
-pub struct Check {
+pub struct Check<'a> {
     /// The settings in force; their strategy is never the ladder itself ([`crate::strategy::in_force`]).
     pub settings: Settings,
     /// What that strategy does.
-    pub method: &'static dyn Method,
+    pub method: &'a dyn Method,
     /// What counts as a tie.
     pub ties: Ties,
     /// Stiffness of the springs that compare lengths with forces (force by length).
@@ -32,7 +32,7 @@ pub fn check(
     kinematics: Option<&NodeKinematics>,
     given: NodeIncrement,
     friction: &Friction,
-    check: &Check,
+    check: &Check<'_>,
 ) -> (ContactRecord, bool) {
     let before = *node;
     let ties = &check.ties;
@@ -68,7 +68,7 @@ fn record(
     kinematics: Option<&NodeKinematics>,
     given: NodeIncrement,
     friction: &Friction,
-    check: &Check,
+    check: &Check<'_>,
 ) -> (ContactRecord, Option<f64>) {
     let (settings, ties) = (&check.settings, &check.ties);
     let (f_n, f_t) = (node.f_n + given.force[0], node.f_t + given.force[1]);

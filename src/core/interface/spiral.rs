@@ -82,11 +82,7 @@ impl Spiral {
 
 /// What the minor iterations from a problem's states come to, as far as can be told from `most` of them. `None` where they
 /// settle before, cannot be solved, or repeat no sequence of modes, and where T_max does not lag.
-pub fn spiral(
-    problem: &InterfaceProblem,
-    method: &'static dyn Method,
-    most: usize,
-) -> Option<Spiral> {
+pub fn spiral(problem: &InterfaceProblem, method: &dyn Method, most: usize) -> Option<Spiral> {
     if method.bound(problem.settings.t_max) != BoundUpdate::Lagged {
         return None;
     }
@@ -147,7 +143,7 @@ fn is_same(a: &ContactState, b: &ContactState) -> bool {
 /// A round of the modes at the end of a trail.
 fn of_round(
     trials: &mut Trials<'_>,
-    method: &'static dyn Method,
+    method: &dyn Method,
     trail: &[Vec<ContactState>],
     period: usize,
 ) -> Option<Spiral> {
@@ -270,7 +266,7 @@ fn radius(map: &[f64], size: usize) -> f64 {
 /// Whether the modes of a round repeat for ever while T_max spirals in from `away` of the fixed point.
 fn stays(
     trials: &mut Trials<'_>,
-    method: &'static dyn Method,
+    method: &dyn Method,
     round: &[Vec<ContactState>],
     spiral: &Spiral,
     (map, mut away): (&[f64], Vec<f64>),

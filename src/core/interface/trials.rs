@@ -54,7 +54,7 @@ impl<'a> Trials<'a> {
     pub fn minor(
         &mut self,
         nodes: &mut [ContactState],
-        method: &'static dyn Method,
+        method: &dyn Method,
     ) -> Option<(Vec<ContactRecord>, bool)> {
         let problem = self.problem;
         let given = self.given(nodes)?;

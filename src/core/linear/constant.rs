@@ -9,26 +9,15 @@
 //!
 //! The smallest thing that can be stepped, and an example of what another code has to give ([`crate::linear::source`]).
 
-use crate::contact::laws::{Finding, Law, Numbers, Scales, Verdict};
 use crate::contact::projection::SurfacePoint;
-use crate::contact::state::{ContactState, in_mode, largest_drift};
-use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
-use crate::interface::problem::{InterfaceProblem, ProblemNode};
-use crate::interface::response::InterfaceResponse;
-use crate::interface::rows;
+use crate::contact::state::ContactState;
+use crate::interface::kinematics::NodeKinematics;
 use crate::linalg::SolveError;
 use crate::linear::condensed::Condensed;
 use crate::linear::norms::Norms;
-use crate::linear::source::{At, Solved, Source};
+use crate::linear::source::{At, Source};
 use crate::linear::violation::violation;
-use crate::model::{
-    Axis, Bond, Contact, Dofs, Friction, Mode, Model, Node, Settings, Touch, Watched,
-};
-
-/// Estimated norm of the scaled inverse from which on the equations are suspected to be singular.
-const SUSPICIOUS: f64 = 1e12;
-/// What a relative amount against a law may be at least.
-const TOLERANCE: f64 = 1e-8;
+use crate::model::{Bond, Contact, Dofs, Friction, Mode, Model, Node, Settings, Touch};
 
 /// A constant interface: how the slave nodes resist, what loads them, and how far they are from their surfaces.
 #[derive(Debug, Clone, PartialEq)]
@@ -270,69 +259,6 @@ impl Source for ConstantSource {
         })
     }
 
-    fn solve(&mut self, at: &At<'_>) -> Solved {
-        self.condensed.clear();
-        for (k, state) in at.contacts.iter().enumerate() {
-            let over = self.kinematics(k);
-            let friction = state.friction(&at.friction[k]);
-            let rows = rows::rows(state, over.as_ref(), &friction, &at.settings, 0.0);
-            for (component, row) in rows.iter().enumerate() {
-                self.condensed.place_row(k, component, row, [0.0; 2]);
-            }
-        }
-        let Ok(norm) = self.condensed.solve() else {
-            return Solved::Not;
-        };
-        for k in 0..at.contacts.len() {
-            self.condensed.read(k, [0.0; 2]);
-        }
-        if norm > SUSPICIOUS {
-            Solved::NearlySingular
-        } else {
-            Solved::Well
-        }
-    }
-
-    fn increment(&self, contact: usize) -> NodeIncrement {
-        NodeIncrement {
-            force: self.condensed.forces[contact],
-            motion: self.condensed.motions[contact],
-        }
-    }
-
-    fn problem(&mut self, at: &At<'_>) -> Result<InterfaceProblem, SolveError> {
-        let nodes = at
-            .contacts
-            .iter()
-            .enumerate()
-            .map(|(k, state)| ProblemNode {
-                slave: k,
-                kinematics: self.kinematics(k),
-                prescribed: [0.0; 2],
-                friction: state.friction(&at.friction[k]),
-                state: *state,
-            });
-        let relation: InterfaceResponse = self.condensed.relation.clone();
-        Ok(InterfaceProblem {
-            nodes: nodes.collect(),
-            relation,
-            force: self.norms.scale,
-            length: self.interface.length,
-            spring: self.spring(),
-            settings: at.settings,
-        })
-    }
-
-    fn spring(&self) -> f64 {
-        let size = self.interface.load.len();
-        let diagonal = self.interface.stiffness.iter().step_by(size + 1);
-        diagonal.fold(0.0, |most: f64, k| most.max(k.abs()))
-    }
-
-    fn recover(&mut self) -> Solved {
-        Solved::Well
-    }
-
     fn advance(&mut self, w: &mut [f64]) -> f64 {
         let motions = self.condensed.motions.iter().flatten();
         w.iter_mut().zip(motions).fold(0.0, |most: f64, (w, v)| {
@@ -349,110 +275,20 @@ impl Source for ConstantSource {
         })
     }
 
-    fn position(&self, contact: usize) -> [f64; 2] {
-        [0.0, self.gaps[contact]]
+    fn slid(&self, contact: usize, at: &At<'_>) -> Option<f64> {
+        let along = 2 * contact + 1;
+        Some(at.accepted.u[along] - at.u[along])
     }
 
-    fn largest_motion(&self, w: &[f64]) -> f64 {
-        w.iter().fold(0.0, |most: f64, w| most.max(w.abs()))
+    fn length(&self) -> f64 {
+        self.interface.length
     }
 
-    fn moved(&self, w: &[f64], before: &[f64]) -> f64 {
-        let moved = w.iter().zip(before).map(|(w, before)| (w - before).abs());
-        moved.fold(0.0, f64::max)
+    fn condensed(&self) -> Option<&Condensed> {
+        Some(&self.condensed)
     }
 
-    fn judge(&mut self, at: &At<'_>, after: &Norms) -> Verdict {
-        let tolerance = (10.0 * at.chosen.tolerance).max(TOLERANCE);
-        let scales = Scales {
-            length: self.interface.length,
-            force: after.scale.max(f64::MIN_POSITIVE),
-            lengths: tolerance,
-            forces: tolerance,
-        };
-        let mut verdict = Verdict::default();
-        for (k, state) in at.contacts.iter().enumerate() {
-            let slip = at.accepted.u[2 * k + 1] - at.u[2 * k + 1];
-            let touched = at.accepted.contacts[k].mode != Mode::Free;
-            let gap = self.interface.gaps[k] + at.u[2 * k];
-            let laws = against(
-                state,
-                &at.friction[k],
-                gap,
-                touched.then_some(slip),
-                &scales,
-            );
-            for (law, amount) in laws {
-                verdict.add(Finding {
-                    law,
-                    slave: Some(k),
-                    amount,
-                    allowed: scales.allowed(law),
-                    numbers: Numbers {
-                        gap,
-                        slip: -slip,
-                        limit: at.friction[k].coefficient() * state.f_n + at.friction[k].cohesion,
-                        f_n: state.f_n,
-                        f_t: state.f_t,
-                    },
-                });
-            }
-        }
-        verdict.add(Finding {
-            law: Law::Balance,
-            slave: None,
-            amount: after.relative,
-            allowed: scales.allowed(Law::Balance),
-            numbers: Numbers::default(),
-        });
-        verdict
+    fn condensed_mut(&mut self) -> Option<&mut Condensed> {
+        Some(&mut self.condensed)
     }
-
-    fn monitor(&self, watched: &Watched, at: &At<'_>) -> f64 {
-        match watched {
-            Watched::Displacement { dof } => at.u[*dof],
-            Watched::Contact { slaves, axis } => {
-                let of = |&s: &usize| match axis {
-                    Axis::X => -at.contacts[s].f_t,
-                    Axis::Y => at.contacts[s].f_n,
-                };
-                slaves.iter().map(of).sum()
-            }
-            Watched::Modes { slaves, mode } => in_mode(at.contacts, slaves, *mode),
-            Watched::Drift { slaves } => largest_drift(at.contacts, slaves),
-            // Its contacts have no areas.
-            Watched::Pressure { .. } => 0.0,
-            Watched::Arc => at.arc,
-            Watched::Told { .. } => f64::NAN,
-            // Nothing is supported here.
-            Watched::Reaction { .. } => 0.0,
-        }
-    }
-}
-
-/// By how much a contact is against each law, relative to the scales; `slip` is what it has slipped in the increment, if it
-/// touched all the while.
-fn against(
-    state: &ContactState,
-    friction: &Friction,
-    gap: f64,
-    slip: Option<f64>,
-    scales: &Scales,
-) -> Vec<(Law, f64)> {
-    let (length, force) = (scales.length, scales.force);
-    let pressed = state.f_n.hypot(state.f_t) > scales.forces * force;
-    if !pressed {
-        return vec![(Law::Penetration, (-gap / length).max(0.0))];
-    }
-    let bound = friction.coefficient() * state.f_n + friction.cohesion;
-    let mut laws = vec![
-        (Law::Gap, gap.abs() / length),
-        (Law::Tension, (-state.f_n / force).max(0.0)),
-        (Law::Cone, ((state.f_t.abs() - bound) / force).max(0.0)),
-    ];
-    if let Some(slip) = slip.filter(|slip| slip.abs() > scales.near()) {
-        let short = bound - slip.signum() * state.f_t;
-        laws.push((Law::Slip, (short / force).max(0.0)));
-    }
-    laws
 }

@@ -5,19 +5,26 @@
 //! minor iterations have settled, the source takes the forces back: it moves its bodies, follows the slave nodes over
 //! their surfaces, and linearises anew. Whoever can do this can be stepped.
 
-use crate::contact::laws::Verdict;
+use crate::contact::laws::{Finding, Law, Numbers, Scales, Verdict};
 use crate::contact::projection::SurfacePoint;
-use crate::contact::state::ContactState;
+use crate::contact::state::{ContactState, in_mode, largest_drift};
 use crate::fem::deformation::Deformation;
 use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
 use crate::interface::minor_history::Input;
-use crate::interface::problem::InterfaceProblem;
+use crate::interface::problem::{InterfaceProblem, ProblemNode};
+use crate::interface::rows;
 use crate::linalg::SolveError;
+use crate::linear::condensed::Condensed;
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
 use crate::linear::stability::Stability;
-use crate::model::{Friction, Model, Settings, Watched};
+use crate::model::{Axis, Friction, Mode, Model, Settings, Watched};
 use std::sync::Arc;
+
+/// Estimated norm of the scaled inverse from which on the equations are suspected to be singular.
+const SUSPICIOUS: f64 = 1e12;
+/// What a relative amount against a law may be at least.
+const TOLERANCE: f64 = 1e-8;
 
 /// The state about which a source linearises.
 #[derive(Debug, Clone, Copy)]
@@ -138,6 +145,9 @@ pub enum Solved {
 /// What deforms under the interface.
 ///
 /// Everything but the methods' arguments is workspace: it can be made again from a state, and is never saved.
+///
+/// A source that condenses its bodies to the interface keeps a [`Condensed`] and returns it from [`Source::condensed`]; it then
+/// needs the six methods without a body here. [`crate::linear::constant`] is the smallest example.
 pub trait Source: Send {
     /// Its own unknowns before the first increment.
     fn start(&self) -> Vec<f64>;
@@ -210,8 +220,45 @@ pub trait Source: Send {
     /// How a contact stands over its surface in the last linearisation; `None` where it has no surface.
     fn kinematics(&self, contact: usize) -> Option<NodeKinematics>;
 
+    /// The response of the interface in the last linearisation. `None` for a source that solves by itself.
+    fn condensed(&self) -> Option<&Condensed> {
+        None
+    }
+
+    /// The same, to solve with.
+    fn condensed_mut(&mut self) -> Option<&mut Condensed> {
+        None
+    }
+
     /// One minor iteration: solves for the modes of the contacts.
-    fn solve(&mut self, at: &At<'_>) -> Solved;
+    fn solve(&mut self, at: &At<'_>) -> Solved {
+        if let Some(condensed) = self.condensed_mut() {
+            condensed.clear();
+        }
+        for (k, state) in at.contacts.iter().enumerate() {
+            let over = self.kinematics(k);
+            let friction = state.friction(&at.friction[k]);
+            let rows = rows::rows(state, over.as_ref(), &friction, &at.settings, 0.0);
+            if let Some(condensed) = self.condensed_mut() {
+                for (component, row) in rows.iter().enumerate() {
+                    condensed.place_row(k, component, row, [0.0; 2]);
+                }
+            }
+        }
+        let Some(condensed) = self.condensed_mut() else {
+            return Solved::Not;
+        };
+        let Ok(norm) = condensed.solve() else {
+            return Solved::Not;
+        };
+        for k in 0..at.contacts.len() {
+            condensed.read(k, [0.0; 2]);
+        }
+        match norm > SUSPICIOUS {
+            true => Solved::NearlySingular,
+            false => Solved::Well,
+        }
+    }
 
     /// What the last solve adds to the load factor where that is an unknown ([`At::along`]).
     fn load_step(&self) -> f64 {
@@ -224,16 +271,55 @@ pub trait Source: Send {
     }
 
     /// What the last solve gave at a contact.
-    fn increment(&self, contact: usize) -> NodeIncrement;
+    fn increment(&self, contact: usize) -> NodeIncrement {
+        let of = |condensed: &Condensed| NodeIncrement {
+            force: condensed.forces[contact],
+            motion: condensed.motions[contact],
+        };
+        self.condensed().map_or(NodeIncrement::default(), of)
+    }
 
     /// The interface problem of the last linearisation.
     ///
     /// # Errors
     /// [`SolveError`] where the bodies cannot be condensed.
-    fn problem(&mut self, at: &At<'_>) -> Result<InterfaceProblem, SolveError>;
+    fn problem(&mut self, at: &At<'_>) -> Result<InterfaceProblem, SolveError> {
+        let force = self.norms(at).scale;
+        let condensed = self.condensed().ok_or(SolveError::Singular)?;
+        let nodes = at
+            .contacts
+            .iter()
+            .enumerate()
+            .map(|(k, state)| ProblemNode {
+                slave: k,
+                kinematics: self.kinematics(k),
+                prescribed: [0.0; 2],
+                friction: state.friction(&at.friction[k]),
+                state: *state,
+            });
+        Ok(InterfaceProblem {
+            nodes: nodes.collect(),
+            relation: condensed.relation.clone(),
+            force,
+            length: self.length(),
+            spring: self.spring(),
+            settings: at.settings,
+        })
+    }
+
+    /// The unit of length for tolerances: the size of the scene.
+    fn length(&self) -> f64 {
+        1.0
+    }
 
     /// A stiffness of the size of the interface's, by which lengths compare with forces (force by length).
-    fn spring(&self) -> f64;
+    fn spring(&self) -> f64 {
+        self.condensed().map_or(1.0, |condensed| {
+            let diagonal = condensed.relation.response.iter();
+            let diagonal = diagonal.step_by(2 * condensed.forces.len() + 1);
+            diagonal.fold(0.0, |most: f64, k| most.max(k.abs()))
+        })
+    }
 
     /// Whether [`At::brake`] holds sliding back.
     fn brakes(&self) -> bool {
@@ -246,7 +332,9 @@ pub trait Source: Send {
     }
 
     /// Finds what the last solve does to the bodies.
-    fn recover(&mut self) -> Solved;
+    fn recover(&mut self) -> Solved {
+        Solved::Well
+    }
 
     /// Takes the forces of the last minor iteration back: moves the bodies on. Returns the largest displacement.
     fn advance(&mut self, u: &mut [f64]) -> f64;
@@ -274,16 +362,69 @@ pub trait Source: Send {
     }
 
     /// Current position of the slave node of a contact.
-    fn position(&self, contact: usize) -> [f64; 2];
+    fn position(&self, contact: usize) -> [f64; 2] {
+        let over = |k: NodeKinematics| [0, 1].map(|axis| k.foot[axis] + k.gap * k.normal[axis]);
+        self.kinematics(contact).map_or([0.0; 2], over)
+    }
 
     /// Largest displacement of a state; a rotation counts as the displacement that it makes over the scene's length.
-    fn largest_motion(&self, u: &[f64]) -> f64;
+    fn largest_motion(&self, u: &[f64]) -> f64 {
+        u.iter().fold(0.0, |most: f64, u| most.max(u.abs()))
+    }
 
     /// Largest displacement between two states (length).
-    fn moved(&self, u: &[f64], before: &[f64]) -> f64;
+    fn moved(&self, u: &[f64], before: &[f64]) -> f64 {
+        let moved = u.iter().zip(before).map(|(u, before)| (u - before).abs());
+        moved.fold(0.0, f64::max)
+    }
+
+    /// How far a contact slid since the last accepted state, along t (length). `None` if the source does not measure it; its slip
+    /// direction is then not judged.
+    fn slid(&self, _contact: usize, _at: &At<'_>) -> Option<f64> {
+        None
+    }
 
     /// Judges a converged state by positions and forces alone ([`crate::contact::judge`]).
-    fn judge(&mut self, at: &At<'_>, after: &Norms) -> Verdict;
+    fn judge(&mut self, at: &At<'_>, after: &Norms) -> Verdict {
+        let tolerance = (10.0 * at.chosen.tolerance).max(TOLERANCE);
+        let scales = Scales {
+            length: self.length(),
+            force: after.scale.max(f64::MIN_POSITIVE),
+            lengths: tolerance,
+            forces: tolerance,
+        };
+        let mut verdict = Verdict::default();
+        for (k, state) in at.contacts.iter().enumerate() {
+            let Some(over) = self.kinematics(k) else {
+                continue;
+            };
+            let touched = at.accepted.contacts[k].mode != Mode::Free;
+            let slip = self.slid(k, at).filter(|_| touched);
+            for (law, amount) in against(state, &at.friction[k], over.gap, slip, &scales) {
+                verdict.add(Finding {
+                    law,
+                    slave: Some(k),
+                    amount,
+                    allowed: scales.allowed(law),
+                    numbers: Numbers {
+                        gap: over.gap,
+                        slip: -slip.unwrap_or(0.0),
+                        limit: at.friction[k].coefficient() * state.f_n + at.friction[k].cohesion,
+                        f_n: state.f_n,
+                        f_t: state.f_t,
+                    },
+                });
+            }
+        }
+        verdict.add(Finding {
+            law: Law::Balance,
+            slave: None,
+            amount: after.relative,
+            allowed: scales.allowed(Law::Balance),
+            numbers: Numbers::default(),
+        });
+        verdict
+    }
 
     /// Extreme deformations of the solids in a state. `None` if there are no solids or the source does not compute them.
     fn deformation(&self, _u: &[f64]) -> Option<Deformation> {
@@ -321,5 +462,47 @@ pub trait Source: Send {
     }
 
     /// Value of a monitor in the state of the last linearisation.
-    fn monitor(&self, watched: &Watched, at: &At<'_>) -> f64;
+    fn monitor(&self, watched: &Watched, at: &At<'_>) -> f64 {
+        match watched {
+            Watched::Displacement { dof } => at.u[*dof],
+            Watched::Contact { slaves, axis } => {
+                let of = |&s: &usize| match axis {
+                    Axis::X => -at.contacts[s].f_t,
+                    Axis::Y => at.contacts[s].f_n,
+                };
+                slaves.iter().map(of).sum()
+            }
+            Watched::Modes { slaves, mode } => in_mode(at.contacts, slaves, *mode),
+            Watched::Drift { slaves } => largest_drift(at.contacts, slaves),
+            Watched::Arc => at.arc,
+            Watched::Pressure { .. } | Watched::Told { .. } | Watched::Reaction { .. } => f64::NAN,
+        }
+    }
+}
+
+/// By how much a contact is against each law, relative to the scales; `slip` is what it has slipped in the increment, if it
+/// touched all the while.
+fn against(
+    state: &ContactState,
+    friction: &Friction,
+    gap: f64,
+    slip: Option<f64>,
+    scales: &Scales,
+) -> Vec<(Law, f64)> {
+    let (length, force) = (scales.length, scales.force);
+    let pressed = state.f_n.hypot(state.f_t) > scales.forces * force;
+    if !pressed {
+        return vec![(Law::Penetration, (-gap / length).max(0.0))];
+    }
+    let bound = friction.coefficient() * state.f_n + friction.cohesion;
+    let mut laws = vec![
+        (Law::Gap, gap.abs() / length),
+        (Law::Tension, (-state.f_n / force).max(0.0)),
+        (Law::Cone, ((state.f_t.abs() - bound) / force).max(0.0)),
+    ];
+    if let Some(slip) = slip.filter(|slip| slip.abs() > scales.near()) {
+        let short = bound - slip.signum() * state.f_t;
+        laws.push((Law::Slip, (short / force).max(0.0)));
+    }
+    laws
 }

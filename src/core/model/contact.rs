@@ -21,6 +21,20 @@ pub struct Surface {
     pub gives: Vec<PointGive>,
 }
 
+impl Surface {
+    /// A rigid line through two nodes that goes on past both; its outward side is on the right of the walk.
+    pub fn endless(name: &str, nodes: [usize; 2]) -> Self {
+        Surface {
+            name: name.to_owned(),
+            elements: vec![nodes.to_vec()],
+            rigid: true,
+            endless: true,
+            smooth: Vec::new(),
+            gives: Vec::new(),
+        }
+    }
+}
+
 /// Flexibilities of a shear-flexible beam element under point forces ([`crate::contact::point_force`]), with L its undeformed
 /// length; zeros for any other element.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

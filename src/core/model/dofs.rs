@@ -1,5 +1,6 @@
 //! Numbering of the degrees of freedom and of the unknowns among them.
 
+use super::body::{Body, BodyKind, Form};
 use super::documented::documented;
 use serde::{Deserialize, Serialize};
 
@@ -19,6 +20,53 @@ pub struct Dofs {
 }
 
 impl Dofs {
+    /// Degrees of freedom of this many nodes: three for each node on a beam, two for the others; no equations yet.
+    pub fn new(nodes: usize, bodies: &[Body]) -> Self {
+        let mut count = vec![2; nodes];
+        for body in bodies {
+            if matches!(body.kind, BodyKind::Beam(_)) {
+                body.nodes.iter().for_each(|&node| count[node] = 3);
+            }
+        }
+        let mut next = 0;
+        let first = count.iter().map(|&count| {
+            next += usize::from(count);
+            next - usize::from(count)
+        });
+        Dofs {
+            first: first.collect(),
+            equation: vec![None; next],
+            count,
+            ..Dofs::default()
+        }
+    }
+
+    /// Numbers the equations: the free degrees of freedom node by node, then the bodies' own unknowns, which it enters in the
+    /// bodies.
+    pub fn number(&mut self, bodies: &mut [Body], is_free: impl Fn(usize) -> bool) {
+        for (dof, equation) in self.equation.iter_mut().enumerate() {
+            *equation = is_free(dof).then_some(self.equations);
+            self.equations += usize::from(equation.is_some());
+        }
+        for body in bodies {
+            let first = self.equation.len();
+            let count: usize = match &mut body.kind {
+                BodyKind::Beam(beam) if beam.ga.is_none() => {
+                    beam.first_shear = Some(first);
+                    beam.elements.iter().map(|element| element.len() - 1).sum()
+                }
+                BodyKind::Linear(linear) if linear.form != Form::Stiffness => {
+                    linear.form = Form::Compliance { first_force: first };
+                    2 * body.nodes.len()
+                }
+                _ => 0,
+            };
+            let own = (0..count).map(|k| Some(self.equations + k));
+            self.equation.extend(own);
+            self.equations += count;
+            self.inner += count;
+        }
+    }
     /// Number of degrees of freedom, restrained ones included.
     pub fn len(&self) -> usize {
         self.equation.len()
@@ -38,7 +86,7 @@ impl Dofs {
 
 documented! {
     /// A degree of freedom of a node. Prints as the scene file has it.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
     #[serde(rename_all = "lowercase")]
     pub enum Component {
         /// Displacement along x (length).

@@ -11,6 +11,7 @@
 pub mod documented;
 
 mod body;
+mod builder;
 mod contact;
 mod control;
 mod dofs;
@@ -24,6 +25,7 @@ use serde::{Deserialize, Serialize};
 pub use body::{
     Beam, Body, BodyKind, Elastic, Form, Law, Linear, Plane, Solid, SolidElement, Truss, Update,
 };
+pub use builder::{ModelBuilder, ModelError};
 pub use contact::{Bond, Contact, Facing, Piece, PointGive, STENCIL, Surface};
 pub use control::{ArcLength, Bound, Control, Measured};
 pub use dofs::{Axis, Component, Dofs};
@@ -183,6 +185,23 @@ pub enum ToldKind {
     Other,
 }
 
+/// Diagonal of the bounding box of nodes; 0 for none.
+pub fn diagonal<'a>(nodes: impl Iterator<Item = &'a Node>) -> f64 {
+    let none = [[f64::INFINITY; 2], [f64::NEG_INFINITY; 2]];
+    let [low, high] = nodes.fold(none, |[low, high], node| {
+        let [x, y] = node.at;
+        [
+            [low[0].min(x), low[1].min(y)],
+            [high[0].max(x), high[1].max(y)],
+        ]
+    });
+    let size = [high[0] - low[0], high[1] - low[1]];
+    match size[0] >= 0.0 {
+        true => size[0].hypot(size[1]),
+        false => 0.0,
+    }
+}
+
 impl Model {
     /// A scene of which another solver knows what deforms: nodes, masters and contacts, load factors from 0 to 1 in one
     /// increment, and no unknowns. What else is known is changed in it.
@@ -193,14 +212,7 @@ impl Model {
         contacts: Vec<Contact>,
     ) -> Model {
         let count = nodes.len();
-        let along = |axis: usize| {
-            let at = nodes.iter().map(|node| node.at[axis]);
-            let (low, high) = at.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
-                (low.min(x), high.max(x))
-            });
-            high - low
-        };
-        let length = match along(0).hypot(along(1)) {
+        let length = match diagonal(nodes.iter()) {
             length if length > 0.0 => length,
             // One node has no size, and its motions are compared with something all the same.
             _ => 1.0,

@@ -12,7 +12,6 @@ use crate::linear::source::Solved;
 use crate::model::{self, AtCycle, AtLimit, Mode};
 use crate::step::event::{Failure, Outcome};
 use crate::step::stepper::Stepper;
-use crate::strategy;
 use std::sync::Arc;
 
 /// Two states of a minor loop whose numbers differ by less than this, relatively, are the same. It is far below any
@@ -123,10 +122,10 @@ impl Stepper {
     /// Leaves the modes of the next minor iteration in the state.
     pub(super) fn check(&mut self) -> bool {
         let settings = self.state.settings();
-        let method = strategy::method(settings.strategy);
+        let method = self.method();
         let check = Check {
             settings,
-            method,
+            method: &*method,
             ties: self.ties(),
             stiffness: if method.compares_by_springs() {
                 self.source.spring()
@@ -182,7 +181,7 @@ impl Stepper {
     /// The minor loop has not settled: look for a cycle and at the limit, and count on.
     pub(super) fn go_on(&mut self) -> Outcome {
         let settings = self.state.settings();
-        let method = strategy::method(settings.strategy);
+        let method = self.method();
         if method.search().is_some() {
             return self.begin_search();
         }
@@ -244,8 +243,7 @@ impl Stepper {
             return None;
         }
         let problem = self.source.problem(&self.state.at()).ok()?;
-        let method = strategy::method(self.state.settings().strategy);
-        let found = spiral(&problem, method, AHEAD)?;
+        let found = spiral(&problem, &*self.method(), AHEAD)?;
         let period = found.period as usize;
         let history = &self.state.minor_history;
         // What iteration `back` before the next one does in the round: rounds end `start` iterations from now.

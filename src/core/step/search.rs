@@ -4,7 +4,7 @@ use crate::contact::record::{ContactRecord, Forced};
 use crate::contact::state::ContactState;
 use crate::contact::table1::t_max;
 use crate::contact::table2::{Decision, Rule, Test, Tested};
-use crate::interface::method::{Asked, NoProposal, Proposal, Search, Searched};
+use crate::interface::method::{Asked, NoProposal, Proposal, Searched};
 use crate::interface::minor_history::Input;
 use crate::interface::problem::Assumed;
 use crate::linear::singular::Singular;
@@ -19,9 +19,7 @@ impl Stepper {
     /// The strategy cannot go on: the ladder's next one takes over, from where the major iteration began. Where there is
     /// none, the increment fails.
     pub(super) fn escalate(&mut self, why: Failure) -> Outcome {
-        let searches = strategy::method(self.state.settings().strategy)
-            .search()
-            .is_some();
+        let searches = self.method().search().is_some();
         if searches && self.state.search.searched == Searched::Not {
             return self.begin_search();
         }
@@ -100,17 +98,18 @@ impl Stepper {
         Outcome::Minor
     }
 
-    /// The search over all nodes that this minor iteration belongs to, with the start and the step that it has come to.
-    pub(super) fn searching(&self) -> Option<(&'static dyn Search, usize, usize)> {
-        let search = strategy::method(self.state.settings().strategy).search()?;
+    /// The start and the step of the search over all nodes that this minor iteration belongs to.
+    pub(super) fn searching(&self) -> Option<(usize, usize)> {
+        self.method().search()?;
         match self.state.search.searched {
-            Searched::At { start, step } => Some((search, start, step)),
+            Searched::At { start, step } => Some((start, step)),
             Searched::Not | Searched::Found { .. } => None,
         }
     }
 
     /// One proposal of a search over all nodes.
-    pub(super) fn propose(&mut self, search: &dyn Search, start: usize, step: usize) -> Outcome {
+    pub(super) fn propose(&mut self, start: usize, step: usize) -> Outcome {
+        let method = self.method();
         self.state.minors += 1;
         let brought = self.brought();
         let Stepper {
@@ -127,7 +126,11 @@ impl Stepper {
             problem: &mut || source.problem(&state.at()).ok(),
             kept,
         };
-        match search.propose(asked) {
+        let proposed = match method.search() {
+            Some(search) => search.propose(asked),
+            None => return self.go_on(),
+        };
+        match proposed {
             Ok(proposal) => self.take(&proposal),
             Err(NoProposal::NotFound(why)) => self.escalate(Failure::NotFound(why)),
             Err(NoProposal::NoAnswer { tried }) => {

@@ -15,6 +15,7 @@ use crate::contact::record::ContactRecord;
 use crate::contact::state::ContactState;
 use crate::executor::Executor;
 use crate::interface::kinematics::NodeKinematics;
+use crate::interface::method::Method;
 use crate::interface::minor_history::Cycle;
 use crate::interface::problem::InterfaceProblem;
 use crate::linear::bodies::Bodies;
@@ -22,11 +23,12 @@ use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
 use crate::linear::source::{Solved, Source, Work};
 use crate::linear::stability::Stability;
-use crate::model::Model;
+use crate::model::{Model, Strategy};
 use crate::step::event::{Event, Failure, Outcome};
 use crate::step::intervene::{Intervention, Refusal};
 use crate::step::recovery::left_out::LeftOut;
 use crate::step::state::{IncrementStart, State, Status};
+use crate::strategy::{self, AnyMethod};
 use std::any::Any;
 use std::sync::Arc;
 
@@ -52,6 +54,8 @@ pub struct Stepper {
     pub(super) event: Event,
     /// What it does without.
     pub(super) left_out: Option<LeftOut>,
+    /// The strategy in place of Table 2.
+    custom: Option<Arc<dyn Method>>,
 }
 
 /// What one solver lends another of the same scene.
@@ -89,10 +93,28 @@ impl Stepper {
             borrowed: None,
             before: Vec::new(),
             left_out: None,
+            custom: None,
             model,
         };
         stepper.begin();
         stepper
+    }
+
+    /// Uses a strategy from outside this package in place of Table 2, and chooses it. No other strategy follows where it fails.
+    pub fn with_strategy(mut self, strategy: Arc<dyn Method>) -> Self {
+        let settings = &mut Arc::make_mut(&mut self.state.controls).settings;
+        settings.strategy = Strategy::Table2;
+        settings.t_max = strategy.bound(settings.t_max);
+        self.custom = Some(strategy);
+        self
+    }
+
+    /// The strategy in force.
+    pub(super) fn method(&self) -> AnyMethod {
+        match (self.state.settings().strategy, &self.custom) {
+            (Strategy::Table2, Some(custom)) => AnyMethod::Custom(custom.clone()),
+            (strategy, _) => AnyMethod::Builtin(strategy::method(strategy)),
+        }
     }
 
     /// Goes to the start of the history of a model that differs from its own in friction, loads, history and settings alone,
@@ -165,8 +187,8 @@ impl Stepper {
         }
         self.norms = self.source.norms(&self.state.at());
         self.event.before = self.norms;
-        if let Some((search, start, step)) = self.searching() {
-            return Some(self.propose(search, start, step));
+        if let Some((start, step)) = self.searching() {
+            return Some(self.propose(start, step));
         }
         self.remember();
         let solved = self.source.solve(&self.state.at());

@@ -13,6 +13,28 @@ mod table2;
 
 use crate::interface::method::Method;
 use crate::model::{BoundUpdate, Settings, Strategy};
+use std::ops::Deref;
+use std::sync::Arc;
+
+/// A strategy of this package, or one from outside ([`crate::step::Stepper::with_strategy`]).
+#[derive(Clone)]
+pub(crate) enum AnyMethod {
+    /// One of those here.
+    Builtin(&'static dyn Method),
+    /// From outside.
+    Custom(Arc<dyn Method>),
+}
+
+impl Deref for AnyMethod {
+    type Target = dyn Method;
+
+    fn deref(&self) -> &(dyn Method + 'static) {
+        match self {
+            AnyMethod::Builtin(method) => *method,
+            AnyMethod::Custom(method) => &**method,
+        }
+    }
+}
 
 /// The implementation of a strategy.
 pub fn method(strategy: Strategy) -> &'static dyn Method {

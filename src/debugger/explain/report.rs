@@ -24,6 +24,7 @@ use stickslip_scene::shown::first_of;
 /// Why Table 2 decided as it did; `friction` says whether there is any.
 pub fn reason(decision: &Decision, friction: bool) -> String {
     let text = match decision.rule {
+        Rule::Custom(reason) => reason.0,
         Rule::FixedStays => "Stays fixed: the surface pushes, and friction can carry F_t.",
         Rule::FixedSlides => "Fixed → sliding: F_t is more than friction can carry.",
         Rule::FixedDragged => {

@@ -7,7 +7,7 @@ use crate::format::error::{Fault, Path, at};
 use crate::format::spec::{LoadSpec, Point, Spec};
 use std::collections::HashMap;
 use stickslip_core::model::Component;
-use stickslip_core::model::{Body, BodyKind, Dofs, Factor, Form, Load, Prescribed, Pressure};
+use stickslip_core::model::{Body, Dofs, Factor, Load, Prescribed, Pressure};
 
 /// What the loads of a scene make of a model's degrees of freedom.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -34,20 +34,12 @@ const COMPONENTS: [Component; 3] = [Component::X, Component::Y, Component::Rotat
 impl Layout {
     /// Three degrees of freedom for each node on a beam, two for the others; nothing held yet.
     pub(super) fn new(on_body: Vec<bool>, bodies: &[Body]) -> Self {
-        let mut turns = vec![false; on_body.len()];
-        bodies
-            .iter()
-            .filter(|body| matches!(body.kind, BodyKind::Beam(_)))
-            .flat_map(|body| &body.nodes)
-            .for_each(|&n| turns[n] = true);
-        let mut dofs = Dofs::default();
-        let mut of = Vec::new();
-        for (node, &turns) in turns.iter().enumerate() {
-            let count = if turns { 3 } else { 2 };
-            dofs.first.push(of.len());
-            dofs.count.push(count);
-            of.extend(COMPONENTS.iter().take(count.into()).map(|c| (node, *c)));
-        }
+        let dofs = Dofs::new(on_body.len(), bodies);
+        let components = |(node, &count): (usize, &u8)| {
+            let held = COMPONENTS.iter().take(count.into());
+            held.map(move |component| (node, *component))
+        };
+        let of = dofs.count.iter().enumerate().flat_map(components).collect();
         Layout {
             dofs,
             of,
@@ -304,32 +296,10 @@ impl Layout {
         }
     }
 
-    /// Numbers the equations node by node, then those of the bodies' own unknowns.
+    /// Numbers the equations.
     pub(super) fn number(mut self, bodies: &mut [Body]) -> Dofs {
-        let dofs = &mut self.dofs;
-        for (dof, (node, _)) in self.of.iter().enumerate() {
-            let free = self.on_body[*node] && !self.held.contains_key(&dof);
-            dofs.equation.push(free.then_some(dofs.equations));
-            dofs.equations += usize::from(free);
-        }
-        for body in bodies {
-            let first = dofs.equation.len();
-            let count: usize = match &mut body.kind {
-                BodyKind::Beam(beam) if beam.ga.is_none() => {
-                    beam.first_shear = Some(first);
-                    beam.elements.iter().map(|element| element.len() - 1).sum()
-                }
-                BodyKind::Linear(linear) if linear.form != Form::Stiffness => {
-                    linear.form = Form::Compliance { first_force: first };
-                    2 * body.nodes.len()
-                }
-                _ => 0,
-            };
-            dofs.equation
-                .extend((0..count).map(|k| Some(dofs.equations + k)));
-            dofs.equations += count;
-            dofs.inner += count;
-        }
+        let is_free = |dof: usize| self.on_body[self.of[dof].0] && !self.held.contains_key(&dof);
+        self.dofs.number(bodies, is_free);
         self.dofs
     }
 }

@@ -20,7 +20,6 @@ mod volumes;
 use super::attached;
 use super::corners;
 use super::gaps;
-use super::geometry;
 use super::limits;
 use super::nodes::Names;
 use crate::format::error::{Fault, at};
@@ -30,6 +29,7 @@ use layout::Layout;
 pub(crate) use layout::Loads;
 pub(crate) use renewed::{Choices, Compiled, Groups, renewed};
 use stickslip_core::linear::estimate::Estimate;
+use stickslip_core::model::diagonal;
 use stickslip_core::model::{InitialGaps, Model};
 
 /// Checks a scene.
@@ -49,10 +49,10 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
         .flat_map(|body| &body.nodes)
         .for_each(|&n| on_body[n] = true);
     let of_bodies = names.nodes.iter().zip(&on_body).filter(|(_, on)| **on);
-    let mut length = geometry::diagonal(of_bodies.map(|(node, _)| node));
+    let mut length = diagonal(of_bodies.map(|(node, _)| node));
     if length == 0.0 {
         // Bodies that are given by matrices may have a single node, or all of them in one place.
-        length = geometry::diagonal(names.nodes.iter());
+        length = diagonal(names.nodes.iter());
     }
     bodies::check_axis(spec, &names, &bodies, length)?;
     bodies::check_bodies(spec, &names, &bodies, length)?;
