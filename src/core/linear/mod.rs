@@ -33,4 +33,4 @@ pub mod source;
 pub mod stability;
 mod system;
 mod tangent;
-mod violation;
+pub mod violation;

@@ -1,0 +1,10 @@
+//! What another crate can add to `stickslip-core` without touching it: a strategy ([`SlidesFirst`]) and something that deforms
+//! ([`Stiffening`]).
+
+#![forbid(unsafe_code)]
+
+mod slides_first;
+mod stiffening;
+
+pub use slides_first::SlidesFirst;
+pub use stiffening::Stiffening;
