@@ -61,6 +61,8 @@ fn made(marker: &str) -> Option<String> {
         "reference" => list(markdown::types().unwrap()),
         "settings" => list(markdown::settings().unwrap()),
         "keywords" => list(keywords()),
+        "packages" => list(packages()),
+        "modules" => list(modules(what)),
         "topics" => {
             let pages = stickslip::manual::PAGES.iter();
             let rows = pages.map(|page| {
@@ -106,6 +108,65 @@ fn count(what: &str) -> usize {
         }
         _ => panic!("a number of {what} is not counted"),
     }
+}
+
+fn at_the_top(path: &str) -> String {
+    fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(path)).unwrap()
+}
+
+/// The packages under `src`, those that use others first: folder, description, packages used.
+fn packages() -> String {
+    let top = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let folders = fs::read_dir(top).unwrap().map(|entry| entry.unwrap());
+    let mut packages: Vec<(String, String, Vec<String>)> = folders
+        .filter(|entry| entry.path().join("Cargo.toml").exists())
+        .map(|entry| {
+            let folder = entry.file_name().into_string().unwrap();
+            let text = at_the_top(&format!("src/{folder}/Cargo.toml"));
+            let about = text.lines().find_map(|line| line.strip_prefix("description = "));
+            let (_, dependencies) = text.split_once("[dependencies]").unwrap();
+            let used = dependencies.lines().filter_map(|line| {
+                let name = line.strip_prefix("stickslip-")?;
+                name.split(['.', ' ']).next().map(String::from)
+            });
+            (folder, about.unwrap().trim_matches('"').to_owned(), used.collect())
+        })
+        .collect();
+    packages.sort();
+    let mut ordered: Vec<(String, String, Vec<String>)> = Vec::new();
+    while !packages.is_empty() {
+        let is_used = |name: &String| packages.iter().any(|(_, _, used)| used.contains(name));
+        let free = packages.iter().position(|(name, ..)| !is_used(name)).unwrap();
+        ordered.push(packages.remove(free));
+    }
+    let row = |(folder, about, used): &(String, String, Vec<String>)| {
+        let used: Vec<String> = used.iter().map(|name| format!("`{name}`")).collect();
+        format!("| `{folder}` | {about} | {} |\n", used.join(", "))
+    };
+    let head = "| folder of `src` | what it contains | uses |\n|---|---|---|\n".to_owned();
+    head + &ordered.iter().map(row).collect::<String>()
+}
+
+/// The list of modules at the head of a package's `lib.rs`, from the top down.
+fn modules(package: &str) -> String {
+    let text = at_the_top(&format!("src/{package}/lib.rs"));
+    let docs = text.lines().map_while(|line| line.strip_prefix("//!"));
+    let mut items: Vec<String> = Vec::new();
+    for line in docs {
+        match line.strip_prefix(" - [`") {
+            Some(item) => {
+                let (name, rest) = item.split_once("`]").unwrap();
+                let rest = rest.trim_start_matches(|c| c != ':');
+                items.push(format!("- `{name}`{}", rest.replace("[`", "`").replace("`]", "`")));
+            }
+            None if line.starts_with("   ") && !items.is_empty() => {
+                let text = line.trim().replace("[`", "`").replace("`]", "`");
+                items.last_mut().unwrap().push_str(&format!("\n  {text}"));
+            }
+            None => {}
+        }
+    }
+    items.join("\n")
 }
 
 /// The keywords of decks, by what becomes of them.

@@ -30,6 +30,7 @@ mod spirals;
 // The small scenes that fail do what their heads say.
 mod oscillators;
 mod recoveries;
+mod search;
 // No strategy accepts what is no Coulomb state; the ladder finds an answer wherever there is one.
 mod strategies;
 // Springs in series at contacts: random problems against hard ones with the springs in the matrix, and tangents by differences.

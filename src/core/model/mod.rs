@@ -34,7 +34,7 @@ pub use load::{Factor, Jumps, Load, Prescribed, PressedFace, Pressure, least, on
 pub use mesh::{ElementKind, boundary};
 pub use settings::{
     AtCycle, AtLimit, BoundUpdate, Geometry, InitialGaps, PointForce, Refactor, ResidualMethod,
-    Settings, SlipCount, Solver, Sticking, Strategy, Ties, Touch,
+    Search, Settings, SlipCount, Solver, Sticking, Strategy, Ties, Touch,
 };
 
 /// A checked scene.

@@ -48,6 +48,12 @@ documented! {
         /// factor. Default: 1e-6.
         #[serde(skip_serializing_if = "is_default_limit_load")]
         pub limit_load: f64,
+        /// Whether the strategy `ladder` searches for a way out where an increment fails. Default: auto.
+        #[serde(skip_serializing_if = "Search::is_default")]
+        pub search: Search,
+        /// Maximum number of factorizations that a run spends on such searches. Default: 5000.
+        #[serde(skip_serializing_if = "is_default_search_limit")]
+        pub search_limit: u32,
         /// What becomes of gaps that are there before the first increment. Default: keep.
         #[serde(skip_serializing_if = "InitialGaps::is_default")]
         pub initial_gaps: InitialGaps,
@@ -81,6 +87,8 @@ impl Default for Settings {
             at_major_limit: AtLimit::default(),
             tolerance: 1e-11,
             limit_load: LIMIT_LOAD,
+            search: Search::default(),
+            search_limit: SEARCH_LIMIT,
             initial_gaps: InitialGaps::default(),
             adjust_gap: 0.0,
             memory: None,
@@ -93,6 +101,13 @@ const LIMIT_LOAD: f64 = 1e-6;
 
 fn is_default_limit_load(value: &f64) -> bool {
     *value == LIMIT_LOAD
+}
+
+/// Maximum number of factorizations of searches, unless the scene sets it.
+const SEARCH_LIMIT: u32 = 5000;
+
+fn is_default_search_limit(value: &u32) -> bool {
+    *value == SEARCH_LIMIT
 }
 
 fn is_zero(value: &f64) -> bool {
@@ -215,6 +230,27 @@ documented! {
         /// The bodies condensed to the interface (eqn 6) once a major iteration, as in the paper; a minor iteration then
         /// costs a dense solve of the size of the interface.
         Condensed,
+    }
+}
+
+documented! {
+    /// Whether to search for a way out where an increment fails.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum Search {
+        /// After the strategies and the other parts of the increment: nodes that touch at the start are held, the increment is cut
+        /// below its least size, and where equilibrium ends the nodes move damped to the next one, which is marked.
+        #[default]
+        Auto,
+        /// The increment fails.
+        Off,
+    }
+}
+
+impl Search {
+    /// Whether it is the default.
+    pub fn is_default(&self) -> bool {
+        *self == Search::default()
     }
 }
 

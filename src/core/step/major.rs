@@ -191,6 +191,9 @@ impl Stepper {
 
     /// Goes on with the first minor iteration of another major one.
     pub(super) fn next_major(&mut self) {
+        if self.state.fallback.is_some_and(|route| route.by.searches()) {
+            self.state.searched.spent += 1;
+        }
         self.state.next.major += 1;
         self.state.next.minor = 1;
     }

@@ -93,6 +93,9 @@ pub struct State {
     /// The fallback that is tried if the halves of the increment have failed.
     #[serde(rename = "detour", default, skip_serializing_if = "Option::is_none")]
     pub fallback: Option<FallbackState>,
+    /// What searches have done so far.
+    #[serde(default, skip_serializing_if = "Searches::is_new")]
+    pub searched: Searches,
     /// Where an attached solver is, which keeps what it goes on from itself. `None` for a solver of our own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub outside: Option<Box<Outside>>,
@@ -112,6 +115,22 @@ pub struct Outside {
     /// Largest contact force up to this state. Replay recomputes it, so it is not stored.
     #[serde(skip)]
     pub largest_force: f64,
+}
+
+/// What the search for ways out has done in a run ([`crate::model::Search`]).
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Searches {
+    /// Major iterations spent.
+    pub spent: u32,
+    /// Load factor of the equilibrium from which the last damped motion began.
+    pub released: Option<f64>,
+}
+
+impl Searches {
+    /// Whether nothing was searched yet.
+    pub fn is_new(&self) -> bool {
+        *self == Searches::default()
+    }
 }
 
 /// Whether the solver can go on.
@@ -243,6 +262,7 @@ impl State {
             way: (model.control == Control::Arc).then(|| Box::new(Way::new(model))),
             motion: None,
             fallback: None,
+            searched: Searches::default(),
             cuts: BTreeMap::new(),
             outside: None,
             status: Status::Running,

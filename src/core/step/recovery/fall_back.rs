@@ -1,6 +1,6 @@
 //! When a fallback is taken, and for which part of the increment.
 
-use super::fallback::{Fallback, FallbackState};
+use super::fallback::{DEEPER, Fallback, FallbackState};
 use super::retry::{Effect, Recovery, Retry};
 use super::stalled::Stalled;
 use crate::model::{Jumps, Settings};
@@ -12,11 +12,14 @@ use crate::strategy;
 impl Recovery for Fallback {
     fn name(&self) -> &'static str {
         match self {
+            Fallback::Touching => "touching",
             Fallback::Section => "section",
             Fallback::Consistent => "consistent",
             Fallback::Start => "start",
             Fallback::Newton => "newton",
             Fallback::Held => "held",
+            Fallback::Deeper => "deeper",
+            Fallback::Release => "motion",
             Fallback::Back => "back",
         }
     }
@@ -27,7 +30,7 @@ impl Recovery for Fallback {
         if state.fallback.is_some_and(|route| route.by >= *self)
             || strategy::rungs(chosen.strategy).is_empty()
             || matches!(why, Failure::Leapt { .. }) && state.fallback.is_none()
-            || !(stalled.size_helps(why) || stalled.drowned(why))
+            || !(*self == Fallback::Touching || stalled.size_helps(why) || stalled.drowned(why))
             || state.way.is_some()
             || stalled.model.jumps == Jumps::Dynamic
             || !self.helps(why, stalled)
@@ -38,6 +41,9 @@ impl Recovery for Fallback {
         let rest = from.rest(state.start.load_factor);
         let part = match by {
             Fallback::Section => rest.section(),
+            Fallback::Touching => state.sub_increment,
+            Fallback::Deeper => from.halved(),
+            Fallback::Release => state.sub_increment,
             Fallback::Held | Fallback::Back => from,
             _ => rest,
         };
@@ -63,12 +69,21 @@ impl Fallback {
     fn helps(self, why: &Failure, stalled: &Stalled<'_>) -> bool {
         let state = stalled.state;
         if self == Fallback::Back {
-            return state.fallback.is_some();
+            // After a damped motion there is no way back.
+            return state
+                .fallback
+                .is_some_and(|route| route.by != Fallback::Release);
         }
-        if matches!(why, Failure::Inverted(_)) {
+        if self.searches() && !stalled.searches() {
+            return false;
+        }
+        if matches!(why, Failure::Inverted(_)) && !self.searches() {
             return false;
         }
         match self {
+            Fallback::Touching => stalled.can_touch(why),
+            Fallback::Deeper => last_half(state).size() > state.controls.least / DEEPER,
+            Fallback::Release => stalled.can_release(),
             Fallback::Held => stalled.can_hold(why),
             Fallback::Section => {
                 let rest = last_half(state).rest(state.start.load_factor);

@@ -10,6 +10,13 @@
 //! 4. with Newton's method on the first rung;
 //! 5. with sliding held back ([`super::proximal`]): this one may end on another branch of equilibrium, marked.
 //!
+//! Where `settings.search` allows it, the search goes on:
+//!
+//! 6. with parts down to a 4096th of the least increment;
+//! 7. with the loads of the last equilibrium, from which the nodes move damped to the next one ([`super::damped`]), which is marked.
+//!
+//! Before all others, where nothing holds a body at the start of the history, nodes that touch without a gap start fixed.
+//!
 //! Each is cut into halves as before, and is in force until a part of the increment is accepted. If none helps, the last half is tried
 //! once more without a fallback, so that the failed state is the one that the failure describes.
 
@@ -18,10 +25,15 @@ use crate::step::sub_increment::SubIncrement;
 use crate::strategy;
 use serde::{Deserialize, Serialize};
 
+/// How far below the least increment the search cuts.
+pub(super) const DEEPER: f64 = 4096.0;
+
 /// A fallback.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Fallback {
+    /// Nodes that touch at the start of the history, without a gap, start fixed.
+    Touching,
     /// First the smaller part of its golden section.
     Section,
     /// T_max in the equations from the first rung on.
@@ -32,6 +44,10 @@ pub enum Fallback {
     Newton,
     /// Sliding is held back ([`super::proximal`]).
     Held,
+    /// Parts smaller than the least increment.
+    Deeper,
+    /// A damped motion from the last equilibrium.
+    Release,
     /// The last half again, as it was: nothing else helped.
     Back,
 }
@@ -47,19 +63,35 @@ pub struct FallbackState {
 
 crate::words! {
     Fallback, words:
+    Touching "nodes that touch at the start held",
     Section "parts that are no halves",
     Consistent "T_max in the equations",
     Start "touching nodes held where they were",
     Newton "semismooth Newton first",
     Held "sliding held back",
+    Deeper "parts below the least increment",
+    Release "a damped motion from the last equilibrium",
     Back "the last half as it was, since nothing else helps",
 }
 
 impl Fallback {
+    /// Whether it is part of the search ([`crate::model::Search`]).
+    pub(in crate::step) fn searches(self) -> bool {
+        matches!(
+            self,
+            Fallback::Touching | Fallback::Deeper | Fallback::Release
+        )
+    }
+
     /// What it makes of the settings in force on a rung.
     pub(in crate::step) fn in_force(self, mut settings: Settings, rung: usize) -> Settings {
         match self {
-            Fallback::Section | Fallback::Held | Fallback::Back => {}
+            Fallback::Touching
+            | Fallback::Section
+            | Fallback::Held
+            | Fallback::Deeper
+            | Fallback::Release
+            | Fallback::Back => {}
             Fallback::Consistent => settings.t_max = BoundUpdate::Consistent,
             Fallback::Start => settings.touch = Touch::Start,
             Fallback::Newton if rung == 0 => {

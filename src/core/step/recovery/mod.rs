@@ -11,7 +11,7 @@
 //! at a given load      Halve       half the increment
 //!                      Whole       halves that were to tell whether it jumps have failed: the whole increment after all
 //!                      Release     the loads stay, and the nodes move damped to the next equilibrium
-//! then, at any size    Fallback    other parts, other interpretations of the laws, sliding held back ([`fallback`])
+//! then, at any size    Fallback    other parts, other interpretations of the laws, sliding held back, and the search ([`fallback`])
 //! ```
 //!
 //! A node that makes more than 300 parts of a whole increment fail ends this: its state does not depend on the size.
@@ -32,7 +32,7 @@ mod whole;
 pub(super) use slip_step::PATIENCE;
 
 use crate::linear::source::Source;
-use crate::model::Model;
+use crate::model::{Mode, Model};
 use crate::step::event::{Failure, Outcome};
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
@@ -41,6 +41,7 @@ use left_out::LeftOut;
 use proximal::Brake;
 use retry::{Effect, Recovery, Retry};
 use stalled::Stalled;
+use std::sync::Arc;
 
 /// Maximum number of cuts of a whole increment because of the same node, before the increment fails.
 const MOST_CUTS: u32 = 300;
@@ -52,12 +53,15 @@ const ALONG: [&dyn Recovery; 3] = [
     &path_corner::TurnAtLast,
 ];
 const LOADED: [&dyn Recovery; 3] = [&cut::Halve, &whole::Whole, &damped::Release];
-const FALLBACKS: [&dyn Recovery; 6] = [
+const FALLBACKS: [&dyn Recovery; 9] = [
+    &Fallback::Touching,
     &Fallback::Section,
     &Fallback::Consistent,
     &Fallback::Start,
     &Fallback::Newton,
     &Fallback::Held,
+    &Fallback::Deeper,
+    &Fallback::Release,
     &Fallback::Back,
 ];
 
@@ -142,7 +146,7 @@ impl Stepper {
             outcome,
         } = retry;
         let state = &mut self.state;
-        let mut held = false;
+        let mut by = None;
         match effect {
             Effect::Cut(slave) => {
                 if let Some(slave) = slave {
@@ -154,14 +158,36 @@ impl Stepper {
             Effect::Release => self.release(part)?,
             Effect::Motion(motion) => state.motion = Some(motion),
             Effect::Fallback(fallback) => {
-                held = fallback.by == Fallback::Held;
+                by = Some(fallback.by);
                 state.fallback = Some(fallback);
             }
         }
+        if by == Some(Fallback::Touching) {
+            self.hold_touching();
+        }
         self.restart(part);
-        if held {
-            self.state.brake = Some(Brake::new(self.source.spring()));
+        if by.is_some_and(Fallback::searches) {
+            self.state.searched.spent += 1;
+        }
+        match by {
+            Some(Fallback::Held) => {
+                self.state.brake = Some(Brake::new(self.source.spring()));
+            }
+            Some(Fallback::Release) => {
+                self.state.searched.released = Some(self.state.start.load_factor);
+                self.release(part)?;
+            }
+            _ => {}
         }
         Some(outcome)
+    }
+
+    /// Makes the free nodes that touch without a gap start fixed.
+    fn hold_touching(&mut self) {
+        let touching: Vec<usize> = self.stalled().touching().collect();
+        let start = Arc::make_mut(&mut self.state.start);
+        for contact in touching {
+            start.nodes[contact].mode = Mode::Fixed;
+        }
     }
 }

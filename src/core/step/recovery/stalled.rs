@@ -1,14 +1,17 @@
 //! What recoveries ask about a failed increment.
 
+use super::fallback::{DEEPER, Fallback};
 use crate::contact::state::ContactState;
 use crate::linear::singular::Singular;
 use crate::linear::source::Source;
-use crate::model::{BodyKind, Factor, Jumps, Mode, Model};
+use crate::model::{BodyKind, Factor, Jumps, Mode, Model, Search};
 use crate::step::event::Failure;
 use crate::step::state::State;
 
 /// Smallest part of an increment that halves can be.
 const SMALLEST_HALF: f64 = 1e-9;
+/// Largest gap of a node that touches at the start, over the scene's length.
+const TOUCHING: f64 = 1e-9;
 
 /// A failed increment.
 pub(in crate::step) struct Stalled<'a> {
@@ -31,6 +34,13 @@ impl Stalled<'_> {
     /// Size below which an increment is not cut: where a damped motion follows, that which the limit load is found to.
     pub fn least(&self) -> f64 {
         let controls = &self.state.controls;
+        if self
+            .state
+            .fallback
+            .is_some_and(|route| route.by == Fallback::Deeper)
+        {
+            return controls.least / DEEPER;
+        }
         if !self.can_move() {
             return controls.least;
         }
@@ -45,6 +55,44 @@ impl Stalled<'_> {
     /// Whether the scene wants damped motions, and what deforms can make them.
     pub fn can_move(&self) -> bool {
         self.model.jumps == Jumps::Dynamic && self.source.damps()
+    }
+
+    /// Whether the search may go on.
+    pub fn searches(&self) -> bool {
+        let settings = &self.state.controls.settings;
+        settings.search == Search::Auto && self.state.searched.spent < settings.search_limit
+    }
+
+    /// Whether nothing holds a body at the start of the history, and a free node touches there without a gap.
+    pub fn can_touch(&self, why: &Failure) -> bool {
+        let loose = match why {
+            Failure::Singular(_) => true,
+            Failure::LadderEnded { first, .. } => matches!(**first, Failure::Singular(_)),
+            _ => false,
+        };
+        loose && self.state.start.verdict.is_none() && self.touching().next().is_some()
+    }
+
+    /// Free contacts without a gap.
+    pub fn touching(&self) -> impl Iterator<Item = usize> {
+        let least = TOUCHING * self.model.length;
+        let closed = move |contact: usize| {
+            let over = self.source.kinematics(contact);
+            over.is_some_and(|over| over.gap.abs() <= least)
+        };
+        let nodes = self.state.start.nodes.iter().enumerate();
+        let free = nodes.filter(|(_, node)| node.mode == Mode::Free);
+        free.map(|(contact, _)| contact)
+            .filter(move |contact| closed(*contact))
+    }
+
+    /// Whether a damped motion may begin at the last equilibrium: none has begun there yet, and jumps are accepted.
+    pub fn can_release(&self) -> bool {
+        let start = self.state.start.load_factor;
+        self.source.damps()
+            && self.model.jumps != Jumps::Stop
+            && self.state.start.verdict.is_some()
+            && self.state.searched.released != Some(start)
     }
 
     /// Whether an increment that failed so may succeed where sliding is held back.

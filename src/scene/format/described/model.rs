@@ -8,7 +8,7 @@ use stickslip_core::model::documented::text;
 use stickslip_core::model::{
     AtCycle, AtLimit, Axis, BoundUpdate, Component, Control, ElementKind, Friction, Geometry,
     InitialGaps, InitialState, Jumps, Law, Mode, Plane, PointForce, Refactor, ResidualMethod,
-    Settings, SlipCount, Solver, Sticking, Strategy, Ties, Touch, Update,
+    Search, Settings, SlipCount, Solver, Sticking, Strategy, Ties, Touch, Update,
 };
 
 macro_rules! fields {
@@ -108,6 +108,8 @@ fields!(Settings {
     at_major_limit,
     tolerance,
     limit_load,
+    search,
+    search_limit,
     initial_gaps,
     adjust_gap,
     memory,
@@ -128,6 +130,7 @@ words!(
     Plane,
     PointForce,
     Refactor,
+    Search,
     ResidualMethod,
     SlipCount,
     Solver,

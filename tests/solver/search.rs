@@ -1,0 +1,80 @@
+//! The search for ways out: scenes that fail without it, and the costs that it is limited to.
+
+use std::sync::Arc;
+use stickslip::scene::Scene;
+use stickslip::step::event::{Failure, Outcome};
+use stickslip::step::recovery::fallback::Fallback;
+use stickslip::step::stepper::Stepper;
+
+/// A run: how it ends, the fallbacks by which an increment was accepted, accepted jumps, and major iterations of searches.
+struct Run {
+    failure: Option<Failure>,
+    found: Vec<Fallback>,
+    jumps: usize,
+    spent: u32,
+}
+
+fn run(name: &str, set: &[(&str, &str)]) -> Run {
+    let file = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/findings/").to_owned() + name + ".ron";
+    let set: Vec<_> = set
+        .iter()
+        .map(|(path, value)| ((*path).to_owned(), (*value).to_owned()))
+        .collect();
+    let scene = Scene::open(&file, &set).unwrap_or_else(|error| panic!("{error}"));
+    let mut stepper = Stepper::new(Arc::new(scene.model));
+    let (mut tried, mut found, mut jumps, mut failure) = (None, Vec::new(), 0, None);
+    while let Some(event) = stepper.step() {
+        match &event.outcome {
+            Outcome::Fallback { by, .. } => tried = Some(*by),
+            Outcome::Increment { jumped, .. } => {
+                found.extend(tried.take());
+                jumps += usize::from(*jumped);
+            }
+            Outcome::Failed(why) => {
+                failure = Some(why.clone());
+                break;
+            }
+            _ => {}
+        }
+    }
+    let spent = stepper.state().searched.spent;
+    Run {
+        failure,
+        found,
+        jumps,
+        spent,
+    }
+}
+
+const OFF: &[(&str, &str)] = &[("settings.search", "off")];
+
+#[test]
+fn bodies_that_touch_without_a_gap_are_held_from_the_start() {
+    for name in ["die", "stack-of-50-blocks"] {
+        let searched = run(name, &[]);
+        assert_eq!(searched.failure, None, "{name}");
+        assert_eq!(searched.found.first(), Some(&Fallback::Touching), "{name}");
+        let without = run(name, OFF).failure;
+        assert!(matches!(without, Some(Failure::Singular(_))), "{name}: {without:?}");
+    }
+}
+
+#[test]
+fn where_equilibrium_ends_the_nodes_move_to_the_next_one_and_the_jump_is_marked() {
+    let searched = run("moves-to-another-equilibrium", &[]);
+    assert_eq!(searched.failure, None);
+    assert!(searched.found.contains(&Fallback::Release), "{:?}", searched.found);
+    assert!(searched.jumps > 0);
+    assert!(run("moves-to-another-equilibrium", OFF).failure.is_some());
+}
+
+#[test]
+fn no_search_spends_more_than_its_limit() {
+    let name = "moves-to-another-equilibrium";
+    let whole = run(name, &[]).spent;
+    let limit = whole / 2;
+    let limited = run(name, &[("settings.search_limit", &limit.to_string())]);
+    assert!(limited.failure.is_some());
+    // The attempt in which the limit is reached is finished.
+    assert!(limited.spent <= limit + 60, "{} of {limit}", limited.spent);
+}
