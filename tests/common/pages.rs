@@ -123,20 +123,29 @@ fn packages() -> String {
         .map(|entry| {
             let folder = entry.file_name().into_string().unwrap();
             let text = at_the_top(&format!("src/{folder}/Cargo.toml"));
-            let about = text.lines().find_map(|line| line.strip_prefix("description = "));
+            let about = text
+                .lines()
+                .find_map(|line| line.strip_prefix("description = "));
             let (_, dependencies) = text.split_once("[dependencies]").unwrap();
             let used = dependencies.lines().filter_map(|line| {
                 let name = line.strip_prefix("stickslip-")?;
                 name.split(['.', ' ']).next().map(String::from)
             });
-            (folder, about.unwrap().trim_matches('"').to_owned(), used.collect())
+            (
+                folder,
+                about.unwrap().trim_matches('"').to_owned(),
+                used.collect(),
+            )
         })
         .collect();
     packages.sort();
     let mut ordered: Vec<(String, String, Vec<String>)> = Vec::new();
     while !packages.is_empty() {
         let is_used = |name: &String| packages.iter().any(|(_, _, used)| used.contains(name));
-        let free = packages.iter().position(|(name, ..)| !is_used(name)).unwrap();
+        let free = packages
+            .iter()
+            .position(|(name, ..)| !is_used(name))
+            .unwrap();
         ordered.push(packages.remove(free));
     }
     let row = |(folder, about, used): &(String, String, Vec<String>)| {
@@ -157,7 +166,10 @@ fn modules(package: &str) -> String {
             Some(item) => {
                 let (name, rest) = item.split_once("`]").unwrap();
                 let rest = rest.trim_start_matches(|c| c != ':');
-                items.push(format!("- `{name}`{}", rest.replace("[`", "`").replace("`]", "`")));
+                items.push(format!(
+                    "- `{name}`{}",
+                    rest.replace("[`", "`").replace("`]", "`")
+                ));
             }
             None if line.starts_with("   ") && !items.is_empty() => {
                 let text = line.trim().replace("[`", "`").replace("`]", "`");

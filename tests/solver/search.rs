@@ -55,16 +55,34 @@ fn bodies_that_touch_without_a_gap_are_held_from_the_start() {
         assert_eq!(searched.failure, None, "{name}");
         assert_eq!(searched.found.first(), Some(&Fallback::Touching), "{name}");
         let without = run(name, OFF).failure;
-        assert!(matches!(without, Some(Failure::Singular(_))), "{name}: {without:?}");
+        assert!(
+            matches!(without, Some(Failure::Singular(_))),
+            "{name}: {without:?}"
+        );
     }
 }
 
 #[test]
-fn where_equilibrium_ends_the_nodes_move_to_the_next_one_and_the_jump_is_marked() {
+fn modes_that_cycle_at_the_least_increment_settle_in_smaller_parts() {
+    let searched = run("modes-cycle-at-the-least-increment", &[]);
+    assert_eq!(searched.failure, None);
+    assert!(
+        searched.found.contains(&Fallback::Deeper),
+        "{:?}",
+        searched.found
+    );
+    assert_eq!(searched.jumps, 0);
+}
+
+#[test]
+fn a_damped_motion_finds_the_next_equilibrium() {
     let searched = run("moves-to-another-equilibrium", &[]);
     assert_eq!(searched.failure, None);
-    assert!(searched.found.contains(&Fallback::Release), "{:?}", searched.found);
-    assert!(searched.jumps > 0);
+    assert!(
+        searched.found.contains(&Fallback::Release),
+        "{:?}",
+        searched.found
+    );
     assert!(run("moves-to-another-equilibrium", OFF).failure.is_some());
 }
 

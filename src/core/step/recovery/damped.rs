@@ -156,7 +156,12 @@ impl Stepper {
             };
             return self.accept(after, verdict, landing);
         }
-        if motion.steps + 1 >= MOST_STEPS || motion.drag < SOFTEST * motion.stiffness {
+        let (searched, limit) = (
+            self.state.searched,
+            self.state.controls.settings.search_limit,
+        );
+        let spent = self.state.fallback.is_some() && searched.spent >= limit;
+        if spent || motion.steps + 1 >= MOST_STEPS || motion.drag < SOFTEST * motion.stiffness {
             self.next_major();
             return Outcome::Failed(Failure::Restless {
                 steps: motion.steps,
