@@ -1,12 +1,12 @@
-//! The scene reference: every type of the file, its fields, what may be written and what holds where nothing is.
+//! The scene reference: every type of the file with its fields, accepted values and defaults.
 
 use super::described::{Described, Type};
 use super::spec::Spec;
 
-/// All types of the scene file, the scene itself first, each after one in which it stands.
+/// All types of the scene file: the scene first, each other type after the first one that uses it.
 ///
 /// # Errors
-/// If the defaults of a type cannot be read, which would be a fault of this module; the tests call it.
+/// If the defaults of a type cannot be read. That would be a bug in this module; the tests check it.
 pub fn reference() -> Result<Vec<Type>, String> {
     let mut all = Vec::new();
     Spec::types(&mut all)?;
@@ -65,7 +65,7 @@ mod tests {
         );
     }
 
-    /// What a comment says of a default, where that is a plain value, against the value itself.
+    /// A plain default named in a comment, compared with the actual default.
     #[test]
     fn a_default_that_a_comment_names_is_the_one_that_is_read() {
         let mut compared = 0;
