@@ -1,4 +1,4 @@
-//! What decks become, and where what is wrong with them stands.
+//! Tests of the conversion of decks and of error locations.
 
 use crate::Scene;
 use crate::format::spec::LoadSpec;
@@ -209,7 +209,7 @@ fn what_is_found_wrong_with_the_scene_is_told_with_the_line_of_the_deck() {
     }
 }
 
-/// OP=NEW removes the prescribed values of earlier steps: a value that is not repeated would become free, which is refused.
+/// OP=NEW removes the prescribed values of earlier steps: a value that is not repeated would become free, which is rejected.
 #[test]
 fn a_new_boundary_that_gives_all_again_is_a_changed_one_and_one_that_frees_a_node_is_refused() {
     let all = "GROUND, 1, 2\nTOP, 2, 2, -0.02\n";
