@@ -1,7 +1,7 @@
-//! Lines with a digest, so that a changed character is noticed on reading.
+//! Lines with a digest, so that changed characters are detected.
 //!
-//! A sealed line is its text, a tab, and 16 hexadecimal digits: FNV-1a with 64 bits over the bytes of the text. The digest
-//! detects accidents; it is no signature.
+//! A sealed line is its text, a tab, and 16 hexadecimal digits: the 64-bit FNV-1a hash of the text's bytes. The digest detects
+//! accidental changes; it is not a signature.
 
 use std::fmt;
 

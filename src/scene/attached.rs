@@ -157,7 +157,9 @@ fn nodes(scene: &Scene) -> Result<Vec<Node>, Fault> {
     let mut nodes: Vec<Node> = Vec::with_capacity(scene.nodes.len());
     for (k, node) in scene.nodes.iter().enumerate() {
         if !node.at.iter().all(|x| x.is_finite()) {
-            return refused(format!("nodes[{k}].at: a position must be two finite numbers"));
+            return refused(format!(
+                "nodes[{k}].at: a position must be two finite numbers"
+            ));
         }
         let name = match node.name.as_str() {
             "" => format!("node.{}", k + 1),
@@ -251,7 +253,9 @@ fn contacts(scene: &Scene, surfaces: &HashMap<&str, usize>) -> Result<Vec<Contac
             return refused(format!("contacts[{k}].id: {} is already used", told.id));
         }
         if !taken.insert(told.node) {
-            return refused(format!("contacts[{k}].node: this node already has a contact"));
+            return refused(format!(
+                "contacts[{k}].node: this node already has a contact"
+            ));
         }
         let surface = match &told.surface {
             None => Vec::new(),

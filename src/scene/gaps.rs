@@ -114,7 +114,9 @@ pub fn warnings(model: &Model) -> Vec<String> {
                 "the first increment pushes them out; settings.initial_gaps=adjust moves them onto the surface without stress, ramp pushes them out over the first leg"
             }
             InitialGaps::Ramp => "they are pushed out over the first leg of the path",
-            InitialGaps::Adjust => "their surface moved with them, because its own nodes are slaves too",
+            InitialGaps::Adjust => {
+                "their surface moved with them, because its own nodes are slaves too"
+            }
         };
         let start = if count == 1 { "starts" } else { "start" };
         all.push(format!(

@@ -150,7 +150,8 @@ pub(crate) fn given(
             }
         }
         if !any {
-            let message = "the mesh has no 8-node quadrilaterals, the only elements with reduced integration";
+            let message =
+                "the mesh has no 8-node quadrilaterals, the only elements with reduced integration";
             return Err(("reduced", message.to_owned()));
         }
     }

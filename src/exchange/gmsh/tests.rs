@@ -1,4 +1,4 @@
-//! The four forms of one mesh, and what is wrong with broken ones. The files are made by `tests/peers/mesh.py --size 0.5`.
+//! Tests with the four formats of one mesh, and with damaged files. `tests/peers/mesh.py --size 0.5` generates the files.
 
 use super::*;
 use crate::mesh::{Cell, CellKind, Group};
@@ -64,14 +64,14 @@ fn all_four_forms_of_a_mesh_are_the_same_mesh() {
             mesh.groups.iter().map(of).collect::<Vec<_>>()
         };
         assert_eq!(groups(&mesh), groups(&first));
-        // Text has 16 digits.
+        // Text files have 16 digits.
         for (a, b) in mesh.nodes.iter().zip(&first.nodes) {
             assert!((a[0] - b[0]).abs() <= 1e-15 * 4.0 && (a[1] - b[1]).abs() <= 1e-15 * 4.0);
         }
     }
 }
 
-/// A mesh of one triangle in version 2.2, and what elements it has besides.
+/// A mesh of one triangle in version 2.2, with additional elements.
 fn small(more: &str) -> String {
     let count = 1 + more.lines().count();
     format!(
@@ -90,7 +90,7 @@ fn tags_may_have_gaps_and_stand_in_any_order() {
     let mesh = read(small("").as_bytes()).unwrap();
     assert_eq!(mesh.labels, [10, 7, 30, 5]);
     assert_eq!(mesh.cells[0].nodes, [0, 1, 2]);
-    // No groups: each entity is one.
+    // Without groups, each entity is one.
     assert_eq!(
         mesh.groups,
         [Group {
@@ -256,7 +256,7 @@ proptest! {
         }
         let _ = read(&bytes);
         bytes.truncate(place(cut, bytes.len()));
-        // Without its end no file is whole.
+        // A truncated file is always an error.
         prop_assert!(read(&bytes).is_err());
     }
 }

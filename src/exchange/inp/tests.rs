@@ -1,4 +1,4 @@
-//! Decks read, refused, and damaged.
+//! Tests with valid, rejected and damaged decks.
 
 use super::deck::{Adjust, Direction, Faces, Family, Form, Normal, Volume};
 use super::*;
@@ -27,7 +27,7 @@ fn refusal(text: &str) -> String {
     }
 }
 
-/// The block's deck with one piece of text in place of another.
+/// The block's deck with one piece of text replaced.
 fn but(text: &str, from: &str, to: &str) -> String {
     assert!(text.contains(from), "{from:?} is not in the deck");
     text.replacen(from, to, 1)
@@ -180,7 +180,7 @@ fn files_that_include_each_other_end() {
         wrong.to_string().contains("include one another in a row"),
         "{wrong}"
     );
-    // Each file includes the next one twice: 2^k of the last.
+    // Each file includes the next one twice: 2^k times the last.
     let mut twice = |name: &str| {
         let next = name.trim_end_matches(".inp").parse::<u32>().unwrap_or(0) + 1;
         Ok(format!("*INCLUDE, INPUT={next}.inp\n").repeat(if next < 14 { 2 } else { 0 }))
@@ -367,7 +367,7 @@ fn keywords_stand_once_and_in_order() {
     assert!(names.windows(2).all(|pair| pair[0] < pair[1]), "{names:?}");
 }
 
-/// One deck with a few bytes, lines or words of it changed, or taken from another.
+/// A deck with some bytes, lines or words changed, or taken from another deck.
 fn damaged() -> impl Strategy<Value = String> {
     let decks = prop::sample::select(vec![PLATES, RINGS, BLOCK, BEAM, GLUED]);
     let change = (

@@ -70,7 +70,8 @@ fn follows(spec: &Spec) -> Result<(), Fault> {
         return Err(Fault::new(settings.then("solver"), message));
     }
     if spec.settings.initial_gaps == InitialGaps::Ramp {
-        let message = "control: arc cannot close gaps over the first leg: set initial_gaps to keep or adjust";
+        let message =
+            "control: arc cannot close gaps over the first leg: set initial_gaps to keep or adjust";
         return Err(Fault::new(settings.then("initial_gaps"), message));
     }
     Ok(())
@@ -111,7 +112,10 @@ fn slave(here: &Path, name: &str, names: &Names, slaves: &[Contact]) -> Result<u
     }
     found.ok_or_else(|| {
         let all = slaves.iter().map(|s| names.nodes[s.node].name.as_str());
-        let message = format!("node {name:?} is not a slave node (slaves: {})", some_of(all));
+        let message = format!(
+            "node {name:?} is not a slave node (slaves: {})",
+            some_of(all)
+        );
         Fault::new(here.clone(), message)
     })
 }

@@ -55,9 +55,7 @@ fn elastic(here: &Path, material: &Material) -> Result<(), Fault> {
         return Err(Fault::new(here.then("thickness"), message));
     }
     let why = match made.update {
-        Update::Updated => {
-            "update: updated uses the moduli of svk in every increment"
-        }
+        Update::Updated => "update: updated uses the moduli of svk in every increment",
         Update::Small => "update: small is linear elasticity for every law",
         Update::Total => return Ok(()),
     };
@@ -238,8 +236,9 @@ fn beam(
     let path = here.then("along");
     let elements = chain(&path, names, along, total, spec)?.elements();
     if elements.iter().any(|e| e.len() != elements[0].len()) {
-        let message =
-            format!("{along:?} has sides with 2 and with 3 nodes; the elements of a beam must all have the same number");
+        let message = format!(
+            "{along:?} has sides with 2 and with 3 nodes; the elements of a beam must all have the same number"
+        );
         return Err(Fault::new(path, message));
     }
     let here = here.then("material");

@@ -56,7 +56,9 @@ pub(super) fn history(history: &History) -> Result<(), Fault> {
                 "the history would have {count:e} increments of {increment:?}; at most a million are allowed"
             ),
             false => {
-                format!("the history would have {count:e} increments; at most a million are allowed")
+                format!(
+                    "the history would have {count:e} increments; at most a million are allowed"
+                )
             }
         };
         return Err(Fault::new(size, message));

@@ -314,7 +314,9 @@ pub(super) fn friction(here: &Path, friction: &FrictionSpec) -> Result<(), Fault
     if adhesion < 0.0 {
         return Err(Fault::new(
             here.then("adhesion"),
-            format!("the adhesion is {adhesion:?}; it is a force per area and must not be negative"),
+            format!(
+                "the adhesion is {adhesion:?}; it is a force per area and must not be negative"
+            ),
         ));
     }
     Ok(())

@@ -287,7 +287,8 @@ impl Layout {
     ) -> Result<usize, Fault> {
         let name = &names.nodes[node].name;
         if !self.on_body[node] {
-            let message = format!("node {name:?} belongs to no body, so a load there has no effect");
+            let message =
+                format!("node {name:?} belongs to no body, so a load there has no effect");
             return Err(Fault::new(here.then("node"), message));
         }
         let dof = self

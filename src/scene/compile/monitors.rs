@@ -191,7 +191,10 @@ fn slave_number(
                 .map(|slave| names.nodes[slave.node].name.as_str());
             Fault::new(
                 here.then("node"),
-                format!("node {name:?} is not a slave node (slaves: {})", some_of(all)),
+                format!(
+                    "node {name:?} is not a slave node (slaves: {})",
+                    some_of(all)
+                ),
             )
         })
 }

@@ -58,9 +58,7 @@ fn parts<'b>(
         return Ok(of(solid).collect());
     }
     if bodies.iter().any(|body| body.name == on) {
-        return Err(format!(
-            "body {on:?} is not a solid and has no volume"
-        ));
+        return Err(format!("body {on:?} is not a solid and has no volume"));
     }
     let Ok(mesh) = names.mesh(on) else {
         let known = || solids().map(|(body, _)| body.name.as_str());

@@ -262,9 +262,7 @@ impl Made<'_> {
             if !self.used[node] {
                 return Err(Fault::new(
                     course.place,
-                    format!(
-                        "node {label} belongs to no element, so a force there has no effect"
-                    ),
+                    format!("node {label} belongs to no element, so a force there has no effect"),
                 ));
             }
             if direction == Direction::Rotation && !on_beam[node] {

@@ -45,10 +45,7 @@ pub fn shallow(file: &str, text: &str, what: &str) -> Result<(), SceneError> {
         None => Ok(()),
         Some(byte) => Err(SceneError {
             at: Some(line_and_column(text, byte)),
-            ..SceneError::whole(
-                file,
-                format!("brackets are nested too deeply for a {what}"),
-            )
+            ..SceneError::whole(file, format!("brackets are nested too deeply for a {what}"))
         }),
     }
 }

@@ -28,8 +28,12 @@ impl Names {
             .filter(|entry| entry.kind == EntryKind::Given);
         let note = |mesh: &Entry| {
             let idle = mesh.nodes.len() - nodes_of(&mesh.elements).len();
-            let idle = (idle > 0)
-                .then(|| format!("mesh {:?}: {idle} of its nodes belong to no element", mesh.id));
+            let idle = (idle > 0).then(|| {
+                format!(
+                    "mesh {:?}: {idle} of its nodes belong to no element",
+                    mesh.id
+                )
+            });
             let coarse = (refine > 1)
                 .then(|| format!("mesh {:?}: refine does not divide its elements", mesh.id));
             idle.into_iter().chain(coarse)

@@ -292,8 +292,7 @@ fn points<'s>(spec: &'s Stored, numbers: &Numbers) -> Result<Vec<Point<'s>>, Fau
         let (x, y) = touching.normal;
         let length = x.hypot(y);
         if !(length > 0.0 && length.is_finite()) {
-            let why =
-                format!("the normal is ({x:?}, {y:?}); it must be finite and not zero");
+            let why = format!("the normal is ({x:?}, {y:?}); it must be finite and not zero");
             return Err(Fault::new(at!["contacts", k, "normal"], why));
         }
         finite(&at!["contacts", k, "gap"], touching.gap)?;
