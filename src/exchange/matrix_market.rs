@@ -265,7 +265,7 @@ mod tests {
             (
                 "%%MatrixMarket matrix array real symmetric\n1 2\n".to_owned(),
                 (2, 3),
-                "neither",
+                "cannot be symmetric",
             ),
             (with("2 2 1\n% c\n3 1 1.0\n"), (4, 1), "1 to 2"),
             (with("2 2 1\n1 0 1.0\n"), (3, 3), "1 to 2"),

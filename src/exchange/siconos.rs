@@ -463,7 +463,7 @@ mod tests {
     #[test]
     fn what_is_wrong_is_told_with_its_place() {
         let cases = [
-            ("3\n1\n", (1, 1), "in space"),
+            ("3\n1\n", (1, 1), "three-dimensional"),
             ("7\n", (1, 1), "begins with its dimension"),
             ("2\n0\n", (2, 1), "0 contacts"),
             ("2\n1\n9\n", (3, 1), "storage 9"),
@@ -475,11 +475,11 @@ mod tests {
                 (8, 9),
                 "negative",
             ),
-            ("2\n1\n1\n2\n2\n1\n1 1\n1\n", (8, 1), "rise"),
+            ("2\n1\n1\n2\n2\n1\n1 1\n1\n", (8, 1), "ascending"),
             (
                 "2\n1\n2\n2\n2\n1 t nnz: 1\n0 : 1.0",
                 (7, 1),
-                "none was named",
+                "none has been named",
             ),
             (
                 "2\n1\n2\n2\n2\n1 t nnz: 1\ncol 0 : locations\n2 : 1.0",

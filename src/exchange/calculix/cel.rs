@@ -392,37 +392,37 @@ mod tests {
     fn what_is_wrong_is_told_with_line_and_column() {
         let after = |text: &str| refused(&format!("{NODES}{text}\n"));
         for (told, wanted) in [
-            (refused("hello\n"), "1:1: this is no .cel of CalculiX"),
+            (refused("hello\n"), "1:1: this is not a CalculiX .cel"),
             (after("*NODE"), "7:1: this is no .cel"),
             (after("1, 2"), "7:1: the element has all its nodes already"),
             (
                 after("*ELEMENT,TYPE=C3D10,ELSET=contactelements_st1_in1_at1_it2"),
-                "7:10: contact elements are of type C3D4, C3D6 or C3D8",
+                "7:10: contact elements must be of type C3D4, C3D6 or C3D8",
             ),
             (
                 after("*ELEMENT,TYPE=C3D4,ELSET=EALL"),
-                "7:20: the set should be contactelements_stS_inI_atA_itK",
+                "7:20: the set must be contactelements_stS_inI_atA_itK",
             ),
             (after("*ELEMENT,TYPE=C3D4"), "7:19: ELSET= is missing"),
             (
                 after("*ELEMENT,TYPE=C3D4,ELSET=contactelements_st1_in1_at1_it1"),
-                "7:1: the iterations go back here",
+                "7:1: iterations must be in order in the .cel of one run",
             ),
             (
                 after("*ELEMENT,TYPE=C3D4,ELSET=contactelements_st1_in1_at1_it3\n1, 2, x, 4, 5"),
-                "8:7: 'x' stands where the number of a node should",
+                "8:7: found 'x' where the node number, a whole number, was expected",
             ),
             (
                 after(
                     "*ELEMENT,TYPE=C3D4,ELSET=contactelements_st1_in1_at1_it3\n1, 2, 99999999999",
                 ),
-                "8:7: '99999999999' stands where",
+                "8:7: found '99999999999' where",
             ),
             (
                 after(
                     "*ELEMENT,TYPE=C3D4,ELSET=contactelements_st1_in1_at1_it3\n1, 2\n*ELEMENT,TYPE=C3D4",
                 ),
-                "9:1: a new element begins, and of the one before only 2 numbers stand there",
+                "9:1: a new element begins, but the previous one has only 2 numbers",
             ),
         ] {
             assert!(told.starts_with(wanted), "{told}\n{wanted}");

@@ -251,7 +251,7 @@ mod tests {
         assert_eq!(wrong.at, Some((3, 9)));
         assert_eq!(
             wrong.message,
-            "'x' stands where the node should, a whole number"
+            "found 'x' where the node, a whole number, was expected"
         );
         assert_eq!(line.ends_early("").at, Some((3, 10)));
     }

@@ -152,40 +152,40 @@ fn sections_that_no_mesh_needs_are_skipped_and_parametric_nodes_are_read() {
 #[test]
 fn what_is_wrong_is_told_with_its_place() {
     let cases = [
-        ("$Mesh", "$MeshX", "1:1", "begins with $MeshFormat"),
+        ("$Mesh", "$MeshX", "1:1", "must begin with $MeshFormat"),
         ("2.2 0", "4.0 0", "2:1", "version 4"),
         (
             "$Nodes\n4",
             "$Nodes\n4000000000",
             "5:1",
-            "4000000000 nodes are announced",
+            "4000000000 nodes are declared",
         ),
         ("7 1 0 0", "7 1 nan 0", "7:5", "finite"),
         (
             "7 1 0 0",
             "7 1 1,5 0",
             "7:5",
-            "\"1,5\" stands where y of a node should",
+            "found \"1,5\" where y of a node was expected",
         ),
         ("7 1 0 0", "7 1 0 0.5", "7:1", "node 7 is at z = 0.5"),
         (
             "30 0 1 0",
             "7 0 1 0",
             "8:1",
-            "node 7 stands in the file twice",
+            "node 7 occurs twice in the file",
         ),
-        ("10 7 30", "10 7 31", "13:1", "names node 31"),
+        ("10 7 30", "10 7 31", "13:1", "refers to node 31"),
         (
             "1 2 2 0 6 10 7 30",
             "1 4 2 0 6 10 7 30 5",
             "13:3",
-            "a tetrahedron of 4 nodes; only plane",
+            "a 4-node tetrahedron; only plane",
         ),
         (
             "1 2 2 0 6 10 7 30",
             "1 21 2 0 6 10 7 30 5",
             "13:3",
-            "a triangle of 10 nodes; elements of first",
+            "a 10-node triangle; only first",
         ),
         (
             "1 2 2 0 6 10 7 30",
@@ -203,7 +203,7 @@ fn what_is_wrong_is_told_with_its_place() {
             "$EndNodes",
             "$Nodes",
             "10:1",
-            "\"$Nodes\" stands where $EndNodes should",
+            "found \"$Nodes\" where $EndNodes was expected",
         ),
     ];
     for (old, new, place, told) in cases {

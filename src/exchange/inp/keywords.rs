@@ -155,7 +155,7 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
     (
         "PRE-TENSION SECTION",
         Refused(
-            "pre-tension sections are not supported, since they couple nodes by an equation; use an interference fit, or move an end by *BOUNDARY",
+            "pre-tension sections couple nodes by an equation, which is not supported; displace an end by *BOUNDARY instead",
         ),
     ),
     ("PREPRINT", Ignored(OUTPUT)),
@@ -174,8 +174,8 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
         Refused("shells are three-dimensional; only plane elements are supported"),
     ),
     ("SOLID SECTION", Read("including the thickness")),
-    ("springs are not supported", Ignored(HEAT)),
-    ("SPRING", Refused("springs cannot be read")),
+    ("SPECIFIC HEAT", Ignored(HEAT)),
+    ("SPRING", Refused("springs are not supported")),
     (
         "STATIC",
         Read("the first, minimum and maximum increment and the duration of the step"),

@@ -101,7 +101,7 @@ fn whole(sources: &Sources) -> Result<Deck, Fault> {
 fn known(card: &Card<'_>, deck: &mut Deck) -> Result<(), Fault> {
     match treatment(&card.key) {
         Some(Treatment::Refused(why)) => {
-            return Err(card.wrong(format!("it is not supported: {why}")));
+            return Err(card.wrong(why));
         }
         None => {
             let like = nearest(&card.key)

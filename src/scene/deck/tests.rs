@@ -150,8 +150,9 @@ fn weight_is_density_times_acceleration_on_a_whole_body() {
     assert_eq!(volume, Some(("EVERYTHING".to_owned(), 0.0, -30.0)));
     let half = heavy.replace("BLOCK, GRAV", "1, GRAV");
     assert!(
-        refusal(&half)
-            .starts_with("job.inp:53:1: the load acts on 1 of the 2 elements of EVERYTHING"),
+        refusal(&half).starts_with(
+            "job.inp:53:1: the load acts on 1 of the 2 connected elements of EVERYTHING"
+        ),
         "{}",
         refusal(&half)
     );
@@ -185,17 +186,17 @@ fn what_is_found_wrong_with_the_scene_is_told_with_the_line_of_the_deck() {
         (
             "TOP, 1, 1, 0.\n",
             "",
-            "job.inp:54:1: the x of node 4 is free in the steps before",
+            "job.inp:54:1: the x of node 4 is free in earlier steps",
         ),
         (
             "*STEP\n*STATIC, DIRECT\n0.125",
             "*STEP, NLGEOM\n*STATIC, DIRECT\n0.125",
-            "job.inp:51:1: NLGEOM must hold in all steps",
+            "job.inp:51:1: NLGEOM must be set in all steps",
         ),
         (
             "*BOUNDARY, AMPLITUDE=FORTH",
             "*BOUNDARY, OP=NEW, AMPLITUDE=FORTH",
-            "job.inp:51:1: OP=NEW sets the ",
+            "job.inp:51:1: OP=NEW frees the ",
         ),
         (
             "BELOW, ABOVE",
@@ -234,7 +235,7 @@ fn a_new_boundary_that_gives_all_again_is_a_changed_one_and_one_that_frees_a_nod
     ] {
         let told = refusal(&card(", OP=NEW", &but(all, missing, "")));
         assert!(
-            told.contains("OP=NEW sets the ") && told.contains(freed),
+            told.contains("OP=NEW frees the ") && told.contains(freed),
             "{told}"
         );
     }

@@ -68,8 +68,8 @@ const KINDS: [Entry; 13] = [
     entry(FileKind::Mesh, "a Gmsh mesh", "stickslip export {} -o SCENE.ron", |start| start.text.trim_start().starts_with("$MeshFormat")),
     entry(FileKind::Results, "a file of stored results", "stickslip map SCENE --resume {}", |start| start.first.starts_with("stickslip ") && start.first.contains(" results, ")),
     entry(FileKind::Contacts, "the .cel file of a finished CalculiX run", "stickslip {}", |start| is_contacts(start.first)),
-    entry(FileKind::Progress, "a table of a finished CalculiX run", "stickslip {}", |start| ["SUMMARY OF JOB INFORMATION", "a terminal recording of a session"].contains(&start.first)),
-    entry(FileKind::Cast, "a session to be played in a terminal", "asciinema play {}", |start| start.first.starts_with("{\"version\"")),
+    entry(FileKind::Progress, "a table of a finished CalculiX run", "stickslip {}", |start| ["SUMMARY OF JOB INFORMATION", "SUMMARY OF C0NVERGENCE INFORMATION"].contains(&start.first)),
+    entry(FileKind::Cast, "a terminal recording of a session", "asciinema play {}", |start| start.first.starts_with("{\"version\"")),
     entry(FileKind::ChartTable, "the table of a work-precision chart", "stickslip chart --from {}", |start| start.first.starts_with("scene,series,run,")),
     entry(FileKind::Table, "a table of results", "", |start| {
         let columns = ["increment,load,", "increment,attempt,", "scene,"];
@@ -77,8 +77,8 @@ const KINDS: [Entry; 13] = [
     }),
     entry(FileKind::Journal, "a journal", "stickslip resume {}", |start| start.has_format() && start.first.contains("began:")),
     entry(FileKind::Snapshot, "a snapshot", "stickslip replay {}", |start| start.has_format()),
-    entry(FileKind::Lesson, "a lesson", "the definition of a work-precision chart", |start| start.has(&["scene", "steps"])),
-    entry(FileKind::Chart, "the file of a work-precision chart", "", |start| start.has(&["scene", "series"])),
+    entry(FileKind::Lesson, "a lesson", "stickslip lesson {}", |start| start.has(&["scene", "steps"])),
+    entry(FileKind::Chart, "the definition of a work-precision chart", "", |start| start.has(&["scene", "series"])),
     entry(FileKind::Scene, "a scene", "stickslip run {}", |start| {
         let heads = [super::condensed::HEAD, super::stored::HEAD];
         let number = start.first.split_whitespace().next().is_some_and(|word| word.parse::<u32>().is_ok());
