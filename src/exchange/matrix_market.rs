@@ -229,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn every_form_of_a_matrix_is_read() {
+    fn every_format_of_a_matrix_is_read() {
         let general = "%%MatrixMarket matrix coordinate real general\n% words\n\n2 3 3\n1 1 1.5\n2 3 -2\n2 3 -1e0\n";
         assert_eq!(dense(general), [[1.5, 0.0, 0.0], [0.0, 0.0, -3.0]]);
         let symmetric = "%%matrixmarket MATRIX Coordinate Integer Symmetric\n2 2 2\n1 1 4\n2 1 3\n";
@@ -243,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told_with_its_place() {
+    fn errors_have_a_position() {
         let with = |rest: &str| format!("%%MatrixMarket matrix coordinate real general\n{rest}");
         let cases = [
             ("hello".to_owned(), (1, 1), "must begin"),
@@ -283,7 +283,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_written_is_read_back_to_the_last_bit(
+        fn written_files_are_read_back_exactly(
             rows in prop::collection::vec(prop::collection::vec(-1e300..1e300_f64, 3), 1..5),
         ) {
             let matrix = Matrix::from_rows(&rows);

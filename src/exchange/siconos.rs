@@ -427,7 +427,7 @@ mod tests {
     }
 
     #[test]
-    fn a_global_problem_is_known_by_its_matrices() {
+    fn a_global_problem_is_recognised_by_its_matrices() {
         let rest = "0\n3\n2\n3 2\n1 0 0\n0 1 0\n7.0 8.0 9.0\n-0.5 0.0\n0.3\n";
         let dense = format!("2\n1\n0\n3\n3\n3 3\n1 0 0 0 2 0 0 0 3\n{rest}");
         let sparse = "1\nCSparse Version 4.4\ntriplet: 3-by-3, nzmax: 3 nnz: 3\n 0 0 : 1\n 1 1 : 2\n 2 2 : 3\n";
@@ -461,7 +461,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told_with_its_place() {
+    fn errors_have_a_position() {
         let cases = [
             ("3\n1\n", (1, 1), "three-dimensional"),
             ("7\n", (1, 1), "begins with its dimension"),
@@ -502,7 +502,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_written_is_read_back_to_the_last_bit(
+        fn written_files_are_read_back_exactly(
             rows in prop::collection::vec(prop::collection::vec(-1e300..1e300_f64, 4), 4),
             q in prop::collection::vec(-1e300..1e300_f64, 4),
             mu in prop::collection::vec(0.0..9.0_f64, 2),

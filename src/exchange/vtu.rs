@@ -244,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn names_are_harmless() {
+    fn names_are_escaped() {
         let array = Array {
             name: "a<\"&\u{1b}>".to_owned(),
             components: &["X", "Y"],
@@ -264,7 +264,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_number_is_there_to_the_last_bit(values in prop::collection::vec(any::<f64>(), 0..20), said in "\\PC{0,20}") {
+        fn every_number_is_exact(values in prop::collection::vec(any::<f64>(), 0..20), said in "\\PC{0,20}") {
             let field = |name: &str, values| Array { name: name.to_owned(), components: &[], values };
             let grid = Grid {
                 on_points: vec![field("numbers", Values::Numbers(values.clone()))],

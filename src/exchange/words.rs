@@ -172,7 +172,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_place_is_counted_in_characters() {
+    fn positions_count_characters() {
         let text = "ä 1\n  ü x\n";
         let mut words = Words::new(text);
         assert_eq!(words.next("a").unwrap(), "ä");
@@ -190,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_of_fortran_are_read_and_no_infinities() {
+    fn fortran_numbers_are_read_and_infinities_rejected() {
         assert_eq!(number("1.5D+02"), Some(150.0));
         for wrong in ["inf", "NaN", "1e999", "ded", ""] {
             assert_eq!(number(wrong), None, "{wrong}");

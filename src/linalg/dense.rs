@@ -149,7 +149,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_dense_system_is_solved_and_a_singular_one_told() {
+    fn a_dense_system_is_solved_and_a_singular_one_detected() {
         let mut dense = DenseFactors::new(3, 2).unwrap();
         let a = [0.0, 2e8, 1.0, 1e-4, 1.0, 3.0, 2e-4, 0.0, -1.0];
         let exact = [1.0, -2.0, 0.5];

@@ -508,7 +508,7 @@ mod tests {
     }
 
     #[test]
-    fn constraints_without_a_pivot_in_their_group_wait_for_one() {
+    fn constraints_without_a_pivot_in_their_group_are_delayed() {
         let case = Case::grid(20, 4, 0.2, true);
         let mut fronts = case.fronts();
         let apart = case.error(&mut fronts);
@@ -568,7 +568,7 @@ mod tests {
     }
 
     #[test]
-    fn what_did_not_change_keeps_its_bits() {
+    fn unchanged_parts_keep_their_bits() {
         for apart in [false, true] {
             let mut case = Case::grid(300, 6, 0.1, apart);
             let mut fronts = case.fronts();
@@ -593,7 +593,7 @@ mod tests {
     }
 
     #[test]
-    fn a_singular_matrix_is_refused() {
+    fn a_singular_matrix_is_rejected() {
         let mut case = Case::grid(3, 2, 0.0, false);
         for (value, (i, j)) in case.values.iter_mut().zip(case.pattern.iter()) {
             if i == 5 || j == 5 {

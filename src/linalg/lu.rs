@@ -475,7 +475,7 @@ mod tests {
     }
 
     #[test]
-    fn a_saddle_point_whose_stiffness_is_tiny_beside_its_constraints_is_not_singular() {
+    fn a_saddle_point_with_a_tiny_stiffness_is_not_singular() {
         let tiny = 1e-13;
         let a = [
             3.0 * tiny,
@@ -503,7 +503,7 @@ mod tests {
     }
 
     #[test]
-    fn a_singular_matrix_is_told_by_the_norm_of_its_inverse_or_by_the_solve() {
+    fn a_singular_matrix_is_detected_by_the_norm_of_its_inverse_or_by_the_solve() {
         let (pattern, values) = dense(2, &[1.0, 2.0, 2.0, 4.0]);
         let mut factors = Factors::new(pattern.clone()).unwrap();
         factors.scale(&values, 2, &ONES[..pattern.size()]);

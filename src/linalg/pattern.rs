@@ -216,7 +216,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn blocks_without_entries_between_them_are_told_apart() {
+    fn uncoupled_blocks_are_found() {
         let entries = vec![
             (0, 0),
             (0, 2),

@@ -507,7 +507,7 @@ mod tests {
     }
 
     #[test]
-    fn growth_beyond_round_off_is_told_when_factoring() {
+    fn growth_beyond_round_off_is_detected_when_factoring() {
         let pattern = Arc::new(Pattern::new(2, vec![(0, 0), (0, 1), (1, 1)]));
         let mut factors = SymmetricFactors::new(pattern, &[1]).unwrap();
         assert!(factors.factor(&[-0.1, 1.0, 0.0], 0.0).is_ok());
@@ -534,7 +534,7 @@ mod tests {
     }
 
     #[test]
-    fn a_vanishing_pivot_is_told() {
+    fn a_vanishing_pivot_is_detected() {
         let pattern = Arc::new(Pattern::new(2, vec![(0, 0), (0, 1), (1, 1)]));
         let mut factors = SymmetricFactors::new(pattern, &[]).unwrap();
         let told = factors.factor(&[1e-30, 1.0, 0.0], 0.0).is_err()

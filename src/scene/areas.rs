@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn a_straight_side_is_shared_by_the_integrals_of_its_shape_functions() {
+    fn areas_on_a_straight_side_are_the_integrals_of_the_shape_functions() {
         let linear = tributary(
             &row(3, 2.0),
             &[beam(vec![vec![0, 1], vec![1, 2]])],
@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn a_slave_by_itself_has_half_of_the_sides_that_it_is_on() {
+    fn a_single_slave_node_has_half_of_its_sides() {
         let bodies = [beam(vec![vec![0, 1], vec![1, 2]])];
         let found = tributary(&row(3, 2.0), &bodies, &[None, Some(0), None], |_| false);
         assert_eq!(found, [None, Some(1.0), None]);

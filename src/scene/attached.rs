@@ -82,7 +82,7 @@ pub(super) fn compile(spec: &Spec, text: &str) -> Result<(Model, Names), Fault> 
     let bars = lines(&scene)?;
     let [from, to] = scene.load.unwrap_or([0.0, 1.0]);
     if !(from.is_finite() && to.is_finite() && from != to) {
-        return refused("load: must be two different load factors, as [0, 1]");
+        return refused("load: must be two different load factors, for example [0, 1]");
     }
     let mut of_body: Vec<usize> = bars.iter().flatten().copied().collect();
     of_body.extend(contacts.iter().map(|contact| contact.node));

@@ -492,7 +492,7 @@ mod tests {
     }
 
     #[test]
-    fn of_every_kind_all_nodes_are_used_and_faces_meet_or_make_up_the_edges() {
+    fn every_kind_uses_all_nodes_and_its_faces_match_or_form_the_edges() {
         for kind in ElementKind::ALL {
             let (columns, rows) = (4, 3);
             let grid = Grid {
@@ -573,7 +573,7 @@ mod tests {
     }
 
     #[test]
-    fn the_inside_of_a_sector_is_concentric_and_its_elements_are_sound() {
+    fn the_interior_of_a_sector_is_concentric_and_its_elements_are_valid() {
         let arc = || Some(Side::Arc { center: (0.0, 0.0) });
         let sides = Sides {
             bottom: arc(),

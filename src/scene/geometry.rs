@@ -225,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn even_curves_are_sound_and_folded_ones_are_not() {
+    fn even_curves_are_valid_and_folded_ones_are_not() {
         assert!(!folds(&[[0.0, 0.0], [1.0, 0.0]]));
         assert!(!folds(&[[-1.0, 0.0], [0.0, 1.0], [1.0, 0.0]]));
         assert!(!folds(&[[0.0, 0.0], [0.3, 0.0], [1.0, 0.0]]));
@@ -244,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn a_quadrilateral_is_sound_until_a_middle_leaves_the_middle_half_of_its_side() {
+    fn a_quadrilateral_is_valid_while_midside_nodes_are_in_the_middle_half_of_their_sides() {
         let with = |x: f64| {
             [
                 [0.0, 0.0],

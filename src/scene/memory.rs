@@ -89,7 +89,7 @@ mod tests {
     use stickslip_core::linear::estimate::bytes;
 
     #[test]
-    fn the_kernels_table_is_read() {
+    fn proc_meminfo_is_read() {
         let table = "MemTotal:  24 kB\nMemFree: 1 kB\nMemAvailable:   22 kB\n";
         assert_eq!(available(table), Some(22.0 * 1024.0));
         assert_eq!(available("MemTotal: 24 kB\n"), None);
@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn the_tightest_group_above_a_process_confines_it() {
+    fn the_tightest_control_group_applies() {
         let folder = tempfile::tempdir().unwrap();
         let mount = folder.path();
         let files = |most, used| [("memory.max", most), ("memory.current", used)];
@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn groups_of_the_first_version_confine_too() {
+    fn version_1_control_groups_apply_too() {
         let folder = tempfile::tempdir().unwrap();
         let mount = folder.path();
         let files = |most, used| {
@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_set_counts_and_not_what_is_free() {
+    fn the_setting_overrides_the_free_memory() {
         assert_eq!(budget(Some(2.0)), 2e9);
         assert_eq!(
             [bytes(2e3), bytes(3.2e7), bytes(2.34e9), bytes(6.4e10)],

@@ -1,4 +1,4 @@
-//! Makes external text safe to print: characters that a terminal would interpret are shown as escapes, as `\u{1b}`.
+//! Makes external text safe to print: characters that a terminal would interpret are shown as escapes, e.g. `\u{1b}`.
 //!
 //! All output for people and all tables pass through [`text`], and text within a line through [`line()`]. Both leave safe text
 //! unchanged, so applying them twice does no harm.
@@ -164,7 +164,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn a_wrapped_text_is_all_there_and_no_line_of_it_is_too_wide() {
+    fn wrapping_keeps_all_text_within_the_width() {
         let text = "a path /that/is/longer/than/any/line and 接触の摩擦角と滑りの長さ to the end";
         for width in 2..60 {
             let lines = wrap(text, width);
@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn orders_are_shown_and_letters_stay() {
+    fn control_characters_are_escaped_and_letters_kept() {
         assert_eq!(line("\u{1b}]0;x\u{7}"), "\\u{1b}]0;x\\u{7}");
         assert_eq!(
             line("a\u{202e}b\u{9b}31m\r\n\t"),
@@ -192,7 +192,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn nothing_harmful_is_left_and_nothing_changes_twice(any in any::<String>()) {
+        fn escaping_is_complete_and_idempotent(any in any::<String>()) {
             let once = line(&any).into_owned();
             prop_assert!(!once.contains(is_order));
             prop_assert_eq!(line(&once), once.as_str());

@@ -275,7 +275,7 @@ mod tests {
     }
 
     #[test]
-    fn a_turn_to_the_right_is_a_concave_corner_and_one_to_the_left_is_none() {
+    fn a_right_turn_is_a_concave_corner_and_a_left_turn_is_not() {
         let turn = |before, behind| half_angle(before, behind).to_degrees();
         assert!((turn([-1.0, -1.0], [-1.0, 1.0]) - 45.0).abs() < 1e-12);
         assert!((turn([-1.0, 1.0], [-1.0, -1.0]) + 45.0).abs() < 1e-12);
@@ -394,7 +394,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_slip_leaves_is_within_the_least_friction_and_the_bound_of_the_corner() {
+    fn friction_after_a_slip_is_between_the_least_friction_and_the_corner_bound() {
         for (angle, half, cohesion) in [
             (20.0, 30.0, 0.4),
             (30.0, 20.0, 0.4),
@@ -492,7 +492,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rough_vertex_holds_what_slides_down_neither_side_and_a_smooth_one_nothing() {
+    fn a_vertex_holds_a_node_only_if_friction_prevents_sliding_down_either_side() {
         // A ridge with slopes of 15 degrees: normals at 75 and 105 degrees, walked from right to left.
         for (angle, holds) in [(20.0, true), (10.0, false), (0.0, false)] {
             let mu = f64::to_radians(angle).tan();

@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn places_sum_up_as_the_nodes_do() {
+    fn weighted_sums_match_the_nodes() {
         let (nodes, positions) = ([2, 0], [[1.0, 2.0], [9.0, 9.0], [3.0, -4.0]]);
         let n = Element::lagrange(&nodes).shape(0.5).n;
         let exact = [0.25 * 3.0 + 0.75 * 1.0, 0.25 * -4.0 + 0.75 * 2.0];

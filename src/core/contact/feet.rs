@@ -235,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn a_point_in_a_valley_has_a_foot_on_each_side() {
+    fn a_point_in_a_valley_has_a_closest_point_on_each_side() {
         let valley = chain(vec![vec![0, 1], vec![1, 2]], false);
         let x = [[1.0, 1.0], [0.0, 0.0], [-1.0, 1.0]];
         let feet = all([0.1, 0.5], &valley, &x, 1.0);
@@ -248,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn a_point_over_a_ridge_has_its_foot_on_the_border_of_both_sides() {
+    fn a_point_over_a_ridge_has_its_closest_point_on_the_border() {
         let ridge = chain(vec![vec![0, 1], vec![1, 2]], false);
         let x = [[1.0, -1.0], [0.0, 0.0], [-1.0, -1.0]];
         let feet = all([0.0, 0.5], &ridge, &x, 0.0);
@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn a_curved_element_has_all_its_closest_points_found_wherever_the_search_starts() {
+    fn all_closest_points_of_a_curved_element_are_found() {
         let m = 5;
         let x: Vec<[f64; 2]> = (0..m)
             .map(|k| f64::from(k) * std::f64::consts::FRAC_PI_4)
@@ -279,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn an_endless_line_has_one_foot_past_its_ends_too() {
+    fn an_endless_line_has_one_closest_point_beyond_its_ends_too() {
         let line = chain(vec![vec![0, 1]], true);
         let feet = all([40.0, 3.0], &line, &[[1.0, 0.0], [0.0, 0.0]], 0.0);
         assert_eq!(

@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn the_geometric_tangent_is_the_derivative_of_the_force_with_the_projection_made_anew() {
+    fn the_geometric_tangent_is_the_derivative_of_the_force_with_a_new_projection() {
         for m in 2..=5 {
             for gap in [-0.1, 0.0, 0.15] {
                 let mut x = vec![[1.1 + 0.2 * gap, 0.9 - gap]];
@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn on_a_smooth_chain_it_is_so_too_on_every_piece() {
+    fn the_geometric_tangent_is_exact_on_every_piece_of_a_smooth_chain() {
         let even: Vec<[f64; 2]> = [[0.0; 2]].into_iter().chain(arc(6)).collect();
         let nodes: Vec<Node> = even
             .iter()

@@ -586,7 +586,7 @@ mod tests {
     }
 
     #[test]
-    fn past_an_end_there_is_nothing_to_touch() {
+    fn there_is_no_contact_beyond_an_end() {
         let (s, x) = floor();
         assert!(project([2.01, 0.0], &s, &[0], &x, None).is_none());
         assert!(project([2.0, -0.3], &s, &[0], &x, None).is_some());

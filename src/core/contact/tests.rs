@@ -60,7 +60,7 @@ fn circle(count: usize, part: f64) -> Vec<[f64; 2]> {
 }
 
 #[test]
-fn a_piece_is_the_blend_of_the_parabolas_through_its_ends_and_the_node_before_and_behind() {
+fn a_piece_blends_the_parabolas_through_its_ends_and_one_neighbour() {
     let x = uneven();
     let surface = chain(&x, false);
     let mut knots = vec![0.0];
@@ -96,7 +96,7 @@ fn a_piece_is_the_blend_of_the_parabolas_through_its_ends_and_the_node_before_an
 }
 
 #[test]
-fn the_shares_of_the_nodes_add_up_to_one_and_have_the_derivatives_that_they_say() {
+fn node_weights_sum_to_one_and_their_derivatives_are_correct() {
     for (places, round) in [(uneven(), false), (uneven(), true), (circle(3, 1.0), true)] {
         let surface = chain(&places, round);
         assert_eq!(closed(&surface), round);
@@ -117,7 +117,7 @@ fn the_shares_of_the_nodes_add_up_to_one_and_have_the_derivatives_that_they_say(
 }
 
 #[test]
-fn the_normal_does_not_jump_at_a_node_however_the_chain_is_bent_since() {
+fn the_normal_is_continuous_at_nodes_of_a_deformed_chain() {
     for round in [false, true] {
         let surface = chain(&uneven(), round);
         // Not the positions that define the knots.
@@ -142,8 +142,7 @@ fn the_normal_does_not_jump_at_a_node_however_the_chain_is_bent_since() {
 }
 
 #[test]
-fn the_gap_to_a_circle_is_wrong_by_the_fourth_power_of_the_distance_of_nodes_and_the_normal_by_the_third()
- {
+fn on_a_circle_the_gap_error_is_fourth_order_and_the_normal_error_third_order() {
     let error = |count: usize| {
         let x = circle(count, 1.0);
         let s = [chain(&x, true)];
@@ -175,7 +174,7 @@ fn the_gap_to_a_circle_is_wrong_by_the_fourth_power_of_the_distance_of_nodes_and
 }
 
 #[test]
-fn a_force_at_the_foot_is_spread_over_the_nodes_with_its_moment() {
+fn a_contact_force_is_distributed_over_the_nodes_with_its_moment() {
     let x = uneven();
     let s = [chain(&x, false)];
     let force = [0.7, -1.9];
@@ -194,7 +193,7 @@ fn a_force_at_the_foot_is_spread_over_the_nodes_with_its_moment() {
 }
 
 #[test]
-fn the_curve_turns_with_its_nodes() {
+fn the_curve_rotates_with_its_nodes() {
     let x = uneven();
     let s = [chain(&x, false)];
     let (sin, cos) = 0.83_f64.sin_cos();

@@ -300,7 +300,7 @@ mod tests {
     }
 
     #[test]
-    fn around_the_axis_too_the_tangent_is_the_derivative_of_the_stress() {
+    fn the_axisymmetric_tangent_is_the_derivative_of_the_stress() {
         for law in [Law::Svk, Law::NeoHookean] {
             let m = material(law, Plane::Axisymmetric, 0.3);
             for (strain, hoop) in STRAINS
@@ -333,7 +333,7 @@ mod tests {
     }
 
     #[test]
-    fn without_a_strain_around_the_axis_the_answer_is_that_of_plane_strain() {
+    fn without_hoop_strain_the_response_is_that_of_plane_strain() {
         for law in [Law::Svk, Law::NeoHookean] {
             let [flat, round] =
                 [Plane::Strain, Plane::Axisymmetric].map(|plane| material(law, plane, 0.3));
@@ -378,7 +378,7 @@ mod tests {
     }
 
     #[test]
-    fn a_neo_hookean_material_is_not_pressed_to_nothing() {
+    fn a_neo_hookean_material_cannot_be_compressed_to_zero_volume() {
         let m = material(Law::NeoHookean, Plane::Strain, 0.3);
         assert!(m.response(&Vector3::new(-0.5, 0.0, 0.0)).is_none());
         assert!(m.response(&Vector3::new(f64::NAN, 0.0, 0.0)).is_none());

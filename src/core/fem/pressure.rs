@@ -259,7 +259,7 @@ mod tests {
     }
 
     #[test]
-    fn the_resultant_of_a_pressure_is_that_on_the_straight_line_between_the_ends() {
+    fn the_resultant_of_a_pressure_depends_only_on_the_ends_of_the_face() {
         let all = face(3, Some(0.5));
         let force = forces(&all, &[0.0; 6], 2.0);
         let at = &all.faces[0].at;

@@ -167,7 +167,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn linear_fields_are_taken_to_the_nodes_exactly_and_constant_ones_by_every_kind() {
+    fn linear_fields_are_extrapolated_exactly_and_constant_ones_by_every_kind() {
         for kind in ElementKind::ALL {
             let (fit, rule, places) = (fit(kind), continuum::rule(kind), continuum::places(kind));
             for (i, place) in places.iter().enumerate() {

@@ -236,7 +236,7 @@ fn the_tangent_of_every_element_is_the_derivative_of_its_force_and_symmetric() {
 }
 
 #[test]
-fn the_shape_functions_of_every_kind_are_one_at_their_node_and_one_together() {
+fn the_shape_functions_of_every_kind_are_one_at_their_node_and_sum_to_one() {
     for kind in ElementKind::ALL {
         let places = continuum::places(kind);
         assert_eq!(places.len(), kind.nodes(), "{kind:?}");
@@ -404,7 +404,7 @@ fn area(kind: ElementKind, at: &[[f64; 2]]) -> f64 {
 }
 
 #[test]
-fn an_element_with_too_few_nodes_never_answers() {
+fn an_element_with_too_few_nodes_has_no_response() {
     for kind in ElementKind::ALL {
         let whole = solid(kind, Law::Svk, Plane::Strain, Update::Updated);
         let elastic = elastic(Law::Svk, Plane::Strain, Update::Updated);

@@ -97,7 +97,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_coefficient_comes_back_to_the_last_bit_and_a_round_angle_too() {
+    fn coefficients_and_round_angles_are_reproduced_exactly() {
         for tenth in 0..899 {
             let angle = f64::from(tenth) / 10.0;
             let friction = Friction {

@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn the_boundary_of_two_elements_is_walked_around_both_and_not_between_them() {
+    fn the_boundary_of_two_elements_surrounds_both() {
         // 6-5-4-13-12
         // 7   3    11     two quadrilaterals that share the side 2-3-4
         // 0-1-2-9-10
@@ -182,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn the_boundary_of_elements_of_several_kinds_is_walked_around_all() {
+    fn the_boundary_of_mixed_elements_surrounds_all() {
         // 3---2       a quadrilateral, with a triangle on its right
         // |   | \
         // 0---1--4

@@ -115,7 +115,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_kept_is_read_again_but_for_a_torn_end() {
+    fn a_transcript_is_read_back_without_its_incomplete_last_line() {
         let lines = [
             (Side::Noted, STARTED),
             (Side::Asked, "{\"type\":\"step\"}\n"),
@@ -137,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn a_changed_digit_is_noticed_and_a_file_without_digests_is_read() {
+    fn a_changed_digit_is_detected_and_a_file_without_digests_is_read() {
         let answer = "{\"type\":\"state\",\"f_n\":1.25}";
         let text = format!("{SEALED_HEAD}\n{}", Kept::line(Side::Answered, answer));
         assert_eq!(Kept::read(&text).expect("sound")[0].text, answer);
@@ -155,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn every_line_of_a_text_has_its_sign() {
+    fn every_line_of_a_text_has_its_direction() {
         let text = format!("{SEALED_HEAD}\n{}", Kept::line(Side::Noted, "lost:\nall\n"));
         let read = Kept::read(&text).expect("sound");
         let texts: Vec<&str> = read.iter().map(|kept| kept.text.as_str()).collect();
@@ -164,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn another_file_is_told_from_one() {
+    fn other_files_are_not_transcripts() {
         assert!(Kept::read("Scene(").is_err());
         let broken = Kept::read(&format!("{HEAD}\n?\n")).expect_err("no sign");
         assert_eq!(broken.at, Some((2, 1)));

@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stream_comes_apart_at_its_line_feeds() {
+    fn a_stream_is_split_at_line_feeds() {
         let text = |s: &str| Line::Text(s.into());
         assert_eq!(
             all(b"a\n\nb\n", 9),
@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_may_have_as_many_bytes_as_are_allowed_and_no_more() {
+    fn lines_longer_than_the_limit_are_rejected() {
         assert_eq!(all(b"1234\n", 4)[0], Line::Text("1234".into()));
         assert_eq!(all(b"12345\n", 4), [Line::TooLong("12345".into())]);
         assert_eq!(all(b"12345678", 4), [Line::TooLong("12345".into())]);

@@ -154,7 +154,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn infinite_and_missing_numbers_are_null_and_come_back_as_none() {
+    fn infinite_and_missing_numbers_are_null_and_read_as_none() {
         let norms = Norms {
             relative: number(f64::INFINITY),
             force: number(-0.0),
@@ -168,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn what_json_does_not_know_is_said_at_its_column() {
+    fn invalid_json_is_reported_with_its_column() {
         for (none, column) in [("NaN", 25), ("Infinity", 25), ("nan", 25)] {
             let text = format!(r#"{{"type":"saved","token":{none}}}"#);
             let broken = Answer::read(&text).expect_err(none);
@@ -182,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told_with_its_place_in_the_message() {
+    fn errors_have_a_path_in_the_message() {
         let text = r#"{"type":"state","at":{"increment":1},"ended":"iteration","contacts":[{"id":1,"mode":"free","next":"free","gap":0.5}]}"#;
         assert!(Answer::read(text).is_ok());
         for (that, this, told) in [
@@ -242,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn depths_that_would_exhaust_the_stack_are_refused_or_passed_over() {
+    fn excessive_nesting_is_rejected_or_skipped() {
         let deep = |depth: usize| "[".repeat(depth) + &"]".repeat(depth);
         let token = |depth| format!(r#"{{"type":"saved","token":{}}}"#, deep(depth));
         assert!(Answer::read(&token(50)).is_ok());
@@ -371,12 +371,12 @@ mod tests {
         }
 
         #[test]
-        fn a_state_reads_back_as_it_was_written(state in state()) {
+        fn a_state_survives_a_round_trip(state in state()) {
             prop_assert_eq!(Answer::read(&state.line()), Ok(state));
         }
 
         #[test]
-        fn a_damaged_line_is_read_or_refused_at_a_column_of_it(
+        fn a_damaged_line_is_read_or_rejected_with_a_valid_column(
             state in state(),
             place in any::<prop::sample::Index>(),
             damage in prop_oneof![Just(""), Just("\""), Just("}"), Just("]"), Just("NaN"), Just("é"), Just("\u{0}"), Just("-")],

@@ -368,13 +368,13 @@ mod tests {
     }
 
     #[test]
-    fn an_element_may_stand_on_several_lines() {
+    fn an_element_may_span_several_lines() {
         let text = NODES.replace("1005 ,", "1005 ,\n");
         assert_eq!(read(text.as_bytes()), read(NODES.as_bytes()));
     }
 
     #[test]
-    fn a_file_that_breaks_off_is_read_up_to_there() {
+    fn a_truncated_file_is_read_up_to_its_end() {
         let lines = |count: usize| NODES.split_inclusive('\n').take(count).collect::<String>();
         for (text, closed, stop) in [
             (lines(4) + "*ELEM", 2, Some(Stop::Cut(5))),
@@ -389,7 +389,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told_with_line_and_column() {
+    fn errors_have_a_line_and_column() {
         let after = |text: &str| refused(&format!("{NODES}{text}\n"));
         for (told, wanted) in [
             (refused("hello\n"), "1:1: this is not a CalculiX .cel"),

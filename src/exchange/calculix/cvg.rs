@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told_and_what_breaks_off_is_read_up_to_there() {
+    fn errors_are_reported_and_truncated_files_are_read_up_to_their_end() {
         let (rows, stop) = read(&CVG.as_bytes()[..CVG.len() - 1]).unwrap();
         assert_eq!((rows.len(), stop), (1, Some(Stop::Cut(6))));
         let row = |text: &str| read(format!("{CVG}{text}\n").as_bytes()).unwrap_err().at;

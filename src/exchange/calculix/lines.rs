@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn fields_know_their_columns_in_characters() {
+    fn field_columns_count_characters() {
         let text = " 12 ,ü, x".as_bytes();
         let line = Line {
             number: 3,
@@ -257,7 +257,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_without_an_end_is_told_and_an_endless_one_refused() {
+    fn an_unterminated_last_line_is_marked_and_an_endless_one_rejected() {
         let mut lines = Lines::new(&b"a\r\nbc"[..]);
         let first = lines.next().unwrap().unwrap();
         assert_eq!((first.bytes, first.whole), (&b"a"[..], true));

@@ -289,7 +289,7 @@ mod tests {
     }
 
     #[test]
-    fn three_files_make_attempts_and_iterations() {
+    fn three_files_are_combined_to_attempts_and_iterations() {
         let [cel, sta, cvg] = files();
         let run = read(cel.as_bytes(), Some(sta.as_bytes()), Some(cvg.as_bytes())).unwrap();
         let ends: Vec<_> = run
@@ -313,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn without_the_others_the_cel_tells_what_it_has() {
+    fn the_cel_can_be_read_alone() {
         let [cel, ..] = files();
         let run = read(cel.as_bytes(), None, None).unwrap();
         assert_eq!((run.sta, run.cvg), (Beside::Missing, Beside::Missing));
@@ -328,7 +328,7 @@ mod tests {
     }
 
     #[test]
-    fn files_of_different_runs_are_told_and_what_no_file_tells_is_not_invented() {
+    fn mismatching_files_are_detected_and_no_data_is_invented() {
         let [cel, _, cvg] = files();
         let cvg = cvg.replace(" 1 1 1 2 0 ", " 1 1 1 2 4 ");
         let run = read(cel.as_bytes(), None, Some(cvg.as_bytes())).unwrap();
@@ -338,7 +338,7 @@ mod tests {
     }
 
     #[test]
-    fn contact_elements_that_calculix_held_fixed_are_those_of_the_iteration_before() {
+    fn frozen_contact_elements_are_those_of_the_previous_iteration() {
         let cel = element(1, 1, 8, 9) + &element(1, 1, 8, 7) + &element(1, 2, 1, 9);
         let rows = [(1, 8, 2), (1, 9, 2), (1, 10, 3), (2, 1, 1)];
         let rows = rows
@@ -362,7 +362,7 @@ mod tests {
     }
 
     #[test]
-    fn attempts_of_which_only_the_sta_tells_are_there_too() {
+    fn attempts_found_only_in_the_sta_are_included() {
         let [cel, sta, _] = files();
         let sta = format!("{sta} 2 1 1U 9 0. 0. 1.\n");
         let run = read(cel.as_bytes(), Some(sta.as_bytes()), None).unwrap();
@@ -411,7 +411,7 @@ mod tests {
         }
 
         #[test]
-        fn no_change_of_a_sound_file_makes_it_panic(
+        fn no_change_of_a_valid_file_makes_it_panic(
             changes in prop::collection::vec((0..3_usize, any::<prop::sample::Index>(), 0..3_u8, any::<u8>()), 1..8),
             short in prop::option::of((0..3_usize, any::<prop::sample::Index>())),
         ) {
@@ -437,7 +437,7 @@ mod tests {
         }
 
         #[test]
-        fn a_run_that_was_killed_anywhere_is_read_up_to_there(at in prop::array::uniform3(any::<prop::sample::Index>())) {
+        fn a_run_killed_at_any_point_is_read_up_to_there(at in prop::array::uniform3(any::<prop::sample::Index>())) {
             let files = files();
             let whole = read(files[0].as_bytes(), Some(files[1].as_bytes()), Some(files[2].as_bytes())).unwrap();
             let cut = |k: usize| &files[k].as_bytes()[..at[k].index(files[k].len() + 1)];

@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told_and_what_breaks_off_is_read_up_to_there() {
+    fn errors_are_reported_and_truncated_files_are_read_up_to_their_end() {
         let (rows, stop) = read(&STA.as_bytes()[..STA.len() - 30]).unwrap();
         assert_eq!((rows.len(), stop), (1, Some(Stop::Cut(4))));
         let row = |text: &str| read(format!("{STA}{text}\n").as_bytes());

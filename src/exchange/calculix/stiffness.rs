@@ -89,7 +89,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn a_half_is_read_as_the_whole() {
+    fn half_of_a_symmetric_matrix_is_completed() {
         let found = unknowns("7.1\n7.2\n 12.1\n").unwrap();
         let told: Vec<_> = found.iter().map(|u| (u.node, u.direction)).collect();
         assert_eq!(told, [(7, 0), (7, 1), (12, 0)]);
@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told_with_its_place() {
+    fn errors_have_a_position() {
         let of_dof = [
             ("1.1\n1.3\n", (2, 1), "z"),
             ("1.1 x", (1, 5), "NODE"),

@@ -438,7 +438,7 @@ mod tests {
     }
 
     #[test]
-    fn a_global_problem_with_bilateral_constraints_is_one_of_more_unknowns() {
+    fn bilateral_constraints_become_additional_unknowns() {
         let bytes = file("fclib_global", |group| {
             group.create_dataset("spacedim").with_i32_data(&[2]);
             // Rows, columns and triplets, in this order.
@@ -470,7 +470,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_read_is_refused_by_name() {
+    fn unsupported_content_is_rejected_by_name() {
         let with = |dimension: i32, n: i32, mu: f64| {
             file("fclib_local", |group| {
                 group.create_dataset("spacedim").with_i32_data(&[dimension]);
@@ -520,7 +520,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_written_is_read_back_to_the_last_bit(
+        fn written_files_are_read_back_exactly(
             rows in prop::collection::vec(prop::collection::vec(-1e300..1e300_f64, 4), 4),
             q in prop::collection::vec(-1e300..1e300_f64, 4),
         ) {

@@ -28,7 +28,7 @@ pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<Raw, Broken> {
         let Some(name) = word.strip_prefix(b"$").filter(|name| !name.is_empty()) else {
             let shown: String = String::from_utf8_lossy(word).chars().take(40).collect();
             return Err(cursor.wrong(format!(
-                "found {shown:?} where a section, as $Nodes, was expected"
+                "found {shown:?} where a section, e.g. $Nodes, was expected"
             )));
         };
         let begin = cursor.last();

@@ -22,7 +22,7 @@ fn group<'m>(mesh: &'m Mesh, name: &str) -> Vec<&'m Cell> {
 }
 
 #[test]
-fn all_four_forms_of_a_mesh_are_the_same_mesh() {
+fn all_four_formats_give_the_same_mesh() {
     let [first, rest @ ..] = FILES.map(|file| read(file).unwrap());
     let names: Vec<&str> = first.groups.iter().map(|g| g.name.as_str()).collect();
     assert_eq!(names, ["bottom", "top", "arc", "flat", "block", "disc"]);
@@ -86,7 +86,7 @@ fn broken(text: &str) -> (Option<(usize, usize)>, String) {
 }
 
 #[test]
-fn tags_may_have_gaps_and_stand_in_any_order() {
+fn tags_may_have_gaps_and_any_order() {
     let mesh = read(small("").as_bytes()).unwrap();
     assert_eq!(mesh.labels, [10, 7, 30, 5]);
     assert_eq!(mesh.cells[0].nodes, [0, 1, 2]);
@@ -120,7 +120,7 @@ fn a_group_without_a_name_has_its_number_and_a_cell_in_two_groups_is_one_cell() 
 }
 
 #[test]
-fn the_other_order_of_bytes_is_read_too() {
+fn the_other_byte_order_is_read_too() {
     let mut bytes = b"$MeshFormat\n2.2 1 8\n".to_vec();
     bytes.extend(1_i32.to_be_bytes());
     bytes.extend(b"\n$EndMeshFormat\n$Nodes\n3\n");
@@ -141,7 +141,7 @@ fn the_other_order_of_bytes_is_read_too() {
 }
 
 #[test]
-fn sections_that_no_mesh_needs_are_skipped_and_parametric_nodes_are_read() {
+fn unneeded_sections_are_skipped_and_parametric_nodes_are_read() {
     let text = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Comments\n$Nodes are not here\n$EndComments\n\
                 $Nodes\n1 3 1 3\n2 1 1 3\n1\n2\n3\n0 0 0 0.5 0.5\n1 0 0 1 0\n0 1 0 0 1\n$EndNodes\n\
                 $Periodic\n1\n1 1 2\n$EndPeriodic\n$Elements\n1 1 1 1\n2 1 2 1\n1 1 2 3\n$EndElements\n";
@@ -150,7 +150,7 @@ fn sections_that_no_mesh_needs_are_skipped_and_parametric_nodes_are_read() {
 }
 
 #[test]
-fn what_is_wrong_is_told_with_its_place() {
+fn errors_have_a_position() {
     let cases = [
         ("$Mesh", "$MeshX", "1:1", "must begin with $MeshFormat"),
         ("2.2 0", "4.0 0", "2:1", "version 4"),
@@ -219,7 +219,7 @@ fn what_is_wrong_is_told_with_its_place() {
 }
 
 #[test]
-fn in_a_binary_file_the_byte_is_told() {
+fn errors_in_binary_files_have_a_byte_offset() {
     let whole = FILES[1];
     let start = whole.windows(7).position(|w| w == b"$Nodes\n").unwrap();
     let cut = read(&whole[..start + 40]).unwrap_err();
@@ -243,7 +243,7 @@ proptest! {
     }
 
     #[test]
-    fn cut_and_changed_files_are_read_or_refused(
+    fn truncated_and_changed_files_are_read_or_rejected(
         which in 0..4_usize,
         cut in 0.0..1.0_f64,
         changes in prop::collection::vec((0.0..1.0_f64, any::<u8>()), 0..8),

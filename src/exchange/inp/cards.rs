@@ -62,7 +62,7 @@ pub(super) fn cards<'t>(lines: impl Iterator<Item = Line<'t>>) -> Result<Vec<Car
             None => {
                 return Err(Fault::new(
                     line.place(0),
-                    "data before the first keyword; a deck begins with a keyword, as *HEADING or *NODE",
+                    "data before the first keyword; a deck begins with a keyword, e.g. *HEADING or *NODE",
                 ));
             }
         }

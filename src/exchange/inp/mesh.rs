@@ -480,7 +480,7 @@ fn sides(card: &Card<'_>, deck: &Deck, names: &Names) -> Result<Vec<(usize, usiz
         };
         let Some(label) = words.get(1) else {
             return Err(
-                first.wrong("the side is missing; write the element and the side, as \"12, S2\"")
+                first.wrong("the side is missing; write the element and the side, e.g. \"12, S2\"")
             );
         };
         for element in members_of(first, deck, names, Kind::Elements)? {

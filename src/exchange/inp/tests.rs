@@ -34,7 +34,7 @@ fn but(text: &str, from: &str, to: &str) -> String {
 }
 
 #[test]
-fn nodes_elements_sections_and_laws_are_what_the_deck_says() {
+fn nodes_elements_sections_and_laws_match_the_deck() {
     let deck = deck(PLATES);
     assert_eq!(
         deck.heading,
@@ -77,7 +77,7 @@ fn nodes_elements_sections_and_laws_are_what_the_deck_says() {
 }
 
 #[test]
-fn sets_are_generated_and_made_of_sets_and_steps_follow_each_other() {
+fn sets_may_be_generated_and_nested_and_steps_are_in_order() {
     let deck = deck(BLOCK);
     let set = |name: &str| {
         deck.node_sets
@@ -119,7 +119,7 @@ fn a_rectangular_beam_has_its_second_thickness_in_the_plane() {
 }
 
 #[test]
-fn case_blanks_comments_continued_lines_and_fortran_numbers_make_no_difference() {
+fn case_spaces_comments_continuation_lines_and_fortran_numbers_do_not_matter() {
     let text = but(
         BLOCK,
         "*SURFACE INTERACTION, NAME=ROUGH",
@@ -139,7 +139,7 @@ fn case_blanks_comments_continued_lines_and_fortran_numbers_make_no_difference()
 }
 
 #[test]
-fn an_included_file_is_read_in_its_place_and_its_faults_have_their_own_lines() {
+fn an_include_file_is_read_in_place_and_its_errors_have_its_lines() {
     let mut give = |name: &str| match name {
         "parts/glued-mesh.inp" => Ok(GLUED_MESH.to_owned()),
         _ => Err("no such file".to_owned()),
@@ -163,7 +163,7 @@ fn an_included_file_is_read_in_its_place_and_its_faults_have_their_own_lines() {
 }
 
 #[test]
-fn files_that_include_each_other_end() {
+fn recursive_includes_are_rejected() {
     let mut itself = |_: &str| Ok("*INCLUDE, INPUT=a.inp\n".to_owned());
     let wrong = read("job.inp", "*INCLUDE, INPUT=a.inp\n", &mut itself).expect_err("endless");
     assert_eq!(
@@ -192,7 +192,7 @@ fn files_that_include_each_other_end() {
 }
 
 #[test]
-fn what_cannot_be_read_is_refused_where_it_stands_with_what_would_be_right() {
+fn errors_have_a_location_and_the_expected_input() {
     let cases = [
         (
             "TYPE=CPE4, ELSET=BLOCK",
@@ -302,7 +302,7 @@ fn what_cannot_be_read_is_refused_where_it_stands_with_what_would_be_right() {
 }
 
 #[test]
-fn what_is_passed_over_or_read_as_something_else_is_listed_with_its_line() {
+fn ignored_and_reinterpreted_input_is_listed_with_its_line() {
     let lines = |deck: &Deck| -> Vec<String> {
         let remarks = deck.remarks.iter();
         remarks
@@ -364,7 +364,7 @@ fn loads_on_sides_and_volumes_and_adjusted_gaps_are_read() {
 }
 
 #[test]
-fn keywords_stand_once_and_in_order() {
+fn keywords_are_unique_and_sorted() {
     let names: Vec<&str> = keywords::KEYWORDS.iter().map(|(name, _)| *name).collect();
     assert!(names.windows(2).all(|pair| pair[0] < pair[1]), "{names:?}");
 }
@@ -403,7 +403,7 @@ proptest! {
     }
 
     #[test]
-    fn no_row_of_cards_makes_the_reader_panic(
+    fn no_sequence_of_cards_makes_the_reader_panic(
         cards in prop::collection::vec((prop::sample::select(keywords::KEYWORDS), "[A-Z, =0-9.*-]{0,40}", "[A-Z0-9,. \n-]{0,60}"), 0..12),
     ) {
         let lines = cards.iter().map(|((name, _), parameters, data)| format!("*{name},{parameters}\n{data}\n"));
@@ -411,7 +411,7 @@ proptest! {
     }
 
     #[test]
-    fn a_damaged_deck_is_read_or_refused_at_a_line_that_it_has(text in damaged()) {
+    fn a_damaged_deck_is_read_or_rejected_with_a_valid_line(text in damaged()) {
         let mut give = |_: &str| Ok(GLUED_MESH.to_owned());
         if let Err(wrong) = read("job.inp", &text, &mut give) {
             let lines = if wrong.place.file == 0 { text.lines().count() } else { GLUED_MESH.lines().count() };

@@ -13,7 +13,7 @@ pub(super) fn history(history: &History) -> Result<(), Fault> {
     let here = at!["history", "path"];
     if path.len() < 2 {
         let message = format!(
-            "the path has {} corners; it needs at least two, as [0, 1]",
+            "the path has {} corners; it needs at least two, e.g. [0, 1]",
             path.len()
         );
         return Err(Fault::new(here, message));

@@ -26,7 +26,7 @@ fn refusal(text: &str) -> String {
 }
 
 #[test]
-fn bodies_are_what_hangs_together_and_nodes_keep_their_numbers() {
+fn connected_elements_form_bodies_and_nodes_keep_their_numbers() {
     let scene = scene(BLOCK);
     let bodies: Vec<&str> = scene
         .model
@@ -161,7 +161,7 @@ fn weight_is_density_times_acceleration_on_a_whole_body() {
 }
 
 #[test]
-fn what_is_found_wrong_with_the_scene_is_told_with_the_line_of_the_deck() {
+fn errors_in_the_scene_have_the_line_of_the_deck() {
     let cases = [
         (
             "1000., 0.3",
@@ -212,7 +212,7 @@ fn what_is_found_wrong_with_the_scene_is_told_with_the_line_of_the_deck() {
 
 /// OP=NEW removes the prescribed values of earlier steps: a value that is not repeated would become free, which is rejected.
 #[test]
-fn a_new_boundary_that_gives_all_again_is_a_changed_one_and_one_that_frees_a_node_is_refused() {
+fn op_new_may_repeat_all_values_but_not_free_a_node() {
     let all = "GROUND, 1, 2\nTOP, 2, 2, -0.02\n";
     let card = |op: &str, lines: &str| {
         but(
@@ -242,7 +242,7 @@ fn a_new_boundary_that_gives_all_again_is_a_changed_one_and_one_that_frees_a_nod
 }
 
 #[test]
-fn a_new_pressure_takes_back_those_of_the_steps_before() {
+fn op_new_removes_the_pressures_of_earlier_steps() {
     let first = but(
         BLOCK,
         "TOP, 2, 2, -0.02\n",
@@ -268,7 +268,7 @@ fn a_new_pressure_takes_back_those_of_the_steps_before() {
 }
 
 #[test]
-fn included_files_must_lie_beside_the_deck() {
+fn include_files_must_be_in_the_folder_of_the_deck() {
     for outside in ["../mesh.inp", "/etc/passwd", "a/../../b"] {
         let found = refusal(&format!("*INCLUDE, INPUT={outside}\n"));
         assert!(
@@ -282,7 +282,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
-    fn no_damaged_deck_makes_the_way_to_a_model_panic(
+    fn no_damaged_deck_makes_compilation_panic(
         deck in prop::sample::select(vec![BLOCK, PLATES, RINGS]),
         changes in prop::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>(), 0..4usize), 1..5),
     ) {

@@ -110,9 +110,9 @@ pub struct SceneError {
     pub file: String,
     /// Line and column, from 1; columns count characters.
     pub at: Option<(usize, usize)>,
-    /// The external setting that caused the error, as `friction.angle=95`.
+    /// The external setting that caused the error, e.g. `friction.angle=95`.
     pub set: Option<String>,
-    /// Path of the value, as `slaves[0].nodes[1]`; empty if no single value is wrong.
+    /// Path of the value, e.g. `slaves[0].nodes[1]`; empty if no single value is wrong.
     pub path: String,
     /// What is wrong and what is expected.
     pub message: String,
@@ -247,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn slips_are_recognised_and_strangers_are_not() {
+    fn typos_are_recognised_and_unrelated_words_are_not() {
         assert_eq!(
             nearest("beam.edn", ["floor.end", "beam.end", "beam.start"]),
             Some("beam.end")

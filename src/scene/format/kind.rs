@@ -189,7 +189,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_kind_is_told_by_its_text() {
+    fn every_kind_is_recognised_by_its_text() {
         for (text, kind) in [
             (
                 "(format:1,version:\"0.1.0\",began:1,name:\"a\",scene:(title:\"a\"))\nDone()\n",
@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_mistake_is_not_told() {
+    fn the_wanted_kind_is_not_reported() {
         let scene = "(title: \"a\", nodes: [], bodies: [])";
         assert_eq!(mistaken("a.ron", scene, FileKind::Scene), None);
         assert_eq!(

@@ -467,7 +467,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_there_is_the_nearest_thing_around_it() {
+    fn a_missing_value_is_located_at_the_innermost_enclosing_one() {
         let text = "(friction: (angle: 3), slaves: [(nodes: [])])";
         assert_eq!(found(text, at!["friction", "cohesion"]), "(angle: 3)");
         assert_eq!(found(text, at!["slaves", 0, "nodes", 4]), "[]");
@@ -476,7 +476,7 @@ mod tests {
     }
 
     #[test]
-    fn the_path_to_a_place_leads_back_to_it() {
+    fn paths_and_positions_are_inverse() {
         let text = "#![enable(implicit_some)]\n(\n  a: 1, /* ( */ b: [(x: \"),\", y: Some(2)), (3, 4)],\n  c: Name(u: {\"k\": 5}),\n  d: Two([6]),\n)";
         for (value, path) in [
             ("1", "a"),
@@ -500,7 +500,7 @@ mod tests {
     }
 
     #[test]
-    fn comments_strings_and_characters_hide_nothing() {
+    fn brackets_in_comments_strings_and_characters_are_ignored() {
         let text = "#![enable(implicit_some)] // (a: 1)\n/* [ /* nested ) */ \" */\nScene(\n  // b: 2,\n  \
                     a: r#\"raw \" , ) \"#, c: '\\'', d: '(', e: b\"x\\\")\", s: \"\\\\\", /* ] */ b : 5 /* x */ , )";
         assert_eq!(found(text, at!["a"]), "r#\"raw \" , ) \"#");
@@ -535,7 +535,7 @@ mod tests {
     }
 
     #[test]
-    fn too_deep_nesting_is_seen_at_once_and_what_is_no_bracket_is_not_counted() {
+    fn excessive_nesting_is_found_and_only_brackets_count() {
         let deep = |k: usize| format!("{}1{}", "[(".repeat(k), ")]".repeat(k));
         assert_eq!(too_deep(&deep(DEEPEST / 2)), None);
         assert_eq!(too_deep(&deep(DEEPEST / 2 + 1)), Some(DEEPEST));
@@ -579,13 +579,13 @@ mod tests {
 
     proptest! {
         #[test]
-        fn any_text_has_an_answer(text in "[\\PC\n]{0,80}", path in any_path()) {
+        fn no_text_makes_it_fail(text in "[\\PC\n]{0,80}", path in any_path()) {
             let range = locate(&text, &path);
             prop_assert!(text.get(range).is_some());
         }
 
         #[test]
-        fn any_near_ron_has_an_answer(text in "[](){}\"'/*,:abSomer#\\\\\n é1]{0,60}", path in any_path()) {
+        fn no_text_similar_to_ron_makes_it_fail(text in "[](){}\"'/*,:abSomer#\\\\\n é1]{0,60}", path in any_path()) {
             let range = locate(&text, &path);
             prop_assert!(text.get(range).is_some());
         }

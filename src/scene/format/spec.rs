@@ -182,7 +182,7 @@ described! {
             id: String => name,
             /// Ids of the blocks. Their edges keep their names; a common node keeps its name from each block.
             of: Vec<String>,
-            /// Pairs of edges to merge, as `("a.right", "b.left")`; their nodes must coincide one by one.
+            /// Pairs of edges to merge, for example `("a.right", "b.left")`; their nodes must coincide one by one.
             joints: Vec<(String, String)>,
             /// Maximum distance of two merged nodes, relative to the length of the edge; the node of the first edge stays.
             /// Default: 1e-6.

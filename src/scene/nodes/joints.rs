@@ -72,7 +72,7 @@ impl Names {
             return Ok(edge);
         }
         Err(fault(format!(
-            "{name:?} is not an edge of a block of this mesh, as \"{}.right\"",
+            "{name:?} is not an edge of a block of this mesh, e.g. \"{}.right\"",
             parts.first().map_or("block", |&k| &self.entries[k].id)
         )))
     }

@@ -68,7 +68,7 @@ impl Names {
                     "{id:?} is a block; name one of its edges, \"{id}.bottom\", \"{id}.right\", \"{id}.top\" or \"{id}.left\""
                 )),
                 EntryKind::Mesh => Err(format!(
-                    "{id:?} is a mesh; name an edge of one of its blocks, as \"{}.bottom\", or define a Chain over several",
+                    "{id:?} is a mesh; name an edge of one of its blocks, e.g. \"{}.bottom\", or define a Chain over several",
                     self.entries[k]
                         .parts
                         .first()

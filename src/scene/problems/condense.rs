@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn a_chain_that_nothing_holds_has_no_compliance_but_a_stiffness() {
+    fn an_unsupported_chain_has_a_stiffness_but_no_compliance() {
         let h = Matrix {
             rows: 6,
             columns: 1,

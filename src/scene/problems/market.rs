@@ -73,7 +73,7 @@ pub fn read(file: &str, text: &str, memory: Option<f64>) -> Result<Problem, Scen
     let missing = |part: &str| {
         let path = names.part(part);
         whole(format!(
-            "{} is missing next to the matrix, a column of {part}",
+            "{}, a column of {part}, is missing next to it",
             path.file_name().unwrap_or_default().to_string_lossy()
         ))
     };
@@ -162,7 +162,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_name_of_the_matrix_tells_what_it_is_and_where_the_others_are() {
+    fn the_matrix_name_determines_its_kind_and_the_other_files() {
         let of = |name: &str| Names::of(Path::new(name)).map(|n| (n.part("q"), n.stiffness));
         assert_eq!(of("a/b_W.mtx"), Ok((PathBuf::from("a/b_q.mtx"), false)));
         assert_eq!(of("b_K.mtx"), Ok((PathBuf::from("b_q.mtx"), true)));

@@ -84,7 +84,7 @@ fn rigid(angle: f64) -> Vec<f64> {
 }
 
 #[test]
-fn a_rigid_motion_strains_nothing_and_turns_the_stress_that_is_there() {
+fn a_rigid_motion_causes_no_strain_and_rotates_the_stress() {
     let (rest, none) = ([0.0; DOFS], [0.0; MEMORY * POINTS]);
     for kind in kinds() {
         for angle in [0.3_f64, 2.5, -7.0] {
@@ -118,7 +118,7 @@ fn kind_scale(history: &[f64]) -> f64 {
 }
 
 #[test]
-fn one_small_updated_step_is_the_total_one() {
+fn a_small_updated_step_equals_a_total_one() {
     let (rest, none) = ([0.0; DOFS], [0.0; MEMORY * POINTS]);
     let past = Past {
         u: &rest,
@@ -184,7 +184,7 @@ fn cauchy_stress_is_in_balance_with_the_force() {
 }
 
 #[test]
-fn an_element_turned_inside_out_is_refused_by_the_law_that_cannot_bear_it() {
+fn an_inverted_element_has_no_response_where_the_law_excludes_inversion() {
     let past = Past {
         u: &[0.0; DOFS],
         history: &[],

@@ -94,7 +94,7 @@ mod tests {
     use stickslip_core::model::{Friction, InitialState, Settings};
 
     #[test]
-    fn what_may_be_left_out_of_a_settings_table_is_its_default() {
+    fn omitted_fields_have_their_defaults() {
         assert_eq!(read_blank::<Settings>("()").unwrap(), Settings::default());
         assert_eq!(read_blank::<Friction>("()").unwrap(), Friction::default());
         assert_eq!(
