@@ -1,18 +1,17 @@
-//! What is wrong with a file of another program, and where.
+//! Errors in files of other programs, with their position.
 
-/// A file that cannot be read as what it should be.
+/// A file that cannot be parsed.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
 pub struct Broken {
-    /// Line and column, both from 1, columns counted in characters; `None` for what is wrong with a file as a whole, or in a
-    /// part of it that has no lines.
+    /// Line and column, both from 1, with columns in characters; `None` for errors in the whole file or in a binary part.
     pub at: Option<(usize, usize)>,
-    /// What is wrong, and what would be right.
+    /// What is wrong and what is expected.
     pub message: String,
 }
 
 impl Broken {
-    /// Something wrong at a line and a column, both from 1.
+    /// An error at a line and column, both from 1.
     pub fn at(line: usize, column: usize, message: impl Into<String>) -> Self {
         Broken {
             at: Some((line, column)),
@@ -20,7 +19,7 @@ impl Broken {
         }
     }
 
-    /// Something wrong with a file as a whole.
+    /// An error in the file as a whole.
     pub fn whole(message: impl Into<String>) -> Self {
         Broken {
             at: None,

@@ -1,25 +1,25 @@
-//! stickslip-exchange: files of other programs, as plain data.
+//! stickslip-exchange: reads and writes files of other programs as plain data.
 //!
-//! A reader takes bytes and gives what stands in them, or says at which line and column something is wrong and what would be
-//! right; a writer takes plain data and gives bytes. Nothing here opens a file, reads a scene or solves anything: what the data
-//! mean to stickslip is said by those who use them. Of stickslip-core only the records are used that messages of [`attach`] name.
-//! No input makes a reader panic, or take more memory than its own size calls for.
+//! A reader parses bytes, or reports an error with line, column and the expected input; a writer converts plain data to bytes.
+//! This package opens no files, reads no scenes and solves nothing; its callers interpret the data. Of stickslip-core it uses
+//! only the records that messages of [`attach`] contain. No input makes a reader panic, or use more memory than the input size
+//! justifies.
 //!
-//! Each takes only from those above it:
+//! Each module depends only on those above it:
 //!
-//! - [`broken`]: what is wrong with a file, and where.
+//! - [`broken`]: errors in a file, with their position.
 //! - [`seal`]: lines with a digest.
-//! - [`words`]: words of a text apart by blanks, with their places.
-//! - [`mesh`]: nodes, cells and groups, as all readers of meshes give them.
-//! - [`gmsh`]: meshes of Gmsh.
-//! - [`inp`]: decks of CalculiX and Abaqus.
-//! - [`problem`]: friction problems, as all readers of interface problems give them.
-//! - [`calculix`]: how a run of CalculiX went, and the stiffness that it stores.
-//! - [`siconos`]: friction problems of Siconos, as text.
-//! - [`matrix_market`]: single matrices in the Matrix Market's exchange format.
-//! - [`fclib`]: friction problems in the HDF5 files of the library fclib, with the feature `fclib`.
-//! - [`vtu`]: results for ParaView: VTK's unstructured grids, and collections of them.
-//! - [`attach`]: the protocol by which other programs' solvers are stepped.
+//! - [`words`]: words of a text, with their positions.
+//! - [`mesh`]: nodes, cells and groups, the common result of all mesh readers.
+//! - [`gmsh`]: Gmsh meshes.
+//! - [`inp`]: CalculiX and Abaqus decks.
+//! - [`problem`]: friction problems, the common result of all readers of interface problems.
+//! - [`calculix`]: CalculiX runs and stored stiffness matrices.
+//! - [`siconos`]: Siconos friction problems in text form.
+//! - [`matrix_market`]: single matrices in Matrix Market format.
+//! - [`fclib`]: friction problems in HDF5 files of the library fclib, with the feature `fclib`.
+//! - [`vtu`]: results for ParaView: VTK unstructured grids, and collections of them.
+//! - [`attach`]: the protocol for stepping other programs' solvers.
 
 #![forbid(unsafe_code)]
 

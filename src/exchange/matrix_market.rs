@@ -1,4 +1,4 @@
-//! The Matrix Market's exchange format (Boisvert, Pozo & Remington, NISTIR 5935): one matrix a file.
+//! The Matrix Market exchange format (Boisvert, Pozo & Remington, NISTIR 5935): one matrix per file.
 //!
 //! ```text
 //! %%MatrixMarket matrix coordinate real general       or array; real or integer; general, symmetric or skew-symmetric
@@ -7,15 +7,15 @@
 //! I J VALUE                                            from 1; of an array: values, column by column
 //! ```
 //!
-//! Of a symmetric matrix the lower half stands there, of a skew-symmetric one what is below its diagonal. Neither words nor
-//! case of the first line matter otherwise. Patterns have no values, and what is complex no meaning here: both are refused.
+//! A symmetric matrix is stored by its lower half, a skew-symmetric one by the part below the diagonal. Case and additional words
+//! in the first line do not matter. Patterns, which have no values, and complex matrices are rejected.
 
 use crate::broken::Broken;
 use crate::problem::{Matrix, is_there};
 use crate::words::{Words, quoted};
 use std::fmt::Write;
 
-/// How such a file begins.
+/// Start of such a file.
 pub const MARK: &str = "%%MatrixMarket";
 
 #[derive(Clone, Copy, PartialEq)]
@@ -28,7 +28,7 @@ enum Symmetry {
 /// Reads such a file.
 ///
 /// # Errors
-/// What is wrong, with its place.
+/// The error with its position.
 pub fn read(text: &str) -> Result<Matrix, Broken> {
     let head = text.lines().next().unwrap_or_default();
     let (coordinate, symmetry) = header(head)?;
@@ -38,7 +38,7 @@ pub fn read(text: &str) -> Result<Matrix, Broken> {
     let columns = words.count("the number of columns")?;
     if symmetry != Symmetry::General && rows != columns {
         return Err(words.broken(format!(
-            "a matrix of {rows} rows and {columns} columns is neither symmetric nor skew-symmetric"
+            "a matrix with {rows} rows and {columns} columns cannot be symmetric or skew-symmetric"
         )));
     }
     let entries = match coordinate {
@@ -56,7 +56,7 @@ pub fn read(text: &str) -> Result<Matrix, Broken> {
     })
 }
 
-/// Whether entries have coordinates, and which of them stand there.
+/// Whether entries have coordinates, and which of them are stored.
 fn header(line: &str) -> Result<(bool, Symmetry), Broken> {
     let mut words = line.split_whitespace().map(str::to_lowercase);
     let mut next = || words.next().unwrap_or_default();
@@ -66,7 +66,7 @@ fn header(line: &str) -> Result<(bool, Symmetry), Broken> {
             1,
             1,
             format!(
-                "the file must begin with \"{MARK} matrix coordinate real general\" or the like"
+                "the file must begin with \"{MARK} matrix coordinate real general\" or similar"
             ),
         ));
     }
@@ -106,7 +106,7 @@ fn header(line: &str) -> Result<(bool, Symmetry), Broken> {
     Ok((coordinate, symmetry))
 }
 
-/// The text with blanks for comments, so that all else keeps its place.
+/// The text with spaces instead of comments, so that positions are unchanged.
 fn without_comments(text: &str) -> String {
     let lines = text
         .split_inclusive('\n')
@@ -138,7 +138,7 @@ fn coordinates(
         };
         let (row, column) = (index(rows, "a row")?, index(columns, "a column")?);
         if symmetry == Symmetry::Skew && row == column {
-            return Err(words.broken("a skew-symmetric matrix has no diagonal"));
+            return Err(words.broken("a skew-symmetric matrix has no diagonal entries"));
         }
         let value = words.number("an entry")?;
         add(&mut entries, row, column, value, symmetry);
@@ -179,8 +179,8 @@ fn add(entries: &mut Entries, row: usize, column: usize, value: f64, symmetry: S
     }
 }
 
-/// The file of a matrix by its entries; those at the same place are added up. Numbers are written so that they are read back
-/// to the last bit. The comments stand after the first line.
+/// The file of a matrix from its entries; duplicate entries are added. Numbers are written with enough digits to be read back
+/// exactly. Comments follow the first line.
 pub fn write(matrix: &Matrix, comments: &[&str]) -> String {
     let mut entries = matrix.entries.clone();
     entries.sort_by_key(|&(row, column, _)| (column, row));
@@ -229,7 +229,7 @@ mod tests {
     }
 
     #[test]
-    fn every_form_of_a_matrix_is_read() {
+    fn every_format_of_a_matrix_is_read() {
         let general = "%%MatrixMarket matrix coordinate real general\n% words\n\n2 3 3\n1 1 1.5\n2 3 -2\n2 3 -1e0\n";
         assert_eq!(dense(general), [[1.5, 0.0, 0.0], [0.0, 0.0, -3.0]]);
         let symmetric = "%%matrixmarket MATRIX Coordinate Integer Symmetric\n2 2 2\n1 1 4\n2 1 3\n";
@@ -243,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told_with_its_place() {
+    fn errors_have_a_position() {
         let with = |rest: &str| format!("%%MatrixMarket matrix coordinate real general\n{rest}");
         let cases = [
             ("hello".to_owned(), (1, 1), "must begin"),
@@ -265,7 +265,7 @@ mod tests {
             (
                 "%%MatrixMarket matrix array real symmetric\n1 2\n".to_owned(),
                 (2, 3),
-                "neither",
+                "cannot be symmetric",
             ),
             (with("2 2 1\n% c\n3 1 1.0\n"), (4, 1), "1 to 2"),
             (with("2 2 1\n1 0 1.0\n"), (3, 3), "1 to 2"),
@@ -283,7 +283,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_written_is_read_back_to_the_last_bit(
+        fn written_files_are_read_back_exactly(
             rows in prop::collection::vec(prop::collection::vec(-1e300..1e300_f64, 3), 1..5),
         ) {
             let matrix = Matrix::from_rows(&rows);

@@ -1,23 +1,24 @@
-//! A mesh of another program in the plane: nodes, cells, and groups of cells by name.
+//! A plane mesh of another program: nodes, cells, and named groups of cells.
 
-/// What a cell is. Corners come first, anticlockwise, then the middles of the sides that start at them, then the middle.
+/// Kind of a cell. Nodes are ordered: the corners, anticlockwise; then the midside nodes, starting on the side after the first
+/// corner; then the centre.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum CellKind {
     /// One node.
     Point,
-    /// A straight side: its two ends.
+    /// A straight line: its two ends.
     Line2,
-    /// A side of second order: its two ends, then its middle.
+    /// A second-order line: its two ends, then its midside node.
     Line3,
-    /// A triangle of three nodes.
+    /// 3-node triangle.
     Triangle3,
-    /// A triangle of six nodes.
+    /// 6-node triangle.
     Triangle6,
-    /// A quadrilateral of four nodes.
+    /// 4-node quadrilateral.
     Quad4,
-    /// A quadrilateral of eight nodes.
+    /// 8-node quadrilateral.
     Quad8,
-    /// A quadrilateral of nine nodes.
+    /// 9-node quadrilateral.
     Quad9,
 }
 
@@ -35,7 +36,7 @@ impl CellKind {
         }
     }
 
-    /// 0 for a point, 1 for a side, 2 for what has an area.
+    /// 0 for points, 1 for lines, 2 for areas.
     pub fn dimension(self) -> u8 {
         match self {
             CellKind::Point => 0,
@@ -48,30 +49,30 @@ impl CellKind {
 /// A cell of a mesh.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Cell {
-    /// What it is.
+    /// Kind of cell.
     pub kind: CellKind,
-    /// Positions of its nodes in [`Mesh::nodes`], as many as its kind has.
+    /// Indices of its nodes in [`Mesh::nodes`]; their number is given by the kind.
     pub nodes: Vec<usize>,
 }
 
 /// A mesh.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Mesh {
-    /// Where the nodes stand, x and y.
+    /// Positions of the nodes, x and y.
     pub nodes: Vec<[f64; 2]>,
-    /// The number that the file gives each node.
+    /// Node numbers in the file.
     pub labels: Vec<u64>,
     /// The cells of all kinds.
     pub cells: Vec<Cell>,
-    /// Groups of cells, in the order of the file.
+    /// Groups of cells, in file order.
     pub groups: Vec<Group>,
 }
 
-/// Cells with a name.
+/// A named group of cells.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Group {
-    /// Its name in the file.
+    /// Name in the file.
     pub name: String,
-    /// Positions in [`Mesh::cells`], ascending, each once.
+    /// Indices into [`Mesh::cells`], ascending, each once.
     pub cells: Vec<usize>,
 }

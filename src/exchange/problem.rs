@@ -1,6 +1,6 @@
-//! Friction problems as the readers of interface problems give them and the writers take them.
+//! Friction problems, the common data of readers and writers of interface problems.
 //!
-//! Components come in pairs, along the normal and along the tangent of each contact in turn; with the number of contacts m:
+//! Components come in pairs, normal and tangential for each contact in turn; with m contacts:
 //!
 //! ```text
 //! local:   u = W r + q                          W: 2m x 2m
@@ -9,19 +9,19 @@
 //! all:     0 <= u_n ⊥ r_n >= 0,    |r_t| <= mu r_n, against u_t
 //! ```
 
-/// A matrix by its entries.
+/// A matrix given by its entries.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Matrix {
     /// Number of rows.
     pub rows: usize,
     /// Number of columns.
     pub columns: usize,
-    /// Row and column, both from 0, and value; those at the same place add up.
+    /// Row and column, both from 0, and value; duplicate entries are added.
     pub entries: Vec<(usize, usize, f64)>,
 }
 
 impl Matrix {
-    /// The matrix of these rows, which are all as long.
+    /// The matrix with these rows, which have equal length.
     pub fn from_rows(rows: &[Vec<f64>]) -> Matrix {
         let entries = rows.iter().enumerate().flat_map(|(i, row)| {
             let entries = row.iter().enumerate().filter(|(_, v)| is_there(**v));
@@ -34,7 +34,7 @@ impl Matrix {
         }
     }
 
-    /// All its entries, row by row. Who calls this has seen to it that there is memory for them.
+    /// All entries, row by row. The caller must check that they fit into memory.
     pub fn dense(&self) -> Vec<Vec<f64>> {
         let mut rows = vec![vec![0.0; self.columns]; self.rows];
         for &(i, j, value) in &self.entries {
@@ -44,7 +44,7 @@ impl Matrix {
     }
 }
 
-/// Whether an entry has to be kept.
+/// Whether an entry must be stored.
 pub(crate) fn is_there(value: f64) -> bool {
     value != 0.0
 }
@@ -54,13 +54,13 @@ pub(crate) fn is_there(value: f64) -> bool {
 pub struct Local {
     /// W.
     pub w: Matrix,
-    /// Displacements under no force.
+    /// Displacements without contact forces.
     pub q: Vec<f64>,
     /// Friction coefficients.
     pub mu: Vec<f64>,
 }
 
-/// What a local problem has besides its contacts: bilateral constraints.
+/// Bilateral constraints that a local problem may have in addition to its contacts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bilateral {
     /// V.
@@ -71,28 +71,28 @@ pub struct Bilateral {
     pub s: Vec<f64>,
 }
 
-/// A problem of all unknowns.
+/// A problem in all unknowns.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Global {
     /// M.
     pub m: Matrix,
     /// H.
     pub h: Matrix,
-    /// What acts on the unknowns; Siconos calls it q.
+    /// Load on the unknowns; Siconos calls it q.
     pub f: Vec<f64>,
-    /// Displacements of the contacts where the unknowns are 0; fclib calls it w.
+    /// Displacements of the contacts for zero unknowns; fclib calls it w.
     pub b: Vec<f64>,
     /// Friction coefficients.
     pub mu: Vec<f64>,
 }
 
-/// Any of them.
+/// A problem of any kind.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Problem {
     /// A problem condensed to its contacts.
     Local(Local),
-    /// One that has bilateral constraints, too.
+    /// A local problem with bilateral constraints.
     Mixed(Local, Bilateral),
-    /// A problem of all unknowns.
+    /// A problem in all unknowns.
     Global(Global),
 }

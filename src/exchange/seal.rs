@@ -1,7 +1,7 @@
-//! Lines with a digest, so that a changed character is noticed on reading.
+//! Lines with a digest, so that changed characters are detected.
 //!
-//! A sealed line is its text, a tab, and 16 hexadecimal digits: FNV-1a with 64 bits over the bytes of the text. The digest
-//! detects accidents; it is no signature.
+//! A sealed line is its text, a tab, and 16 hexadecimal digits: the 64-bit FNV-1a hash of the text's bytes. The digest detects
+//! accidental changes; it is not a signature.
 
 use std::fmt;
 
@@ -82,7 +82,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn any_changed_byte_of_a_sealed_line_is_noticed() {
+    fn any_changed_byte_of_a_sealed_line_is_detected() {
         let line = sealed("key\t(end: 1.25e-3, name: \"u_x\")");
         assert_eq!(
             opened(&line),
@@ -109,7 +109,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_without_a_digest_is_told_from_one_with_a_wrong_one() {
+    fn missing_and_wrong_digests_are_distinguished() {
         assert_eq!(opened("key\tvalue"), Seal::Missing);
         assert_eq!(opened("key\tvalue\t0123456789abcdef"), Seal::Broken);
     }

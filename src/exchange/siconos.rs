@@ -1,21 +1,21 @@
-//! Friction problems in the plain-text form of Siconos, in the plane: `FrictionContactProblem` and
-//! `GlobalFrictionContactProblem` ([`crate::problem`] has the equations).
+//! Plane friction problems in Siconos' plain-text format: `FrictionContactProblem` and `GlobalFrictionContactProblem`
+//! ([`crate::problem`] has the equations).
 //!
-//! Numbers apart by blanks, in this order: dimension (2) and number of contacts m; the matrices, W, or M and H; then q (2 m
-//! numbers), or q (here f, as many as M has rows) and b (2 m numbers); and mu (m). A matrix is its storage, its rows and its
-//! columns, and then what it is stored as:
+//! Numbers separated by spaces, in this order: dimension (2) and number of contacts m; the matrices, W, or M and H; then q (2 m
+//! numbers), or q (here f, as many as M has rows) and b (2 m numbers); and mu (m). A matrix consists of its storage type, rows
+//! and columns, followed by its data:
 //!
-//! - `0`, dense: rows and columns once more, then all entries, column by column;
-//! - `1`, sparse blocks: number of blocks, of block rows and of block columns; the row at which each block row ends, the
-//!   column at which each block column ends; the lengths of two index lists, which follow: where the blocks of each block
-//!   row begin (and, last, where they end), and the block column of each block; then each block, its number first, its
-//!   entries column by column. Where the number of blocks is 0, nothing of this follows it;
-//! - `2`, as CSparse prints its matrices: an origin (4 where only one half of a symmetric one stands there), a title, sizes
-//!   with `nnz: COUNT`, then `col J : locations A to B` (or `row I : …`, after `csr:`) before the `I : VALUE` of each column
-//!   (row), or, after `triplet:`, `I J : VALUE`. Siconos writes six digits of a value.
+//! - `0`, dense: rows and columns again, then all entries, column by column;
+//! - `1`, sparse blocks: number of blocks, of block rows and of block columns; the row at which each block row ends, the column
+//!   at which each block column ends; the lengths of two index lists, and the lists themselves: the first block of each block row
+//!   (with a final end index), and the block column of each block; then each block: its number, and its entries column by column.
+//!   If the number of blocks is 0, the rest is omitted;
+//! - `2`, CSparse's print format: an origin (4 if only one half of a symmetric matrix is stored), a title, sizes with `nnz:
+//!   COUNT`, then `col J : locations A to B` (or `row I : …`, after `csr:`) before the `I : VALUE` of each column (row), or,
+//!   after `triplet:`, `I J : VALUE`. Siconos writes values with six digits.
 //!
-//! The first matrix of a global problem is known by its size; where M has as many rows as W had, by the three whole numbers
-//! with which H begins, and by more words than a local problem has left. A trailing rest of the file is not read.
+//! A global problem is recognised by the size of its first matrix; if M has the same size as W would, by the three whole numbers
+//! at the start of H and by more words than a local problem would have left. Trailing text in the file is ignored.
 
 use crate::broken::Broken;
 use crate::problem::{Global, Local, Matrix, Problem, is_there};
@@ -25,29 +25,31 @@ use std::fmt::{Debug, Write};
 /// How to write W.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Storage {
-    /// All entries, row by row.
+    /// All entries, column by column.
     Dense,
-    /// Blocks of 2 by 2, those that are zero left out.
+    /// Blocks of 2 by 2, without zero blocks.
     Blocks,
 }
 
 /// Reads such a file.
 ///
 /// # Errors
-/// What is wrong, with its place.
+/// The error with its position.
 pub fn read(text: &str) -> Result<Problem, Broken> {
     let mut words = Words::new(text);
     let contacts = head(&mut words)?;
     let Some(size) = contacts.checked_mul(2) else {
-        return Err(words.broken(format!("the problem has {contacts} contacts, far too many")));
+        return Err(words.broken(format!(
+            "the problem has {contacts} contacts, which is far too many"
+        )));
     };
     body(&mut words, contacts, size)
 }
 
-/// The number of contacts of such a file, and where it stands: line and column.
+/// The number of contacts in such a file, and its line and column.
 ///
 /// # Errors
-/// What is wrong before it, with its place.
+/// An error before that number, with its position.
 pub fn contacts(text: &str) -> Result<(usize, (usize, usize)), Broken> {
     let mut words = Words::new(text);
     let contacts = head(&mut words)?;
@@ -59,19 +61,19 @@ fn head(words: &mut Words<'_>) -> Result<usize, Broken> {
         2 => {}
         3 => {
             return Err(words.broken(
-                "the problem is one in space (dimension 3); only those in the plane (2) can be read",
+                "the problem is three-dimensional (dimension 3); only plane problems (2) are supported",
             ));
         }
         other => {
             return Err(words.broken(format!(
-                "the file begins with {other}; a friction problem of Siconos begins with its dimension, 2, and a scene \
-                 with a bracket"
+                "the file begins with {other}; a Siconos friction problem begins with its dimension, 2, and \
+                 a scene with a bracket"
             )));
         }
     }
     let contacts = words.count("the number of contacts")?;
     if contacts == 0 {
-        return Err(words.broken("the problem has 0 contacts; it must have 1 at least"));
+        return Err(words.broken("the problem has 0 contacts; it must have at least 1"));
     }
     Ok(contacts)
 }
@@ -95,7 +97,7 @@ fn body(words: &mut Words<'_>, contacts: usize, size: usize) -> Result<Problem, 
     }))
 }
 
-/// Whether what follows a first matrix of 2 m rows is a second one.
+/// Whether the text after a first matrix of 2 m rows is a second matrix.
 fn begins_matrix(words: &Words<'_>, size: usize, contacts: usize) -> bool {
     let mut left = words.left();
     let mut whole = || left.next().and_then(|word| word.parse::<usize>().ok());
@@ -106,7 +108,7 @@ fn begins_matrix(words: &Words<'_>, size: usize, contacts: usize) -> bool {
         && words.left().nth(size.saturating_add(contacts)).is_some()
 }
 
-/// Refuses a number of rows where the columns, which follow, are as many as those of a local problem.
+/// Rejects a wrong number of rows if the number of columns, which follows, is that of a local problem.
 fn squared(words: &Words<'_>, rows: usize, local: usize, of_rows: &str) -> Result<(), Broken> {
     let columns = words.peek().and_then(|word| word.parse::<usize>().ok());
     match rows != local && columns == Some(local) {
@@ -115,7 +117,7 @@ fn squared(words: &Words<'_>, rows: usize, local: usize, of_rows: &str) -> Resul
     }
 }
 
-/// A matrix; a square one where its size is not known, which may be that of a local problem.
+/// A matrix; it must be square if its size is not given, as for a local problem.
 fn matrix(
     words: &mut Words<'_>,
     name: &str,
@@ -141,7 +143,7 @@ fn matrix(
         None => words.count(&of_rows)?,
     };
     if rows == 0 {
-        return Err(words.broken(format!("{name} has 0 rows; it must have 1 at least")));
+        return Err(words.broken(format!("{name} has 0 rows; it must have at least 1")));
     }
     if size.is_none() {
         squared(words, rows, local, &of_rows)?;
@@ -191,7 +193,9 @@ fn blocks(
         return Ok(entries);
     }
     if count > rows.saturating_mul(columns) {
-        return Err(words.broken(format!("{name} has {count} blocks, more than entries")));
+        return Err(words.broken(format!(
+            "{name} has {count} blocks, more than it has entries"
+        )));
     }
     let down = words.count_up_to(rows, "the number of block rows")?;
     let across = words.count_up_to(columns, "the number of block columns")?;
@@ -201,11 +205,11 @@ fn blocks(
     words.exactly(count, "the length of the second index list")?;
     let mut begins = Vec::new();
     for k in 0..=down {
-        let begin = words.count_up_to(count, "where the blocks of a block row begin")?;
+        let begin = words.count_up_to(count, "the first block of a block row")?;
         let least = begins.last().copied().unwrap_or(0);
         if begin < least || (k == 0 && begin != 0) || (k == down && begin != count) {
             return Err(words.broken(format!(
-                "{begin} stands where the blocks of a block row begin; they begin at 0, rise, and end at {count}"
+                "{begin} is not a valid first block of a block row; the list must start at 0, be ascending, and end at {count}"
             )));
         }
         begins.push(begin);
@@ -228,7 +232,7 @@ fn blocks(
     Ok(entries)
 }
 
-/// Where blocks end: rising, up to `size`.
+/// Ends of blocks: ascending, up to `size`.
 fn ends(
     words: &mut Words<'_>,
     count: usize,
@@ -242,7 +246,7 @@ fn ends(
         let least = ends.last().map_or(1, |last| last + 1);
         if end < least || (k + 1 == count && end != size) {
             return Err(words.broken(format!(
-                "a {what} ends at {end}; the ends must rise, up to {size}"
+                "a {what} ends at {end}; the ends must be ascending, up to {size}"
             )));
         }
         ends.push(end);
@@ -259,7 +263,7 @@ fn range(ends: &[usize], block: usize) -> std::ops::Range<usize> {
     start..ends[block]
 }
 
-/// The origin with which Siconos marks triplets of one half of a symmetric matrix.
+/// The origin with which Siconos marks one half of a symmetric matrix in triplets.
 const HALF: &str = "4";
 
 fn sparse(
@@ -307,7 +311,7 @@ fn sparse(
             (false, Some(list)) if by_rows => (list, first),
             (false, Some(list)) => (first, list),
             (false, None) => {
-                let wanted = format!("\"{list}\", since none was named yet,");
+                let wanted = format!("\"{list}\", since none has been named,");
                 return Err(words.unlike(text, &wanted));
             }
         };
@@ -318,7 +322,7 @@ fn sparse(
         entries.push((row, column, words.number(&what)?));
     }
     if !triplets {
-        // Columns without entries are named at the end, too.
+        // Columns without entries may also be listed at the end.
         while words.peek() == Some(list) {
             words.next(list)?;
             words.line();
@@ -332,7 +336,7 @@ fn sparse(
     Ok(entries)
 }
 
-/// The file of a local problem; numbers are written so that they are read back to the last bit.
+/// The file of a local problem. Numbers are written with enough digits to be read back exactly.
 pub fn write(problem: &Local, storage: Storage) -> String {
     let size = problem.q.len();
     let mut text = format!("2\n{}\n", problem.mu.len());
@@ -386,7 +390,7 @@ fn write_blocks(text: &mut String, rows: &[Vec<f64>]) {
     text.push_str(&blocks);
 }
 
-/// Words with blanks between them, on a line.
+/// Words on one line, separated by spaces.
 fn line(text: &mut String, words: impl Iterator<Item = impl Debug>) {
     for word in words {
         let _ = write!(text, "{word:?} ");
@@ -423,7 +427,7 @@ mod tests {
     }
 
     #[test]
-    fn a_global_problem_is_known_by_its_matrices() {
+    fn a_global_problem_is_recognised_by_its_matrices() {
         let rest = "0\n3\n2\n3 2\n1 0 0\n0 1 0\n7.0 8.0 9.0\n-0.5 0.0\n0.3\n";
         let dense = format!("2\n1\n0\n3\n3\n3 3\n1 0 0 0 2 0 0 0 3\n{rest}");
         let sparse = "1\nCSparse Version 4.4\ntriplet: 3-by-3, nzmax: 3 nnz: 3\n 0 0 : 1\n 1 1 : 2\n 2 2 : 3\n";
@@ -443,7 +447,7 @@ mod tests {
                 (vec![7.0, 8.0, 9.0], vec![-0.5, 0.0], vec![0.3])
             );
         }
-        // As many unknowns as components of contacts.
+        // As many unknowns as contact components.
         let square = "2\n1\n0\n2\n2\n2 2\n1 0 0 2\n1\n2\n2\n0\n7.0 8.0\n-0.5 0.0\n0.3\n";
         assert_eq!(global(square).m.dense(), [[1.0, 0.0], [0.0, 2.0]]);
         // One half of a symmetric matrix.
@@ -457,9 +461,9 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told_with_its_place() {
+    fn errors_have_a_position() {
         let cases = [
-            ("3\n1\n", (1, 1), "in space"),
+            ("3\n1\n", (1, 1), "three-dimensional"),
             ("7\n", (1, 1), "begins with its dimension"),
             ("2\n0\n", (2, 1), "0 contacts"),
             ("2\n1\n9\n", (3, 1), "storage 9"),
@@ -471,11 +475,11 @@ mod tests {
                 (8, 9),
                 "negative",
             ),
-            ("2\n1\n1\n2\n2\n1\n1 1\n1\n", (8, 1), "rise"),
+            ("2\n1\n1\n2\n2\n1\n1 1\n1\n", (8, 1), "ascending"),
             (
                 "2\n1\n2\n2\n2\n1 t nnz: 1\n0 : 1.0",
                 (7, 1),
-                "none was named",
+                "none has been named",
             ),
             (
                 "2\n1\n2\n2\n2\n1 t nnz: 1\ncol 0 : locations\n2 : 1.0",
@@ -498,7 +502,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_written_is_read_back_to_the_last_bit(
+        fn written_files_are_read_back_exactly(
             rows in prop::collection::vec(prop::collection::vec(-1e300..1e300_f64, 4), 4),
             q in prop::collection::vec(-1e300..1e300_f64, 4),
             mu in prop::collection::vec(0.0..9.0_f64, 2),

@@ -1,52 +1,52 @@
-//! Results as ParaView reads them: an unstructured grid of VTK (.vtu), and a collection of them over time (.pvd).
+//! Writes results for ParaView: VTK unstructured grids (.vtu), and collections of them over time (.pvd).
 //!
-//! Both are XML. Arrays stand in it as base64 of their length in bytes (64 bits) and of their little-endian numbers, so that
-//! every number is there to the last bit (VTK file formats, "XML file formats", uncompressed binary data).
+//! Both are XML. Arrays are base64-encoded: their length in bytes (64 bits), then their little-endian numbers, so all values are
+//! exact (VTK file formats, "XML file formats", uncompressed binary data).
 
 use crate::mesh::{Cell, CellKind};
 use base64::Engine as _;
 use base64::prelude::BASE64_STANDARD;
 use std::fmt::Write;
 
-/// The numbers of an array, one after the other.
+/// The numbers of an array.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Values {
-    /// 64-bit floating-point numbers; NaN where there is none.
+    /// 64-bit floating-point numbers; NaN for missing values.
     Numbers(Vec<f64>),
-    /// Whole numbers.
+    /// Integers.
     Wholes(Vec<i32>),
-    /// A text in UTF-8, byte by byte: readers besides VTK's know no arrays of texts.
+    /// A UTF-8 text as bytes, because readers other than VTK do not support arrays of texts.
     Text(String),
 }
 
 /// An array.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Array {
-    /// What it is called.
+    /// Name.
     pub name: String,
-    /// What each component is called; empty for one component without a name. VTK's order of a symmetric tensor is XX, YY,
-    /// ZZ, XY, YZ, XZ.
+    /// Name of each component; empty for one component without a name. VTK's order for a symmetric tensor is XX, YY, ZZ, XY, YZ,
+    /// XZ.
     pub components: &'static [&'static str],
-    /// Component by component of one point (or cell) after the other.
+    /// All components of the first point (or cell), then of the next.
     pub values: Values,
 }
 
-/// A grid in the plane z = 0 with what is known on it.
+/// A grid in the plane z = 0 with data.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Grid {
-    /// Where the points are.
+    /// Positions of the points.
     pub points: Vec<[f64; 2]>,
-    /// Lines and elements between them.
+    /// Lines and elements between the points.
     pub cells: Vec<Cell>,
-    /// Arrays with an entry a point.
+    /// Arrays with one entry per point.
     pub on_points: Vec<Array>,
-    /// Arrays with an entry a cell.
+    /// Arrays with one entry per cell.
     pub on_cells: Vec<Array>,
-    /// What belongs to the grid as a whole. ParaView takes `TimeValue` for the time.
+    /// Data of the whole grid. ParaView uses `TimeValue` as the time.
     pub fields: Vec<Array>,
 }
 
-/// VTK's number of a kind of cell.
+/// VTK's number for a kind of cell.
 pub fn cell_type(kind: CellKind) -> u8 {
     match kind {
         CellKind::Point => 1,
@@ -99,7 +99,7 @@ pub fn write(grid: &Grid) -> String {
     text
 }
 
-/// The file of a collection: the time and the name of each grid's file, from the folder where the collection is.
+/// The file of a collection: the time and the path of each grid's file, relative to the collection.
 pub fn collection(files: &[(f64, String)]) -> String {
     let mut text = head("Collection", "");
     text.push_str("  <Collection>\n");
@@ -120,7 +120,7 @@ fn head(kind: &str, more: &str) -> String {
     )
 }
 
-/// Arrays of one place; those of the whole say how long they are.
+/// Arrays of one section; field arrays also declare their length.
 fn section(text: &mut String, name: &str, arrays: &[Array], whole: bool) {
     let _ = writeln!(text, "    <{name}>");
     for array in arrays {
@@ -167,7 +167,7 @@ fn longs(values: impl Iterator<Item = usize>) -> Vec<u8> {
         .collect()
 }
 
-/// A text as a value in quotes; what XML has no character for becomes a blank.
+/// Escapes a text for a quoted value; characters that XML does not allow become spaces.
 fn escaped(text: &str) -> String {
     let mut shown = String::new();
     for c in text.chars() {
@@ -188,7 +188,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// The bytes of an array by its name, as a reader finds them.
+    /// Finds the bytes of an array by name, as a reader would.
     fn array(text: &str, name: &str) -> Vec<u8> {
         let (_, rest) = text.split_once(&format!("Name=\"{name}\"")).unwrap();
         let (_, rest) = rest.split_once('>').unwrap();
@@ -244,7 +244,7 @@ mod tests {
     }
 
     #[test]
-    fn names_are_harmless() {
+    fn names_are_escaped() {
         let array = Array {
             name: "a<\"&\u{1b}>".to_owned(),
             components: &["X", "Y"],
@@ -264,7 +264,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn every_number_is_there_to_the_last_bit(values in prop::collection::vec(any::<f64>(), 0..20), said in "\\PC{0,20}") {
+        fn every_number_is_exact(values in prop::collection::vec(any::<f64>(), 0..20), said in "\\PC{0,20}") {
             let field = |name: &str, values| Array { name: name.to_owned(), components: &[], values };
             let grid = Grid {
                 on_points: vec![field("numbers", Values::Numbers(values.clone()))],

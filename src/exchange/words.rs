@@ -1,20 +1,20 @@
-//! Words of a text apart by blanks, with their places.
+//! Splits a text into words and tracks their positions.
 
 use crate::broken::Broken;
 
-/// Most characters of a word that a message shows.
+/// Maximum number of characters of a word in a message.
 const SHOWN: usize = 40;
 
-/// The words of a text that are not read yet.
+/// The unread words of a text.
 pub struct Words<'t> {
     whole: &'t str,
     rest: &'t str,
-    /// Byte at which the last word begins.
+    /// First byte of the last word read.
     last: usize,
 }
 
 impl<'t> Words<'t> {
-    /// All words of a text.
+    /// Starts at the beginning of a text.
     pub fn new(text: &'t str) -> Self {
         Words {
             whole: text,
@@ -23,7 +23,7 @@ impl<'t> Words<'t> {
         }
     }
 
-    /// Something wrong with the last word.
+    /// An error at the last word.
     pub fn broken(&self, message: impl Into<String>) -> Broken {
         let (line, column) = self.place();
         Broken::at(line, column, message)
@@ -34,17 +34,20 @@ impl<'t> Words<'t> {
         place(self.whole, self.last)
     }
 
-    /// The last word is not what is wanted.
+    /// Error: the last word is not what was expected.
     pub fn unlike(&self, word: &str, wanted: &str) -> Broken {
-        self.broken(format!("{} stands where {wanted} should", quoted(word)))
+        self.broken(format!(
+            "found {} where {wanted} was expected",
+            quoted(word)
+        ))
     }
 
-    /// The next word; none at the end.
+    /// The next word without consuming it; `None` at the end.
     pub fn peek(&self) -> Option<&'t str> {
         self.rest.split_whitespace().next()
     }
 
-    /// The words that are left, unread.
+    /// The remaining words, without consuming them.
     pub fn left(&self) -> impl Iterator<Item = &'t str> + use<'t> {
         self.rest.split_whitespace()
     }
@@ -52,19 +55,19 @@ impl<'t> Words<'t> {
     /// The next word.
     ///
     /// # Errors
-    /// At the end of the text; `what` says what should stand there.
+    /// At the end of the text; `what` names the missing item.
     pub fn next(&mut self, what: &str) -> Result<&'t str, Broken> {
         let trimmed = self.rest.trim_start();
         let end = trimmed.find(char::is_whitespace).unwrap_or(trimmed.len());
         if end == 0 {
-            return Err(self.broken(format!("the file ends where {what} should stand")));
+            return Err(self.broken(format!("the file ends where {what} was expected")));
         }
         self.last = self.whole.len() - trimmed.len();
         self.rest = &trimmed[end..];
         Ok(&trimmed[..end])
     }
 
-    /// What is left of the line of the last word.
+    /// The rest of the last word's line.
     pub fn line(&mut self) -> &'t str {
         let end = self.rest.find('\n').unwrap_or(self.rest.len());
         let line = &self.rest[..end];
@@ -75,17 +78,17 @@ impl<'t> Words<'t> {
     /// The next word as a whole number.
     ///
     /// # Errors
-    /// If it is none.
+    /// If it is not a whole number.
     pub fn count(&mut self, what: &str) -> Result<usize, Broken> {
         let word = self.next(what)?;
         word.parse()
             .map_err(|_| self.unlike(word, &format!("{what}, a whole number,")))
     }
 
-    /// The same, at most so large.
+    /// The next word as a whole number of at most `most`.
     ///
     /// # Errors
-    /// If it is none, or larger.
+    /// If it is not a whole number, or larger.
     pub fn count_up_to(&mut self, most: usize, what: &str) -> Result<usize, Broken> {
         match self.count(what)? {
             count if count <= most => Ok(count),
@@ -93,10 +96,10 @@ impl<'t> Words<'t> {
         }
     }
 
-    /// Reads a whole number that can only be one.
+    /// Reads a whole number that must have a given value.
     ///
     /// # Errors
-    /// If it is another.
+    /// If it has another value.
     pub fn exactly(&mut self, wanted: usize, what: &str) -> Result<(), Broken> {
         match self.count(what)? {
             count if count == wanted => Ok(()),
@@ -107,24 +110,24 @@ impl<'t> Words<'t> {
     /// The next word as a finite number.
     ///
     /// # Errors
-    /// If it is none.
+    /// If it is not a finite number.
     pub fn number(&mut self, what: &str) -> Result<f64, Broken> {
         let word = self.next(what)?;
         number(word).ok_or_else(|| self.unlike(word, &format!("{what}, a finite number,")))
     }
 
-    /// So many of them.
+    /// Reads several finite numbers.
     ///
     /// # Errors
-    /// If one is none.
+    /// If one of them is not a finite number.
     pub fn numbers(&mut self, count: usize, what: &str) -> Result<Vec<f64>, Broken> {
         (0..count).map(|_| self.number(what)).collect()
     }
 
-    /// Coefficients of friction, none of them negative.
+    /// Reads coefficients of friction, which must not be negative.
     ///
     /// # Errors
-    /// If one is no number, or negative.
+    /// If one of them is not a number, or negative.
     pub fn coefficients(&mut self, count: usize) -> Result<Vec<f64>, Broken> {
         let coefficient = |_| {
             let value = self.number("a friction coefficient")?;
@@ -139,7 +142,7 @@ impl<'t> Words<'t> {
     }
 }
 
-/// A finite number; Fortran's `1.0D+00` is one, too.
+/// A finite number; Fortran's `1.0D+00` is accepted too.
 pub fn number(word: &str) -> Option<f64> {
     let value = match word.parse() {
         Ok(value) => value,
@@ -148,7 +151,7 @@ pub fn number(word: &str) -> Option<f64> {
     value.is_finite().then_some(value)
 }
 
-/// A word in quotes, cut where it is long; what a terminal would obey is escaped.
+/// A word in quotes, shortened, with terminal control characters escaped.
 pub fn quoted(word: &str) -> String {
     match word.char_indices().nth(SHOWN) {
         Some((end, _)) => format!("{:?}…", &word[..end]),
@@ -156,7 +159,7 @@ pub fn quoted(word: &str) -> String {
     }
 }
 
-/// Line and column of a byte, both from 1, the column in characters.
+/// Line and column of a byte, both from 1; columns count characters.
 pub fn place(text: &str, byte: usize) -> (usize, usize) {
     let before = &text[..byte];
     let start = before.rfind('\n').map_or(0, |k| k + 1);
@@ -169,7 +172,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_place_is_counted_in_characters() {
+    fn positions_count_characters() {
         let text = "ä 1\n  ü x\n";
         let mut words = Words::new(text);
         assert_eq!(words.next("a").unwrap(), "ä");
@@ -187,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_of_fortran_are_read_and_no_infinities() {
+    fn fortran_numbers_are_read_and_infinities_rejected() {
         assert_eq!(number("1.5D+02"), Some(150.0));
         for wrong in ["inf", "NaN", "1e999", "ded", ""] {
             assert_eq!(number(wrong), None, "{wrong}");

@@ -1,15 +1,15 @@
-//! What solves are checked by.
+//! Checks of solves.
 
 /// Why a system could not be solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SolveError {
     /// A pivot vanished, or the solution is not finite or does not satisfy the equations.
     Singular,
-    /// No memory for the factors.
+    /// Not enough memory for the factors.
     OutOfMemory,
 }
 
-/// A fixed vector of all frequencies, with entries between 1 and 2 in size.
+/// Fills in a fixed vector that contains all frequencies, with magnitudes between 1 and 2.
 pub(super) fn fill_probe(probe: &mut [f64]) {
     for (i, p) in probe.iter_mut().enumerate() {
         *p = 1.0 + (1.618_033_988_749_895 * i as f64).fract();
@@ -19,7 +19,7 @@ pub(super) fn fill_probe(probe: &mut [f64]) {
     }
 }
 
-/// Largest size of an entry; infinite where one is not finite.
+/// Largest magnitude of the entries; infinite if one is not finite.
 pub(super) fn largest(values: &[f64]) -> f64 {
     values.iter().fold(0.0_f64, |m, v| {
         if v.is_finite() {

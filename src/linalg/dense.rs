@@ -1,4 +1,4 @@
-//! Dense LU for systems of the size of the interface.
+//! Dense LU for systems of the interface's size.
 
 use super::check::{SolveError, fill_probe, largest};
 use faer::dyn_stack::{MemBuffer, MemStack};
@@ -8,12 +8,12 @@ use faer::linalg::matmul::matmul;
 use faer::perm::PermRef;
 use faer::{Accum, MatMut, MatRef, Par};
 
-/// Factors of a small dense matrix, with all that is needed to make them again without allocating.
+/// Factors of a small dense matrix, with preallocated memory for repeated factorization.
 ///
-/// Rows are scaled by their largest entry, since some hold forces and others lengths.
+/// Rows are scaled by their largest entry, because some contain forces and others lengths.
 pub struct DenseFactors {
     n: usize,
-    /// Column by column; the matrix, then its factors.
+    /// Column-major; first the matrix, then its factors.
     values: Vec<f64>,
     row_scale: Vec<f64>,
     perm: Vec<usize>,
@@ -23,7 +23,7 @@ pub struct DenseFactors {
 }
 
 impl DenseFactors {
-    /// Room for an n by n matrix, and for solving with `columns` right-hand sides at a time.
+    /// Allocates an n by n matrix, and workspace for `columns` right-hand sides.
     ///
     /// # Errors
     /// [`SolveError::OutOfMemory`].
@@ -42,7 +42,7 @@ impl DenseFactors {
         })
     }
 
-    /// Takes another size n from now on, at most that of [`DenseFactors::new`].
+    /// Changes the size to n, which must not exceed that of [`DenseFactors::new`].
     pub fn resize(&mut self, n: usize) {
         self.n = n;
         self.values.resize(n * n, 0.0);
@@ -52,7 +52,7 @@ impl DenseFactors {
         self.perm_inverse.resize(n, 0);
     }
 
-    /// Factors the matrix with these values, column by column.
+    /// Factors the matrix with these values in column-major order.
     pub fn factor(&mut self, values: &[f64]) {
         let n = self.n;
         self.values.copy_from_slice(values);
@@ -80,7 +80,7 @@ impl DenseFactors {
         );
     }
 
-    /// Solves A X = B for the columns of B, one after the other in `b`; X replaces B.
+    /// Solves A X = B for the columns of B, which are consecutive in `b`; X replaces B.
     ///
     /// # Errors
     /// [`SolveError::Singular`] if X is not finite.
@@ -98,7 +98,7 @@ impl DenseFactors {
         }
     }
 
-    /// An estimate of the norm of the scaled inverse, as [`super::Factors::inverse_norm`] makes it.
+    /// An estimate of the norm of the scaled inverse, as [`super::Factors::inverse_norm`] computes it.
     pub fn inverse_norm(&mut self) -> f64 {
         let mut probe = std::mem::take(&mut self.probe);
         fill_probe(&mut probe);
@@ -123,8 +123,8 @@ impl DenseFactors {
     }
 }
 
-/// C = C − A B. Each matrix is stored column by column and given with the distance between its columns; the sizes are
-/// [rows of A and C, columns of A and rows of B, columns of B and C].
+/// C = C − A B. Each matrix is column-major and given with its column stride; the sizes are [rows of A and C, columns of A and
+/// rows of B, columns of B and C].
 pub fn subtract_product(
     c: (&mut [f64], usize),
     a: (&[f64], usize),
@@ -149,7 +149,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_dense_system_is_solved_and_a_singular_one_told() {
+    fn a_dense_system_is_solved_and_a_singular_one_detected() {
         let mut dense = DenseFactors::new(3, 2).unwrap();
         let a = [0.0, 2e8, 1.0, 1e-4, 1.0, 3.0, 2e-4, 0.0, -1.0];
         let exact = [1.0, -2.0, 0.5];

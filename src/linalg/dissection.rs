@@ -1,31 +1,31 @@
-//! An order of elimination by halves, so that a change somewhere reaches few fronts.
+//! Elimination order by nested dissection, so that a local change affects few fronts.
 //!
-//! In a long strip, minimum degree eliminates from one end to the other: a change at one place changes all fronts after it.
-//! Here a part of the graph is cut in two by a level of the distance from a far end, which is eliminated last; so are the
-//! halves, down to parts that are no longer many times as large as what cuts them. Such parts are put in order by minimum
-//! degree. Of m parts a change then reaches one and log m cuts.
+//! In a long strip, minimum degree eliminates from one end to the other: a change at one place affects all later fronts. Here a
+//! part of the graph is cut in two by a level set of the distance from a far end, which is eliminated last. The halves are cut
+//! recursively until a part is no longer many times larger than its cut; such parts are ordered by minimum degree. With m parts,
+//! a change then affects one part and log m cuts.
 
 use super::check::SolveError;
 use super::graph::Graph;
 
-/// A part smaller than this many unknowns, or so many times its cut, stays whole.
+/// A part is not cut if it has fewer unknowns than this, or fewer than this multiple of its cut.
 const LEAST: usize = 48;
 const TIMES: usize = 6;
-/// The smaller half has at least this part of all.
+/// The smaller half contains at least this fraction of the part.
 const HALF: f64 = 0.3;
 
-/// A graph while it is cut.
+/// A graph being cut.
 struct Dissection<'a> {
     graph: &'a Graph,
-    /// The part that each group is in, and how many parts there have been.
+    /// The part that contains each group, and the number of parts created so far.
     part: Vec<usize>,
     parts: usize,
-    /// Distance from where the last search began.
+    /// Distance from the start of the last search.
     level: Vec<usize>,
     order: Vec<usize>,
 }
 
-/// The groups of a graph in their order.
+/// The groups of a graph in elimination order.
 pub(super) fn order(graph: &Graph) -> Result<Vec<usize>, SolveError> {
     let count = graph.count();
     let mut dissection = Dissection {
@@ -47,7 +47,7 @@ impl Dissection<'_> {
             .sum()
     }
 
-    /// Makes groups a part of their own.
+    /// Turns groups into a separate part.
     fn set_apart(&mut self, groups: &[usize]) {
         groups
             .iter()
@@ -55,7 +55,7 @@ impl Dissection<'_> {
         self.parts += 1;
     }
 
-    /// Puts all groups of one part in order.
+    /// Orders all groups of one part.
     fn put_in_order(&mut self, mut groups: Vec<usize>) -> Result<(), SolveError> {
         while let Some(&start) = groups.first() {
             let found = self.search(start);
@@ -67,7 +67,7 @@ impl Dissection<'_> {
         Ok(())
     }
 
-    /// As [`Dissection::put_in_order`], where `found` is all of a part in the order of its distance from some group.
+    /// As [`Dissection::put_in_order`], where `found` is a whole part sorted by distance from some group.
     fn put_connected_in_order(&mut self, found: Vec<usize>) -> Result<(), SolveError> {
         let cut = match found.last() {
             Some(&far) if self.weight(&found) >= LEAST => {
@@ -89,13 +89,13 @@ impl Dissection<'_> {
         Ok(())
     }
 
-    /// The groups of a part in the order of their distance from one of them.
+    /// The groups of a part, sorted by distance from one of them.
     fn search(&mut self, start: usize) -> Vec<usize> {
         let part = self.part[start];
         let mut found = vec![start];
         let mut next = 0;
         self.level[start] = 0;
-        // Those that are found leave the part meanwhile.
+        // Visited groups are temporarily removed from the part.
         self.part[start] = usize::MAX;
         while let Some(&group) = found.get(next) {
             next += 1;
@@ -111,8 +111,8 @@ impl Dissection<'_> {
         found
     }
 
-    /// Cuts a part, given in the order of its levels, at the lightest level near its middle: the halves and the cut.
-    /// `None` where the cut is not small.
+    /// Cuts a part, sorted by levels, at the lightest level near its middle: the halves and the cut. `None` if the cut is not
+    /// small.
     fn cut(&self, found: &[usize]) -> Option<[Vec<usize>; 3]> {
         let all = self.weight(found);
         let mut before = 0;

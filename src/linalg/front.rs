@@ -1,43 +1,43 @@
-//! One front: a dense matrix some of whose unknowns are eliminated.
+//! One front: a dense matrix, some of whose unknowns are eliminated.
 //!
 //! ```text
 //! F = [F_11 F_12; F_21 F_22],      P F_11 = L_11 U_11,      R = F_22 − (F_21 U_11⁻¹) (L_11⁻¹ P F_12).
 //! ```
 //!
-//! Pivots are sought in the rows of F_11 and must not be much smaller than what they eliminate below. First this is done with
-//! the columns in their order: in a small front by plain loops, whose bits are the same on every processor, in a large one
-//! by halves, with faer's kernels. If a column finds no pivot, it is done again by plain loops that take another column
-//! instead; those that find none to the end are left to the next front, with as many rows.
+//! Pivots are searched in the rows of F_11 and must not be much smaller than the entries that they eliminate below. The first
+//! attempt keeps the columns in order: small fronts use plain loops, whose bits are the same on every processor, large ones
+//! recursive halving with faer's kernels. If a column has no pivot, plain loops repeat the elimination with column exchanges;
+//! columns without any pivot are delayed to the next front, with the same number of rows.
 
 use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve::solve_unit_lower_triangular_in_place;
 use faer::{Accum, MatMut, MatRef, Par};
 
-/// A pivot must be larger than this part of the largest entry below in its column.
+/// A pivot must exceed this fraction of the largest entry below it in its column.
 const THRESHOLD: f64 = 1e-6;
-/// Fronts up to this size are eliminated by plain loops, and so are so many columns of larger ones.
+/// Fronts up to this size, and column blocks up to this width in larger ones, are eliminated by plain loops.
 const SMALL: usize = 64;
 const NARROW: usize = 16;
 
-/// A front's matrix, column by column, and what its rows and columns stand for.
+/// A front's matrix in column-major order, and the meaning of its rows and columns.
 #[derive(Default)]
 pub(super) struct Front {
     pub matrix: Vec<f64>,
     pub rows: Vec<usize>,
     pub columns: Vec<usize>,
-    /// The row that each step exchanged its own with.
+    /// The row exchanged in each step.
     exchanged: Vec<usize>,
 }
 
 impl Front {
-    /// Makes room for the rows and columns that are listed; all entries are zero then.
+    /// Resizes to the listed rows and columns, and sets all entries to zero.
     pub fn clear(&mut self) {
         let size = self.rows.len();
         self.matrix.clear();
         self.matrix.resize(size * size, 0.0);
     }
 
-    /// Eliminates the first `most` rows and columns. `None` if a column finds no pivot.
+    /// Eliminates the first `most` rows and columns. `None` if a column has no pivot.
     pub fn eliminate_in_order(&mut self, most: usize) -> Option<()> {
         let size = self.rows.len();
         if most == 0 {
@@ -61,7 +61,7 @@ impl Front {
         Some(())
     }
 
-    /// Eliminates as many as possible of the first `most` rows and columns, one by one, and says how many.
+    /// Eliminates as many as possible of the first `most` rows and columns, one by one; returns how many.
     pub fn eliminate_in_any_order(&mut self, most: usize) -> usize {
         let size = self.rows.len();
         for k in 0..most {
@@ -86,7 +86,7 @@ impl Front {
     }
 }
 
-/// Divides the column of step k by its pivot, and takes it off the columns that come later.
+/// Divides the column of step k by its pivot, and updates the later columns.
 fn step(own: &mut [f64], rest: &mut [f64], size: usize, k: usize) {
     let (head, lower) = own[k..].split_at_mut(1);
     let inverse = 1.0 / head[0];
@@ -103,7 +103,7 @@ fn step(own: &mut [f64], rest: &mut [f64], size: usize, k: usize) {
     }
 }
 
-/// Takes all steps of `own` off a column, one after the other.
+/// Applies all steps of `own` to a column, in order.
 fn substitute(own: &[f64], column: &mut [f64]) {
     for (k, lower) in own.chunks_exact(column.len()).enumerate() {
         let factor = column[k];
@@ -115,7 +115,7 @@ fn substitute(own: &[f64], column: &mut [f64]) {
     }
 }
 
-/// The largest entry, by its size, and its place.
+/// The entry with the largest magnitude, and its index.
 fn largest(values: &[f64]) -> (usize, f64) {
     let mut best = (0, 0.0);
     for (k, value) in values.iter().enumerate() {
@@ -126,7 +126,7 @@ fn largest(values: &[f64]) -> (usize, f64) {
     best
 }
 
-/// The pivot row of a column from row `k` on, among the first `most`.
+/// The pivot row of a column, between `k` and `most`.
 fn pivot_row(column: &[f64], k: usize, most: usize) -> Option<usize> {
     let (own, rest) = (largest(&column[k..most]), largest(&column[most..]));
     (own.1 > THRESHOLD * rest.1 && own.1.is_finite()).then_some(k + own.0)
@@ -140,7 +140,7 @@ fn pivot(matrix: &[f64], size: usize, k: usize, most: usize) -> Option<(usize, u
     })
 }
 
-/// Factors columns whose first step is `first`, up to date with all steps before.
+/// Factors columns starting with step `first`; they are up to date with all earlier steps.
 fn halves(
     columns: &mut [f64],
     size: usize,
@@ -174,7 +174,7 @@ fn halves(
     Some(())
 }
 
-/// Exchanges rows as the steps from `first` on did.
+/// Applies the row exchanges of the steps from `first` on.
 fn exchange(columns: &mut [f64], size: usize, first: usize, exchanged: &[usize]) {
     for column in columns.chunks_exact_mut(size) {
         for (k, &row) in exchanged.iter().enumerate() {
@@ -183,7 +183,7 @@ fn exchange(columns: &mut [f64], size: usize, first: usize, exchanged: &[usize])
     }
 }
 
-/// Takes the steps of `left`, the first of which is `first`, off the columns of `right`.
+/// Applies the steps of `left`, starting with `first`, to the columns of `right`.
 fn update(left: &[f64], right: &mut [f64], size: usize, first: usize) {
     let steps = left.len() / size;
     let columns = right.len() / size;

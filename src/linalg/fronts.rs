@@ -1,20 +1,20 @@
-//! Multifrontal LU: an order found once, dense fronts, and no work repeated where nothing changed.
+//! Multifrontal LU: a fixed elimination order, dense fronts, and no repeated work where nothing changed.
 //!
-//! Unknowns come in groups (a node's displacements with the interface forces on it), which [`super::tree`] puts in order. A
-//! front holds the rows and columns of the unknowns that it eliminates and of the later ones that they see, assembled from
-//! the matrix' own entries and what earlier fronts leave of theirs:
+//! Unknowns are grouped (a node's displacements with its interface forces), and [`super::tree`] orders the groups. A front
+//! contains the rows and columns of the unknowns that it eliminates and of the later unknowns coupled to them, assembled from the
+//! matrix's entries and the remainders of earlier fronts:
 //!
 //! ```text
 //! F = [F_11 F_12; F_21 F_22],      P F_11 Q = L_11 U_11,      R = F_22 − F_21 F_11⁻¹ F_12  goes to the parent.
 //! ```
 //!
-//! Pivots are sought inside F_11 only ([`super::front`]); a saddle point whose unknowns are in one group finds its pivots
-//! there. Where one does not, its rows and columns are delayed: they go to the parent with R, which has more to choose from.
-//! So only a singular matrix is refused.
+//! Pivots are only searched inside F_11 ([`super::front`]); a saddle point within one group finds its pivots there. Rows and
+//! columns without a pivot are delayed: they are passed to the parent with R, where more pivots are available. So only a singular
+//! matrix is rejected.
 //!
-//! A front is factored again only if its own entries, or a child's remainder, have changed since the last time. So the
-//! minor iterations of a major one repeat only what depends on the modes that changed, with the same bits as a full
-//! factorization. Remainders are kept where rows that change may ask for them again, else only until the parent has them.
+//! A front is factored again only if its entries or a child's remainder have changed. The minor iterations of a major iteration
+//! therefore repeat only the parts that depend on changed modes, with the same bits as a full factorization. Remainders are
+//! stored if changing rows may need them again, otherwise only until the parent has used them.
 
 use super::check::SolveError;
 use super::front::Front;
@@ -24,21 +24,21 @@ use super::tree::{Node, Tree};
 /// A node of the tree, with its factors.
 struct Factored {
     node: Node,
-    /// Where its entries of the matrix are in [`Fronts::entries`].
+    /// Its range of [`Fronts::entries`].
     entries: std::ops::Range<usize>,
     children: Vec<usize>,
-    /// Equation and unknown of each pivot, then of those that are delayed and of the later ones.
+    /// Equation and unknown of each pivot, then of the delayed and the later ones.
     rows: Vec<usize>,
     columns: Vec<usize>,
     done: usize,
-    /// L with the diagonal of U, and right of it the rest of U; column by column.
+    /// L with the diagonal of U, and to its right the rest of U; column-major.
     lower: Vec<f64>,
     upper: Vec<f64>,
-    /// What goes to the parent, where it is kept.
+    /// The remainder for the parent, if stored.
     remainder: Vec<f64>,
     kept: bool,
     changed: bool,
-    /// Size of its smallest pivot.
+    /// Magnitude of its smallest pivot.
     smallest: f64,
 }
 
@@ -46,24 +46,24 @@ struct Factored {
 pub struct Fronts {
     /// Children before parents.
     fronts: Vec<Factored>,
-    /// Entries of the matrix by front: place among its values, and in the front without delayed unknowns.
+    /// Entries of the matrix by front: index of the value, and index in the front without delayed unknowns.
     entries: Vec<(u32, u32)>,
-    /// The front that each of the values is assembled in.
+    /// The front in which each value is assembled.
     owners: Vec<u32>,
-    /// The values that were factored last; only meaningful if `ready`.
+    /// The values factored last; only meaningful if `ready`.
     values: Vec<f64>,
     ready: bool,
     front: Front,
-    /// Remainders that are not kept, the last one on top.
+    /// Temporary remainders, the last one on top.
     stack: Vec<f64>,
-    /// By equation, while solving.
+    /// Workspace by equation for solves.
     forward: Vec<f64>,
     own: Vec<f64>,
 }
 
 impl Fronts {
-    /// Finds an order for a pattern; `groups` is the number of each unknown's group, and the rows from `first` on are those
-    /// that change from one factorization to the next.
+    /// Computes an elimination order for a pattern; `groups` is the group of each unknown, and rows from `first` on may change
+    /// between factorizations.
     ///
     /// # Errors
     /// [`SolveError::OutOfMemory`].
@@ -107,10 +107,10 @@ impl Fronts {
         })
     }
 
-    /// Factors the matrix with these values, in the order of the pattern.
+    /// Factors the matrix with these values, in pattern order.
     ///
     /// # Errors
-    /// [`SolveError::Singular`] where no pivot is left.
+    /// [`SolveError::Singular`] if no pivot is left.
     pub fn factor(&mut self, values: &[f64]) -> Result<(), SolveError> {
         self.find_changes(values);
         self.ready = false;
@@ -147,8 +147,8 @@ impl Fronts {
         Ok(())
     }
 
-    /// Finds the fronts whose own entries have changed. Where one has changed whose children's remainders were not kept,
-    /// all are factored anew.
+    /// Finds the fronts whose own entries have changed. If a changed front's children have no stored remainders, all fronts are
+    /// factored.
     fn find_changes(&mut self, values: &[f64]) {
         let mut all = !self.ready;
         self.fronts
@@ -170,13 +170,13 @@ impl Fronts {
         }
     }
 
-    /// Size of the smallest pivot.
+    /// Magnitude of the smallest pivot.
     pub fn smallest_pivot(&self) -> f64 {
         let pivots = self.fronts.iter().map(|front| front.smallest);
         pivots.fold(f64::INFINITY, f64::min)
     }
 
-    /// Solves A x = b, b given in `x`.
+    /// Solves A x = b; `x` contains b on entry.
     pub fn solve(&mut self, x: &mut [f64]) {
         self.forward.copy_from_slice(x);
         for front in &self.fronts {
@@ -189,7 +189,7 @@ impl Fronts {
 }
 
 impl Factored {
-    /// How many rows, and how many columns, it leaves to its parent.
+    /// Number of rows, and of columns, passed to its parent.
     fn left(&self) -> usize {
         self.rows.len() - self.done
     }
@@ -203,7 +203,7 @@ impl Factored {
         if self.kept { 0 } else { self.left().pow(2) }
     }
 
-    /// Assembles what its children leave; returns how many of their unknowns are delayed, which come first.
+    /// Assembles its children's remainders; returns the number of their delayed unknowns, which come first.
     fn assemble(&self, done: &[Factored], stack: &[f64], front: &mut Front) -> usize {
         front.rows.clear();
         front.columns.clear();
@@ -229,8 +229,7 @@ impl Factored {
         delayed
     }
 
-    /// Adds what it left to its parent's front, where its own delayed unknowns begin at `first` and those that are not
-    /// delayed at `start`.
+    /// Adds its remainder to the parent's front, where its delayed unknowns start at `first` and the others at `start`.
     fn add_remainder(&self, remainder: &[f64], first: usize, start: usize, front: &mut Front) {
         let (size, left, delayed) = (front.rows.len(), self.left(), self.delayed());
         let later = &self.node.places;
@@ -268,7 +267,7 @@ impl Factored {
         }
     }
 
-    /// Takes its factors from a front of which so many are eliminated, and hands on the remainder.
+    /// Stores the factors of a front with `done` eliminated unknowns, and passes on the remainder.
     fn keep(&mut self, front: &Front, done: usize, stack: &mut Vec<f64>) {
         let size = front.rows.len();
         self.done = done;
@@ -339,14 +338,14 @@ impl Factored {
     }
 }
 
-/// Which front has which entries of the matrix.
+/// Assignment of the matrix's entries to fronts.
 struct Assigned {
     entries: Vec<(u32, u32)>,
     ranges: Vec<std::ops::Range<usize>>,
     owners: Vec<u32>,
 }
 
-/// Gives every entry of the matrix to the front that eliminates the first of its two unknowns.
+/// Assigns every entry of the matrix to the front that eliminates the first of its two unknowns.
 fn assign(pattern: &Pattern, tree: &Tree) -> Result<Assigned, SolveError> {
     let narrow = |number: usize| u32::try_from(number).map_err(|_| SolveError::OutOfMemory);
     let mut eliminated = vec![0; pattern.size()];
@@ -356,7 +355,7 @@ fn assign(pattern: &Pattern, tree: &Tree) -> Result<Assigned, SolveError> {
             .for_each(|&unknown| eliminated[unknown] = k);
     }
     let owner = |row: usize, column: usize| eliminated[row].min(eliminated[column]);
-    // Entries by front, so that places are found with one list of them.
+    // Grouped by front, so that one index list serves all entries of a front.
     let mut starts = vec![0; tree.nodes.len() + 1];
     let mut owners = Vec::with_capacity(pattern.entries());
     for (row, column) in pattern.iter() {
@@ -401,7 +400,7 @@ mod tests {
     use super::*;
     use nalgebra::{DMatrix, DVector};
 
-    /// A matrix in groups; the rows from `first` on are those of the constraints.
+    /// A grouped matrix; rows from `first` on are the constraints.
     struct Case {
         pattern: Pattern,
         groups: Vec<usize>,
@@ -410,8 +409,8 @@ mod tests {
     }
 
     impl Case {
-        /// A grid of `across` by `up` nodes with two displacements each, held at one side, and a constraint on both of each
-        /// lower node; `lean` makes it unsymmetric. Constraints have groups of their own where they are `apart`.
+        /// A grid of `across` by `up` nodes with two displacements each, fixed at one side, with a constraint on both
+        /// displacements of each lower node; `lean` makes it unsymmetric. With `apart`, constraints have separate groups.
         fn grid(across: usize, up: usize, lean: f64, apart: bool) -> Case {
             let (nodes, first) = (across * up, 2 * across * up);
             let n = first + 2 * across;
@@ -460,7 +459,7 @@ mod tests {
             Fronts::new(&self.pattern, &self.groups, self.first).unwrap()
         }
 
-        /// A constraint gives way: its force vanishes instead.
+        /// Releases a constraint: its force vanishes instead.
         fn release(&mut self, constraint: usize) {
             let own = self.first + constraint;
             for (value, (i, j)) in self.values.iter_mut().zip(self.pattern.iter()) {
@@ -478,7 +477,7 @@ mod tests {
             x
         }
 
-        /// How far it is from that of a dense LU.
+        /// Difference from the solution of a dense LU.
         fn error(&self, fronts: &mut Fronts) -> f64 {
             let x = DVector::from_vec(self.solution(fronts));
             let n = self.pattern.size();
@@ -491,7 +490,7 @@ mod tests {
             (x - &exact).amax() / exact.amax()
         }
 
-        /// How many unknowns are delayed.
+        /// Number of delayed unknowns.
         fn delayed(fronts: &Fronts) -> usize {
             fronts.fronts.iter().map(Factored::delayed).sum()
         }
@@ -509,12 +508,12 @@ mod tests {
     }
 
     #[test]
-    fn constraints_without_a_pivot_in_their_group_wait_for_one() {
+    fn constraints_without_a_pivot_in_their_group_are_delayed() {
         let case = Case::grid(20, 4, 0.2, true);
         let mut fronts = case.fronts();
         let apart = case.error(&mut fronts);
         assert!(apart < 1e-10, "{apart}");
-        // A front whose every group is a constraint alone.
+        // Every group of the front is a single constraint.
         let pattern = Pattern::new(4, (0..16).map(|k| (k / 4, k % 4)).collect());
         let a = [
             [0.0, 0.0, 1.0, 0.0],
@@ -533,7 +532,7 @@ mod tests {
 
     #[test]
     fn delayed_unknowns_are_eliminated_where_there_is_a_pivot() {
-        // A dense body, 30 of whose 100 displacements are held by forces that make a group of their own, without a pivot.
+        // A dense body with 30 of its 100 displacements held by forces that form a group without a pivot.
         let (first, n) = (100, 130);
         let value = |i: usize, j: usize| match (i.checked_sub(first), j.checked_sub(first)) {
             (None, None) if i == j => 60.0,
@@ -557,7 +556,7 @@ mod tests {
         let apart = case.error(&mut fronts);
         assert!(apart < 1e-12, "{apart}");
         assert_eq!(Case::delayed(&fronts), 30);
-        // One that is released has its pivot, and the others wait as before.
+        // A released force has its pivot; the others are delayed as before.
         case.release(7);
         let apart = case.error(&mut fronts);
         assert!(apart < 1e-12, "{apart}");
@@ -569,7 +568,7 @@ mod tests {
     }
 
     #[test]
-    fn what_did_not_change_keeps_its_bits() {
+    fn unchanged_parts_keep_their_bits() {
         for apart in [false, true] {
             let mut case = Case::grid(300, 6, 0.1, apart);
             let mut fronts = case.fronts();
@@ -585,7 +584,7 @@ mod tests {
                     assert_eq!((&one.lower, &one.upper), (&other.lower, &other.upper));
                 }
             }
-            // What no constraint's row touches.
+            // An entry that no constraint row involves.
             let place = case.pattern.slot(case.first - 1, case.first - 1).unwrap();
             case.values[place] *= 1.5;
             let again = case.solution(&mut fronts);
@@ -594,7 +593,7 @@ mod tests {
     }
 
     #[test]
-    fn a_singular_matrix_is_refused() {
+    fn a_singular_matrix_is_rejected() {
         let mut case = Case::grid(3, 2, 0.0, false);
         for (value, (i, j)) in case.values.iter_mut().zip(case.pattern.iter()) {
             if i == 5 || j == 5 {

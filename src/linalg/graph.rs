@@ -1,20 +1,20 @@
-//! Groups of unknowns, and which of them see each other: the graph that an order of elimination is found in.
+//! Graph of groups of unknowns and their coupling, for computing an elimination order.
 
 use super::check::SolveError;
 use super::order::least_fill;
 use super::pattern::{Pattern, lists};
 use std::collections::HashMap;
 
-/// Marks what has no number yet.
+/// Marks groups without a number.
 pub(super) const NONE: usize = usize::MAX;
 
-/// The groups, numbered without gaps, and which of them see each other.
+/// The groups, numbered consecutively, and their neighbours.
 pub(super) struct Graph {
     starts: Vec<usize>,
     members: Vec<usize>,
     edges: Vec<usize>,
     neighbours: Vec<usize>,
-    /// Whether a row that changes has an entry in a group's columns.
+    /// Whether a changing row has an entry in a group's columns.
     pub changing: Vec<bool>,
 }
 
@@ -46,7 +46,7 @@ impl Graph {
                 }
             }
         }
-        // Symmetric, even where the pattern is not.
+        // Symmetric, even if the pattern is not.
         let both = || pairs.iter().flat_map(|&(a, b)| [(a, b), (b, a)]);
         let (edges, neighbours) = lists(count, both);
         let mut graph = Graph {
@@ -60,7 +60,7 @@ impl Graph {
         graph
     }
 
-    /// Sorts the neighbours, and drops those listed twice.
+    /// Sorts the neighbours and removes duplicates.
     fn tidy(&mut self) {
         let (mut kept, mut from) = (0, 0);
         for group in 0..self.edges.len() - 1 {
@@ -91,7 +91,7 @@ impl Graph {
         &self.neighbours[self.edges[group]..self.edges[group + 1]]
     }
 
-    /// Some of the groups in an order with little fill.
+    /// Orders some of the groups for little fill.
     pub fn part_in_order(&self, groups: Vec<usize>) -> Result<Vec<usize>, SolveError> {
         let mut number = HashMap::with_capacity(groups.len());
         number.extend(groups.iter().enumerate().map(|(k, &group)| (group, k)));

@@ -1,9 +1,9 @@
-//! Linear systems: patterns, factors, checked solves. The only files that name faer.
+//! Linear systems: patterns, factors, checked solves. The only package that uses faer.
 //!
-//! - [`Factors`]: sparse LU of anything square, the augmented system of eqn (9) above all; `fronts`, `front`,
-//!   `tree`, `graph` and `dissection`: the way in which that is factored;
-//! - [`SymmetricFactors`]: sparse LDLᵀ of the bodies alone, condensed to their interface (eqn 6) on the way;
-//! - [`DenseFactors`]: LU of the interface's own small systems.
+//! - [`Factors`]: sparse LU of square matrices, mainly the augmented system of eqn (9); `fronts`, `front`, `tree`, `graph` and
+//!   `dissection` implement its multifrontal factorization;
+//! - [`SymmetricFactors`]: sparse LDLᵀ of the bodies alone, which also condenses them to their interface (eqn 6);
+//! - [`DenseFactors`]: dense LU of the small interface systems.
 //!
 //! faer reports a singular matrix as success and returns infinities, so every solve is checked (`check`).
 

@@ -1,14 +1,14 @@
-//! LU of sparse systems, scaled, refined and checked.
+//! LU of sparse systems with scaling, iterative refinement and checks.
 //!
-//! The augmented system of eqn (9) mixes stiffnesses of very different size with constraint rows of size one and,
-//! where friction stands in the matrix, is unsymmetric. So it is scaled, rows and columns, by powers of two, which cost no
-//! digits. The matrices of a major iteration differ only in their last rows, the equations of the interface; one scale
-//! serves them all, except for these rows. Systems whose groups of unknowns are known are factored front by front
-//! ([`super::fronts`]); others, and those whose solution there leaves too much, by faer with partial pivoting. The symbolic
-//! part is kept as long as the pattern stands.
+//! The augmented system of eqn (9) combines stiffnesses of very different magnitude with constraint rows of size one, and is
+//! unsymmetric if friction is in the matrix. Its rows and columns are therefore scaled by powers of two, which is exact. The
+//! matrices of a major iteration differ only in their last rows, the interface equations, so one scale serves all of them except
+//! for these rows. Systems with known groups of unknowns use the multifrontal factorization ([`super::fronts`]); others, and
+//! those for which its solution has a large residual, use faer with partial pivoting. The symbolic part is reused as long as the
+//! pattern is unchanged.
 //!
-//! What is cheap to see is looked at first: a solution is refined where its residual is above round-off, and the norm of the
-//! inverse is estimated by a solve where a pivot is small. Both depend on nothing but the matrix and the right-hand side.
+//! Cheap checks come first: a solution is refined only if its residual is above round-off, and the norm of the inverse is
+//! estimated by a solve only if a pivot is small. Both decisions depend only on the matrix and the right-hand side.
 
 use super::check::{SolveError, fill_probe, largest};
 use super::fronts::Fronts;
@@ -22,36 +22,36 @@ use std::sync::Arc;
 /// Number of equilibration sweeps; each replaces the ratio of the largest to the smallest row by about its square root.
 const SWEEPS: usize = 3;
 
-/// Backward error above which a solution is not believed.
+/// Backward error above which a solution is rejected.
 const BACKWARD_LIMIT: f64 = 1e-9;
-/// Backward error above which a solution is refined: some units of round-off.
+/// Backward error above which a solution is refined: a few units of round-off.
 const REFINED: f64 = 1e-15;
-/// Smallest pivot from which on a matrix is regular, and the norm of its inverse not estimated any closer.
+/// If the smallest pivot is above this, the matrix is regular, and the norm of its inverse is not estimated by a solve.
 const REGULAR: f64 = 1e-6;
-/// Exponent below which a value counts as none.
+/// Values with a smaller exponent count as zero.
 const NOTHING: i32 = -600;
 
-/// Factors of a sparse matrix, with all that is needed to make them again without allocating.
+/// Factors of a sparse matrix, with preallocated memory for repeated factorization.
 pub struct Factors {
     pattern: Arc<Pattern>,
     fronts: Option<Fronts>,
     general: Option<General>,
-    /// Which of the two holds the factors.
+    /// Which of the two contains the factors.
     used: Used,
     row_scale: Vec<f64>,
     col_scale: Vec<f64>,
-    /// Exponents of the values, of the scale, and of the largest of each column.
+    /// Exponents of the values, of the scale, and of the largest value of each column.
     exponents: Vec<i32>,
     scale: Vec<i32>,
     largest: Vec<i32>,
-    /// Whether `scaled` has the whole of `values` in it.
+    /// Whether `scaled` contains all of `values`.
     applied: bool,
     values: Vec<f64>,
     scaled: Vec<f64>,
     residual: Vec<f64>,
     sizes: Vec<f64>,
     correction: Vec<f64>,
-    /// The rows from here on are scaled anew in each factorization, and their entries: place, row, column.
+    /// Rows from this one on are rescaled in each factorization; with their entries: index, row, column.
     first_own: usize,
     own: Vec<(usize, usize, usize)>,
 }
@@ -71,7 +71,7 @@ struct General {
 }
 
 impl Factors {
-    /// Most right-hand sides that [`Factors::solve_block`] takes at a time.
+    /// Maximum number of right-hand sides per call of [`Factors::solve_block`].
     pub const BLOCK: usize = 32;
 
     /// Analyses a pattern.
@@ -83,9 +83,8 @@ impl Factors {
         Ok(Factors::with(pattern, None, Some(general)))
     }
 
-    /// Analyses a pattern of symmetric structure; `groups` is the number of each unknown's group, and the rows from `first`
-    /// on are those in which the matrices of one scale differ. It is cheapest where no saddle point is spread over several
-    /// groups.
+    /// Analyses a pattern of symmetric structure; `groups` is the group of each unknown, and rows from `first` on may differ
+    /// between matrices that share a scale. It is cheapest if no saddle point spans several groups.
     ///
     /// # Errors
     /// As [`Factors::new`].
@@ -121,17 +120,16 @@ impl Factors {
         }
     }
 
-    /// The pattern that the factors belong to.
+    /// The pattern of the factors.
     pub fn pattern(&self) -> &Arc<Pattern> {
         &self.pattern
     }
 
-    /// Finds the scale of all matrices to come that differ from this one only in the rows from `first` on. The rows before
-    /// `first` must be about as large as their columns (the matrix is nearly symmetric there).
+    /// Computes the scale for all following matrices that differ from this one only in the rows from `first` on. Each row before
+    /// `first` must have about the same magnitude as its column (the matrix is nearly symmetric there).
     ///
-    /// `units` are the sizes of the unknowns (powers of two), with which the sweeps start. The start matters: in a saddle
-    /// point whose constraints are of size one and whose stiffness is tiny, rows of equal size may still be nearly
-    /// singular.
+    /// `units` are the magnitudes of the unknowns (powers of two), from which the sweeps start. The start matters: in a saddle
+    /// point with constraints of size one and a tiny stiffness, rows of equal size may still be nearly singular.
     pub fn scale(&mut self, values: &[f64], first: usize, units: &[f64]) {
         self.used = Used::Neither;
         self.applied = false;
@@ -146,10 +144,10 @@ impl Factors {
         }
     }
 
-    /// Factors the matrix with these values (in the order of the pattern), for which [`Factors::scale`] found the scale.
+    /// Factors the matrix with these values (in pattern order), using the scale from [`Factors::scale`].
     ///
     /// # Errors
-    /// [`SolveError::Singular`] where a pivot column is empty; near-singularity shows in [`Factors::solve`] and
+    /// [`SolveError::Singular`] if a pivot column is empty; near-singularity shows in [`Factors::solve`] and
     /// [`Factors::inverse_norm`].
     pub fn factor(&mut self, values: &[f64]) -> Result<(), SolveError> {
         self.used = Used::Neither;
@@ -174,10 +172,10 @@ impl Factors {
         Ok(())
     }
 
-    /// Solves A x = b with one step of iterative refinement and checks the answer.
+    /// Solves A x = b with one step of iterative refinement, and checks the solution.
     ///
     /// # Errors
-    /// [`SolveError::Singular`] if x is not finite or leaves a residual beyond round-off.
+    /// [`SolveError::Singular`] if x is not finite or its residual exceeds round-off.
     pub fn solve(&mut self, b: &[f64], x: &mut [f64]) -> Result<(), SolveError> {
         let solved = self.solve_as_factored(b, x);
         if solved.is_err() && self.used == Used::Fronts {
@@ -213,8 +211,8 @@ impl Factors {
         }
     }
 
-    /// Solves A X = B for at most [`Factors::BLOCK`] columns of B, one after the other in `x`; X replaces B. The solution is
-    /// not refined, and only checked to be finite: meant for the many columns of a response, beside one checked solve.
+    /// Solves A X = B for at most [`Factors::BLOCK`] columns of B, which are consecutive in `x`; X replaces B. The solution is
+    /// not refined, and only checked to be finite: intended for the many columns of a response, in addition to one checked solve.
     ///
     /// # Errors
     /// [`SolveError::Singular`] if X is not finite.
@@ -230,9 +228,9 @@ impl Factors {
         }
     }
 
-    /// A lower bound of the norm of the inverse of the scaled matrix (whose entries are at most one), from one solve with a
-    /// fixed vector of all frequencies, or from the pivots where none is small; near 1e16 if the matrix is singular, and
-    /// infinite without factors.
+    /// A lower bound of the norm of the inverse of the scaled matrix (whose entries are at most one): from one solve with a fixed
+    /// vector of all frequencies, or from the pivots if none is small. Near 1e16 for a singular matrix, and infinite without
+    /// factors.
     pub fn inverse_norm(&mut self) -> f64 {
         if self.used == Used::Neither {
             return f64::INFINITY;
@@ -251,14 +249,14 @@ impl Factors {
         size
     }
 
-    /// Backward error of x as a solution of A x = b, in the scaled system, where all entries are at most one; leaves
-    /// A x in `residual`.
+    /// Backward error of x as a solution of A x = b in the scaled system, where all entries are at most one; leaves A x in
+    /// `residual`.
     fn backward_error(&mut self, b: &[f64], x: &[f64]) -> f64 {
         self.pattern.multiply(&self.values, x, &mut self.residual);
         let (mut error, mut size) = (0.0_f64, 0.0_f64);
         for ((b, product), scale) in b.iter().zip(&self.residual).zip(&self.row_scale) {
             let apart = ((b - product) * scale).abs();
-            // `max` would ignore what is not a number.
+            // `max` would ignore NaN.
             error = if apart <= error { error } else { apart };
             size = size.max((b * scale).abs());
         }
@@ -294,8 +292,8 @@ impl Factors {
         }
     }
 
-    /// Ruiz equilibration: row and column i are divided by about the square root of the largest entry, some times. Powers of
-    /// two are told by their exponents alone.
+    /// Ruiz equilibration: in each sweep, row and column i are divided by about the square root of the largest entry. Powers of
+    /// two are stored as exponents.
     fn equilibrate(&mut self, values: &[f64], units: &[f64]) {
         for (to, &value) in self.exponents.iter_mut().zip(values) {
             *to = (value.to_bits() >> 52 & 0x7ff) as i32 - 1023;
@@ -304,7 +302,7 @@ impl Factors {
             *scale = exponent(unit).unwrap_or(0);
         }
         for _ in 0..SWEEPS {
-            // The sizes of this sweep; a column's own scale changes only when all are known.
+            // The sizes of this sweep; the column scales change only after all sizes are known.
             for (range, size) in self.pattern.col_ptr.windows(2).zip(&mut self.largest) {
                 let rows = &self.pattern.row_idx[range[0]..range[1]];
                 let entries = self.exponents[range[0]..range[1]].iter().zip(rows);
@@ -329,7 +327,7 @@ impl Factors {
         self.row_scale.copy_from_slice(&self.col_scale);
     }
 
-    /// Takes the values and scales them; where only the own rows differ from those of before, only these.
+    /// Takes the values and scales them; if only the own rows have changed, only these.
     fn take(&mut self, values: &[f64]) {
         for &(place, ..) in &self.own {
             self.values[place] = values[place];
@@ -413,12 +411,12 @@ impl General {
     }
 }
 
-/// The power of two by which a size comes to lie between one and two.
+/// The power of two that scales a size to between one and two.
 fn inverse(size: f64) -> f64 {
     exponent(size).map_or(1.0, |exponent| power_of_two(-exponent))
 }
 
-/// Exponent of a size. `None` for zero and for what is not a number.
+/// Exponent of a size. `None` for zero and NaN.
 fn exponent(size: f64) -> Option<i32> {
     let exponent = || (size.to_bits() >> 52) as i32 - 1023;
     (size > 0.0 && size.is_finite()).then(exponent)
@@ -477,7 +475,7 @@ mod tests {
     }
 
     #[test]
-    fn a_saddle_point_whose_stiffness_is_tiny_beside_its_constraints_is_not_singular() {
+    fn a_saddle_point_with_a_tiny_stiffness_is_not_singular() {
         let tiny = 1e-13;
         let a = [
             3.0 * tiny,
@@ -505,7 +503,7 @@ mod tests {
     }
 
     #[test]
-    fn a_singular_matrix_is_told_by_the_norm_of_its_inverse_or_by_the_solve() {
+    fn a_singular_matrix_is_detected_by_the_norm_of_its_inverse_or_by_the_solve() {
         let (pattern, values) = dense(2, &[1.0, 2.0, 2.0, 4.0]);
         let mut factors = Factors::new(pattern.clone()).unwrap();
         factors.scale(&values, 2, &ONES[..pattern.size()]);

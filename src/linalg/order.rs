@@ -1,4 +1,4 @@
-//! In which order the unknowns of a symmetric matrix are eliminated.
+//! Elimination order of a symmetric matrix.
 
 use super::check::SolveError;
 use super::pattern::Pattern;
@@ -6,7 +6,7 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::SymbolicSparseColMatRef;
 use faer::sparse::linalg::amd;
 
-/// A fill-reducing order of the unknowns in which `last` come last.
+/// A fill-reducing order of the unknowns with `last` at the end.
 pub(super) fn order(pattern: &Pattern, last: &[usize]) -> Result<Vec<usize>, SolveError> {
     const LAST: usize = usize::MAX;
     let n = pattern.n;
@@ -33,7 +33,7 @@ pub(super) fn order(pattern: &Pattern, last: &[usize]) -> Result<Vec<usize>, Sol
     Ok(reduced.chain(last.iter().copied()).collect())
 }
 
-/// An order with little fill of a symmetric graph, by the neighbours of each of its places and where they start.
+/// A fill-reducing order of a symmetric graph, given by its adjacency lists.
 pub(super) fn least_fill(starts: &[usize], neighbours: &[usize]) -> Result<Vec<usize>, SolveError> {
     let count = starts.len() - 1;
     let graph = SymbolicSparseColMatRef::new_checked(count, count, starts, None, neighbours);

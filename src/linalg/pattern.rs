@@ -1,9 +1,9 @@
-//! Patterns of sparse matrices, and products with them.
+//! Patterns of sparse matrices, and matrix-vector products.
 
 use faer::sparse::SymbolicSparseColMatRef;
 use std::ops::Range;
 
-/// Where a square sparse matrix has entries: compressed columns, rows ascending in each.
+/// Pattern of a square sparse matrix: compressed columns with ascending rows.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Pattern {
     pub(super) n: usize,
@@ -12,7 +12,7 @@ pub struct Pattern {
 }
 
 impl Pattern {
-    /// The pattern of an n by n matrix with these `(row, column)` entries, in any order, repeated or not.
+    /// The pattern of an n by n matrix with these `(row, column)` entries, in any order, possibly repeated.
     pub fn new(n: usize, mut entries: Vec<(usize, usize)>) -> Self {
         entries.sort_unstable_by_key(|&(row, col)| (col, row));
         entries.dedup();
@@ -49,11 +49,11 @@ impl Pattern {
             .map(|k| start + k)
     }
 
-    /// The diagonal blocks beyond which there are no entries, as ranges of unknowns; together all of them. Of an upper half as of
-    /// the whole.
+    /// The diagonal blocks without entries outside, as consecutive ranges of unknowns. Works for an upper half like for a full
+    /// matrix.
     pub fn blocks(&self) -> Vec<Range<usize>> {
         let mut starts = Vec::new();
-        // The least row of this column and of all after it.
+        // The smallest row in this and all later columns.
         let mut reach = self.n;
         for col in (0..self.n).rev() {
             let first = self.row_idx[self.col_ptr[col]..self.col_ptr[col + 1]].first();
@@ -72,8 +72,8 @@ impl Pattern {
             .collect()
     }
 
-    /// Of a symmetric matrix' upper half with the unknowns in another order, the pattern of the lower half, and which entry of
-    /// this one each of its entries is.
+    /// For a symmetric matrix's upper half and a new order of the unknowns: the pattern of the lower half, and the source of each
+    /// of its entries.
     pub(super) fn in_order(&self, order: &[usize]) -> (Pattern, Vec<usize>) {
         let mut place = vec![0; self.n];
         for (k, &unknown) in order.iter().enumerate() {
@@ -81,7 +81,7 @@ impl Pattern {
         }
         let entries = || self.iter().map(|(i, j)| (place[i], place[j]));
         let lower = || entries().map(|(i, j)| (i.max(j), i.min(j)));
-        // By rows, and then by columns: rows ascend in each.
+        // Sorted by rows, then by columns, so that rows ascend in each column.
         let rows = || lower().map(|(row, _)| row).zip(0..);
         let (_, by_rows) = lists(self.n, rows);
         let places: Vec<(usize, usize)> = lower().collect();
@@ -112,8 +112,7 @@ impl Pattern {
         self.col_ptr[column]
     }
 
-    /// The pattern of one of [`Pattern::blocks`], or of some that follow each other, and where its values are among those of
-    /// the whole.
+    /// The pattern of one of [`Pattern::blocks`], or of consecutive ones, and the range of its values.
     pub fn block(&self, unknowns: Range<usize>) -> (Pattern, Range<usize>) {
         let values = self.col_ptr[unknowns.start]..self.col_ptr[unknowns.end];
         let columns = &self.col_ptr[unknowns.start..=unknowns.end];
@@ -148,13 +147,13 @@ impl Pattern {
         }
     }
 
-    /// y = A x for a symmetric A of which this is the upper half.
+    /// y = A x for a symmetric A with this upper half.
     pub fn multiply_half(&self, values: &[f64], x: &[f64], y: &mut [f64]) {
         self.add_up(values, x, y, true, |value, x| value * x);
     }
 
-    /// y = |A| |x|: the size of the terms that a product adds up, the scale of its round-off. Where this is the upper
-    /// `half` of a symmetric A, that of the whole.
+    /// y = |A| |x|: the sum of the terms' magnitudes in a product, which is the scale of its round-off. With `half`, this is the
+    /// upper half of a symmetric A.
     pub fn multiply_abs(&self, values: &[f64], x: &[f64], y: &mut [f64], half: bool) {
         self.add_up(values, x, y, half, |value, x| (value * x).abs());
     }
@@ -182,7 +181,7 @@ impl Pattern {
     }
 }
 
-/// Lists of values by number, one after the other, each in the order in which they come; and where each list starts.
+/// Groups values into lists by number, in order of appearance; also returns the start of each list.
 pub(super) fn lists<P: Iterator<Item = (usize, usize)>>(
     count: usize,
     pairs: impl Fn() -> P,
@@ -201,7 +200,7 @@ pub(super) fn lists<P: Iterator<Item = (usize, usize)>>(
     (starts, values)
 }
 
-/// The pattern as faer takes it.
+/// The pattern in faer's form.
 pub(super) fn symbolic_view(pattern: &Pattern) -> SymbolicSparseColMatRef<'_, usize> {
     SymbolicSparseColMatRef::new_checked(
         pattern.n,
@@ -217,7 +216,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn blocks_without_entries_between_them_are_told_apart() {
+    fn uncoupled_blocks_are_found() {
         let entries = vec![
             (0, 0),
             (0, 2),

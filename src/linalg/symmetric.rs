@@ -1,25 +1,25 @@
-//! Sparse LDLᵀ of a symmetric matrix some of whose unknowns, the interface, are eliminated last.
+//! Sparse LDLᵀ of a symmetric matrix that eliminates some of the unknowns, the interface, last.
 //!
-//! The trailing block of the factors is then that of the matrix condensed to the interface: with i the other unknowns
-//! and c the interface,
+//! The trailing block of the factors is then that of the matrix condensed to the interface: with the other unknowns i and the
+//! interface c,
 //!
 //! ```text
 //! K = L D Lᵀ,      S = K_cc − K_ci K_ii⁻¹ K_ic = L_cc D_c L_ccᵀ,
 //! ```
 //!
-//! so condensing (eqn 6) costs no more than factoring. A body that is free to move as a whole has a singular S; therefore a
-//! `shift` is added to the diagonal of K_cc, and so to that of S, and the caller subtracts it again.
+//! so condensation (eqn 6) costs no more than factorization. A body that can move rigidly has a singular S; therefore a `shift`
+//! is added to the diagonal of K_cc, and so to that of S, and the caller subtracts it again.
 //!
-//! A right-hand side is condensed by one pass over L, and the displacements inside come out of another once those of the
-//! interface are known: with y_i the first pass' result,
+//! One pass over L condenses a right-hand side, and another one computes the interior displacements once those of the interface
+//! are known: with the result y_i of the first pass,
 //!
 //! ```text
 //! L_ii y_i = b_i,    r̃ = b_c − L_ci y_i;      L_iiᵀ u_i = D_i⁻¹ y_i − L_ciᵀ u_c.
 //! ```
 //!
-//! Only the upper half of the matrix is read. There is no pivoting, which is sound without negative pivots: the terms that a
-//! factorization adds up are then no larger than the matrix. Where there are negative ones their size is looked at
-//! ([`SymmetricFactors::factor`]); beyond round-off the caller turns to [`super::Factors`].
+//! Only the upper half of the matrix is used. There is no pivoting, which is stable without negative pivots, because the terms of
+//! the factorization are then no larger than the matrix. With negative pivots the size of the terms is checked
+//! ([`SymmetricFactors::factor`]); if it is too large, the caller uses [`super::Factors`].
 
 use super::check::{SolveError, largest};
 use super::order::order;
@@ -40,34 +40,34 @@ use faer::sparse::linalg::cholesky::{
 use faer::{Accum, MatMut, MatRef, Par, Side};
 use std::sync::Arc;
 
-/// Backward error above which a solution is not believed: there is no pivoting, so growth must show here.
+/// Backward error above which a solution is rejected. Without pivoting, growth must be detected here.
 const BACKWARD_LIMIT: f64 = 1e-12;
 
-/// Factors of a symmetric matrix, with all that is needed to make them again without allocating.
+/// Factors of a symmetric matrix, with preallocated memory for repeated factorization.
 pub struct SymmetricFactors {
-    /// Pattern of the lower half in the order of elimination, and which value of the matrix each of its entries is.
+    /// Pattern of the lower half in elimination order, and the source of each of its entries.
     pattern: Pattern,
     from: Vec<usize>,
     symbolic: SymbolicCholesky<usize>,
-    /// All unknowns, in the order of their elimination.
+    /// All unknowns in elimination order.
     order: Vec<usize>,
-    /// The unknowns that come last, in their order.
+    /// The unknowns eliminated last, in order.
     last: Vec<usize>,
-    /// Places of the diagonal of `last` in the array of values.
+    /// Indices of the diagonal of `last` in the array of values.
     diagonal: Vec<usize>,
     factors: Vec<f64>,
     memory: MemBuffer,
     values: Vec<f64>,
-    /// Size of the largest of them.
+    /// Largest magnitude of these.
     size: f64,
     residual: Vec<f64>,
-    /// D, in the order of elimination.
+    /// D, in elimination order.
     pivots: Vec<f64>,
-    /// y, then u, in the order of elimination.
+    /// y, then u, in elimination order.
     moved: Vec<f64>,
-    /// What the columns of a supernode do to the rows below it.
+    /// Contribution of a supernode's columns to the rows below it.
     below: Vec<f64>,
-    /// L_cc, and D_c L_ccᵀ, column by column.
+    /// L_cc, and D_c L_ccᵀ, column-major.
     lower: Vec<f64>,
     upper: Vec<f64>,
     ready: bool,
@@ -77,7 +77,7 @@ impl SymmetricFactors {
     /// Analyses the upper half of a symmetric pattern; the unknowns `last` are eliminated last, in their order.
     ///
     /// # Errors
-    /// [`SolveError::Singular`] if the pattern lacks the diagonal of one of `last`; [`SolveError::OutOfMemory`].
+    /// [`SolveError::Singular`] if the pattern lacks a diagonal entry of `last`; [`SolveError::OutOfMemory`].
     pub fn new(pattern: Arc<Pattern>, last: &[usize]) -> Result<Self, SolveError> {
         let n = pattern.n;
         let order = order(&pattern, last)?;
@@ -125,12 +125,11 @@ impl SymmetricFactors {
         })
     }
 
-    /// Factors the matrix with these values (in the order of the pattern), `shift` added to the diagonal of the
-    /// unknowns that come last.
+    /// Factors the matrix with these values (in pattern order), with `shift` added to the diagonal of the unknowns eliminated
+    /// last.
     ///
     /// # Errors
-    /// [`SolveError::Singular`] where a pivot vanishes, or where terms grow so far beyond the matrix that their round-off
-    /// counts.
+    /// [`SolveError::Singular`] if a pivot vanishes, or if terms grow so much that their round-off matters.
     pub fn factor(&mut self, values: &[f64], shift: f64) -> Result<(), SolveError> {
         self.ready = false;
         for (value, &k) in self.values.iter_mut().zip(&self.from) {
@@ -170,8 +169,8 @@ impl SymmetricFactors {
         }
     }
 
-    /// Largest sum of the terms |L| |D| |L|ᵀ of a diagonal entry. Where no pivot is negative it is the entry itself, and
-    /// nothing is added up.
+    /// Largest sum of the terms |L| |D| |L|ᵀ in a diagonal entry. Without negative pivots it is the entry itself, and is not
+    /// computed.
     fn growth(&mut self) -> f64 {
         let negative = |d: &f64| d.is_nan() || *d <= 0.0;
         if !self.pivots.iter().any(negative) {
@@ -192,12 +191,12 @@ impl SymmetricFactors {
         largest(sums)
     }
 
-    /// Number of unknowns that are eliminated before those that come last.
+    /// Number of unknowns eliminated before `last`.
     fn inner(&self) -> usize {
         self.pattern.n - self.last.len()
     }
 
-    /// r̃ of a right-hand side, which [`SymmetricFactors::recover`] goes on with; in the order of the unknowns that come last.
+    /// r̃ of a right-hand side, in the order of `last`; [`SymmetricFactors::recover`] continues with it.
     pub fn condense(&mut self, b: &[f64], out: &mut [f64]) {
         let inner = self.inner();
         for (moved, &unknown) in self.moved.iter_mut().zip(&self.order) {
@@ -207,10 +206,10 @@ impl SymmetricFactors {
         out.copy_from_slice(&self.moved[inner..]);
     }
 
-    /// All unknowns for these values of those that come last and the right-hand side `b` that was condensed just before.
+    /// All unknowns, given those of `last` and the right-hand side `b` that was condensed just before.
     ///
     /// # Errors
-    /// [`SolveError::Singular`] if x is not finite or leaves a residual beyond round-off in the equations of the other unknowns.
+    /// [`SolveError::Singular`] if x is not finite or the residual in the other equations exceeds round-off.
     pub fn recover(&mut self, b: &[f64], known: &[f64], x: &mut [f64]) -> Result<(), SolveError> {
         let inner = self.inner();
         self.divide(inner);
@@ -219,10 +218,10 @@ impl SymmetricFactors {
         self.check(inner, b, x)
     }
 
-    /// Solves (K + shift) x = b and checks the answer.
+    /// Solves (K + shift) x = b and checks the solution.
     ///
     /// # Errors
-    /// [`SolveError::Singular`] if x is not finite or leaves a residual beyond round-off.
+    /// [`SolveError::Singular`] if x is not finite or its residual exceeds round-off.
     pub fn solve(&mut self, b: &[f64], x: &mut [f64]) -> Result<(), SolveError> {
         let n = self.pattern.n;
         for (moved, &unknown) in self.moved.iter_mut().zip(&self.order) {
@@ -234,7 +233,7 @@ impl SymmetricFactors {
         self.check(n, b, x)
     }
 
-    /// L y = b in the first `count` columns; what they do to the rows after them is taken off there.
+    /// Forward substitution L y = b in the first `count` columns, which also updates the later rows.
     fn forward(&mut self, count: usize) {
         let symbolic = supernodal(&self.symbolic);
         for s in 0..symbolic.n_supernodes() {
@@ -263,7 +262,7 @@ impl SymmetricFactors {
         }
     }
 
-    /// Lᵀ u = y in the first `count` columns, u known in the others.
+    /// Back substitution Lᵀ u = y in the first `count` columns, with known u in the others.
     fn backward(&mut self, count: usize) {
         let symbolic = supernodal(&self.symbolic);
         for s in (0..symbolic.n_supernodes()).rev() {
@@ -286,7 +285,7 @@ impl SymmetricFactors {
         }
     }
 
-    /// Gives x its own order, and checks the equations of the first `count` unknowns.
+    /// Restores the original order of x, and checks the equations of the first `count` unknowns.
     fn check(&mut self, count: usize, b: &[f64], x: &mut [f64]) -> Result<(), SolveError> {
         if !self.ready {
             return Err(SolveError::Singular);
@@ -299,7 +298,7 @@ impl SymmetricFactors {
         let mut worst = 0.0_f64;
         for (&unknown, product) in self.order[..count].iter().zip(&self.residual) {
             let apart = (product - b[unknown]).abs();
-            // `max` would ignore what is not a number.
+            // `max` would ignore NaN.
             worst = if apart <= worst { worst } else { apart };
         }
         let size = largest(b).max(self.size * largest(x));
@@ -310,15 +309,15 @@ impl SymmetricFactors {
         }
     }
 
-    /// D of the last factorization, by unknown: with the unknowns before them all eliminated, what is left of the diagonal.
-    /// By Sylvester's law as many are negative as K has negative eigenvalues.
+    /// D of the last factorization, by unknown. By Sylvester's law, the number of negative entries is the number of negative
+    /// eigenvalues of K.
     pub fn pivots(&self, out: &mut [f64]) {
         for (&unknown, pivot) in self.order.iter().zip(&self.pivots) {
             out[unknown] = *pivot;
         }
     }
 
-    /// The condensed matrix S + shift, column by column, in the order of the unknowns that come last.
+    /// The condensed matrix S + shift, column-major, in the order of `last`.
     pub fn condensed(&mut self, out: &mut [f64]) {
         let (c, first) = (self.last.len(), self.inner());
         self.lower.fill(0.0);
@@ -353,13 +352,13 @@ impl SymmetricFactors {
     }
 }
 
-/// Some columns of L that have the same rows below them.
+/// Columns of L with the same rows below them (a supernode).
 struct Node<'a> {
-    /// Place of the first.
+    /// Index of the first column.
     start: usize,
-    /// How many there are.
+    /// Number of columns.
     width: usize,
-    /// The rows below.
+    /// The rows below the columns.
     rows: &'a [usize],
     values: &'a [f64],
 }
@@ -376,7 +375,7 @@ impl<'a> Node<'a> {
         }
     }
 
-    /// A column: the rows of the node itself, of which those from the diagonal on count, then those below.
+    /// A column: the node's own rows, valid from the diagonal on, then the rows below.
     fn column(&self, k: usize) -> &'a [f64] {
         let height = self.width + self.rows.len();
         &self.values[k * height..(k + 1) * height]
@@ -387,13 +386,13 @@ impl<'a> Node<'a> {
 struct Column<'a> {
     place: usize,
     pivot: f64,
-    /// Entries of the rows from the next on, and of `rows`.
+    /// Entries of the node's own rows below the diagonal, and of `rows`.
     own: &'a [f64],
     below: &'a [f64],
     rows: &'a [usize],
 }
 
-/// The columns from one on, in the order of elimination.
+/// The columns from `start` on, in elimination order.
 fn columns<'a>(
     symbolic: &'a SymbolicSupernodalCholesky<usize>,
     factors: &'a [f64],
@@ -422,7 +421,7 @@ fn supernodal(symbolic: &SymbolicCholesky<usize>) -> &SymbolicSupernodalCholesky
     match symbolic.raw() {
         SymbolicCholeskyRaw::Supernodal(symbolic) => symbolic,
         SymbolicCholeskyRaw::Simplicial(_) => {
-            unreachable!("the symbolic part is forced to be supernodal")
+            unreachable!("the symbolic part must be supernodal")
         }
     }
 }
@@ -434,7 +433,7 @@ fn add(y: &mut [f64], a: f64, x: &[f64]) {
     }
 }
 
-/// In eight sums, which a processor adds up side by side.
+/// Uses eight sums, so that the processor can vectorise it.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     const LANES: usize = 8;
     let mut sums = [0.0; LANES];
@@ -454,7 +453,7 @@ mod tests {
     use super::*;
     use nalgebra::{DMatrix, DVector};
 
-    /// A symmetric matrix of the pattern of a plane grid, indefinite where `pull` is large.
+    /// A symmetric matrix with the pattern of a plane grid, indefinite if `pull` is large.
     fn grid(side: usize, pull: f64) -> (Arc<Pattern>, DMatrix<f64>) {
         let n = side * side;
         let mut a = DMatrix::zeros(n, n);
@@ -496,7 +495,7 @@ mod tests {
             let mut x = vec![0.0; 81];
             factors.solve(b.as_slice(), &mut x).unwrap();
             assert!((&a * DVector::from_vec(x) - &b).amax() < 1e-12);
-            // What is condensed and what is recovered is the same solution, found in two passes.
+            // Condensation and recovery give the same solution in two passes.
             let (mut load, mut x) = (vec![0.0; c], vec![0.0; 81]);
             factors.condense(b.as_slice(), &mut load);
             let known = schur.clone().lu().solve(&DVector::from_vec(load)).unwrap();
@@ -508,7 +507,7 @@ mod tests {
     }
 
     #[test]
-    fn growth_beyond_round_off_is_told_when_factoring() {
+    fn growth_beyond_round_off_is_detected_when_factoring() {
         let pattern = Arc::new(Pattern::new(2, vec![(0, 0), (0, 1), (1, 1)]));
         let mut factors = SymmetricFactors::new(pattern, &[1]).unwrap();
         assert!(factors.factor(&[-0.1, 1.0, 0.0], 0.0).is_ok());
@@ -535,7 +534,7 @@ mod tests {
     }
 
     #[test]
-    fn a_vanishing_pivot_is_told() {
+    fn a_vanishing_pivot_is_detected() {
         let pattern = Arc::new(Pattern::new(2, vec![(0, 0), (0, 1), (1, 1)]));
         let mut factors = SymmetricFactors::new(pattern, &[]).unwrap();
         let told = factors.factor(&[1e-30, 1.0, 0.0], 0.0).is_err()

@@ -1,51 +1,49 @@
-//! The order in which the fronts of [`super::fronts`] eliminate, found once for a pattern.
+//! The elimination tree of [`super::fronts`], computed once per pattern.
 //!
-//! Unknowns come in groups. The graph of the groups is ordered by approximate minimum degree, or by halves
-//! ([`super::dissection`]) where that pays. What an eliminated group then
-//! sees of the later ones is
+//! Unknowns are grouped. The graph of the groups is ordered by approximate minimum degree, or by nested dissection
+//! ([`super::dissection`]) if that pays off. An eliminated group is then coupled to the later groups
 //!
 //! ```text
 //! later(k) = (neighbours(k) ∪ ⋃ later(children of k)) \ {k and what came before},      parent(k) = min later(k).
 //! ```
 //!
-//! A group is joined with its child where the child sees the same, or little less: one larger front then does the work of
-//! both. All of this takes time nearly linear in the entries of the pattern and of the groups' factors.
+//! A group is merged with a child whose coupled groups are the same or nearly so; one larger front then replaces two. The run
+//! time is nearly linear in the number of entries of the pattern and of the groups' factors.
 
 use super::check::SolveError;
 use super::dissection;
 use super::graph::{Graph, NONE};
 use super::pattern::{Pattern, lists};
 
-/// A child is joined where the two eliminate at most so many unknowns, and not more than this part of their front is zero.
+/// A child is merged if the two eliminate at most this many unknowns, and at most this fraction of their front is zero.
 const JOINED: [(usize, f64); 4] = [(8, 0.8), (24, 0.4), (64, 0.15), (usize::MAX, 0.03)];
-/// A child that keeps its values while its parent's change is only joined if it eliminates at most so many unknowns.
+/// A child whose values stay while its parent's change is merged only if it eliminates at most this many unknowns.
 const JOINED_STILL: usize = 4;
 
-/// Minor iterations of a typical major one, and places that change in one of them.
+/// Minor iterations of a typical major iteration, and changed positions per minor iteration.
 const MINORS: f64 = 3.0;
 const CHANGES: f64 = 4.0;
 
-/// What one front eliminates, and what it sees.
+/// The unknowns that a front eliminates, and those coupled to them.
 pub(super) struct Node {
-    /// The unknowns eliminated here, then those that come later.
+    /// The unknowns eliminated here, then the later ones.
     pub unknowns: Vec<usize>,
-    /// How many are eliminated here.
+    /// Number of unknowns eliminated here.
     pub pivots: usize,
-    /// The node that takes its remainder, and the places of its later unknowns there.
+    /// The node that receives its remainder, and the indices of its later unknowns there.
     pub parent: Option<usize>,
     pub places: Vec<usize>,
-    /// Whether it depends on rows that change from one factorization to the next.
+    /// Whether it depends on rows that may change between factorizations.
     pub changing: bool,
 }
 
-/// The nodes, children before parents, each one's children next before it (with all of theirs).
+/// The nodes in postorder: children directly before their parent (with all of their descendants).
 pub(super) struct Tree {
     pub nodes: Vec<Node>,
 }
 
 impl Tree {
-    /// Finds the order for a pattern; `groups` is the number of each unknown's group, and the rows from `first` on are
-    /// those that change.
+    /// Computes the tree of a pattern; `groups` is the group of each unknown, and rows from `first` on may change.
     pub fn new(pattern: &Pattern, groups: &[usize], first: usize) -> Result<Self, SolveError> {
         let graph = Graph::new(pattern, groups, first);
         let (mut order, mut joined) =
@@ -64,7 +62,7 @@ impl Tree {
         Ok(tree)
     }
 
-    /// Numbers a node and all below it.
+    /// Numbers a node and its descendants.
     fn lay_out(&mut self, graph: &Graph, order: &Order, joined: &mut [Joined], root: usize) {
         let mut path = vec![root];
         while let Some(&node) = path.last() {
@@ -114,7 +112,7 @@ impl Tree {
     }
 }
 
-/// What an order leads to; what is eliminated for a later group comes right before it then.
+/// The fronts that an order leads to; the order is converted to postorder.
 fn tried(graph: &Graph, groups: Vec<usize>) -> (Order, Vec<Joined>) {
     let order = Order::new(groups);
     let parents = parents(graph, &order);
@@ -123,10 +121,10 @@ fn tried(graph: &Graph, groups: Vec<usize>) -> (Order, Vec<Joined>) {
     (order, joined)
 }
 
-/// The elimination tree: the first later group that each one fills in, by place in the order.
+/// The elimination tree: for each position in the order, the first later group coupled to it by fill.
 fn parents(graph: &Graph, order: &Order) -> Vec<usize> {
     let mut parents = vec![NONE; graph.count()];
-    // Highest known ancestor of each place: paths are shortened as they are walked.
+    // Highest known ancestor of each position: paths are compressed during the walk.
     let mut top = vec![NONE; graph.count()];
     for (k, &group) in order.groups.iter().enumerate() {
         for &neighbour in graph.neighbours(group) {
@@ -143,7 +141,7 @@ fn parents(graph: &Graph, order: &Order) -> Vec<usize> {
     parents
 }
 
-/// Groups by place, and places by group.
+/// Groups by position, and positions by group.
 struct Order {
     groups: Vec<usize>,
     place: Vec<usize>,
@@ -158,7 +156,7 @@ impl Order {
         Order { groups, place }
     }
 
-    /// The same elimination, with all below a group right before it.
+    /// An equivalent order with all descendants directly before their group.
     fn in_postorder(self, parents: &[usize]) -> Order {
         let count = parents.len();
         let below = || {
@@ -166,7 +164,7 @@ impl Order {
             all.map(|(k, &parent)| (if parent == NONE { count } else { parent }, k))
         };
         let (starts, mut children) = lists(count + 1, below);
-        // Taken from behind, so that the first comes first.
+        // In reverse, so that the first comes first.
         for k in 0..=count {
             children[starts[k]..starts[k + 1]].reverse();
         }
@@ -186,31 +184,31 @@ impl Order {
     }
 }
 
-/// Groups that are eliminated in one front, by their places in the order.
+/// Groups eliminated in one front, by position in the order.
 #[derive(Default)]
 struct Joined {
     pivots: Vec<usize>,
-    /// What they see, ascending.
+    /// Coupled later groups, ascending.
     later: Vec<usize>,
-    /// Unknowns of both.
+    /// Number of unknowns of both.
     weight: usize,
     seen: usize,
-    /// Entries of its factors that are only there since groups were joined.
+    /// Entries of its factors that are zero and exist only because groups were merged.
     zeros: usize,
     children: Vec<usize>,
-    /// The children that have their number in the tree.
+    /// The children that are numbered in the tree.
     numbered: Vec<usize>,
     changing: bool,
-    /// Whether it is part of another.
+    /// Whether it has been merged into another.
     gone: bool,
 }
 
-/// Walks the order, and joins each group with those of its children for which it pays.
+/// Merges each group with its children where that pays off, in order.
 fn join(graph: &Graph, order: &Order) -> Vec<Joined> {
     let count = graph.count();
     let weight = |k: usize| graph.members(order.groups[k]).len();
     let mut all: Vec<Joined> = Vec::with_capacity(count);
-    // The children of each place, and which one saw a place last.
+    // The children of each position, and a mark for those already listed.
     let mut children: Vec<Vec<usize>> = vec![Vec::new(); count];
     let mut mark = vec![NONE; count];
     for k in 0..count {
@@ -246,7 +244,7 @@ fn join(graph: &Graph, order: &Order) -> Vec<Joined> {
     all
 }
 
-/// Joins a group with those of its children for which it pays; those that eliminate most come first.
+/// Merges a group with its children where that pays off; those that eliminate most come first.
 fn absorb(own: &mut Joined, all: &mut [Joined]) {
     let mut children = std::mem::take(&mut own.children);
     children.sort_by_key(|&child| std::cmp::Reverse(all[child].seen));
@@ -275,10 +273,10 @@ fn absorb(own: &mut Joined, all: &mut [Joined]) {
     own.pivots.sort_unstable();
 }
 
-/// Operations of a major iteration: of all fronts once, and in some minor ones of those that some changes reach.
+/// Operations of a major iteration: all fronts once, and in each further minor iteration those affected by the changes.
 fn operations(all: &[Joined]) -> f64 {
     let cube = |size: usize| (size as f64).powi(3);
-    // Of a front with all that come after it.
+    // A front with all its ancestors.
     let mut path = vec![0.0; all.len()];
     let (mut whole, mut reached, mut count) = (0.0, 0.0, 0.0);
     for (k, own) in all.iter().enumerate().rev().filter(|(_, own)| !own.gone) {

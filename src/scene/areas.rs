@@ -1,33 +1,33 @@
-//! Tributary areas of slave nodes, by which forces are pressures: p = F_n / A.
+//! Tributary areas of slave nodes, which convert forces to pressures: p = F_n / A.
 //!
-//! The area of a node is the integral of its shape function over the sides of its body that belong to the slave surface,
-//! undeformed,
+//! The area of a node is the integral of its shape function over the undeformed sides of its body that belong to the slave
+//! surface,
 //!
 //! ```text
 //! A_i = ∫ N_i w |dx/dξ| dξ,
 //! ```
 //!
-//! where w is the thickness across the plane, or 2π x in axisymmetry; 1 for beams, whose elements are their sides. On a straight side of length L that
-//! is L/2 for each of 2 nodes, and L/6, 4L/6, L/6 for 3. A side belongs to the slave surface if all its nodes are slaves of
-//! one pair. A node without such a side (one slave node by itself, say) has half of each side of its body that it is on.
-//! Bodies that are given by matrices have no sides.
+//! where w is the thickness across the plane, or 2π x in axisymmetry; w = 1 for beams, whose sides are their elements. On a
+//! straight side of length L with w = 1 the areas are L/2 for each of 2 nodes, and L/6, 4L/6, L/6 for 3 nodes. A side belongs to
+//! the slave surface if all its nodes are slaves of one pair. A node without such a side (for example a single slave node) gets
+//! half of each side of its body that contains it. Bodies given by matrices have no sides.
 
 use std::collections::HashMap;
 use stickslip_core::fem::lagrange::{gauss, shape};
 use stickslip_core::model::{Body, BodyKind, Elastic, Node, Solid};
 
-/// Parts of a side's area that are round-off.
+/// Fractions of a side's area below this are round-off.
 const NONE: f64 = 1e-9;
 
-/// A side of a body, with what a solid is made of there, which says how wide it is across the plane.
+/// A side of a body with its material, which determines the width across the plane.
 #[derive(Debug, Clone, Copy)]
 struct Side<'a> {
     nodes: &'a [usize],
     made_of: Option<&'a Elastic>,
 }
 
-/// Areas of the nodes of a scene that are slaves, `pair_of` being the pair of each; `None` for all others, and where a node is
-/// on no side. In a pair that `gives` way, a node on the axis has none.
+/// Areas of the slave nodes, where `pair_of` is the pair of each; `None` for other nodes and for nodes on no side. In a pair with
+/// a compliance (`gives`), a node on the axis has no area.
 pub(super) fn tributary(
     nodes: &[Node],
     bodies: &[Body],
@@ -94,12 +94,12 @@ fn sides(body: &Body) -> Vec<Side<'_>> {
         .collect()
 }
 
-/// What a solid is made of at each of its edges.
+/// The material of a solid at each of its edges.
 fn materials(solid: &Solid) -> Vec<Option<&Elastic>> {
     if let [only] = solid.materials.as_slice() {
         return vec![Some(only); solid.edges.len()];
     }
-    // The element behind an edge is the one that has all its nodes.
+    // The element behind an edge is the one that contains all its nodes.
     let mut around: HashMap<usize, Vec<usize>> = HashMap::new();
     for (k, element) in solid.elements.iter().enumerate() {
         element
@@ -122,8 +122,8 @@ fn materials(solid: &Solid) -> Vec<Option<&Elastic>> {
     solid.edges.iter().map(material).collect()
 }
 
-/// What each node of a side has of its area. Lagrange polynomials of many nodes have negative integrals; there a node has what is
-/// nearest to it.
+/// The area of each node of a side. Lagrange polynomials of high order have negative integrals; in that case each node gets the
+/// part of the side closest to it.
 fn shares(side: &Side<'_>, nodes: &[Node]) -> Vec<f64> {
     let count = side.nodes.len();
     let by_shape = integrals(side, nodes, -1.0, 1.0);
@@ -203,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn a_straight_side_is_shared_by_the_integrals_of_its_shape_functions() {
+    fn areas_on_a_straight_side_are_the_integrals_of_the_shape_functions() {
         let linear = tributary(
             &row(3, 2.0),
             &[beam(vec![vec![0, 1], vec![1, 2]])],
@@ -221,7 +221,7 @@ mod tests {
     }
 
     #[test]
-    fn a_slave_by_itself_has_half_of_the_sides_that_it_is_on() {
+    fn a_single_slave_node_has_half_of_its_sides() {
         let bodies = [beam(vec![vec![0, 1], vec![1, 2]])];
         let found = tributary(&row(3, 2.0), &bodies, &[None, Some(0), None], |_| false);
         assert_eq!(found, [None, Some(1.0), None]);

@@ -1,8 +1,8 @@
-//! Scenes that attached solvers told: what they solve stands in them as a message of the protocol
-//! ([`stickslip_exchange::attach`]), and what deforms under the contacts is known to the solver alone.
+//! Scenes sent by attached solvers: the scene is stored as a message of the protocol ([`stickslip_exchange::attach`]), and only
+//! the solver knows the bodies behind the contacts.
 //!
-//! The model made of one has nodes, masters and contacts as they are told, and one body without any stiffness, to be drawn.
-//! Nothing of ours solves it.
+//! The model has the nodes, masters and contacts of the message, and one body without stiffness for drawing. The program's own
+//! solver cannot solve it.
 
 use super::limits;
 use super::nodes::Names;
@@ -18,12 +18,12 @@ use stickslip_core::model::{
 use stickslip_exchange::attach::Answer;
 use stickslip_exchange::attach::message::{self, Scene};
 
-/// Most nodes, and most contacts, that a solver may tell.
+/// Maximum number of nodes, and of contacts, in a solver's scene.
 const MOST: usize = 1_000_000;
-/// What the body is called that is drawn.
+/// Name of the drawn body.
 const SHAPE: &str = "shape";
 
-/// The scene file that a solver's scene is; `increment` is the one that it begins with, if it tells that.
+/// The scene file for a solver's scene; `increment` is the first increment, if the solver sends one.
 pub(super) fn spec(scene: &Scene, increment: Option<f64>) -> Spec {
     let [from, to] = scene.load.unwrap_or([0.0, 1.0]);
     let whole = (to - from).abs();
@@ -51,7 +51,7 @@ pub(super) fn spec(scene: &Scene, increment: Option<f64>) -> Spec {
     }
 }
 
-/// Friction as the core has it.
+/// Friction in the core's format.
 pub fn friction(told: &message::Friction) -> Friction {
     let cohesion = told.cohesion;
     match (told.angle, told.mu) {
@@ -60,20 +60,20 @@ pub fn friction(told: &message::Friction) -> Friction {
     }
 }
 
-/// The scene message that a scene file holds.
+/// The scene message in a scene file.
 pub fn told(text: &str) -> Result<Scene, Fault> {
     let here = at!["attached"];
     match Answer::read(text) {
         Ok(Answer::Scene(scene)) => Ok(*scene),
         Ok(other) => {
-            let message = format!("it is the message {}, and no scene", other.kind());
+            let message = format!("this is a {} message, not a scene", other.kind());
             Err(Fault::new(here, message))
         }
         Err(broken) => Err(Fault::new(here, broken.message)),
     }
 }
 
-/// Checks a scene that a solver told.
+/// Checks a scene sent by a solver.
 pub(super) fn compile(spec: &Spec, text: &str) -> Result<(Model, Names), Fault> {
     let scene = told(text)?;
     let nodes = nodes(&scene)?;
@@ -82,7 +82,7 @@ pub(super) fn compile(spec: &Spec, text: &str) -> Result<(Model, Names), Fault> 
     let bars = lines(&scene)?;
     let [from, to] = scene.load.unwrap_or([0.0, 1.0]);
     if !(from.is_finite() && to.is_finite() && from != to) {
-        return refused("load: it must be two different load factors, as [0, 1]");
+        return refused("load: must be two different load factors, for example [0, 1]");
     }
     let mut of_body: Vec<usize> = bars.iter().flatten().copied().collect();
     of_body.extend(contacts.iter().map(|contact| contact.node));
@@ -126,16 +126,16 @@ pub(super) fn compile(spec: &Spec, text: &str) -> Result<(Model, Names), Fault> 
         ..Model::of_contacts(&shown::line(&scene.title), nodes, surfaces, contacts)
     };
     if !model.length.is_finite() {
-        return refused("nodes: they lie too far apart");
+        return refused("nodes: they are too far apart");
     }
     if !(model.increment.is_finite() && model.increment > 0.0) {
-        return refused("the parameter increment: it must be positive");
+        return refused("the parameter increment: must be positive");
     }
     let names = Names::single(&model.nodes);
     Ok((model, names))
 }
 
-/// What holds where a contact touches.
+/// Contact law of a contact.
 fn bond(told: &message::Contact) -> Bond {
     match (told.tied, told.gives) {
         (true, _) => Bond::Tied { upright: false },
@@ -151,13 +151,15 @@ fn refused<T>(message: impl Into<String>) -> Result<T, Fault> {
 fn nodes(scene: &Scene) -> Result<Vec<Node>, Fault> {
     if scene.nodes.len() > MOST || scene.contacts.len() > MOST {
         return refused(format!(
-            "nodes and contacts can be {MOST} each, and no more"
+            "at most {MOST} nodes and {MOST} contacts are allowed"
         ));
     }
     let mut nodes: Vec<Node> = Vec::with_capacity(scene.nodes.len());
     for (k, node) in scene.nodes.iter().enumerate() {
         if !node.at.iter().all(|x| x.is_finite()) {
-            return refused(format!("nodes[{k}].at: a place is two finite numbers"));
+            return refused(format!(
+                "nodes[{k}].at: a position must be two finite numbers"
+            ));
         }
         let name = match node.name.as_str() {
             "" => format!("node.{}", k + 1),
@@ -165,7 +167,7 @@ fn nodes(scene: &Scene) -> Result<Vec<Node>, Fault> {
         };
         nodes.push(Node { name, at: node.at });
     }
-    // A contact may be called otherwise than its node.
+    // A contact may have a different name than its node.
     for contact in scene
         .contacts
         .iter()
@@ -179,7 +181,7 @@ fn nodes(scene: &Scene) -> Result<Vec<Node>, Fault> {
     for (k, node) in nodes.iter().enumerate() {
         if !names.insert(node.name.as_str()) {
             return refused(format!(
-                "nodes[{k}].name: there is another {:?}; each node has a name of its own",
+                "nodes[{k}].name: {:?} is already used; node names must be unique",
                 node.name
             ));
         }
@@ -187,12 +189,12 @@ fn nodes(scene: &Scene) -> Result<Vec<Node>, Fault> {
     Ok(nodes)
 }
 
-/// Whether all of some nodes exist.
+/// Checks that all these nodes exist.
 fn known(scene: &Scene, of: &[usize], place: impl Fn() -> String) -> Result<(), Fault> {
     match of.iter().find(|&&node| node >= scene.nodes.len()) {
         None => Ok(()),
         Some(node) => refused(format!(
-            "{}: there is no node {node}; they are numbered from 0 to {}",
+            "{}: there is no node {node}; nodes are numbered from 0 to {}",
             place(),
             scene.nodes.len().saturating_sub(1)
         )),
@@ -203,7 +205,7 @@ fn lines(scene: &Scene) -> Result<Vec<Vec<usize>>, Fault> {
     for (k, line) in scene.lines.iter().enumerate() {
         known(scene, line, || format!("lines[{k}]"))?;
         if line.len() < 2 {
-            return refused(format!("lines[{k}]: a line has two nodes or more"));
+            return refused(format!("lines[{k}]: a line needs at least two nodes"));
         }
     }
     Ok(scene.lines.clone())
@@ -218,12 +220,12 @@ fn surfaces(scene: &Scene) -> Result<Surfaces<'_>, Fault> {
         known(scene, &told.nodes, || format!("surfaces[{k}].nodes"))?;
         if told.nodes.len() < 2 {
             return refused(format!(
-                "surfaces[{k}].nodes: a surface has two nodes or more"
+                "surfaces[{k}].nodes: a surface needs at least two nodes"
             ));
         }
         if numbers.insert(told.name.as_str(), k).is_some() {
             return refused(format!(
-                "surfaces[{k}].name: there is another {:?}",
+                "surfaces[{k}].name: {:?} is already used",
                 told.name
             ));
         }
@@ -241,17 +243,19 @@ fn surfaces(scene: &Scene) -> Result<Surfaces<'_>, Fault> {
 
 fn contacts(scene: &Scene, surfaces: &HashMap<&str, usize>) -> Result<Vec<Contact>, Fault> {
     if scene.contacts.is_empty() {
-        return refused("contacts: there is none, and nothing to step");
+        return refused("contacts: the list is empty, so there is nothing to step");
     }
     let (mut ids, mut taken) = (HashSet::new(), HashSet::new());
     let mut contacts = Vec::with_capacity(scene.contacts.len());
     for (k, told) in scene.contacts.iter().enumerate() {
         known(scene, &[told.node], || format!("contacts[{k}].node"))?;
         if !ids.insert(&told.id) {
-            return refused(format!("contacts[{k}].id: there is another {}", told.id));
+            return refused(format!("contacts[{k}].id: {} is already used", told.id));
         }
         if !taken.insert(told.node) {
-            return refused(format!("contacts[{k}].node: it has a contact already"));
+            return refused(format!(
+                "contacts[{k}].node: this node already has a contact"
+            ));
         }
         let surface = match &told.surface {
             None => Vec::new(),
@@ -269,7 +273,7 @@ fn contacts(scene: &Scene, surfaces: &HashMap<&str, usize>) -> Result<Vec<Contac
             && (0.0..f64::INFINITY).contains(&friction.cohesion);
         if !sound {
             return refused(format!(
-                "contacts[{k}].friction: mu and cohesion are finite numbers that are not negative"
+                "contacts[{k}].friction: mu and cohesion must be finite and not negative"
             ));
         }
         contacts.push(Contact {

@@ -1,9 +1,9 @@
-//! A scene that is read once, to be had with many settings: what a study runs.
+//! A scene that is read once and used with many settings, as in studies.
 //!
-//! Paths are found once ([`Base::find`]). Where all that is set are choices that nothing else of the model hangs on
-//! (friction, loads, increments, most settings), they are put into a copy of the model; where not, the scene is compiled again.
-//! Either has every bit of [`Scene::from_text`] with the same settings. That alone says what is wrong with them: where it
-//! would refuse, there is nothing here.
+//! Paths are looked up once ([`Base::find`]). If only values change on which no other part of the model depends (friction, loads,
+//! increments, most settings), they are written to a copy of the model; otherwise the scene is compiled again. Both ways give the
+//! same bits as [`Scene::from_text`] with these settings. Errors are reported only by `from_text`: where it would fail, the
+//! functions here return `None`.
 
 use super::Scene;
 use super::compile::{Choices, Compiled, Groups, Loads, compile, renewed};
@@ -11,7 +11,7 @@ use crate::format::error::at;
 use crate::format::{Spec, paths};
 use stickslip_core::model::Model;
 
-/// A scene as its author wrote it, and what helps to change it.
+/// A scene as written by its author, with data for changing it.
 #[derive(Debug, Clone)]
 pub struct Base {
     scene: Scene,
@@ -19,16 +19,16 @@ pub struct Base {
     groups: Option<Groups>,
 }
 
-/// Where a scalar of a base stands.
+/// Location of a scalar of a base.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Place {
     in_scene: paths::Found,
-    /// Where it is a choice.
+    /// Location among the choices, if it is one.
     in_choices: Option<paths::Found>,
 }
 
 impl Base {
-    /// A scene to start from.
+    /// Creates a base from a scene.
     pub fn new(scene: Scene) -> Base {
         Base {
             choices: Choices::of(&scene.spec),
@@ -37,12 +37,12 @@ impl Base {
         }
     }
 
-    /// The scene without any more settings.
+    /// The scene without further settings.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
-    /// Finds a scalar; `None` if there is none of that path, or if a text is read otherwise for it.
+    /// Finds a scalar; `None` if the path does not exist or its text has a different format.
     pub fn find(&self, path: &str) -> Option<Place> {
         let in_scene = paths::find(&self.scene.spec, path)?;
         if in_scene.at == at!["settings", "memory"] {
@@ -56,7 +56,7 @@ impl Base {
         })
     }
 
-    /// The model with values at places; `None` where they will not do.
+    /// The model with new values; `None` if they are invalid.
     pub fn model(&self, settings: &[(&Place, &str)]) -> Option<Model> {
         if let (Some(groups), Some((choices, loads))) = (&self.groups, self.chosen(settings)) {
             return Some(renewed(&self.scene.model, groups, &choices, loads));
@@ -68,8 +68,7 @@ impl Base {
         compile(&spec).ok().map(|(model, _)| model)
     }
 
-    /// The model of the scene solved in a way that was made of a scene with the same settings and history; `None` where it
-    /// will not do.
+    /// The model of this scene, solved with the settings and history of a method; `None` if that is invalid.
     pub fn solved_by(&self, method: &Method) -> Option<Model> {
         let choices = self.choices.with_method_of(&method.0);
         let loads = choices.loads(&compiled(&self.scene))?;
@@ -77,14 +76,14 @@ impl Base {
         Some(renewed(&self.scene.model, groups, &choices, loads))
     }
 
-    /// Number of increments with values at places, if they are nothing but choices, and will do.
+    /// Number of increments with new values, if they are all choices and valid.
     pub fn increments(&self, settings: &[(&Place, &str)]) -> Option<f64> {
         self.groups.as_ref()?;
         let (choices, _) = self.chosen(settings)?;
         Some(choices.increments())
     }
 
-    /// The choices with values at places, and what loads they make; `None` where not all are choices, or will not do.
+    /// The choices with new values, and the resulting loads; `None` if some value is not a choice or is invalid.
     fn chosen(&self, settings: &[(&Place, &str)]) -> Option<(Choices, Loads)> {
         let mut choices = self.choices.clone();
         for (place, value) in settings {
@@ -103,13 +102,13 @@ fn compiled(scene: &Scene) -> Compiled<'_> {
     }
 }
 
-/// A way of solving that suits many scenes: settings and a history that hang on nothing else of a scene.
+/// A solution method for many scenes: settings and a history that do not depend on the rest of a scene.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Method(Choices);
 
 impl Method {
-    /// That of a scene with values at paths, the first or last step of which may be left out; `None` if anything
-    /// else of the scene is to be set.
+    /// The method of a scene with new values; the first or last step of a path may be omitted. `None` if a path is not part of
+    /// the method.
     pub fn of(spec: &Spec, settings: &[(String, String)]) -> Option<Method> {
         let mut choices = Choices::of(spec);
         for (path, value) in settings {
@@ -119,7 +118,7 @@ impl Method {
                 return None;
             }
             choices.set(&found, value)?;
-            // Each is refused on its own, whatever is set after it.
+            // Each value must be valid independently of later ones.
             if !choices.are_sound() {
                 return None;
             }
@@ -127,7 +126,7 @@ impl Method {
         Some(Method(choices))
     }
 
-    /// Number of increments of its history.
+    /// Number of increments of the history.
     pub fn increments(&self) -> f64 {
         self.0.increments()
     }

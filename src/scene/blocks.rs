@@ -1,9 +1,9 @@
-//! Blocks of quadrilaterals, or of triangles, two for each: their nodes, elements and edges.
+//! Structured blocks of quadrilaterals or triangles (two per cell): nodes, elements and edges.
 //!
-//! Nodes are numbered row by row from the bottom. Of 8-node quadrilaterals a row of corners and middles has 2 nx + 1 of them,
-//! the row between two of these, which has no nodes inside elements, nx + 1. Kinds with a node inside each cell have 2 nx + 1
-//! in every row, those without middles nx + 1 in every second one and no others. Curved sides are blended into the inside (transfinite
-//! interpolation, Gordon and Hall 1973).
+//! Nodes are numbered row by row from the bottom. With 8-node quadrilaterals, a row of corners and midside nodes has 2 nx + 1
+//! nodes, and the row between two of these, which has no nodes inside elements, nx + 1. Kinds with a node inside each cell have 2
+//! nx + 1 nodes in every row; those without midside nodes have nx + 1 in every second row and none in between. Curved sides are
+//! blended into the interior (transfinite interpolation, Gordon and Hall 1973).
 
 use super::curves::{lagrange, point, sin_cos_degrees};
 use super::geometry;
@@ -12,16 +12,16 @@ use crate::format::error::{Fault, Path};
 use crate::format::spec::{Place, Point, Side, Sides};
 use stickslip_core::model::ElementKind;
 
-/// Edges of a block in the order of the walk around it.
+/// Edges of a block in walking order.
 pub(crate) const EDGES: [&str; 4] = ["bottom", "right", "top", "left"];
 
-/// Least sine of an angle of a block: its elements have the same angles.
+/// Minimum sine of a block's angles; its elements have the same angles.
 const SHARPEST: f64 = 1e-2;
 
-/// Lengths that differ by less, relatively, are meant to be the same.
+/// Lengths with a smaller relative difference are considered equal.
 const SAME_LENGTH: f64 = 1e-6;
 
-/// Number of cells of a block in its two directions, after refinement, and what they are made of.
+/// Number of cells of a block in both directions after refinement, and their element kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Grid {
     pub columns: usize,
@@ -29,7 +29,7 @@ pub(crate) struct Grid {
     pub kind: ElementKind,
 }
 
-/// At which half cells a row of nodes has them.
+/// The half-cell positions at which a row has nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Row {
     None,
@@ -37,7 +37,7 @@ enum Row {
     All,
 }
 
-/// Corners and middles of the sides of a cell, by half cells to the right and up; then its middle.
+/// Corners and midside nodes of a cell, in half cells to the right and up; then its centre.
 const AROUND: [(usize, usize); 9] = [
     (0, 0),
     (2, 0),
@@ -51,7 +51,7 @@ const AROUND: [(usize, usize); 9] = [
 ];
 
 impl Grid {
-    /// What the row at j half cells has.
+    /// Kind of the row at j half cells.
     fn row(self, j: usize) -> Row {
         let even = j.is_multiple_of(2);
         match self.kind {
@@ -75,7 +75,7 @@ impl Grid {
         j / 2 * (even + odd) + j % 2 * even
     }
 
-    /// Node at half cells i to the right and j up, where there is one.
+    /// Node at half cells i to the right and j up; must exist.
     fn node(self, i: usize, j: usize) -> usize {
         self.first_of_row(j) + if self.row(j) == Row::All { i } else { i / 2 }
     }
@@ -85,7 +85,7 @@ impl Grid {
         self.kind.per_face()
     }
 
-    /// About how many nodes a cell has of its own.
+    /// Approximate number of nodes added per cell.
     pub fn nodes_per_cell(kind: ElementKind) -> f64 {
         match kind {
             ElementKind::Triangle3 | ElementKind::Quad4 => 1.0,
@@ -94,19 +94,19 @@ impl Grid {
         }
     }
 
-    /// Nodes of each element, cell by cell, row by row.
+    /// Nodes of each element, cell by cell and row by row.
     pub fn elements(self) -> impl Iterator<Item = Vec<usize>> {
         let cells = (0..self.rows).flat_map(move |r| (0..self.columns).map(move |c| (c, r)));
         cells.flat_map(move |(c, r)| self.elements_of(c, r))
     }
 
-    /// Elements of each cell: two triangles, or one quadrilateral.
+    /// Elements per cell: two triangles or one quadrilateral.
     fn per_cell(self) -> usize {
         1 + usize::from(self.kind.is_triangle())
     }
 
-    /// The elements of a cell. Triangles are cut along one diagonal and, in the next cell, along the other, so that meshes of
-    /// even numbers of cells are as symmetric as their blocks.
+    /// The elements of a cell. Triangles are cut along alternating diagonals, so that meshes with even numbers of cells are as
+    /// symmetric as their blocks.
     fn elements_of(self, c: usize, r: usize) -> Vec<Vec<usize>> {
         let at = |(i, j): (usize, usize)| self.node(2 * c + i, 2 * r + j);
         if !self.kind.is_triangle() {
@@ -149,8 +149,8 @@ impl Grid {
         }
     }
 
-    /// Positions of the nodes of a block: of a straight one, blended from its corners, and what its sides deviate
-    /// from straight, blended between opposite ones (transfinite interpolation).
+    /// Positions of the nodes: bilinear interpolation of the corners plus the deviations of the sides from straight lines,
+    /// blended between opposite sides (transfinite interpolation).
     fn positions(self, corners: &[Point; 4], at: &Stations, curves: &Curves) -> Vec<Point> {
         let places = (0..=2 * self.rows).flat_map(move |j| {
             let (step, last) = match self.row(j) {
@@ -167,7 +167,7 @@ impl Grid {
                     (1.0 - t) * ((1.0 - s) * c[0] + s * c[1]) + t * ((1.0 - s) * c[3] + s * c[2])
                 };
                 let straight = (blend(corners.map(|c| c.0)), blend(corners.map(|c| c.1)));
-                // Parts of the four sides, and where on each this is.
+                // Weights of the four sides, and the station on each.
                 let parts = [(1.0 - t, i), (s, j), (t, i), (1.0 - s, j)];
                 let bent = curves
                     .iter()
@@ -181,16 +181,16 @@ impl Grid {
     }
 }
 
-/// Parameters of the nodes of a block, 0 to 1, at every half element.
+/// Parameters of the nodes of a block, from 0 to 1, at every half element.
 struct Stations {
     across: Vec<f64>,
     up: Vec<f64>,
 }
 
-/// What each side deviates from straight at its stations, walked to the right or upwards; empty where it does not.
+/// Deviations of each side from a straight line at its stations, walked to the right or upwards; empty for a straight side.
 type Curves = [Vec<Point>; 4];
 
-/// What a block is made of, as the scene has it.
+/// Parameters of a block, as the scene gives them.
 pub(crate) struct Shape<'a> {
     pub corners: &'a [Point],
     pub elements: (usize, usize),
@@ -200,10 +200,10 @@ pub(crate) struct Shape<'a> {
     pub place: &'a Place,
 }
 
-/// The points of a chain, and the nodes of each of its elements.
+/// The points of a chain, and its number of nodes per element.
 pub(crate) type Spaced = (Vec<Point>, usize);
 
-/// The grid of a block and the positions of its nodes; `chain` finds the points and the nodes per element of a chain.
+/// The grid of a block and the positions of its nodes; `chain` looks up the points and the nodes per element of a chain.
 pub(crate) fn block(
     here: &Path,
     shape: &Shape<'_>,
@@ -218,8 +218,8 @@ pub(crate) fn block(
     for (k, ratio) in [shape.grading.0, shape.grading.1].into_iter().enumerate() {
         if !(1.0 / limits::GRADING..=limits::GRADING).contains(&ratio) {
             let message = format!(
-                "the grading is {ratio:?}, the last element's length over the first's; it must be between \
-                 {:?} and {:?}",
+                "the grading is {ratio:?} (last element length over first); it must be between {:?} and \
+                 {:?}",
                 1.0 / limits::GRADING,
                 limits::GRADING
             );
@@ -260,7 +260,7 @@ pub(crate) fn block(
     Ok((grid, points))
 }
 
-/// The four corners, which must open to the left where both sides are straight.
+/// The four corners; each corner between two straight sides must be convex (a left turn).
 fn corners(here: &Path, shape: &Shape<'_>) -> Result<[Point; 4], Fault> {
     let list = here.then("corners");
     for (k, at) in shape.corners.iter().enumerate() {
@@ -282,15 +282,15 @@ fn corners(here: &Path, shape: &Shape<'_>) -> Result<[Point; 4], Fault> {
     if let Some(k) = (0..4).find(|&k| straight(k) && !is_open(&corners, k)) {
         let (x, y) = corners[k];
         let message = format!(
-            "the block is folded or flat at its corner ({x:?}, {y:?}); corners run anticlockwise, as lower left, \
-             lower right, upper right, upper left, and every angle is below 180 degrees"
+            "the block is folded or flat at its corner ({x:?}, {y:?}); list the corners anticlockwise \
+             (lower left, lower right, upper right, upper left), with every angle below 180 degrees"
         );
         return Err(Fault::new(list, message));
     }
     if let Some(k) = (0..4).find(|&k| corners[k] == corners[(k + 1) % 4]) {
         let (x, y) = corners[k];
         let message = format!(
-            "the {} side has no length: both its ends are ({x:?}, {y:?})",
+            "the {} side has zero length: both ends are at ({x:?}, {y:?})",
             EDGES[k]
         );
         return Err(Fault::new(list, message));
@@ -298,8 +298,8 @@ fn corners(here: &Path, shape: &Shape<'_>) -> Result<[Point; 4], Fault> {
     Ok(corners)
 }
 
-/// Parameters at every half element of a side whose elements grow by a constant factor, so that the last is `ratio`
-/// times the first; each is divided evenly by refinement.
+/// Parameters at every half element of a side whose element lengths grow by a constant factor, the last being `ratio` times the
+/// first; refinement divides each element evenly.
 fn stations(elements: usize, ratio: f64, refine: usize) -> Vec<f64> {
     let steps = 2 * refine;
     let last = elements * steps;
@@ -326,7 +326,7 @@ fn stations(elements: usize, ratio: f64, refine: usize) -> Vec<f64> {
     (0..=last).map(at).collect()
 }
 
-/// What a side deviates from its chord at a station.
+/// Deviation of a side from its chord at a station.
 fn deviation((from, to): (Point, Point), s: f64, at: Point) -> Point {
     let straight = |a: f64, b: f64| (1.0 - s) * a + s * b;
     (at.0 - straight(from.0, to.0), at.1 - straight(from.1, to.1))
@@ -352,7 +352,7 @@ fn arc_side(
     }
     let turn = (a.0 * b.1 - a.1 * b.0).atan2(a.0 * b.0 + a.1 * b.1);
     if turn.abs() > std::f64::consts::PI * (1.0 - SAME_LENGTH) {
-        let message = "the corners are opposite each other, so that the arc could go either way; divide the block";
+        let message = "the corners are opposite each other, so the direction of the arc is ambiguous; divide the block";
         return Err(Fault::new(path.clone(), message));
     }
     let on_arc = |s: f64| {
@@ -364,7 +364,7 @@ fn arc_side(
     Ok(deviations(ends, stations, on_arc))
 }
 
-/// The curve of a chain's m-node elements, walked so that its ends fit the corners.
+/// The curve of a chain of m-node elements, in the direction that matches the corners.
 fn chain_side(
     path: &Path,
     id: &str,
@@ -383,7 +383,7 @@ fn chain_side(
     if !fits(first, last) {
         if !fits(last, first) {
             let message = format!(
-                "the chain {id:?} goes from {first:?} to {last:?}; it must join the corners {:?} and {:?}",
+                "the chain {id:?} runs from {first:?} to {last:?}; it must connect the corners {:?} and {:?}",
                 ends.0, ends.1
             );
             return Err(Fault::new(path.clone(), message));
@@ -400,7 +400,7 @@ fn chain_side(
     Ok(deviations(ends, stations, on_chain))
 }
 
-/// Deviations from the chord at all stations; zero at the corners themselves.
+/// Deviations from the chord at all stations; zero at the corners.
 fn deviations(ends: (Point, Point), stations: &[f64], at: impl Fn(f64) -> Point) -> Vec<Point> {
     let inside = |s: f64| s > 0.0 && s < 1.0;
     let one = |&s: &f64| {
@@ -413,7 +413,7 @@ fn deviations(ends: (Point, Point), stations: &[f64], at: impl Fn(f64) -> Point)
     stations.iter().map(one).collect()
 }
 
-/// Refuses a mesh with an element that is folded, or all but.
+/// Rejects a mesh with a folded or nearly folded element.
 fn check_elements(here: &Path, grid: Grid, at: &[Point]) -> Result<(), Fault> {
     let folds = geometry::Folds::of(grid.kind);
     let folded = |nodes: Vec<usize>| folds.is_folded(nodes.iter().map(|&n| [at[n].0, at[n].1]));
@@ -422,15 +422,15 @@ fn check_elements(here: &Path, grid: Grid, at: &[Point]) -> Result<(), Fault> {
     };
     let place = place / grid.per_cell();
     let message = format!(
-        "the block is folded in its element {} from the left, {} from the bottom: the Jacobian is not positive there; \
-         corners run anticlockwise, and curved or graded sides must leave room for the elements",
+        "the block is folded in element {} from the left, {} from the bottom: its Jacobian is not \
+         positive; list the corners anticlockwise, and check curved and graded sides",
         place % grid.columns + 1,
         place / grid.columns + 1
     );
     Err(Fault::new(here.clone(), message))
 }
 
-/// Turns and shifts points.
+/// Rotates and moves points.
 fn put(here: &Path, place: &Place, points: &mut [Point]) -> Result<(), Fault> {
     let here = here.then("place");
     limits::finite(&here.then("turn"), place.turn, "the angle")?;
@@ -451,7 +451,7 @@ fn put(here: &Path, place: &Place, points: &mut [Point]) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Whether the boundary turns left at corner k, clearly.
+/// Whether the boundary turns clearly left at corner k.
 fn is_open(corners: &[Point; 4], k: usize) -> bool {
     let (before, at, after) = (corners[(k + 3) % 4], corners[k], corners[(k + 1) % 4]);
     let (a, b) = (
@@ -492,7 +492,7 @@ mod tests {
     }
 
     #[test]
-    fn of_every_kind_all_nodes_are_used_and_faces_meet_or_make_up_the_edges() {
+    fn every_kind_uses_all_nodes_and_its_faces_match_or_form_the_edges() {
         for kind in ElementKind::ALL {
             let (columns, rows) = (4, 3);
             let grid = Grid {
@@ -511,7 +511,7 @@ mod tests {
             used.sort_unstable();
             used.dedup();
             assert_eq!(used, (0..at.len()).collect::<Vec<_>>(), "{kind:?}");
-            // Every element lies as its parent does, up to size.
+            // Elements have the same orientation as their parent element.
             let folds = geometry::Folds::of(kind);
             for nodes in &elements {
                 assert_eq!(nodes.len(), kind.nodes());
@@ -573,14 +573,14 @@ mod tests {
     }
 
     #[test]
-    fn the_inside_of_a_sector_is_concentric_and_its_elements_are_sound() {
+    fn the_interior_of_a_sector_is_concentric_and_its_elements_are_valid() {
         let arc = || Some(Side::Arc { center: (0.0, 0.0) });
         let sides = Sides {
             bottom: arc(),
             top: arc(),
             ..Sides::default()
         };
-        // The bottom is the outer arc, walked anticlockwise, so that the block lies on its left.
+        // The bottom is the outer arc, walked anticlockwise, so that the block is on its left.
         let corners = [(2.0, 0.0), (0.0, 2.0), (0.0, 1.0), (1.0, 0.0)];
         let (_, at) = made(&corners, (3, 2), (1.0, 2.0), &sides, 2).unwrap();
         let radii: Vec<f64> = at.iter().map(|p| p.0.hypot(p.1)).collect();

@@ -1,11 +1,11 @@
-//! What the laws of the pairs cost and change, where any is not hard contact; as `check` shows it.
+//! Summary of contact laws other than hard contact, as `check` shows it: their cost and effects.
 
 use super::Scene;
 use crate::format::contact_law::ContactLaw;
 use std::collections::HashSet;
 use stickslip_core::model::{Contact, Model, Surface};
 
-/// A line for each law that any slave node has besides hard contact; empty where none has.
+/// One line per contact law other than hard contact that a slave node has; empty without any.
 pub fn words(scene: &Scene) -> Vec<String> {
     let model = &scene.model;
     let having = |k: usize| -> Vec<f64> {
@@ -16,20 +16,20 @@ pub fn words(scene: &Scene) -> Vec<String> {
     let (normal, tangential) = (having(0), having(1));
     if !normal.is_empty() {
         lines.push(format!(
-            "penalty at {}: inside by c F_n, c {}; no unknowns more, a term on the interface's diagonal",
+            "penalty at {}: penetration c F_n, c {}; adds no unknowns, only a diagonal term on the interface",
             nodes(normal.len()),
             range(&normal)
         ));
     }
     if !tangential.is_empty() {
         lines.push(format!(
-            "stick stiffness at {}: elastic slip of c F_t, c {}; no unknowns more",
+            "stick stiffness at {}: elastic slip c F_t, c {}; adds no unknowns",
             nodes(tangential.len()),
             range(&tangential)
         ));
     }
     if !normal.is_empty() || !tangential.is_empty() {
-        lines.push("condensed bodies stand on springs then, and nodes of these laws are not held in corners".into());
+        lines.push("with these laws, condensed bodies are supported by springs, and nodes are not held in corners".into());
     }
     lines.extend(kinked(model));
     let tied = model
@@ -39,7 +39,7 @@ pub fn words(scene: &Scene) -> Vec<String> {
         .count();
     if tied > 0 {
         lines.push(format!(
-            "tied: {}, always fixed and without friction; no strategy has to choose their modes",
+            "tied: {}, always fixed and without friction; strategies do not choose their modes",
             nodes(tied)
         ));
     }
@@ -50,7 +50,7 @@ pub fn words(scene: &Scene) -> Vec<String> {
     lines
 }
 
-/// Surfaces at whose kinks nodes that give way may hop.
+/// Surfaces whose kinks may make nodes with a compliance hop.
 fn kinked(model: &Model) -> Option<String> {
     let touched = |k: usize| {
         let gives = |c: &Contact| c.bond.give() != [0.0; 2] && c.surfaces.contains(&k);
@@ -61,11 +61,11 @@ fn kinked(model: &Model) -> Option<String> {
     };
     let named = model.surfaces.iter().enumerate().filter(kinks);
     let named: Vec<&str> = named.map(|(_, surface)| surface.name.as_str()).collect();
-    let why = "may have kinks once they deform, where a node inside hops between two elements; smooth: true is for that";
+    let why = "may have kinks when they deform, where a node inside may hop between two elements; use smooth: true";
     (!named.is_empty()).then(|| format!("surfaces {}: {why}", named.join(", ")))
 }
 
-/// The nodes that a penalty is asked for at and that are no slave nodes, as on the axis of bodies whose elements have middle nodes.
+/// Nodes listed with a penalty that are not slave nodes, for example on the axis of bodies whose elements have midside nodes.
 fn left_out(scene: &Scene) -> Option<String> {
     let slaves: HashSet<usize> = scene
         .model
@@ -86,7 +86,7 @@ fn left_out(scene: &Scene) -> Option<String> {
         .filter(|node| !slaves.contains(node) && listed.insert(*node))
         .map(|node| scene.model.nodes[node].name.clone())
         .collect();
-    let why = "left out of the penalty, bearing no force, for no area (A = 0) or no way to move";
+    let why = "left out of the penalty, without contact force, because they have no area (A = 0) or cannot move";
     (!named.is_empty()).then(|| format!("{why}: {}", named.join(", ")))
 }
 
@@ -97,7 +97,7 @@ fn nodes(count: usize) -> String {
     }
 }
 
-/// From the least to the largest.
+/// The smallest and the largest value.
 fn range(values: &[f64]) -> String {
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
     let largest = values.iter().copied().fold(0.0, f64::max);
@@ -107,7 +107,7 @@ fn range(values: &[f64]) -> String {
     }
 }
 
-/// Tributary areas together, and how many nodes have none.
+/// Total tributary area, and the number of nodes without one.
 fn areas(contacts: &[Contact]) -> String {
     let known = || contacts.iter().filter_map(|contact| contact.area);
     let (count, sum) = (known().count(), known().sum::<f64>());
@@ -116,7 +116,7 @@ fn areas(contacts: &[Contact]) -> String {
         none => format!("; {} without", nodes(none)),
     };
     format!(
-        "areas of {} (undeformed): {sum:.6} together{without}",
+        "areas of {} (undeformed): {sum:.6} in total{without}",
         nodes(count)
     )
 }

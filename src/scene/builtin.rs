@@ -1,16 +1,16 @@
-//! The scenes that the program carries inside itself.
+//! The built-in scenes.
 
 use crate::embedded;
 use crate::embedded::EmbeddedFile;
 
-/// A scene by its name, and its folder below `problems`.
+/// A scene by its name and its folder below `problems`.
 macro_rules! scenes {
     ($($folder:literal: $($name:literal),+;)+) => {
         &[$($(embedded!($name, "../../problems/", $folder, $name, ".ron")),+),+]
     };
 }
 
-/// In the order in which they are offered.
+/// In display order.
 const SCENES: &[EmbeddedFile] = scenes![
     "":
     "01-pinned-beam-rough-floor",
@@ -54,20 +54,20 @@ const SCENES: &[EmbeddedFile] = scenes![
     "bench-press-fit";
 ];
 
-/// All built-in scenes, in the order in which they are offered.
+/// All built-in scenes, in display order.
 pub fn list() -> &'static [EmbeddedFile] {
     SCENES
 }
 
-/// The built-in scene with a name, with or without the ending `.ron`.
+/// The built-in scene with a name, with or without the extension `.ron`.
 pub fn find(name: &str) -> Option<&'static EmbeddedFile> {
     let name = name.strip_suffix(".ron").unwrap_or(name);
     SCENES.iter().find(|scene| scene.name == name)
 }
 
-/// One line that says what a built-in scene is: its title.
+/// One-line description of a built-in scene: its title.
 ///
-/// A built-in scene that cannot be read is a bug that the tests find; its description is empty then.
+/// Empty for a scene that cannot be read; the tests detect that bug.
 pub fn title(scene: &EmbeddedFile) -> String {
     crate::format::read::spec(scene.name, scene.text)
         .map(|spec| spec.title)

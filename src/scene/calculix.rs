@@ -1,4 +1,4 @@
-//! A finished CalculiX run, from its .cel and what lies beside it.
+//! Reads a finished CalculiX run: its .cel file and the files next to it.
 
 use std::fs::OpenOptions;
 use std::io::{self, BufReader};
@@ -8,15 +8,15 @@ use stickslip_exchange::calculix::past::PastRun;
 use stickslip_exchange::calculix::{cel, cvg, sta};
 use stickslip_platform::input::{self, Unreadable};
 
-/// Files of a run: contact elements, attempts, residuals.
+/// Extensions of a run's files: contact elements, attempts, residuals.
 const ENDS: [&str; 3] = ["cel", "sta", "cvg"];
 
-/// Whether a file is called as CalculiX calls the contact elements of a run.
+/// Whether a file has the name of a CalculiX contact element file.
 pub fn is_cel(name: &str) -> bool {
     ends(name, "cel")
 }
 
-/// Whether it is called as one of those beside them, and then what the .cel is called.
+/// The .cel file that belongs to a .sta or .cvg file; `None` for other names.
 pub fn cel_of(name: &str) -> Option<PathBuf> {
     let beside = ENDS[1..].iter().any(|end| ends(name, end));
     beside.then(|| Path::new(name).with_extension(ENDS[0]))
@@ -27,17 +27,17 @@ fn ends(name: &str, end: &str) -> bool {
     found.is_some_and(|found| found.eq_ignore_ascii_case(end))
 }
 
-/// Reads a run by its .cel; the .sta and the .cvg beside it need not be there.
+/// Reads a run from its .cel file; the .sta and .cvg files are optional.
 ///
 /// # Errors
-/// If a file is there and cannot be read, is not as it should be, or no contact element stands in the .cel.
+/// If a file cannot be read or has errors, or if the .cel contains no contact element.
 pub fn read(path: &Path) -> Result<PastRun, String> {
     let cel = open(path).map_err(|why| why.of(&path.display().to_string()))?;
     let cel = cel::read(cel).map_err(|why| broken(path, &why))?;
     if cel.slaves.is_empty() {
         let path = path.display();
         return Err(format!(
-            "{path}: there is no contact element in it, so there is nothing to show"
+            "{path}: no contact elements in this file, so there is nothing to show"
         ));
     }
     let sta = beside(path, ENDS[1], sta::read)?;
@@ -47,7 +47,7 @@ pub fn read(path: &Path) -> Result<PastRun, String> {
 
 type Reader = BufReader<std::fs::File>;
 
-/// Reads a file beside the .cel; `None` where there is none.
+/// Reads a file next to the .cel; `None` if it does not exist.
 fn beside<T>(
     cel: &Path,
     end: &str,

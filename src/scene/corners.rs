@@ -1,4 +1,4 @@
-//! Masters that are cut at their convex corners, and the directions that their slave nodes face
+//! Cuts masters at their convex corners, and finds the directions that their slave nodes face
 //! ([`stickslip_core::contact::facing`]).
 
 use std::collections::HashMap;
@@ -21,7 +21,7 @@ pub(super) fn turn(one: &[usize], other: &[usize], at: impl Fn(usize) -> [f64; 2
     (a[0] * b[1] - a[1] * b[0]).atan2(a[0] * b[0] + a[1] * b[1])
 }
 
-/// A chain of elements in walking order, cut at its convex corners. A closed one begins at a corner, if it has one.
+/// A chain of elements in walking order, cut at its convex corners. A closed chain starts at a corner, if it has one.
 pub(super) fn cut(mut chain: Vec<Vec<usize>>, nodes: &[Node]) -> Vec<Vec<Vec<usize>>> {
     let is_corner = |one: &[usize], other: &[usize]| turn(one, other, |n| nodes[n].at) > CORNER;
     let (last, first) = (chain.last(), chain.first());
@@ -96,8 +96,7 @@ mod tests {
 
     #[test]
     fn a_chain_is_cut_where_it_is_convex_and_not_where_it_is_concave_or_bends_slightly() {
-        // Up a wall, left over a step (convex), down into a notch (convex), left again (concave), then a turn of 17
-        // degrees.
+        // Up a wall, left over a step (convex), down into a notch (convex), left again (concave), then a turn of 17 degrees.
         let nodes = nodes(&[
             [0.0, 0.0],
             [0.0, 1.0],

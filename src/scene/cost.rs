@@ -1,4 +1,4 @@
-//! What a scene costs and what it does without, for `stickslip check`.
+//! The size and estimated cost of a scene and its unused features, for `stickslip check`.
 
 use super::Scene;
 use super::compile::increments;
@@ -11,10 +11,10 @@ use stickslip_core::model::{
 };
 use stickslip_core::model::{Solver, Update};
 
-/// What a scene costs. It prints as a table for a person who is to decide whether that is what was meant.
+/// Size and cost of a scene. Displayed as a table, so that users can check whether the scene is what they meant.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cost {
-    /// Nodes, and those of them that are on bodies.
+    /// Nodes, and how many of them are on bodies.
     pub nodes: (usize, usize),
     /// Unknown displacements in x and y.
     pub translations: usize,
@@ -22,11 +22,11 @@ pub struct Cost {
     pub rotations: usize,
     /// Unknown shear forces of shear-rigid beams, one per Gauss point.
     pub shears: usize,
-    /// Unknown forces on bodies that are given by a compliance.
+    /// Unknown forces on bodies given by a compliance.
     pub forces: usize,
-    /// Unknown interface forces, a normal and a tangential one per slave node.
+    /// Unknown interface forces: a normal and a tangential one per slave node.
     pub interface: usize,
-    /// Degrees of freedom that supports or prescribed displacements hold.
+    /// Degrees of freedom restrained by supports or prescribed displacements.
     pub held: usize,
     /// One line per body.
     pub bodies: Vec<String>,
@@ -34,22 +34,22 @@ pub struct Cost {
     pub surfaces: Vec<String>,
     /// Slave nodes, and how many of them start in each mode, as text.
     pub slaves: String,
-    /// What the laws of the pairs cost and change, where any is not hard contact.
+    /// Summary of contact laws other than hard contact.
     pub laws: Vec<String>,
     /// Nodes on the axis of bodies of revolution that may leave it, as text.
     pub axis: Vec<String>,
-    /// Range of the start gaps, a line per surface.
+    /// Range of the initial gaps, one line per surface.
     pub gaps: Vec<String>,
-    /// Increments, with the path that they follow.
+    /// Increments and their path.
     pub history: String,
-    /// What each solver takes, estimated, the chosen one first.
+    /// Estimated cost of each solver, the selected one first.
     pub solvers: Vec<String>,
-    /// What the scene does not have, and hence does not pay for.
+    /// Features that the scene does not use and does not pay for.
     pub without: Vec<String>,
 }
 
 impl Cost {
-    /// Counts what a scene costs.
+    /// Computes the cost of a scene.
     pub fn of(scene: &Scene) -> Cost {
         let model = &scene.model;
         let counted = |component: usize| {
@@ -94,7 +94,7 @@ impl Cost {
         }
     }
 
-    /// All unknowns of a minor iteration, interface forces included.
+    /// All unknowns of a minor iteration, including interface forces.
     pub fn unknowns(&self) -> usize {
         self.translations + self.rotations + self.shears + self.forces + self.interface
     }
@@ -105,7 +105,7 @@ fn plural(count: usize, one: &str) -> String {
     format!("{count} {one}{end}")
 }
 
-/// Unknown forces of a body that is given by a compliance.
+/// Unknown forces of a body given by a compliance.
 fn own_forces(body: &Body) -> usize {
     match &body.kind {
         BodyKind::Linear(linear) if linear.form != Form::Stiffness => 2 * body.nodes.len(),
@@ -189,7 +189,7 @@ fn solid_line(name: &str, solid: &Solid) -> String {
     )
 }
 
-/// How many elements of which kinds.
+/// Number of elements of each kind.
 fn elements_of(solid: &Solid) -> String {
     let of_kind = |kind: &ElementKind| {
         let count = solid.elements.iter().filter(|e| e.kind == *kind).count();
@@ -258,7 +258,8 @@ fn slaves_line(model: &Model) -> String {
     )
 }
 
-/// Nodes on the axis, x = 0, of bodies of revolution whose x is free. The equations alone bring it to 0 as the mesh gets finer.
+/// Nodes on the axis, x = 0, of bodies of revolution whose x is free. The equations bring x to 0 only in the limit of a fine
+/// mesh.
 fn axis_lines(model: &Model) -> Vec<String> {
     let round = model.bodies.iter().filter(|body| body.is_axisymmetric());
     let free = |node: &&usize| {
@@ -276,7 +277,7 @@ fn axis_lines(model: &Model) -> Vec<String> {
     }
     let names = some_of(nodes.iter().map(|&node| model.nodes[node].name.as_str()));
     vec![format!(
-        "{} at x = 0 may move in x, off the axis: {names}; supports fix it by [x]",
+        "{} at x = 0 may move off the axis: {names}; to prevent it, support them with fix: [x]",
         plural(nodes.len(), "node")
     )]
 }
@@ -295,7 +296,7 @@ fn history_line(model: &Model) -> String {
     )
 }
 
-/// What each solver takes, the chosen one first.
+/// Estimated cost of each solver, the selected one first.
 fn solver_lines(model: &Model) -> Vec<String> {
     let estimate = Estimate::of(model);
     let chosen = estimate.with(model.settings.solver);
@@ -314,13 +315,13 @@ fn solver_lines(model: &Model) -> Vec<String> {
     ]
 }
 
-/// What a scene does without, each with what would bring it in.
+/// Unused features, each with the input that would enable it.
 fn without(model: &Model) -> Vec<String> {
     let mut lines = Vec::new();
     for body in &model.bodies {
         match &body.kind {
             BodyKind::Beam(beam) if beam.ga.is_none() => lines.push(format!(
-                "no shear deformation of {}: GA is not named",
+                "no shear deformation of {}: GA is not given",
                 body.name
             )),
             BodyKind::Solid(solid) if solid.materials.iter().all(|m| m.update == Update::Total) => {
@@ -350,7 +351,7 @@ fn without(model: &Model) -> Vec<String> {
     let scene_wide = [
         (
             model.contacts.is_empty(),
-            "no contact: no slave nodes are named",
+            "no contact: there are no slave nodes",
         ),
         (
             !model.contacts.is_empty()
@@ -367,11 +368,11 @@ fn without(model: &Model) -> Vec<String> {
         ),
         (
             model.loads.is_empty() && model.pressures.is_empty(),
-            "no loads: no force and no moment is named",
+            "no loads: there are no forces and moments",
         ),
         (
             model.prescribed.is_empty(),
-            "no prescribed displacements: none is named",
+            "no prescribed displacements: there are none",
         ),
         (
             model.monitors.is_empty(),
@@ -396,7 +397,7 @@ impl fmt::Display for Cost {
         )?;
         writeln!(
             f,
-            "unknowns           {:>8}   {} degrees of freedom are held",
+            "unknowns           {:>8}   {} degrees of freedom are restrained",
             self.unknowns(),
             self.held
         )?;

@@ -36,7 +36,7 @@ pub(crate) fn check_chain_count(
     Err(Fault::new(
         path.clone(),
         format!(
-            "{count} nodes do not make whole elements of {per_element} nodes, which share their ends; {fits} would"
+            "{count} nodes do not form complete elements of {per_element} nodes with shared ends; {fits} would"
         ),
     ))
 }
@@ -65,7 +65,7 @@ pub(crate) fn line(here: &Path, from: Point, to: Point, n: usize) -> Result<Vec<
     if from == to {
         return Err(Fault::new(
             here.then("to"),
-            format!("the line has no length: it ends at {to:?}, where it starts"),
+            format!("the line has zero length: it starts and ends at {to:?}"),
         ));
     }
     let between = |a: f64, b: f64, t: f64| a * (1.0 - t) + b * t;
@@ -94,7 +94,7 @@ pub(crate) fn arc(
         return Err(Fault::new(
             here.then("to"),
             format!(
-                "the arc goes from {from:?} to {to:?} degrees; it must turn by more than 0 and at most 360"
+                "the arc runs from {from:?} to {to:?} degrees; it must turn by more than 0 and at most 360"
             ),
         ));
     }
@@ -131,7 +131,7 @@ pub(crate) fn through(
         if k > 0 && points[k - 1] == *at {
             return Err(Fault::new(
                 list.then(k),
-                format!("the point {at:?} stands twice in a row"),
+                format!("the point {at:?} is repeated"),
             ));
         }
     }
@@ -156,7 +156,7 @@ pub(crate) fn shape(m: usize, i: usize, t: f64) -> f64 {
 /// The point of the Lagrange curve through equally spaced nodes, at `k / refine` intervals between nodes.
 fn on_curve(curve: &[Point], k: usize, refine: usize) -> Point {
     if k.is_multiple_of(refine) {
-        // A node itself: its very bits.
+        // At a node, return it without rounding.
         return curve[k / refine];
     }
     lagrange(curve, k as f64 / refine as f64)

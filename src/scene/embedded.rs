@@ -1,4 +1,4 @@
-//! Files that are part of the program: scenes, studies, lessons, tables, manual pages.
+//! Files embedded in the program: scenes, studies, lessons, tables, manual pages.
 
 /// A file of the source tree that is compiled into the program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

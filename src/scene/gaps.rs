@@ -1,5 +1,5 @@
-//! How the slave nodes stand over their surfaces before anything is solved: the gaps that a scene starts with, what is
-//! doubtful about them, and what `settings.initial_gaps` makes of them.
+//! Positions of the slave nodes relative to their surfaces before the first solve: initial gaps, warnings about them, and the
+//! effect of `settings.initial_gaps`.
 
 use crate::pressed;
 use std::collections::HashSet;
@@ -9,27 +9,27 @@ use stickslip_core::contact::projection::{SurfacePoint, project, projection_at};
 use stickslip_core::fem::lagrange;
 use stickslip_core::model::{Body, BodyKind, Contact, InitialGaps, Model, Node, Surface};
 
-/// Gaps below this part of the scene's length are none.
+/// Gaps below this fraction of the scene's length count as zero.
 const NONE: f64 = 1e-9;
-/// Most names in a warning.
+/// Maximum number of names in a warning.
 const MOST: usize = 5;
-/// Cosine between the outward sides of a slave's body and of its surface from which on both look the same way.
+/// Above this cosine, the outward sides of a slave's body and of its surface count as facing the same way.
 const SAME_WAY: f64 = 0.5;
 
-/// The start gaps of the slave nodes that stand over a surface.
+/// The initial gaps of the slave nodes above one surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StartGaps {
     /// Number of the surface.
     pub surface: usize,
-    /// How many slave nodes stand over it.
+    /// Number of slave nodes above it.
     pub nodes: usize,
-    /// Least and largest gap (length); negative is inside.
+    /// Smallest and largest gap (length); negative is penetration.
     pub range: [f64; 2],
-    /// Slave numbers of those that start inside.
+    /// Slave numbers of nodes that start inside.
     pub inside: Vec<usize>,
 }
 
-/// Where each slave node stands over its surfaces, with its gap (length); `None` past the ends of all of them.
+/// Projections of each slave node on its surfaces, with the gap (length); `None` if it is beyond the ends of all of them.
 fn stands(
     nodes: &[Node],
     surfaces: &[Surface],
@@ -46,7 +46,7 @@ fn stands(
     contacts.iter().map(stand).collect()
 }
 
-/// The start gaps of each surface that slave nodes stand over.
+/// The initial gaps of each surface that has slave nodes above it.
 pub fn start_gaps(model: &Model) -> Vec<StartGaps> {
     let stands = stands(&model.nodes, &model.surfaces, &model.contacts);
     let of = |surface: usize| {
@@ -69,7 +69,7 @@ pub fn start_gaps(model: &Model) -> Vec<StartGaps> {
     (0..model.surfaces.len()).filter_map(of).collect()
 }
 
-/// The start gaps of each surface in a few words, as `check` and the debugger's first screen show them.
+/// The initial gaps of each surface as short text, for `check` and the debugger's first screen.
 pub fn words(model: &Model) -> Vec<String> {
     let line = |found: StartGaps| {
         let name = &model.surfaces[found.surface].name;
@@ -79,7 +79,7 @@ pub fn words(model: &Model) -> Vec<String> {
                 true => 0.0,
                 false => gap,
             });
-        // An exact 0 is told from a gap that rounds to it.
+        // Distinguishes an exact 0 from a gap that rounds to it.
         let told = |gap: f64| match gap {
             0.0 => "0".to_owned(),
             gap => format!("{gap:.4}"),
@@ -97,7 +97,7 @@ pub fn words(model: &Model) -> Vec<String> {
     start_gaps(model).into_iter().map(line).collect()
 }
 
-/// What is doubtful about the start, a sentence each, the worst first; empty where nothing is.
+/// Warnings about the initial state, one sentence each, the most serious first.
 pub fn warnings(model: &Model) -> Vec<String> {
     let mut all = turned(model);
     let gaps = start_gaps(model);
@@ -108,17 +108,19 @@ pub fn warnings(model: &Model) -> Vec<String> {
         let deepest = -found.range[0];
         let next = match model.settings.initial_gaps {
             InitialGaps::Keep if count == found.nodes => {
-                "its outward side, on the right of its walk, may be the wrong one (reverse); else the first increment pushes them out, settings.initial_gaps=adjust moves them onto the surface without stress, and ramp pushes them out over the first leg"
+                "the surface's outward side, on the right of its walk, may be wrong (reverse). Otherwise the first increment pushes them out; settings.initial_gaps=adjust moves them onto the surface without stress, and ramp pushes them out over the first leg"
             }
             InitialGaps::Keep => {
                 "the first increment pushes them out; settings.initial_gaps=adjust moves them onto the surface without stress, ramp pushes them out over the first leg"
             }
             InitialGaps::Ramp => "they are pushed out over the first leg of the path",
-            InitialGaps::Adjust => "their surface moved with them: its own nodes are slaves, too",
+            InitialGaps::Adjust => {
+                "their surface moved with them, because its own nodes are slaves too"
+            }
         };
         let start = if count == 1 { "starts" } else { "start" };
         all.push(format!(
-            "{count} of {} slave nodes {start} inside surface {name}, by {deepest:.3e} at most ({names}): {next}",
+            "{count} of {} slave nodes {start} inside surface {name}, by at most {deepest:.3e} ({names}): {next}",
             found.nodes
         ));
     }
@@ -128,7 +130,7 @@ pub fn warnings(model: &Model) -> Vec<String> {
     all
 }
 
-/// Surfaces whose outward side looks the same way as that of all bodies whose nodes they are to hold.
+/// Surfaces whose outward side faces the same way as those of all bodies with slave nodes on them.
 pub fn turned(model: &Model) -> Vec<String> {
     let stands = stands(&model.nodes, &model.surfaces, &model.contacts);
     let outward = outward(model);
@@ -154,13 +156,13 @@ pub fn turned(model: &Model) -> Vec<String> {
         .map(|surface| {
             let name = &model.surfaces[surface].name;
             format!(
-                "surface {name} looks away from all its slave nodes: its outward side, on the right of its walk, is the one that their bodies' own outsides look to, so they start behind it; turn it (reverse, or walk it the other way)"
+                "surface {name} faces away from all its slave nodes: its outward side, on the right of its walk, points the same way as the outward sides of their bodies, so they start behind it; set reverse, or walk it in the other direction"
             )
         })
         .collect()
 }
 
-/// Unit normal on the right of an element's walk, where its shape functions have these slopes.
+/// Unit normal on the right of an element, at these shape function derivatives.
 fn normal(element: &[usize], nodes: &[Node], slopes: &[f64]) -> [f64; 2] {
     let mut slope = [0.0; 2];
     for (&node, d) in element.iter().zip(slopes) {
@@ -171,7 +173,7 @@ fn normal(element: &[usize], nodes: &[Node], slopes: &[f64]) -> [f64; 2] {
     [slope[1] / size, -slope[0] / size]
 }
 
-/// For each node on the outline of a solid the mean outward direction there (not of length one at a corner).
+/// Mean outward direction at each outline node of a solid (not a unit vector at a corner).
 fn outward(model: &Model) -> Vec<Option<[f64; 2]>> {
     let mut all: Vec<Option<[f64; 2]>> = vec![None; model.nodes.len()];
     for body in &model.bodies {
@@ -195,7 +197,7 @@ fn outward(model: &Model) -> Vec<Option<[f64; 2]>> {
     all
 }
 
-/// Bodies that have neither a support or prescribed motion nor a contact.
+/// Bodies without a support, prescribed displacement or contact.
 fn unheld(model: &Model) -> Vec<String> {
     let held = |node: usize| {
         let first = model.dofs.first[node];
@@ -229,14 +231,14 @@ fn unheld(model: &Model) -> Vec<String> {
         .filter(|body| !joined(body) && !touches(body))
         .map(|body| {
             format!(
-                "body {} has neither a support nor a contact: nothing can hold it",
+                "body {} has neither a support nor a contact, so nothing holds it",
                 body.name
             )
         })
         .collect()
 }
 
-/// Solids one of whose nodes lies inside another's outline.
+/// Pairs of solids where a node of one lies inside the outline of the other.
 fn overlapping(model: &Model) -> Vec<String> {
     let solids = model.bodies.iter().filter_map(|body| match &body.kind {
         BodyKind::Solid(solid) => Some((body, outline(model, &solid.edges))),
@@ -267,7 +269,7 @@ fn overlapping(model: &Model) -> Vec<String> {
     all
 }
 
-/// The sides of a closed outline, straight from node to node.
+/// The sides of a closed outline, straight between nodes.
 fn outline(model: &Model, edges: &[Vec<usize>]) -> Vec<[[f64; 2]; 2]> {
     edges
         .iter()
@@ -276,8 +278,8 @@ fn outline(model: &Model, edges: &[Vec<usize>]) -> Vec<[[f64; 2]; 2]> {
         .collect()
 }
 
-/// Whether a place lies inside an outline, by more than `near` from each of its sides: a ray from it meets the outline an
-/// odd number of times.
+/// Whether a point lies inside an outline, by more than `near` from each of its sides: a ray from it crosses the outline an odd
+/// number of times.
 fn is_inside(at: [f64; 2], sides: &[[[f64; 2]; 2]], near: f64) -> bool {
     let mut inside = false;
     for [a, b] in sides {
@@ -305,7 +307,7 @@ fn some(model: &Model, slaves: &[usize]) -> String {
 /// Moves slave nodes that start inside, or at most `within` away (length), onto their surfaces.
 pub(super) fn adjust(nodes: &mut [Node], surfaces: &[Surface], contacts: &[Contact], within: f64) {
     for contact in contacts {
-        // One after the other, since a master's nodes may be slaves, too.
+        // One after the other, because a master's nodes may be slaves too.
         let places: Vec<[f64; 2]> = nodes.iter().map(|node| node.at).collect();
         let at = places[contact.node];
         let mut room = [0; MOST_SURFACES];
@@ -319,7 +321,7 @@ pub(super) fn adjust(nodes: &mut [Node], surfaces: &[Surface], contacts: &[Conta
     }
 }
 
-/// Notes how deep the slave nodes start inside, so that it is closed over the first leg.
+/// Records the initial penetration of the slave nodes, to be closed over the first leg.
 pub(super) fn ramp(nodes: &[Node], surfaces: &[Surface], contacts: &mut [Contact]) {
     let stands = stands(nodes, surfaces, contacts);
     for (contact, stand) in contacts.iter_mut().zip(stands) {

@@ -1,14 +1,14 @@
-//! Whether elements are sound curves, and how far a point is from a chain of them.
+//! Checks the geometry of elements, and measures the distance of a point from a chain of elements.
 
 use super::limits;
 use crate::format::error::{Fault, Path};
 use stickslip_core::fem::continuum;
 use stickslip_core::model::{ElementKind, Node};
 
-/// Refuses chains with an element whose nodes coincide, or whose curve folds back or stands still.
+/// Rejects chains with an element whose nodes coincide or whose curve folds back or has zero velocity.
 ///
-/// `length` is the diagonal of the scene. An element is the Lagrange curve through its nodes at equal steps of the
-/// parameter; with unevenly placed nodes it can run back and forth, and its Jacobian changes sign.
+/// `length` is the diagonal of the scene. An element is the Lagrange curve through its nodes at equal parameter steps; with
+/// unevenly spaced nodes the curve can run back and forth, and its Jacobian changes sign.
 pub(crate) fn check_elements(
     path: &Path,
     nodes: &[Node],
@@ -17,7 +17,7 @@ pub(crate) fn check_elements(
 ) -> Result<(), Fault> {
     let mut table = slopes(elements.first().map_or(2, Vec::len));
     for element in elements {
-        // The boundary of a mesh of several kinds has elements of 2 nodes and of 3.
+        // The boundary of a mesh of several kinds may have elements with 2 nodes and with 3.
         if table[0].len() != element.len() {
             table = slopes(element.len());
         }
@@ -29,8 +29,8 @@ pub(crate) fn check_elements(
                 &nodes[element[element.len() - 1]].name,
             );
             let message = format!(
-                "the element {first} to {last} is folded: its Jacobian vanishes or changes sign; \
-                 space its nodes more evenly"
+                "the element {first} to {last} is folded: its Jacobian vanishes or changes sign; space its \
+                 nodes more evenly"
             );
             return Err(Fault::new(path.clone(), message));
         }
@@ -47,11 +47,11 @@ fn check_distances(
     for (k, pair) in element.windows(2).enumerate() {
         let (a, b) = (&nodes[pair[0]], &nodes[pair[1]]);
         let message = if element[..=k].contains(&pair[1]) {
-            format!("node {} stands twice in one element", b.name)
+            format!("node {} occurs twice in one element", b.name)
         } else if distance(a.at, b.at) <= limits::SHORTEST * length {
             let [x, y] = b.at;
             format!(
-                "an element has no length: its nodes {} and {} are both at ({x:?}, {y:?})",
+                "an element has zero length: its nodes {} and {} are both at ({x:?}, {y:?})",
                 a.name, b.name
             )
         } else {
@@ -62,7 +62,7 @@ fn check_distances(
     Ok(())
 }
 
-/// Whether the tangent of a Lagrange curve all but vanishes, or turns by more than a right angle within a small step.
+/// Whether the tangent of a Lagrange curve nearly vanishes, or turns by more than a right angle within a small step.
 fn folds(slopes: &[Vec<f64>], points: &[[f64; 2]]) -> bool {
     const SMALLEST: f64 = 1e-3;
     let tangent = |slopes: &Vec<f64>| {
@@ -79,7 +79,7 @@ fn folds(slopes: &[Vec<f64>], points: &[[f64; 2]]) -> bool {
     still || turns
 }
 
-/// Derivatives of the m Lagrange functions at many places, for nodes at the parameters 0, 1, 2, …
+/// Derivatives of the m Lagrange functions at many points, for nodes at the parameters 0, 1, 2, …
 fn slopes(m: usize) -> Vec<Vec<f64>> {
     let steps = 8 * (m - 1);
     let place = |k: usize| (m - 1) as f64 * k as f64 / steps as f64;
@@ -97,16 +97,16 @@ pub(crate) fn slope(m: usize, i: usize, t: f64) -> f64 {
         .sum()
 }
 
-/// Slopes of the shape functions of a kind of element at places all over its parent element, the corners among them.
+/// Shape function derivatives of a kind of element at points distributed over the parent element, including its corners.
 pub(crate) struct Folds(Vec<Vec<[f64; 2]>>);
 
 impl Folds {
-    /// Those of a kind, at 5 by 5 places.
+    /// The table for a kind, at 5 by 5 points.
     pub fn of(kind: ElementKind) -> Self {
         let part = |k: usize| k as f64 / 4.0;
         let places = (0..25).map(|k| (part(k % 5), part(k / 5)));
         let places = places.filter(|(r, s)| !kind.is_triangle() || r + s <= 1.0);
-        // The slopes of three nodes are the same everywhere.
+        // With three nodes the derivatives are constant.
         let places = places.take(if kind == ElementKind::Triangle3 {
             1
         } else {
@@ -123,8 +123,8 @@ impl Folds {
         Folds(places.map(slopes).collect())
     }
 
-    /// Whether the Jacobian of an element is not clearly positive at one of the places: below a thousandth of its greatest
-    /// value.
+    /// Whether the Jacobian of an element is below a thousandth of its maximum at one of the points, that is, not clearly
+    /// positive.
     pub fn is_folded(&self, nodes: impl Iterator<Item = [f64; 2]> + Clone) -> bool {
         const SMALLEST: f64 = 1e-3;
         let jacobian = |slopes: &Vec<[f64; 2]>| {
@@ -148,8 +148,8 @@ pub(crate) fn distance(a: [f64; 2], b: [f64; 2]) -> f64 {
     (a[0] - b[0]).hypot(a[1] - b[1])
 }
 
-/// Distance of a point from the polygon through the nodes of elements, or any distance up to `enough` once one is
-/// found: the caller wants to know no more, and a scene may have many.
+/// Distance of a point from the polygon through the nodes of elements. The search stops at any distance up to `enough`, because
+/// callers only compare with that and there may be many elements.
 pub(crate) fn distance_up_to(
     enough: f64,
     at: [f64; 2],
@@ -181,8 +181,8 @@ fn distance_to_segment(p: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
     distance(p, [a[0] + share * along[0], a[1] + share * along[1]])
 }
 
-/// Whether all nodes of a chain's elements lie on the line from the first to the last, one behind the other; `length` is
-/// the scene's.
+/// Diagonal of the bounding box of nodes; 0 without nodes.
+/// Whether all nodes of a chain's elements lie in order on the line from the first to the last; `length` is the scene's.
 pub(crate) fn straight(nodes: &[Node], elements: &[Vec<usize>], length: f64) -> bool {
     const OFF: f64 = 1e-9;
     let all: Vec<[f64; 2]> = elements.iter().flatten().map(|&n| nodes[n].at).collect();
@@ -213,7 +213,7 @@ mod tests {
     }
 
     #[test]
-    fn even_curves_are_sound_and_folded_ones_are_not() {
+    fn even_curves_are_valid_and_folded_ones_are_not() {
         assert!(!folds(&[[0.0, 0.0], [1.0, 0.0]]));
         assert!(!folds(&[[-1.0, 0.0], [0.0, 1.0], [1.0, 0.0]]));
         assert!(!folds(&[[0.0, 0.0], [0.3, 0.0], [1.0, 0.0]]));
@@ -232,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn a_quadrilateral_is_sound_until_a_middle_leaves_the_middle_half_of_its_side() {
+    fn a_quadrilateral_is_valid_while_midside_nodes_are_in_the_middle_half_of_their_sides() {
         let with = |x: f64| {
             [
                 [0.0, 0.0],

@@ -1,9 +1,9 @@
-//! Meshes of other programs: what a scene imports is read, and stands in it node by node from then on.
+//! Imports meshes of other programs: converts them to given meshes of the scene.
 //!
-//! The file lies beside the scene or in a folder below it: a scene that somebody sends reads nothing else. Groups keep their
-//! names as far as a scene can use them: points, @, quotes and backslashes in one become _, and one that is a number or means
-//! something else behind an id (`all`, `start`, `end`) has `surface`, `line` or `point` before it. Elements in no group are the
-//! part `rest`; nodes that no cell has are left out.
+//! The file must be in the folder of the scene or below, so that a scene received from somebody else cannot read other files.
+//! Groups keep their names where possible: points, @, quotes and backslashes become _, and a name that is a number or a reserved
+//! word after an id (`all`, `start`, `end`) gets the prefix `surface`, `line` or `point`. Elements in no group form the part
+//! `rest`; nodes without a cell are left out.
 
 use super::limits;
 use crate::format::error::{Fault, Path, at, quoted, some_of};
@@ -16,20 +16,20 @@ use stickslip_exchange::gmsh;
 use stickslip_exchange::mesh::{Cell, CellKind, Mesh};
 use stickslip_platform::input;
 
-/// Most bytes of a mesh.
+/// Maximum size of a mesh file in bytes.
 pub const MESH_BYTES: u64 = 512 << 20;
-/// The part of elements that are in no group.
+/// Name of the part with elements in no group.
 const REST: &str = "rest";
 
-/// Why a mesh is not imported.
+/// Reasons why a mesh cannot be imported.
 pub(super) enum Refused {
-    /// Something is wrong with what the scene says of it.
+    /// An error in the scene's import entry.
     Here(Fault),
-    /// Something is wrong in its file.
+    /// An error in the mesh file.
     There(SceneError),
 }
 
-/// Reads every mesh that a scene imports, and puts it into the scene, whose own file is `scene`; whether there is any.
+/// Reads every mesh that a scene imports and adds it to the scene, whose file is `scene`; returns whether there are any.
 pub(super) fn resolve(spec: &mut Spec, scene: &str) -> Result<bool, Refused> {
     let mut any = false;
     for (k, nodes) in spec.nodes.iter_mut().enumerate() {
@@ -69,29 +69,29 @@ fn read(here: &Path, scene: &str, file: &str) -> Result<Mesh, Refused> {
     })
 }
 
-/// Why a file gives no mesh.
+/// Reasons why a file contains no usable mesh.
 pub(crate) enum NoMesh {
     /// It cannot be read.
     Unread(String),
-    /// It is broken.
+    /// It has an error.
     Broken(SceneError),
 }
 
-/// The mesh of a file.
+/// Reads the mesh of a file.
 pub(crate) fn mesh(file: &str) -> Result<Mesh, NoMesh> {
     let bytes = input::bytes(
         std::path::Path::new(file),
         MESH_BYTES,
-        "a mesh that can be solved has less",
+        "meshes are limited to that size",
     );
     let bytes = bytes.map_err(|error| NoMesh::Unread(error.to_string()))?;
     gmsh::read(&bytes).map_err(|broken| NoMesh::Broken(read::of_file(file, broken)))
 }
 
-/// Parts of a mesh that have no element in common, and are bodies together: those first named.
+/// Parts of a mesh that share no elements and together form the bodies; earlier names take precedence.
 ///
 /// # Errors
-/// If the file gives no mesh.
+/// If the file contains no usable mesh.
 pub fn bodies(file: &str) -> Result<Vec<String>, SceneError> {
     let mesh = mesh(file).map_err(|error| match error {
         NoMesh::Unread(message) => SceneError::whole(file, message),
@@ -112,13 +112,13 @@ pub fn bodies(file: &str) -> Result<Vec<String>, SceneError> {
     Ok(chosen)
 }
 
-/// Whether a file says that it is a mesh.
+/// Whether a file identifies itself as a mesh.
 pub fn is_mesh(file: &str) -> bool {
     let start = input::start(std::path::Path::new(file), 64);
     start.is_ok_and(|start| gmsh::is_one(&start))
 }
 
-/// A mesh as a scene has it; or the field of the import that is wrong, and why.
+/// A mesh in the form of the scene; or the wrong field of the import, with the reason.
 pub(crate) fn given(
     id: &str,
     mesh: &Mesh,
@@ -150,7 +150,8 @@ pub(crate) fn given(
             }
         }
         if !any {
-            let message = "the mesh has no quadrilaterals of eight nodes, which alone can be integrated in 2 x 2 points";
+            let message =
+                "the mesh has no 8-node quadrilaterals, the only elements with reduced integration";
             return Err(("reduced", message.to_owned()));
         }
     }
@@ -183,7 +184,7 @@ pub(crate) fn given(
     })
 }
 
-/// A side from its start to its end, its middle between them.
+/// A side from start to end with its midside node, if any, between them.
 fn side(cell: &Cell, label: impl Fn(&usize) -> usize) -> Vec<usize> {
     match cell.nodes[..] {
         [start, end, middle] => [start, middle, end].iter().map(label).collect(),
@@ -191,7 +192,7 @@ fn side(cell: &Cell, label: impl Fn(&usize) -> usize) -> Vec<usize> {
     }
 }
 
-/// The lists of elements of a mesh: one for each kind and for each choice of groups that elements are in, in the order of the first of them.
+/// The element lists of a mesh: one per kind and combination of groups, ordered by their first elements.
 fn elements(mesh: &Mesh) -> Result<Vec<Cells>, (&'static str, String)> {
     let mut groups_of: Vec<Vec<usize>> = vec![Vec::new(); mesh.cells.len()];
     for (k, group) in mesh.groups.iter().enumerate() {
@@ -206,7 +207,7 @@ fn elements(mesh: &Mesh) -> Result<Vec<Cells>, (&'static str, String)> {
         let Some(kind) = kind(cell.kind) else {
             continue;
         };
-        // Elements of a group stand one after the other.
+        // Elements of a group are usually consecutive.
         let place = match last {
             Some((other, same, place)) if other == kind && same == groups => place,
             _ => *place_of.entry((kind, groups)).or_insert(lists.len()),
@@ -226,7 +227,7 @@ fn elements(mesh: &Mesh) -> Result<Vec<Cells>, (&'static str, String)> {
     }
     let has_rest = place_of.keys().any(|(_, groups)| groups.is_empty());
     if has_rest && mesh.groups.iter().any(|group| group.name == REST) {
-        let message = "the mesh has elements in no group, which would be the part \"rest\", and a group of that name";
+        let message = "the mesh has elements in no group, which would form the part \"rest\", but it also has a group with that name";
         return Err(("file", message.to_owned()));
     }
     Ok(lists)
@@ -243,7 +244,7 @@ fn kind(kind: CellKind) -> Option<ElementKind> {
     }
 }
 
-/// The name of a group as a scene can use it.
+/// The name of a group, changed so that a scene can use it.
 fn usable(name: &str, dimension: usize) -> String {
     let bad = |c: char| matches!(c, '.' | '@' | '"' | '\\') || c.is_control();
     let name: String = name
@@ -258,14 +259,14 @@ fn usable(name: &str, dimension: usize) -> String {
     }
 }
 
-/// What to say where a mesh is given as a scene.
+/// The error for a mesh that is given as a scene.
 pub(super) fn no_scene(file: &str) -> String {
     let groups = match mesh(file) {
         Ok(mesh) => mesh.groups.iter().map(|group| group.name.clone()).collect(),
         Err(_) => Vec::new(),
     };
     format!(
-        "this is a mesh of Gmsh, and no scene; `stickslip export {file} -o SCENE.ron` writes one around it (groups: {})",
+        "this is a Gmsh mesh, not a scene; `stickslip export {file} -o SCENE.ron` writes a scene around it (groups: {})",
         some_of(groups.iter().map(String::as_str))
     )
 }

@@ -1,15 +1,15 @@
-//! What to solve: from the scene file, as [`format`](mod@format) reads it, to the checked model made of it.
+//! Reads scene files (through [`format`](mod@format)), checks them, and compiles them to the model that the solver uses.
 //!
-//! - `compile`, with [`nodes`], `curves`, `blocks`, `geometry` and [`limits`]: from a [`Spec`] to a [`Model`], or to what
-//!   is wrong.
-//! - [`cost`]: what a scene costs in time and memory, and what it does without; [`memory`]: what there is of that.
-//! - [`base`]: a scene that is read once, to be had with many settings; [`solver`]: the solver of one, on all threads.
-//! - `deck`: decks of CalculiX and Abaqus; [`import`]: meshes of other programs.
-//! - [`attached`]: scenes that attached solvers told.
-//! - `pressed`: prescribed motions that compress a solid beyond the range of its law.
-//! - [`problems`]: interface problems that other programs have written.
-//! - [`builtin`]: the scenes that are part of the program; [`embedded`]: files that are.
-//! - [`shown`]: texts of others in a terminal, a table or a picture; [`number`]: numbers for a person.
+//! - `compile`, with [`nodes`], `curves`, `blocks`, `geometry` and [`limits`]: converts a [`Spec`] to a [`Model`], or reports
+//!   errors.
+//! - [`cost`]: estimated time and memory of a scene, and unused features; [`memory`]: available memory.
+//! - [`base`]: a scene read once for many settings; [`solver`]: creates the solver of a scene, with all threads.
+//! - `deck`: CalculiX and Abaqus decks; [`import`]: meshes of other programs.
+//! - [`attached`]: scenes sent by attached solvers.
+//! - `pressed`: detects prescribed displacements that compress a solid beyond the range of its law.
+//! - [`problems`]: interface problems of other programs.
+//! - [`builtin`]: the built-in scenes; [`embedded`]: other embedded files.
+//! - [`shown`]: makes external text safe for a terminal, table or picture; [`number`]: formats numbers for people.
 //! - [`calculix`]: the files of a finished CalculiX run.
 
 #![forbid(unsafe_code)]
@@ -55,18 +55,18 @@ use stickslip_platform::input;
 pub use compile::increments;
 use nodes::Names;
 
-/// A scene that has been read and found sound.
+/// A scene that has been read and checked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
     /// Path of the file, or name of the built-in scene.
     pub name: String,
-    /// The file as it stands; empty for a scene that came as a [`Spec`].
+    /// The file's text; empty for a scene created from a [`Spec`].
     pub text: String,
-    /// What the author wrote, with what was set from outside.
+    /// The author's input, including values set from outside.
     pub spec: Spec,
-    /// What the solver uses.
+    /// The model that the solver uses.
     pub model: Model,
-    /// What was passed over in the file, or read as something else: place and words.
+    /// Warnings about parts of the file that were ignored or reinterpreted: location and text.
     pub remarks: Vec<String>,
     names: Names,
     overrides: Vec<Override>,
@@ -74,11 +74,11 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// Opens a scene file, or a built-in scene by its name; a file of that name wins. `overrides` are pairs of a path
-    /// and a value, as `--set` gives them.
+    /// Opens a scene file, or a built-in scene by name; a file with that name takes precedence. `overrides` are pairs of path and
+    /// value, as in `--set`.
     ///
     /// # Errors
-    /// If there is no such scene, or it is unsound.
+    /// If the scene does not exist or is invalid.
     pub fn open(name: &str, overrides: &[(String, String)]) -> Result<Scene, SceneError> {
         if !std::path::Path::new(name).is_file()
             && let Some(builtin) = builtin::find(name)
@@ -106,8 +106,8 @@ impl Scene {
         Scene::from_text(name, &text, overrides)
     }
 
-    /// Opens a scene that the file `own` names: a file in the same folder or below, as for the files named in scenes and
-    /// decks, or a built-in scene.
+    /// Opens a scene named in the file `own`: a file in the same folder or below, as for the files named in scenes and decks, or
+    /// a built-in scene.
     ///
     /// # Errors
     /// A message with the reason.
@@ -115,7 +115,7 @@ impl Scene {
         let own = std::path::Path::new(own);
         let found = match input::beside(own, named.trim_start_matches("./")) {
             Ok(path) if path.is_file() => return Ok(path.to_string_lossy().into_owned()),
-            Ok(_) => "it is no file".to_owned(),
+            Ok(_) => "not a file".to_owned(),
             Err(why) => why,
         };
         if builtin::find(named).is_some() {
@@ -124,15 +124,15 @@ impl Scene {
         let names = builtin::list().iter().map(|scene| scene.name);
         let (quoted, meant) = (error::quoted(named), error::did_you_mean(named, names));
         Err(format!(
-            "no scene {quoted} beside this file or in a folder below, and none is built in{meant}: {found}"
+            "no scene {quoted} in the folder of this file or below, and no built-in scene of that name{meant}: {found}"
         ))
     }
 
-    /// Reads a scene from a text, or what [`condensed`] and [`problems`] make one of; `name` is what messages call it, and the
-    /// files that it names lie beside a file of that name.
+    /// Reads a scene from a text, or converts the text to one ([`condensed`], [`problems`]). `name` identifies it in messages,
+    /// and files that it names are relative to a file of that name.
     ///
     /// # Errors
-    /// If the scene is unsound.
+    /// If the scene is invalid.
     pub fn from_text(
         name: &str,
         text: &str,
@@ -149,18 +149,18 @@ impl Scene {
         }
     }
 
-    /// Checks a scene that came without a text, as from a snapshot.
+    /// Checks a scene without a text, such as one from a snapshot.
     ///
     /// # Errors
-    /// If the scene is unsound; there are no lines to name then.
+    /// If the scene is invalid; the error has no line then.
     pub fn from_spec(name: &str, spec: Spec) -> Result<Scene, SceneError> {
         Scene::assemble(name, "", spec, &[], Vec::new())
     }
 
-    /// The scene that an attached solver tells, under a name; `increment` is the one that it begins with, if it tells that.
+    /// The scene sent by an attached solver, under a name; `increment` is its first increment, if it sends one.
     ///
     /// # Errors
-    /// What is unsound in it.
+    /// If the scene is invalid.
     pub fn told(
         name: &str,
         told: &message::Scene,
@@ -169,10 +169,10 @@ impl Scene {
         Scene::from_spec(name, attached::spec(told, increment))
     }
 
-    /// Checks a scene that stands inside another file, at a path of its text; `name` is what messages call the file.
+    /// Checks a scene that is embedded in another file, at a path of its text; `name` identifies the file in messages.
     ///
     /// # Errors
-    /// If the scene is unsound, with the place in that file.
+    /// If the scene is invalid, with the location in that file.
     pub fn within(
         name: &str,
         text: &str,
@@ -187,15 +187,15 @@ impl Scene {
         Scene::compiled(name, "", spec, Vec::new(), |_, fault| at(fault))
     }
 
-    /// This scene with one scalar set, as `--set` or the debugger's `:set` does it.
+    /// This scene with one scalar changed, as by `--set` or by the debugger's `:set`.
     ///
     /// # Errors
-    /// If there is no such path, or the value is unsound there.
+    /// If the path does not exist, or the scene is invalid with the value.
     pub fn with(&self, path: &str, value: &str) -> Result<Scene, SceneError> {
         self.with_all(&[(path.to_owned(), value.to_owned())])
     }
 
-    /// This scene with several scalars set, one after the other.
+    /// This scene with several scalars changed, one after the other.
     ///
     /// # Errors
     /// As [`Scene::with`].
@@ -214,25 +214,25 @@ impl Scene {
         })
     }
 
-    /// The number of a node by any of its names: `ID.3`, `ID.end`, `ID@0.5`, or the id of a single node.
+    /// Number of a node by any of its names: `ID.3`, `ID.end`, `ID@0.5`, or the id of a single node.
     ///
     /// # Errors
-    /// A message that tells which names there are.
+    /// A message that lists the existing names.
     pub fn node(&self, name: &str) -> Result<usize, String> {
         self.names.node(name)
     }
 
-    /// Whether its text names meshes in other files, which the spec has inside.
+    /// Whether its text refers to mesh files, whose content the spec already includes.
     pub fn imports(&self) -> bool {
         self.imports
     }
 
-    /// All names by which nodes can be called, and what they stand for.
+    /// All node names and what they refer to.
     pub fn names(&self) -> &Names {
         &self.names
     }
 
-    /// What was set from outside, in order: path and value.
+    /// The values set from outside, in order: path and value.
     pub fn overrides(&self) -> impl Iterator<Item = (&str, &str)> {
         self.overrides
             .iter()
@@ -272,12 +272,12 @@ impl Scene {
     }
 }
 
-/// A form of a scene's text: how it is recognised, and how it is read.
+/// An input format: how to recognise and how to read it.
 type Form = (fn(&str) -> bool, fn(&Source) -> Result<Scene, SceneError>);
 
-/// The forms, in the order in which they are tried; every other text is read as RON.
+/// The formats, in the order in which they are tried; all other text is read as RON.
 const FORMS: [Form; 5] = [
-    // The contact elements of a run begin as a deck does.
+    // The contact elements of a run begin like a deck.
     (
         |text| deck::is_one(text) && !kind::is_contacts(text),
         |source| source.deck(),
@@ -299,7 +299,7 @@ const FORMS: [Form; 5] = [
     ),
 ];
 
-/// The text of a scene, and what is set from outside.
+/// The text of a scene and the values set from outside.
 struct Source<'a> {
     name: &'a str,
     text: &'a str,
@@ -329,7 +329,7 @@ impl Source<'_> {
                 _ => placed(name, text, &[], own),
             }
         };
-        // Its text is no scene's: no value that is set later could be found there.
+        // The text is not a scene's, so values set later cannot be located in it.
         let (spec, overrides) = changed(name, problem.spec(), self.overrides, Vec::new())?;
         Scene::compiled(name, "", spec, overrides, place)
     }
@@ -339,7 +339,7 @@ impl Source<'_> {
         let spec = read::spec(name, text)?;
         let place = |overrides: &[Override], fault| placed(name, text, overrides, fault);
         if spec.attached.is_some() {
-            let why = "it is the scene of an attached solver, which alone can solve it: stickslip attach -- COMMAND";
+            let why = "this is the scene of an attached solver, and only that solver can solve it: stickslip attach -- COMMAND";
             return Err(place(&[], Fault::new(error::at!["attached"], why)));
         }
         let (mut spec, overrides) = changed(name, spec, self.overrides, Vec::new())?;
@@ -370,7 +370,8 @@ impl Source<'_> {
     }
 }
 
-/// Reads what a scene imports, and tells whether it imports anything; `name` is the scene's file, and `place` finds what is wrong in it.
+/// Reads the meshes that a scene imports, and returns whether there are any; `name` is the scene's file, and `place` locates
+/// errors in it.
 fn imported(
     spec: &mut Spec,
     name: &str,
@@ -382,7 +383,7 @@ fn imported(
     })
 }
 
-/// A scene's file with more set from outside.
+/// The scene of a file with additional values set from outside.
 fn changed(
     name: &str,
     mut spec: Spec,
@@ -400,10 +401,10 @@ fn changed(
     Ok((spec, overrides))
 }
 
-/// Finds out where a fault comes from: a setting from outside, or a line of the file.
+/// Determines the origin of a fault: a value set from outside, or a line of the file.
 pub fn placed(file: &str, text: &str, overrides: &[Override], fault: Fault) -> SceneError {
     let Fault { path, message } = fault;
-    // What was set last is the likelier culprit; a fault of a whole is due to a part of it that was set.
+    // The last setting is the most likely cause; a fault of a compound value is attributed to a part of it that was set.
     let blamed = |o: &&Override| path == o.at || (!path.0.is_empty() && path.contains(&o.at));
     let set = overrides
         .iter()
@@ -424,7 +425,7 @@ pub fn placed(file: &str, text: &str, overrides: &[Override], fault: Fault) -> S
 fn no_such_scene(name: &str) -> String {
     let names = || builtin::list().iter().map(|scene| scene.name);
     format!(
-        "there is no such file, and no built-in scene of that name{} (built-in: {})",
+        "no such file or built-in scene{} (built-in: {})",
         error::did_you_mean(name, names()),
         names().collect::<Vec<_>>().join(", ")
     )

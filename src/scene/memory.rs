@@ -1,22 +1,22 @@
-//! How much memory a scene may take: what `settings.memory` says, or what the machine has free.
+//! Memory limit of a scene: `settings.memory`, or the machine's free memory.
 
 use std::fs;
 use std::path::Path;
 use std::sync::OnceLock;
 use stickslip_core::linear::estimate::GIGABYTE;
 
-/// What may be taken where nothing tells what is free, in bytes.
+/// Memory limit in bytes if the free memory is unknown.
 const UNTOLD: f64 = 4.0 * GIGABYTE;
 
-/// Bytes that a scene may take; `setting` is in GB.
+/// Memory limit in bytes; `setting` is in GB.
 pub fn budget(setting: Option<f64>) -> f64 {
     setting.map_or_else(free, |gigabytes| gigabytes * GIGABYTE)
 }
 
-/// Bytes that are free: of the machine, and of the groups of processes (cgroups, version 1 or 2) that this one is confined to, as
-/// a container or a scheduler's job is.
+/// Free memory in bytes: of the machine, and of the control groups (cgroups, version 1 or 2) of this process, which containers
+/// and batch schedulers use.
 ///
-/// It is read once, so that all solvers of a process choose the same.
+/// Read only once, so that all solvers of a process make the same choices.
 pub fn free() -> f64 {
     static FREE: OnceLock<f64> = OnceLock::new();
     *FREE.get_or_init(read_free)
@@ -30,8 +30,8 @@ fn read_free() -> f64 {
     machine.unwrap_or(UNTOLD).min(group)
 }
 
-/// Bytes that the groups of a process leave it; infinite where none confines it. `mount` is where the groups are mounted, `own` is
-/// what `/proc/self/cgroup` says: lines `number:controllers:path`, those of version 2 without controllers.
+/// Bytes left by the control groups of a process; infinite without a limit. `mount` is the mount point of the groups, and `own`
+/// the content of `/proc/self/cgroup`: lines `number:controllers:path`, without controllers in version 2.
 fn confined(mount: &Path, own: &str) -> f64 {
     let mut least = f64::INFINITY;
     for line in own.lines() {
@@ -40,7 +40,7 @@ fn confined(mount: &Path, own: &str) -> f64 {
             continue;
         };
         let path = Path::new(path.trim_start_matches('/'));
-        // What confines a group confines those below it. A container may see the groups from its own downwards only.
+        // A limit also applies to all groups below. A container may only see the groups from its own downwards.
         for group in path.ancestors() {
             let left = match controllers {
                 "" => left(&mount.join(group), ["memory.max", "memory.current"]).or_else(|| {
@@ -61,8 +61,8 @@ fn confined(mount: &Path, own: &str) -> f64 {
     least
 }
 
-/// Bytes that a group leaves, by the names of its files of the most and the used; `None` where it has no limit. Of what is used,
-/// copies of files that nobody has touched lately are given back where memory is short.
+/// Bytes left in a group, given the names of its limit and usage files; `None` without a limit. Inactive file caches count as
+/// free, because they are released when memory is short.
 fn left(group: &Path, [most, used]: [&str; 2]) -> Option<f64> {
     let text = |file: &str| fs::read_to_string(group.join(file)).ok();
     let number = |file: &str| text(file)?.trim().parse::<f64>().ok();
@@ -76,7 +76,7 @@ fn left(group: &Path, [most, used]: [&str; 2]) -> Option<f64> {
     Some((most - (used - given_back.unwrap_or(0.0)).max(0.0)).max(0.0))
 }
 
-/// What `/proc/meminfo` says is available.
+/// The available memory in `/proc/meminfo`.
 fn available(text: &str) -> Option<f64> {
     let line = text.lines().find_map(|l| l.strip_prefix("MemAvailable:"))?;
     let kilobytes: f64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
@@ -89,7 +89,7 @@ mod tests {
     use stickslip_core::linear::estimate::bytes;
 
     #[test]
-    fn the_kernels_table_is_read() {
+    fn proc_meminfo_is_read() {
         let table = "MemTotal:  24 kB\nMemFree: 1 kB\nMemAvailable:   22 kB\n";
         assert_eq!(available(table), Some(22.0 * 1024.0));
         assert_eq!(available("MemTotal: 24 kB\n"), None);
@@ -105,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn the_tightest_group_above_a_process_confines_it() {
+    fn the_tightest_control_group_applies() {
         let folder = tempfile::tempdir().unwrap();
         let mount = folder.path();
         let files = |most, used| [("memory.max", most), ("memory.current", used)];
@@ -114,7 +114,7 @@ mod tests {
         assert_eq!(confined(mount, "0::/job/step\n"), 4000.0);
         group(&mount.join("job/step"), &files("3000\n", "600\n"));
         assert_eq!(confined(mount, "0::/job/step\n"), 2400.0);
-        // What has been read from files and is not in use does not count.
+        // Inactive file caches do not count as used.
         group(
             &mount.join("job/step"),
             &[("memory.stat", "anon 500\ninactive_file 100\n")],
@@ -124,7 +124,7 @@ mod tests {
     }
 
     #[test]
-    fn groups_of_the_first_version_confine_too() {
+    fn version_1_control_groups_apply_too() {
         let folder = tempfile::tempdir().unwrap();
         let mount = folder.path();
         let files = |most, used| {
@@ -143,7 +143,7 @@ mod tests {
         );
         let own = "9:cpu,cpuacct:/slurm/job_3\n4:memory:/slurm/job_3\n0::/\n";
         assert_eq!(confined(mount, own), 3000.0);
-        // More than is used may have been taken away.
+        // The limit may be below the usage.
         group(
             &mount.join("memory/slurm/job_3"),
             &files("1000\n", "2000\n"),
@@ -154,7 +154,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_set_counts_and_not_what_is_free() {
+    fn the_setting_overrides_the_free_memory() {
         assert_eq!(budget(Some(2.0)), 2e9);
         assert_eq!(
             [bytes(2e3), bytes(3.2e7), bytes(2.34e9), bytes(6.4e10)],

@@ -1,10 +1,10 @@
-//! Numbers for a person: in tables narrow, aligned at the decimal point, and never hiding a near-tie behind rounding.
+//! Formats numbers for people: narrow and aligned at the decimal point in tables, without hiding a near-tie by rounding.
 
-/// What stands for a number that an attached solver does not tell.
+/// Shown for a number that an attached solver does not report.
 pub const UNTOLD: &str = "-";
 
-/// A number in a table cell: sign slot first, then as many of six significant digits as leave the last column
-/// empty, padded to the width. Decimal points stand in one column. An exact zero is `0` and nothing else is.
+/// A number in a table cell: sign slot first, then up to six significant digits such that the last column stays empty, padded to
+/// the width. Decimal points are aligned. Only an exact zero is shown as `0`.
 pub fn cell(value: f64, width: usize) -> String {
     let sign = if value.is_sign_negative() && value != 0.0 {
         ""
@@ -23,7 +23,7 @@ pub fn cell(value: f64, width: usize) -> String {
     format!("{text:<width$}")
 }
 
-/// A number with ten significant digits, for the decision.
+/// A number with ten significant digits, for the decision card.
 pub fn long(value: f64) -> String {
     match value {
         0.0 => "0".into(),
@@ -41,7 +41,7 @@ pub fn short(value: f64) -> String {
     }
 }
 
-/// A load factor or size as a person would write it: up to ten significant digits, no trailing zeros.
+/// A load factor or size as people write it: up to ten significant digits, without trailing zeros.
 pub fn plain(value: f64) -> String {
     if value == 0.0 {
         return "0".into();
@@ -58,8 +58,8 @@ pub fn plain(value: f64) -> String {
     }
 }
 
-/// |F_t| over |T_max|: how much of the friction is used. Near 1 the distance from 1 is shown instead, so that
-/// `1` is a tie and `1-3e-9` is not. A dash where there is neither force nor friction.
+/// |F_t| over |T_max|: the fraction of friction used. Near 1 the distance from 1 is shown instead, so that `1` is a tie and
+/// `1-3e-9` is not. A dash if there is neither force nor friction.
 pub fn ratio(f_t: f64, t_max: f64) -> String {
     if t_max == 0.0 {
         return if f_t == 0.0 {
@@ -80,7 +80,7 @@ pub fn ratio(f_t: f64, t_max: f64) -> String {
     }
 }
 
-/// A number for a reader: four digits.
+/// A number with four significant digits, for people.
 pub fn four(value: f64) -> String {
     let size = value.abs();
     let text = match () {
@@ -96,9 +96,9 @@ pub fn four(value: f64) -> String {
     text.replace('-', "−")
 }
 
-/// A number for a person: six digits at most.
+/// A number with at most six significant digits, for people.
 pub fn six(value: f64) -> String {
-    // Rounded in decimal, and printed as short as that reads back.
+    // Rounded in decimal, then printed in the shortest form that reads back equal.
     let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
     match rounded {
         0.0 => "0".to_owned(),

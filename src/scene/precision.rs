@@ -29,7 +29,7 @@ pub fn warning(model: &Model) -> Option<String> {
             false => "the contact forces have few digits left".to_owned(),
         };
         format!(
-            "body {}, {word} = {value:.0e}, is so stiff that the round-off of its forces is about {noise:.0e} of the loads; {end}. {word} = {enough:.0e} is as good as rigid",
+            "body {}, {word} = {value:.0e}, is so stiff that the round-off of its forces is about {noise:.0e} of the loads; {end}. {word} = {enough:.0e} is practically rigid",
             body.name
         )
     })

@@ -1,9 +1,9 @@
-//! Finds prescribed motions that compress a solid beyond the range of its law, before any solve.
+//! Detects, before any solve, prescribed displacements that compress a solid beyond the range of its law.
 //!
-//! Between two points of a solid, one above the other, with prescribed motions along their line, the mean stretch along the
-//! line is given: s = (ΔX + Δu) / ΔX. If lines across it stay straight, as under flat plates, the mean of the smallest
-//! principal stretch is at most s, whatever happens sideways. A point is held by a support, by a prescribed displacement,
-//! or by a rigid surface that approaches it by more than its gap.
+//! Two points of a solid on a line along an axis, with prescribed displacements along that axis, determine the mean stretch
+//! between them: s = (ΔX + Δu) / ΔX. If cross lines stay straight, as under flat plates, the mean of the smallest principal
+//! stretch is at most s, regardless of lateral motion. A point is prescribed by a support, by a prescribed displacement, or by a
+//! rigid surface that approaches it by more than its gap.
 
 use stickslip_core::contact::projection::{project, projection_at};
 use stickslip_core::fem::deformation::{Range, SOFTENING};
@@ -24,7 +24,7 @@ struct HeldPoint {
     node: usize,
 }
 
-/// One sentence for each solid that prescribed motions compress beyond the range of St Venant-Kirchhoff's law.
+/// One sentence for each solid that prescribed displacements compress beyond the range of St Venant-Kirchhoff's law.
 pub fn warnings(model: &Model) -> Vec<String> {
     let bodies = model.bodies.iter();
     let told = bodies.filter_map(|body| match &body.kind {
@@ -56,12 +56,12 @@ fn told(model: &Model, body: &Body, solid: &Solid) -> Option<String> {
     let (stretch, load, nodes) = worst?;
     let [a, b] = nodes.map(|node| &model.nodes[node].name);
     Some(format!(
-        "the motions prescribed up to load {load} press body {} to {stretch:.3} of its length between {a} and {b}, and St Venant-Kirchhoff (law: svk) softens below {SOFTENING:.4}: materials.{}.law=neohookean does not",
+        "the motions prescribed up to load {load} compress body {} to {stretch:.3} of its length between {a} and {b}; St Venant-Kirchhoff (law: svk) softens below {SOFTENING:.4}, materials.{}.law=neohookean does not",
         body.name, solid.material_names[number]
     ))
 }
 
-/// The load factors at which a prescribed motion can be largest: corners of the path and of the motions' own scales.
+/// The load factors at which a prescribed displacement can be largest: corners of the path and of the amplitudes.
 fn loads(model: &Model) -> Vec<f64> {
     let scales = model.prescribed.iter().flat_map(|p| &p.scale.0);
     let ends = model

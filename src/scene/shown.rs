@@ -1,14 +1,14 @@
-//! Texts of others, made harmless: what a terminal would obey is shown instead, as `\u{1b}`.
+//! Makes external text safe to print: characters that a terminal would interpret are shown as escapes, e.g. `\u{1b}`.
 //!
-//! Everything that the program writes for people or as a table goes through [`text`], texts that stand within a line through
-//! [`line()`]. Both leave what is harmless as it is, so that it does no harm to go through them twice.
+//! All output for people and all tables pass through [`text`], and text within a line through [`line()`]. Both leave safe text
+//! unchanged, so applying them twice does no harm.
 
 use std::borrow::Cow;
 use std::convert::Infallible;
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
-/// Whether a terminal or a viewer may take a character for an order: C0 and C1 controls and DEL, marks that turn the
-/// direction of writing or end lines, and what is never seen at all.
+/// Whether a terminal or viewer may interpret a character: C0 and C1 controls, DEL, bidirectional and line-ending marks, and
+/// invisible characters.
 pub fn is_order(c: char) -> bool {
     c.is_control()
         || matches!(
@@ -24,17 +24,17 @@ pub fn is_order(c: char) -> bool {
         )
 }
 
-/// A text of one or more lines: line ends and tabs stay.
+/// Text of one or more lines: line ends and tabs are kept.
 pub fn text(text: &str) -> Cow<'_, str> {
     escaped(text, |c| is_order(c) && !matches!(c, '\n' | '\t'))
 }
 
-/// A text within a line: nothing that is an order stays.
+/// Text within a line: everything special is escaped.
 pub fn line(text: &str) -> Cow<'_, str> {
     escaped(text, is_order)
 }
 
-/// A text within a line that has room for so many characters of it.
+/// Text within a line, truncated to `most` characters.
 pub fn cut(text: &str, most: usize) -> String {
     match text.char_indices().nth(most) {
         Some((end, _)) => format!("{}…", line(&text[..end])),
@@ -42,7 +42,7 @@ pub fn cut(text: &str, most: usize) -> String {
     }
 }
 
-/// The first of some items, with a separator between them; the others are counted.
+/// The first few items, with a separator between them, and the number of the others.
 pub fn first_of<T: std::fmt::Display>(
     items: impl IntoIterator<Item = T>,
     most: usize,
@@ -60,10 +60,10 @@ pub fn first_of<T: std::fmt::Display>(
     }
 }
 
-/// Joins words by blanks into lines that fit; a word that does not fit is a line by itself.
+/// Joins words with spaces into lines that fit; a word that does not fit gets a separate line.
 ///
 /// # Errors
-/// If it cannot be found out whether a line fits.
+/// If the check whether a line fits fails.
 pub fn wrapped<E>(
     words: impl IntoIterator<Item = String>,
     fits: impl Fn(&str) -> Result<bool, E>,
@@ -79,7 +79,7 @@ pub fn wrapped<E>(
     Ok(lines)
 }
 
-/// Breaks a text into lines at its blanks, and a word that is longer than a line where the line ends.
+/// Breaks text into lines at spaces; a word that is longer than a line is broken at the line's end.
 pub fn wrap(text: &str, width: usize) -> Vec<String> {
     let text = line(text);
     let words = text.split(' ').flat_map(|word| broken(word, width.max(2)));
@@ -87,7 +87,7 @@ pub fn wrap(text: &str, width: usize) -> Vec<String> {
     lines
 }
 
-/// A word in pieces that are no wider than a line.
+/// Splits a word into pieces that are no wider than a line.
 fn broken(word: &str, width: usize) -> Vec<String> {
     let mut pieces = vec![String::new()];
     let mut used = 0;
@@ -105,22 +105,22 @@ fn broken(word: &str, width: usize) -> Vec<String> {
     pieces
 }
 
-/// A text filled up with blanks at its end to so many columns of a terminal, in which a Chinese character takes two.
+/// Pads text on the right to a number of terminal columns; wide characters, such as Chinese ones, take two.
 pub fn padded(text: &str, columns: usize) -> String {
     let missing = columns.saturating_sub(text.width());
     format!("{text}{}", " ".repeat(missing))
 }
 
-/// The same with the blanks before it.
+/// Pads text on the left.
 pub fn padded_before(text: &str, columns: usize) -> String {
     let missing = columns.saturating_sub(text.width());
     format!("{}{text}", " ".repeat(missing))
 }
 
-/// Most characters of a cell of a table for people.
+/// Maximum number of characters in a table cell.
 const MOST_CELL: usize = 200;
 
-/// Lines of a table: the first columns, so many, and the last one are flush left, the others flush right.
+/// Lines of a table: the first `first` columns and the last one are left-aligned, the others right-aligned.
 pub fn aligned<R: AsRef<[String]>>(table: &[R], first: usize) -> Vec<String> {
     let harmless = |row: &R| {
         row.as_ref()
@@ -164,7 +164,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn a_wrapped_text_is_all_there_and_no_line_of_it_is_too_wide() {
+    fn wrapping_keeps_all_text_within_the_width() {
         let text = "a path /that/is/longer/than/any/line and 接触の摩擦角と滑りの長さ to the end";
         for width in 2..60 {
             let lines = wrap(text, width);
@@ -175,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn orders_are_shown_and_letters_stay() {
+    fn control_characters_are_escaped_and_letters_kept() {
         assert_eq!(line("\u{1b}]0;x\u{7}"), "\\u{1b}]0;x\\u{7}");
         assert_eq!(
             line("a\u{202e}b\u{9b}31m\r\n\t"),
@@ -192,7 +192,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn nothing_harmful_is_left_and_nothing_changes_twice(any in any::<String>()) {
+        fn escaping_is_complete_and_idempotent(any in any::<String>()) {
             let once = line(&any).into_owned();
             prop_assert!(!once.contains(is_order));
             prop_assert_eq!(line(&once), once.as_str());

@@ -1,14 +1,14 @@
-//! A solver of a scene whose bodies are worked on side by side, on the threads that the program has.
+//! Creates the solver of a scene, which processes bodies in parallel on all threads of the program.
 //!
-//! The core starts no threads; those are rayon's. What comes out has the same bits on one thread and on many. Where many scenes
-//! are solved at the same time (maps, studies) each has a solver of one thread instead.
+//! The core starts no threads; this module uses rayon's. Results are bitwise independent of the number of threads. If many scenes
+//! are solved at the same time (maps, studies), each has a single-threaded solver instead.
 
 use std::sync::Arc;
 use stickslip_core::executor::Executor;
 use stickslip_core::model::Model;
 use stickslip_core::step::stepper::Stepper;
 
-/// The threads that the program has.
+/// Rayon's threads.
 struct Threads;
 
 impl Executor for Threads {

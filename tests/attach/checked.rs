@@ -76,9 +76,9 @@ fn our_own_solver_passes_every_check() {
 /// What a solver does wrong, the check that finds it, and what it says.
 const WRONGS: &[(&str, &str, &str)] = &[
     ("version", "start", "speaks version 2"),
-    ("same-id", "scene", "there is another a"),
+    ("same-id", "scene", "a is already used"),
     ("text", "step", "is no message"),
-    ("nan", "step", "null stands for both"),
+    ("nan", "step", "write null instead"),
     ("wrong-id", "states", "it must be 7, as in the scene"),
     (
         "displacements",

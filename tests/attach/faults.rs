@@ -81,7 +81,7 @@ const FAULTS: &[(&str, bool, &str)] = &[
     (
         "infinity",
         false,
-        "JSON knows no NaN and no infinity; null stands for both",
+        "JSON has no NaN and infinity; write null instead",
     ),
     (
         "null",
@@ -324,17 +324,17 @@ const BAD_STARTS: &[(&str, &str)] = &[
     ("parameter-null", "its value is a number, a flag or a text"),
     (
         "same-id",
-        "the solver's scene is unsound: contacts[1].id: there is another a",
+        "the solver's scene is unsound: contacts[1].id: a is already used",
     ),
     (
         "no-such-node",
-        "contacts[1].node: there is no node 4; they are numbered from 0 to 3",
+        "contacts[1].node: there is no node 4; nodes are numbered from 0 to 3",
     ),
     (
         "no-contacts",
-        "contacts: there is none, and nothing to step",
+        "contacts: the list is empty, so there is nothing to step",
     ),
-    ("far-apart", "nodes: they lie too far apart"),
+    ("far-apart", "nodes: they are too far apart"),
 ];
 
 fn each_fault_at_the_start_has_a_name() {

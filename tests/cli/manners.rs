@@ -46,7 +46,7 @@ fn a_file_of_another_kind_is_told_with_the_command_that_reads_it() {
         ),
         (
             "film.cast",
-            "a session to be played in a terminal; `asciinema play film.cast`",
+            "a terminal recording of a session; `asciinema play film.cast`",
         ),
     ];
     // The words of each reader, and the files that it reads itself.

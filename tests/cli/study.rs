@@ -182,7 +182,7 @@ fn bad_input_ends_with_2_and_one_line_before_anything_runs() {
         ),
         (&[ROUGH, "--vary", "friction.angle=30,30"], "twice"),
         (&[ROUGH, "--vary", "friction.angle="], "must be a number"),
-        (&[ROUGH, "--vary", "history=1"], "no single value"),
+        (&[ROUGH, "--vary", "history=1"], "not a single value"),
         (
             &[ROUGH, "--vary", "materials.*.update=a,b"],
             "materials.*.update",
@@ -431,7 +431,8 @@ fn what_a_study_names_lies_beside_it_or_below_or_is_built_in() {
         let (code, err) = named(refused);
         assert_eq!(code, 2, "{refused}: {err}");
         assert!(
-            err.starts_with("mine/study.ron") && err.contains("beside"),
+            err.starts_with("mine/study.ron")
+                && err.contains("in the folder of this file or below"),
             "{refused}: {err}"
         );
     }

@@ -439,7 +439,7 @@ fn broken_lessons_are_told_with_their_place() {
             r#"Ask(text: "x", answr: Mode(node: "beam.end"))"#,
             "\"answr\"",
         ),
-        (r#"Tell("x")"#, "\"Tell\" is none of the choices"),
+        (r#"Tell("x")"#, "\"Tell\" is not one of the choices"),
         (r#"Predict(text: "x", right: 0)"#, "one right prediction"),
         // These are only found when the lesson is played.
         (
@@ -470,7 +470,7 @@ fn the_scene_of_a_lesson_is_checked_like_any_other() {
     let steps = "steps: [Text(\"x\")]";
     let told = fault(&format!("(title: \"T\",\n scene: Name(\"osc\"), {steps})"));
     assert!(
-        told.starts_with("test.ron:2:9: scene: ") && told.contains("none is built in"),
+        told.starts_with("test.ron:2:9: scene: ") && told.contains("no built-in scene"),
         "{told}"
     );
     let text = format!(

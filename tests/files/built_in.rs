@@ -157,7 +157,7 @@ fn cost_counts_what_the_model_has() {
     for line in [
         "shear forces            4",
         "no unknowns on surface floor: rigid",
-        "no shear deformation of beam: GA is not named",
+        "no shear deformation of beam: GA is not given",
     ] {
         assert!(text.contains(line), "{text}");
     }
@@ -174,10 +174,7 @@ fn a_large_scene_is_accepted_up_to_the_memory_that_it_may_take() {
     // Before a node is made, and once all is counted.
     for (refine, memory) in [("40000", "0.5"), ("20000", "0.7")] {
         let error = large(refine, memory).unwrap_err();
-        assert!(
-            error.contains("settings.memory sets what it may take"),
-            "{error}"
-        );
+        assert!(error.contains("settings.memory sets the limit"), "{error}");
     }
     let error = large("1", "0").unwrap_err();
     assert!(

@@ -278,7 +278,7 @@ fn what_makes_no_mesh_is_refused_with_its_place() {
             "(1, 1, 0)",
             "(7, 1, 0)",
             "nodes[0].nodes[1][0]",
-            "label 7 is that of another",
+            "label 7 is already used by another",
         ),
         (
             "[7, 1, 3]",
@@ -296,7 +296,7 @@ fn what_makes_no_mesh_is_refused_with_its_place() {
             "[7, 1, 3]",
             "[7, 1, 7]",
             "nodes[0].elements[0].nodes[0][2]",
-            "stands twice",
+            "occurs twice",
         ),
         (
             "[7, 2, 3]",
@@ -320,25 +320,25 @@ fn what_makes_no_mesh_is_refused_with_its_place() {
             "sides: [[3, 2]]",
             "sides: [[1, 2]]",
             "nodes[0].sides[1].sides[0]",
-            "is no side of an element",
+            "does not belong to an element",
         ),
         (
             "sides: [[3, 2]]",
             "sides: [[3, 7, 2]]",
             "nodes[0].sides[1].sides[0]",
-            "has m.7 in the middle, and the element there none",
+            "has m.7 in the middle, but the element has no",
         ),
         (
             "sides: [[3, 2]]",
             "sides: [[3, 2], [2, 3]]",
             "nodes[0].sides[1].sides[1]",
-            "stands there twice",
+            "is listed twice",
         ),
         (
             "\"tip\"",
             "\"low\"",
             "nodes[0].sets[0].name",
-            "a part called \"low\" already",
+            "already has a part called \"low\"",
         ),
         ("\"tip\"", "\"12\"", "nodes[0].sets[0].name", "is a number"),
         ("\"tip\"", "\"a.b\"", "nodes[0].sets[0].name", "a point"),
@@ -346,7 +346,7 @@ fn what_makes_no_mesh_is_refused_with_its_place() {
             "\"tip\"",
             "\"all\"",
             "nodes[0].sets[0].name",
-            "means something else",
+            "is a reserved word",
         ),
     ];
     for (old, new, place, told) in cases {
@@ -513,7 +513,7 @@ fn only_files_beside_the_scene_are_read_and_broken_ones_are_told_by_their_own_li
         .unwrap_err()
         .to_string();
     assert!(
-        own.contains("this is a mesh of Gmsh") && own.contains("stickslip export"),
+        own.contains("this is a Gmsh mesh") && own.contains("stickslip export"),
         "{own}"
     );
 }
@@ -534,7 +534,7 @@ fn a_side_of_a_linear_and_a_quadratic_element_is_refused_where_the_later_one_sta
     let told = mesh("quad8", "[2, 5, 6, 3, 7, 8, 9, 10]").unwrap_err();
     assert!(
         told.contains("t.ron:4:42: ")
-            && told.contains("the side between m.2, m.3 is one of a quad8 and of a quad4"),
+            && told.contains("the side between m.2, m.3 is shared by a quad8 and a quad4"),
         "{told}"
     );
     assert!(mesh("quad4", "[2, 5, 6, 3]").is_ok());

@@ -45,10 +45,10 @@ fn a_single_node_may_be_called_as_a_node_of_a_chain_is_and_dashes_for_dots_are_r
     assert_eq!(dashed.node("p.12"), Ok(5));
     assert_eq!(dashed.model.nodes[5].name, "p-12");
     for (id, told) in [
-        ("b.7", "would be a name of a node of"),
-        (".p", "made of letters"),
-        ("p.", "made of letters"),
-        ("p..1", "made of letters"),
+        ("b.7", "would also be the name of a node of"),
+        (".p", "consists of letters"),
+        ("p.", "consists of letters"),
+        ("p..1", "consists of letters"),
     ] {
         let refused = small(&nodes(id), "").unwrap_err().to_string();
         assert!(refused.contains(told), "{id}: {refused}");

@@ -79,9 +79,9 @@ fn brackets_that_are_nested_too_deep_are_refused_at_once_with_their_place() {
             "replay FILE",
         ] {
             let told = refusal(&directory, &reader(line, "deep.ron"));
-            let place = format!("deep.ron:1:{column}: brackets are nested far too deep");
+            let place = format!("deep.ron:1:{column}: brackets are nested too deeply");
             assert!(column == 0 || told.starts_with(&place), "{line}: {told}");
-            assert!(told.contains("nested far too deep"), "{line}: {told}");
+            assert!(told.contains("nested too deeply"), "{line}: {told}");
         }
     }
     put(&directory, "deep", &format!("{}\n", "(".repeat(100_000)));

@@ -156,7 +156,7 @@ fn blocks_on_springs_are_sheared_as_calculix_does_it() {
     let kinked = Scene::from_text("kinked.ron", &kinked, &[]).unwrap();
     let told = stickslip::scene::cost::Cost::of(&kinked).to_string();
     assert!(
-        told.contains("M: may have kinks once they deform"),
+        told.contains("M: may have kinks when they deform"),
         "{told}"
     );
 }

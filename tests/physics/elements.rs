@@ -426,7 +426,7 @@ fn what_cannot_be_axisymmetric_or_under_pressure_is_refused_where_it_stands() {
         ),
         (
             with(round, at, "m", "Pressure(along: \"d\", value: 1)"),
-            "no outer face of a solid",
+            "not an outer face of a solid",
         ),
         (
             with(round, at, "m", "Volume(on: \"l\", y: 1)"),
@@ -434,7 +434,7 @@ fn what_cannot_be_axisymmetric_or_under_pressure_is_refused_where_it_stands() {
         ),
         (
             with(round, at, "m", "Volume(on: \"s\", y: 1)"),
-            "is no solid",
+            "is not a solid",
         ),
     ];
     for (text, expected) in cases {
@@ -468,7 +468,7 @@ fn check_lists_nodes_on_the_axis_that_may_leave_it() {
         "(node: \"k.left.start\", fix: [x]), (node: \"k.4\", fix: [x, y])",
     );
     assert!(
-        one.contains("1 node at x = 0 may move in x, off the axis: \"k.1\";"),
+        one.contains("1 node at x = 0 may move off the axis: \"k.1\";"),
         "{one}"
     );
     assert_eq!(cost("axisymmetric", "(node: \"k.left.all\", fix: [x])"), "");

@@ -507,7 +507,7 @@ fn a_node_past_the_end_of_its_surface_cannot_be_tied() {
     }
     let message = Scene::from_spec("node", spec).unwrap_err().to_string();
     assert!(
-        message.contains("past the ends of its surface"),
+        message.contains("beyond the ends of its surface"),
         "{message}"
     );
 }

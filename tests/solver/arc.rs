@@ -432,9 +432,9 @@ fn what_cannot_be_followed_is_refused_with_a_reason() {
         Scene::from_text("spring", &text, &set).map_or_else(|e| e.to_string(), |_| String::new())
     };
     assert_eq!(told(&[], r#"monitor: "u""#), "");
-    assert!(told(&[], r#"monitor: "v""#).contains("\"v\" is no monitor (displacements: \"u\")"));
-    assert!(told(&[], r#"monitor: "r""#).contains("watches no displacement"));
-    assert!(told(&[], r#"slip: "b""#).contains("is no slave node"));
+    assert!(told(&[], r#"monitor: "v""#).contains("\"v\" is not a monitor (displacements: \"u\")"));
+    assert!(told(&[], r#"monitor: "r""#).contains("does not monitor a displacement"));
+    assert!(told(&[], r#"slip: "b""#).contains("is not a slave node"));
     assert!(told(&[], "step: 0.0").contains("step is 0.0; it must be a positive number"));
     assert!(told(&[], "iterations: 0").contains("at least 1"));
     assert!(told(&[("settings.solver", "augmented")], "").contains("condensed interface"));

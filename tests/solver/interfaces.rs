@@ -178,8 +178,16 @@ fn what_is_missing_or_wrong_beside_a_matrix_is_named() {
             "p_mu.mtx: mu has 3 rows",
         ),
         ("mu", Some(format!("{head}2 1\n0.5\nx\n")), "p_mu.mtx:4:1: "),
-        ("mu", None, "p_W.mtx: there is no p_mu.mtx beside it"),
-        ("q", None, "p_W.mtx: there is no p_q.mtx beside it"),
+        (
+            "mu",
+            None,
+            "p_W.mtx: p_mu.mtx, a column of mu, is missing next to it",
+        ),
+        (
+            "q",
+            None,
+            "p_W.mtx: p_q.mtx, a column of q, is missing next to it",
+        ),
     ] {
         let kept = fs::read(beside(part)).unwrap();
         match text {
@@ -191,13 +199,16 @@ fn what_is_missing_or_wrong_beside_a_matrix_is_named() {
         fs::write(beside(part), kept).unwrap();
     }
     let error = refusal(&folder, &beside("q").display().to_string());
-    assert!(error.contains("name its matrix: p_W.mtx"), "{error}");
+    assert!(
+        error.contains("name its matrix instead: p_W.mtx"),
+        "{error}"
+    );
     let odd = put(
         &folder,
         "odd.mtx",
         "%%MatrixMarket matrix array real general\n1 1\n2.0\n",
     );
-    assert!(refusal(&folder, &odd).contains("two rows a contact"));
+    assert!(refusal(&folder, &odd).contains("two rows per contact"));
 }
 
 #[test]
@@ -220,11 +231,13 @@ fn a_matrix_that_does_not_fit_into_memory_is_refused_before_it_is_made() {
 fn a_problem_in_space_is_refused_with_a_sentence() {
     let folder = folder();
     let text = put(&folder, "space.dat", "3\n1\n0\n3\n3\n");
-    assert!(refusal(&folder, &text).starts_with("space.dat:1:1: the problem is one in space"));
+    assert!(refusal(&folder, &text).starts_with("space.dat:1:1: the problem is three-dimensional"));
     let hdf = put(&folder, "broken.h5", b"\x89HDF\r\n\x1a\nnothing more");
     let told = match fclib::ready() {
-        Ok(()) => "the file is no sound HDF5 file",
-        Err(_) => "this build has no fclib (HDF5) files; cargo install stickslip --features fclib",
+        Ok(()) => "invalid HDF5 file",
+        Err(_) => {
+            "this build does not support fclib (HDF5) files; use cargo install stickslip --features fclib"
+        }
     };
     let refusal = refusal(&folder, &hdf);
     assert!(
@@ -315,11 +328,11 @@ fn what_a_stored_stiffness_cannot_mean_is_refused_with_its_place() {
         ),
         (
             good.replace("[1]", "[1, 1]"),
-            "job.ron:4:28: contacts[0].nodes[1]: node 1 is a contact already",
+            "job.ron:4:28: contacts[0].nodes[1]: node 1 is already a contact",
         ),
         (
             good.replace("[1]", "[]"),
-            "job.ron:4:15: contacts: no node may touch",
+            "job.ron:4:15: contacts: no contacts; name at least one",
         ),
         (
             good.replace("nodes: [1]", "nodes: [1], normal: (0.0, 0.0)"),
@@ -338,7 +351,11 @@ fn what_a_stored_stiffness_cannot_mean_is_refused_with_its_place() {
     let file = stored(&folder, good);
     for (name, text, told) in [
         ("job.sti", "1 1 1.0\n7 1 2.0\n", "job.sti:2:1: a row is 7"),
-        ("job.dof", "1.1\n1.3\n", "job.dof:2:1: node 1 moves along z"),
+        (
+            "job.dof",
+            "1.1\n1.3\n",
+            "job.dof:2:1: node 1 has a displacement along z",
+        ),
     ] {
         let kept = fs::read(folder.path().join(name)).unwrap();
         put(&folder, name, text);

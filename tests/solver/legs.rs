@@ -127,11 +127,11 @@ fn what_is_no_list_of_increments_is_refused_with_its_place() {
         (load(&[0.1, 1e-9]), "at most a million"),
         (
             refused(&[0.1, 0.05], Control::Arc, None),
-            "leave increments out with control: arc",
+            "control: arc takes its step sizes from history.arc",
         ),
         (
             refused(&[0.1, 0.05], Control::Load, Some(0.06)),
-            "history.least: the least increment is 0.06; it must be above 0 and at most the increment, 0.05",
+            "history.least: the least increment is 0.06; it must be positive and at most the increment, 0.05",
         ),
     ];
     for (told, wanted) in cases {

@@ -333,7 +333,7 @@ fn each_fault_has_one_message_with_its_place() {
             "nodes: [\"a\"], stiff",
             "nodes: [\"a\", \"a\"], stiff",
             5,
-            "in the matrix already",
+            "is already in the matrix",
         ),
         ("nodes: [\"a\"], stiff", "nodes: [\"c\"], stiff", 5, "\"c\""),
         (
@@ -371,13 +371,13 @@ fn each_fault_has_one_message_with_its_place() {
             "Line(id: \"f\", from: (1.0, 0.0), to: (-1.0, 0.0), elements: 1, per_element: 2)",
             "Through(id: \"f\", points: [(1.0, 0.0), (0.0, 0.1), (-1.0, 0.0)], per_element: 2)",
             7,
-            "only a straight surface can be endless",
+            "an endless surface must be straight",
         ),
         (
             "endless: true",
             "endless: true, smooth: true",
             7,
-            "an endless surface is straight, and smooth as it is",
+            "an endless surface is already smooth",
         ),
         ("f_n: 0.0", "f_n: inf", 8, "must be a finite number"),
         (

@@ -353,7 +353,7 @@ fn check_prints_both_estimates_and_what_does_not_fit_is_refused_before_it_starts
             && text.contains("not condensed: "),
         "{text}"
     );
-    assert!(text.contains(" a major iteration, 3.6 GB"), "{text}");
+    assert!(text.contains(" per major iteration, 3.6 GB"), "{text}");
     for (command, set) in [
         ("run", ["settings.memory=0.02", "settings.solver=auto"]),
         ("check", ["settings.memory=1", "settings.solver=condensed"]),
@@ -363,14 +363,11 @@ fn check_prints_both_estimates_and_what_does_not_fit_is_refused_before_it_starts
         let refused = ran(&[&set_both[..], &plain].concat());
         assert_eq!(program::code(&refused), 2, "{set:?}");
         let told = program::err(&refused);
-        assert!(told.contains("the scene takes about "), "{told}");
-        assert!(
-            told.contains("settings.memory sets what it may take"),
-            "{told}"
-        );
+        assert!(told.contains("the scene needs about "), "{told}");
+        assert!(told.contains("settings.memory sets the limit"), "{told}");
         assert_eq!(
             set[1].ends_with("condensed"),
-            told.contains("settings.solver=augmented takes about 44 MB"),
+            told.contains("settings.solver=augmented needs about 44 MB"),
             "{told}"
         );
     }

@@ -328,7 +328,7 @@ fn without_a_terminal_the_text_is_named_and_nothing_else_goes_with_a_run_that_is
         (vec![&sta], format!("`stickslip {cel}`")),
         (
             vec!["run", cel],
-            format!("this is the .cel of a finished CalculiX run; `stickslip {cel}` reads it"),
+            format!("this is the .cel file of a finished CalculiX run; `stickslip {cel}` reads it"),
         ),
         (vec!["check", &sta], format!("`stickslip {cel}` reads it")),
         (

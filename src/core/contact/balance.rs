@@ -1,8 +1,8 @@
-//! Whether forces are in balance: at every node, and on the bodies as a whole with their reactions.
+//! Checks equilibrium at every node, and of the bodies as a whole with their reactions.
 //!
-//! At every node, r = internal force − load − contact force. At a free degree of freedom r = 0; at a restrained one, r is
-//! the reaction. Internal forces do not depend on where a body is, so their sum and the sum of their moments vanish; the
-//! same then holds for the reactions and the loads together.
+//! At every node, r = internal force − load − contact force. r vanishes at free degrees of freedom and is the reaction at
+//! restrained ones. Internal forces are invariant under rigid motions, so their sum and the sum of their moments vanish; the same
+//! then holds for the reactions and the loads together.
 
 use crate::contact::laws::{Finding, Law, Numbers, Scales, Verdict};
 use crate::model::{Body, BodyKind, Model};
@@ -10,16 +10,16 @@ use crate::model::{Body, BodyKind, Model};
 /// Forces by degree of freedom ([`crate::model::Dofs`]), and the contact forces by node.
 #[derive(Debug, Clone, Copy)]
 pub struct Forces<'a> {
-    /// Forces with which the elements resist, equal to the loads in equilibrium.
+    /// Internal forces of the elements; in equilibrium they equal the loads.
     pub internal: &'a [f64],
-    /// Loads at the present load factor.
+    /// Loads at the current load factor.
     pub load: &'a [f64],
     /// Interaction forces on each node, slave or master (x, y).
     pub contact: &'a [[f64; 2]],
 }
 
-/// Adds to `verdict` the worst node of [`Law::Balance`] and the sum of [`Law::Moments`]; `now` are the positions of all
-/// nodes. Bodies that are given by a matrix are not judged as a whole, since the matrix may hold supports.
+/// Adds to `verdict` the worst node of [`Law::Balance`] and the sum of [`Law::Moments`]; `now` are the positions of all nodes.
+/// Bodies given by a matrix are not checked as a whole, because the matrix may contain supports.
 pub fn check(
     model: &Model,
     forces: &Forces,
@@ -44,7 +44,7 @@ pub fn check(
         }
         let at = |k: usize| forces.internal[first + k];
         let moment = if count > 2 { at(2) } else { 0.0 };
-        // Where displacements are small, forces are in balance on the undeformed shape.
+        // With small displacements, equilibrium refers to the undeformed shape.
         let place = if small {
             model.nodes[node].at
         } else {
@@ -60,8 +60,8 @@ pub fn check(
         allowed: scales.allowed(Law::Balance),
         numbers: Numbers::default(),
     });
-    // A body that is given by a matrix may be held by what the matrix stands for. Of small displacements and large ones there is
-    // no common shape to take moments on.
+    // The matrix of a body may contain supports. If small and large displacements are mixed, there is no common shape for the
+    // moments.
     let given = |body: &Body| matches!(body.kind, BodyKind::Linear(_));
     if model.bodies.iter().any(given) || (!small && model.bodies.iter().any(Body::is_small)) {
         return;
@@ -75,12 +75,12 @@ pub fn check(
     });
 }
 
-/// Sum of forces, and of their moments about the origin.
+/// Sum of forces, and of their moments about `middle`.
 #[derive(Debug, Clone, Copy, Default)]
 struct Total {
     force: [f64; 2],
     moment: f64,
-    /// Where the forces act on average, so that distance from the origin makes no moment of round-off.
+    /// Mean point of application, so that a large distance from the origin does not cause round-off in the moments.
     middle: [f64; 2],
     count: f64,
 }
@@ -95,8 +95,8 @@ impl Total {
         self.count += 1.0;
     }
 
-    /// The larger of force, and moment about the middle over a length; in axisymmetry the force along the axis alone, since
-    /// others are in balance around it.
+    /// The larger of the force and the moment about the middle divided by a length; in axisymmetry only the axial force, because
+    /// the others balance around the axis.
     fn size(&self, length: f64, axisymmetric: bool) -> f64 {
         if axisymmetric {
             return self.force[1].abs();

@@ -1,9 +1,9 @@
-//! Where two sides of a master meet at an angle: which forces both together can give.
+//! Forces that two sides of a master together can exert where they meet at an angle.
 //!
-//! On a side with normal n and tangent t (n turned 90 degrees anticlockwise) Coulomb's law allows the forces
-//! { F_n n + F_t t : F_n >= 0, |F_t| <= tan φ F_n + c }, a cone that cohesion widens by the segment ±c t. In a concave
-//! corner a node is pressed by both sides at once, and the force is a sum of one from each cone. With h, half the angle
-//! between the two normals, and the mean normal as n, that is the cone of one side again, with
+//! On a side with normal n and tangent t (n turned 90 degrees anticlockwise) Coulomb's law allows the forces { F_n n + F_t t :
+//! F_n >= 0, |F_t| <= tan φ F_n + c }, a cone that cohesion widens by the segment ±c t. In a concave corner both sides press on
+//! the node, and the force is the sum of one force from each cone. With h, half the angle between the two normals, and the mean
+//! normal as n, this is again the cone of a single side, with
 //!
 //! ```text
 //! |F_t| <= tan(φ + h) F_n + c cos φ / cos(φ + h)
@@ -13,24 +13,24 @@
 //! hull of the segments ±c t of both sides. Their sum would give 2 c at a straight border.
 //!
 //! If a node has slid along side A into the corner since the last accepted state, the friction of A was at its limit. Further
-//! loading can only turn the force towards the limit of the far side B, where the node slides out along B. With s = ±1 the
+//! loading can only rotate the force towards the limit of the far side B, where the node slides out along B. With s = ±1 the
 //! direction along t of the friction that opposes the slip:
 //!
 //! ```text
 //! tan(φ − h) F_n + c cos φ / cos(φ − h) <= s F_t <= tan(φ + h) F_n + c cos φ / cos(φ + h)
 //! ```
 //!
-//! and the force lies in the convex hull of the limit forces of A and B, so that s F_t >= c cos h where φ > h. For h → 0 this is
-//! Coulomb's law of a sliding node. The graph from slip to force has no gap: the force is at the lower bound on A and at the
+//! and the force lies in the convex hull of the limit forces of A and B, so that s F_t >= c cos h if φ > h. For h → 0 this is
+//! Coulomb's law of a sliding node. Force as a function of slip is continuous: the force is at the lower bound on A and at the
 //! upper bound on B.
 //!
-//! On a convex vertex the node stays as long as it slides down neither of the two sides, F·n_i >= 0 and
-//! F·t_i >= −(tan φ F·n_i + c) with t_i from the vertex along side i: this is the law above with −h instead of h. Where φ <= h no
-//! force satisfies it, and the node moves on to one of the sides.
+//! On a convex vertex the node stays as long as it slides down neither side, F·n_i >= 0 and F·t_i >= −(tan φ F·n_i + c) with t_i
+//! pointing from the vertex along side i: this is the law above with −h instead of h. If φ <= h, no force satisfies it, and the
+//! node moves to one of the sides.
 
 use crate::model::Friction;
 
-/// A side of a master at a point of it, with the friction there.
+/// A side of a master at a point, with its friction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Side {
     /// Outward normal (unit).
@@ -41,11 +41,11 @@ pub struct Side {
     pub cohesion: f64,
 }
 
-/// Largest φ + h, in degrees: beyond, the corner holds whatever does not pull.
+/// Largest φ + h in degrees; beyond it, the corner resists every force without tension.
 const STEEPEST: f64 = 89.999;
-/// Forces are within a bound up to this part of their size.
+/// Forces may exceed a bound by this fraction of their magnitude.
 const ROUND_OFF: f64 = 1e-12;
-/// Directions whose product is below this are perpendicular.
+/// Directions with a smaller product are perpendicular.
 const PERPENDICULAR: f64 = 1e-12;
 
 /// Half the angle between the normals of two sides that meet, in radians, from their tangents along the walk (of any
@@ -61,8 +61,8 @@ pub fn holds(friction: &Friction, half: f64) -> bool {
     friction.angle.to_radians() + half > 0.0
 }
 
-/// Friction of a node in a corner or on a vertex that [`holds`] it, about the mean of the two normals; narrower than one
-/// side's on a vertex.
+/// Friction of a node in a corner or on a vertex that [`holds`] it, about the mean of the two normals; on a vertex it is narrower
+/// than that of one side.
 pub fn widened(friction: &Friction, half: f64) -> Friction {
     let angle = (friction.angle + half.to_degrees()).min(STEEPEST);
     Friction {
@@ -134,10 +134,10 @@ fn beyond_hull(force: [f64; 2], sides: [&Side; 2], signs: &[f64]) -> f64 {
     })
 }
 
-/// The forces of two sides that add up to `force`, each within its side's cone, of which the sum of squares is least
-/// (Cartesian force; friction leaves a choice, and this is the one that asks least of both). `None` if they cannot give it.
+/// Splits `force` (Cartesian) into two forces within the cones of their sides, with the least sum of squares, because friction
+/// makes the split ambiguous. `None` if the sides cannot give the force.
 ///
-/// With F_1 = F/2 + d and F_2 = F/2 − d, d is the point closest to zero of a polygon: the sides' bounds are half-planes.
+/// With F_1 = F/2 + d and F_2 = F/2 − d, d is the point of a polygon closest to zero: the sides' bounds are half-planes.
 pub fn split(force: [f64; 2], sides: [&Side; 2]) -> Option<[[f64; 2]; 2]> {
     let half = force.map(|f| 0.5 * f);
     let signs = [1.0, -1.0];
@@ -169,7 +169,7 @@ pub fn split(force: [f64; 2], sides: [&Side; 2]) -> Option<[[f64; 2]; 2]> {
     Some([add(half, d, 1.0), add(half, d, -1.0)])
 }
 
-/// Where two lines a·x = b meet. `None` if they are parallel.
+/// Intersection of two lines a·x = b. `None` if they are parallel.
 fn crossing(one: ([f64; 2], f64), other: ([f64; 2], f64)) -> Option<[f64; 2]> {
     let ((a, b), (c, d)) = (one, other);
     let area = cross(a, c);
@@ -178,8 +178,8 @@ fn crossing(one: ([f64; 2], f64), other: ([f64; 2], f64)) -> Option<[f64; 2]> {
 }
 
 impl Side {
-    /// The sides of a node that is held where two meet, in the order of the walk: `mean` is the mean of their normals, and
-    /// `half` half the angle between them ([`half_angle`]).
+    /// The sides of a node held where two sides meet, in walking order: `mean` is the mean of their normals, and `half` half the
+    /// angle between them ([`half_angle`]).
     pub fn pair(mean: [f64; 2], half: f64, friction: &Friction) -> [Side; 2] {
         let turned = |angle: f64| {
             let (s, c) = angle.sin_cos();
@@ -209,9 +209,8 @@ impl Side {
     }
 }
 
-/// By how much a force exceeds what keeps a node on a convex vertex: it must press on both sides (`tension`), and the
-/// friction of each side must keep it from sliding down there (`cone`). `before` is the side that comes first along the
-/// walk.
+/// How much a force exceeds the limits for staying on a convex vertex: it must press on both sides (`tension`), and the friction
+/// of each side must prevent sliding down (`cone`). `before` is the first side in walking order.
 pub fn beyond_vertex(force: [f64; 2], before: &Side, behind: &Side) -> Beyond {
     let mut beyond = Beyond::default();
     for (side, away) in [(before, -1.0), (behind, 1.0)] {
@@ -227,12 +226,12 @@ pub fn beyond_vertex(force: [f64; 2], before: &Side, behind: &Side) -> Beyond {
     beyond
 }
 
-/// By how much a force breaks two laws (force, not negative; 0 where it obeys).
+/// Violations of two laws (force; 0 if satisfied).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Beyond {
-    /// By how much it pulls on one of the sides.
+    /// Tension on one of the sides.
     pub tension: f64,
-    /// By how much it exceeds the friction of one of the sides.
+    /// Excess over the friction bound of one of the sides.
     pub cone: f64,
 }
 
@@ -276,7 +275,7 @@ mod tests {
     }
 
     #[test]
-    fn a_turn_to_the_right_is_a_concave_corner_and_one_to_the_left_is_none() {
+    fn a_right_turn_is_a_concave_corner_and_a_left_turn_is_not() {
         let turn = |before, behind| half_angle(before, behind).to_degrees();
         assert!((turn([-1.0, -1.0], [-1.0, 1.0]) - 45.0).abs() < 1e-12);
         assert!((turn([-1.0, 1.0], [-1.0, -1.0]) + 45.0).abs() < 1e-12);
@@ -310,7 +309,8 @@ mod tests {
         };
         let wide = widened(&friction, 30_f64.to_radians());
         let (mu, c) = (friction.coefficient(), friction.cohesion);
-        // Leaving along the side behind, only that one gives force, friction and cohesion against it.
+        // When the node leaves along the second side, only that side exerts a force, with friction and cohesion opposing the
+        // motion.
         let side = side(60.0, mu, c);
         let t = tangent(side.normal);
         for f_n in [0.5, 2.0] {
@@ -394,7 +394,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_slip_leaves_is_within_the_least_friction_and_the_bound_of_the_corner() {
+    fn friction_after_a_slip_is_between_the_least_friction_and_the_corner_bound() {
         for (angle, half, cohesion) in [
             (20.0, 30.0, 0.4),
             (30.0, 20.0, 0.4),
@@ -492,7 +492,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rough_vertex_holds_what_slides_down_neither_side_and_a_smooth_one_nothing() {
+    fn a_vertex_holds_a_node_only_if_friction_prevents_sliding_down_either_side() {
         // A ridge with slopes of 15 degrees: normals at 75 and 105 degrees, walked from right to left.
         for (angle, holds) in [(20.0, true), (10.0, false), (0.0, false)] {
             let mu = f64::to_radians(angle).tan();

@@ -1,29 +1,28 @@
-//! Concave corners between two surfaces: where the chains of two rigid surfaces cross, both press on a node that may touch
-//! both.
+//! Concave corners between two surfaces: where the chains of two rigid surfaces cross, both press on a node that may touch them.
 //!
-//! A node that has gone through one of its surfaces need not be nearest to that one: nearest is the other, on whose far part
-//! it stands. It belongs into the corner where the two cross, x_1(ξ_1) = x_2(ξ_2). That is a corner if each chain goes on
-//! there on the outside of the other one; the ends of two chains that meet at a convex edge do not.
+//! A node that has passed through one of its surfaces may be closer to a far part of the other one. Its correct position is the
+//! corner where the two cross, x_1(ξ_1) = x_2(ξ_2). The crossing is a corner if each chain continues on the outside of the other
+//! one; the ends of two chains that meet at a convex edge are not.
 //!
-//! The corner holds a node as one within a chain does ([`crate::contact::corner`]), with the force on the first surface. That is
-//! right for rigid surfaces only, whose supports carry it; between others there are no such corners yet.
+//! The corner holds a node like one within a chain ([`crate::contact::corner`]), with the force assigned to the first surface.
+//! That is valid only for rigid surfaces, whose supports carry it; corners between other surfaces are not supported.
 
 use crate::contact::corner::{cross, dot};
 use crate::contact::element::Element;
 use crate::contact::projection::{STRAIGHT, SurfacePoint, blend, length, right_of, unit};
 use crate::model::Surface;
 
-/// Steps of Newton's method; straight chains need one.
+/// Maximum number of Newton steps; straight chains need one.
 const STEPS: usize = 20;
-/// Distance of the two places, relative to the elements, at which they are one.
+/// Distance of two points, relative to the elements, below which they coincide.
 const CLOSED: f64 = 1e-12;
-/// Directions whose product is below this are parallel.
+/// Directions with a smaller product are parallel.
 const PARALLEL: f64 = 1e-9;
 
-/// Where two chains cross.
+/// The crossing of two chains.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Crossing {
-    /// The place on each.
+    /// The crossing point on each surface.
     pub spots: [SurfacePoint; 2],
     /// Outward normal of each (unit).
     pub normals: [[f64; 2]; 2],
@@ -39,7 +38,7 @@ impl Crossing {
     }
 }
 
-/// The concave corner in which the elements of two spots cross. `None` where they do not, or not in a corner.
+/// The concave corner in which the elements of two surface points cross. `None` if they do not cross, or not in a concave corner.
 pub fn find(
     surfaces: &[Surface],
     spots: [SurfacePoint; 2],
@@ -133,7 +132,7 @@ mod tests {
         // The top of a block and its right side, which end where they meet, at (1, 0).
         let x = [[1.0, 0.0], [-1.0, 0.0], [1.0, -2.0], [1.0, 0.0]];
         assert_eq!(find(&both, spots(), &x), None);
-        // Parallel, and apart.
+        // Parallel, and at a distance.
         let x = [[1.0, 0.0], [-1.0, 0.0], [1.0, -1.0], [-1.0, -1.0]];
         assert_eq!(find(&both, spots(), &x), None);
         let x = [[3.0, 0.0], [2.0, 0.0], [1.0, 2.0], [1.0, -1.0]];

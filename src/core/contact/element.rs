@@ -5,9 +5,9 @@ use crate::contact::smooth;
 use crate::fem::lagrange::{self, MAX_NODES, Shape};
 use crate::model::{Piece, Surface};
 
-/// Samples of a piece of a smooth chain, as many as of a cubic Lagrange curve.
+/// Number of samples of a piece of a smooth chain; the same as for a cubic Lagrange curve.
 const SAMPLES: usize = 7;
-/// Curves that do not swing leave the box around their nodes by less than this, relative to the sum of its sides.
+/// Well-shaped curves leave the bounding box of their nodes by less than this, relative to the sum of its sides.
 const BULGE: f64 = 0.5;
 
 /// An element of a master surface. Its curve is x(ξ) = Σ N_i(ξ) x_i over its nodes, −1 <= ξ <= 1.
@@ -85,7 +85,7 @@ impl<'a> Element<'a> {
         }
     }
 
-    /// Hands over each ξ at which a search for the closest point looks first, equally spaced from −1 to 1, with N_i there.
+    /// Passes each start value ξ of a search for the closest point, equally spaced from −1 to 1, with its N_i to `look`.
     pub fn samples(&self, mut look: impl FnMut(f64, &[f64; MAX_NODES])) {
         match self.piece {
             Some(piece) => (0..SAMPLES).for_each(|k| {
@@ -99,8 +99,8 @@ impl<'a> Element<'a> {
         }
     }
 
-    /// How far its curve leaves the box around its nodes at most along an axis, where the sides of that box are `sides`. On m
-    /// equally spaced nodes that is the sum of the negative N_i, at its largest, times the side.
+    /// Maximum distance by which the curve leaves the bounding box of its nodes along each axis, where `sides` are the sides of
+    /// the box. On m equally spaced nodes that is the largest sum of the negative N_i, times the side.
     pub fn bulge(&self, sides: [f64; 2]) -> [f64; 2] {
         let by = |share: f64| sides.map(|side| share * side);
         match (self.piece, self.nodes.len()) {
@@ -113,12 +113,12 @@ impl<'a> Element<'a> {
     }
 }
 
-/// Where the nodes of an element are, looked up once for all ξ of a search. Past its nodes, N_i = 0 counts nothing: sums of
-/// one length have no loop.
+/// Positions of an element's nodes, looked up once for all ξ of a search. Unused entries have N_i = 0, because sums of fixed
+/// length need no loop.
 pub struct Places([[f64; 2]; MAX_NODES]);
 
 impl Places {
-    /// Those of these nodes.
+    /// Looks up the positions of these nodes.
     pub fn of(nodes: &[usize], positions: &[[f64; 2]]) -> Self {
         let mut places = [[0.0; 2]; MAX_NODES];
         for (place, &n) in places.iter_mut().zip(nodes) {
@@ -127,12 +127,12 @@ impl Places {
         Places(places)
     }
 
-    /// Their sum with these weights.
+    /// Weighted sum of the positions.
     pub fn sum(&self, weights: &[f64; MAX_NODES]) -> [f64; 2] {
         self.sum_from([0.0; 2], weights)
     }
 
-    /// The same, added to what there is.
+    /// The same, added to an initial value.
     pub fn sum_from(&self, mut sum: [f64; 2], weights: &[f64; MAX_NODES]) -> [f64; 2] {
         for (at, w) in self.0.iter().zip(weights) {
             sum = [sum[0] + w * at[0], sum[1] + w * at[1]];
@@ -141,7 +141,7 @@ impl Places {
     }
 }
 
-/// Whether a chain ends where it begins.
+/// Whether a chain is closed.
 pub fn closed(surface: &Surface) -> bool {
     let count = surface.elements.len();
     count > 1 && Element::of(surface, 0).first() == Element::of(surface, count - 1).last()
@@ -153,7 +153,7 @@ mod tests {
 
     #[test]
     fn no_curve_leaves_the_box_around_its_nodes_by_more_than_its_bulge() {
-        // The worst nodes lie at the low end of the box where N_i is positive, and at the high end where it is not.
+        // The worst nodes are at the low end of the box where N_i is positive, and at the high end elsewhere.
         for m in 2..=5 {
             let nodes: Vec<usize> = (0..m).collect();
             let [bulge, _] = Element::lagrange(&nodes).bulge([1.0; 2]);
@@ -170,7 +170,7 @@ mod tests {
     }
 
     #[test]
-    fn places_sum_up_as_the_nodes_do() {
+    fn weighted_sums_match_the_nodes() {
         let (nodes, positions) = ([2, 0], [[1.0, 2.0], [9.0, 9.0], [3.0, -4.0]]);
         let n = Element::lagrange(&nodes).shape(0.5).n;
         let exact = [0.25 * 3.0 + 0.75 * 1.0, 0.25 * -4.0 + 0.75 * 2.0];

@@ -1,8 +1,8 @@
-//! Where the points of a chain are that lie closest to a given point: all of them, found anew.
+//! Finds all points of a chain that are locally closest to a given point, by a complete search.
 //!
-//! [`super::projection`] follows one S* from iteration to iteration and starts where it was. A check of a state must not
-//! depend on that, so here every element is searched. With x(ξ) the curve and p the point, the derivative of half the
-//! squared distance, (x − p) · x', changes its sign from minus to plus at a closest point inside an element.
+//! [`super::projection`] tracks one S* between iterations, starting from the previous one. Checking a state must not depend on
+//! history, so here every element is searched. With the curve x(ξ) and the point p, the derivative of half the squared distance,
+//! (x − p) · x', changes sign from minus to plus at a closest point inside an element.
 
 use crate::contact::element::{Element, Places};
 use crate::contact::projection::{Bounds, SurfacePoint, blend};
@@ -10,12 +10,12 @@ use crate::fem::lagrange::{MAX_NODES, Shape, node, shape};
 use crate::model::Surface;
 use std::sync::LazyLock;
 
-/// Intervals in which a curved element is searched, for each degree of its curve.
+/// Number of search intervals per degree of a curved element.
 const INTERVALS: usize = 2;
-/// Most steps to a root: halving alone comes down to neighbouring numbers in as many.
+/// Maximum number of steps to a root; bisection alone reaches adjacent floating-point numbers in this many steps.
 const STEPS: u32 = 60;
 
-/// Shape functions and their slopes at the ends of the intervals of an element of m nodes, with ξ; by m.
+/// ξ, shape functions and their derivatives at the ends of the search intervals of an element with m nodes; indexed by m.
 static GRID: LazyLock<Vec<Vec<(f64, Shape)>>> = LazyLock::new(|| {
     let of = |m: usize| {
         let at = |k: usize| node(intervals(m - 1) + 1, k);
@@ -28,12 +28,12 @@ static GRID: LazyLock<Vec<Vec<(f64, Shape)>>> = LazyLock::new(|| {
         .collect()
 });
 
-/// Intervals in which an element whose curve has this degree is searched.
+/// Number of search intervals for an element whose curve has this degree.
 fn intervals(degree: usize) -> usize {
     if degree == 1 { 1 } else { INTERVALS * degree }
 }
 
-/// Makes the table that every search uses, so that the first search does not allocate.
+/// Initialises the table for the searches, so that the first search does not allocate.
 pub fn prepare() {
     LazyLock::force(&GRID);
 }
@@ -41,7 +41,7 @@ pub fn prepare() {
 /// A point of a surface that is closer than its neighbours on the same element.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Foot {
-    /// Where on the surface it is.
+    /// Surface point.
     pub spot: SurfacePoint,
     /// Its position.
     pub at: [f64; 2],
@@ -60,7 +60,7 @@ pub fn find(
     feet: &mut Vec<Foot>,
 ) {
     feet.clear();
-    // Nodes lie on the curves: none of them is closer than the closest point, and few elements reach that far.
+    // Nodes lie on the curves, so none is closer than the closest point, and few elements reach that far.
     let chains = candidates.iter().map(|&surface| &surfaces[surface]);
     let nodes = chains
         .filter(|chain| !chain.endless)
@@ -100,7 +100,7 @@ pub fn find(
     feet.sort_by(|a, b| a.distance.total_cmp(&b.distance));
 }
 
-/// Gives every local minimum of the distance over an element.
+/// Calls a function for every local minimum of the distance on an element.
 fn minima(
     element: Element<'_>,
     positions: &[[f64; 2]],
@@ -136,15 +136,15 @@ fn minima(
     }
 }
 
-/// The root of (x − p) · x' between two ξ, each with its value, between which it changes its sign from minus to plus:
-/// Newton's method, and halving where that leaves the interval.
+/// The root of (x − p) · x' between two ξ, given with their values, where the sign changes from minus to plus: Newton's method,
+/// with bisection if a step leaves the interval.
 fn root(
     element: Element<'_>,
     places: &Places,
     point: [f64; 2],
     [(mut low, below), (mut high, above)]: [(f64, f64); 2],
 ) -> f64 {
-    // Both values come along: where a straight line between them vanishes is near.
+    // The values are known, so the secant gives a good start.
     let mut xi = low - below * (high - low) / (above - below);
     for _ in 0..STEPS {
         let s = element.shape(xi);
@@ -167,20 +167,20 @@ fn root(
     xi
 }
 
-/// (x − p) · x' where the shape functions are these.
+/// (x − p) · x' for these shape functions.
 fn slope(places: &Places, point: [f64; 2], s: &Shape) -> f64 {
     let to = places.sum_from([-point[0], -point[1]], &s.n);
     let d = places.sum(&s.d);
     to[0] * d[0] + to[1] * d[1]
 }
 
-/// Its derivative by ξ.
+/// Its derivative with respect to ξ.
 fn rise(places: &Places, point: [f64; 2], s: &Shape) -> f64 {
     let (x, d, dd) = (places.sum(&s.n), places.sum(&s.d), places.sum(&s.dd));
     squared(d) + (x[0] - point[0]) * dd[0] + (x[1] - point[1]) * dd[1]
 }
 
-/// ξ of the foot on the endless straight line through an element's ends.
+/// ξ of the projection on the infinite straight line through an element's ends.
 fn on_line(element: Element<'_>, positions: &[[f64; 2]], point: [f64; 2]) -> f64 {
     let [start, end] = [-1.0, 1.0].map(|xi| place(element, positions, xi));
     let along = [end[0] - start[0], end[1] - start[1]];
@@ -235,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn a_point_in_a_valley_has_a_foot_on_each_side() {
+    fn a_point_in_a_valley_has_a_closest_point_on_each_side() {
         let valley = chain(vec![vec![0, 1], vec![1, 2]], false);
         let x = [[1.0, 1.0], [0.0, 0.0], [-1.0, 1.0]];
         let feet = all([0.1, 0.5], &valley, &x, 1.0);
@@ -248,7 +248,7 @@ mod tests {
     }
 
     #[test]
-    fn a_point_over_a_ridge_has_its_foot_on_the_border_of_both_sides() {
+    fn a_point_over_a_ridge_has_its_closest_point_on_the_border() {
         let ridge = chain(vec![vec![0, 1], vec![1, 2]], false);
         let x = [[1.0, -1.0], [0.0, 0.0], [-1.0, -1.0]];
         let feet = all([0.0, 0.5], &ridge, &x, 0.0);
@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn a_curved_element_has_all_its_closest_points_found_wherever_the_search_starts() {
+    fn all_closest_points_of_a_curved_element_are_found() {
         let m = 5;
         let x: Vec<[f64; 2]> = (0..m)
             .map(|k| f64::from(k) * std::f64::consts::FRAC_PI_4)
@@ -279,7 +279,7 @@ mod tests {
     }
 
     #[test]
-    fn an_endless_line_has_one_foot_past_its_ends_too() {
+    fn an_endless_line_has_one_closest_point_beyond_its_ends_too() {
         let line = chain(vec![vec![0, 1]], true);
         let feet = all([40.0, 3.0], &line, &[[1.0, 0.0], [0.0, 0.0]], 0.0);
         assert_eq!(

@@ -1,9 +1,8 @@
-//! How the interaction force turns and travels with the surface: the geometric part of the contact tangent.
+//! Effect of rotation and motion of the interaction force with the surface: the geometric part of the contact tangent.
 //!
-//! The paper freezes normal, projection and gap during a major iteration, and its tangent leaves out how they change. This
-//! module adds that part: the second variation of gap and slip at the closest point S*, for force components F_n and F_t
-//! that are constant in the frame that turns with the surface. With τ = dx/dξ, m = τ·τ, k = n · d²x/dξ², and for the motion of
-//! one degree of freedom
+//! The paper freezes normal, projection and gap during a major iteration, and its tangent omits their change. This module adds
+//! that part: the second variation of gap and slip at the closest point S*, for force components F_n and F_t that are constant in
+//! the frame that rotates with the surface. With τ = dx/dξ, m = τ·τ, k = n · d²x/dξ², and for the motion of one degree of freedom
 //!
 //! ```text
 //! D = its part in u_S − u_S*                      (a vector)
@@ -13,15 +12,15 @@
 //! Δδg_t = 1/√m (L_j + k X_j) n·D_i − t·(du_S*/dξ)_i X_j
 //! ```
 //!
-//! (standard node-to-curve kinematics, for example Wriggers, *Computational Contact Mechanics*). At a node where two
-//! elements meet, S* and the normal are held by both of them and none of this applies.
+//! (standard node-to-curve kinematics, for example Wriggers, *Computational Contact Mechanics*). At a node between two elements,
+//! S* and the normal are determined by both elements, and none of this applies.
 
 use crate::contact::projection::{Curve, Projection, tangent};
 
-/// What the motion of one degree of freedom does at S*.
+/// Effect of the motion of one degree of freedom at S*.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Variation {
-    /// n · D: what it opens.
+    /// n · D: change of the gap.
     normal: f64,
     /// L.
     tilt: f64,
@@ -32,8 +31,8 @@ pub struct Variation {
 }
 
 impl Variation {
-    /// The variation for the displacement along `axis` (0 x, 1 y) of a node. `weight` is the node's share in u_S* − u_S (−1
-    /// for the slave, N_i for master nodes), and `slope` the derivative of that share by ξ (0 for the slave).
+    /// The variation for the displacement along `axis` (0 x, 1 y) of a node. `weight` is the node's weight in u_S* − u_S (−1 for
+    /// the slave, N_i for master nodes), and `slope` the derivative of that weight with respect to ξ (0 for the slave).
     pub fn new(
         projection: &Projection,
         curve: &Curve,
@@ -53,7 +52,7 @@ impl Variation {
     }
 }
 
-/// m − g k: vanishes where S* is no longer unique.
+/// m − g k: vanishes if S* is not unique.
 fn stiffness(projection: &Projection, curve: &Curve) -> f64 {
     squared(curve) - projection.gap * bend(projection, curve)
 }
@@ -66,8 +65,8 @@ fn bend(projection: &Projection, curve: &Curve) -> f64 {
     projection.normal[0] * curve.bend[0] + projection.normal[1] * curve.bend[1]
 }
 
-/// Derivative of the interaction force at degree of freedom i by degree of freedom j, with constant components F_n and F_t
-/// (`force`): F_n Δδg + F_t Δδg_t.
+/// Derivative of the interaction force at degree of freedom i with respect to degree of freedom j, with constant components F_n
+/// and F_t (`force`): F_n Δδg + F_t Δδg_t.
 pub fn geometric_tangent(
     projection: &Projection,
     curve: &Curve,
@@ -100,7 +99,7 @@ mod tests {
     use crate::contact::smooth::smooth;
     use crate::model::{Node, Surface};
 
-    /// Force on every degree of freedom (slave first) for constant components, about a projection made anew.
+    /// Force on every degree of freedom (slave first) for constant components, from a new projection.
     fn forces(surfaces: &[Surface], positions: &[[f64; 2]], f: [f64; 2]) -> Vec<f64> {
         let spot = project(positions[0], surfaces, &[0], positions, None).unwrap();
         let at = projection_at(surfaces, spot, positions, positions[0]);
@@ -165,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn the_geometric_tangent_is_the_derivative_of_the_force_with_the_projection_made_anew() {
+    fn the_geometric_tangent_is_the_derivative_of_the_force_with_a_new_projection() {
         for m in 2..=5 {
             for gap in [-0.1, 0.0, 0.15] {
                 let mut x = vec![[1.1 + 0.2 * gap, 0.9 - gap]];
@@ -176,7 +175,7 @@ mod tests {
     }
 
     #[test]
-    fn on_a_smooth_chain_it_is_so_too_on_every_piece() {
+    fn the_geometric_tangent_is_exact_on_every_piece_of_a_smooth_chain() {
         let even: Vec<[f64; 2]> = [[0.0; 2]].into_iter().chain(arc(6)).collect();
         let nodes: Vec<Node> = even
             .iter()

@@ -1,24 +1,25 @@
-//! Whether a state that is to be accepted obeys the laws of contact and friction, and of balance.
+//! Checks whether a state obeys the laws of contact, friction and equilibrium before it is accepted.
 //!
-//! A state is judged from positions and forces alone, now and in the last accepted state. Nothing of the iterations'
-//! bookkeeping (modes, S*, anchors, counted slip) is used. The laws:
+//! The check uses only positions and forces, now and in the last accepted state; none of the iterations' variables (modes, S*,
+//! anchors, accumulated slip). The laws:
 //!
-//! - g >= 0, also over surfaces that are not the nearest, which a node has gone through; no force acts across a gap; F_n >= 0; |F_t| <= tan φ F_n + c (eqn 20);
-//! - a node that touches in both states has a net slip: the way along the surface from foot to foot, across the borders of
-//!   elements. If it is not zero, friction opposes it and is at its limit;
-//! - a node that was open, or on another surface, may have touched anywhere on its way. Only friction that is at its limit
-//!   and drives the whole of this way breaks the law, since no place of touching explains it;
-//! - where a bond gives way (compliances c_n, c_t), all this holds for a point further out, at x + c_n F_n n: g + c_n F_n = 0 where a
-//!   force acts; and of a net slip, c_t times the change of −F_t is elastic, which friction does not oppose;
+//! - g >= 0, also for surfaces other than the nearest that a node has passed through; no force acts across a gap; F_n >= 0; |F_t|
+//!   <= tan φ F_n + c (eqn 20);
+//! - a node that touches in both states has a net slip: the distance along the surface between the two closest points, across
+//!   element borders. If it is not zero, friction opposes it and is at its limit;
+//! - a node that was open, or on another surface, may have touched anywhere on its path. Only friction that is at its limit and
+//!   acts along the whole path violates the law, because no touching point explains it;
+//! - if a bond has compliances c_n, c_t, all this holds for a point shifted outwards, x + c_n F_n n: g + c_n F_n = 0 if a force
+//!   acts; c_t times the change of −F_t is elastic and is excluded from the net slip that friction must oppose;
 //! - over a beam element with local flexibility under point forces, the laws hold for a point shifted outwards by the local
-//!   deflection, with n and t of the rotated line ([`super::point_force::judged`]);
-//! - a tied node stays where it is on its surface, whatever its forces are;
+//!   deflection, with n and t of the rotated axis ([`super::point_force::judged`]);
+//! - a tied node stays at its point of the surface for all forces;
 //! - in a corner the force lies in the convex hull of the forces that each of the two sides admits; after a slip into the corner,
 //!   in the hull of the forces with friction at its limit against that slip ([`super::corner`]);
-//! - every node is in balance, and so are the bodies as a whole with the reactions ([`super::balance`]).
+//! - every node is in equilibrium, and so are the bodies as a whole with their reactions ([`super::balance`]).
 //!
-//! All amounts are relative to the scene's length or force. Lengths and forces have separate tolerances, since very stiff
-//! bodies make forces less exact and positions not.
+//! All amounts are relative to the scene's length or force. Lengths and forces have separate tolerances, because very stiff
+//! bodies reduce the accuracy of forces but not of positions.
 
 use crate::contact::corner::Side;
 use crate::contact::element::{Element, closed};
@@ -34,26 +35,25 @@ use crate::contact::stood::{FEW, Stood};
 use crate::model::Friction;
 use crate::model::{Contact, Surface};
 
-/// What is judged: an interface, now and in the last accepted state.
+/// Input of the judge: an interface, now and in the last accepted state.
 #[derive(Debug, Clone, Copy)]
 pub struct Seen<'a> {
     /// Master surfaces of the scene.
     pub surfaces: &'a [Surface],
     /// Slave nodes of the scene.
     pub contacts: &'a [Contact],
-    /// Friction in force, by slave.
+    /// Current friction, by slave.
     pub friction: &'a [Friction],
     /// Positions of all nodes in the last accepted state.
     pub before: &'a [[f64; 2]],
     /// Positions of all nodes now.
     pub now: &'a [[f64; 2]],
-    /// By how much each slave node alone is judged further out of its surface (Cartesian length), now and in the last
-    /// accepted state: by what is left of an overlap that is closed step by step. Empty where there is none.
+    /// Outward shift of the point at which each slave node is judged (Cartesian length), now and in the last accepted state: the
+    /// remaining overlap of a press fit. Empty if there is none.
     pub out: [&'a [[f64; 2]]; 2],
     /// Interaction force on each slave node now (Cartesian).
     pub forces: &'a [[f64; 2]],
-    /// Slip u_tS* − u_tS that each slave node brought into the scene, if the last accepted state is the scene's start; else
-    /// 0.
+    /// Initial slip u_tS* − u_tS of each slave node, if the last accepted state is the start of the scene; else 0.
     pub brought: &'a [f64],
     /// Tangential force F_t on each slave node in the last accepted state.
     pub earlier: &'a [f64],
@@ -62,12 +62,12 @@ pub struct Seen<'a> {
 }
 
 impl Seen<'_> {
-    /// Where a slave node is judged to be now.
+    /// Position at which a slave node is judged now.
     fn point(&self, slave: usize) -> [f64; 2] {
         self.loaded().point(slave)
     }
 
-    /// The interface now.
+    /// The interface in its current state.
     fn loaded(&self) -> Loaded<'_> {
         Loaded {
             surfaces: self.surfaces,
@@ -78,7 +78,7 @@ impl Seen<'_> {
         }
     }
 
-    /// Where a slave node is judged to have been in the last accepted state.
+    /// Position at which a slave node was judged in the last accepted state.
     fn was(&self, slave: usize) -> [f64; 2] {
         further(
             self.before[self.contacts[slave].node],
@@ -87,12 +87,12 @@ impl Seen<'_> {
     }
 }
 
-/// A place, by a way further on.
+/// A position shifted by a displacement, if there is one.
 fn further(at: [f64; 2], way: Option<&[f64; 2]>) -> [f64; 2] {
     way.map_or(at, |way| [at[0] + way[0], at[1] + way[1]])
 }
 
-/// The judge, with the memory that it works in.
+/// The judge and its workspace.
 #[derive(Debug)]
 pub struct Judge {
     feet: Vec<Foot>,
@@ -100,13 +100,13 @@ pub struct Judge {
     others: Vec<Foot>,
     sides: Vec<Touching>,
     gives: JudgedGives,
-    /// The state that was judged last, which is mostly the one accepted before the next.
+    /// Cached data of the state judged last, which is usually the one accepted before the next.
     last: Stood,
     next: Stood,
 }
 
 impl Judge {
-    /// A judge with memory for a scene of so many nodes and slave nodes.
+    /// A judge with workspace for a scene of this size.
     pub fn with_capacity(nodes: usize, slaves: usize) -> Self {
         feet::prepare();
         Judge {
@@ -120,13 +120,14 @@ impl Judge {
         }
     }
 
-    /// Judges contact and friction. `contact` (one entry a node of the scene) receives the interaction force on every node,
-    /// x and y; the feet found here distribute a slave's force over the nodes of its master element.
+    /// Judges contact and friction. `contact` (one entry per node of the scene) receives the interaction force on every node, x
+    /// and y; the closest points found here distribute a slave's force over the nodes of its master element.
     pub fn interface(&mut self, seen: &Seen, contact: &mut [[f64; 2]]) -> Verdict {
         let mut verdict = Verdict::default();
         contact.fill([0.0; 2]);
         let near = seen.scales.near();
-        // With compliant surfaces or bonds, the points of that state follow from its forces, which round differently from the stored feet.
+        // With compliant surfaces or bonds, the shifted points of that state depend on its forces, whose round-off differs from
+        // that of the cached points.
         if !seen.out[1].is_empty() || !self.last.is(seen.before, near, seen.contacts.len()) {
             self.last.clear();
         }
@@ -273,9 +274,9 @@ impl Judge {
         }
     }
 
-    /// Where a node's feet were in the last accepted state.
+    /// Closest points of a node in the last accepted state.
     fn find_earlier(&mut self, seen: &Seen, slave: usize, near: f64) {
-        // What was found of that state when it was judged itself holds still.
+        // The results from judging that state are still valid.
         if !self.last.ends.is_empty() {
             self.earlier.clear();
             self.earlier.extend_from_slice(self.last.of(slave));
@@ -294,7 +295,7 @@ impl Judge {
         );
     }
 
-    /// How far a tied node has gone along its surface since the last accepted state; infinite where it is on another one.
+    /// Motion of a tied node along its surface since the last accepted state; infinite if it is on another surface.
     fn strayed(&mut self, seen: &Seen, slave: usize, foot: &Foot) -> f64 {
         self.find_earlier(seen, slave, seen.scales.near());
         let here = |earlier: &&Foot| earlier.spot.surface == foot.spot.surface;
@@ -305,7 +306,7 @@ impl Judge {
         })
     }
 
-    /// The sides on which a node stands: those of its feet, and where it stands on a border of elements, both.
+    /// The sides that a node touches: those of its closest points, and both sides at a border between elements.
     fn find_sides(&mut self, seen: &Seen, slave: usize, point: [f64; 2], near: f64) {
         self.find_earlier(seen, slave, near);
         self.sides.clear();
@@ -347,7 +348,7 @@ impl Judge {
         }
     }
 
-    /// What is least against the laws: the force of one of the sides, or of two together.
+    /// The smallest violation: with the force on one of the sides, or on two sides together.
     fn least(&self, seen: &Seen, slave: usize) -> Amounts {
         let force = seen.forces[slave];
         let single = self
@@ -369,9 +370,9 @@ impl Judge {
     }
 }
 
-/// Depth (length) by which a slave node has passed through a surface other than its nearest since the last accepted state;
-/// 0 if it has not. Counts only a node that was above the surface and is now below it, not a node that went round an end.
-/// `others` are the surfaces that the node may touch, except the nearest.
+/// Depth (length) by which a slave node has passed through a surface other than its nearest since the last accepted state; 0 if
+/// it has not. Only a node that was above the surface and is now below it counts, not one that went round an end. `others` are
+/// the surfaces that the node may touch, except the nearest.
 fn through(
     seen: &Seen,
     slave: usize,
@@ -411,7 +412,7 @@ fn end_at(seen: &Seen, point: [f64; 2], spot: SurfacePoint, near: f64) -> Option
     .find(|&xi| beyond_border(seen.surfaces, SurfacePoint { xi, ..spot }).is_none())
 }
 
-/// A side at a spot. `None` where dx/dξ = 0.
+/// A side at a surface point. `None` if dx/dξ = 0.
 fn touching(
     seen: &Seen,
     slave: usize,
@@ -430,8 +431,8 @@ fn touching(
     };
     let way =
         |foot: &Foot| distance(surface, foot.spot, spot, seen.now) - seen.brought[slave] + elastic;
-    // The elastic slip of the last accepted state is a length on the surface, which has stretched since then. The part of it from
-    // before the node last slid has not stretched, so only the slip beyond the whole stretch counts.
+    // The elastic slip of the last accepted state is a length on the surface, which has stretched since. The part from before the
+    // node's last slide has not stretched, so only slip beyond the whole stretch counts.
     let beyond_stretch = |way: f64, foot: &Foot| {
         let give = seen.contacts[slave].bond.give()[1];
         if give == 0.0 {
@@ -465,7 +466,7 @@ fn touching(
     })
 }
 
-/// Outward direction at a foot, of length one; nothing where it has none.
+/// Outward unit direction at a closest point; `None` if undefined.
 fn outward(foot: &Foot, surfaces: &[Surface], positions: &[[f64; 2]]) -> [f64; 2] {
     let n = outward_at(foot, surfaces, positions);
     match size(n) {
@@ -474,7 +475,7 @@ fn outward(foot: &Foot, surfaces: &[Surface], positions: &[[f64; 2]]) -> [f64; 2
     }
 }
 
-/// Sum of the outward normals of the sides on which a foot is.
+/// Sum of the outward normals of the sides at a closest point.
 fn outward_at(foot: &Foot, surfaces: &[Surface], positions: &[[f64; 2]]) -> [f64; 2] {
     let normal = |spot: SurfacePoint| {
         let element = Element::of(&surfaces[spot.surface], spot.element);
@@ -489,7 +490,7 @@ fn outward_at(foot: &Foot, surfaces: &[Surface], positions: &[[f64; 2]]) -> [f64
     })
 }
 
-/// Distance with its sign: negative where the point lies inside.
+/// Signed distance: negative if the point lies inside.
 fn signed_gap(foot: &Foot, point: [f64; 2], surfaces: &[Surface], positions: &[[f64; 2]]) -> f64 {
     let n = outward_at(foot, surfaces, positions);
     let to = [point[0] - foot.at[0], point[1] - foot.at[1]];
@@ -504,7 +505,7 @@ fn is_past_end(foot: &Foot, point: [f64; 2], seen: &Seen) -> bool {
     is_past_end_at(foot, point, seen.surfaces, seen.now, seen.scales.near())
 }
 
-/// Whether a point lies past an end of the chain that its foot is at, by more than `near`.
+/// Whether a point lies beyond the end of the chain at its closest point by more than `near`.
 fn is_past_end_at(
     foot: &Foot,
     point: [f64; 2],

@@ -1,16 +1,16 @@
-//! The laws of contact, friction and balance, and what is found against them.
+//! The laws of contact, friction and equilibrium, and their violations.
 //!
-//! All amounts are relative to the scene's length or force ([`Scales`]). Lengths and forces have a tolerance each: where
-//! stiffnesses leave forces less exact, places stay as exact as ever.
+//! All amounts are relative to the scene's length or force ([`Scales`]). Lengths and forces have separate tolerances, because
+//! high stiffness reduces the accuracy of forces but not of positions.
 
 use serde::{Deserialize, Serialize};
 
-/// What amounts are relative to, and how large they may be.
+/// Units and tolerances of violations.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Scales {
     /// Unit of lengths: the size of the scene.
     pub length: f64,
-    /// Unit of forces: the size of the forces at work.
+    /// Unit of forces: the magnitude of the acting forces.
     pub force: f64,
     /// Tolerance of lengths, relative to `length`.
     pub lengths: f64,
@@ -19,12 +19,12 @@ pub struct Scales {
 }
 
 impl Scales {
-    /// Length up to which two places are the same.
+    /// Length within which two positions are equal.
     pub fn near(&self) -> f64 {
         self.lengths * self.length
     }
 
-    /// How large an amount against a law may be.
+    /// Tolerance of a law.
     pub fn allowed(&self, law: Law) -> f64 {
         match law {
             Law::Penetration | Law::Gap | Law::Penalty | Law::Tied => self.lengths,
@@ -45,28 +45,28 @@ pub enum Law {
     Tension,
     /// |F_t| <= tan φ F_n + c (force).
     Cone,
-    /// A net slip is opposed by friction at its limit. The amount is the force that friction lacks to that limit.
+    /// Friction opposes a net slip at its limit. The amount is the force missing to that limit.
     Slip,
     /// Friction opposes the slip of a node that was open before, wherever it touched (force).
     Touch,
-    /// The forces on every node add up to nothing (force).
+    /// The forces on every node sum to zero (force).
     Balance,
-    /// Forces and moments on the bodies as a whole, with the reactions, add up to nothing (force; a moment over the length).
+    /// Forces and moments on the bodies as a whole, including reactions, sum to zero (force; moments are divided by the length).
     Moments,
-    /// Friction dissipates: mean tangential force of both states times slip <= 0 (force times length). This is reported and
-    /// not required, since a node that reverses within an increment may break it.
+    /// Friction dissipates: mean tangential force of both states times slip <= 0 (force times length). Reported but not required,
+    /// because a node that reverses within an increment may violate it.
     Work,
-    /// A bond gives way in proportion to the normal force: g + c_n F_n = 0 where a force acts (length).
+    /// The penetration of a bond is proportional to the normal force: g + c_n F_n = 0 if a force acts (length).
     Penalty,
     /// A tied node stays at its point of the surface (length).
     Tied,
-    /// What a node slips beyond the elastic slip of its bond, c_t times the change of −F_t, is opposed by friction at its limit. The
-    /// amount is the force that friction lacks to that limit.
+    /// Friction at its limit opposes slip beyond the elastic slip of the bond, c_t times the change of −F_t. The amount is the
+    /// force missing to that limit.
     Stick,
 }
 
 impl Law {
-    /// The laws that every accepted state obeys.
+    /// The laws that apply to every accepted state.
     pub const ALL: [Law; 8] = [
         Law::Penetration,
         Law::Gap,
@@ -78,7 +78,7 @@ impl Law {
         Law::Moments,
     ];
 
-    /// The laws of bonds that are not hard, which only scenes with such bonds have.
+    /// The laws of bonds other than hard contact.
     pub const OF_BONDS: [Law; 3] = [Law::Penalty, Law::Tied, Law::Stick];
 }
 
@@ -98,15 +98,15 @@ crate::words! {
     Stick "stick",
 }
 
-/// How far a state is from one law, at its worst place.
+/// Violation of one law at its worst place.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Finding {
     /// The law.
     pub law: Law,
-    /// Slave number. `None` if the finding is about the scene as a whole, or about a node that is not a slave.
+    /// Slave number. `None` if the finding concerns the whole scene, or a node that is not a slave.
     pub slave: Option<usize>,
-    /// How far the state is from the law, relative to [`Scales::length`] or [`Scales::force`]; infinite where a force has
-    /// nothing to act on.
+    /// Amount of the violation, relative to [`Scales::length`] or [`Scales::force`]; infinite if a force acts where no contact is
+    /// possible.
     pub amount: f64,
     /// The tolerance of `amount`.
     pub allowed: f64,
@@ -114,10 +114,10 @@ pub struct Finding {
     pub numbers: Numbers,
 }
 
-/// What was seen of a node.
+/// Data of a node.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Numbers {
-    /// Distance from the surface (length), negative inside.
+    /// Distance from the surface (length); negative is penetration.
     pub gap: f64,
     /// Force on the node along the normal; compression positive.
     pub f_n: f64,
@@ -125,14 +125,14 @@ pub struct Numbers {
     pub f_t: f64,
     /// Friction bound, tan φ F_n + c (eqn 20).
     pub limit: f64,
-    /// Way of the node's foot along t since the last accepted state (length).
+    /// Motion of the node's closest point along t since the last accepted state (length).
     pub slip: f64,
 }
 
-/// What was found of a state; empty before anything is judged.
+/// Findings for a state; initially empty.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Verdict {
-    /// The worst place for every law, in the order of [`Law::ALL`]. `None` if the law applied nowhere.
+    /// The worst place for every law, in the order of [`Law::ALL`]. `None` if the law did not apply.
     pub worst: [Option<Finding>; 8],
     /// The same for [`Law::OF_BONDS`].
     #[serde(default, skip_serializing_if = "is_nothing")]
@@ -146,7 +146,7 @@ fn is_nothing(worst: &[Option<Finding>; 3]) -> bool {
 }
 
 impl Verdict {
-    /// Keeps `finding` if it is worse than what is known of its law.
+    /// Records `finding` if it is worse than the previous one for its law.
     pub fn add(&mut self, finding: Finding) {
         let worst = match finding.law {
             Law::Work => &mut self.work,
@@ -160,18 +160,18 @@ impl Verdict {
         }
     }
 
-    /// The worst place for a law. `None` if it applied nowhere.
+    /// The worst place for a law. `None` if it did not apply.
     pub fn of(&self, law: Law) -> Option<Finding> {
         let mut all = self.findings().chain(&self.work);
         all.find(|found| found.law == law).copied()
     }
 
-    /// The worst place for every law that applied, the laws of bonds last.
+    /// The worst place for every law that applied, with the laws of bonds last.
     pub fn findings(&self) -> impl Iterator<Item = &Finding> {
         self.worst.iter().chain(&self.bonds).flatten()
     }
 
-    /// The finding with the largest amount relative to its tolerance. `None` if no law applied anywhere.
+    /// The finding with the largest amount relative to its tolerance. `None` if no law applied.
     pub fn largest(&self) -> Option<Finding> {
         let all = self.findings().copied();
         all.reduce(|worst, next| {
@@ -195,7 +195,7 @@ impl Finding {
         self.times().is_nan() || self.times() > 1.0
     }
 
-    /// Amount over tolerance; more than 1 is broken.
+    /// Amount divided by tolerance; a law is violated above 1.
     pub fn times(&self) -> f64 {
         self.amount / self.allowed
     }

@@ -1,22 +1,21 @@
 //! Projection of a slave node on the chains of interface elements that it may touch (Fig. 2).
 //!
-//! S* is the closest point of all candidate elements. Between two elements that meet at an angle the normal at the
-//! common node is the mean of the two; the pieces of a smooth chain ([`super::smooth`]) meet at none. Past an end of a
-//! chain there is nothing to touch. Frame: the outward normal n
-//! lies to the right of the walk along the chain, t is n turned 90 degrees anticlockwise, that is, t points along
-//! the walk; the gap is (x_S − x_S*) · n and negative where the node penetrates.
+//! S* is the closest point of all candidate elements. At the common node of two elements that meet at an angle, the normal is the
+//! mean of both; the pieces of a smooth chain ([`super::smooth`]) do not meet at an angle. Beyond an end of a chain there is no
+//! contact. Frame: the outward normal n is on the right of the walk along the chain, and t is n turned 90 degrees anticlockwise,
+//! so t points along the walk. The gap is (x_S − x_S*) · n; negative is penetration.
 
 use crate::contact::element::{Element, Places};
 use crate::fem::lagrange::MAX_NODES;
 use crate::model::Surface;
 
-/// How far past an end of a chain a node still counts as over it, in lengths of the last element.
+/// Distance beyond an end of a chain at which a node still counts as over it, relative to the last element's length.
 const END_TOLERANCE: f64 = 1e-9;
-/// By how much another element must be closer before a node leaves its own, relative to the element's length.
+/// Minimum difference in distance for a node to change its element, relative to the element's length.
 const STAY_TOLERANCE: f64 = 1e-12;
-/// Part of a distance by which another may be larger and still be the same but for round-off.
+/// Relative difference below which two distances are equal up to round-off.
 const NEARLY: f64 = 1e-9;
-/// Coordinates ξ closer than this belong to the same closest point: their distances differ by round-off only.
+/// Coordinates ξ closer than this belong to the same closest point: their distances differ only by round-off.
 const NEXT_TO: f64 = 1e-6;
 
 /// A point of a chain of interface elements.
@@ -26,7 +25,7 @@ pub struct SurfacePoint {
     pub surface: usize,
     /// Number of the element in the surface.
     pub element: usize,
-    /// Coordinate ξ in the element, −1 to 1; without bounds on an endless line.
+    /// Coordinate ξ in the element, −1 to 1; unbounded on an endless line.
     pub xi: f64,
 }
 
@@ -43,13 +42,12 @@ pub struct Projection {
     pub shape: [f64; MAX_NODES],
     /// dN_i/dξ there.
     pub shape_slope: [f64; MAX_NODES],
-    /// Derivatives of the element's curve. `None` if S* lies on an end of the element, unless a
-    /// smooth chain goes on there.
+    /// Derivatives of the element's curve. `None` if S* is at an end of the element, unless a smooth chain continues there.
     pub curve: Option<Curve>,
 }
 
 impl Projection {
-    /// The same place seen along another normal (unit): that of a corner in which a slave node at `slave` is held.
+    /// The same point with another normal (unit): that of a corner in which a slave node at `slave` is held.
     pub fn along(self, normal: [f64; 2], slave: [f64; 2]) -> Self {
         let to = [slave[0] - self.foot[0], slave[1] - self.foot[1]];
         Projection {
@@ -87,8 +85,8 @@ pub fn tangent(normal: [f64; 2]) -> [f64; 2] {
 
 /// Finds S* for a slave node at `slave` among the surfaces `candidates`.
 ///
-/// `positions` are the current positions of the scene's nodes. `previous` is the spot that the node had; it keeps the
-/// element unless another one is closer by more than round-off. `None` past the ends of all surfaces.
+/// `positions` are the current positions of the scene's nodes. `previous` is the last surface point of the node; the node stays
+/// on its element unless another one is closer by more than round-off. `None` beyond the ends of all surfaces.
 pub fn project(
     slave: [f64; 2],
     surfaces: &[Surface],
@@ -100,7 +98,7 @@ pub fn project(
     (!past_end(&surfaces[spot.surface], spot, positions, slave)).then_some(spot)
 }
 
-/// Like [`project`], but accepts the end of a chain as S* where the node lies past that end.
+/// Like [`project`], but accepts the end of a chain as S* if the node lies beyond it.
 pub fn closest_point(
     slave: [f64; 2],
     surfaces: &[Surface],
@@ -118,7 +116,7 @@ pub fn closest_point(
     };
     for &surface in candidates {
         for (element, curve) in Element::all(&surfaces[surface]).enumerate() {
-            // Before the first element is found, each would be closer than the one before, all the way to the slave node.
+            // Before the first element is found, every element up to the slave node would be closer than the previous one.
             if best.is_none()
                 && !surfaces[surface].endless
                 && Bounds::new(curve.nodes, positions).lies_beyond(curve, slave, reach)
@@ -142,11 +140,11 @@ pub fn closest_point(
     best.map(|best| best.spot)
 }
 
-/// Refines S* with Newton's method, starting from a nearby spot.
+/// Refines S* with Newton's method, starting from a nearby surface point.
 ///
-/// [`project`] compares distances. At the distance g it cannot separate two points of a surface that are closer together than
-/// about √(g · round-off). This error vanishes for a node on its surface. For a node that transmits a force across a distance
-/// it changes the forces by more than any tolerance.
+/// [`project`] compares distances. At the distance g it cannot separate two points of a surface that are closer than about √(g ·
+/// round-off). This error vanishes for a node on its surface, but for a node that transmits a force across a distance it changes
+/// the forces by more than any tolerance.
 pub fn sharpen(
     slave: [f64; 2],
     surfaces: &[Surface],
@@ -166,7 +164,7 @@ pub fn sharpen(
     }
 }
 
-/// Distance to the closest node of surfaces whose elements go through their nodes.
+/// Distance to the closest node of surfaces whose curves interpolate their nodes.
 fn nearest_node(
     slave: [f64; 2],
     surfaces: &[Surface],
@@ -190,8 +188,8 @@ struct Best {
     distance: f64,
 }
 
-/// Takes the closest point of the element of `spot` if it is closer than the best so far by more than round-off; `warm`
-/// says that the ξ of `spot` is a good guess.
+/// Takes the closest point of the element of `spot` if it is closer than the best so far by more than round-off; with `warm`, the
+/// ξ of `spot` is a good initial guess.
 fn consider(
     slave: [f64; 2],
     surfaces: &[Surface],
@@ -244,16 +242,16 @@ pub fn border(
     })
 }
 
-/// Sides the angle between whose normals is less than twice this (radians) meet without a kink.
+/// Two sides meet without a kink if the angle between their normals is less than twice this (radians).
 pub const STRAIGHT: f64 = 1e-9;
 
-/// The diagonal of the box around the nodes of a spot's element (length).
+/// The diagonal of the bounding box of an element's nodes (length).
 pub fn element_size(surface: &Surface, spot: SurfacePoint, positions: &[[f64; 2]]) -> f64 {
     Bounds::new(&surface.elements[spot.element], positions).size()
 }
 
-/// dx/dξ of the two elements that meet at a border, in the order of the walk. `turned` corrects each for the local rotation of its
-/// element there. `None` where no two elements meet, and on a smooth chain, which has no corners.
+/// dx/dξ of the two elements that meet at a border, in walking order. `turned` corrects each for the local rotation of its
+/// element there. `None` if no two elements meet, and on smooth chains, which have no corners.
 pub fn slopes_at_border(
     surface: &Surface,
     border: SurfacePoint,
@@ -280,7 +278,7 @@ pub fn slopes_at_border(
     })
 }
 
-/// Whether two elements meet at a border, and not straight ([`STRAIGHT`]).
+/// Whether two elements meet at a border at an angle ([`STRAIGHT`]).
 pub fn has_kink(surface: &Surface, border: SurfacePoint, positions: &[[f64; 2]]) -> bool {
     if !surface.smooth.is_empty() {
         return false;
@@ -292,11 +290,11 @@ pub fn has_kink(surface: &Surface, border: SurfacePoint, positions: &[[f64; 2]])
     let across = slope_at(surface, other, xi, positions);
     let cross = own[0] * across[1] - own[1] * across[0];
     let dot = own[0] * across[0] + own[1] * across[1];
-    // No arc tangent for what is as small as its argument.
+    // For small angles, the arc tangent equals its argument.
     cross.abs() > 2.0 * STRAIGHT * dot
 }
 
-/// Geometry at a spot, for a slave node at `slave`.
+/// Geometry at a surface point, for a slave node at `slave`.
 pub fn projection_at(
     surfaces: &[Surface],
     spot: SurfacePoint,
@@ -324,12 +322,12 @@ pub fn projection_at(
     }
 }
 
-/// Outward normal of a spot's own element.
+/// Outward normal of a surface point's own element.
 pub fn normal(surface: &Surface, spot: SurfacePoint, positions: &[[f64; 2]]) -> [f64; 2] {
     right_of(slope_at(surface, spot.element, spot.xi, positions))
 }
 
-/// Outward normal at a spot, dx/dξ of whose element is `slope`: the mean of both sides' where two elements meet.
+/// Outward normal at a surface point with this dx/dξ: at a border, the mean of both sides.
 fn normal_at(
     surface: &Surface,
     spot: SurfacePoint,
@@ -352,7 +350,7 @@ pub fn mean_normal(one: [f64; 2], other: [f64; 2]) -> [f64; 2] {
     unit([own[0] + across[0], own[1] + across[1]]).unwrap_or(own)
 }
 
-/// The last place on the side that lies ahead of a border (along the walk), or behind it, that has the side's own normal.
+/// The last point that has the side's own normal, on the side ahead of a border (along the walk) or on the one behind it.
 pub fn beside(surface: &Surface, border: SurfacePoint, ahead: bool) -> SurfacePoint {
     let own = (border.xi < 0.0) == ahead;
     let across = || neighbour(surface, border).filter(|_| !own);
@@ -370,7 +368,7 @@ fn slope_at(surface: &Surface, element: usize, xi: f64, positions: &[[f64; 2]]) 
     blend(element.nodes, positions, &element.slopes(xi))
 }
 
-/// The element that meets the spot's own there, and ξ on it. `None` inside an element, and at an end of the chain.
+/// The element that meets that of the surface point there, and ξ on it. `None` inside an element, and at an end of the chain.
 pub(super) fn neighbour(surface: &Surface, spot: SurfacePoint) -> Option<(usize, f64)> {
     let count = surface.elements.len();
     let own = Element::of(surface, spot.element);
@@ -403,8 +401,7 @@ fn past_end(
     beyond > END_TOLERANCE * Bounds::new(nodes, positions).size() * length(slope)
 }
 
-/// Distance to the closest point of the endless straight line through an element of two nodes, and its coordinate,
-/// which is not bounded.
+/// Distance to the closest point of the infinite straight line through a 2-node element, and its unbounded coordinate.
 fn closest_of_line(element: Element<'_>, positions: &[[f64; 2]], slave: [f64; 2]) -> (f64, f64) {
     let at = |xi: f64| blend(element.nodes, positions, &element.shape(xi).n);
     let (start, end) = (at(-1.0), at(1.0));
@@ -455,8 +452,8 @@ fn closest(
     (squared.sqrt(), xi)
 }
 
-/// Newton's method for (x_S − x) · x' = 0 within |ξ| ≤ 1; Gauss-Newton where the second derivative of the squared
-/// distance is small or negative, x'·x' − (x_S − x)·x'' <= 0.1 x'·x'. The curve's nodes are at `places`.
+/// Newton's method for (x_S − x) · x' = 0 within |ξ| ≤ 1; Gauss-Newton if the second derivative of the squared distance is small
+/// or negative, x'·x' − (x_S − x)·x'' <= 0.1 x'·x'. `places` are the positions of the curve's nodes.
 fn descend(element: Element<'_>, places: &Places, slave: [f64; 2], start: f64) -> f64 {
     let mut xi = start;
     for _ in 0..50 {
@@ -502,7 +499,7 @@ fn away(slave: [f64; 2], x: [f64; 2]) -> [f64; 2] {
     [slave[0] - x[0], slave[1] - x[1]]
 }
 
-/// `hypot` costs ten times as much and is not needed: lengths of a scene neither overflow nor underflow when squared.
+/// `hypot` is ten times slower and unnecessary: squared lengths of a scene neither overflow nor underflow.
 pub(super) fn length(v: [f64; 2]) -> f64 {
     (v[0] * v[0] + v[1] * v[1]).sqrt()
 }
@@ -512,7 +509,7 @@ pub(super) fn unit(v: [f64; 2]) -> Option<[f64; 2]> {
     (length > 0.0).then(|| [v[0] / length, v[1] / length])
 }
 
-/// The box around the nodes of an element.
+/// The bounding box of an element's nodes.
 pub(super) struct Bounds {
     low: [f64; 2],
     high: [f64; 2],
@@ -521,7 +518,7 @@ pub(super) struct Bounds {
 impl Bounds {
     pub fn new(nodes: &[usize], positions: &[[f64; 2]]) -> Self {
         let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        // Comparisons as the processor has them; min and max would look for what is no number.
+        // Plain comparisons compile to single instructions; `min` and `max` would handle NaN.
         for &n in nodes {
             let at = positions[n];
             for k in 0..2 {
@@ -536,12 +533,12 @@ impl Bounds {
         [self.high[0] - self.low[0], self.high[1] - self.low[1]]
     }
 
-    /// Its diagonal.
+    /// Length of the diagonal.
     fn size(&self) -> f64 {
         length(self.sides())
     }
 
-    /// Whether the whole element, whose nodes these bounds are around, is further from a point than `distance`.
+    /// Whether the whole element with these node bounds is further from a point than `distance`.
     pub fn lies_beyond(&self, element: Element<'_>, point: [f64; 2], distance: f64) -> bool {
         let bulge = element.bulge(self.sides());
         let outside = |k: usize| {
@@ -589,7 +586,7 @@ mod tests {
     }
 
     #[test]
-    fn past_an_end_there_is_nothing_to_touch() {
+    fn there_is_no_contact_beyond_an_end() {
         let (s, x) = floor();
         assert!(project([2.01, 0.0], &s, &[0], &x, None).is_none());
         assert!(project([2.0, -0.3], &s, &[0], &x, None).is_some());

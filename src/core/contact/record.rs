@@ -1,4 +1,4 @@
-//! What a minor iteration found at one slave node.
+//! Result of a minor iteration at one slave node.
 
 use crate::contact::corner::{Side, split};
 use crate::contact::projection::SurfacePoint;
@@ -6,15 +6,16 @@ use crate::contact::table2::{Decision, Rule};
 use crate::model::{Friction, Mode};
 use serde::{Deserialize, Serialize};
 
-/// What a minor iteration found at one slave node. Forces are totals, on the slave node.
+/// Result of a minor iteration at one slave node. Forces are total forces on the slave node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ContactRecord {
-    /// Table 2's verdict, with the numbers that it compared. `decision.before` is the mode of this solve and
-    /// `decision.next` the mode that the next one takes.
+    /// The decision of Table 2, with the compared numbers. `decision.before` is the mode of this solve and `decision.next` that
+    /// of the next.
     pub decision: Decision,
-    /// Whether the mode of this solve, or the next, was forced by the user.
+    /// Whether the user forced the mode of this or the next solve.
     pub forced: Forced,
-    /// Gap after this solve, on the frozen geometry; negative is penetration, by which a touching node's bond gives way.
+    /// Gap after this solve, on the frozen geometry; negative is penetration, which includes the deformation of a touching node's
+    /// bond.
     pub gap: f64,
     /// Normal force; compression positive.
     pub f_n: f64,
@@ -22,26 +23,26 @@ pub struct ContactRecord {
     pub f_t: f64,
     /// T_max of this solve (eqn 20): the largest tangential force that friction can give, with its sign.
     pub t_max: f64,
-    /// T_max that this solve was made with (the lagged one); equal to `t_max` where it has settled.
+    /// T_max used in this solve (lagged); equals `t_max` once it has converged.
     pub t_max_used: f64,
-    /// Slip u_tS* − u_tS, as the settings count it.
+    /// Slip u_tS* − u_tS, accumulated as the settings define.
     pub slip: f64,
-    /// Length of the surface from S* to where the node stuck, with the sign of slip; 0 while it is free.
+    /// Distance along the surface from S* to the stick point, with the sign of slip; 0 while the node is free.
     pub drift: f64,
-    /// Where S* lies. `None` past the ends of all surfaces.
+    /// Position of S*. `None` beyond the ends of all surfaces.
     pub spot: Option<SurfacePoint>,
     /// Outward normal n at S*.
     pub normal: [f64; 2],
     /// Position of S* at the start of this major iteration.
     pub foot: [f64; 2],
-    /// Half the angle between the normals of the two sides that hold it ([`crate::contact::state::ContactState::corner`]), in radians; `None` where
-    /// one side alone does.
+    /// Half the angle (radians) between the normals of the two sides that hold the node
+    /// ([`crate::contact::state::ContactState::corner`]); `None` if a single side does.
     pub corner: Option<f64>,
-    /// Whether a force component (normal, tangential) is left to the supports, since no unknown takes part in its equation.
+    /// Whether supports carry a force component (normal, tangential), because its equation contains no unknown.
     pub carried: [bool; 2],
 }
 
-/// What one of two sides gives, in its own frame (n, t).
+/// Force from one of two sides, in the frame (n, t) of that side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SideForce {
     /// Normal force; compression positive.
@@ -53,17 +54,17 @@ pub struct SideForce {
 }
 
 impl ContactRecord {
-    /// Whether an attached solver takes another mode next than the rules by which it says that it decides want on the same numbers,
-    /// and nobody forces it.
+    /// Whether an attached solver selects another next mode than its declared rules give for the same numbers, without being
+    /// forced.
     pub fn differs(&self) -> bool {
         let decision = &self.decision;
         let own = !matches!(decision.rule, Rule::Held | Rule::Waits);
         own && self.forced == Forced::No && decision.wanted != decision.next
     }
 
-    /// What each of the two sides that hold the node gives, in the order of the walk; `friction` is that of one side. With
-    /// friction the split is not unique: it is the one of least norm ([`split`]). `None` where one side alone holds the node, and
-    /// where both together cannot give the force.
+    /// The force from each of the two sides that hold the node, in walking order; `friction` is that of one side. With friction
+    /// the split is not unique, and the one of least norm is returned ([`split`]). `None` if a single side holds the node, or if
+    /// both together cannot give the force.
     pub fn sides(&self, friction: &Friction) -> Option<[SideForce; 2]> {
         let [one, other] = Side::pair(self.normal, self.corner?, friction);
         let [c, s] = self.normal;

@@ -23,7 +23,7 @@ pub(super) struct Touching {
 pub(super) enum Past {
     /// The node touched the side; its slip along t since then (length).
     Touched(f64),
-    /// The node was open; the travel of its foot along t since then (length).
+    /// The node was open; the motion of its closest point along t since then (length).
     Open(f64),
     /// The node was over another surface, or over no surface.
     Elsewhere,
@@ -47,8 +47,8 @@ impl Amounts {
     }
 }
 
-/// Slip (length) along another surface of a node that slid along it to the point where it meets `this` side. `None` if the node
-/// did not slide there.
+/// Slip (length) of a node along another surface to the point where that surface meets `this` side. `None` if the node did not
+/// slide there.
 pub(super) fn slip_into(
     surfaces: &[Surface],
     sides: &[Touching],
@@ -153,8 +153,8 @@ pub(super) fn in_corner(
     }
 }
 
-/// Whether `one` precedes `other` along the walk, for two sides that meet. On two surfaces, the surface that ends at the common
-/// point precedes the surface that begins there; where two surfaces cross, the order is that of the walk into their concave corner.
+/// Whether `one` precedes `other` in walking order, for two sides that meet. On two surfaces, the surface that ends at the common
+/// point precedes the surface that begins there; if two surfaces cross, the order is that of the walk into their concave corner.
 fn comes_first(surfaces: &[Surface], one: &Touching, other: &Touching) -> bool {
     if one.spot.surface != other.spot.surface {
         return match (one.end, other.end) {

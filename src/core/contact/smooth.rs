@@ -1,8 +1,8 @@
-//! A smooth curve through all nodes of a master chain, so that its normal does not jump between two elements.
+//! A smooth curve through all nodes of a master chain, so that its normal does not jump between elements.
 //!
-//! Between the nodes b and c the curve is the cubic with their places and slopes at its ends (Hermite). The slope at a node
-//! is that of the parabola through it and its two neighbours (Catmull & Rom 1974 for even distances; Overhauser 1968). With
-//! knots s, the way along the straight chords from node to node before anything deforms, and h = s_c − s_b,
+//! Between the nodes b and c the curve is the cubic with given positions and slopes at its ends (Hermite). The slope at a node is
+//! that of the parabola through it and its two neighbours (Catmull & Rom 1974 for equal distances; Overhauser 1968). With knots
+//! s, the distance along the undeformed straight chords between nodes, and h = s_c − s_b,
 //!
 //! ```text
 //! x(t) = h00(t) x_b + h10(t) h x'_b + h01(t) x_c + h11(t) h x'_c            t = (s − s_b)/h = (1 + ξ)/2
@@ -10,22 +10,22 @@
 //! h00 = 2t³ − 3t² + 1    h10 = t³ − 2t² + t    h01 = 3t² − 2t³    h11 = t³ − t²
 //! ```
 //!
-//! Around a closed chain that goes on for ever. At an end of an open one the slope is that of the parabola through the last
-//! three nodes, which the last piece then is; a chain of two nodes is straight.
+//! On a closed chain this holds everywhere. At an end of an open chain the slope is that of the parabola through the last three
+//! nodes, so the last piece is this parabola; a chain of two nodes is straight.
 //!
-//! The knots never change, so a place on the curve is a fixed weighted mean of the places of up to four nodes, Σ N_i x_i with
-//! Σ N_i = 1: the curve turns and moves with its nodes, all that holds for an element with shape functions holds for a
-//! piece, and a force at its foot is spread over the four so that force and moment are kept. x' is continuous and x'' jumps
-//! at the nodes. Of a smooth curve through the nodes the distance is O(h³), and of a circle with evenly spaced
-//! nodes 3h⁴/128 radii, with h the angle between two.
+//! The knots are constant, so a point of the curve is a fixed weighted mean of up to four node positions: Σ N_i x_i, where the
+//! N_i sum to one. Hence the curve rotates and moves with its nodes, a piece behaves like an element with shape functions, and a force on it
+//! is distributed over the four nodes such that force and moment are preserved. x' is continuous, and x'' jumps at the nodes. The
+//! distance from a smooth curve through the nodes is O(h³), and from a circle with evenly spaced nodes 3h⁴/128 radii, where h is
+//! the angle between two nodes.
 //!
-//! The curve knows no corners: it is rounded where the chain turns sharply. A real corner wants two surfaces.
+//! The curve has no corners: sharp turns of the chain are rounded. A real corner requires two surfaces.
 
 use crate::fem::lagrange::{MAX_NODES, Shape};
 use crate::model::{Node, Piece, STENCIL, Surface};
 
-/// Makes the chain of a surface smooth: its elements are then the pieces from node to node. The chain's elements must follow
-/// each other, with distinct nodes, three or more of them if it is closed.
+/// Makes the chain of a surface smooth: its elements are then the pieces between nodes. The chain's elements must be connected,
+/// with distinct nodes, at least three of them if it is closed.
 pub fn smooth(surface: &mut Surface, nodes: &[Node]) {
     let chain = walk(&surface.elements);
     let closed = chain.len() > 2 && chain.first() == chain.last();
@@ -34,7 +34,7 @@ pub fn smooth(surface: &mut Surface, nodes: &[Node]) {
     (surface.elements, surface.smooth) = (elements, pieces);
 }
 
-/// The nodes of a chain in walking order; the first of a closed one comes again at the end.
+/// The nodes of a chain in walking order; a closed chain repeats its first node at the end.
 fn walk(elements: &[Vec<usize>]) -> Vec<usize> {
     let mut chain: Vec<usize> = elements.iter().flatten().copied().collect();
     chain.dedup();
@@ -60,7 +60,7 @@ fn piece(chain: &[usize], closed: bool, k: usize, nodes: &[Node]) -> (Vec<usize>
     };
     let h = chord(b, c);
     let first = usize::from(before.is_some());
-    // Slopes times h, as shares of (the node before, b, c) and of (b, c, the node behind).
+    // Slopes times h, as weights of (the node before, b, c) and of (b, c, the node after).
     let early = before.map(|a| {
         let k = chord(a, b);
         let (share, own) = (h / (k + h) * (h / k), k / (k + h));
@@ -77,8 +77,7 @@ fn piece(chain: &[usize], closed: bool, k: usize, nodes: &[Node]) -> (Vec<usize>
             *slope += share;
         }
     };
-    // Where a parabola is missing, the slope at that end is that of the other one there: twice the chord less its slope at
-    // the end between them.
+    // If a parabola is missing, its slope follows from the other parabola: twice the chord minus the slope at the other end.
     let other = |[x, y, z]: [f64; 3], chord: [f64; 3]| {
         [2.0 * chord[0] - x, 2.0 * chord[1] - y, 2.0 * chord[2] - z]
     };
@@ -101,7 +100,7 @@ fn piece(chain: &[usize], closed: bool, k: usize, nodes: &[Node]) -> (Vec<usize>
         .into_iter()
         .flatten()
         .collect();
-    // Around a triangle, the node before is the one behind.
+    // On a triangle, the node before equals the node after.
     if before.is_some() && before == behind {
         stencil.pop();
         for slope in &mut slopes {
@@ -111,7 +110,7 @@ fn piece(chain: &[usize], closed: bool, k: usize, nodes: &[Node]) -> (Vec<usize>
     (stencil, Piece { first, slopes })
 }
 
-/// The functions N_i of a piece at ξ, with two derivatives by ξ.
+/// The functions N_i of a piece at ξ, with two derivatives with respect to ξ.
 pub fn shape(piece: &Piece, xi: f64) -> Shape {
     let t = 0.5 * (1.0 + xi);
     let (n, d, dd) = (
@@ -146,7 +145,7 @@ pub fn shape(piece: &Piece, xi: f64) -> Shape {
     }
 }
 
-/// The share of each node in a sum of place and slope at the beginning, and place and slope at the end.
+/// The weight of each node in a combination of position and slope at the start and at the end.
 fn hermite([b, slope_b, c, slope_c]: [f64; 4], piece: &Piece) -> [f64; MAX_NODES] {
     let mut shares = [0.0; MAX_NODES];
     for (k, share) in shares.iter_mut().enumerate().take(STENCIL) {

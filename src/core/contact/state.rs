@@ -1,4 +1,4 @@
-//! What one slave node brings from minor iteration to minor iteration.
+//! The state of a slave node between minor iterations.
 
 use crate::contact::corner;
 use crate::contact::projection::SurfacePoint;
@@ -6,53 +6,54 @@ use crate::contact::record::Forced;
 use crate::model::{Friction, InitialState, Mode, Settings, SlipCount, Sticking};
 use serde::{Deserialize, Serialize};
 
-/// One slave node between two minor iterations.
+/// A slave node between two minor iterations.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ContactState {
     /// Mode of the next minor iteration.
     pub mode: Mode,
     /// Mode forced by the user, if any.
     pub forced: Forced,
-    /// Total normal force F_n^(k−1) on the slave node at the start of the present major iteration; compression positive.
+    /// Total normal force F_n^(k−1) on the slave node at the start of the current major iteration; compression positive.
     pub f_n: f64,
-    /// Total tangential force F_t^(k−1) there, along t.
+    /// Total tangential force F_t^(k−1) along t, at the same time.
     pub f_t: f64,
     /// T_max for the next minor iteration, signed.
     pub t_max: f64,
     /// Direction of T_max: −1, 0 (unknown) or 1.
     pub sign: f64,
-    /// Slip counted up to the start of the present major iteration.
+    /// Slip accumulated up to the start of the current major iteration.
     pub slip: f64,
-    /// Where on the master it stuck, or was when an increment was accepted last. `None` after a major iteration in which the
-    /// node opened, unless `kept` ([`crate::contact::stick_point`]).
+    /// Point of the master where the node stuck, or where it was when an increment was last accepted. `None` after a major
+    /// iteration in which the node opened, unless `kept` ([`crate::contact::stick_point`]).
     pub anchor: Option<SurfacePoint>,
-    /// Whether the anchor is kept while the node is free, so that its net slip counts.
+    /// Whether the anchor is retained while the node is free, so that its net slip counts.
     #[serde(default)]
     pub kept: bool,
-    /// Length of the surface from S* to the anchor at the start of the present major iteration, positive along t; less elastic
-    /// slip where the bond gives way along t. In a corner, and of a tied node: distance of the node from its place, along t.
+    /// Distance along the surface from S* to the anchor at the start of the current major iteration, positive along t, minus
+    /// elastic slip if the bond has a compliance along t. In a corner, and for a tied node: distance of the node from its point,
+    /// along t.
     pub drift: f64,
-    /// Elastic slip that the node had when it was anchored (length).
+    /// Elastic slip of the node when it was anchored (length).
     #[serde(default, skip_serializing_if = "is_zero")]
     pub stretched: f64,
-    /// Ratio ρ of tangential to normal travel where the node touched in the present major iteration; else 0.
+    /// Ratio ρ of tangential to normal travel if the node touched in the current major iteration; else 0.
     pub ratio: f64,
-    /// Ratio of tangential to normal travel in the last minor iteration: the ρ that the node takes if it touches.
+    /// Ratio of tangential to normal travel in the last minor iteration, used as ρ if the node touches.
     pub travel: f64,
-    /// Where S* lies. `None` past the ends of all surfaces.
+    /// Position of S*. `None` beyond the ends of all surfaces.
     pub spot: Option<SurfacePoint>,
-    /// Half the angle (radians) between the normals of the two sides that hold the node where they meet; S* is that point
-    /// then. Positive in a concave corner, negative on a convex vertex. `None` if one side alone holds it.
+    /// Half the angle (radians) between the normals of the two sides that hold the node where they meet; S* is then that point.
+    /// Positive in a concave corner, negative on a convex vertex. `None` if a single side holds it.
     #[serde(default)]
     pub corner: Option<f64>,
-    /// The place on the second surface, where the corner is one between two ([`crate::contact::crossing`]); S* is that on the
-    /// first.
+    /// The point on the second surface, if the corner is between two surfaces ([`crate::contact::crossing`]); S* is the one on
+    /// the first.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub second: Option<SurfacePoint>,
-    /// The master element that it left last in the present increment, if any.
+    /// The last master element that the node left in the current increment, if any.
     #[serde(default)]
     pub left: Option<usize>,
-    /// Outward normal at the start of the present major iteration.
+    /// Outward normal at the start of the current major iteration.
     pub normal: [f64; 2],
 }
 
@@ -61,12 +62,12 @@ fn is_zero(length: &f64) -> bool {
 }
 
 impl ContactState {
-    /// Whether the user says which mode it has.
+    /// Whether the user forces the mode.
     pub fn is_forced(&self) -> bool {
         self.forced != Forced::No
     }
 
-    /// A node before the first minor iteration: its mode, and what it brings into the scene.
+    /// A node before the first minor iteration: its mode, and its initial state.
     pub fn new(mode: Mode, brought: &InitialState) -> Self {
         ContactState {
             mode,
@@ -94,7 +95,7 @@ impl ContactState {
         }
     }
 
-    /// Anchors the node at a spot, where its bond gives way by `give` along t (length by force).
+    /// Anchors the node at a surface point, where its bond has the compliance `give` along t (length per force).
     pub fn anchor_at(&mut self, spot: Option<SurfacePoint>, give: f64) {
         self.anchor = spot;
         self.stretched = match give {
@@ -103,8 +104,8 @@ impl ContactState {
         };
     }
 
-    /// Slip up to the start of the present major iteration, which sticking takes back (length): counted, or measured from the
-    /// anchor, as the settings say.
+    /// Slip up to the start of the current major iteration, which sticking undoes (length): accumulated, or measured from the
+    /// anchor, depending on the settings.
     pub fn slipped(&self, settings: &Settings) -> f64 {
         if self.corner.is_some() {
             return self.drift;
@@ -116,8 +117,7 @@ impl ContactState {
         }
     }
 
-    /// Friction where the node stands: `in_force`, or where two sides meet that of both
-    /// ([`corner::widened`]).
+    /// Effective friction of the node: `in_force`, or in a corner that of both sides ([`corner::widened`]).
     pub fn friction(&self, in_force: &Friction) -> Friction {
         match self.corner {
             Some(half) => corner::widened(in_force, half),
@@ -132,13 +132,13 @@ impl ContactState {
     }
 }
 
-/// How many of these contacts, by number, have a mode.
+/// Number of these contacts, given by index, in a mode.
 pub fn in_mode(contacts: &[ContactState], of: &[usize], mode: Mode) -> f64 {
     let has = |contact: &&usize| contacts[**contact].mode == mode;
     of.iter().filter(has).count() as f64
 }
 
-/// The largest drift of these contacts, by number, with its sign.
+/// The largest drift of these contacts, given by index, with its sign.
 pub fn largest_drift(contacts: &[ContactState], of: &[usize]) -> f64 {
     let drifts = of.iter().map(|&contact| contacts[contact].drift);
     drifts.fold(

@@ -1,18 +1,18 @@
-//! Where a node stuck, and how far it has gone from there along its surface.
+//! Stick points, and the distance of nodes from them along the surface.
 //!
-//! The paper's fixed mode asks for no tangential motion within a major iteration and does not remember where the node
-//! stuck. A node that closes a gap g without tangential motion lands on its own S*, so that alone makes no drift; but
-//! what slid in one major iteration and is taken back in the next is a sum of steps along tangents that have turned
-//! and stretched since. The anchor is the material point of the master (surface, element, ξ) where the node stuck:
+//! The paper's fixed mode prevents tangential motion within a major iteration, but has no memory of the stick point. A node that
+//! closes a gap g without tangential motion lands on its S*, so closing causes no drift. But a slip in one major iteration that
+//! is undone in the next is a sum of steps along tangents that have rotated and stretched since. The anchor is the material point
+//! of the master (surface, element, ξ) where the node stuck:
 //!
-//! - it is set where the node touches: where its path, straight over the major iteration, pierces the surface, at
-//!   S* − g ρ t (eqn 14);
-//! - it goes along when an increment is accepted in which the node slides (and with every major iteration, where slip is
-//!   counted over those), and is gone when the node is free, unless the judge has
-//!   asked for the net slip ([`crate::contact::judge`]): then the anchor of the increment's start is kept;
-//! - the drift is the length of the surface from S* to it, positive where it lies ahead of S* along t.
+//! - it is set where the node touches: where its path, straight within the major iteration, meets the surface, at S* − g ρ t (eqn
+//!   14);
+//! - it moves along when an increment is accepted in which the node slides (or with every major iteration, if slip is accumulated
+//!   over these), and is removed when the node is free, unless the judge requires the net slip ([`crate::contact::judge`]): then
+//!   the anchor of the increment's start is kept;
+//! - the drift is the distance along the surface from S* to the anchor, positive if the anchor is ahead of S* along t.
 //!
-//! Drift has the sign of slip, u_tS* − u_tS: what sticking must take back (Table 1).
+//! Drift has the sign of slip, u_tS* − u_tS, and is what sticking must undo (Table 1).
 
 use crate::contact::element::{Element, Places, closed};
 use crate::contact::projection::{
@@ -20,8 +20,7 @@ use crate::contact::projection::{
 };
 use crate::model::Surface;
 
-/// Gauss-Legendre points and weights for the length of an element. They are constants since they are needed in every major
-/// iteration.
+/// Gauss-Legendre points and weights for the length of an element; constants, because every major iteration needs them.
 const POINTS: [(f64, f64); 5] = [
     (-0.906_179_845_938_664, 0.236_926_885_056_189_08),
     (-0.538_469_310_105_683_1, 0.478_628_670_499_366_47),
@@ -30,10 +29,10 @@ const POINTS: [(f64, f64); 5] = [
     (0.906_179_845_938_664, 0.236_926_885_056_189_08),
 ];
 
-/// Where a node that was free at the start of a major iteration touched in it: the point S* − g ρ t (eqn 14) of the surface,
-/// where its straight path pierced it. `None` past the ends of its surface.
+/// Where a node that was free at the start of a major iteration touched: the point S* − g ρ t (eqn 14) where its straight path
+/// meets the surface. `None` beyond the ends of its surface.
 ///
-/// `positions` are the positions at the start of that major iteration, at which `projection` was taken; `ratio` is ρ.
+/// `positions` are the positions at the start of that major iteration, to which `projection` belongs; `ratio` is ρ.
 pub fn pierced(
     surfaces: &[Surface],
     spot: SurfacePoint,
@@ -49,8 +48,8 @@ pub fn pierced(
     project(point, surfaces, &[spot.surface], positions, Some(spot))
 }
 
-/// Ways from a spot along −t and along +t to the ends of its element, where those meet others at an angle (length). `None`
-/// where they do not, or end there.
+/// Distances from a surface point along −t and +t to the ends of its element, where other elements meet it at an angle (length).
+/// `None` if the chain continues straight or ends there.
 pub fn room(surface: &Surface, spot: SurfacePoint, positions: &[[f64; 2]]) -> [Option<f64>; 2] {
     [-1.0, 1.0].map(|xi| {
         let end = SurfacePoint { xi, ..spot };
@@ -59,9 +58,9 @@ pub fn room(surface: &Surface, spot: SurfacePoint, positions: &[[f64; 2]]) -> [O
     })
 }
 
-/// Length of a surface from one point of it to another, positive along the walk; the shorter way round a closed one.
+/// Signed distance between two points along a surface, positive along the walk; on a closed surface the shorter way round.
 ///
-/// Both spots must lie on `surface`.
+/// Both points must lie on `surface`.
 pub fn distance(
     surface: &Surface,
     from: SurfacePoint,
@@ -103,7 +102,7 @@ fn walk(surface: &Surface, from: SurfacePoint, to: SurfacePoint, positions: &[[f
         + part(to.element, -1.0, to.xi)
 }
 
-/// Length of an element's curve from one ξ to another; negative backwards.
+/// Length of an element's curve between two ξ; negative backwards.
 fn length(element: Element<'_>, from: f64, to: f64, positions: &[[f64; 2]]) -> f64 {
     if from == to {
         return 0.0;
@@ -167,7 +166,7 @@ mod tests {
         ] {
             let exact = f64::to_radians(angle);
             let found = distance(&s, from, to, &x);
-            // The 5-node element is a circle to 1e-4 only.
+            // The 5-node element approximates the circle to 1e-4.
             assert!((found - exact).abs() < 1e-4, "{found} {exact}");
         }
         assert_eq!(distance(&s, spot(1, 0.3), spot(1, 0.3), &x), 0.0);
@@ -185,10 +184,10 @@ mod tests {
     }
 
     #[test]
-    fn a_node_touches_where_its_straight_path_pierces_the_surface() {
+    fn a_node_touches_where_its_straight_path_meets_the_surface() {
         let x = [[3.0, 0.0], [-1.0, 0.0]];
         let s = [surface(vec![vec![0, 1]])];
-        // From (0, 0.5), one to the right for every one down: through the floor at (0.5, 0).
+        // From (0, 0.5), one to the right for every one down: meets the floor at (0.5, 0).
         let slave = [0.0, 0.5];
         let start = project(slave, &s, &[0], &x, None).unwrap();
         let at = projection_at(&s, start, &x, slave);

@@ -1,17 +1,17 @@
-//! Caches the feet of all slave nodes of a judged state, so that judging the next state does not search for them again.
+//! Caches the closest points of all slave nodes of a judged state, so that judging the next state need not search for them.
 
 use crate::contact::feet::Foot;
 
-/// Initial capacity for the feet and sides of a node.
+/// Initial capacity for the closest points and sides of a node.
 pub(super) const FEW: usize = 16;
 
-/// Feet of all slave nodes in a state.
+/// Closest points of all slave nodes in a state.
 #[derive(Debug)]
 pub(super) struct Stood {
     /// Positions of all nodes; `near` is the length within which positions counted as equal.
     pub at: Vec<[f64; 2]>,
     pub near: f64,
-    /// Concatenated feet of all slave nodes; `ends` contains the end index of each node's feet.
+    /// Concatenated closest points of all slave nodes; `ends` contains the end index for each node.
     pub feet: Vec<Foot>,
     pub ends: Vec<usize>,
 }
@@ -21,7 +21,7 @@ impl Stood {
         Stood {
             at: Vec::with_capacity(nodes),
             near: 0.0,
-            // A node on the border of two elements has two feet.
+            // A node on the border of two elements has two closest points.
             feet: Vec::with_capacity(2 * slaves + FEW),
             ends: Vec::with_capacity(slaves),
         }
@@ -37,7 +37,7 @@ impl Stood {
         self.ends.push(self.feet.len());
     }
 
-    /// Feet of a slave node.
+    /// Closest points of a slave node.
     pub fn of(&self, slave: usize) -> &[Foot] {
         let from = slave.checked_sub(1).map_or(0, |before| self.ends[before]);
         &self.feet[from..self.ends[slave]]

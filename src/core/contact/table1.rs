@@ -1,8 +1,8 @@
 //! Table 1: the two equations that a slave node adds in each mode, and T_max (eqn 20).
 //!
-//! The unknowns are the increments ΔF_n, ΔF_t of the interaction force. The paper writes a known ΔF_t as a load on
-//! slave and master; here it stays an unknown whose equation gives its value, which is the same system with one row
-//! more and the same columns in every mode:
+//! The unknowns are the increments ΔF_n, ΔF_t of the interaction force. The paper applies a known ΔF_t as a load on slave and
+//! master; here it remains an unknown whose equation gives its value. This is the same system with one more row, and with the
+//! same columns in every mode:
 //!
 //! ```text
 //! slave row:    −n ΔF_n − t ΔF_t      (added to K Δu = ΔP)
@@ -12,44 +12,44 @@
 //! free:     ΔF_n = −F_n                 ΔF_t = −F_t
 //! ```
 //!
-//! A node that slid in an earlier major iteration of the increment and is then found to stick did not slip at all:
-//! sticking takes that slip back, as measured from the point where it stuck ([`crate::contact::stick_point`]) or as counted;
-//! in the paper's reading, counted over a single major iteration, there is nothing to take back.
+//! A node that slid in an earlier major iteration of the increment and is then found to stick has not slipped at all: sticking
+//! undoes that slip, measured from the stick point ([`crate::contact::stick_point`]) or accumulated; in the paper's reading, slip
+//! is accumulated over a single major iteration, and there is nothing to undo.
 
 use crate::model::{Friction, Mode};
 
-/// What an equation says of the motion of S* relative to S.
+/// The component of the motion of S* relative to S in an equation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Motion {
     /// Nothing.
     None,
-    /// Its normal component Δu_nS* − Δu_nS has the factor one.
+    /// The normal component Δu_nS* − Δu_nS, with the factor one.
     Normal,
-    /// Its tangential component Δu_tS* − Δu_tS has the factor one.
+    /// The tangential component Δu_tS* − Δu_tS, with the factor one.
     Tangential,
 }
 
 /// One equation: motion + d_n ΔF_n + d_t ΔF_t = value.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Equation {
-    /// Which component of the relative motion takes part.
+    /// The component of the relative motion in the equation.
     pub motion: Motion,
     /// Factor of ΔF_n.
     pub d_n: f64,
     /// Factor of ΔF_t.
     pub d_t: f64,
-    /// Right-hand side: a length if a motion takes part, else a force.
+    /// Right-hand side: a length if the equation contains a motion, else a force.
     pub value: f64,
 }
 
-/// What a slave node brings into its equations: numbers of the (k−1)th major and the previous minor iteration.
+/// Data of a slave node for its equations, from major iteration k−1 and the previous minor iteration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Known {
     /// Gap g^(k−1), length.
     pub gap: f64,
-    /// Ratio ρ of tangential to normal travel, where the node touched in this major iteration; else 0.
+    /// Ratio ρ of tangential to normal travel, if the node touched in this major iteration; else 0.
     pub ratio: f64,
-    /// Slip already made that sticking must take back (length): the drift from the anchor, or what was counted.
+    /// Previous slip that sticking must undo (length): the drift from the anchor, or the accumulated slip.
     pub slip: f64,
     /// Total normal force F_n^(k−1).
     pub f_n: f64,
@@ -107,8 +107,8 @@ pub fn equations(mode: Mode, known: &Known) -> [Equation; 2] {
     }
 }
 
-/// The equation of a sliding node whose motion in a major iteration is held back by a stiffness κ (force by length):
-/// ΔF_t − κ (Δu_tS* − Δu_tS) = T_max − F_t. Where major iterations come to rest the motion is zero, and this is Table 1's.
+/// The equation of a sliding node whose motion in a major iteration is resisted by a stiffness κ (force per length): ΔF_t − κ
+/// (Δu_tS* − Δu_tS) = T_max − F_t. When the major iterations have converged, the motion is zero, and this is Table 1's equation.
 pub fn braked(sliding: Equation, stiffness: f64) -> Equation {
     Equation {
         motion: Motion::Tangential,
@@ -118,7 +118,7 @@ pub fn braked(sliding: Equation, stiffness: f64) -> Equation {
     }
 }
 
-/// The equation d_n ΔF_n + d_t ΔF_t = −`force`: it makes a total force component zero.
+/// The equation d_n ΔF_n + d_t ΔF_t = −`force`, which makes a total force component zero.
 pub fn gone(d_n: f64, d_t: f64, force: f64) -> Equation {
     Equation {
         motion: Motion::None,
@@ -163,8 +163,8 @@ pub fn t_max(friction: &Friction, f_n: f64, sign: f64) -> f64 {
 }
 
 /// The direction of T_max (−1, 0 or 1): the sign of `f_t` if |F_t| > `tiny_force`; else the sign of `slip` if
-/// |slip| > `tiny_slip`; else `had`. The slip counts since a node that enters sliding without a force would otherwise stay
-/// without friction for ever.
+/// |slip| > `tiny_slip`; else `had`. The slip counts because a node that starts to slide without a force would otherwise stay
+/// without friction forever.
 pub fn direction(f_t: f64, tiny_force: f64, slip: f64, tiny_slip: f64, had: f64) -> f64 {
     #[cfg(mutants)]
     let slip = crate::mutants::pick("t-max-along-the-slip-of-the-node", slip, -slip);

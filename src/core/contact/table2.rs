@@ -1,4 +1,4 @@
-//! Table 2: which mode a slave node takes next, and why.
+//! Table 2: the next mode of a slave node, and the reason.
 
 use crate::model::Mode;
 use serde::de::IntoDeserializer;
@@ -13,7 +13,7 @@ pub enum Rule {
     FixedStays,
     /// F_n > 0 and |F_t| > |T_max|.
     FixedSlides,
-    /// Prescribed motions drag the node over a surface that does not move either: no force can hold it there.
+    /// Prescribed motions drag the node over a surface that does not move either: no force can hold it.
     FixedDragged,
     /// F_n <= 0.
     FixedOpens,
@@ -23,46 +23,46 @@ pub enum Rule {
     SlidingStays,
     /// F_n <= 0.
     SlidingOpens,
-    /// As [`Rule::SlidingStays`], and it comes past the end of its side, onto the next.
+    /// As [`Rule::SlidingStays`], but it passes the end of its side and continues on the next one.
     SlidingPasses,
-    /// Where two sides meet: F_n > 0 and |F_t| < |T_max|, with the T_max of both ([`crate::contact::corner`]).
+    /// In a corner: F_n > 0 and |F_t| < |T_max|, with the T_max of both sides ([`crate::contact::corner`]).
     CornerStays,
-    /// Where two sides meet: F_n > 0 and |F_t| > |T_max|; it slides out along one of them.
+    /// In a corner: F_n > 0 and |F_t| > |T_max|; the node slides out along one of the sides.
     CornerSlides,
-    /// Where two sides meet: F_n <= 0.
+    /// In a corner: F_n <= 0.
     CornerOpens,
-    /// Where two sides meet, at the end of a major iteration: the node slid there, and F_t against that slip is below the least
-    /// friction ([`crate::contact::corner::least_friction`]). The node slides again on the side that it came from.
+    /// In a corner, at the end of a major iteration: the node slid there, and F_t against that slip is below the least friction
+    /// ([`crate::contact::corner::least_friction`]). The node slides again on the side that it came from.
     CornerReleases,
     /// g < 0, rough interface.
     FreeSticks,
     /// g < 0, smooth interface: straight to sliding.
     FreeSlides,
-    /// g < 0, rough interface, by a strategy that lets it slide against its travel.
+    /// g < 0, rough interface, with a strategy in which friction opposes the motion from the start.
     FreeEnters,
     /// g > 0.
     FreeStays,
-    /// The node's projection lies past an end of every surface: nothing to touch.
+    /// The node's projection lies beyond an end of every surface: no contact is possible.
     OffSurface,
-    /// The node is tied to its surface: it is fixed whatever its forces are.
+    /// The node is tied to its surface: it is always fixed.
     Tied,
-    /// The user holds the mode; Table 2 was not obeyed.
+    /// The user holds the mode; Table 2 is overridden.
     Held,
-    /// One change at a time: another node comes first.
+    /// One change at a time: another node changes first.
     Waits,
     /// Newton: F_n − k g <= 0.
     NewtonOpens,
-    /// Newton: F_n − k g > 0, and |F_t + k slip| within the limit that this gives.
+    /// Newton: F_n − k g > 0, and |F_t + k slip| within the resulting limit.
     NewtonSticks,
-    /// Newton: F_n − k g > 0, and |F_t + k slip| beyond that limit.
+    /// Newton: F_n − k g > 0, and |F_t + k slip| beyond the resulting limit.
     NewtonSlides,
     /// A step of Lemke's pivoting, on the problem relaxed by the covering variable.
     Pivots,
-    /// Sweeps of Gauss-Seidel: Coulomb's law at this node, the forces of all others held.
+    /// Gauss-Seidel sweeps: Coulomb's law at this node with all other forces frozen.
     Sweeps,
-    /// The state that was found consistent, by pivoting, by sweeps, or by the census.
+    /// A state found to be consistent by pivoting, sweeps, or the census.
     Found,
-    /// An attached solver decided by rules of its own.
+    /// An attached solver decided by its own rules.
     Theirs,
     /// A strategy outside this package decided; the text is its reason ([`crate::step::Stepper::with_strategy`]).
     #[serde(skip_deserializing)]
@@ -115,9 +115,9 @@ pub enum Tested {
     ShearForce,
     /// sgn(T_max) · slip against 0 (length).
     Slip,
-    /// F_t, positive against the slip into a corner, compared with the least friction there (force).
+    /// F_t, positive against the slip into a corner, against the least friction there (force).
     LeastFriction,
-    /// Way along the surface against the room that is left to the end of the side (length).
+    /// Motion along the surface against the distance to the end of the side (length).
     Room,
     /// g against 0 (length).
     Gap,
@@ -125,18 +125,18 @@ pub enum Tested {
     Pressure,
     /// |F_t + k slip| against tan φ (F_n − k g) + c (force).
     Drag,
-    /// The covering variable of Lemke's pivoting against 0: how far the problem is still relaxed (relative).
+    /// The covering variable of Lemke's pivoting against 0: the remaining relaxation of the problem (relative).
     Cover,
     /// The change of the forces in the last sweep of Gauss-Seidel against 0 (relative).
     Change,
-    /// What an attached solver compares by rules of its own, as far as it tells that (its unit).
+    /// A comparison by an attached solver's own rules (in its unit).
     Own,
 }
 
-/// One inequality of Table 2 with its numbers. Numbers that an attached solver does not tell are infinite.
+/// One inequality of Table 2 with its numbers. Numbers that an attached solver does not report are infinite.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Test {
-    /// What is compared.
+    /// The compared quantities.
     #[serde(deserialize_with = "tested")]
     pub tested: Tested,
     /// Left-hand side.
@@ -148,12 +148,12 @@ pub struct Test {
     /// Signed distance from switching: positive keeps the mode, negative changes it; force or length.
     #[serde(default = "infinite", deserialize_with = "or_infinite")]
     pub margin: f64,
-    /// |margin| is within the tie tolerance.
+    /// Whether |margin| is within the tie tolerance.
     #[serde(default)]
     pub tie: bool,
 }
 
-/// Reads a name; what no rule of ours compares is the solver's own.
+/// Reads a name; unknown ones stand for the solver's own rules.
 fn tested<'de, D: Deserializer<'de>>(from: D) -> Result<Tested, D::Error> {
     let name: StringDeserializer<NoName> = String::deserialize(from)?.into_deserializer();
     Ok(Tested::deserialize(name).unwrap_or(Tested::Own))
@@ -163,32 +163,32 @@ fn infinite() -> f64 {
     f64::INFINITY
 }
 
-/// JSON knows no infinity: `null` stands for it.
+/// JSON has no infinity; `null` stands for it.
 fn or_infinite<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
     Ok(Option::deserialize(from)?.unwrap_or(f64::INFINITY))
 }
 
-/// Table 2's verdict on one node.
+/// Table 2's decision for one node.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Decision {
-    /// Mode of the solve that is checked.
+    /// Mode of the checked solve.
     pub before: Mode,
     /// Mode of the next solve.
     pub next: Mode,
     /// The cell that fired.
     pub rule: Rule,
-    /// The inequalities that were tested, in Table 2's order (F_n first); one or two.
+    /// The tested inequalities in Table 2's order (F_n first); one or two.
     pub tests: [Option<Test>; 2],
-    /// What Table 2 wanted; differs from `next` only where the user holds the mode.
+    /// The mode that Table 2 requires; differs from `next` only if the user holds the mode.
     pub wanted: Mode,
 }
 
-/// What Table 2 looks at, for one node.
+/// The numbers of one node that Table 2 uses.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Numbers {
-    /// Mode of the solve that is checked.
+    /// Mode of the checked solve.
     pub mode: Mode,
-    /// Gap (length), negative where the node penetrates.
+    /// Gap (length); negative is penetration.
     pub gap: f64,
     /// Total normal force; compression positive.
     pub f_n: f64,
@@ -196,35 +196,35 @@ pub struct Numbers {
     pub f_t: f64,
     /// T_max of this solve, signed.
     pub t_max: f64,
-    /// u_tS* − u_tS as counted (length).
+    /// Accumulated slip u_tS* − u_tS (length).
     pub slip: f64,
-    /// How it enters contact.
+    /// How the node enters contact.
     pub entry: Entry,
 }
 
 /// How a free node enters contact.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Entry {
-    /// A rough node, by Table 2.
+    /// With friction, by Table 2: sticks.
     Fixed,
-    /// A smooth one, by Table 2.
+    /// Without friction, by Table 2: slides.
     Smooth,
-    /// A rough one, by a strategy that lets it slide.
+    /// With friction, by a strategy that lets it slide.
     Sliding,
 }
 
-/// What counts as a tie in Table 2.
+/// Tolerances for ties in Table 2.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ties {
-    /// Forces closer than this tie.
+    /// Forces with a smaller difference are tied.
     pub force: f64,
-    /// Lengths closer than this tie.
+    /// Lengths with a smaller difference are tied.
     pub length: f64,
-    /// Ties keep the mode; else the inequalities hold as printed, and neither tolerance is used.
+    /// Whether ties keep the mode; otherwise the inequalities hold as printed, and the tolerances are not used.
     pub keep: bool,
 }
 
-/// Table 2: the mode that follows from a node's numbers.
+/// Table 2: the next mode for a node's numbers.
 pub fn decide(numbers: &Numbers, ties: &Ties) -> Decision {
     let opens = ties.test(
         Tested::NormalForce,
@@ -285,8 +285,8 @@ pub fn decide(numbers: &Numbers, ties: &Ties) -> Decision {
 }
 
 impl Ties {
-    /// An inequality with its numbers; `margin` is its distance from switching, and `tolerance` what counts as a tie
-    /// (force or length, as `tested`).
+    /// An inequality with its numbers; `margin` is its distance from switching, and `tolerance` the tie tolerance (force or
+    /// length, as `tested`).
     pub fn test(
         &self,
         tested: Tested,
@@ -309,7 +309,7 @@ impl Ties {
         }
     }
 
-    /// Whether a test changes the mode; `at_zero` says what the printed table does with an exact tie.
+    /// Whether a test changes the mode; `at_zero` is the printed table's answer for an exact tie.
     fn switches(&self, test: &Test, at_zero: bool) -> bool {
         if test.tie {
             !self.keep && at_zero
@@ -320,18 +320,18 @@ impl Ties {
 }
 
 impl Decision {
-    /// The inequality that decided: the one that changed the mode, or else the last that was tested.
+    /// The deciding inequality: the one that changed the mode, or else the last one tested.
     pub fn decisive(&self) -> Option<&Test> {
         self.tests[1].as_ref().or(self.tests[0].as_ref())
     }
 
-    /// Signed distance of the deciding inequality from switching (force or length); positive kept the mode.
+    /// Signed distance of the deciding inequality from switching (force or length); positive if the mode was kept.
     pub fn margin(&self) -> f64 {
         self.decisive().map_or(f64::INFINITY, |t| t.margin)
     }
 
-    /// The decision on a fixed node that slips although it is fixed, by `slip` (length): its motion is prescribed, no unknown
-    /// can stop it, so it slides.
+    /// Replaces the decision for a fixed node with the slip `slip` (length): its motion is prescribed and no unknown can stop it,
+    /// so it slides.
     pub fn dragged(self, slip: f64) -> Self {
         let test = Test {
             tested: Tested::Slip,
@@ -349,7 +349,7 @@ impl Decision {
         }
     }
 
-    /// What takes the place of a decision on a node that is tied.
+    /// The decision for a tied node.
     pub fn tied() -> Self {
         Decision {
             before: Mode::Fixed,
@@ -360,7 +360,7 @@ impl Decision {
         }
     }
 
-    /// The decision on a fixed node that is held where two sides meet.
+    /// The decision for a fixed node that is held in a corner.
     pub fn in_corner(self) -> Self {
         let rule = match self.rule {
             Rule::FixedStays => Rule::CornerStays,
@@ -390,7 +390,8 @@ impl Decision {
         }
     }
 
-    /// The decision on a node that goes `way` (length, not negative) along its side, of which `room` is left.
+    /// Replaces the decision for a node that moves by `way` (length, not negative) along its side, where the distance `room`
+    /// remains to its end.
     pub fn with_room(self, way: f64, room: f64, ties: &Ties) -> Self {
         if self.rule != Rule::SlidingStays || way <= room {
             return self;

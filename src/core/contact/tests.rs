@@ -1,4 +1,4 @@
-//! The smooth curve of a chain: its places, slopes and normals, the gap to a circle, and how it carries a force.
+//! Tests of smooth chains: positions, slopes and normals, the distance from a circle, and the distribution of a force.
 
 use crate::contact::element::{Element, closed};
 use crate::contact::projection::{project, projection_at, tangent};
@@ -6,7 +6,7 @@ use crate::contact::smooth::smooth;
 use crate::fem::lagrange::MAX_NODES;
 use crate::model::{Node, Surface};
 
-/// A smooth chain of elements of two nodes through these places.
+/// A smooth chain of 2-node elements through these points.
 fn chain(places: &[[f64; 2]], round: bool) -> Surface {
     let nodes: Vec<Node> = places
         .iter()
@@ -50,7 +50,7 @@ fn uneven() -> Vec<[f64; 2]> {
     ]
 }
 
-/// `count` nodes around the unit circle, or along this part of it, anticlockwise.
+/// `count` nodes around the unit circle, or on this fraction of it, anticlockwise.
 fn circle(count: usize, part: f64) -> Vec<[f64; 2]> {
     let whole = part * std::f64::consts::TAU / count as f64;
     (0..count)
@@ -60,7 +60,7 @@ fn circle(count: usize, part: f64) -> Vec<[f64; 2]> {
 }
 
 #[test]
-fn a_piece_is_the_blend_of_the_parabolas_through_its_ends_and_the_node_before_and_behind() {
+fn a_piece_blends_the_parabolas_through_its_ends_and_one_neighbour() {
     let x = uneven();
     let surface = chain(&x, false);
     let mut knots = vec![0.0];
@@ -68,7 +68,7 @@ fn a_piece_is_the_blend_of_the_parabolas_through_its_ends_and_the_node_before_an
         let ([a, b], [c, d]) = (pair[0], pair[1]);
         knots.push(knots[knots.len() - 1] + (c - a).hypot(d - b));
     }
-    // Lagrange's parabola through the nodes k, k + 1 and k + 2, moved inside the chain at its ends.
+    // Lagrange's parabola through the nodes k, k + 1 and k + 2; at the ends of the chain, shifted inside.
     let parabola = |k: isize, s: f64| {
         let k = k.clamp(0, x.len() as isize - 3) as usize;
         [0, 1].map(|axis| {
@@ -96,7 +96,7 @@ fn a_piece_is_the_blend_of_the_parabolas_through_its_ends_and_the_node_before_an
 }
 
 #[test]
-fn the_shares_of_the_nodes_add_up_to_one_and_have_the_derivatives_that_they_say() {
+fn node_weights_sum_to_one_and_their_derivatives_are_correct() {
     for (places, round) in [(uneven(), false), (uneven(), true), (circle(3, 1.0), true)] {
         let surface = chain(&places, round);
         assert_eq!(closed(&surface), round);
@@ -117,10 +117,10 @@ fn the_shares_of_the_nodes_add_up_to_one_and_have_the_derivatives_that_they_say(
 }
 
 #[test]
-fn the_normal_does_not_jump_at_a_node_however_the_chain_is_bent_since() {
+fn the_normal_is_continuous_at_nodes_of_a_deformed_chain() {
     for round in [false, true] {
         let surface = chain(&uneven(), round);
-        // Not the places that the knots are from.
+        // Not the positions that define the knots.
         let bent: Vec<[f64; 2]> = uneven()
             .iter()
             .map(|[x, y]| [1.3 * x - 0.2 * y * y, y + 0.1 * x * x])
@@ -142,8 +142,7 @@ fn the_normal_does_not_jump_at_a_node_however_the_chain_is_bent_since() {
 }
 
 #[test]
-fn the_gap_to_a_circle_is_wrong_by_the_fourth_power_of_the_distance_of_nodes_and_the_normal_by_the_third()
- {
+fn on_a_circle_the_gap_error_is_fourth_order_and_the_normal_error_third_order() {
     let error = |count: usize| {
         let x = circle(count, 1.0);
         let s = [chain(&x, true)];
@@ -164,7 +163,7 @@ fn the_gap_to_a_circle_is_wrong_by_the_fourth_power_of_the_distance_of_nodes_and
         assert!((gap.log2() - 4.0).abs() < 0.1, "{errors:?}");
         assert!((turn.log2() - 3.0).abs() < 0.1, "{errors:?}");
     }
-    // In the middle of a piece of the angle h the radius is cos(h/2) + sin h sin(h/2)/4 = 1 − 3 h⁴/128 + …
+    // In the middle of a piece with the angle h the radius is cos(h/2) + sin h sin(h/2)/4 = 1 − 3 h⁴/128 + …
     let h = std::f64::consts::TAU / 64.0;
     let exact = 1.0 - (0.5 * h).cos() - 0.25 * h.sin() * (0.5 * h).sin();
     assert!(
@@ -175,7 +174,7 @@ fn the_gap_to_a_circle_is_wrong_by_the_fourth_power_of_the_distance_of_nodes_and
 }
 
 #[test]
-fn a_force_at_the_foot_is_spread_over_the_nodes_with_its_moment() {
+fn a_contact_force_is_distributed_over_the_nodes_with_its_moment() {
     let x = uneven();
     let s = [chain(&x, false)];
     let force = [0.7, -1.9];
@@ -194,7 +193,7 @@ fn a_force_at_the_foot_is_spread_over_the_nodes_with_its_moment() {
 }
 
 #[test]
-fn the_curve_turns_with_its_nodes() {
+fn the_curve_rotates_with_its_nodes() {
     let x = uneven();
     let s = [chain(&x, false)];
     let (sin, cos) = 0.83_f64.sin_cos();

@@ -1,15 +1,15 @@
-//! Where the slave nodes stand at the start of a major iteration: S*, anchor, drift, and corners.
+//! Positions of the slave nodes at the start of a major iteration: S*, anchor, drift, and corners.
 //!
-//! Where two elements meet in a concave corner, a node that comes to rest there may go back and forth between them for
-//! ever. A sliding node that comes back to the element that it had left, and any node that is past both sides, is therefore
-//! held in the corner: it is fixed there, about the mean of the two normals, with the friction that both sides give together ([`crate::contact::corner`]). At the
-//! friction bound it slides out along one side, as out of any fixed mode. If a node slid into the corner since the last
-//! accepted state, and the friction against that slip is below the least friction ([`corner::least_friction`]), the node
-//! slides again on the side that it came from.
+//! Where two elements meet in a concave corner, a node that comes to rest there may alternate between them forever. Therefore a
+//! sliding node that returns to the element that it left, and any node beyond both sides, is held in the corner: it is fixed
+//! there, about the mean of the two normals, with the friction of both sides together ([`crate::contact::corner`]). At the
+//! friction bound it slides out along one side, as from any fixed mode. If a node slid into the corner since the last accepted
+//! state, and the friction against that slip is below the least friction ([`corner::least_friction`]), the node slides again on
+//! the side that it came from.
 //!
-//! A node that comes down on a convex vertex sticks there about the mean normal, too, with the narrower friction that keeps it
-//! from sliding down either side. Where friction is too weak for that, it stands on one of the sides: a vertex that
-//! holds it without friction would be an unstable state.
+//! A node that lands on a convex vertex also sticks there about the mean normal, with a narrower friction bound that prevents it
+//! from sliding down either side. If friction is too weak for that, it is assigned to one of the sides: a vertex that holds a
+//! node without friction would be an unstable state.
 
 use crate::contact::corner;
 use crate::contact::crossing;
@@ -25,10 +25,10 @@ use crate::contact::table1::t_max;
 use crate::model::Mode;
 use crate::model::{Bond, Contact, Friction, Surface};
 
-/// A node closer to a place where two sides meet than this part of the element's size stands there.
+/// A node is at a corner or vertex if its distance is below this fraction of the element's size.
 const AT_VERTEX: f64 = 1e-9;
 
-/// The chains that nodes stand on, and where all nodes of the scene are now.
+/// The chains, and the current positions of all nodes of the scene.
 #[derive(Debug, Clone, Copy)]
 pub struct Ground<'a> {
     /// Surfaces of the scene.
@@ -40,9 +40,9 @@ pub struct Ground<'a> {
 }
 
 impl Ground<'_> {
-    /// Finds where a node stands. Forces keep their components in the frame (n, t), which turns with the surface. When a node
-    /// enters or leaves a corner, the frame jumps, and the force keeps its direction instead. With `anew` a sliding node is
-    /// anchored anew where it stands.
+    /// Finds the position of a node. Forces keep their components in the frame (n, t), which rotates with the surface. When a
+    /// node enters or leaves a corner, the frame jumps, and the force keeps its direction instead. With `anew`, a sliding node is
+    /// anchored at its new position.
     pub fn stand(&self, node: &mut ContactState, slave: &Contact, friction: &Friction, anew: bool) {
         let at = self.positions[slave.node];
         if slave.bond.is_tied() {
@@ -124,7 +124,7 @@ impl Ground<'_> {
         let on = faced(slave, self.surfaces, self.positions, &mut room);
         let previous = previous.filter(|spot| on.contains(&spot.surface));
         let spot = project(at, self.surfaces, on, self.positions, previous)?;
-        // A node that presses on an element with local flexibility lies inside by the local deflection.
+        // A node that presses on an element with local flexibility penetrates by the local deflection.
         let gives = point_force::of(&self.surfaces[spot.surface], spot).is_some();
         let touches = slave.bond.is_hard() && slave.overlap == 0.0 && !gives;
         Some(match touches {
@@ -133,7 +133,7 @@ impl Ground<'_> {
         })
     }
 
-    /// A tied node stays at its point of the surface, and its force keeps its direction: the surface may have turned.
+    /// Keeps a tied node at its point of the surface; its force keeps its direction, because the surface may have rotated.
     fn stay_tied(&self, node: &mut ContactState, slave: &Contact, at: [f64; 2]) {
         node.mode = Mode::Fixed;
         let found = || project(at, self.surfaces, &slave.surfaces, self.positions, None);
@@ -154,12 +154,12 @@ impl Ground<'_> {
         node.drift = (over.foot[0] - at[0]) * t[0] + (over.foot[1] - at[1]) * t[1];
     }
 
-    /// Whether a node that is held in a corner still sticks there, and the corner is still one; its angle is renewed.
+    /// Whether a node held in a corner still sticks there, and the corner still exists; updates its angle.
     fn stays_in_corner(&self, node: &mut ContactState, friction: &Friction) -> bool {
         let (Some(was), Some(spot), Mode::Fixed) = (node.corner, node.spot, node.mode) else {
             return false;
         };
-        // Rigid surfaces cross where they did.
+        // The crossing of rigid surfaces does not change.
         if node.second.is_some() {
             return true;
         }
@@ -235,8 +235,7 @@ impl Ground<'_> {
         sides.map_or(over.normal, |[before, behind]| mean_normal(before, behind))
     }
 
-    /// Notes that a node has come to another element, and holds it in the corner where it slides back to the one that it
-    /// had left.
+    /// Records that a node has moved to another element, and holds it in the corner if it slides back to the one that it left.
     fn cross(&self, node: &mut ContactState, previous: Option<SurfacePoint>) {
         let (Some(from), Some(to)) = (previous, node.spot) else {
             return;
@@ -260,9 +259,9 @@ impl Ground<'_> {
         }
     }
 
-    /// A node as it is held in a concave corner: in that at the end of its side, towards which it slides where S* moves along t
-    /// relative to the node as `motion` does, and the other way along the surface; or, without a motion, in that where it
-    /// sticks. `None` where there is no such corner.
+    /// The state of a node held in a concave corner: at the end of its side towards which it slides if S* moves along t relative
+    /// to the node by `motion` (the node itself moves in the opposite direction along the surface); without a motion, in the
+    /// corner where it sticks. `None` if there is no such corner.
     pub fn held_in_corner(
         &self,
         node: &ContactState,
@@ -298,18 +297,18 @@ impl Ground<'_> {
         Some(held)
     }
 
-    /// Lets a node that has left the place where two sides meet stand on the side along which it slides.
+    /// Assigns a node that has left a corner to the side along which it slides.
     fn leave(&self, node: &mut ContactState, held: Option<SurfacePoint>) {
         if let (Some(held), Some(spot), Mode::Sliding) = (held, node.spot, node.mode)
             && spot.xi.abs() >= 1.0 - AT_VERTEX
             && held.surface == spot.surface
         {
-            // Slip is that of S* against the node, which goes the other way along the surface.
+            // Slip is the motion of S* relative to the node, which itself moves in the opposite direction.
             node.spot = Some(beside(&self.surfaces[held.surface], held, node.sign < 0.0));
         }
     }
 
-    /// The same where the two sides are `held`, on two surfaces that cross; `mean` is the normal about which it was held.
+    /// The same if the two sides are `held`, on two surfaces that cross; `mean` is the normal about which the node was held.
     fn leave_between(&self, node: &mut ContactState, held: [SurfacePoint; 2], mean: [f64; 2]) {
         if node.mode != Mode::Sliding || node.spot.is_none() {
             return;
@@ -320,11 +319,11 @@ impl Ground<'_> {
             let n = normal(surface, spot, self.positions);
             -node.sign * (t[0] * n[0] + t[1] * n[1])
         });
-        // It leaves the side from which its way leads away.
+        // It leaves the side from which its motion points away.
         node.spot = Some(if out[0] < out[1] { held[0] } else { held[1] });
     }
 
-    /// Holds a node that is inside two of its surfaces, or on one and inside the other, where they cross in a corner.
+    /// Holds a node that is inside two of its surfaces, or on one and inside the other, where these cross in a corner.
     fn meet_between(&self, node: &mut ContactState, slave: &Contact, at: [f64; 2]) {
         let Some(spot) = node.spot.filter(|spot| self.surfaces[spot.surface].rigid) else {
             return;
@@ -364,8 +363,8 @@ impl Ground<'_> {
         }
     }
 
-    /// Holds a node whose S* is just where two sides meet: in a concave corner, since it is out over both sides; on a convex
-    /// vertex where friction can hold it. Else it stands on a side of the vertex. A mode that the user forces stays.
+    /// Holds a node whose S* is exactly where two sides meet: in a concave corner, because it is beyond both sides; on a convex
+    /// vertex if friction can hold it. Otherwise assigns it to a side of the vertex. A mode forced by the user is kept.
     fn meet_both(&self, node: &mut ContactState, at: [f64; 2], friction: &Friction) {
         let Some(spot) = node.spot.map(|spot| self.at_bottom(node, spot)) else {
             return;
@@ -377,7 +376,7 @@ impl Ground<'_> {
         if half > 0.0 {
             // A node that sticks between two deformable elements does not need the friction of a corner. On a rigid surface the
             // corner exists from the start: with the friction of a single side the node would slide out under forces that both
-            // sides together hold.
+            // sides together can hold.
             let rigid = self.surfaces[spot.surface].rigid;
             let held = node.mode == Mode::Sliding || rigid && node.mode == Mode::Fixed;
             if held && !node.is_forced() {
@@ -416,9 +415,9 @@ impl Ground<'_> {
         if sticks && is_corner() { end } else { spot }
     }
 
-    /// Anchors a touching node that has no anchor where it stands, removes the anchor of a free node that does not keep it,
-    /// and measures the drift. A node that has come to another surface is anchored anew there, with the elastic slip that it has.
-    /// In a corner, the drift is the distance of the node from the corner.
+    /// Anchors a touching node without an anchor at its position, removes the anchor of a free node unless it is kept, and
+    /// measures the drift. A node that has moved to another surface is anchored there with its current elastic slip. In a corner,
+    /// the drift is the distance of the node from the corner.
     pub fn find_anchor(&self, node: &mut ContactState, slave: &Contact) {
         let (at, give) = (self.positions[slave.node], slave.bond.give()[1]);
         let free = node.mode == Mode::Free;
@@ -452,8 +451,8 @@ impl Ground<'_> {
         }
     }
 
-    /// Anchors a node that brings slip into the scene at the distance of that slip. A node that starts free is not anchored;
-    /// it still takes its slip back if it sticks in the first major iteration.
+    /// Anchors a node with an initial slip at the distance of that slip. A node that starts free is not anchored; it still undoes
+    /// its slip if it sticks in the first major iteration.
     pub fn place_anchor(&self, node: &mut ContactState, slave: &Contact) {
         let at = self.positions[slave.node];
         if node.mode == Mode::Free {
@@ -478,7 +477,8 @@ impl Ground<'_> {
     }
 }
 
-/// Lets a node that slides away from a border stand on the side along which it slides, whose curve is part of its tangent.
+/// Assigns a node that slides away from a border to the side along which it slides, so that the side's curvature enters its
+/// tangent.
 pub fn leave_border(surfaces: &[Surface], node: &mut ContactState) {
     let slides = node.mode == Mode::Sliding && node.corner.is_none();
     let spot = node.spot.filter(|spot| slides && spot.xi.abs() == 1.0);

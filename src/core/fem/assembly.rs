@@ -1,7 +1,8 @@
-//! Assembly of the bodies' internal forces and tangent stiffness (the K_s and K_m of eqn 5).
+//! Assembles the bodies' internal forces and tangent stiffness (the K_s and K_m of eqn 5).
 //!
-//! Where every entry of every element goes is found once; assembling then only adds. Bodies whose places lie apart are assembled
-//! side by side ([`Executor`]): each element adds to the same places in the same order, whoever does it.
+//! The position of every entry of every element matrix is found once; assembly then only adds. Bodies with separate ranges of
+//! entries are assembled in parallel ([`Executor`]). Each element adds to the same entries in the same order, independent of the
+//! executor.
 
 use crate::executor::{Executor, InTurn};
 use crate::fem::beam::{self, Section};
@@ -17,38 +18,37 @@ use crate::model::{Beam, Body, BodyKind, Dofs, Solid, SolidElement, Truss};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// An element and where it stands.
+/// An element with its positions in the system.
 struct Placed {
     element: Box<dyn Element>,
     /// Degrees of freedom of the scene, in the element's order.
     dofs: Vec<usize>,
-    /// Entries of the element's matrix that have a place, by number (row by row), and their places in the array of
-    /// values.
+    /// Entries of the element's matrix that are in the system, by number (row by row), with their indices in the array of values.
     slots: Vec<(u32, u32)>,
     /// Whether any of its degrees of freedom has no equation.
     held: bool,
-    /// What it remembers, in the scene's history.
+    /// Its range of the scene's history variables.
     history: Range<usize>,
 }
 
 /// All elements of all bodies.
 pub struct Assembly {
     elements: Vec<Placed>,
-    /// Bodies that are given by a matrix.
+    /// Bodies given by a matrix.
     matrices: Vec<matrix::Element>,
-    /// Whether only the upper half of the stiffness is wanted.
+    /// Whether only the upper half of the stiffness is assembled.
     half: bool,
-    /// Numbers that the elements placed so far remember.
+    /// Number of history variables of the elements added so far.
     history_len: usize,
-    /// Elements that follow each other and add to places of their own; together all.
+    /// Consecutive elements with separate ranges of entries; together all elements.
     groups: Vec<Group>,
-    /// Who assembles them.
+    /// Runs the assembly.
     executor: Arc<dyn Executor>,
     room: Room,
     memory: Vec<f64>,
 }
 
-/// Room for the largest element.
+/// Workspace for the largest element.
 #[derive(Clone, Default)]
 struct Room {
     force: Vec<f64>,
@@ -57,15 +57,15 @@ struct Room {
     before: Vec<f64>,
 }
 
-/// Elements that are assembled by themselves.
+/// Elements that are assembled independently.
 struct Group {
     elements: Range<usize>,
-    /// First degree of freedom, entry and equation that are theirs.
+    /// First degree of freedom, entry and equation of the group.
     first: Places,
     room: Room,
 }
 
-/// Where degrees of freedom, entries of the stiffness and equations begin.
+/// Start indices of degrees of freedom, entries of the stiffness, and equations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 struct Places {
     dof: usize,
@@ -73,27 +73,27 @@ struct Places {
     equation: usize,
 }
 
-/// Sums from some places on.
+/// Sums, from given start indices on.
 struct Sums<'a> {
     first: Places,
     out: Assembled<'a>,
 }
 
-/// How the degrees of freedom have moved.
+/// Displacements for an assembly.
 #[derive(Debug, Clone, Copy)]
 pub struct Moved<'a> {
     /// Displacements.
     pub u: &'a [f64],
-    /// Change that the degrees of freedom without an equation make in this major iteration.
+    /// Remaining change of the degrees of freedom without an equation in this major iteration.
     pub step: &'a [f64],
     /// Displacements at the last accepted increment.
     pub before: &'a [f64],
-    /// What the elements remember of that increment: [`history_len`] numbers, all zero before the first.
+    /// History variables at that increment: [`history_len`] numbers, all zero before the first.
     pub history: &'a [f64],
 }
 
 impl Assembly {
-    /// Lays out the elements of a scene, to be assembled in turn.
+    /// Creates the elements of a scene, for sequential assembly.
     pub fn new(model: &Model) -> Self {
         Assembly::with_executor(model, Arc::new(InTurn))
     }
@@ -112,7 +112,7 @@ impl Assembly {
         }
     }
 
-    /// The same, to be assembled side by side by whoever this is.
+    /// The same with an executor for parallel assembly.
     pub fn with_executor(model: &Model, executor: Arc<dyn Executor>) -> Self {
         let mut assembly = Assembly::empty(executor);
         for body in &model.bodies {
@@ -190,7 +190,7 @@ impl Assembly {
         });
     }
 
-    /// Entries `(row, column)`, in equations, that the elements have; some repeat.
+    /// Entries `(row, column)`, in equations, of all elements; may contain duplicates.
     pub fn entries(&self, dofs: &Dofs) -> Vec<(usize, usize)> {
         let most = self.elements.iter().map(|p| p.dofs.len().pow(2)).sum();
         let mut entries = Vec::with_capacity(most);
@@ -204,14 +204,13 @@ impl Assembly {
         entries
     }
 
-    /// Finds the place of every entry in a pattern that has them all, or, of a symmetric stiffness, the upper `half`.
+    /// Looks up every entry in a pattern that contains them all, or, for a symmetric stiffness, those of the upper `half`.
     pub fn bind(&mut self, dofs: &Dofs, pattern: &Pattern, half: bool) {
         let whole = 0..pattern.size();
         self.bind_parts(dofs, pattern, half, std::slice::from_ref(&whole));
     }
 
-    /// The same, where no element has entries in more than one of these `parts` of the equations, which are assembled side by
-    /// side.
+    /// The same if no element has entries in more than one of these `parts` of the equations, which are assembled in parallel.
     pub fn bind_parts(
         &mut self,
         dofs: &Dofs,
@@ -239,7 +238,7 @@ impl Assembly {
         }
     }
 
-    /// A group of elements a part of the equations; `None` where their places do not lie apart in the same order.
+    /// One group of elements per part of the equations; `None` if their entries are not separate and in the same order.
     fn groups_of(
         &self,
         dofs: &Dofs,
@@ -247,14 +246,14 @@ impl Assembly {
         parts: &[Range<usize>],
     ) -> Option<Vec<Group>> {
         let mut groups: Vec<Group> = Vec::with_capacity(parts.len());
-        // The part of the last element, and how far its degrees of freedom have come.
+        // The part of the last element, and the degrees of freedom reached so far.
         let (mut at, mut reach) = (0, 0);
         for (k, placed) in self.elements.iter().enumerate() {
             let least = placed.dofs.iter().copied().min()?;
             let equation = placed.dofs.iter().find_map(|&d| dofs.equation[d]);
             let part = equation.map_or(Some(at), |e| parts.iter().position(|p| p.contains(&e)))?;
             if groups.is_empty() || part > at {
-                // There are no parts where every degree of freedom is held.
+                // There are no parts if every degree of freedom is restrained.
                 let start = parts.get(part)?.start;
                 if least < reach {
                     return None;
@@ -276,7 +275,7 @@ impl Assembly {
             group.elements.end = k + 1;
             (at, reach) = (part, reach.max(placed.dofs.iter().max()? + 1));
         }
-        // What no element adds to belongs to the first.
+        // Entries without an element belong to the first group.
         groups.first_mut()?.first = Places::default();
         Some(groups)
     }
@@ -309,7 +308,7 @@ impl Assembly {
         }
     }
 
-    /// Internal forces alone, as [`Assembly::assemble`] finds them.
+    /// Internal forces only, with the same bits as [`Assembly::assemble`].
     pub fn resist(&mut self, moved: Moved<'_>, force: &mut [f64], size: &mut [f64]) {
         force.fill(0.0);
         size.fill(0.0);
@@ -327,7 +326,7 @@ impl Assembly {
             let past = Past { u: before, history };
             let answers = placed.element.resist(&past, u, own, tangent);
             for (&d, own) in placed.dofs.iter().zip(&*own) {
-                // No finite force balances anything where there is no answer.
+                // No finite force is in balance if an element has no response.
                 force[d] += if answers { *own } else { f64::INFINITY };
                 size[d] += if answers { own.abs() } else { 0.0 };
             }
@@ -337,7 +336,7 @@ impl Assembly {
         }
     }
 
-    /// Forces at the equations due to `step` of the degrees of freedom that have none, as [`Assembly::assemble`] finds them.
+    /// Forces at the equations due to `step` of the degrees of freedom without an equation, as in [`Assembly::assemble`].
     pub fn couple(&mut self, dofs: &Dofs, moved: Moved<'_>, coupling: &mut [f64]) {
         coupling.fill(0.0);
         for placed in self.elements.iter().filter(|p| p.held) {
@@ -363,7 +362,7 @@ impl Assembly {
         }
     }
 
-    /// Renews what the elements remember, once displacements `u` are accepted; `before` are those accepted last.
+    /// Updates the history variables when displacements `u` are accepted; `before` are those accepted last.
     pub fn advance(&mut self, u: &[f64], before: &[f64], history: &mut [f64]) {
         for placed in self.elements.iter().filter(|p| !p.history.is_empty()) {
             let n = placed.dofs.len();
@@ -381,7 +380,7 @@ impl Assembly {
     }
 }
 
-/// What is to be assembled.
+/// Input of an assembly.
 #[derive(Clone, Copy)]
 struct Work<'a> {
     executor: &'a dyn Executor,
@@ -392,7 +391,7 @@ struct Work<'a> {
 }
 
 impl Work<'_> {
-    /// Adds these groups up.
+    /// Assembles these groups.
     fn all(self, groups: &mut [Group], mut sums: Sums<'_>) {
         match groups {
             [] => {}
@@ -457,7 +456,7 @@ impl Sums<'_> {
         }
     }
 
-    /// Those before some places, and those from there on.
+    /// Splits the sums at given start indices.
     fn split_at(&mut self, at: Places) -> (Sums<'_>, Sums<'_>) {
         let first = self.first;
         let out = &mut self.out;
@@ -482,7 +481,7 @@ impl Sums<'_> {
 }
 
 impl Room {
-    /// Makes it large enough for an element of so many degrees of freedom.
+    /// Resizes for an element with `count` degrees of freedom.
     fn hold(&mut self, count: usize) {
         let size = self.force.len().max(count);
         for buffer in [&mut self.force, &mut self.u, &mut self.before] {
@@ -492,7 +491,7 @@ impl Room {
     }
 }
 
-/// How many numbers the elements of a scene remember from increment to increment.
+/// Number of history variables of a scene's elements.
 pub fn history_len(model: &Model) -> usize {
     let of = |body: &Body| match &body.kind {
         BodyKind::Beam(_) | BodyKind::Truss(_) | BodyKind::Linear(_) => 0,
@@ -519,7 +518,7 @@ impl Placed {
         self.held = self.dofs.iter().any(|d| equation(d).is_none());
         self.slots.clear();
         for (i, row) in self.dofs.iter().enumerate() {
-            // Of the upper half, each pair once, wherever the pattern has it.
+            // For the upper half, each pair once, regardless of which entry the pattern contains.
             let first = if half { i } else { 0 };
             for (j, column) in self.dofs.iter().enumerate().skip(first) {
                 let (Some(row), Some(column)) = (equation(row), equation(column)) else {
@@ -575,7 +574,7 @@ impl Placed {
         }
     }
 
-    /// No finite force balances anything here. The scale of forces stays finite, so that the residual does not.
+    /// Sets infinite forces, which no finite force balances. The force scale stays finite, so that the residual is infinite too.
     fn give_up(&self, sums: &mut Sums<'_>) {
         let (first, force) = (sums.first.dof, &mut *sums.out.force);
         self.dofs

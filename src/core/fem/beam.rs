@@ -1,16 +1,16 @@
 //! Geometrically exact planar beam (Reissner 1972) with m-node Lagrange interpolation.
 //!
-//! The paper's "structural elements of Surana" are of this class: u, v and a rotation of any size at each of m nodes
-//! on a curved axis, plane sections. With the section's angle φ = φ_0 + θ (φ_0 that of the reference axis), its axes
-//! t = (cos φ, sin φ) and n = (−sin φ, cos φ), and ' the derivative by reference arc length,
+//! The paper's "structural elements of Surana" belong to this class: u, v and an arbitrarily large rotation at each of m nodes on
+//! a curved axis, with plane sections. With the section's angle φ = φ_0 + θ (φ_0 that of the reference axis), its axes t = (cos
+//! φ, sin φ) and n = (−sin φ, cos φ), and ' the derivative with respect to the reference arc length,
 //!
 //! ```text
 //! ε = t · r' − 1,   γ = n · r',   κ = θ',        N = EA ε,   Q = GA γ,   M = EI κ.
 //! ```
 //!
-//! Rigid motions leave all three strains unchanged. The m − 1 points of the reduced Gauss rule avoid locking. A
-//! shear-rigid beam (no GA) has Q at each Gauss point as an unknown of its own and γ = 0 as its equation: the limit
-//! itself, not a penalty.
+//! Rigid motions leave all three strains unchanged. The m − 1 points of the reduced Gauss rule prevent locking. A shear-rigid
+//! beam (no GA) has Q at each Gauss point as an additional unknown with the equation γ = 0: this is the exact limit, not a
+//! penalty.
 //!
 //! The degrees of freedom of an element are ordered x, y, θ of node 1, of node 2, …, then Q at the Gauss points.
 
@@ -25,11 +25,11 @@ pub struct Section {
     pub ea: f64,
     /// Bending stiffness (force · length²).
     pub ei: f64,
-    /// Shear stiffness (force); none is shear-rigid.
+    /// Shear stiffness (force); `None` for shear-rigid.
     pub ga: Option<f64>,
 }
 
-/// What of an element does not change: shape functions and weights at its Gauss points.
+/// Constant data of an element: shape functions and weights at its Gauss points.
 #[derive(Debug, Clone)]
 pub struct Element {
     nodes: usize,
@@ -41,7 +41,7 @@ pub struct Element {
 struct GaussPoint {
     /// N_i.
     n: [f64; MAX_NODES],
-    /// dN_i/ds, s the reference arc length.
+    /// dN_i/ds with the reference arc length s.
     d: [f64; MAX_NODES],
     /// Weight times ds/dξ (length).
     weight: f64,
@@ -95,7 +95,7 @@ impl Element {
         state
     }
 
-    /// The same, with t of the section.
+    /// The same, including t of the section.
     fn section(&self, p: usize, u: &[f64]) -> (SectionState, [f64; 2]) {
         let (point, m) = (&self.points[p], self.nodes);
         let (mut h, mut theta, mut kappa) = ([0.0, 0.0], 0.0, 0.0);
@@ -108,8 +108,8 @@ impl Element {
         }
         let (s, c) = (point.angle + theta).sin_cos();
         let half = (0.5 * theta).sin();
-        // With r' = axis + h, t · axis = cos θ and n · axis = −sin θ: so small strains of a stiff beam are not
-        // differences of numbers near one.
+        // With r' = axis + h, t · axis = cos θ and n · axis = −sin θ, small strains of a stiff beam are not differences of
+        // numbers near one.
         let axial = c * h[0] + s * h[1] - 2.0 * half * half;
         let shear = c * h[1] - s * h[0] - theta.sin();
         let q = match self.section.ga {
@@ -123,8 +123,9 @@ impl Element {
         (state, [c, s])
     }
 
-    /// What the nodes' rows and columns at a Gauss point have in common. The strains' derivatives by the motion of node i
-    /// are d_i P + n_i Q with P = [t, n in the first two rows; κ in the third] and Q in its third column only.
+    /// The parts of the nodes' rows and columns that are common at a Gauss point. The strains' derivatives with respect to the
+    /// motion of node i are d_i P + n_i Q with P = [t, n in the first two rows; κ in the third], and Q has entries in its third
+    /// column only.
     fn moduli(&self, weight: f64, [c, s]: [f64; 2], state: &SectionState) -> Moduli {
         let (w, stretch, shear) = (weight, 1.0 + state.strain.x, state.strain.y);
         let (normal, transverse) = (state.force.x, state.force.y);
@@ -134,7 +135,7 @@ impl Element {
             w * (c * normal - s * transverse),
             w * (s * normal + c * transverse),
         ];
-        // EA ε' and GA γ' of a unit rotation, and, from the second variations of ε and γ, what turning the section does.
+        // EA ε' and GA γ' for a unit rotation, plus the effect of rotating the section, from the second variations of ε and γ.
         let (axial, sheared) = (w * ea * shear, -w * ga * stretch);
         Moduli {
             resultant,
@@ -213,12 +214,12 @@ impl element::Element for Element {
     }
 }
 
-/// Force and tangent of a Gauss point but for the shape functions.
+/// Force and tangent of a Gauss point without the shape functions.
 struct Moduli {
     /// N t + Q n (force).
     resultant: [f64; 2],
     moment: f64,
-    /// Of ε and γ by the rotation.
+    /// Derivative of ε and γ with respect to the rotation.
     couple: f64,
     /// xx, xy, yy of d_i d_j.
     direct: [f64; 3],
@@ -227,7 +228,7 @@ struct Moduli {
     /// Of d_i d_j and of n_i n_j between rotations.
     bending: f64,
     rotary: f64,
-    /// Derivative of γ: by displacements, times d_i, and by the rotation, times n_i.
+    /// Derivative of γ: with respect to displacements (times d_i), and to the rotation (times n_i).
     constraint: [f64; 3],
 }
 

@@ -1,4 +1,4 @@
-//! The kinds of continuum elements by name: a new one is a file of [`super::kinds`], a kind in [`ElementKind`], and a line in
+//! The kinds of continuum elements by name. To add one, add a file in [`super::kinds`], a kind in [`ElementKind`], and a line in
 //! each of the tables here.
 
 use crate::fem::element::{Element, Past};
@@ -8,7 +8,7 @@ use crate::fem::material::Material;
 use crate::fem::small;
 use crate::model::{ElementKind, Plane, Update};
 
-/// Calls a function with the rule of a kind, which is generic over its numbers of nodes and of points.
+/// Calls a function with the rule of a kind; the function is generic over the numbers of nodes and points.
 macro_rules! with_rule {
     ($kind:expr, $function:ident($($argument:expr),*)) => {
         match $kind {
@@ -22,8 +22,8 @@ macro_rules! with_rule {
     };
 }
 
-/// An element of a kind on these undeformed positions. One that has not as many as its kind has nodes never answers, so that
-/// no state of it can be accepted.
+/// An element of a kind at these undeformed positions. With the wrong number of positions it never has a response, so no state of
+/// it can be accepted.
 pub fn element(
     kind: ElementKind,
     at: &[[f64; 2]],
@@ -80,8 +80,8 @@ impl Element for Malformed {
     }
 }
 
-/// States of the points of an element, in the order of its rule, with their places in the parent element; none of one with
-/// the wrong number of nodes, nor at a point where the material has no answer.
+/// States of an element's integration points, in the order of its rule, with their positions in the parent element. Empty if the
+/// number of nodes is wrong; points where the material has no response are left out.
 pub fn states(
     kind: ElementKind,
     at: &[[f64; 2]],
@@ -179,12 +179,12 @@ fn sample_by<const N: usize>(
     }
 }
 
-/// How many numbers an element of a kind remembers from increment to increment.
+/// Number of history variables of an element of this kind.
 pub fn history_len(kind: ElementKind, update: Update) -> usize {
     isoparametric::history_len(update, points(kind))
 }
 
-/// Number of points of a kind's rule.
+/// Number of integration points of a kind.
 pub fn points(kind: ElementKind) -> usize {
     with_rule!(kind, count())
 }
@@ -193,7 +193,7 @@ fn count<const N: usize, const P: usize>(_: &[Parent<N>; P]) -> usize {
     P
 }
 
-/// Points and weights of a kind's rule in its parent element, with the shape functions and their derivatives there.
+/// Integration points and weights of a kind in its parent element, with the shape functions and their derivatives.
 pub fn rule(kind: ElementKind) -> Vec<Sample> {
     with_rule!(kind, samples())
 }
@@ -208,12 +208,12 @@ fn samples<const N: usize, const P: usize>(rule: &[Parent<N>; P]) -> Vec<Sample>
     rule.iter().map(sample).collect()
 }
 
-/// A point of a rule.
+/// An integration point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sample {
     /// ξ and η.
     pub at: [f64; 2],
-    /// The shape functions there.
+    /// The shape functions.
     pub n: Vec<f64>,
     /// ∂N/∂ξ, ∂N/∂η.
     pub d: Vec<[f64; 2]>,
@@ -221,7 +221,7 @@ pub struct Sample {
     pub weight: f64,
 }
 
-/// Shape functions of a kind, and their derivatives by ξ and η, at a point of the parent element.
+/// Shape functions of a kind and their derivatives with respect to ξ and η, at a point of the parent element.
 pub fn shape(kind: ElementKind, xi: f64, eta: f64) -> (Vec<f64>, Vec<[f64; 2]>) {
     match kind {
         ElementKind::Triangle3 => listed(triangle3::shape(xi, eta)),
@@ -236,7 +236,7 @@ fn listed<const N: usize>((n, d): Shape<N>) -> (Vec<f64>, Vec<[f64; 2]>) {
     (n.to_vec(), d.to_vec())
 }
 
-/// Places of the nodes of a kind in its parent element.
+/// Positions of a kind's nodes in its parent element.
 pub fn places(kind: ElementKind) -> Vec<[f64; 2]> {
     match kind {
         ElementKind::Triangle3 => triangle3::PLACES.to_vec(),

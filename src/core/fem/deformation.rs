@@ -5,14 +5,14 @@
 //! the smaller stretch has the sign of det F. For a body of revolution the third stretch is 1 + u_x/X. In plane stress the
 //! thickness stretch enters det F only.
 //!
-//! The ranges follow from the nominal stress P of a stretch s:
+//! The ranges follow from the nominal stress P at a stretch s:
 //!
-//! - **St Venant-Kirchhoff**: where the compressed directions share the stretch s, and the other directions are constrained or
+//! - **St Venant-Kirchhoff**: if the compressed directions share the stretch s, and the other directions are constrained or
 //!   stress-free, S = K (s² − 1) / 2 with a constant K. This covers compression along one, two or three directions in plane
-//!   strain, plane stress and axisymmetry, for every ν. P = s S has its extremum at dP/ds = K (3 s² − 1) / 2 = 0: below
-//!   s = 1/√3 the material softens. For other ratios of the stretches the limit depends on ν. In tension P rises monotonically.
+//!   strain, plane stress and axisymmetry, for every ν. P = s S has its extremum at dP/ds = K (3 s² − 1) / 2 = 0: below s = 1/√3
+//!   the material softens. For other ratios of the stretches the limit depends on ν. In tension P rises monotonically.
 //! - **neo-Hookean**: μ/2 (I1 − 3) − μ ln J is polyconvex; λ/2 (ln J)² is convex in J for ln J < 1. The law does not soften in
-//!   compression; it may soften in volume beyond J = e.
+//!   compression; it may soften in volumetric expansion beyond J = e.
 //! - **linear elasticity** (`update: small`): never softens. It neglects ε²/2 relative to a strain ε, 5 % at ε = 0.1.
 //! - **the updated stress update**: each increment starts with the small-strain moduli, and for small increments P = M (s − 1)
 //!   under uniaxial strain. The law does not soften and has no range limit; it only requires det F > 0.
@@ -37,7 +37,7 @@ pub struct PointDeformation {
     pub element: usize,
     /// Current position of the point.
     pub at: [f64; 2],
-    /// Smallest principal stretch; negative where the element is inverted in the plane.
+    /// Smallest principal stretch; negative if the element is inverted in the plane.
     pub stretch: f64,
     /// det F.
     pub determinant: f64,
@@ -186,7 +186,7 @@ fn measures(elastic: &Elastic, point: &Sampled) -> [f64; 2] {
     match (elastic.plane, elastic.update) {
         (Plane::Axisymmetric, _) => {
             let hoop = 1.0 + point.hoop;
-            // An inversion in the plane and another around the axis would cancel: a hoop stretch <= 0 counts as inverted.
+            // An inversion in the plane and one around the axis would cancel, so a hoop stretch <= 0 counts as inverted.
             let determinant = match hoop > 0.0 {
                 true => in_plane * hoop,
                 false => -(in_plane * hoop).abs(),
@@ -198,7 +198,7 @@ fn measures(elastic: &Elastic, point: &Sampled) -> [f64; 2] {
     }
 }
 
-/// Thickness stretch in plane stress; −1 where the law admits no positive thickness.
+/// Thickness stretch in plane stress; −1 if the law admits no positive thickness.
 fn thickness(elastic: &Elastic, point: &Sampled) -> f64 {
     let [[h11, h12], [h21, h22]] = point.h;
     let strain = nalgebra::Vector3::new(

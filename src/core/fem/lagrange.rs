@@ -1,10 +1,10 @@
 //! Lagrange interpolation on m equally spaced nodes in −1 <= ξ <= 1, and Gauss-Legendre quadrature.
 //!
-//! Beams and interface elements of the paper have 3 or 5 nodes; 2 to 9 are possible here.
+//! Beams and interface elements of the paper have 3 or 5 nodes; this program supports 2 to 9.
 
 use std::sync::LazyLock;
 
-/// Most nodes that an element on a curve can have.
+/// Maximum number of nodes of an element on a curve.
 pub const MAX_NODES: usize = 9;
 
 /// Values and derivatives of the m shape functions at one ξ; entries beyond m are zero.
@@ -23,7 +23,7 @@ pub const fn node(m: usize, i: usize) -> f64 {
     -1.0 + 2.0 * i as f64 / (m - 1) as f64
 }
 
-/// ξ_i of the m nodes, and 1 / Π (ξ_i − ξ_j) over the others; by m.
+/// ξ_i of the m nodes, and 1 / Π (ξ_i − ξ_j) over the other nodes; indexed by m.
 const NODES: [[(f64, f64); MAX_NODES]; MAX_NODES + 1] = nodes();
 
 const fn nodes() -> [[(f64, f64); MAX_NODES]; MAX_NODES + 1] {
@@ -47,7 +47,8 @@ const fn nodes() -> [[(f64, f64); MAX_NODES]; MAX_NODES + 1] {
     table
 }
 
-/// Calls a function that is made for every number of nodes, 2 to [`MAX_NODES`]; a curve of fewer has no functions.
+/// Calls a function that is compiled for every number of nodes from 2 to [`MAX_NODES`]; for fewer nodes there are no shape
+/// functions.
 macro_rules! for_count {
     ($m:expr, $function:ident($($argument:expr),*)) => {
         match $m {
@@ -66,8 +67,8 @@ macro_rules! for_count {
 
 /// The m shape functions and their first two derivatives at ξ.
 ///
-/// N_i is the product of the factors ξ − ξ_j before i with that of the factors behind i, over its value at ξ_i; each
-/// product is carried along with its derivatives.
+/// N_i is the product of the factors ξ − ξ_j before i and of those after i, divided by its value at ξ_i; each product is computed
+/// together with its derivatives.
 pub fn shape(m: usize, xi: f64) -> Shape {
     let mut s = Shape {
         n: [0.0; MAX_NODES],
@@ -78,7 +79,7 @@ pub fn shape(m: usize, xi: f64) -> Shape {
     s
 }
 
-/// dN_i/dξ of the m shape functions alone, at some ξ, as lengths and angles of curves want them.
+/// dN_i/dξ only, at several ξ, for lengths and angles of curves.
 pub fn slopes<const COUNT: usize>(m: usize, xi: [f64; COUNT]) -> [[f64; MAX_NODES]; COUNT] {
     let mut slopes = [[0.0; MAX_NODES]; COUNT];
     for_count!(m, slopes_of(&xi, &mut slopes));
@@ -102,7 +103,7 @@ pub fn third(m: usize, xi: f64) -> [f64; MAX_NODES] {
     all
 }
 
-/// With the number of nodes known to the compiler no loop is left: projections ask for millions of these.
+/// Generic over the number of nodes, so that all loops are unrolled: projections evaluate millions of shape functions.
 #[inline]
 fn shape_of<const M: usize>(xi: f64, s: &mut Shape) {
     let nodes = &NODES[M][..M];
@@ -141,7 +142,7 @@ fn slopes_of<const M: usize>(xi: &[f64], all: &mut [[f64; MAX_NODES]]) {
     }
 }
 
-/// A product with its first two derivatives, times one more factor of slope 1.
+/// A product with its first two derivatives, multiplied by one more factor of slope 1.
 fn times((v, d, dd): (f64, f64, f64), factor: f64) -> (f64, f64, f64) {
     (v * factor, d * factor + v, dd * factor + 2.0 * d)
 }
@@ -149,7 +150,7 @@ fn times((v, d, dd): (f64, f64, f64), factor: f64) -> (f64, f64, f64) {
 /// ξ, and N_i there.
 type Sample = (f64, [f64; MAX_NODES]);
 
-/// The m shape functions at 2m − 1 equally spaced ξ from −1 to 1, made once.
+/// The m shape functions at 2m − 1 equally spaced ξ from −1 to 1, computed once.
 pub fn samples(m: usize) -> &'static [Sample] {
     static TABLE: LazyLock<Vec<Vec<Sample>>> = LazyLock::new(|| {
         let of = |m: usize| {
@@ -163,7 +164,7 @@ pub fn samples(m: usize) -> &'static [Sample] {
     &TABLE[m]
 }
 
-/// Points and weights of the Gauss-Legendre rule of `count` points, by Newton's method on the Legendre polynomial.
+/// Points and weights of the Gauss-Legendre rule with `count` points, by Newton's method on the Legendre polynomial.
 pub fn gauss(count: usize) -> Vec<(f64, f64)> {
     (0..count)
         .map(|k| {
@@ -183,7 +184,7 @@ pub fn gauss(count: usize) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Legendre polynomial of this degree and its derivative, for |x| < 1.
+/// The Legendre polynomial of this degree and its derivative, for |x| < 1.
 fn legendre(degree: usize, x: f64) -> (f64, f64) {
     let (mut p0, mut p1) = (1.0, x);
     if degree == 0 {

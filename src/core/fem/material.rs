@@ -1,24 +1,24 @@
-//! Elastic materials in the plane: stress and its exact derivative for a given Green-Lagrange strain.
+//! Plane elastic materials: stress and its exact derivative for a given Green-Lagrange strain.
 //!
-//! Strains and stresses are triples (11, 22, 12), the shear *strain* doubled, so that S · δE is the work. With Lamé's
-//! λ = E ν / ((1 + ν)(1 − 2ν)), μ = E / (2 (1 + ν)), C = I + 2E and J = det F (of all three dimensions):
+//! Strains and stresses are triples (11, 22, 12) with the shear *strain* doubled, so that S · δE is the work. With Lamé's λ = E ν
+//! / ((1 + ν)(1 − 2ν)), μ = E / (2 (1 + ν)), C = I + 2E and the three-dimensional J = det F:
 //!
 //! ```text
 //! St Venant-Kirchhoff   S = λ tr(E) I + 2μ E
 //! neo-Hookean           W = μ/2 (I1 − 3 − 2 ln J) + λ/2 (ln J)²,   S = μ (I − C⁻¹) + λ ln J C⁻¹
 //! ```
 //!
-//! Plane strain has E33 = 0; axisymmetry has any, and stress answers it ([`Hoop`]). Plane stress has S33 = 0, and E33 is eliminated exactly: with λ' = 2λμ/(λ + 2μ) for
-//! λ in the first law, by a scalar Newton iteration in the second.
+//! Plane strain has E33 = 0; in axisymmetry E33 is given and causes a stress ([`Hoop`]). Plane stress has S33 = 0, and E33 is
+//! eliminated exactly: with λ' = 2λμ/(λ + 2μ) instead of λ in the first law, by a scalar Newton iteration in the second.
 
 use crate::model::Elastic;
 use crate::model::{Law, Plane};
 use nalgebra::{Matrix2, Matrix3, Vector3};
 
-/// Most steps of the scalar iteration of plane stress; it converges monotonically, in five or six.
+/// Maximum number of steps of the scalar iteration in plane stress; it converges monotonically in five or six.
 const MOST_STEPS: usize = 50;
 
-/// An elastic material, ready for use.
+/// An elastic material with derived constants.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Material {
     /// Lamé's first constant.
@@ -27,24 +27,24 @@ pub struct Material {
     pub mu: f64,
     /// The law.
     pub law: Law,
-    /// What the third direction does.
+    /// Assumption about the out-of-plane direction.
     pub plane: Plane,
-    /// Thickness in the reference configuration.
+    /// Reference thickness.
     pub thickness: f64,
 }
 
-/// What a material answers to a strain.
+/// Response of a material to a strain.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Response {
     /// Second Piola-Kirchhoff stress S11, S22, S12.
     pub stress: Vector3<f64>,
-    /// dS/dE, the shear strain doubled; symmetric.
+    /// dS/dE with doubled shear strain; symmetric.
     pub tangent: Matrix3<f64>,
     /// E33, zero in plane strain.
     pub thickening: f64,
 }
 
-/// What it answers around the axis, where the strain there is no zero.
+/// Response in the hoop direction, if the hoop strain is not zero.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Hoop {
     /// S33.
@@ -68,8 +68,8 @@ impl Material {
         }
     }
 
-    /// Stress and tangent at a strain E11, E22, 2 E12; none where the law has no answer, since a neo-Hookean material
-    /// cannot be turned inside out.
+    /// Stress and tangent at a strain E11, E22, 2 E12; `None` if the law has no response, because a neo-Hookean material cannot
+    /// be inverted.
     pub fn response(&self, strain: &Vector3<f64>) -> Option<Response> {
         match self.law {
             Law::Svk => Some(self.linear(strain)),
@@ -77,8 +77,7 @@ impl Material {
         }
     }
 
-    /// S = C : E with the constant moduli of the plane. The updated-Lagrangian stress update has it for every
-    /// increment.
+    /// S = C : E with constant plane moduli, which the updated Lagrangian formulation uses for every increment.
     pub fn linear(&self, strain: &Vector3<f64>) -> Response {
         let (mu, trace) = (self.mu, strain.x + strain.y);
         // λ / (λ + 2μ) = ν / (1 − ν).
@@ -112,7 +111,7 @@ impl Material {
         }
         let inverse = (Matrix2::identity() + 2.0 * e).try_inverse()?;
         let log = swelling.ln_1p();
-        // μ − λ ln J appears in stress and tangent; in plane stress it is μ C33.
+        // Stress and tangent contain μ − λ ln J; in plane stress it is μ C33.
         let (pressure, direct, thickening) = match self.plane {
             Plane::Strain | Plane::Axisymmetric => (0.5 * lambda * log, lambda, 0.0),
             Plane::Stress => {
@@ -125,8 +124,7 @@ impl Material {
         Some(self.answer(&e, &inverse, (pressure, direct, thickening)))
     }
 
-    /// S = C⁻¹ (2μ E + p I) and its derivative in the plane, where p is λ ln J or what stands for it, and `direct` its
-    /// derivative.
+    /// S = C⁻¹ (2μ E + p I) and its derivative in the plane, where p is λ ln J or its substitute, and `direct` its derivative.
     fn answer(
         &self,
         e: &Matrix2<f64>,
@@ -157,7 +155,7 @@ impl Material {
         }
     }
 
-    /// Stress and tangent where rings strain too, by `hoop` = E33; none where the law has no answer.
+    /// Stress and tangent with the hoop strain `hoop` = E33; `None` if the law has no response.
     pub fn response_around(&self, strain: &Vector3<f64>, hoop: f64) -> Option<(Response, Hoop)> {
         match self.law {
             Law::Svk => Some(self.linear_around(strain, hoop)),
@@ -197,7 +195,7 @@ impl Material {
         Some((response, hoop))
     }
 
-    /// S33 for a strain in the plane: zero in plane stress.
+    /// S33 for a plane strain: zero in plane stress.
     pub fn across(&self, strain: &Vector3<f64>) -> f64 {
         match (self.plane, self.law) {
             (Plane::Stress, _) => 0.0,
@@ -206,7 +204,7 @@ impl Material {
         }
     }
 
-    /// The same by the constant moduli.
+    /// The same for constant moduli.
     pub fn linear_across(&self, strain: &Vector3<f64>) -> f64 {
         match self.plane {
             Plane::Stress => 0.0,
@@ -214,7 +212,7 @@ impl Material {
         }
     }
 
-    /// The same by the stress in the plane: ν (σ11 + σ22).
+    /// The same from the in-plane stress: ν (σ11 + σ22).
     pub fn across_of(&self, stress: &Vector3<f64>) -> f64 {
         match self.plane {
             Plane::Stress => 0.0,
@@ -222,9 +220,9 @@ impl Material {
         }
     }
 
-    /// x = ln C33 of plane stress, where `log` is ln det C of the plane: μ (eˣ − 1) + λ/2 (log + x) = 0.
+    /// x = ln C33 in plane stress, where `log` is ln det C of the plane: μ (eˣ − 1) + λ/2 (log + x) = 0.
     ///
-    /// The function is convex and rises, so Newton's steps, from the first on, come from above.
+    /// The function is convex and increasing, so all Newton iterates after the first step are above the root.
     fn log_of_c33(&self, log: f64) -> Option<f64> {
         let (half, mu) = (0.5 * self.lambda, self.mu);
         let mut x = -half * log / (mu + half);
@@ -244,7 +242,7 @@ fn tensor(strain: &Vector3<f64>) -> Matrix2<f64> {
     Matrix2::new(strain.x, 0.5 * strain.z, 0.5 * strain.z, strain.y)
 }
 
-/// det C − 1 of the plane, without the difference of numbers near one.
+/// det C − 1 of the plane, computed without cancellation.
 fn swelling(e: &Matrix2<f64>) -> f64 {
     2.0 * e.trace() + 4.0 * e.determinant()
 }
@@ -302,7 +300,7 @@ mod tests {
     }
 
     #[test]
-    fn around_the_axis_too_the_tangent_is_the_derivative_of_the_stress() {
+    fn the_axisymmetric_tangent_is_the_derivative_of_the_stress() {
         for law in [Law::Svk, Law::NeoHookean] {
             let m = material(law, Plane::Axisymmetric, 0.3);
             for (strain, hoop) in STRAINS
@@ -335,7 +333,7 @@ mod tests {
     }
 
     #[test]
-    fn without_a_strain_around_the_axis_the_answer_is_that_of_plane_strain() {
+    fn without_hoop_strain_the_response_is_that_of_plane_strain() {
         for law in [Law::Svk, Law::NeoHookean] {
             let [flat, round] =
                 [Plane::Strain, Plane::Axisymmetric].map(|plane| material(law, plane, 0.3));
@@ -380,7 +378,7 @@ mod tests {
     }
 
     #[test]
-    fn a_neo_hookean_material_is_not_pressed_to_nothing() {
+    fn a_neo_hookean_material_cannot_be_compressed_to_zero_volume() {
         let m = material(Law::NeoHookean, Plane::Strain, 0.3);
         assert!(m.response(&Vector3::new(-0.5, 0.0, 0.0)).is_none());
         assert!(m.response(&Vector3::new(f64::NAN, 0.0, 0.0)).is_none());

@@ -1,33 +1,33 @@
-//! Linear bodies, given by a matrix about the undeformed state.
+//! Linear bodies given by a matrix about the undeformed state.
 //!
 //! ```text
 //! stiffness:   f = K u
 //! compliance:  f = y,   u − W y = free λ
 //! ```
 //!
-//! W may be singular, so its forces y stay unknowns beside the displacements. The right-hand side `free λ` is a load on
+//! W may be singular, so its forces y are unknowns in addition to the displacements. The right-hand side `free λ` is a load on
 //! their equations.
 
 use crate::fem::element::Assembled;
 use crate::linalg::Pattern;
 use crate::model::{Body, Dofs, Form, Linear};
 
-/// Place of an entry that has none in the system, since it is restrained.
+/// Index of an entry that is not in the system because it is restrained.
 const NOWHERE: u32 = u32::MAX;
 
 /// The matrix, in degrees of freedom of the scene.
 pub struct Element {
-    /// Degree of freedom of each row, and where its entries end; they begin where those of the row before end.
+    /// Degree of freedom of each row, and the end of its entries; they start at the end of the previous row.
     rows: Vec<(usize, usize)>,
     /// Degree of freedom of each entry's column.
     columns: Vec<usize>,
     values: Vec<f64>,
-    /// Place of each entry in the array of values.
+    /// Index of each entry in the array of values.
     slots: Vec<u32>,
 }
 
 impl Element {
-    /// The matrix of a body of the scene whose degrees of freedom these are.
+    /// The matrix of a body of the scene.
     pub fn new(dofs: &Dofs, body: &Body, linear: &Linear) -> Self {
         let place = |k: usize| dofs.first[body.nodes[k / 2]] + k % 2;
         let mut element = Element {
@@ -82,7 +82,7 @@ impl Element {
         })
     }
 
-    /// Finds the place of every entry in a pattern that has them all.
+    /// Looks up every entry in a pattern that contains them all.
     pub fn bind(&mut self, dofs: &Dofs, pattern: &Pattern) {
         let mut slots = Vec::with_capacity(self.columns.len());
         for (dof, range) in self.ranges() {
@@ -106,7 +106,7 @@ impl Element {
         }
     }
 
-    /// Adds what `step` of the held degrees of freedom does.
+    /// Adds the effect of `step` of the restrained degrees of freedom.
     pub fn couple(&self, dofs: &Dofs, step: &[f64], coupling: &mut [f64]) {
         for (dof, range) in self.ranges() {
             let Some(row) = dofs.equation[dof] else {
@@ -121,7 +121,7 @@ impl Element {
         }
     }
 
-    /// Adds forces at displacements `u`, the matrix, and what `step` of the held degrees of freedom does.
+    /// Adds forces at displacements `u`, the matrix, and the effect of `step` of the restrained degrees of freedom.
     pub fn add(&self, dofs: &Dofs, u: &[f64], step: &[f64], out: &mut Assembled<'_>) {
         for (dof, range) in self.ranges() {
             let mut force = 0.0;

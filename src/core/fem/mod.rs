@@ -1,12 +1,12 @@
-//! The bodies: shape functions, quadrature, materials, elements, and their assembly.
+//! The bodies: shape functions, quadrature, materials, elements and assembly.
 //!
-//! - [`lagrange`]: interpolation on curves, and Gauss points; [`quadrature`]: rules over triangles and squares.
-//! - [`kinds`]: the continuum elements, one file each: places, shape functions, rule; [`continuum`]: them by name.
-//! - [`isoparametric`]: one formulation for all of them, finite strains; [`small`]: about rest.
-//! - [`material`]: stress from strain; [`deformation`]: det F and stretches of elements, and the range of each law.
-//! - [`beam`]: beams; [`truss`]: bars; [`matrix`]: bodies that are given by a matrix, sparse as they come.
-//! - [`pressure`]: loads that follow the faces they act on; [`recovery`]: stresses for output.
-//! - [`element`]: what an element is to the assembly; [`assembly`]: all of them in one system.
+//! - [`lagrange`]: interpolation on curves, and Gauss points; [`quadrature`]: integration rules for triangles and squares.
+//! - [`kinds`]: the continuum elements, one file each: node positions, shape functions, rule; [`continuum`]: access by name.
+//! - [`isoparametric`]: their common formulation for finite strains; [`small`]: linear elasticity.
+//! - [`material`]: stress-strain laws; [`deformation`]: det F and stretches of elements, and the range of each law.
+//! - [`beam`]: beams; [`truss`]: bars; [`matrix`]: bodies given by a sparse matrix.
+//! - [`pressure`]: following pressures; [`recovery`]: stresses for output.
+//! - [`element`]: the element interface; [`assembly`]: assembles all elements into one system.
 
 pub mod assembly;
 pub mod beam;

@@ -1,14 +1,15 @@
-//! Pressure on faces that follows them: a force by current area, along the current normal.
+//! Following pressure on faces: force per current area, along the current normal.
 //!
-//! Along a face with nodes x_i, walked with the body on the left, and w the width across the plane (the undeformed thickness,
-//! or the circumference 2π x in axisymmetry), a pressure p into the body gives
+//! Along a face with nodes x_i, walked with the body on the left, and with the out-of-plane width w (the undeformed thickness, or
+//! the circumference 2π x in axisymmetry), a pressure p into the body gives
 //!
 //! ```text
 //! f_i = −p ∫ N_i w (y', −x') dξ,      x' = Σ N_j' x_j,
 //! ```
 //!
-//! and its exact derivative, which is not symmetric, is taken off the tangent (Bathe 2014, section 6.7; Schweizerhof and Ramm
-//! 1984). The rule is exact for it. What is `added` here is the load, on the other side of the balance.
+//! and its exact derivative, which is not symmetric, is subtracted from the tangent (Bathe 2014, section 6.7; Schweizerhof and
+//! Ramm 1984). The integration rule is exact for it. The functions here compute the load, which is on the opposite side of the
+//! equilibrium equation from internal forces.
 
 use super::lagrange::{self, MAX_NODES};
 use crate::linalg::Pattern;
@@ -20,16 +21,16 @@ pub struct Pressures {
     faces: Vec<Placed>,
 }
 
-/// A face, and where it stands.
+/// A face with its positions in the system.
 struct Placed {
-    /// Undeformed places of its nodes.
+    /// Undeformed positions of its nodes.
     at: Vec<[f64; 2]>,
     /// Degrees of freedom, x and y of each node.
     dofs: Vec<usize>,
     thickness: Option<f64>,
-    /// Place of each entry of its stiffness among the values, row by row; `None` where a degree of freedom is held.
+    /// Index of each entry of its stiffness, row by row; `None` if a degree of freedom is restrained.
     slots: Vec<Option<usize>>,
-    /// Which of the model's pressures it has.
+    /// Index of its pressure in the model.
     pressure: usize,
     points: Vec<Sample>,
 }
@@ -38,7 +39,7 @@ struct Placed {
 type Sample = (f64, [f64; MAX_NODES], [f64; MAX_NODES]);
 
 impl Pressures {
-    /// Those of a model.
+    /// The pressures of a model.
     pub fn new(model: &Model) -> Self {
         let of = |(pressure, face): (usize, &PressedFace)| {
             let m = face.nodes.len();
@@ -59,12 +60,12 @@ impl Pressures {
         }
     }
 
-    /// Whether there are none.
+    /// Whether there are no pressures.
     pub fn is_empty(&self) -> bool {
         self.faces.is_empty()
     }
 
-    /// Entries `(row, column)` of the tangent, in equations; some repeat.
+    /// Entries `(row, column)` of the tangent, in equations; may contain duplicates.
     pub fn entries<'a>(&'a self, dofs: &'a Dofs) -> impl Iterator<Item = (usize, usize)> + 'a {
         self.faces.iter().flat_map(move |face| {
             let equations = || face.dofs.iter().filter_map(|&d| dofs.equation[d]);
@@ -72,7 +73,7 @@ impl Pressures {
         })
     }
 
-    /// Finds the place of every entry in a pattern that has them all.
+    /// Looks up every entry in a pattern that contains them all.
     pub fn bind(&mut self, dofs: &Dofs, pattern: &Pattern) {
         for face in &mut self.faces {
             face.slots.clear();
@@ -85,8 +86,8 @@ impl Pressures {
         }
     }
 
-    /// Calls `add` with degree of freedom and force of every node of every face at displacements u, where `factor` is what a
-    /// pressure is multiplied by.
+    /// Calls `add` with degree of freedom and force of every node of every face at displacements u; `factor` returns the
+    /// multiplier of a pressure.
     pub fn each(
         &self,
         model: &Model,
@@ -109,8 +110,8 @@ impl Pressures {
         }
     }
 
-    /// Takes the derivative of the forces at displacements u off the tangent, and off the `coupling` what `step` of the held
-    /// degrees of freedom does through it.
+    /// Subtracts the derivative of the forces at displacements u from the tangent, and its product with `step` of the restrained
+    /// degrees of freedom from the `coupling`.
     pub fn stiffen(
         &self,
         model: &Model,
@@ -134,14 +135,14 @@ impl Pressures {
     }
 }
 
-/// What a face is at a point.
+/// Geometry of a face at a point.
 struct Along {
     slope: [f64; 2],
     width: f64,
 }
 
 impl Placed {
-    /// Places of the nodes at displacements u.
+    /// Positions of the nodes at displacements u.
     fn now(&self, u: &[f64]) -> [[f64; 2]; MAX_NODES] {
         let mut now = [[0.0; 2]; MAX_NODES];
         for ((now, at), dofs) in now.iter_mut().zip(&self.at).zip(self.dofs.chunks_exact(2)) {
@@ -165,7 +166,7 @@ impl Placed {
         }
     }
 
-    /// Calls `add` with row, column (in the face's own order) and part of the derivative of the forces of a pressure.
+    /// Calls `add` with row, column (in the face's own order) and contribution to the derivative of a pressure's forces.
     fn each_entry(&self, u: &[f64], size: f64, mut add: impl FnMut(usize, usize, f64)) {
         let (now, m) = (self.now(u), self.at.len());
         let widening = if self.thickness.is_some() { 0.0 } else { TAU };
@@ -187,8 +188,8 @@ impl Placed {
     }
 }
 
-/// A rule that is exact for the derivative: a product of two shape functions, a slope and, in axisymmetry, the radius has a
-/// degree of 3 m − 4.
+/// A rule that is exact for the derivative: the product of two shape functions, a slope and, in axisymmetry, the radius has
+/// degree 3 m − 4.
 fn samples(m: usize) -> Vec<Sample> {
     let rule = lagrange::gauss((3 * m - 3).div_ceil(2).max(1));
     let sample = |(xi, weight): (f64, f64)| {
@@ -202,7 +203,7 @@ fn samples(m: usize) -> Vec<Sample> {
 mod tests {
     use super::*;
 
-    /// A bent face of m nodes by itself.
+    /// A single curved face with m nodes.
     fn face(m: usize, thickness: Option<f64>) -> Pressures {
         let at = (0..m).map(|i| [2.0 + 0.7 * i as f64, 0.1 * (i * i) as f64 - 0.3]);
         Pressures {
@@ -258,7 +259,7 @@ mod tests {
     }
 
     #[test]
-    fn the_resultant_of_a_pressure_is_that_on_the_straight_line_between_the_ends() {
+    fn the_resultant_of_a_pressure_depends_only_on_the_ends_of_the_face() {
         let all = face(3, Some(0.5));
         let force = forces(&all, &[0.0; 6], 2.0);
         let at = &all.faces[0].at;

@@ -1,21 +1,21 @@
-//! Rules of integration over the parent triangle and the parent square: points with their weights.
+//! Integration rules for the parent triangle and the parent square.
 
 use super::lagrange::gauss;
 
 /// A point of the parent element, and its weight.
 pub type Point = ([f64; 2], f64);
 
-/// The middle of the parent triangle: exact for linear functions.
+/// The centroid of the parent triangle: exact for linear functions.
 pub const TRIANGLE_1: [Point; 1] = [([1.0 / 3.0, 1.0 / 3.0], 0.5)];
 
-/// Three points inside the parent triangle: exact for quadratic functions.
+/// Three interior points of the parent triangle: exact for quadratic functions.
 pub const TRIANGLE_3: [Point; 3] = [
     ([1.0 / 6.0, 1.0 / 6.0], 1.0 / 6.0),
     ([2.0 / 3.0, 1.0 / 6.0], 1.0 / 6.0),
     ([1.0 / 6.0, 2.0 / 3.0], 1.0 / 6.0),
 ];
 
-/// The Gauss-Legendre rule of `count` by `count` points (P of them) over the parent square, row by row.
+/// The Gauss-Legendre rule with `count` by `count` points (P in total) on the parent square, row by row.
 pub fn square<const P: usize>(count: usize) -> [Point; P] {
     let line = gauss(count);
     std::array::from_fn(|p| {

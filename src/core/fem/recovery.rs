@@ -1,8 +1,9 @@
-//! Stresses for output: Cauchy stress at the points of every solid element, and at nodes.
+//! Stresses for output: Cauchy stress at the integration points of every solid element, and at nodes.
 //!
-//! Stresses are `[σ11, σ22, σ33, σ12]`. From the points of an element they are taken to its nodes by the polynomial that fits them
-//! best: constant from one point, linear from three, bilinear (1, ξ, η, ξη) from four or nine. A node has the mean of the elements
-//! of its body that meet there, whatever they are made of. With `update: small` it is the stress of linear elasticity.
+//! Stresses are `[σ11, σ22, σ33, σ12]`. They are extrapolated from the integration points of an element to its nodes by a
+//! least-squares polynomial: constant for one point, linear for three, bilinear (1, ξ, η, ξη) for four or nine. A node gets the
+//! mean of the adjacent elements of its body, regardless of their materials. With `update: small` it is the stress of linear
+//! elasticity.
 
 use super::continuum;
 use super::element::Past;
@@ -13,32 +14,32 @@ use nalgebra::DMatrix;
 /// σ11, σ22, σ33, σ12.
 pub type Stress = [f64; 4];
 
-/// Displacements, and what the elements remember.
+/// Displacements and history variables of a state.
 #[derive(Debug, Clone, Copy)]
 pub struct Configuration<'a> {
     /// Displacements at each degree of freedom.
     pub u: &'a [f64],
-    /// Those of the last accepted increment; at an accepted state `u` itself.
+    /// Displacements at the last accepted increment; equal to `u` in an accepted state.
     pub before: &'a [f64],
-    /// What the elements remember of it ([`super::assembly::history_len`] numbers).
+    /// History variables at that increment ([`super::assembly::history_len`] numbers).
     pub history: &'a [f64],
 }
 
-/// Stress at a point of an element.
+/// Stress at an integration point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointStress {
-    /// Number of the body, and of the element in its solid.
+    /// Number of the body.
     pub body: usize,
     /// Number of the element in its solid.
     pub element: usize,
-    /// Place of the point in the undeformed shape.
+    /// Undeformed position of the point.
     pub at: [f64; 2],
     /// The stress.
     pub stress: Stress,
 }
 
-/// Stresses at the points of all solid elements, in the order of bodies, elements and points; a point where the material has no
-/// answer is left out.
+/// Stresses at the integration points of all solid elements, ordered by body, element and point; points where the material has no
+/// response are left out.
 pub fn point_stresses(model: &Model, at: Configuration<'_>) -> Vec<PointStress> {
     let mut all = Vec::new();
     each_element(model, at, |body, element, _, points| {
@@ -53,8 +54,8 @@ pub fn point_stresses(model: &Model, at: Configuration<'_>) -> Vec<PointStress> 
     all
 }
 
-/// Stresses at the nodes of each body, in the order of [`Body::nodes`]; `None` at a node of no solid element that has an answer,
-/// and for all nodes of bodies that are no solids.
+/// Stresses at the nodes of each body, in the order of [`Body::nodes`]; `None` if no adjacent solid element has a response, and
+/// for all nodes of bodies that are not solids.
 pub fn nodal_stresses(model: &Model, at: Configuration<'_>) -> Vec<Vec<Option<Stress>>> {
     let fits: Vec<DMatrix<f64>> = ElementKind::ALL.iter().map(|kind| fit(*kind)).collect();
     let mut sums = vec![([0.0; 4], 0_usize); model.nodes.len()];
@@ -102,10 +103,10 @@ pub fn nodal_stresses(model: &Model, at: Configuration<'_>) -> Vec<Vec<Option<St
     found
 }
 
-/// Place and stress of a point, with its place in the parent element; none where the material has no answer.
+/// A point's position in the parent element, then its undeformed position and stress; `None` if the material has no response.
 type Found = ([f64; 2], Option<([f64; 2], Stress)>);
 
-/// Calls a function with body, element, solid, and the points of each element.
+/// Calls a function with body, element, solid, and the element's points.
 fn each_element(
     model: &Model,
     at: Configuration<'_>,
@@ -145,7 +146,7 @@ fn each_element(
     }
 }
 
-/// What the value at each node has of the value at each point, by least squares.
+/// Least-squares weights of the values at the points in the value at each node.
 fn fit(kind: ElementKind) -> DMatrix<f64> {
     let rule = continuum::rule(kind);
     let terms = rule.len().min(4);
@@ -153,7 +154,7 @@ fn fit(kind: ElementKind) -> DMatrix<f64> {
     let at_points = DMatrix::from_fn(rule.len(), terms, |p, k| term(rule[p].at, k));
     let places = continuum::places(kind);
     let at_nodes = DMatrix::from_fn(places.len(), terms, |i, k| term(places[i], k));
-    // The points of no rule lie so that the terms depend on each other.
+    // The points of every rule make the polynomial's terms independent.
     let normal = at_points.transpose() * &at_points;
     let inverse = normal
         .try_inverse()
@@ -166,7 +167,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn linear_fields_are_taken_to_the_nodes_exactly_and_constant_ones_by_every_kind() {
+    fn linear_fields_are_extrapolated_exactly_and_constant_ones_by_every_kind() {
         for kind in ElementKind::ALL {
             let (fit, rule, places) = (fit(kind), continuum::rule(kind), continuum::places(kind));
             for (i, place) in places.iter().enumerate() {

@@ -1,19 +1,19 @@
-//! Small displacements: an element by its stiffness at rest, f = K u.
+//! Small displacements: a linear element with the stiffness of the undeformed state, f = K u.
 //!
-//! About rest both laws have the moduli of linear elasticity, and strains are linear in the displacements, so that this is
-//! the element of linear elasticity. K is found once.
+//! At zero strain both laws have the moduli of linear elasticity, and strains are linear in the displacements, so this is the
+//! element of linear elasticity. K is computed once.
 
 use super::element::{self, Past};
 
-/// An element that answers as another one does about rest.
+/// An element linearised at the undeformed state.
 pub struct Element {
     dofs: usize,
-    /// K, row by row; `None` where the other has no answer at rest.
+    /// K, row by row; `None` if the original element has no response there.
     stiffness: Option<Box<[f64]>>,
 }
 
 impl Element {
-    /// The linear element that `of` is about rest.
+    /// Linearises `of` at the undeformed state.
     pub fn new(of: &dyn element::Element) -> Self {
         let dofs = of.dofs();
         let (rest, mut force) = (vec![0.0; dofs], vec![0.0; dofs]);

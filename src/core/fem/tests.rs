@@ -1,4 +1,4 @@
-//! What must hold for every element: run over all of them by a list.
+//! Properties that every element must have, tested for a list of all elements.
 
 use super::beam::{self, Section};
 use super::continuum;
@@ -8,32 +8,32 @@ use super::material::Material;
 use super::{small, truss};
 use crate::model::{Elastic, ElementKind, Law, Plane, Update};
 
-/// An element in a shape that is nothing special.
+/// An element with a generic shape.
 struct Specimen {
     name: String,
     element: Box<dyn Element>,
     /// Undeformed position of every node.
     at: Vec<[f64; 2]>,
-    /// Degrees of freedom of a node: x, y and, of a beam, the rotation.
+    /// Degrees of freedom per node: x, y and, for a beam, the rotation.
     per_node: usize,
-    /// Size of its forces.
+    /// Order of magnitude of its stiffness.
     stiffness: f64,
-    /// Which rigid motions strain nothing.
+    /// Rigid motions without strain.
     free: Free,
 }
 
-/// Rigid motions that strain nothing.
+/// Rigid motions without strain.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Free {
     /// All.
     Motions,
-    /// Small displacements: shifts, and rotations to their first order.
+    /// Small displacements: translations, and rotations to first order.
     Small,
-    /// About an axis: shifts along it.
+    /// Axisymmetry: translations along the axis.
     AlongAxis,
 }
 
-/// Every element that there is, with every choice that it has. A new one is entered here.
+/// All elements with all options. Add new elements here.
 fn specimens() -> Vec<Specimen> {
     let mut all = Vec::new();
     for m in 2..=MAX_NODES {
@@ -51,7 +51,7 @@ fn specimens() -> Vec<Specimen> {
     all
 }
 
-/// What there is to choose of a continuum.
+/// The options of a continuum.
 fn choices() -> Vec<(Law, Plane, Update)> {
     let planes = [Plane::Strain, Plane::Stress, Plane::Axisymmetric];
     let of_plane = |plane| {
@@ -100,7 +100,7 @@ fn beam(m: usize, ga: Option<f64>) -> Specimen {
     }
 }
 
-/// The parent element, stretched, sheared and bent; in axisymmetry beside the axis.
+/// The parent element, stretched, sheared and bent; in axisymmetry at a distance from the axis.
 fn solid(kind: ElementKind, law: Law, plane: Plane, update: Update) -> Specimen {
     let bent = |[x, y]: [f64; 2]| [1.2 * x + 0.2 * y + 0.1 * x * y, 0.8 * y - 0.1 * x * x];
     let away = if plane == Plane::Axisymmetric {
@@ -142,7 +142,7 @@ fn noise(k: usize, size: f64) -> f64 {
 }
 
 impl Specimen {
-    /// Displacements of its nodes, then nothing for what is its own.
+    /// Displacements of its nodes, followed by zeros for internal unknowns.
     fn displaced(&self, of: impl Fn(usize, [f64; 2]) -> Vec<f64>) -> Vec<f64> {
         let nodes = self.at.iter().enumerate();
         let mut u: Vec<f64> = nodes.flat_map(|(i, &at)| of(i, at)).collect();
@@ -150,7 +150,7 @@ impl Specimen {
         u
     }
 
-    /// A rigid motion, as far as it strains nothing: turned, then shifted.
+    /// A strain-free rigid motion: rotation, then translation.
     fn rigid(&self, angle: f64) -> Vec<f64> {
         let (s, c) = match self.free {
             Free::Motions => angle.sin_cos(),
@@ -236,7 +236,7 @@ fn the_tangent_of_every_element_is_the_derivative_of_its_force_and_symmetric() {
 }
 
 #[test]
-fn the_shape_functions_of_every_kind_are_one_at_their_node_and_one_together() {
+fn the_shape_functions_of_every_kind_are_one_at_their_node_and_sum_to_one() {
     for kind in ElementKind::ALL {
         let places = continuum::places(kind);
         assert_eq!(places.len(), kind.nodes(), "{kind:?}");
@@ -261,7 +261,7 @@ fn the_shape_functions_of_every_kind_are_one_at_their_node_and_one_together() {
 #[test]
 fn the_shape_functions_of_every_kind_reproduce_its_polynomials() {
     for kind in ElementKind::ALL {
-        // Powers of ξ and η that the kind has.
+        // Powers of ξ and η in the kind's shape functions.
         let powers: &[(i32, i32)] = match kind {
             ElementKind::Triangle3 => &[(0, 0), (1, 0), (0, 1)],
             ElementKind::Quad4 => &[(0, 0), (1, 0), (0, 1), (1, 1)],
@@ -330,9 +330,9 @@ fn the_nodes_of_every_face_lie_on_the_boundary_of_the_parent_element_in_order() 
     }
 }
 
-/// The patch test: under displacements that are linear in the position, every distorted element of a kind has the forces of
-/// one and the same stress, so that these are the tractions on its faces: Σ f_i = 0, and Σ f_i ⊗ X_i is the stress times the
-/// volume, whatever its shape.
+/// The patch test: if displacements are linear in the position, the forces of every distorted element of a kind follow from a
+/// single stress, which gives the tractions on its faces: Σ f_i = 0, and Σ f_i ⊗ X_i is the stress times the volume, for every
+/// shape.
 #[test]
 fn every_kind_of_continuum_element_passes_the_patch_test() {
     for kind in ElementKind::ALL {
@@ -404,7 +404,7 @@ fn area(kind: ElementKind, at: &[[f64; 2]]) -> f64 {
 }
 
 #[test]
-fn an_element_with_too_few_nodes_never_answers() {
+fn an_element_with_too_few_nodes_has_no_response() {
     for kind in ElementKind::ALL {
         let whole = solid(kind, Law::Svk, Plane::Strain, Update::Updated);
         let elastic = elastic(Law::Svk, Plane::Strain, Update::Updated);

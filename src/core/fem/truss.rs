@@ -1,6 +1,6 @@
-//! A bar between two nodes, hinged at both, that turns as far as it likes.
+//! A bar between two nodes, hinged at both ends, with arbitrarily large rotations.
 //!
-//! With L and l its lengths, undeformed and now, and t its direction now,
+//! With the undeformed length L, the current length l and the current direction t,
 //!
 //! ```text
 //! N = EA (l − L) / L,      f = N (−t, t),      K = ± (EA/L t tᵀ + N/l (I − t tᵀ)).
@@ -16,7 +16,7 @@ pub struct Element {
 }
 
 impl Element {
-    /// A bar between these undeformed places, with the stiffness EA (force).
+    /// A bar between these undeformed positions, with the stiffness EA (force).
     pub fn new(at: [[f64; 2]; 2], ea: f64) -> Self {
         Element { at, ea }
     }
@@ -35,7 +35,7 @@ impl element::Element for Element {
         if length.is_nan() || length <= 0.0 {
             return false;
         }
-        // l − L as (l² − L²) / (l + L), without the difference of numbers near each other.
+        // l − L as (l² − L²) / (l + L), to avoid cancellation.
         let squares: f64 = (0..2).map(|k| moved[k] * (2.0 * along[k] + moved[k])).sum();
         let pull = self.ea * squares / ((length + before) * before);
         let t = now.map(|x| x / length);

@@ -1,36 +1,36 @@
-//! Branch and bound over what the nodes of a frozen problem do: which assumptions can be consistent at all.
+//! Branch and bound over the modes of a frozen problem's nodes: rules out combinations that cannot be consistent.
 //!
-//! A branch leaves each node some of free, fixed, sliding either way. Its **relaxation** has every linear condition that all
-//! of a node's remaining choices share:
+//! A branch leaves each node a subset of free, fixed, and sliding in either direction. Its **relaxation** contains all linear
+//! conditions that the node's remaining choices share:
 //!
-//! - F_n ≥ 0 and gap ≥ 0, |F_t| ≤ tan φ F_n + c; one of them zero where only that is left; the sign of the slip;
-//! - bounds: with F_n ≤ F and gap ≤ G, F_n/F + gap/G ≤ 1, since one of them is zero; and likewise for what friction could
-//!   still give and the slip;
-//! - energy: the contact forces do no work on gaps and take work out by friction, so E = Σ (F_n gap − F_t slip) ≤ 0. Where
-//!   the compliance W is positive semidefinite, E is convex in the motions, and each of its tangents at a point that breaks
-//!   it is a linear condition that cuts this point off. A definite W bounds all forces and motions so.
+//! - F_n ≥ 0 and gap ≥ 0, |F_t| ≤ tan φ F_n + c; equality or zero if only that is left; the sign of the slip;
+//! - bounds: with F_n ≤ F and gap ≤ G, F_n/F + gap/G ≤ 1, because one of them is zero; and similarly for the unused friction and
+//!   the slip;
+//! - energy: the contact forces do no work on gaps, and friction dissipates work, so E = Σ (F_n gap − F_t slip) ≤ 0. If the
+//!   compliance W is positive semidefinite, E is convex in the motions, and its tangent at a point that violates it is a linear
+//!   condition that excludes this point. A definite W thus bounds all forces and motions.
 //!
-//! A branch whose relaxation cannot hold ([`Forms::can_hold`] proves it, with all bounds relaxed by 1e-8) is pruned.
-//! The others are split at the node that breaks its complements most. What is left are assumptions of all nodes, which the
-//! census solves and checks as if it had tried them one by one.
+//! A branch whose relaxation is infeasible (proven by [`Forms::can_hold`], with all bounds relaxed by 1e-8) is pruned. Other
+//! branches are split at the node that violates its complementarity most. The remaining combinations are solved and checked by
+//! the census like in a complete enumeration.
 
 use crate::interface::feasible::Forms;
 use crate::interface::problem::{Assumed, InterfaceProblem};
 use crate::linalg::DenseFactors;
 
-/// How far every bound is relaxed, in the problem's units of force and length. An assumption is consistent if it obeys up to
-/// 1e-9 of them.
+/// Relaxation of every bound, in the problem's units of force and length. A combination is consistent if it violates them by at
+/// most 1e-9.
 const SLACK: f64 = 1e-8;
-/// Forms of a node: F_n, gap, φ+ = tan φ F_n + c − F_t, φ− (with + F_t), slip, and three of bounds.
+/// Number of forms per node: F_n, gap, φ+ = tan φ F_n + c − F_t, φ− (with + F_t), slip, and three for bounds.
 const OF_NODE: usize = 8;
-/// Tangents of the energy that are kept.
+/// Maximum number of energy tangents.
 const TANGENTS: usize = 30;
-/// Tangents that are added to a branch before it is split, and before the first.
+/// Maximum number of tangents added to a branch before it is split, and at the root.
 const ROUNDS: usize = 5;
 const FIRST_ROUNDS: usize = 20;
-/// Rounds in which bounds of the whole are sharpened.
+/// Rounds of tightening the global bounds.
 const SHARPENED: usize = 3;
-/// A bound smaller than this is taken as this.
+/// Minimum size of a bound.
 const SMALLEST: f64 = 1e-9;
 
 const FREE: u8 = 1;
@@ -38,19 +38,19 @@ const FIXED: u8 = 2;
 const PLUS: u8 = 4;
 const MINUS: u8 = 8;
 
-/// What was found of a problem.
+/// Result for a problem.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Left {
-    /// The assumptions that are not ruled out, in the order in which they were found.
+    /// The combinations that are not ruled out, in search order.
     pub assumptions: Vec<Vec<Assumed>>,
-    /// Branches looked at.
+    /// Number of visited branches.
     pub visited: usize,
-    /// Whether all branches were looked at.
+    /// Whether all branches were visited.
     pub all: bool,
 }
 
-/// The assumptions that cannot be ruled out, looking at no more than `budget` branches, and until `stop` says so.
-/// `None` where the relation does not determine the motions.
+/// The combinations that cannot be ruled out, visiting at most `budget` branches, and stopping when `stop` returns true. `None`
+/// if the relation does not determine the motions.
 pub fn left(problem: &InterfaceProblem, budget: usize, stop: &dyn Fn() -> bool) -> Option<Left> {
     let mut branches = Branches::new(problem, budget, stop)?;
     let choices: Vec<u8> = problem.nodes.iter().map(|n| mask(n.choices())).collect();
@@ -62,23 +62,23 @@ pub fn left(problem: &InterfaceProblem, budget: usize, stop: &dyn Fn() -> bool) 
     })
 }
 
-/// What is linear of a node.
+/// Linear data of a node.
 struct Node {
     coefficient: f64,
     cohesion: f64,
-    /// Whether an unknown takes part in its normal and in its tangential motion.
+    /// Whether its normal and its tangential motion contain an unknown.
     moves: [bool; 2],
-    /// Whether it stands over a surface.
+    /// Whether it is over a surface.
     over: bool,
     smooth: bool,
-    /// F_n, gap, φ+, φ−, slip: lower and upper bounds that hold for the whole problem.
+    /// F_n, gap, φ+, φ−, slip: global lower and upper bounds.
     within: [[f64; 2]; 5],
-    /// Bounds of the three forms of bounds.
+    /// Bounds of the three bound forms.
     products: [[f64; 2]; 3],
 }
 
 struct Branches<'a> {
-    /// F_n, F_t, gap and slip of each node, in units of force and length: coefficients and a constant.
+    /// F_n, F_t, gap and slip of each node in units of force and length: coefficients and a constant.
     numbers: Vec<[Vec<f64>; 4]>,
     nodes: Vec<Node>,
     forms: Forms,
@@ -153,7 +153,7 @@ impl<'a> Branches<'a> {
         Some(branches)
     }
 
-    /// Makes the forms for the bounds that are known, and bounds them for these choices.
+    /// Builds the forms from the known bounds, and bounds them for these choices.
     fn build(&mut self, choices: &[u8]) -> Option<()> {
         let width = self.numbers[0][0].len();
         let mut all = Vec::new();
@@ -168,7 +168,7 @@ impl<'a> Branches<'a> {
             let touches = node.over && node.moves[0];
             let slips = touches && node.moves[1] && !node.smooth;
             let mut products = [[f64::NEG_INFINITY, f64::INFINITY]; 3];
-            // a/x + c/y ≤ 1, times the smaller of x and y; c is at least `low`.
+            // a/x + c/y ≤ 1, multiplied by the smaller of x and y; c is at least `low`.
             let mut product =
                 |k: usize, holds: bool, a: &[f64], x: f64, c: &[f64], y: f64, low: f64| {
                     let (x, y) = (x.max(SMALLEST), y.abs().max(SMALLEST).copysign(y));
@@ -216,7 +216,7 @@ impl<'a> Branches<'a> {
         Some(())
     }
 
-    /// Sharpens the bounds of all forms for these choices.
+    /// Tightens the bounds of all forms for these choices.
     fn sharpen(&mut self, choices: &[u8]) -> Option<()> {
         for _ in 0..SHARPENED {
             if (self.stop)() || !self.holds(FIRST_ROUNDS) {
@@ -244,7 +244,7 @@ impl<'a> Branches<'a> {
         }
     }
 
-    /// Bounds the forms of a node by what its choices share.
+    /// Bounds the forms of a node by the conditions common to its choices.
     fn bound(&mut self, place: usize, choices: u8) {
         const ANY: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
         const NONE: [f64; 2] = [0.0, 0.0];
@@ -278,7 +278,7 @@ impl<'a> Branches<'a> {
             }
         }
         let [pressed, plus_slips, minus_slips] = node.products;
-        // A free node with cohesion has forces and slips that friction alone could not leave it.
+        // A free node with cohesion may have forces and slips that friction does not allow.
         let both = touches || node.cohesion == 0.0;
         let bounds = [
             f_n,
@@ -295,7 +295,7 @@ impl<'a> Branches<'a> {
         }
     }
 
-    /// Whether the relaxation can hold, with up to so many tangents of the energy added.
+    /// Whether the relaxation is feasible, adding up to `rounds` tangents of the energy.
     fn holds(&mut self, rounds: usize) -> bool {
         for _ in 0..rounds {
             if !self.forms.can_hold() {
@@ -312,7 +312,7 @@ impl<'a> Branches<'a> {
         self.forms.value(OF_NODE * place + k)
     }
 
-    /// Adds the tangent of the energy at the present point, if that breaks it.
+    /// Adds the tangent of the energy at the current point, if that point violates it.
     fn cut_energy(&mut self) -> bool {
         if !self.convex {
             return false;
@@ -335,7 +335,7 @@ impl<'a> Branches<'a> {
         }
         let largest = tangent.iter().fold(0.0_f64, |m, t| m.max(t.1.abs()));
         tangent.iter_mut().for_each(|t| t.1 /= largest);
-        // Not all of the tangent: what round-off takes from convexity is far less.
+        // A weakened tangent: the loss of convexity by round-off is much smaller than the margin.
         let high = (energy + 1e-9 * size) / largest;
         for _ in 0..TANGENTS {
             self.tangent = (self.tangent + 1) % TANGENTS;
@@ -347,7 +347,7 @@ impl<'a> Branches<'a> {
         false
     }
 
-    /// Looks at a branch; false where it was not looked at to its end.
+    /// Visits a branch; returns false if it was not completed.
     fn down(&mut self, choices: &[u8]) -> bool {
         if self.visited >= self.budget || (self.stop)() {
             return false;
@@ -373,13 +373,13 @@ impl<'a> Branches<'a> {
         true
     }
 
-    /// How far a node is from being complementary at the present point.
+    /// Violation of a node's complementarity at the current point.
     fn broken(&self, place: usize) -> f64 {
         let [f_n, gap, plus, minus, slip] = [0, 1, 2, 3, 4].map(|k| self.value(place, k));
         f_n * gap + plus * slip.max(0.0) + minus * (-slip).max(0.0)
     }
 
-    /// The parts of a node's choices, that into which the present point leans first.
+    /// Splits a node's choices, with the part favoured by the current point first.
     fn split(&self, place: usize, choices: u8) -> [u8; 2] {
         let slip = self.value(place, 4);
         let one = if choices & FREE != 0 {
@@ -401,7 +401,7 @@ impl<'a> Branches<'a> {
     }
 }
 
-/// The choice that is left.
+/// The only remaining choice.
 fn only(choices: u8) -> Assumed {
     match choices {
         FREE => Assumed::Free,
@@ -416,14 +416,14 @@ fn sum(a: &[f64], x: f64, b: &[f64], y: f64) -> Vec<f64> {
     a.iter().zip(b).map(|(a, b)| x * a + y * b).collect()
 }
 
-/// The unit of forces: the problem's, or the largest that acts where nothing moves.
+/// The unit of forces: the problem's, or the largest force for zero motions.
 fn force(problem: &InterfaceProblem) -> f64 {
     let starts = problem.relation.start.iter();
     let largest = starts.fold(problem.force, |m, x| m.max(x.abs()));
     if largest > 0.0 { largest } else { 1.0 }
 }
 
-/// F_n, F_t, gap and slip of each node in z, in units of force and length.
+/// F_n, F_t, gap and slip of each node as functions of z, in units of force and length.
 fn numbers(problem: &InterfaceProblem) -> Vec<[Vec<f64>; 4]> {
     let relation = &problem.relation;
     let count = relation.count();
@@ -462,7 +462,7 @@ fn numbers(problem: &InterfaceProblem) -> Vec<[Vec<f64>; 4]> {
 struct Energy {
     count: usize,
     convex: bool,
-    /// H, factored, the middle −H⁻¹ b / 2, and E there with its sign turned; `None` where that bounds nothing.
+    /// Factored H, centre −H⁻¹ b / 2, and −E at the centre; `None` if the energy bounds nothing.
     ball: Option<(std::cell::RefCell<DenseFactors>, Vec<f64>, f64)>,
 }
 
@@ -501,7 +501,7 @@ impl Energy {
         }
     }
 
-    /// Least and largest values of a node's numbers where E ≤ 0.
+    /// Smallest and largest values of a node's numbers for E ≤ 0.
     fn ranges(&self, numbers: &[Vec<f64>; 4]) -> [[f64; 2]; 4] {
         let range = |form: &Vec<f64>| {
             let any = [f64::NEG_INFINITY, f64::INFINITY];
@@ -516,7 +516,7 @@ impl Energy {
             let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
             let at = dot(own, middle) + form[self.count];
             let reach = (dot(own, &across).max(0.0) * depth).sqrt();
-            // Far more than round-off, for an inverse of up to 1e9.
+            // A margin far above round-off, for inverses up to 1e9.
             let reach = reach + 1e-6 * (reach + at.abs() + form[self.count].abs()) + SLACK;
             [at - reach, at + reach]
         };
@@ -524,7 +524,7 @@ impl Energy {
     }
 }
 
-/// Whether a symmetric matrix has no eigenvalue below round-off: LDLᵀ of it with a shift of round-off's size.
+/// Whether a symmetric matrix has no eigenvalue below round-off: LDLᵀ with a shift of the round-off's size.
 fn is_semidefinite(matrix: &[f64], count: usize) -> bool {
     let mut a = matrix.to_vec();
     let largest = (0..count).fold(0.0_f64, |m, i| m.max(a[i * count + i].abs()));

@@ -1,9 +1,9 @@
-//! The census: every assumption of what the nodes of a frozen interface problem do, tried.
+//! The census: tries all combinations of modes of a frozen interface problem's nodes.
 //!
-//! With Coulomb's law, a frozen problem may have no consistent state, one, or several. The minor iterations cannot tell
-//! which, since they go from assumption to assumption by Table 2. With k nodes there are up to 4^k assumptions (free, fixed,
-//! sliding either way); for few nodes all of them are tried. For more, [`search`] looks at each block of the matrix by itself
-//! and tries only what branch and bound ([`crate::interface::branches`]) does not rule out.
+//! With Coulomb's law, a frozen problem may have no consistent state, one, or several. The minor iterations cannot determine
+//! which, because Table 2 only leads from one combination to the next. With k nodes there are up to 4^k combinations (free,
+//! fixed, sliding in either direction); for few nodes all of them are tried. For more, [`search`] treats each block of the matrix
+//! separately and tries only combinations that branch and bound ([`crate::interface::branches`]) does not rule out.
 
 use crate::interface::branches;
 use crate::interface::kinematics::NodeIncrement;
@@ -12,58 +12,58 @@ use crate::interface::problem::{
 };
 use crate::interface::response::InterfaceResponse;
 
-/// Largest number of nodes of a census: 4^8 = 65,536 assumptions.
+/// Maximum number of nodes of a census: 4^8 = 65,536 combinations.
 pub const MOST: usize = 8;
-/// Branches that a search looks at where nothing else is said.
+/// Default maximum number of branches of a search.
 pub const BUDGET: usize = 30_000;
-/// Most nodes of a search.
+/// Maximum number of nodes of a search.
 pub const MOST_SEARCHED: usize = 64;
-/// Most consistent states that are kept of a problem of several blocks, whose states combine.
+/// Maximum number of stored states of a problem with several blocks, whose states combine.
 const MOST_KEPT: usize = 1000;
-/// Conditions that are broken by less than this (relative) count as obeyed; forces and gaps that differ by less are equal.
+/// Violations below this (relative) are ignored; forces and gaps with a smaller difference are equal.
 const TOLERANCE: f64 = 1e-9;
 
-/// What a census found.
+/// Result of a census.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Census {
-    /// Number of assumptions that were tried, or ruled out by branch and bound; `usize::MAX` if there are more.
+    /// Number of combinations that were tried, or ruled out by branch and bound; `usize::MAX` if there are more.
     pub tried: usize,
-    /// Number of those that have no unique solution, of those that were tried.
+    /// Number of tried combinations without a unique solution.
     pub singular: usize,
-    /// Branches that were looked at; 0 where all assumptions were tried one by one.
+    /// Number of visited branches; 0 if all combinations were tried one by one.
     pub visited: usize,
-    /// Whether nothing was left out: the consistent states are all there are. Otherwise there are at least these.
+    /// Whether the result is complete; otherwise there are at least these consistent states.
     pub exact: bool,
-    /// The consistent states, each different in forces or gaps.
+    /// The consistent states, which differ in forces or gaps.
     pub answers: Vec<Consistent>,
-    /// If there is no consistent state: the assumption that comes closest, the node (its place in the problem) and the
-    /// condition that it breaks. `None` if there is one, and where not all assumptions were tried one by one.
+    /// Without a consistent state: the closest combination, the node (its index in the problem) and the condition that it
+    /// violates. `None` if there is a consistent state, or if not all combinations were tried one by one.
     pub nearest: Option<(Answer, usize, Margin)>,
 }
 
 /// A consistent state.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Consistent {
-    /// The assumption with its forces and gaps.
+    /// The combination with its forces and gaps.
     pub answer: Answer,
-    /// Other assumptions that lead to the same forces and gaps (ties), a letter a node.
+    /// Other combinations with the same forces and gaps (ties), one letter per node.
     pub ties: Vec<String>,
 }
 
-/// More nodes than a census can be held over.
+/// Too many nodes for a census.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "a census tries all assumptions of at most {MOST} nodes, and searches among at most {MOST_SEARCHED}; these are {nodes}; find the core of the cycle first"
+    "a census tries all mode combinations of at most {MOST} nodes, and a search at most {MOST_SEARCHED} nodes; this problem has {nodes}; find the core of the cycle first"
 )]
 pub struct TooMany {
     /// Number of nodes of the problem.
     pub nodes: usize,
 }
 
-/// Tries every assumption of a problem of at most [`MOST`] nodes.
+/// Tries all combinations for a problem with at most [`MOST`] nodes.
 ///
 /// # Errors
-/// [`TooMany`] where it has more.
+/// [`TooMany`] if it has more.
 pub fn census(problem: &InterfaceProblem) -> Result<Census, TooMany> {
     let count = problem.nodes.len();
     if count > MOST {
@@ -78,8 +78,8 @@ pub fn census(problem: &InterfaceProblem) -> Result<Census, TooMany> {
     Ok(found)
 }
 
-/// The consistent states of a problem of any size: by [`census`] for up to [`MOST`] nodes, else by branch and bound, block
-/// by block. After `budget` branches, or once `stop` says so, the census is not exact: there are at least the states found.
+/// The consistent states of a problem of any size: by [`census`] for up to [`MOST`] nodes, otherwise by branch and bound, block
+/// by block. After `budget` branches, or when `stop` returns true, the result is not exact: there are at least the states found.
 ///
 /// # Errors
 /// [`TooMany`] with more than [`MOST_SEARCHED`] nodes.
@@ -99,7 +99,7 @@ pub fn search(
     Ok(by_blocks(problem, budget, stop))
 }
 
-/// [`search`] without trying all assumptions one by one where they are few.
+/// [`search`], but never by complete enumeration.
 pub fn by_blocks(problem: &InterfaceProblem, budget: usize, stop: &dyn Fn() -> bool) -> Census {
     let mut whole = Census::empty();
     whole.tried = 1;
@@ -133,7 +133,7 @@ pub fn by_blocks(problem: &InterfaceProblem, budget: usize, stop: &dyn Fn() -> b
             whole.answers.truncate(MOST_KEPT);
             whole.exact = false;
         }
-        // A block without any state leaves none, however the others are; one that was not done may have some.
+        // A block without any state excludes states of the whole problem; an incomplete block does not.
         if whole.answers.is_empty() && found.exact {
             whole.exact = true;
             break;
@@ -142,7 +142,7 @@ pub fn by_blocks(problem: &InterfaceProblem, budget: usize, stop: &dyn Fn() -> b
     whole
 }
 
-/// A node that no block has been looked at of.
+/// Placeholder for a node of a block that has not been searched.
 const NOTHING: NodeAnswer = NodeAnswer {
     assumed: Assumed::Free,
     f_n: 0.0,
@@ -157,7 +157,7 @@ const NOTHING: NodeAnswer = NodeAnswer {
     },
 };
 
-/// A state with that of a block, whose nodes are at these places.
+/// Combines a state with that of a block, whose nodes have these indices.
 fn joined(had: &Consistent, own: &Consistent, places: &[usize]) -> Consistent {
     let mut answer = had.answer.clone();
     for (&place, node) in places.iter().zip(&own.answer.nodes) {
@@ -180,7 +180,7 @@ fn joined(had: &Consistent, own: &Consistent, places: &[usize]) -> Consistent {
     }
 }
 
-/// The nodes that forces connect, by place; each block by itself.
+/// The nodes connected by forces, by index; one list per block.
 fn blocks(problem: &InterfaceProblem) -> Vec<Vec<usize>> {
     let (count, nodes) = (problem.relation.count(), problem.nodes.len());
     let touches = |a: usize, b: usize| {
@@ -211,7 +211,7 @@ fn blocks(problem: &InterfaceProblem) -> Vec<Vec<usize>> {
     blocks
 }
 
-/// The problem of a block.
+/// The sub-problem of a block.
 fn part(problem: &InterfaceProblem, places: &[usize]) -> InterfaceProblem {
     let count = problem.relation.count();
     let own: Vec<usize> = places.iter().flat_map(|&s| [2 * s, 2 * s + 1]).collect();
@@ -229,7 +229,7 @@ fn part(problem: &InterfaceProblem, places: &[usize]) -> InterfaceProblem {
     }
 }
 
-/// The consistent states among the assumptions that branch and bound leaves, in the order of [`census`].
+/// The consistent states among the combinations that branch and bound leaves, in the order of [`census`].
 fn branched(problem: &InterfaceProblem, budget: usize, stop: &dyn Fn() -> bool) -> Census {
     let mut walk = Walk::new(problem);
     let Some(mut left) = branches::left(problem, budget, stop) else {
@@ -252,18 +252,18 @@ fn branched(problem: &InterfaceProblem, budget: usize, stop: &dyn Fn() -> bool) 
     }
 }
 
-/// The walk through all assumptions, node by node, the last node first, so that only the equations of few nodes differ
-/// between two assumptions in a row. A node's equations are reduced by those before them when they are assumed, and all
-/// assumptions of the nodes that follow share that work.
+/// Enumerates all combinations, node by node with the last node varying fastest, so that consecutive combinations differ in the
+/// equations of few nodes. A node's equations are reduced by the previous ones once, and all combinations of the following nodes
+/// share that work.
 struct Walk<'a> {
     problem: &'a InterfaceProblem,
-    /// The two equations of each choice of each node, in z: coefficients, right-hand side, and that of the probe by which
-    /// the norm of the inverse is estimated; scaled to a largest coefficient of 1.
+    /// The two equations of each choice of each node in z: coefficients, right-hand side, and that of the probe for estimating
+    /// the norm of the inverse; scaled to a largest coefficient of 1.
     equations: Vec<Vec<[Vec<f64>; 2]>>,
-    /// The equations assumed so far, reduced: each has 1 in its pivot's column, and 0 in those of the ones before it.
+    /// The current equations in reduced form: each has 1 in its pivot's column, and 0 in the pivot columns of the previous ones.
     reduced: Vec<Vec<f64>>,
     pivots: Vec<usize>,
-    /// What each node is assumed to do.
+    /// Current mode of each node.
     assumed: Vec<Assumed>,
     /// Solutions for the right-hand side and for the probe.
     z: [Vec<f64>; 2],
@@ -304,7 +304,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Tries everything that the nodes can do which are not assumed yet; `depth` of them are.
+    /// Tries all choices of the remaining nodes; `depth` nodes are fixed.
     fn down(&mut self, depth: usize) {
         let Some(place) = self.problem.nodes.len().checked_sub(depth + 1) else {
             self.found.tried += 1;
@@ -333,7 +333,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Tries one assumption.
+    /// Tries one combination.
     fn try_one(&mut self, assumed: &[Assumed]) {
         let nodes = self.problem.nodes.len();
         self.assumed.copy_from_slice(assumed);
@@ -356,7 +356,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Reduces an equation by the `at` before it and finds its pivot; false where nothing is left of it.
+    /// Reduces an equation by the `at` previous ones and selects its pivot; returns false if nothing is left of it.
     fn reduce(&mut self, at: usize, place: usize, choice: usize, k: usize) -> bool {
         let (before, rest) = self.reduced.split_at_mut(at);
         let line = &mut rest[0];
@@ -403,7 +403,7 @@ impl<'a> Walk<'a> {
         self.z[1].iter().all(sound) && self.z[0].iter().all(|z| z.is_finite())
     }
 
-    /// Takes the solution, unless it is worse than what was found already.
+    /// Records the solution, unless it is worse than a previous one.
     fn take_solution(&mut self) {
         let problem = self.problem;
         let worst = match (self.found.answers.first(), &self.found.nearest) {
@@ -429,7 +429,7 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// The right-hand side of an equation by which the norm of the inverse is estimated: of both signs, and in no order.
+/// Right-hand side of an equation for estimating the norm of the inverse: with both signs, in irregular order.
 fn probe(k: usize) -> f64 {
     let size = 1.0 + (1.618_033_988_749_895 * k as f64).fract();
     if k % 2 == 1 { -size } else { size }

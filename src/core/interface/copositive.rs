@@ -1,5 +1,5 @@
 //! Complementary pivoting on Coulomb's law in the form of Stewart and Trinkle (Int. J. Numer. Meth. Engng 39, 1996), with the
-//! friction force in two parts that pull opposite ways: for every rough node
+//! friction force split into two opposite parts: for every node with friction
 //!
 //! ```text
 //! 0 <= F_n                              complements   gap >= 0
@@ -8,31 +8,32 @@
 //! 0 <= λ                                              tan φ F_n + c − β+ − β− >= 0,       F_t = β+ − β−
 //! ```
 //!
-//! and for a smooth one only the first line. With all nodes free at the start the matrix M of this problem gives
-//! zᵀ M z = Fᵀ W F + tan φ F_n λ, which is never negative for z >= 0 if the compliance W has no negative eigenvalue: M is
-//! copositive. Lemke's path can then end on a ray only if forces within the friction cones that move nothing (W F = 0) take
-//! energy from the unloaded motion q (Fᵀ q < 0). In a structure W = H M⁻¹ Hᵀ whose contacts have no gaps, q lies in the range
-//! of H and no such forces exist: there is an answer, and the path ends in it (Anitescu and Potra, Nonlinear Dynamics 14,
-//! 1997). The path may be long, and depends on how much the covering variable relaxes each row; so there are several starts.
-//! The form of [`crate::interface::lemke`] has half as many rows and is not copositive.
+//! and without friction only the first line. With all nodes free at the start, the matrix M of this problem gives
+//! zᵀ M z = Fᵀ W F + tan φ F_n λ, which is never negative for z >= 0 if the compliance W has no negative eigenvalue: M is copositive. Lemke's
+//! path can then end on a ray only if forces within the friction cones that cause no motion (W F = 0) extract energy from the
+//! free motion q (Fᵀ q < 0). In a structure W = H M⁻¹ Hᵀ without initial gaps, q is in the range of H and no such forces exist: a
+//! solution exists, and the path ends there (Anitescu and Potra, Nonlinear Dynamics 14, 1997). The path may be long, and depends
+//! on how much the covering variable relaxes each row; therefore several starts are used. The form of [`crate::interface::lemke`]
+//! has half as many rows but is not copositive.
 
 use crate::contact::table2::Tested;
 use crate::interface::problem::{Assumed, InterfaceProblem};
 use crate::interface::tableau::{Begin, Columns, PathEnd, Tableau};
 
-/// A path that ends on a ray has come to an answer if the covering variable is no more than this (relative): the rows that
-/// would bound it are tied, and round-off decides which of them does.
+/// A path that ends on a ray counts as solved if the covering variable is at most this (relative): the rows that should bound it
+/// are tied, and round-off decides between them.
 const NEARLY: f64 = 1e-9;
-/// Ties are broken by shifts of the rows up to this (relative), and less with every start: what a basis makes of them may be
-/// large, and then it solves the shifted rows only.
+/// Ties are broken by shifting the rows by up to this (relative), and by less with every start: a basis may amplify the shifts,
+/// and would then solve only the shifted rows.
 const SHIFT: f64 = 1e-7;
 const SHIFT_FALLS: f64 = 0.3;
-/// Number of starts: the first relaxes all rows alike, the others each row by 0.2 to 1; each has shifts of its own.
+/// Number of starts: the first relaxes all rows equally, the others relax each row by 0.2 to 1; each start has different shifts.
 pub const STARTS: usize = 8;
-/// Most pivots from a start, per row. Most paths take fewer than 3; of structures with 120 to 200 contacts some take 90.
+/// Maximum number of pivots per row and start. Most paths take fewer than 3 per row; some structures with 120 to 200 contacts
+/// take 90.
 const PIVOTS: usize = 100;
 
-/// Variables of a rough node, in this order, each beside its complement.
+/// Variables of a node with friction, in this order, each followed by its complement.
 const FORCE: usize = 0;
 const GAP: usize = 1;
 /// β+ and β−.
@@ -43,25 +44,25 @@ const PLUS_REST: usize = 3;
 const MINUS_REST: usize = 5;
 /// λ.
 const SPEED: usize = 6;
-/// What friction could still give.
+/// Unused friction.
 const ROOM: usize = 7;
 
-/// A path on its way, from all nodes free.
+/// The state of a path that starts with all nodes free.
 #[derive(Debug, Clone)]
 pub struct Copositive {
-    /// In units of the problem's force and length.
+    /// In the problem's units of force and length.
     tableau: Tableau,
     nodes: Vec<Held>,
-    /// Node and number of every variable.
+    /// Node and kind of every variable.
     owners: Vec<(usize, usize)>,
     force: f64,
     length: f64,
 }
 
-/// Where a node's variables begin.
+/// Start of a node's variables.
 #[derive(Debug, Clone, Copy)]
 enum Held {
-    /// Nothing can press it, or there is no surface: its motions are loose.
+    /// No contact force is possible, or there is no surface: its motions are unconstrained.
     No,
     /// It has F_n and the gap.
     Smooth(usize),
@@ -70,7 +71,8 @@ enum Held {
 }
 
 impl Copositive {
-    /// The problem with all nodes free, at start `number`, less than [`STARTS`]. `None` if the bodies are not held without contact, or there is no memory.
+    /// The problem with all nodes free, at start `number`, which is less than [`STARTS`]. `None` if the bodies are unsupported
+    /// without contact, or memory is insufficient.
     pub fn new(problem: &InterfaceProblem, number: usize) -> Option<Self> {
         let (relation, count) = (&problem.relation, problem.relation.count());
         let rough = |k: usize| {
@@ -86,7 +88,7 @@ impl Copositive {
             force,
             length,
         };
-        // (I + R / k) F − R v = start + (I + R / k) F_0, a column at a time.
+        // (I + R / k) F − R v = start + (I + R / k) F_0, column by column.
         let columns = Columns { relation, force };
         let mut rhs = columns.start(rows);
         let mut basis = Vec::with_capacity(rows);
@@ -116,7 +118,7 @@ impl Copositive {
             let (coefficient, cohesion) = (node.friction.coefficient(), node.friction.cohesion);
             let slipped = node.state.slipped(&problem.settings) + node.prescribed[1];
             columns.add_motion(t, slipped, &mut rhs);
-            // slip = λ − (λ − slip); the two rows beside the node's own say that the two rests add up to 2 λ, and what room is.
+            // slip = λ − (λ − slip); the two additional rows state that the two remainders sum to 2 λ, and define `room`.
             let (sum, room) = (extra, extra + 1);
             extra += 2;
             path.tableau.column(first + FORCE)[room] = -coefficient;
@@ -155,11 +157,11 @@ impl Copositive {
         Some(path)
     }
 
-    /// Adds a variable that has a complement beside it.
+    /// Adds a variable that has a complement.
     fn add(&mut self, place: usize, kind: usize, fill: impl FnOnce(&mut [f64])) {
         let number = self.owners.len();
         self.owners.push((place, kind));
-        // Of two that are beside each other the first has an even number among the node's own.
+        // In each complementary pair, the first variable has an even number within its node.
         let partner = if kind.is_multiple_of(2) {
             number + 1
         } else {
@@ -175,7 +177,7 @@ impl Copositive {
         number
     }
 
-    /// One pivot. `None` if the path has ended before.
+    /// One pivot. `None` if the path has already ended.
     pub fn pivot(&mut self) -> Option<()> {
         self.tableau.pivot()
     }
@@ -190,7 +192,7 @@ impl Copositive {
         self.tableau.rows()
     }
 
-    /// How the path ended. `None` while it goes on.
+    /// Result of the path. `None` while it continues.
     pub fn ended(&self) -> Option<PathEnd> {
         match self.tableau.ended() {
             Some(PathEnd::Ray) if self.tableau.cover() <= NEARLY => Some(PathEnd::Solved),
@@ -198,12 +200,12 @@ impl Copositive {
         }
     }
 
-    /// The covering variable: how far the problem is still relaxed, in units of its forces and lengths.
+    /// The covering variable: remaining relaxation of the problem, in units of its forces and lengths.
     pub fn cover(&self) -> f64 {
         self.tableau.cover()
     }
 
-    /// The node of the last pivot, and what reached its bound there. `None` if that was the covering variable.
+    /// The node of the last pivot, and the quantity that reached its bound. `None` if that was the covering variable.
     pub fn bound(&self) -> Option<(usize, Tested)> {
         let (place, kind) = self.owners[self.tableau.left()?];
         let tested = match kind {
@@ -215,7 +217,7 @@ impl Copositive {
         Some((place, tested))
     }
 
-    /// What a node does in the present basis. A node whose friction has come to no bound sticks.
+    /// Mode of a node in the current basis. A node whose friction has not reached a bound sticks.
     pub fn assumed(&self, place: usize) -> Assumed {
         let first = match self.nodes[place] {
             Held::No => return Assumed::Free,
@@ -235,7 +237,7 @@ impl Copositive {
         }
     }
 
-    /// F_n, F_t, gap and slip of a node in the present, relaxed solution; a gap is 0 where the node touches.
+    /// F_n, F_t, gap and slip of a node in the current, relaxed solution; the gap of a touching node is 0.
     pub fn numbers(&self, place: usize) -> [f64; 4] {
         let of = |variable: usize| self.tableau.of(variable);
         match self.nodes[place] {
@@ -256,8 +258,8 @@ impl Copositive {
     }
 }
 
-/// Numbers in 0 to 1 that differ from row to row and from start to start, the same every time: the top bits of a product with
-/// an odd number, mixed (Steele, Lea and Flood's generator, 2014).
+/// Reproducible numbers in 0 to 1 that differ between rows and starts: the top bits of a product with an odd number, mixed
+/// (Steele, Lea and Flood's generator, 2014).
 fn spread(row: usize, number: usize) -> f64 {
     let seed = (row as u64) << 8 | number as u64;
     let mut x = seed.wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15);

@@ -1,14 +1,14 @@
-//! The cycle that a sequence of iterations closes, whatever an iteration is: minor or major ones, those of an attached solver, or
-//! of a finished run of another program.
+//! Detects cycles in any sequence of iterations: minor or major ones, those of an attached solver, or of a finished run of
+//! another program.
 
 use std::ops::Range;
 
-/// The iterations of the cycle that closes where iteration `here` starts from the same as an earlier one: from the last such
-/// iteration to the one before `here`. `None` if there is none, if it has fewer than `shortest` iterations, or if not all between
-/// the two were elsewhere.
+/// The iterations of the cycle that closes if iteration `here` starts from the same state as an earlier one: from the last such
+/// iteration to the one before `here`. `None` if there is none, if it has fewer than `shortest` iterations, or if not all
+/// iterations in between were `elsewhere`.
 ///
-/// `same` and `elsewhere` compare an earlier iteration with this one. They may leave a range of differences between them, in
-/// which an iteration may still converge.
+/// `same` and `elsewhere` compare an earlier iteration with this one. There may be differences for which neither is true, for
+/// iterations that may still converge.
 pub fn closed(
     here: usize,
     shortest: usize,

@@ -1,33 +1,33 @@
-//! Eigenvalues of the compliance W of a frozen problem, and the problem with a W that is made semidefinite.
+//! Eigenvalues of the compliance W of a frozen problem, and a modified problem whose W is semidefinite.
 //!
-//! The compliance of elastic bodies in a stable state is positive definite, or semidefinite where some forces move nothing. A
-//! matrix that was written with few digits may have small negative eigenvalues instead: forces that move their points against
-//! them. Then a problem that has an answer may have none, and pivoting may end on a ray.
+//! The compliance of elastic bodies in a stable state is positive definite, or semidefinite if some forces cause no motion. A
+//! matrix written with few digits may have small negative eigenvalues instead: forces whose points move against them. Then a
+//! solvable problem may become unsolvable, and pivoting may end on a ray.
 //!
-//! W = −(R⁻¹ + 1/k) of the components that can differ: those in which an unknown takes part, the tangential one only of
-//! rough nodes. Its symmetric part is looked at, and changed; the rest of W, and the motions without forces, stay.
+//! W = −(R⁻¹ + 1/k) for the components that can vary: those that contain an unknown, tangential ones only for nodes with
+//! friction. Only its symmetric part is examined and changed; the rest of W, and the motions without forces, stay.
 
 use crate::interface::problem::InterfaceProblem;
 use crate::interface::response::InterfaceResponse;
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
 
-/// Eigenvalues below this part of the largest, times the size, are round-off of double precision.
+/// Eigenvalues below this fraction of the largest, times the matrix size, are round-off.
 const ROUND_OFF: f64 = 1e-12;
 
 /// The compliance of a problem.
 #[derive(Debug, Clone)]
 pub struct Compliance<'a> {
     problem: &'a InterfaceProblem,
-    /// W of all components, length by force.
+    /// W of all components (length per force).
     whole: DMatrix<f64>,
-    /// Numbers of the components that are looked at.
+    /// Numbers of the examined components.
     kept: Vec<usize>,
     /// Eigenvalues and eigenvectors of the symmetric part.
     parts: SymmetricEigen<f64, nalgebra::Dyn>,
 }
 
 impl<'a> Compliance<'a> {
-    /// The compliance. `None` where a body is loose, so that there is none, and where no component can differ.
+    /// The compliance. `None` if it does not exist because a body is loose, or if no component can vary.
     pub fn of(problem: &'a InterfaceProblem) -> Option<Self> {
         let relation = &problem.relation;
         let count = relation.count();
@@ -61,27 +61,26 @@ impl<'a> Compliance<'a> {
         })
     }
 
-    /// Smallest and largest eigenvalue of the symmetric part (length by force).
+    /// Smallest and largest eigenvalue of the symmetric part (length per force).
     pub fn ends(&self) -> [f64; 2] {
         let values = &self.parts.eigenvalues;
         [values.min(), values.max()]
     }
 
-    /// Size below which an eigenvalue is round-off of double precision (length by force).
+    /// Magnitude below which an eigenvalue is round-off (length per force).
     pub fn round_off(&self) -> f64 {
         let spring = 1.0 / self.problem.relation.stiffness;
         let largest = self.parts.eigenvalues.amax().max(spring);
         ROUND_OFF * self.kept.len() as f64 * largest
     }
 
-    /// Number of eigenvalues of the symmetric part that are no larger than `size`.
+    /// Number of eigenvalues of the symmetric part with a magnitude of at most `size`.
     pub fn within(&self, size: f64) -> usize {
         let values = self.parts.eigenvalues.iter();
         values.filter(|value| value.abs() <= size).count()
     }
 
-    /// The problem with all eigenvalues that are less than `below` set to `to` (length by force). `None` if its W + 1/k is
-    /// singular then.
+    /// The problem with all eigenvalues below `below` replaced by `to` (length per force). `None` if W + 1/k becomes singular.
     pub fn raised(&self, below: f64, to: f64) -> Option<InterfaceProblem> {
         let relation = &self.problem.relation;
         let values = self
@@ -96,7 +95,7 @@ impl<'a> Compliance<'a> {
                 whole[(row, column)] += change[(i, j)];
             }
         }
-        // Without springs there is no response to a singular W.
+        // Without springs, a singular W has no response.
         let stiffness = match relation.stiffness.is_finite() {
             true => relation.stiffness,
             false => self.problem.spring,

@@ -1,29 +1,29 @@
-//! States of a frozen problem that differ in their forces alone.
+//! States of a frozen problem that differ only in their forces.
 //!
-//! Where the compliance W is singular on the nodes that touch, some forces d move nothing: W d = 0 (a body on more contacts
-//! than it needs, two nodes on one spring). With a consistent state F, every F + d is consistent that keeps to F_n ≥ 0 and to
-//! the friction limit, and for nodes that slip is on it: the motions are the same, the forces are a **family**, a convex set.
-//! The census finds its corners, since there as few forces act as determine each other; a state between them solves equations
-//! that are singular, and is counted among those.
+//! If the compliance W is singular on the touching nodes, some forces d cause no motion: W d = 0 (a body on more contacts than it
+//! needs, two nodes on one spring). With a consistent state F, every F + d is consistent that satisfies F_n ≥ 0 and the friction
+//! limit, and is on that limit for slipping nodes: the motions are the same, and the forces form a **family**, a convex set. The
+//! census finds its corners, where the acting forces are uniquely determined; states in between solve singular equations and
+//! count as such.
 //!
-//! W need not be formed. No motion comes of d where (I + R / k) d = 0, R the response of the interface to z with springs of
-//! stiffness k ([`crate::interface::response`]); that is k W d / (k W + 1), and finite for loose bodies, too.
+//! W need not be computed: d causes no motion if (I + R / k) d = 0, where R is the response of the interface to z with springs of
+//! stiffness k ([`crate::interface::response`]); this product is k W d / (k W + 1), and finite for loose bodies too.
 //!
-//! What stays as it is: forces of nodes that do not touch, those that supports carry, and those of a node with cohesion that
-//! is not pressed, since it would jump.
+//! Constant forces: those of nodes that do not touch, those carried by supports, and those of a node with cohesion but without
+//! pressure, because it would jump.
 
 use crate::interface::census::{Census, Consistent};
 use crate::interface::feasible::Forms;
 use crate::interface::problem::InterfaceProblem;
 use nalgebra::DMatrix;
 
-/// Gaps and slips, relative to the problem's length, that are the same or zero.
+/// Relative tolerance for equal or zero gaps and slips (times the problem's length).
 const SAME: f64 = 1e-9;
-/// Forces d whose motions are below this part of those of other forces move nothing.
+/// Forces d cause no motion if their motions are below this fraction of those of other forces.
 const MOVES_NOTHING: f64 = 1e-9;
-/// Forces that are the same, relative to the largest of a state.
+/// Tolerance for equal forces, relative to the largest force of a state.
 const SAME_FORCE: f64 = 1e-6;
-/// Forces, relative to the largest of a state, as far as which a family is followed.
+/// Largest forces up to which a family is followed, relative to the largest force of a state.
 const REACH: f64 = 1e4;
 /// Slack of the conditions.
 const SLACK: f64 = 1e-10;
@@ -31,19 +31,18 @@ const SLACK: f64 = 1e-10;
 /// States with the same motions.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Family {
-    /// The consistent states of the census that belong to it, by number from 0.
+    /// The consistent states of the census in this family, by index.
     pub states: Vec<usize>,
     /// Number of directions in which forces can change, at least 1.
     pub dimension: usize,
-    /// Of the nodes whose forces differ, by place: lowest and highest F_n, and F_t; both the same where it does not differ,
-    /// infinite where nothing bounds it.
+    /// For the nodes with variable forces, by index: lowest and highest F_n, and F_t; equal if constant, infinite if unbounded.
     pub ranges: Vec<Range>,
 }
 
-/// A node (its place), and the lowest and highest of its F_n and of its F_t (force).
+/// A node (its index), and the lowest and highest of its F_n and of its F_t (force).
 pub type Range = (usize, [[f64; 2]; 2]);
 
-/// The families that the states of a census belong to.
+/// The families among the states of a census.
 pub fn families(problem: &InterfaceProblem, census: &Census) -> Vec<Family> {
     let mut groups: Vec<Vec<usize>> = Vec::new();
     for (number, state) in census.answers.iter().enumerate() {
@@ -71,32 +70,32 @@ fn moves_alike(problem: &InterfaceProblem, a: &Consistent, b: &Consistent) -> bo
     pairs.all(|(a, b)| near(a.gap, b.gap) && near(a.slip, b.slip))
 }
 
-/// How a node's force can change.
+/// How a node's force can vary.
 #[derive(Debug, Clone, Copy)]
 enum Way {
-    /// F_n alone: smooth, or a support carries F_t.
+    /// Only F_n: without friction, or a support carries F_t.
     Normal(usize),
-    /// F_n, and F_t = ± tan φ F_n + c with it.
+    /// F_n together with F_t = ± tan φ F_n + c.
     Limit(usize, f64),
     /// F_n, and F_t within the limit.
     Both(usize),
 }
 
-/// The forces that move nothing, about a state between those that move alike; in `unit`s.
+/// Forces without motion, about a mean of states with equal motions; in multiples of `unit`.
 struct Around<'a> {
     problem: &'a InterfaceProblem,
     /// The largest force of these states, or of the problem.
     unit: f64,
-    /// F_n and F_t of that state.
+    /// F_n and F_t of the mean state.
     force: Vec<[f64; 2]>,
-    /// The touching nodes that take part.
+    /// The touching nodes with variable forces.
     ways: Vec<(usize, Way)>,
-    /// Columns: directions. Rows: components, as `ways` number them.
+    /// Columns: directions. Rows: components, in the order of `ways`.
     directions: DMatrix<f64>,
 }
 
 impl<'a> Around<'a> {
-    /// `None` where every force moves something.
+    /// `None` if every force causes motion.
     fn of(problem: &'a InterfaceProblem, states: &[&Consistent]) -> Option<Self> {
         let relation = &problem.relation;
         if relation.stiffness.is_infinite() {
@@ -134,7 +133,7 @@ impl<'a> Around<'a> {
             };
             ways.push((place, way));
         }
-        // What moves: (I + R / k) of each column.
+        // The effect on motions: (I + R / k) of each column.
         let count = relation.count();
         let entry = |i: usize, column: &[(usize, f64)]| -> f64 {
             let of = |&(j, times): &(usize, f64)| {
@@ -161,14 +160,14 @@ impl<'a> Around<'a> {
         })
     }
 
-    /// Its dimension and ranges; `None` if the friction cone leaves nothing of it.
+    /// Its dimension and ranges; `None` if the friction cones exclude it.
     fn family(&self) -> Option<(usize, Vec<Range>)> {
         let size = self.directions.ncols();
         let mut forms = Vec::new();
         for k in 0..size {
             forms.extend((0..=size).map(|j| if j == k { 1.0 } else { 0.0 }));
         }
-        // F_n of each node and then F_t; what must not be negative.
+        // F_n of each node, then F_t; then quantities that must not be negative.
         let mut asked = Vec::new();
         for (place, way) in &self.ways {
             let [f_n, f_t] = self.of_node(*place, *way);
@@ -201,7 +200,7 @@ impl<'a> Around<'a> {
         if !inside.can_hold() {
             return None;
         }
-        // A condition that can only be zero takes a direction away.
+        // A condition that can only be zero removes a direction.
         let mut fixed = Vec::new();
         for (&form, row) in bounded.iter().zip(of_bounded) {
             if inside.most(form, 1.0) <= SAME_FORCE {
@@ -234,7 +233,7 @@ impl<'a> Around<'a> {
         Some((dimension, all.filter(differs).collect()))
     }
 
-    /// F_n and F_t of a node: a coefficient a direction, and the constant.
+    /// F_n and F_t of a node: one coefficient per direction, and the constant.
     fn of_node(&self, place: usize, way: Way) -> [Vec<f64>; 2] {
         let size = self.directions.ncols();
         let [f_n, f_t] = self.force[place];

@@ -1,20 +1,20 @@
-//! Whether linear conditions can hold together: simplex tableaus over bounded affine forms.
+//! Feasibility of linear conditions: simplex tableaus over bounded affine forms.
 //!
-//! A form is c + a·z in free coordinates z, and has a lower and an upper bound, either of which may be infinite. As many
-//! forms as there are coordinates stand for the coordinates (the columns of the tableau); all others are expressed by them
-//! (its rows). [`Forms::can_hold`] moves the forms into their bounds by the dual simplex method with long steps. What it
-//! minimises is of no matter, so the prices are made up, and bounds may change at any time without anything being undone.
+//! A form is c + a·z in free coordinates z, and has a lower and an upper bound, either of which may be infinite. As many forms as
+//! there are coordinates represent the coordinates (the columns of the tableau); all others are expressed by them (its rows).
+//! [`Forms::can_hold`] moves the forms into their bounds by the dual simplex method with long steps. The objective does not
+//! matter, so its costs are arbitrary, and bounds may change at any time without restarting.
 //!
-//! "No" is a proof: one row misses its bound whatever the columns do within theirs (Farkas). The row is checked against the
-//! forms as they were given, with an allowance for round-off; what cannot be proven so can hold.
+//! Infeasible" is a proof: one row violates its bound for all values of the columns within theirs (Farkas). The row is checked
+//! against the original forms, with an allowance for round-off; without such a proof the problem counts as feasible
 
-/// A coefficient below this part of the largest of its row is no pivot.
+/// A coefficient below this fraction of the largest in its row cannot be a pivot.
 const TINY: f64 = 1e-9;
-/// Round-off allowed in a row, relative to the sum of the sizes of its terms.
+/// Allowed round-off in a row, relative to the sum of its terms' magnitudes.
 const ROUND_OFF: f64 = 1e-11;
-/// Pivots after which the tableau is made anew from the forms.
+/// Number of pivots after which the tableau is rebuilt from the forms.
 const FRESH: usize = 200;
-/// Size of the coordinates up to which a row that misses its form by round-off still proves something.
+/// Magnitude of the coordinates up to which a row with round-off still proves infeasibility.
 const REACH: f64 = 1e6;
 
 /// Affine forms with bounds.
@@ -22,28 +22,28 @@ const REACH: f64 = 1e6;
 pub struct Forms {
     /// Number of coordinates.
     count: usize,
-    /// A row of `count` coefficients and a constant for each form.
+    /// A row of `count` coefficients and a constant per form.
     forms: Vec<f64>,
     /// Lower and upper bound of each form.
     bounds: Vec<[f64; 2]>,
-    /// How far each bound is relaxed.
+    /// Relaxation of each bound.
     slack: f64,
-    /// Rows of the tableau, like `forms`, but in the forms of the columns.
+    /// Rows of the tableau, like `forms`, but in terms of the columns' forms.
     table: Vec<f64>,
     /// The form of each row, and of each column.
     rows: Vec<usize>,
     columns: Vec<usize>,
     /// Value of each form.
     values: Vec<f64>,
-    /// What a rise of each column's form costs.
+    /// Cost per increase of each column's form.
     prices: Vec<f64>,
     candidates: Vec<(f64, usize)>,
     since: usize,
 }
 
 impl Forms {
-    /// Forms of `count` coordinates, one after the other (coefficients, then the constant), without bounds yet; all
-    /// bounds are relaxed by `slack`. `None` if they do not determine the coordinates.
+    /// Forms of `count` coordinates in sequence (coefficients, then the constant), initially unbounded; all bounds are relaxed by
+    /// `slack`. `None` if they do not determine the coordinates.
     pub fn new(count: usize, forms: Vec<f64>, slack: f64) -> Option<Forms> {
         let all = forms.len() / (count + 1);
         let mut made = Forms {
@@ -69,7 +69,7 @@ impl Forms {
         self.bounds[form] = [low - self.slack, high + self.slack];
     }
 
-    /// Value of a form at the point that was found last.
+    /// Value of a form at the last point.
     pub fn value(&self, form: usize) -> f64 {
         self.values[form]
     }
@@ -78,7 +78,7 @@ impl Forms {
         self.count + 1
     }
 
-    /// Makes the tableau from the forms; the columns are chosen among `from`.
+    /// Builds the tableau from the forms; its columns are selected among `from`.
     fn make(&mut self, from: &[usize]) -> Option<()> {
         let (width, all) = (self.width(), self.bounds.len());
         let mut table = self.forms.clone();
@@ -114,7 +114,7 @@ impl Forms {
         Some(())
     }
 
-    /// The values of the rows' forms from those of the columns'.
+    /// Computes the values of the rows' forms from those of the columns.
     fn evaluate(&mut self) {
         let width = self.width();
         for (row, line) in self.rows.iter().zip(self.table.chunks_exact(width)) {
@@ -124,7 +124,7 @@ impl Forms {
         }
     }
 
-    /// Moves the columns' forms to the bounds that their prices ask for.
+    /// Moves the columns' forms to the bounds with the lower cost.
     fn clamp(&mut self) {
         let mut moved = false;
         for (column, &form) in self.columns.iter().enumerate() {
@@ -180,7 +180,7 @@ impl Forms {
         true
     }
 
-    /// The row that is farthest out of its bounds, with the bound that it misses.
+    /// The row that violates its bounds most, with the violated bound.
     fn broken(&self) -> Option<(usize, f64)> {
         let (mut found, mut most) = (None, 0.1 * self.slack);
         for (row, &form) in self.rows.iter().enumerate() {
@@ -197,8 +197,8 @@ impl Forms {
         found
     }
 
-    /// The column that takes a row's place, so that no price changes its sign; those that are passed by go to their
-    /// other bounds. `None` if the row misses its bound even so.
+    /// The column to exchange with a row such that no cost changes its sign; columns that are passed move to their other bound.
+    /// `None` if the row still violates its bound.
     fn entering(&mut self, row: usize, to: f64) -> Option<usize> {
         let width = self.width();
         let line = &self.table[row * width..row * width + self.count];
@@ -255,13 +255,13 @@ impl Forms {
         let columns = self.columns.clone();
         if self.make(&columns).is_none() {
             let any: Vec<usize> = (0..self.bounds.len()).collect();
-            // They determined the coordinates when they were given.
+            // They determined the coordinates initially.
             let _ = self.make(&any);
         }
         self.clamp();
     }
 
-    /// Makes a form that is no column another one: a sum of others, at most `high`. False where it is a column.
+    /// Replaces a form that is not a column by a sum of others with the upper bound `high`. False if it is a column.
     pub fn replace(&mut self, form: usize, sum: &[(usize, f64)], high: f64) -> bool {
         let width = self.width();
         let Some(row) = self.rows.iter().position(|&f| f == form) else {
@@ -296,7 +296,7 @@ impl Forms {
         &self.table[row * width..(row + 1) * width]
     }
 
-    /// Exchanges the forms of a row and a column; the row's takes the value `to`.
+    /// Exchanges the forms of a row and a column; the row's form takes the value `to`.
     fn pivot(&mut self, row: usize, column: usize, to: f64) {
         let width = self.width();
         let step = (to - self.values[self.rows[row]]) / self.table[row * width + column];
@@ -319,12 +319,12 @@ impl Forms {
         self.since += 1;
     }
 
-    /// Whether a row cannot reach its bound `to`, whatever the columns do within theirs.
+    /// Whether a row cannot reach its bound `to` for any values of the columns within their bounds.
     fn is_proven(&self, row: usize, to: f64) -> bool {
         let width = self.width();
         let up = self.values[self.rows[row]] < to;
         let line = self.line(row);
-        // What the form is in the coordinates beyond what the row says it is.
+        // Difference between the original form and the row.
         let own = &self.forms[self.rows[row] * width..(self.rows[row] + 1) * width];
         let mut rest: Vec<f64> = own.to_vec();
         let mut sizes: Vec<f64> = own.iter().map(|x| x.abs()).collect();
@@ -341,7 +341,7 @@ impl Forms {
                 *size += (factor * x).abs();
             }
             if !end.is_finite() {
-                // It was no pivot: too small a part of the row.
+                // Not usable as a pivot: too small a fraction of the row.
                 best += factor.abs() * REACH * if up { 1.0 } else { -1.0 };
                 continue;
             }
@@ -355,8 +355,8 @@ impl Forms {
         gap > ROUND_OFF * size + missing
     }
 
-    /// An upper bound of a form (times `sign`) while all others are within their bounds; it holds whether or not the
-    /// largest value was found. Call it at a point that holds.
+    /// An upper bound of a form (times `sign`) while all others are within their bounds; valid even if the maximum was not found.
+    /// Requires a feasible point.
     pub fn most(&mut self, form: usize, sign: f64) -> f64 {
         let width = self.width();
         self.prices.fill(0.0);
@@ -398,7 +398,7 @@ impl Forms {
                 best = f64::min(best, bound + 1e-9 * size + off);
             }
             let Some((column, up)) = entering else { break };
-            // How far the column can go.
+            // Maximum change of the column.
             let own = self.columns[column];
             let mut step = if up {
                 self.bounds[own][1] - self.values[own]
@@ -443,12 +443,12 @@ impl Forms {
     }
 }
 
-/// A price of a form: none is like another, so that no two steps tie.
+/// Cost of a form; all costs differ, so that no two steps tie.
 fn own_price(form: usize) -> f64 {
     1.0 + (0.618_033_988_749_895 * form as f64).fract()
 }
 
-/// Exchanges a row and a column of a table of this width, whose last column holds constants.
+/// Exchanges a row and a column of a table of this width, whose last column contains constants.
 fn exchange(table: &mut [f64], width: usize, row: usize, column: usize) {
     let pivot = table[row * width + column];
     let line = &mut table[row * width..(row + 1) * width];

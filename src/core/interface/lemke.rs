@@ -1,6 +1,6 @@
 //! Lemke's complementary pivoting on the frozen interface problem.
 //!
-//! Coulomb's law in the plane is a linear complementarity problem (Klarbring, Ing.-Arch. 56, 1986): for every rough node
+//! Coulomb's law in the plane is a linear complementarity problem (Klarbring, Ing.-Arch. 56, 1986): for every node with friction
 //!
 //! ```text
 //! 0 <= F_n            complements   gap >= 0
@@ -8,8 +8,8 @@
 //! 0 <= φ− = tan φ F_n + c + F_t     λ− >= 0,       slip = λ+ − λ−
 //! ```
 //!
-//! and for a smooth one only the first line; [`crate::interface::tableau`] walks its bases. Here cohesion acts on open nodes
-//! too, which Coulomb's law does not say; therefore what is found is checked afterwards.
+//! and without friction only the first line; [`crate::interface::tableau`] pivots through its bases. In this form cohesion also
+//! acts on open nodes, which Coulomb's law excludes; therefore the result is checked afterwards.
 
 use crate::contact::table2::Tested;
 use crate::interface::problem::{Assumed, InterfaceProblem};
@@ -21,7 +21,7 @@ use crate::interface::tableau::{Begin, Columns, Tableau};
 enum VariableKind {
     Force,
     Gap,
-    /// φ+ and φ−: what friction could still give.
+    /// φ+ and φ−: the unused friction.
     Slack {
         plus: bool,
     },
@@ -29,27 +29,27 @@ enum VariableKind {
     Slip {
         plus: bool,
     },
-    /// Of either sign: the motion of a node that nothing holds in that direction.
+    /// A variable of either sign: the motion of a node without a constraint in that direction.
     Loose,
 }
 
-/// A tableau on its way.
+/// The state of a path.
 #[derive(Debug, Clone)]
 pub struct Lemke {
-    /// In units of the problem's force and length.
+    /// In the problem's units of force and length.
     tableau: Tableau,
     /// Node and kind of every variable.
     variables: Vec<(usize, VariableKind)>,
-    /// Which nodes are rough, with the friction coefficient and the cohesion.
+    /// The nodes with friction, with friction coefficient and cohesion.
     friction: Vec<Option<(f64, f64)>>,
     force: f64,
     length: f64,
 }
 
-/// Number of starts: all nodes free, as they come, all fixed, all sliding.
+/// Number of starts: all nodes free, their initial modes, all fixed, all sliding.
 pub const STARTS: usize = 4;
 
-/// What every node does in the basis of a start: 0 all free, 1 as they come, 2 all fixed, 3 all sliding.
+/// Mode of every node in the basis of a start: 0 all free, 1 initial modes, 2 all fixed, 3 all sliding.
 fn start(problem: &InterfaceProblem, brought: &[Assumed], number: usize) -> Vec<Assumed> {
     let of = |(place, &brought): (usize, &Assumed)| match (number, problem.nodes[place].choices()) {
         (0, _) | (_, [Assumed::Free]) => Assumed::Free,
@@ -61,8 +61,8 @@ fn start(problem: &InterfaceProblem, brought: &[Assumed], number: usize) -> Vec<
 }
 
 impl Lemke {
-    /// The tableau of a problem at start `number`, less than [`STARTS`]; `brought` is what the nodes come with, one entry a
-    /// node. `None` if the basis of that start is singular.
+    /// The tableau of a problem at start `number`, which is less than [`STARTS`]; `brought` are the initial modes, one per node.
+    /// `None` if the basis of that start is singular.
     pub fn new(problem: &InterfaceProblem, brought: &[Assumed], number: usize) -> Option<Lemke> {
         let start = start(problem, brought, number);
         let (relation, count) = (&problem.relation, problem.relation.count());
@@ -83,7 +83,7 @@ impl Lemke {
             length: positive(problem.length),
         };
         let (force, length) = (lemke.force, lemke.length);
-        // (I + R / k) ΔF − R v = start, a column at a time.
+        // (I + R / k) ΔF − R v = start, column by column.
         let columns = Columns { relation, force };
         let mut rhs = columns.start(rows);
         let mut extra = count;
@@ -113,7 +113,7 @@ impl Lemke {
             columns.add_force(t, -cohesion, &mut rhs);
             let slipped = node.state.slipped(&problem.settings) + node.prescribed[1];
             columns.add_motion(t, slipped, &mut rhs);
-            // F_t = tan φ F_n + c − φ+ acts through the columns of F_n and φ+.
+            // F_t = tan φ F_n + c − φ+ is expressed by the columns of F_n and φ+.
             let of_normal = lemke.tableau.column(lemke.variables.len() - 2);
             columns.add_force(t, coefficient * force, of_normal);
             of_normal[extra] = -2.0 * coefficient;
@@ -151,14 +151,14 @@ impl Lemke {
         self.tableau.add(partner, fill);
     }
 
-    /// Whether a variable is basic where its node does this.
+    /// Whether a variable is basic if its node has this mode.
     fn is_basic(&self, (place, kind): (usize, VariableKind), start: &[Assumed]) -> bool {
         let does = start[place];
         match kind {
             VariableKind::Loose => true,
             VariableKind::Force => does != Assumed::Free,
             VariableKind::Gap => does == Assumed::Free,
-            // A free node has no friction, so that one side of it is as good as the other.
+            // A free node has no friction, so either side may be used.
             VariableKind::Slip { plus: true } => matches!(does, Assumed::Plus | Assumed::Free),
             VariableKind::Slack { plus: true } => matches!(does, Assumed::Fixed | Assumed::Minus),
             VariableKind::Slip { plus: false } => does == Assumed::Minus,
@@ -166,17 +166,17 @@ impl Lemke {
         }
     }
 
-    /// How the path ended. `None` while it goes on.
+    /// Result of the path. `None` while it continues.
     pub fn ended(&self) -> Option<PathEnd> {
         self.tableau.ended()
     }
 
-    /// One pivot. `None` if the path has ended before.
+    /// One pivot. `None` if the path has already ended.
     pub fn pivot(&mut self) -> Option<()> {
         self.tableau.pivot()
     }
 
-    /// The node of the last pivot, and what reached its bound there. `None` if that was the covering variable.
+    /// The node of the last pivot, and the quantity that reached its bound. `None` if that was the covering variable.
     pub fn bound(&self) -> Option<(usize, Tested)> {
         let (place, kind) = self.variables[self.tableau.left()?];
         let tested = match kind {
@@ -189,7 +189,7 @@ impl Lemke {
         Some((place, tested))
     }
 
-    /// The covering variable: how far the problem is still relaxed, in units of its forces and lengths.
+    /// The covering variable: remaining relaxation of the problem, in units of its forces and lengths.
     pub fn cover(&self) -> f64 {
         self.tableau.cover()
     }
@@ -201,7 +201,7 @@ impl Lemke {
             .then(|| self.tableau.of(variable))
     }
 
-    /// What a node does in the present basis.
+    /// Mode of a node in the current basis.
     pub fn assumed(&self, place: usize) -> Assumed {
         let basic = |kind| self.at(place, kind).is_some();
         if !basic(VariableKind::Force) {
@@ -215,7 +215,7 @@ impl Lemke {
         }
     }
 
-    /// F_n, F_t, gap and slip of a node in the present, relaxed solution; a gap is 0 where the node touches.
+    /// F_n, F_t, gap and slip of a node in the current, relaxed solution; the gap of a touching node is 0.
     pub fn numbers(&self, place: usize) -> [f64; 4] {
         let value = |kind| self.at(place, kind).unwrap_or(0.0);
         let f_n = self.force * value(VariableKind::Force);

@@ -1,7 +1,7 @@
-//! One minor iteration at one slave node: Table 1's equations before the solve, the strategy's verdict after it.
+//! One minor iteration at one slave node: Table 1's equations before the solve, and the strategy's decision after it.
 //!
-//! These are pure functions of what the node brings and what the solve gave, so that a minor iteration on an interface
-//! problem alone ([`super::trials::Trials`]) is the same as one of the stepper.
+//! These are pure functions of the node's state and the solution, so that a minor iteration on a separate interface problem
+//! ([`super::trials::Trials`]) is the same as one of the stepper.
 
 use crate::contact::record::{ContactRecord, Forced};
 use crate::contact::state::ContactState;
@@ -12,21 +12,20 @@ use crate::interface::method::{self, Method};
 use crate::interface::rows::{carried, moves};
 use crate::model::{Bond, BoundUpdate, Friction, Mode, Settings, SlipCount, Touch};
 
-/// What modes are checked with.
+/// Parameters for checking modes.
 #[derive(Clone, Copy)]
 pub struct Check<'a> {
-    /// The settings in force; their strategy is never the ladder itself ([`crate::strategy::in_force`]).
+    /// The effective settings; their strategy is never the ladder itself ([`crate::strategy::in_force`]).
     pub settings: Settings,
-    /// What that strategy does.
+    /// The implementation of that strategy.
     pub method: &'a dyn Method,
-    /// What counts as a tie.
+    /// Tie tolerances.
     pub ties: Ties,
-    /// Stiffness of the springs that compare lengths with forces (force by length).
+    /// Stiffness of the springs that relate lengths to forces (force per length).
     pub stiffness: f64,
 }
 
-/// Checks a node's mode and leaves that of the next minor iteration in it; returns the record and whether mode and
-/// T_max have settled.
+/// Checks a node's mode and sets that of the next minor iteration; returns the record and whether mode and T_max have converged.
 pub fn check(
     node: &mut ContactState,
     kinematics: Option<&NodeKinematics>,
@@ -62,7 +61,7 @@ pub fn check(
     (record, settled)
 }
 
-/// What a minor iteration found at a node, and the direction of T_max where the strategy knows it.
+/// The record of a minor iteration at a node, and the direction of T_max if the strategy determines it.
 fn record(
     node: &ContactState,
     kinematics: Option<&NodeKinematics>,
@@ -165,8 +164,8 @@ fn record(
     (record, turned)
 }
 
-/// Lets only the first of all changing nodes change its mode. The others keep what they had `before` the iteration, and
-/// their records say that they wait.
+/// Lets only the first of all changing nodes change its mode. The others keep their mode from `before` the iteration, and their
+/// records show that they wait.
 pub fn one_at_a_time(
     nodes: &mut [ContactState],
     before: &[ContactState],
@@ -184,7 +183,7 @@ pub fn one_at_a_time(
     }
 }
 
-/// The motion along t (length) whose sign gives T_max its direction: the slip of a touching node; the travel of a free one,
+/// The motion along t (length) whose sign gives the direction of T_max: the slip of a touching node; the motion of a free one,
 /// measured from its anchor if it keeps one.
 fn sense(
     before: &ContactState,
@@ -202,8 +201,8 @@ fn sense(
     }
 }
 
-/// Sets the ratio ρ (eqn 14) when a node touches and clears it when it opens. A node that has kept its anchor has no ρ: it
-/// goes back to its anchor.
+/// Sets the ratio ρ (eqn 14) when a node touches and resets it when the node opens. A node that has kept its anchor has no ρ,
+/// because it returns to its anchor.
 fn leave_or_enter(node: &mut ContactState, before: &ContactState, touch: Touch) {
     match (before.mode, node.mode) {
         (_, Mode::Free) => node.ratio = 0.0,

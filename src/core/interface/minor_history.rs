@@ -1,37 +1,37 @@
-//! What went into the minor iterations of a major one, and the cycle that they close.
+//! The inputs of the minor iterations of a major iteration, for detecting cycles.
 
 use crate::contact::state::ContactState;
 use crate::interface::cycle;
 use crate::model::Mode;
 use serde::{Deserialize, Serialize};
 
-/// A true cycle of minor iterations: same modes, same numbers.
+/// A true cycle of minor iterations: equal modes and equal numbers.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Cycle {
-    /// Minor iteration from which on it repeats.
+    /// First minor iteration of the cycle.
     pub start: u32,
-    /// Number of minor iterations after which it repeats.
+    /// Number of minor iterations per period.
     pub period: u32,
-    /// Contact nodes (by slave number) that change in it, with the modes that each takes over one period.
+    /// Contact nodes (by slave number) that change in the cycle, with their modes over one period.
     pub members: Vec<(usize, Vec<Mode>)>,
 }
 
-/// The input of each minor iteration of the present major one. While the geometry is frozen, a minor iteration depends on
-/// nothing else, so an input that returns proves a cycle.
+/// The input of each minor iteration of the current major iteration. With frozen geometry a minor iteration depends on nothing
+/// else, so a repeated input proves a cycle.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct MinorHistory {
-    /// One entry a slave node, iteration after iteration.
+    /// One entry per slave node, iteration after iteration.
     entries: Vec<Input>,
 }
 
-/// What one slave node brings into a minor iteration.
+/// Input of a minor iteration at one slave node.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Input {
     /// Mode of the minor iteration.
     pub mode: Mode,
-    /// T_max, where the node slides; else 0.
+    /// T_max if the node slides; else 0.
     pub t_max: f64,
-    /// Ratio ρ, where the node touches; else 0.
+    /// Ratio ρ if the node touches; else 0.
     pub ratio: f64,
 }
 
@@ -52,7 +52,7 @@ impl Input {
         }
     }
 
-    /// Whether the mode is the same, T_max differs by at most `force`, and ρ by at most `ratio` (1 + |ρ|).
+    /// Whether the modes are equal, T_max differs by at most `force`, and ρ by at most `ratio` (1 + |ρ|).
     fn repeats(&self, other: &Input, force: f64, ratio: f64) -> bool {
         #[cfg(mutants)]
         let force = crate::mutants::pick("cycle-by-modes-alone", force, f64::INFINITY);
@@ -64,12 +64,12 @@ impl Input {
 }
 
 impl MinorHistory {
-    /// Forgets everything, keeping its memory.
+    /// Removes all entries, keeping the allocation.
     pub fn clear(&mut self) {
         self.entries.clear();
     }
 
-    /// Whether nothing is remembered.
+    /// Whether there are no entries.
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty()
     }
@@ -79,22 +79,22 @@ impl MinorHistory {
         self.entries.capacity() * size_of::<Input>()
     }
 
-    /// Remembers what goes into the next minor iteration.
+    /// Adds the input of the next minor iteration.
     pub fn push(&mut self, nodes: &[ContactState]) {
         self.entries.extend(nodes.iter().map(Input::of));
     }
 
-    /// Number of iterations remembered, each with this number of nodes.
+    /// Number of stored iterations, each with this number of nodes.
     pub fn len(&self, nodes: usize) -> usize {
         self.entries.len() / nodes.max(1)
     }
 
-    /// Input of the first of the iterations, one entry a node; empty if nothing is remembered.
+    /// Input of the first iteration, one entry per node; empty without entries.
     pub fn first(&self, nodes: usize) -> &[Input] {
         &self.entries[..nodes.min(self.entries.len())]
     }
 
-    /// Input of the iteration `back` before the next one, one entry a node. `None` if it is not remembered.
+    /// Input of the iteration `back` before the next one, one entry per node. `None` if it is not stored.
     pub fn before(&self, nodes: usize, back: usize) -> Option<&[Input]> {
         let from = self.entries.len().checked_sub(back * nodes)?;
         self.entries.get(from..from + nodes)
@@ -126,7 +126,7 @@ impl MinorHistory {
         };
         let pattern = |s: usize| round().map(|inputs| inputs[s].mode).collect();
         Some(Cycle {
-            // The last round starts with what iteration `minor + 1 - period` started from.
+            // The last period starts from the input of iteration `minor + 1 - period`.
             start: minor + 1 - period,
             period,
             members: (0..nodes.len())

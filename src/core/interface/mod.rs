@@ -1,15 +1,15 @@
-//! The interface problem of one major iteration, by itself: geometry and stiffness frozen, no bodies in sight.
+//! The interface problem of one major iteration, with frozen geometry and stiffness and without the bodies.
 //!
-//! - [`problem`]: the problem, and its answer to one assumption of what every node does; [`response`]: how its forces
-//!   answer motions; [`kinematics`]: how a node stands over its surface.
-//! - [`minor`]: one minor iteration at one node; [`method`]: what a strategy decides in it; [`minor_history`]: what went
-//!   into the minor iterations so far, and cycles of them; [`cycle`]: what closes a cycle of any iterations.
-//! - [`census`], [`lemke`], [`copositive`] and [`sweep`]: what finds a consistent state, all nodes together; [`tableau`]: how
-//!   the two of pivoting pivot; [`vertex`]: from forces that are not unique to some that are; [`branches`] and [`feasible`]:
-//!   what cannot be consistent, which a census of many nodes leaves out.
-//! - [`spiral`]: where T_max goes while the modes repeat.
-//! - [`uniqueness`]: whether the matrix alone allows no second state; [`family`]: states that differ in their forces alone;
-//!   [`definite`]: the eigenvalues of the compliance, and what is left of the problem without the negative ones.
+//! - [`problem`]: the problem, and its solution for a combination of modes; [`response`]: dependence of its forces on motions;
+//!   [`kinematics`]: position of a node relative to its surface.
+//! - [`minor`]: a minor iteration at one node; [`method`]: the strategy's decisions in it; [`minor_history`]: inputs of the minor
+//!   iterations so far, and their cycles; [`cycle`]: cycle detection for any iterations.
+//! - [`census`], [`lemke`], [`copositive`] and [`sweep`]: searches for a consistent state over all nodes; [`tableau`]: pivoting
+//!   for two of them; [`vertex`]: selects unique forces if they are not unique; [`branches`] and [`feasible`]: rule out
+//!   inconsistent combinations in a census of many nodes.
+//! - [`spiral`]: evolution of T_max while the modes repeat.
+//! - [`uniqueness`]: whether the matrix alone excludes a second state; [`family`]: states that differ only in their forces;
+//!   [`definite`]: eigenvalues of the compliance, and the problem without negative ones.
 
 pub mod branches;
 pub mod census;

@@ -1,10 +1,10 @@
-//! The frozen interface problem: all that the minor iterations of one major iteration know of the bodies.
+//! The frozen interface problem: all data of the bodies that the minor iterations of one major iteration use.
 //!
-//! While geometry and stiffness are frozen, forces and relative motions at the slave nodes depend linearly on each other
-//! ([`InterfaceResponse`]). Coulomb's law, applied to the whole increment, says what each node may do: a free node has g >= 0
-//! and no force; a touching one has F_n >= 0, and either sticks where it was at the start of the increment, with
-//! |F_t| <= tan φ F_n + c, or slips with |F_t| = tan φ F_n + c against the slip. This module solves for one assumption of
-//! what every node does, and says how far the answer is from obeying; [`crate::interface::census`] tries all of them.
+//! With frozen geometry and stiffness, forces and relative motions at the slave nodes depend linearly on each other
+//! ([`InterfaceResponse`]). Coulomb's law, applied to the whole increment, restricts each node: a free node has g >= 0 and no
+//! force; a touching one has F_n >= 0, and either sticks where it was at the start of the increment, with
+//! |F_t| <= tan φ F_n + c, or slips with |F_t| = tan φ F_n + c against the slip. This module solves for one combination of
+//! modes and measures how far the solution is from obeying this law; [`crate::interface::census`] tries all combinations.
 
 use crate::contact::state::ContactState;
 use crate::contact::table1::{Equation, FrictionBound, Known};
@@ -16,48 +16,48 @@ use crate::linalg::DenseFactors;
 use crate::model::{self, Friction, Mode, Settings};
 use serde::{Deserialize, Serialize};
 
-/// Estimated norm of the inverse of the scaled matrix above which an assumption counts as singular.
+/// Estimated norm of the inverse of the scaled matrix above which a combination counts as singular.
 pub const SINGULAR: f64 = 1e11;
 
 /// The frozen interface problem of a major iteration.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct InterfaceProblem {
-    /// How forces answer motions (eqn 6).
+    /// Dependence of the forces on the motions (eqn 6).
     pub relation: InterfaceResponse,
-    /// One entry a slave node, in the relation's order.
+    /// One entry per slave node, in the relation's order.
     pub nodes: Vec<ProblemNode>,
-    /// Size of the forces, the unit of relative margins of forces.
+    /// Force scale, the unit of relative force margins.
     pub force: f64,
-    /// Size of the lengths, the unit of relative margins of lengths.
+    /// Length scale, the unit of relative length margins.
     pub length: f64,
-    /// Stiffness that compares lengths with forces (force by length), finite even if `relation` has no springs.
+    /// Stiffness that relates lengths to forces (force per length), finite even if `relation` has no springs.
     pub spring: f64,
-    /// Settings in force.
+    /// Effective settings.
     pub settings: Settings,
 }
 
-/// What a slave node brings into the frozen problem.
+/// Data of a slave node in the frozen problem.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct ProblemNode {
     /// Contact number in the scene.
     pub slave: usize,
-    /// How it stands over its surface; `None` past the ends of all surfaces.
+    /// Position relative to its surface; `None` beyond the ends of all surfaces.
     #[serde(rename = "site")]
     pub kinematics: Option<NodeKinematics>,
     /// Prescribed part of the motion of S* relative to S, along n and t (length).
     pub prescribed: [f64; 2],
-    /// Friction in force at the node.
+    /// Current friction of the node.
     pub friction: Friction,
-    /// What the node brings into the next minor iteration.
+    /// State of the node before the next minor iteration.
     pub state: ContactState,
 }
 
-/// What a node is assumed to do.
+/// Assumed mode of a node, with the direction of sliding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Assumed {
     /// No force.
     Free,
-    /// Touching, and sticking.
+    /// Touching and sticking.
     Fixed,
     /// Sliding with F_t > 0.
     Plus,
@@ -76,7 +76,7 @@ impl Assumed {
         }
     }
 
-    /// The mode that it is.
+    /// The mode without the direction.
     pub fn mode(self) -> Mode {
         match self {
             Assumed::Free => Mode::Free,
@@ -85,7 +85,7 @@ impl Assumed {
         }
     }
 
-    /// The assumption of this mode, and of this sign of the tangential force.
+    /// The assumption for this mode and sign of the tangential force.
     pub fn of(mode: Mode, sign: f64) -> Self {
         match mode {
             Mode::Free => Assumed::Free,
@@ -102,12 +102,12 @@ impl Assumed {
 }
 
 impl ProblemNode {
-    /// Whether any unknown takes part in its normal and in its tangential motion.
+    /// Whether its normal and its tangential motion contain an unknown.
     pub fn moves(&self) -> [bool; 2] {
         moves(self.kinematics.as_ref())
     }
 
-    /// What the node can be assumed to do. Without friction, a node cannot stick, and sliding has no direction.
+    /// The possible assumptions for the node. Without friction, a node cannot stick, and sliding has no direction.
     pub fn choices(&self) -> &'static [Assumed] {
         if self.kinematics.is_none() {
             &[Assumed::Free]
@@ -136,10 +136,10 @@ impl ProblemNode {
     }
 }
 
-/// What an assumption leads to, at one node.
+/// Solution for an assumption at one node.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct NodeAnswer {
-    /// What the node was assumed to do.
+    /// The assumption.
     pub assumed: Assumed,
     /// Total normal force; compression positive.
     pub f_n: f64,
@@ -151,11 +151,11 @@ pub struct NodeAnswer {
     pub gap: f64,
     /// Slip since the start of the increment (length).
     pub slip: f64,
-    /// The condition that is closest to being broken, or most broken.
+    /// The condition closest to violation, or violated most.
     pub worst: Margin,
 }
 
-/// A condition that an assumption must meet.
+/// A condition of an assumption.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Condition {
     /// A free node must not penetrate: g ≥ 0 (length).
@@ -168,49 +168,49 @@ pub enum Condition {
     Dissipation,
 }
 
-/// How far a condition is from being broken.
+/// Distance of a condition from violation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Margin {
     /// The condition.
     pub condition: Condition,
-    /// Force or length; negative where the condition is broken.
+    /// Force or length; negative if the condition is violated.
     pub value: f64,
-    /// `value` over [`InterfaceProblem::force`] or [`InterfaceProblem::length`].
+    /// `value` divided by [`InterfaceProblem::force`] or [`InterfaceProblem::length`].
     pub relative: f64,
 }
 
-/// An assumption for every node, solved.
+/// The solution for a combination of assumptions.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Answer {
-    /// One entry a node of the problem, in its order.
+    /// One entry per node of the problem, in its order.
     pub nodes: Vec<NodeAnswer>,
 }
 
 impl Answer {
-    /// The assumption, a letter a node.
+    /// The combination, one letter per node.
     pub fn letters(&self) -> String {
         self.nodes.iter().map(|n| n.assumed.letter()).collect()
     }
 
-    /// The node whose condition is closest to being broken, or most broken, and that condition. `None` if there are no nodes.
+    /// The node whose condition is closest to violation, or violated most, with that condition. `None` without nodes.
     pub fn worst(&self) -> Option<(usize, Margin)> {
         let margins = self.nodes.iter().map(|n| n.worst).enumerate();
         margins.min_by(|a, b| a.1.relative.total_cmp(&b.1.relative))
     }
 
-    /// Whether every node obeys, up to a relative tolerance.
+    /// Whether every node satisfies its conditions, up to a relative tolerance.
     pub fn obeys(&self, tolerance: f64) -> bool {
         self.nodes.iter().all(|n| n.worst.relative >= -tolerance)
     }
 }
 
 impl InterfaceProblem {
-    /// What each node brings into the next minor iteration.
+    /// State of each node before the next minor iteration.
     pub fn states(&self) -> Vec<ContactState> {
         self.nodes.iter().map(|node| node.state).collect()
     }
 
-    /// Tolerances of Table 2, if the largest force is `force`.
+    /// Tolerances of Table 2 if the largest force is `force`.
     pub fn ties(&self, force: f64) -> Ties {
         Ties {
             force: self.settings.tolerance * force,
@@ -219,8 +219,8 @@ impl InterfaceProblem {
         }
     }
 
-    /// The problem of some of the nodes (`keep`, by place, ascending), the others eliminated by the equations of what they
-    /// bring: they keep their modes. `None` if these equations are singular.
+    /// The problem of some of the nodes (`keep`, by index, ascending); the others keep their modes and are eliminated by their
+    /// equations. `None` if these equations are singular.
     pub fn reduced(&self, keep: &[usize]) -> Option<InterfaceProblem> {
         let (relation, count) = (&self.relation, self.relation.count());
         let rest: Vec<usize> = (0..self.nodes.len())
@@ -244,7 +244,7 @@ impl InterfaceProblem {
                 rhs[2 * s + k] = relation.place_row(s, k, row, node.prescribed, &mut matrix);
             }
         }
-        // z of the rest for z = 0 of the kept ones, and its change by each of these.
+        // z of the eliminated nodes for z = 0 of the kept ones, and its derivative with respect to each of these.
         let own: Vec<f64> = gone
             .iter()
             .flat_map(|&j| gone.iter().map(move |&i| (i, j)))
@@ -286,8 +286,7 @@ impl InterfaceProblem {
     }
 }
 
-/// Forces, gap and slip that a node has after these increments, and the condition of its assumption that is closest to
-/// being broken.
+/// Forces, gap and slip of a node after these increments, and the condition of its assumption that is closest to violation.
 pub fn node_answer(
     problem: &InterfaceProblem,
     node: &ProblemNode,

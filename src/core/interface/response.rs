@@ -1,37 +1,36 @@
-//! How the interface of the condensed bodies answers (eqn 6).
+//! Response of the condensed bodies' interface (eqn 6).
 //!
-//! With a spring of stiffness k between every slave node and its S*, pulled apart by z, the interface forces are
+//! With a spring of stiffness k between every slave node and its S*, and gaps z imposed on the springs, the interface forces are
 //!
 //! ```text
 //! ΔF = start + response z,        relative motion v = z + ΔF / k
 //! ```
 //!
-//! For infinite k, z is the motion itself. Springs of finite k make a response exist where nothing but contact holds a
-//! body.
+//! For infinite k, z is the motion itself. Springs with finite k make the response exist if only contact supports a body.
 
 use crate::contact::table1::{Equation, Motion};
 use serde::{Deserialize, Serialize};
 
-/// How the interface of the condensed bodies answers; normal and tangential components of each slave node in turn.
+/// Response of the condensed bodies' interface; normal and tangential components of each slave node in turn.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct InterfaceResponse {
-    /// Stiffness k of the springs (force by length); may be infinite.
+    /// Stiffness k of the springs (force per length); may be infinite.
     pub stiffness: f64,
-    /// ΔF at z = 0: 2 entries a slave node, normal and tangential.
+    /// ΔF at z = 0: 2 entries per slave node, normal and tangential.
     pub start: Vec<f64>,
-    /// Change of ΔF by z (force by length), column by column.
+    /// Derivative of ΔF with respect to z (force per length), column-major.
     pub response: Vec<f64>,
 }
 
 impl InterfaceResponse {
-    /// Number of entries of z: 2 a slave node.
+    /// Number of entries of z: 2 per slave node.
     pub fn count(&self) -> usize {
         self.start.len()
     }
 
-    /// Writes row `2 slave + k` of the matrix that an equation (k: 0 normal, 1 tangential) of a slave node makes in z,
-    /// and returns its right-hand side; `prescribed` is the prescribed part of the relative motion, along n and t. The matrix
-    /// is of size [`InterfaceResponse::count`], column by column.
+    /// Writes an equation (k: 0 normal, 1 tangential) of a slave node as row `2 slave + k` of the matrix in z, and returns its
+    /// right-hand side; `prescribed` is the prescribed part of the relative motion, along n and t. The column-major matrix has
+    /// the size [`InterfaceResponse::count`].
     pub fn place_row(
         &self,
         slave: usize,
@@ -46,7 +45,7 @@ impl InterfaceResponse {
             Motion::Normal => Some(0),
             Motion::Tangential => Some(1),
         };
-        // motion = z + ΔF / k, so that the factors of ΔF are these.
+        // Substituting motion = z + ΔF / k gives these factors of ΔF.
         let mut factor = [row.d_n, row.d_t];
         let mut value = row.value;
         if let Some(component) = moving {
@@ -64,7 +63,7 @@ impl InterfaceResponse {
         value - factor[0] * self.start[here] - factor[1] * self.start[here + 1]
     }
 
-    /// ΔF_n, ΔF_t of a slave node, and its normal and tangential relative motion, for these z.
+    /// ΔF_n, ΔF_t of a slave node, and its normal and tangential relative motion, for given z.
     pub fn answer(&self, z: &[f64], slave: usize, prescribed: [f64; 2]) -> [[f64; 2]; 2] {
         let [mut force, mut motion] = self.change(z, slave);
         for component in 0..2 {
@@ -75,7 +74,7 @@ impl InterfaceResponse {
         [force, motion]
     }
 
-    /// Change of [`InterfaceResponse::answer`] by these z: the same without `start` and `prescribed`.
+    /// Change of [`InterfaceResponse::answer`] for given z: the same without `start` and `prescribed`.
     pub fn change(&self, z: &[f64], slave: usize) -> [[f64; 2]; 2] {
         let (mut force, mut motion) = ([0.0; 2], [0.0; 2]);
         for component in 0..2 {

@@ -1,13 +1,13 @@
-//! Table 1's equations of a node, those in which nothing can move left to the support.
+//! Table 1's equations of a node, modified where supports carry a force.
 
 use crate::contact::state::ContactState;
 use crate::contact::table1::{Equation, FrictionBound, Known, braked, equations, gone};
 use crate::interface::kinematics::NodeKinematics;
 use crate::model::{BoundUpdate, Friction, Mode, Settings};
 
-/// Table 1's equations of a node, normal and tangential. An equation in which no unknown takes part is replaced by zero
-/// force, and the supports carry that component ([`carried`]). `brake` holds sliding back
-/// ([`crate::contact::table1::braked`]; 0 for Table 1 as it is).
+/// Table 1's equations of a node, normal and tangential. An equation without an unknown is replaced by zero force, and the
+/// supports carry that component ([`carried`]). `brake` resists sliding ([`crate::contact::table1::braked`]; 0 for Table 1
+/// itself).
 pub fn rows(
     node: &ContactState,
     kinematics: Option<&NodeKinematics>,
@@ -42,7 +42,7 @@ pub fn rows(
     }
 }
 
-/// Table 1's equations, with zero force where the supports carry it.
+/// Table 1's equations, with zero force for components carried by supports.
 pub fn supported(mode: Mode, known: &Known, moves: [bool; 2]) -> [Equation; 2] {
     let [mut normal, mut tangential] = equations(mode, known);
     let carried = carried(mode, moves);
@@ -55,13 +55,12 @@ pub fn supported(mode: Mode, known: &Known, moves: [bool; 2]) -> [Equation; 2] {
     [normal, tangential]
 }
 
-/// Whether any unknown takes part in the normal and in the tangential motion; both false without a surface.
+/// Whether the normal and the tangential motion contain an unknown; both false without a surface.
 pub fn moves(kinematics: Option<&NodeKinematics>) -> [bool; 2] {
     kinematics.map_or([false; 2], |k| k.moves)
 }
 
-/// Which force components (normal, tangential) are left to the supports: those with which the mode would hold a motion in
-/// which no unknown takes part.
+/// Force components (normal, tangential) carried by the supports: those that would constrain a motion without an unknown.
 pub fn carried(mode: Mode, moves: [bool; 2]) -> [bool; 2] {
     [
         mode != Mode::Free && !moves[0],

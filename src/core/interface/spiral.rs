@@ -1,15 +1,15 @@
-//! Where T_max is going while the modes repeat.
+//! Predicts T_max while a sequence of modes repeats.
 //!
-//! While the same modes come again every `period` minor iterations, T_max of the one before enters each solve linearly, and
-//! T_max = ±(tan φ |F_n| + c) follows from it: over a round, T_max goes x → x* + A (x − x*), with x* the fixed point. With
-//! the spectral radius ρ of A below 1 it spirals into x*, by a factor of ρ a round; otherwise it swings apart. At a single
-//! sliding node, one iteration a round, A is the number ∓ tan φ W_nt / W_nn (with the compliance W; ∓ the sign of T_max):
-//! F_n goes with the tangential force so that the gap stays closed.
+//! If the same modes repeat every `period` minor iterations, the previous T_max enters each solve linearly, and T_max = ±(tan φ
+//! |F_n| + c) depends linearly on the solution: over a period, T_max changes as x → x* + A (x − x*) with the fixed point x*. If
+//! the spectral radius ρ of A is below 1, it converges to x* by a factor of ρ per period; otherwise it diverges. For a single
+//! sliding node with period one, A is the number ∓ tan φ W_nt / W_nn (with the compliance W and ∓ the sign of T_max): F_n changes
+//! with the tangential force such that the gap stays closed.
 //!
-//! **When it is certain.** A run goes through these modes as long as T_max satisfies the tests of every iteration of a round.
-//! These are linear in x, so where they hold at some points they hold in all of their convex hull. They are tried at
-//! x* ± r along each component; so they hold where the sum of all |x − x*| is at most r. Rounds are run one by one until
-//! powers of A keep x in there for ever.
+//! **When it is certain.** A run repeats these modes as long as T_max satisfies the tests of every iteration of a period. These
+//! are linear in x, so if they hold at some points, they hold in the convex hull. They are evaluated at x* ± r along each
+//! component; so they hold where the sum of all |x − x*| is at most r. Periods are run one by one until powers of A keep x within
+//! this region forever.
 
 use crate::contact::state::ContactState;
 use crate::interface::method::Method;
@@ -18,55 +18,56 @@ use crate::interface::trials::Trials;
 use crate::linalg::DenseFactors;
 use crate::model::{BoundUpdate, Mode};
 
-/// Relative distance from the fixed point at which a round repeats the one before.
+/// Relative distance from the fixed point below which consecutive periods are equal.
 pub const REPEATS: f64 = 1e-12;
-/// Ratios ρ that differ by less than this, relatively, are the same.
+/// Ratios ρ with a smaller relative difference are equal.
 const SAME_RATIO: f64 = 1e-10;
-/// Rounds of the same modes that make a sequence.
+/// Number of repetitions of the same modes required for a sequence.
 const ROUNDS: usize = 2;
-/// Rounds that are run one by one, at most, until x stays where the modes are known to repeat.
+/// Maximum number of periods that are run one by one until x stays in the region where the modes are known to repeat.
 const MOST_ROUNDS: usize = 400;
-/// Halvings of r.
+/// Number of halvings of r.
 const HALVINGS: usize = 12;
-/// Squarings by which the spectral radius is found.
+/// Number of matrix squarings for the spectral radius.
 const SQUARINGS: i32 = 24;
 
-/// Where T_max goes.
+/// Prediction of T_max.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spiral {
-    /// Minor iterations that were run until the modes had repeated.
+    /// Number of minor iterations run until the modes had repeated.
     pub start: u32,
-    /// Minor iterations a round.
+    /// Minor iterations per period.
     pub period: u32,
-    /// The modes of each node in each iteration of a round.
+    /// The modes of each node in each iteration of a period.
     pub modes: Vec<Vec<Mode>>,
-    /// Places of the nodes whose T_max takes part: those that slide in a round.
+    /// Indices of the nodes that slide within a period, whose T_max is predicted.
     pub places: Vec<usize>,
-    /// T_max of these nodes at the fixed point (force), at the beginning of a round.
+    /// T_max of these nodes at the fixed point (force), at the start of a period.
     pub fixed: Vec<f64>,
-    /// How far the farthest of them is from it (force), after `start` iterations.
+    /// Largest distance of a node's T_max from the fixed point (force), after `start` iterations.
     pub distance: f64,
-    /// Spectral radius ρ of a round.
+    /// Spectral radius ρ of a period.
     pub radius: f64,
-    /// What comes of it.
+    /// Predicted outcome.
     pub fate: Fate,
 }
 
-/// What comes of a spiral.
+/// Outcome of a repeating sequence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fate {
-    /// The modes change within a round, and will for ever: a cycle, certainly.
+    /// The modes change within a period and will do so forever: a proven cycle.
     Cycles,
-    /// The modes have settled, and T_max will, too.
+    /// The modes have converged, and T_max will converge.
     Settles,
-    /// T_max leaves the neighbourhood of the fixed point.
+    /// T_max diverges from the fixed point.
     SwingsApart,
-    /// The modes will not go on like this.
+    /// The sequence of modes will end.
     Passes,
 }
 
 impl Spiral {
-    /// Minor iterations after which T_max repeats to [`REPEATS`], for forces of this size. `None` unless it spirals in.
+    /// Number of minor iterations after which T_max repeats to [`REPEATS`], for forces of this magnitude. `None` unless it
+    /// converges.
     pub fn iterations(&self, force: f64) -> Option<u64> {
         let near = REPEATS * force;
         if self.radius >= 1.0 {
@@ -80,8 +81,8 @@ impl Spiral {
     }
 }
 
-/// What the minor iterations from a problem's states come to, as far as can be told from `most` of them. `None` where they
-/// settle before, cannot be solved, or repeat no sequence of modes, and where T_max does not lag.
+/// Prediction for the minor iterations that start from a problem's states, based on at most `most` of them. `None` if they
+/// converge earlier, cannot be solved, or repeat no sequence of modes, and if T_max does not lag.
 pub fn spiral(problem: &InterfaceProblem, method: &dyn Method, most: usize) -> Option<Spiral> {
     if method.bound(problem.settings.t_max) != BoundUpdate::Lagged {
         return None;
@@ -105,7 +106,7 @@ pub fn spiral(problem: &InterfaceProblem, method: &dyn Method, most: usize) -> O
                 };
                 match found.fate {
                     Fate::Passes => {}
-                    // It may yet come to a longer round.
+                    // It may still reach a longer period.
                     Fate::SwingsApart => apart = apart.or(Some(found)),
                     Fate::Cycles | Fate::Settles => return Some(found),
                 }
@@ -115,8 +116,8 @@ pub fn spiral(problem: &InterfaceProblem, method: &dyn Method, most: usize) -> O
     apart
 }
 
-/// The smallest numbers of iterations after which the modes at the end of a trail repeat, [`ROUNDS`] times: of all, and of
-/// those in which a mode changes, since a long round may end with many iterations that are alike.
+/// The smallest periods with which the modes at the end of a trail have repeated [`ROUNDS`] times: counting all iterations, and
+/// counting only those with a mode change, because a long period may end with many equal iterations.
 fn periods(trail: &[Vec<ContactState>]) -> Vec<usize> {
     let last = trail.len() - 1;
     let alike = |a: usize, b: usize| trail[a].iter().zip(&trail[b]).all(|(a, b)| is_same(a, b));
@@ -140,7 +141,7 @@ fn is_same(a: &ContactState, b: &ContactState) -> bool {
     a.mode == b.mode && (!slides || a.sign == b.sign) && (a.mode == Mode::Free || ratio)
 }
 
-/// A round of the modes at the end of a trail.
+/// One period of the modes at the end of a trail.
 fn of_round(
     trials: &mut Trials<'_>,
     method: &dyn Method,
@@ -194,7 +195,7 @@ fn of_round(
     Some(found)
 }
 
-/// How T_max of the nodes `places` after a round depends on that before: a matrix, column by column.
+/// Derivative of T_max of the nodes `places` after a period with respect to that before: a column-major matrix.
 fn map(trials: &mut Trials<'_>, round: &[Vec<ContactState>], places: &[usize]) -> Option<Vec<f64>> {
     let size = places.len();
     let mut all = vec![0.0; size * size];
@@ -222,7 +223,7 @@ fn map(trials: &mut Trials<'_>, round: &[Vec<ContactState>], places: &[usize]) -
     Some(all)
 }
 
-/// The direction of T_max after an iteration that found F_t.
+/// The direction of T_max after an iteration with this F_t.
 fn next_sign(node: &ContactState, f_t: f64) -> f64 {
     if f_t == 0.0 { node.sign } else { f_t.signum() }
 }
@@ -242,7 +243,7 @@ fn product(a: &[f64], b: &[f64], size: usize) -> Vec<f64> {
     c
 }
 
-/// Largest sum of the sizes of a column.
+/// Largest column sum of magnitudes.
 fn norm(a: &[f64], size: usize) -> f64 {
     let columns = a.chunks_exact(size.max(1));
     columns.fold(0.0, |m, c| c.iter().map(|x| x.abs()).sum::<f64>().max(m))
@@ -263,7 +264,7 @@ fn radius(map: &[f64], size: usize) -> f64 {
     log.exp()
 }
 
-/// Whether the modes of a round repeat for ever while T_max spirals in from `away` of the fixed point.
+/// Whether the modes of a period repeat forever while T_max converges from a distance of `away` to the fixed point.
 fn stays(
     trials: &mut Trials<'_>,
     method: &dyn Method,
@@ -323,7 +324,7 @@ fn stays(
     false
 }
 
-/// The largest norm of all powers of A; `None` if they do not fall within reason.
+/// The largest norm of all powers of A; `None` if they do not decay soon enough.
 fn growth(map: &[f64], size: usize) -> Option<f64> {
     let (mut power, mut most) = (map.to_vec(), 1.0_f64);
     for _ in 0..4000 {

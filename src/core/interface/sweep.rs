@@ -1,45 +1,44 @@
-//! Projected Gauss-Seidel on the frozen interface problem: Coulomb's law at one node after the other, exactly, while the
-//! forces of all others are held (Jean, Comput. Methods Appl. Mech. Engrg. 177, 1999, calls it non-smooth contact dynamics').
+//! Projected Gauss-Seidel on the frozen interface problem: solves Coulomb's law exactly at one node after the other, with the
+//! forces of all others frozen (as in non-smooth contact dynamics; Jean, Comput. Methods Appl. Mech. Engrg. 177, 1999).
 //!
-//! With the compliance W and the unloaded motions q, e = W F + q holds the gap and the negative slip of every node. At one
-//! node this is a problem of two equations, and of four assumptions: free, fixed, and sliding either way. The forces come to
-//! an answer slowly, but the modes as a rule soon, and with them a solve gives the forces exactly. Nothing is ever inverted
-//! but a block of two, so W may be singular. Every second sweep goes back: with strong friction sweeps that all go the same
-//! way may go round for ever.
+//! With the compliance W and the free motions q, e = W F + q contains the gap and the negative slip of every node. At one node
+//! this is a problem with two equations and four assumptions: free, fixed, and sliding in either direction. The forces converge
+//! slowly, but the modes usually soon, and a solve with these modes gives the exact forces. Only 2 by 2 blocks are inverted, so W
+//! may be singular. Every second sweep runs backwards: with strong friction, sweeps in the same direction may cycle.
 
 use crate::interface::problem::{Assumed, InterfaceProblem};
 use crate::linalg::DenseFactors;
 
-/// Estimated norm of the scaled inverse from which on the response has no compliance.
+/// Estimated norm of the scaled inverse above which the response has no compliance.
 const SINGULAR: f64 = 1e11;
 
-/// Forces on their way.
+/// State of the sweeps.
 #[derive(Debug, Clone)]
 pub struct Sweep {
-    /// W, column by column.
+    /// W, column-major.
     compliance: Vec<f64>,
     nodes: Vec<Alone>,
     /// F_n, F_t of each node in turn.
     forces: Vec<f64>,
     /// Gap and negative slip of each node in turn.
     motions: Vec<f64>,
-    /// Whether the next sweep goes back.
+    /// Whether the next sweep runs backwards.
     back: bool,
 }
 
-/// A node by itself.
+/// A single node.
 #[derive(Debug, Clone, Copy)]
 struct Alone {
     does: Assumed,
     coefficient: f64,
     cohesion: f64,
-    /// Whether it can be pressed, and whether it has friction.
+    /// Whether it can have a normal force, and whether it has friction.
     presses: bool,
     rough: bool,
 }
 
 impl Sweep {
-    /// The problem without forces. `None` if the bodies are not held without contact, or there is no memory.
+    /// Starts without forces. `None` if the bodies are unsupported without contact, or memory is insufficient.
     pub fn new(problem: &InterfaceProblem) -> Option<Self> {
         let (relation, count) = (&problem.relation, problem.relation.count());
         // motion = R⁻¹ (ΔF − start) + ΔF / k.
@@ -85,14 +84,14 @@ impl Sweep {
             motions,
             back: false,
         };
-        // What it starts from are motions without any force.
+        // The initial motions are those without forces.
         for (place, node) in problem.nodes.iter().enumerate() {
             sweep.push(place, [-node.state.f_n, -node.state.f_t]);
         }
         Some(sweep)
     }
 
-    /// Adds to the forces of a node, as far as motions go.
+    /// Adds to the forces of a node and updates the motions.
     fn push(&mut self, place: usize, change: [f64; 2]) {
         let count = self.motions.len();
         for (j, change) in [2 * place, 2 * place + 1].into_iter().zip(change) {
@@ -105,7 +104,7 @@ impl Sweep {
         }
     }
 
-    /// One sweep over all nodes; returns the largest change of a force over the largest force.
+    /// One sweep over all nodes; returns the largest change of a force relative to the largest force.
     pub fn sweep(&mut self) -> f64 {
         let (mut most, mut largest) = (0.0_f64, 0.0_f64);
         let count = self.nodes.len();
@@ -128,7 +127,7 @@ impl Sweep {
         }
     }
 
-    /// The force of a node that obeys Coulomb's law while all others are held, and what it does.
+    /// The force on a node that obeys Coulomb's law with all others frozen; also sets its mode.
     fn alone(&mut self, place: usize) -> [f64; 2] {
         let (count, n, t) = (self.motions.len(), 2 * place, 2 * place + 1);
         let w = |i: usize, j: usize| self.compliance[j * count + i];
@@ -177,7 +176,7 @@ impl Sweep {
         [f_n, f_t]
     }
 
-    /// What a node does after the last sweep.
+    /// Mode of a node after the last sweep.
     pub fn assumed(&self, place: usize) -> Assumed {
         self.nodes[place].does
     }

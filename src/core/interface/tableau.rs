@@ -1,63 +1,63 @@
-//! Complementary pivoting: Lemke's path through the bases of a linear complementarity problem, whatever its variables mean.
+//! Complementary pivoting: Lemke's path through the bases of any linear complementarity problem.
 //!
-//! Variables come in pairs of which one is zero; a loose one has no partner, may have either sign, and never leaves the
-//! basis. A covering variable relaxes all rows at once. In every pivot the complement of the variable that left last enters
-//! the basis, until the covering variable leaves it. If nothing bounds the entering variable, the path ends on a ray. Ties
-//! are broken lexicographically, so that no basis comes twice, or by a small shift of every row, which is the same for all
-//! shifts that are small enough, and cheap; then the path is that of the shifted rows, and the values are those of the true.
+//! Variables come in pairs of which one is zero; a loose one has no partner, may have either sign, and never leaves the basis. A
+//! covering variable relaxes all rows at once. In every pivot the complement of the variable that left last enters the basis,
+//! until the covering variable leaves. If nothing bounds the entering variable, the path ends on a ray. Ties are broken
+//! lexicographically, so that no basis repeats, or by a small shift of every row. Shifts are cheap, and the path is the same for
+//! all sufficiently small ones; the path is then that of the shifted rows, but the reported values are those of the original
+//! rows.
 
 use crate::interface::response::InterfaceResponse;
 use crate::linalg::DenseFactors;
 
-/// Entries of an entering column below this part of its largest are zero: with rows as they are, and with shifted ones,
-/// where no row needs a pivot that small.
+/// Entries of an entering column below this fraction of its largest are zero: for original rows, and for shifted ones, where no
+/// row needs such a small pivot.
 const TINY: f64 = 1e-11;
 const TINY_SHIFTED: f64 = 1e-9;
-/// Ratios that differ by less than this are a tie.
+/// Ratios with a smaller difference are tied.
 const TIE: f64 = 1e-12;
-/// Largest number of pivots of a path, per row. A usual path takes about one per row. If all forces are round-off, no basis
-/// is better than another and the path would not end.
+/// Default maximum number of pivots per row. A path usually takes about one per row. If all forces are round-off, no basis is
+/// better than another and the path would not end.
 const PIVOTS: usize = 20;
-/// Estimated norm of a basis' scaled inverse from which on it is singular.
+/// Estimated norm of a basis's scaled inverse above which it is singular.
 const SINGULAR: f64 = 1e11;
 
-/// A tableau on its way.
+/// The state of a path.
 #[derive(Debug, Clone)]
 pub struct Tableau {
     rows: usize,
-    /// Column by column: every variable's, then the covering variable's, then the values of the basic variables that the path
-    /// goes by; where those are shifted, then the true ones.
+    /// Columns: all variables, the covering variable, the values of the basic variables that the path uses; if these are shifted,
+    /// then the original values.
     table: Vec<f64>,
-    /// The complement of every variable; a loose one is its own.
+    /// The complement of every variable; a loose variable is its own.
     partners: Vec<usize>,
-    /// The variable of every row.
+    /// The basic variable of every row.
     basis: Vec<usize>,
-    /// The row of every variable, the covering one last; `None` where it is zero.
+    /// The row of every variable, the covering one last; `None` for zero variables.
     row_of: Vec<Option<usize>>,
-    /// The basis of the start, which breaks ties.
+    /// The initial basis, which breaks ties.
     first: Vec<usize>,
     /// Whether small shifts break ties instead.
     shifted: bool,
-    /// The variable that enters next. `None` before the first pivot and after the last.
+    /// The next entering variable. `None` before the first pivot and after the last.
     entering: Option<usize>,
-    /// The variable that left last. `None` if that was the covering one.
+    /// The variable that left last. `None` if that was the covering variable.
     left: Option<usize>,
     ended: Option<PathEnd>,
     pivots: usize,
     most: usize,
 }
 
-/// The rows that all problems share, (I + R / k) F − R v = start, divided by a unit of force: what forces and motions are in
-/// them, a column at a time.
+/// The rows common to all problems, (I + R / k) F − R v = start, divided by a unit of force: the columns of forces and motions.
 pub struct Columns<'a> {
-    /// How forces answer motions, with R, k and the start.
+    /// Dependence of forces on motions: R, k and the start.
     pub relation: &'a InterfaceResponse,
     /// The unit (force).
     pub force: f64,
 }
 
 impl Columns<'_> {
-    /// The right-hand side with nothing on it but the relation's start; `rows` are at least as many as the relation has.
+    /// The right-hand side with only the relation's start; `rows` is at least the number of the relation's rows.
     pub fn start(&self, rows: usize) -> Vec<f64> {
         let mut rhs = vec![0.0; rows];
         for (to, start) in rhs.iter_mut().zip(&self.relation.start) {
@@ -66,7 +66,7 @@ impl Columns<'_> {
         rhs
     }
 
-    /// Adds `times` (force) the column of force component j.
+    /// Adds `times` (force) the column of force component j to a column.
     pub fn add_force(&self, j: usize, times: f64, column: &mut [f64]) {
         for (to, r) in column.iter_mut().zip(self.response(j)) {
             *to += times * r / self.relation.stiffness / self.force;
@@ -74,7 +74,7 @@ impl Columns<'_> {
         column[j] += times / self.force;
     }
 
-    /// Adds `times` (length) the column of motion component j.
+    /// Adds `times` (length) the column of motion component j to a column.
     pub fn add_motion(&self, j: usize, times: f64, column: &mut [f64]) {
         for (to, r) in column.iter_mut().zip(self.response(j)) {
             *to -= times * r / self.force;
@@ -87,19 +87,19 @@ impl Columns<'_> {
     }
 }
 
-/// How a path starts.
+/// Parameters for starting a path.
 #[derive(Clone, Copy)]
 pub struct Begin<'a> {
-    /// By how much the covering variable relaxes each row; all positive.
+    /// Relaxation of each row by the covering variable; positive.
     pub cover: &'a dyn Fn(usize) -> f64,
-    /// By how much each row is shifted. `None` where ties are broken lexicographically.
+    /// Shift of each row. `None` to break ties lexicographically.
     pub shift: Option<&'a dyn Fn(usize) -> f64>,
-    /// Most pivots of the path, per row.
+    /// Maximum number of pivots of the path, per row.
     pub pivots: usize,
 }
 
 impl Begin<'_> {
-    /// All rows are relaxed alike, and ties are broken lexicographically.
+    /// All rows are relaxed equally, and ties are broken lexicographically.
     pub const PLAIN: Begin<'static> = Begin {
         cover: &|_| 1.0,
         shift: None,
@@ -107,19 +107,19 @@ impl Begin<'_> {
     };
 }
 
-/// How the path ended.
+/// Result of a path.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PathEnd {
     /// The basis solves the problem.
     Solved,
-    /// Nothing bounds the variable that enters: no state is found from this start.
+    /// Nothing bounds the entering variable: this start leads to no solution.
     Ray,
-    /// It did not end within the pivots that it has.
+    /// It reached the maximum number of pivots.
     Astray,
 }
 
 impl Tableau {
-    /// A tableau of so many rows, without variables.
+    /// A tableau with this number of rows and no variables.
     pub fn new(rows: usize) -> Self {
         Tableau {
             rows,
@@ -152,7 +152,7 @@ impl Tableau {
         self.partners.len()
     }
 
-    /// Adds a variable with its column, zeros at first; `partner` is the number of its complement, or its own if it is loose.
+    /// Adds a variable with its column, initially zero; `partner` is the index of its complement, or its own if it is loose.
     pub fn add(&mut self, partner: usize, fill: impl FnOnce(&mut [f64])) {
         self.partners.push(partner);
         let from = self.table.len();
@@ -160,12 +160,12 @@ impl Tableau {
         fill(&mut self.table[from..]);
     }
 
-    /// The column of a variable, before the start.
+    /// The column of a variable, before the path starts.
     pub fn column(&mut self, variable: usize) -> &mut [f64] {
         &mut self.table[variable * self.rows..(variable + 1) * self.rows]
     }
 
-    /// Starts the path from a basis (one variable a row, ascending). `None` if it is singular.
+    /// Starts the path from a basis (one variable per row, ascending). `None` if it is singular.
     pub fn start(&mut self, basis: Vec<usize>, rhs: Vec<f64>, begin: Begin<'_>) -> Option<()> {
         let (rows, cover) = (self.rows, self.variables());
         self.basis = basis;
@@ -223,7 +223,7 @@ impl Tableau {
         self.table[(self.variables() + 1) * self.rows + row]
     }
 
-    /// The value without the shift.
+    /// The value without shift.
     fn truth(&self, row: usize) -> f64 {
         self.table[(self.variables() + 1 + usize::from(self.shifted)) * self.rows + row]
     }
@@ -238,17 +238,17 @@ impl Tableau {
         self.row_of[variable].map_or(0.0, |row| self.truth(row))
     }
 
-    /// How the path ended. `None` while it goes on.
+    /// Result of the path. `None` while it continues.
     pub fn ended(&self) -> Option<PathEnd> {
         self.ended
     }
 
-    /// The variable that left last. `None` if that was the covering one, or none has.
+    /// The variable that left last. `None` if that was the covering variable, or before the first pivot.
     pub fn left(&self) -> Option<usize> {
         self.left
     }
 
-    /// The covering variable: how far the problem is still relaxed.
+    /// The covering variable: remaining relaxation of the problem.
     pub fn cover(&self) -> f64 {
         match self.row_of[self.variables()] {
             Some(row) => self.value(row),
@@ -259,7 +259,7 @@ impl Tableau {
         }
     }
 
-    /// One pivot. `None` if the path has ended before.
+    /// One pivot. `None` if the path has already ended.
     pub fn pivot(&mut self) -> Option<()> {
         if self.ended.is_some() {
             return None;
@@ -291,7 +291,7 @@ impl Tableau {
         Some(())
     }
 
-    /// The row whose value is the most negative.
+    /// The row with the most negative value.
     fn most_broken(&self) -> Option<usize> {
         let rows = (0..self.rows).filter(|&row| !self.is_loose(row));
         let covers = |row: usize| -self.table[self.variables() * self.rows + row];
@@ -304,8 +304,8 @@ impl Tableau {
         })
     }
 
-    /// The row that bounds an entering variable: of the smallest ratio, the covering variable's first, then
-    /// lexicographically.
+    /// The row that bounds an entering variable: the one with the smallest ratio; among ties, the covering variable's row first,
+    /// then lexicographically.
     fn bounding(&self, entering: usize) -> Option<usize> {
         let column = &self.table[entering * self.rows..(entering + 1) * self.rows];
         let tiny = match self.shifted {
@@ -330,7 +330,7 @@ impl Tableau {
         })
     }
 
-    /// Whether a row is lexicographically less than another, both divided by their divisors.
+    /// Whether a row is lexicographically less than another, each divided by its divisor.
     fn comes_before(&self, row: usize, other: usize, divisor: impl Fn(usize) -> f64) -> bool {
         let (mine, its) = (divisor(row), divisor(other));
         let gap = self.value(row) / mine - self.value(other) / its;

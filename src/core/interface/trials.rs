@@ -1,4 +1,4 @@
-//! Trials of assumptions and minor iterations on an interface problem by itself.
+//! Solves combinations of modes and minor iterations on a separate interface problem.
 
 use crate::contact::record::ContactRecord;
 use crate::contact::state::ContactState;
@@ -12,7 +12,7 @@ use crate::interface::problem::{
 use crate::interface::rows;
 use crate::linalg::DenseFactors;
 
-/// Solves one set of equations after the other, with room made once.
+/// Solves one set of equations after the other with preallocated workspace.
 pub struct Trials<'a> {
     problem: &'a InterfaceProblem,
     matrix: Vec<f64>,
@@ -21,7 +21,7 @@ pub struct Trials<'a> {
 }
 
 impl<'a> Trials<'a> {
-    /// Room for trials of a problem. `None` if there is no memory.
+    /// Workspace for a problem. `None` if memory is insufficient.
     pub fn new(problem: &'a InterfaceProblem) -> Option<Self> {
         let count = problem.relation.count();
         Some(Trials {
@@ -32,12 +32,12 @@ impl<'a> Trials<'a> {
         })
     }
 
-    /// The problem that is tried.
+    /// The problem.
     pub fn problem(&self) -> &'a InterfaceProblem {
         self.problem
     }
 
-    /// The answer to an assumption, one entry a node. `None` if its equations are singular.
+    /// The solution for a combination, one entry per node. `None` if its equations are singular.
     pub fn answer(&mut self, assumed: &[Assumed]) -> Option<Answer> {
         let problem = self.problem;
         let given = self.solve(|s, node| node.equations(assumed[s], &problem.settings))?;
@@ -49,8 +49,8 @@ impl<'a> Trials<'a> {
         })
     }
 
-    /// One minor iteration: solves for what the nodes bring, and leaves in them what they bring into the next. Returns what
-    /// it did at each node, and whether all modes and T_max have settled. `None` if the equations are singular.
+    /// One minor iteration: solves for the states of the nodes and updates them. Returns the record of each node, and whether all
+    /// modes and T_max have converged. `None` if the equations are singular.
     pub fn minor(
         &mut self,
         nodes: &mut [ContactState],
@@ -90,7 +90,7 @@ impl<'a> Trials<'a> {
         Some((records, settled))
     }
 
-    /// Solves Table 1's equations for what the nodes bring, without a check of the modes. `None` if they are singular.
+    /// Solves Table 1's equations for the states of the nodes, without checking the modes. `None` if they are singular.
     pub fn given(&mut self, nodes: &[ContactState]) -> Option<Vec<NodeIncrement>> {
         let settings = self.problem.settings;
         self.solve(|s, node| {
@@ -104,8 +104,8 @@ impl<'a> Trials<'a> {
         })
     }
 
-    /// Derivative of the last solution by the right-hand side of equation k (0 normal, 1 tangential) of a node: one entry a
-    /// node. `None` if it is not finite.
+    /// Derivative of the last solution with respect to the right-hand side of equation k (0 normal, 1 tangential) of a node: one
+    /// entry per node. `None` if it is not finite.
     pub fn answers_to(&mut self, slave: usize, k: usize) -> Option<Vec<NodeIncrement>> {
         self.z.fill(0.0);
         self.z[2 * slave + k] = 1.0;

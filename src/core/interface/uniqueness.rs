@@ -1,66 +1,66 @@
-//! Whether the matrix of a frozen problem alone allows no second state, however many nodes there are.
+//! Checks whether the matrix of a frozen problem alone excludes a second state, for any number of nodes.
 //!
-//! Of two states, let d be the difference of their forces and e that of their motions (of −gap along n, of the slip along
-//! t), with e = −W d, W the compliance. At every node
+//! For two states, let d be the difference of their forces and e that of their motions (of −gap along n, of the slip along t),
+//! with e = −W d and the compliance W. At every node
 //!
-//! - d_n e_n ≥ 0, since F_n ≥ 0, gap ≥ 0 and F_n gap = 0 in both;
-//! - F_t = h τ with h = tan φ F_n + c ≥ 0, |τ| ≤ 1, and τ is the sign of the slip where there is any. With the means h̄ of
-//!   both h and τ̄ of both τ, d_t = h̄ (τ − τ′) + tan φ τ̄ d_n, and (τ − τ′) e_t ≥ 0; so (d_t − tan φ τ̄ d_n) e_t ≥ 0.
+//! - d_n e_n ≥ 0, because F_n ≥ 0, gap ≥ 0 and F_n gap = 0 in both;
+//! - F_t = h τ with h = tan φ F_n + c ≥ 0, |τ| ≤ 1, and τ is the sign of a nonzero slip. With the means h̄ and τ̄ over both
+//!   states, d_t = h̄ (τ − τ′) + tan φ τ̄ d_n, and (τ − τ′) e_t ≥ 0; so (d_t − tan φ τ̄ d_n) e_t ≥ 0.
 //!
-//! With positive weights p and q of each node the sum of both says, for some τ̄ in −1 to 1,
+//! With positive weights p and q for each node, the sum of both inequalities gives, for some τ̄ in −1 to 1,
 //!
 //! ```text
 //! Σ p d_n (W d)_n + q (d_t − tan φ τ̄ d_n) (W d)_t ≤ 0
 //! ```
 //!
-//! Take p = q = 1. The sum is at least d·W d − Σ tan φ |d_n| |(W d)_t|, and 2 |d_n| |(W d)_t| ≤ d_n² / α + α (W d)_t² for any
-//! α > 0 of the node. So if
+//! Take p = q = 1. The sum is at least d·W d − Σ tan φ |d_n| |(W d)_t|, and 2 |d_n| |(W d)_t| ≤ d_n² / α + α (W d)_t² for any α >
+//! 0 per node. So if
 //!
 //! ```text
 //! M = W − ½ Σ tan φ (n nᵀ / α + α (W t) (W t)ᵀ)
 //! ```
 //!
-//! is positive definite for some α, then d = 0: there is one state at most. (n, t: the unit vectors of a node's components.)
-//! With α = 1 / √(λ_max λ_min) for all nodes, M ≥ (1 − tan φ √cond W) W, so that the criterion holds at least where
-//! tan φ √cond W < 1; tan φ may differ from node to node.
+//! is positive definite for some α, then d = 0: there is at most one state. (n, t: the unit vectors of a node's components.) With
+//! α = 1 / √(λ_max λ_min) for all nodes, M ≥ (1 − tan φ √cond W) W, so the criterion holds at least if tan φ √cond W < 1; tan φ
+//! may differ between nodes.
 //!
-//! Where it does not apply:
+//! Special cases:
 //!
-//! - A node with **cohesion** loses it when it opens: F_t = h τ does not hold there, and nothing follows.
-//! - **What is prescribed, and slip made before**, is the same in both states and drops out of e.
-//! - **T_max**: a settled minor iteration has T_max of its own F_n, lagged or consistent, so its states are these.
-//! - Without a surface, forces are zero in both states, and without friction F_t is: such components are left out of W.
-//! - A component in which no unknown takes part moves nothing: **supports carry** its force, e is zero there and its row of W,
-//!   too. It is left out; the other forces and all motions are the same in both states.
+//! - A node with **cohesion** loses it when it opens, so F_t = h τ is wrong there and the criterion does not apply.
+//! - **Prescribed motions and previous slip** are the same in both states and cancel in e.
+//! - **T_max**: in a converged minor iteration, T_max belongs to its F_n, lagged or consistent, so its states are covered.
+//! - Without a surface, all forces are zero in both states, and without friction F_t is: these components are left out of W.
+//! - **Supports carry** the force of a component without an unknown: e and its row of W are zero. It is left out; all other
+//!   forces and all motions are the same in both states.
 //!
-//! The bound is sufficient only: it looks neither at loads nor at gaps. That uniqueness for all loads needs a friction that
-//! is small against the mesh is known of Coulomb friction (Haslinger, Math. Methods Appl. Sci. 5, 1983; Hassani, Ionescu &
-//! Oudet, Int. J. Solids Struct. 44, 2007).
+//! The bound is only sufficient: it ignores loads and gaps. It is known that uniqueness for all loads requires a friction
+//! coefficient that is small relative to the mesh size (Haslinger, Math. Methods Appl. Sci. 5, 1983; Hassani, Ionescu & Oudet,
+//! Int. J. Solids Struct. 44, 2007).
 
 use crate::interface::definite;
 use crate::interface::problem::InterfaceProblem;
 use crate::linalg::DenseFactors;
 
-/// Scales of α that are tried, each twice the one before, about 1.
+/// Number of tried scales of α, each twice the previous one, around 1.
 const SCALES: i32 = 8;
-/// Rounds in which the α of single nodes are bettered.
+/// Number of rounds that improve α of single nodes.
 const ROUNDS: usize = 12;
-/// An eigenvalue must be positive by this part of the largest entry, times the size.
+/// An eigenvalue counts as positive above this fraction of the largest entry, times the matrix size.
 const ROUND_OFF: f64 = 1e-12;
-/// Condition of the response above which its inverse is not believed.
+/// Condition of the response above which its inverse is not trusted.
 const SINGULAR: f64 = 1e10;
 
-/// What the matrix says of the number of states.
+/// Conclusion about the number of states.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Uniqueness {
-    /// One state at most. With all friction coefficients times `spare` that would still be proven.
+    /// At most one state. This holds even with all friction coefficients multiplied by `spare`.
     Unique {
         /// At least 1.
         spare: f64,
-        /// Whether supports carry a force at some node: the states are the same but for that force.
+        /// Whether supports carry a force at some node: the states are unique except for that force.
         carried: bool,
     },
-    /// Not proven; with friction coefficients `spare` times as large it would be.
+    /// Not proven; it would be with all friction coefficients multiplied by `spare`.
     Unproven {
         /// Less than 1.
         spare: f64,
@@ -72,17 +72,17 @@ pub enum Uniqueness {
 /// Why the criterion does not apply.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Inapplicable {
-    /// A node (its place) has cohesion.
+    /// A node (given by index) has cohesion.
     Cohesion(usize),
-    /// Bodies are loose, or forces move nothing: there is no definite compliance.
+    /// Bodies are loose, or some forces cause no motion: there is no definite compliance.
     Singular,
-    /// The compliance is semidefinite: so many of its eigenvalues are round-off, and forces need not be unique.
+    /// The compliance is semidefinite: this number of its eigenvalues is round-off, and forces need not be unique.
     Semidefinite(usize),
     /// The compliance is not positive definite.
     Indefinite,
 }
 
-/// Looks at a problem's matrix. It takes a few dense factorisations of the interface's size.
+/// Applies the criterion to a problem. It takes a few dense factorizations of the interface's size.
 pub fn uniqueness(problem: &InterfaceProblem) -> Uniqueness {
     let compliance = match Compliance::of(problem) {
         Ok(compliance) => compliance,
@@ -107,7 +107,7 @@ fn semidefinite(problem: &InterfaceProblem) -> Option<Inapplicable> {
     (zero > 0 && compliance.ends()[0] >= -round_off).then_some(Inapplicable::Semidefinite(zero))
 }
 
-/// tan φ √cond W with the largest tan φ: below 1, states are unique, too. `None` where there is no definite compliance.
+/// tan φ √cond W with the largest tan φ: below 1, states are unique. `None` if there is no definite compliance.
 pub fn plain(problem: &InterfaceProblem) -> Option<f64> {
     let compliance = Compliance::of(problem).ok()?;
     let (size, w) = (compliance.size, &compliance.matrix);
@@ -116,7 +116,7 @@ pub fn plain(problem: &InterfaceProblem) -> Option<f64> {
     factors.factor(w);
     let inverse = power(size, |x| {
         let mut y = x.to_vec();
-        // Its factors exist: it is definite.
+        // The factorization succeeded, so the matrix is definite.
         let _ = factors.solve(&mut y);
         y
     });
@@ -124,16 +124,16 @@ pub fn plain(problem: &InterfaceProblem) -> Option<f64> {
     Some(steepest * (largest * inverse).sqrt())
 }
 
-/// W of the components that can differ, scaled to a unit diagonal's mean.
+/// W of the components that can vary, scaled to a mean diagonal of one.
 struct Compliance {
     size: usize,
-    /// Its symmetric part, column by column.
+    /// Its symmetric part, column-major.
     matrix: Vec<f64>,
-    /// W row by row: not symmetric where the tangent is not.
+    /// W, row by row; unsymmetric if the tangent is.
     rows: Vec<f64>,
     /// Round-off of W, relative to its largest entry.
     round_off: f64,
-    /// Rows of n and t of each rough node, and its tan φ.
+    /// Rows of n and t of each node with friction, and its tan φ.
     pairs: Vec<(usize, usize, f64)>,
     carried: bool,
 }
@@ -208,8 +208,8 @@ impl Compliance {
         }
     }
 
-    /// By how much all coefficients of friction can be multiplied until the criterion fails; infinite without friction.
-    /// It is found by bisection and proven at its value.
+    /// The largest factor for all friction coefficients with which the criterion holds; infinite without friction. It is found by
+    /// bisection and proven at its value.
     fn spare(&self) -> f64 {
         if self.pairs.is_empty() {
             return f64::INFINITY;
@@ -234,8 +234,8 @@ impl Compliance {
         low
     }
 
-    /// The α of each rough node: those of one scale that spare most, then bettered node by node where the two terms of
-    /// the vector that comes first to fail are not the same.
+    /// α of each node with friction: the best common scale, then improved node by node where the two terms of the vector that
+    /// fails first differ.
     fn alphas(&self) -> Vec<f64> {
         let Ok(mut factors) = DenseFactors::new(self.size, 1) else {
             return vec![1.0; self.pairs.len()];
@@ -268,7 +268,7 @@ impl Compliance {
         alphas
     }
 
-    /// The largest of ½ Σ tan φ (x_n² / α + α (W x)_t²) over x·W x, by power iteration, and its x (x·W x = 1).
+    /// The largest value of ½ Σ tan φ (x_n² / α + α (W x)_t²) over x·W x, by power iteration, and its x (x·W x = 1).
     fn first_to_fail(&self, alphas: &[f64], factors: &mut DenseFactors) -> (f64, Vec<f64>) {
         let size = self.size;
         let mut x: Vec<f64> = (0..size)
@@ -278,7 +278,7 @@ impl Compliance {
         for _ in 0..60 {
             let wx = times(&self.matrix, size, &x);
             let norm = x.iter().zip(&wx).map(|(a, b)| a * b).sum::<f64>().sqrt();
-            // W⁻¹ N x, with N = ½ Σ tan φ (n nᵀ / α + α W t tᵀ W): the first part is solved, the second is t.
+            // W⁻¹ N x, with N = ½ Σ tan φ (n nᵀ / α + α W t tᵀ W): the first part is solved for, the second is t.
             let (mut first, mut second) = (vec![0.0; size], vec![0.0; size]);
             for (&(n, t, tangent), alpha) in self.pairs.iter().zip(alphas) {
                 first[n] = tangent / 2.0 * x[n] / alpha / norm;
@@ -299,7 +299,7 @@ impl Compliance {
         (value, x)
     }
 
-    /// M of these α, all coefficients times `spare`.
+    /// M for these α, with all coefficients multiplied by `spare`.
     fn reduced(&self, alphas: &[f64], spare: f64) -> Vec<f64> {
         let size = self.size;
         let mut m = self.matrix.clone();
@@ -320,7 +320,8 @@ impl Compliance {
 }
 
 impl Compliance {
-    /// Whether a symmetric matrix is positive definite by more than round-off: by Cholesky's factors of it less that much.
+    /// Whether a symmetric matrix is positive definite by more than round-off, which is subtracted before a Cholesky
+    /// factorization.
     fn is_definite(&self, matrix: &[f64]) -> bool {
         let size = self.size;
         let mut a = matrix.to_vec();

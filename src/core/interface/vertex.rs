@@ -1,21 +1,22 @@
-//! Forces that are not unique: from any of them to some that belong to one assumption alone.
+//! Replaces forces that are not unique by forces that belong to a single combination of modes.
 //!
-//! Where forces of the touching nodes move nothing (W d = 0), the equations of what the nodes do are singular, and a solve
-//! finds no forces although there are many. Along such a d the motions stay what they are, and forces within their friction
-//! cones stay an answer until one of them comes to the edge of its cone. A node at the edge slides, by nothing, and one
-//! without force is free, with a gap of zero; so each of them takes an unknown out, and at the end the equations have one
-//! solution. Forces of a node that coheres are left alone where they come to F_n = 0, which is no mode there. It is the same with the vertices of a polyhedron and linear programs (Megiddo, ORSA J. Computing 3, 1991).
+//! If some forces of the touching nodes cause no motion (W d = 0), the equations of the modes are singular, and a solve finds no
+//! forces although many exist. Along such a d the motions are constant, and forces within their friction cones remain a solution
+//! until one of them reaches the edge of its cone. A node on the edge slides by zero, and one without force is free with zero
+//! gap; each of them removes an unknown, until the equations have a unique solution. Forces of a node with cohesion are kept when
+//! they reach F_n = 0, where no mode change is possible. This is analogous to finding a vertex of a polyhedron in linear
+//! programming (Megiddo, ORSA J. Computing 3, 1991).
 
 use crate::interface::problem::{Assumed, InterfaceProblem};
 
-/// Columns whose rest is below this part of the largest depend on others.
+/// Columns whose remainder is below this fraction of the largest are linearly dependent.
 const DEPENDENT: f64 = 1e-10;
 
-/// What a node does, and its forces.
+/// Mode and forces of a node.
 pub type Held = (Assumed, [f64; 2]);
 
-/// What the nodes do, and their forces, one entry a node, such that no forces in these modes move nothing. The motions are
-/// those that were before, and the forces obey Coulomb's law if they did.
+/// Changes modes and forces (one entry per node) such that no forces in these modes are without motion. The motions stay the
+/// same, and the forces obey Coulomb's law if they did before.
 pub fn vertex(problem: &InterfaceProblem, nodes: &mut [Held]) {
     let mut still = motionless(problem, nodes);
     orthonormal(&mut still);
@@ -41,7 +42,7 @@ pub fn vertex(problem: &InterfaceProblem, nodes: &mut [Held]) {
     }
 }
 
-/// Gram and Schmidt's, twice; vectors that depend on others go.
+/// Gram-Schmidt orthogonalisation, applied twice; removes dependent vectors.
 fn orthonormal(still: &mut Vec<Vec<f64>>) {
     let mut done: Vec<Vec<f64>> = Vec::with_capacity(still.len());
     for mut along in still.drain(..) {
@@ -61,8 +62,8 @@ fn orthonormal(still: &mut Vec<Vec<f64>>) {
     *still = done;
 }
 
-/// Leaves of the forces that move nothing those that keep to a bound, orthonormal as they were: the reflection that takes
-/// what the bound measures of each to the last one alone, which goes.
+/// Restricts the motionless forces to those that satisfy a bound, keeping them orthonormal: a Householder reflection concentrates
+/// the bound's component in the last one, which is removed.
 fn keep(bound: &Bound, still: &mut Vec<Vec<f64>>) {
     let mut mirror: Vec<f64> = still.iter().map(|along| bound.of(along)).collect();
     let size = dot(&mirror, &mirror).sqrt();
@@ -89,7 +90,7 @@ fn subtract(from: &mut [f64], times: f64, what: &[f64]) {
     from.iter_mut().zip(what).for_each(|(x, y)| *x -= times * y);
 }
 
-/// [`vertex`] of what a search proposes: for every node what it does, with F_n, F_t, gap and slip.
+/// [`vertex`] for a proposal of a search: mode of every node with F_n, F_t, gap and slip.
 pub fn vertices(problem: &InterfaceProblem, nodes: &mut [(Assumed, [f64; 4])]) {
     let of = |&(does, [f_n, f_t, ..]): &(Assumed, [f64; 4])| (does, [f_n, f_t]);
     let mut held: Vec<Held> = nodes.iter().map(of).collect();
@@ -100,14 +101,14 @@ pub fn vertices(problem: &InterfaceProblem, nodes: &mut [(Assumed, [f64; 4])]) {
     }
 }
 
-/// The edge of a cone that forces come to first.
+/// The first cone edge that the forces reach.
 struct Bound {
     place: usize,
     step: f64,
     then: Assumed,
-    /// What stays zero there, as factors of the node's F_n and F_t.
+    /// The quantity that is zero there, as factors of the node's F_n and F_t.
     factors: [f64; 2],
-    /// Whether a mode begins there.
+    /// Whether a mode change is possible there.
     open: bool,
 }
 
@@ -117,7 +118,7 @@ impl Bound {
     }
 }
 
-/// The first edge that is come to along d or against it. `None` if there is none.
+/// The first edge along d or −d. `None` if there is none.
 fn nearest(problem: &InterfaceProblem, nodes: &[Held], along: &[f64]) -> Option<Bound> {
     let mut found: Option<Bound> = None;
     let mut look = |place: usize, then: Assumed, factors: [f64; 2], left: f64| {
@@ -169,10 +170,10 @@ fn nearest(problem: &InterfaceProblem, nodes: &[Held], along: &[f64]) -> Option<
     found.filter(|bound| bound.open)
 }
 
-/// Forces of the touching nodes, in these modes, that move nothing: a basis, two entries a node.
+/// Basis of the touching nodes' forces, in these modes, that cause no motion; two entries per node.
 ///
-/// They are what (I + R / k) takes to zero. Its columns for the nodes' forces are eliminated with the largest entry that is
-/// left as pivot.
+/// These form the null space of (I + R / k). Its columns for the nodes' forces are eliminated with the largest remaining entry as
+/// pivot.
 pub fn motionless(problem: &InterfaceProblem, nodes: &[Held]) -> Vec<Vec<f64>> {
     let (relation, count) = (&problem.relation, problem.relation.count());
     let mut directions: Vec<(usize, [f64; 2])> = Vec::new();
@@ -234,7 +235,7 @@ pub fn motionless(problem: &InterfaceProblem, nodes: &[Held]) -> Vec<Vec<f64>> {
     }
     (rank..size)
         .map(|dependent| {
-            // The upper triangle, back.
+            // Back substitution in the upper triangle.
             let mut factors = vec![0.0; size];
             factors[order[dependent]] = 1.0;
             for k in (0..rank).rev() {

@@ -1,4 +1,4 @@
-//! A minor iteration on the whole system of bodies and interface (eqn 9), factored anew for every assumption of modes.
+//! Minor iterations on the full system of bodies and interface (eqn 9), which is factored for every combination of modes.
 
 use super::partners::{partners_motion, place_partners};
 use super::source::{At, Solved};
@@ -8,7 +8,7 @@ use crate::contact::table1::{Equation, Motion};
 use crate::interface::kinematics::through;
 use crate::model::Model;
 
-/// Estimated norm of the scaled inverse from which on a system is suspected to be singular.
+/// Estimated norm of the scaled inverse above which a system is suspected to be singular.
 const SUSPICIOUS: f64 = 1e12;
 
 impl System {
@@ -47,7 +47,7 @@ impl System {
         solved
     }
 
-    /// Finds the scale of all systems of this linearisation: that of the one in which every node is held.
+    /// Computes the common scale for all systems of this linearisation, using the one in which every node is held.
     pub(super) fn scale(&mut self, model: &Model, at: &At<'_>) {
         if std::mem::replace(&mut self.scaled, true) {
             return;
@@ -66,7 +66,7 @@ impl System {
         }
     }
 
-    /// Stiffness and out-of-balance forces, without any interface.
+    /// Stiffness and out-of-balance forces without the interface.
     pub(super) fn start_values(&mut self) {
         self.values.copy_from_slice(&self.stiffness);
         self.start_rhs();
@@ -79,7 +79,7 @@ impl System {
         }
     }
 
-    /// Enters an equation of a slave node, and the column of its force; returns the equation's right-hand side.
+    /// Writes an equation of a slave node and the column of its force; returns the equation's right-hand side.
     pub(super) fn place_row(
         &mut self,
         s: usize,

@@ -1,4 +1,4 @@
-//! Our own bodies as a source: beams, continua and given matrices, over surfaces that are followed by projection.
+//! The program's own bodies as a source: beams, continua and matrix bodies, over surfaces followed by projection.
 
 use crate::contact::balance::{self, Forces};
 use crate::contact::judge::{Judge, Seen};
@@ -26,9 +26,9 @@ use crate::linear::tangent::Tangent;
 use crate::model::{Axis, Contact, Factor, Friction, Mode, Model, Settings, Watched};
 use std::sync::Arc;
 
-/// What a relative amount against a law may be at least; more where the settings' tolerance or round-off is larger.
+/// Minimum relative tolerance for violations of laws; it is larger if the settings' tolerance or round-off is larger.
 const TOLERANCE: f64 = 1e-8;
-/// How many times the tolerance of the iterations a judged amount may be.
+/// Ratio of the judge's tolerance to the tolerance of the iterations.
 const TIMES: f64 = 10.0;
 
 /// The bodies of a model.
@@ -36,25 +36,25 @@ pub struct Bodies {
     model: Arc<Model>,
     system: System,
     bench: Bench,
-    /// What stability is told by, once it is asked for.
+    /// Data for stability checks, created on first use.
     tangent: Option<Tangent>,
-    /// Whether the stresses tell the force of each contact ([`stresses_tell`]).
+    /// Whether the force of each contact can be computed from the stresses ([`stresses_tell`]).
     told: Vec<bool>,
-    /// Whether any contact starts inside, and is pushed out over the first leg.
+    /// Whether any contact starts inside and is pushed out over the first leg.
     overlaps: bool,
-    /// Whether any bond gives way along n.
+    /// Whether any bond has a compliance along n.
     gives: bool,
     /// Contacts over elements with local flexibility in the last accepted state.
     points: PointForces,
 }
 
-/// The judge, with the memory that it works in.
+/// The judge and its workspace.
 struct Bench {
     judge: Judge,
     /// Positions of all nodes in the last accepted state.
     before: Vec<[f64; 2]>,
-    /// What is left of the overlaps, as ways out of them by contact: now, and in the last accepted state, where how far the bond
-    /// gave way comes to it.
+    /// Remaining overlaps per contact, as displacements that would remove them: now, and in the last accepted state, where they
+    /// include the deformation of the bond.
     out: [Vec<[f64; 2]>; 2],
     forces: Vec<[f64; 2]>,
     brought: Vec<f64>,
@@ -66,12 +66,12 @@ struct Bench {
 }
 
 impl Bodies {
-    /// The bodies of a model, worked on in turn.
+    /// The bodies of a model, processed sequentially.
     pub fn new(model: Arc<Model>) -> Self {
         Bodies::with_executor(model, Arc::new(InTurn))
     }
 
-    /// The bodies of a model, worked on side by side by whoever this is; the answers are the same.
+    /// The bodies of a model, processed in parallel by an executor; the results are the same.
     pub fn with_executor(model: Arc<Model>, executor: Arc<dyn Executor>) -> Self {
         let (nodes, contacts) = (model.nodes.len(), model.contacts.len());
         Bodies {
@@ -98,7 +98,7 @@ impl Bodies {
         }
     }
 
-    /// Where the contacts' surfaces and nodes are now.
+    /// Current positions of the contacts' surfaces and nodes.
     fn ground(&self) -> Ground<'_> {
         let norms = &self.system.norms;
         Ground {
@@ -130,7 +130,7 @@ impl Bodies {
     }
 }
 
-/// Pressure or shear of those of some contacts where it is largest in size.
+/// Pressure or shear of the contact where its magnitude is largest.
 pub(super) fn pressure(
     contacts: &[Contact],
     states: &[ContactState],
@@ -148,8 +148,8 @@ pub(super) fn pressure(
     )
 }
 
-/// Whether the stresses tell the force of each contact: not where a support or a second contact shares its node's force, nor
-/// where the node is itself part of a master surface.
+/// Whether the force of each contact can be computed from the stresses. It cannot if a support or a second contact contributes to
+/// its node's force, or if the node belongs to a master surface.
 fn stresses_tell(model: &Model) -> Vec<bool> {
     let mut master = vec![false; model.nodes.len()];
     for surface in model.surfaces.iter().filter(|surface| !surface.rigid) {
@@ -166,7 +166,7 @@ fn stresses_tell(model: &Model) -> Vec<bool> {
     model.contacts.iter().map(|c| tell(c.node)).collect()
 }
 
-/// Whether models differ in nothing that is laid out once: in friction, loads, history and settings alone.
+/// Whether two models differ only in friction, loads, history and settings, which do not affect the layout.
 fn is_laid_out_alike(one: &Model, other: &Model) -> bool {
     let memory = |model: &Model| (model.settings.memory, model.budget, model.length);
     let mut contacts = one.contacts.iter().zip(&other.contacts);
@@ -250,7 +250,7 @@ impl Source for Bodies {
     }
 
     fn aim(&mut self, at: &At<'_>) -> bool {
-        // A pressure that follows its faces has a stiffness that goes with the load.
+        // A following pressure has a stiffness that depends on the load.
         let dead = self.system.pressures.is_empty();
         let holds = dead && at.accepted.history.is_empty() && !self.system.is_dragged(at);
         if holds {
@@ -414,7 +414,7 @@ impl Source for Bodies {
                 {
                     out.push(normal.map(|n| n * part * contact.overlap));
                 }
-                // How far the bond gives way now is for the judge to find.
+                // The judge computes the current deformation of the bond.
                 if let Some(out) = bench.out[1].last_mut() {
                     let given = contact.bond.give()[0] * was.f_n;
                     *out = [0, 1].map(|k| out[k] + was.normal[k] * given);
@@ -461,7 +461,7 @@ impl Source for Bodies {
         };
         balance::check(model, &forces, now, &scales, &mut verdict);
         if self.overlaps && left[0] > 0.0 {
-            // Force and counterforce act apart by what is left of the overlap.
+            // With a remaining overlap, the force and its reaction act at different points.
             verdict.worst[Law::Moments as usize] = None;
         }
         verdict
@@ -535,7 +535,7 @@ impl Source for Bodies {
             }
             Watched::Arc => at.arc,
             Watched::Told { .. } => f64::NAN,
-            // The load is that of the displacements at hand, not the one that is aimed at next.
+            // Use the load of the current displacements, not of the next target.
             Watched::Reaction { dof } => {
                 let loads = self.model.loads.iter().filter(|load| load.dof == *dof);
                 let mut load: f64 = loads.map(|l| l.value * l.scale.at(at.last_target)).sum();

@@ -1,11 +1,12 @@
-//! The load factor's column and the constraint's row about a linearisation, as plain data (`bordered` fills and uses them).
+//! The column of the load factor and the row of the constraint in a linearisation, as plain data (`bordered` fills and uses
+//! them).
 
-/// The last equation and the last column, in the linearisation at hand.
+/// The last equation and the last column in the current linearisation.
 #[derive(Default)]
 pub struct Border {
-    /// Whether the relation at hand is bordered.
+    /// Whether the current relation is bordered.
     pub active: bool,
-    /// Change of each prescribed displacement by the load factor; zero at other degrees of freedom.
+    /// Derivative of each prescribed displacement with respect to the load factor; zero at other degrees of freedom.
     pub rates: Vec<f64>,
     /// q, by equation.
     pub rate: Vec<f64>,
@@ -13,9 +14,10 @@ pub struct Border {
     pub rhs: Vec<f64>,
     /// c, by equation.
     pub row: Vec<f64>,
-    /// What prescribed motions put into the constraint: at the load factor of the linearisation, and by its change.
+    /// Contribution of prescribed displacements to the constraint: at the load factor of the linearisation, and per unit of its
+    /// change.
     pub given: [f64; 2],
-    /// x1 with the forces f1 after the displacements.
+    /// x1, followed by the forces f1.
     pub moved: Vec<f64>,
     /// p of each contact, along n and t.
     pub carried: Vec<[f64; 2]>,
@@ -28,7 +30,7 @@ pub struct Border {
 }
 
 impl Border {
-    /// Notes what z of one more component puts into the constraint; `column` is a column of X.
+    /// Records the contribution of z to the constraint for one more component; `column` is a column of X.
     pub fn extend(&mut self, column: &[f64]) {
         let share = self.row.iter().zip(column).map(|(c, x)| c * x).sum();
         self.share.push(share);

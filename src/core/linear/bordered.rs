@@ -1,35 +1,35 @@
-//! The load factor as one more unknown, and one more equation: the interface's relation bordered.
+//! Borders the interface's relation with the load factor as an additional unknown and one additional equation.
 //!
-//! With the load factor's change dλ, one constraint c · Δu = s on the displacements (Riks 1979: the plane normal to the
-//! tangent; or one displacement, or the slip of one node), q the change of the out-of-balance force by λ, and everything
-//! else as in [`super::condensed`],
+//! Let dλ be the change of the load factor, c · Δu = s a constraint on the displacements (Riks 1979: the plane normal to the
+//! tangent; or one displacement, or the slip of one node), q the derivative of the out-of-balance force with respect to λ, and
+//! all else as in [`super::condensed`]:
 //!
 //! ```text
 //! x = x0 + X z + dλ x1,    c · x = s      ⇒    dλ = a0 + a · z,    a = −Xᵀ c / (c · x1),   a0 = (s − c · x0) / (c · x1)
 //! ΔF = start + response z + dλ f1         =    (start + a0 f1) + (response + f1 aᵀ) z,
 //! ```
 //!
-//! where x1 and f1 are what q does (a second right-hand side of the same factors). So the minor iterations, every strategy,
-//! and every search see an interface problem as ever, whose response has changed by a matrix of rank one. Where prescribed
-//! motions move the interface with the load factor by p, z stands for the springs' gaps and dλ p together, and f1 and x1 are
-//! less by what p does.
+//! where x1 and f1 are the response to q (a second right-hand side with the same factors). The minor iterations, all strategies
+//! and all searches thus see an ordinary interface problem whose response has a rank-one change. If prescribed displacements move
+//! the interface with the load factor by p, z contains the springs' gaps plus dλ p, and the effect of p is subtracted from f1 and
+//! x1.
 //!
-//! A limit point of the contacts' modes is no singular point of this relation, since the springs hold the contacts apart
-//! when the bodies are factored. One of the bodies themselves makes x0, X and x1 large, and their sum not: what is asked
-//! is whether the bordered inverse is bounded ([`System::bordered_norm`]), not that of the bodies.
+//! A limit point due to the modes of contacts is not a singular point of this relation, because springs support the contacts when
+//! the bodies are factored. At a limit point of the bodies themselves, x0, X and x1 are large but their sum is not. Therefore the
+//! check is whether the bordered inverse is bounded ([`System::bordered_norm`]), not that of the bodies.
 
 use super::source::{Along, At};
 use super::system::{System, dot};
 use crate::linalg::SolveError;
 use crate::model::{Factor, Model};
 
-/// A border whose pivot is smaller than this part of its terms has none.
+/// A border is singular if its pivot is below this fraction of its terms.
 const NO_PIVOT: f64 = 1e-13;
-/// Norm of the scaled inverse up to which the bodies on their springs are regular, whatever the border.
+/// Norm of the scaled inverse below which the bodies on their springs are regular, regardless of the border.
 const ORDINARY: f64 = 1e6;
 
 impl System {
-    /// Finds c, q and p about the last linearisation.
+    /// Computes c, q and p at the last linearisation.
     pub(super) fn lay_border(&mut self, model: &Model, at: &At<'_>, along: &Along<'_>) {
         self.find_rates(model, at);
         let border = &mut self.border;
@@ -60,7 +60,7 @@ impl System {
         }
     }
 
-    /// q, and how prescribed motions go with the load factor.
+    /// Computes q and the rates of prescribed displacements with respect to the load factor.
     fn find_rates(&mut self, model: &Model, at: &At<'_>) {
         let border = &mut self.border;
         border.rates.clear();
@@ -103,8 +103,8 @@ impl System {
         self.couple_rates(model, at);
     }
 
-    /// Takes off q what prescribed motions do through the stiffness: the linearisation's coupling for the rates in place of
-    /// the steps.
+    /// Subtracts from q the effect of prescribed displacements through the stiffness: the coupling of the linearisation, with
+    /// rates instead of steps.
     fn couple_rates(&mut self, model: &Model, at: &At<'_>) {
         let kept = [
             self.stiffness.clone(),
@@ -122,7 +122,7 @@ impl System {
         [self.stiffness, self.force, self.size, self.coupling] = kept;
     }
 
-    /// Notes what the displacements of z = 0, which were solved just before, put into the constraint.
+    /// Records the contribution to the constraint of the displacements for z = 0, which have just been computed.
     pub(super) fn begin_border(&mut self, along: &Along<'_>) {
         let border = &mut self.border;
         let found = border.row.iter().zip(&self.x).map(|(c, x)| c * x);
@@ -130,10 +130,10 @@ impl System {
         border.share.clear();
     }
 
-    /// Finds x1 and f1, and eliminates dλ from the relation.
+    /// Computes x1 and f1, and eliminates dλ from the relation.
     ///
     /// # Errors
-    /// [`SolveError::Singular`] where the constraint does not hold the load factor.
+    /// [`SolveError::Singular`] if the constraint does not determine the load factor.
     pub(super) fn close_border(&mut self, model: &Model) -> Result<(), SolveError> {
         let unknowns = model.dofs.equations;
         let Some(factors) = &mut self.whole else {
@@ -179,7 +179,7 @@ impl System {
         border.load_step = border.start + parts.map(|(a, z)| a * z).sum::<f64>();
     }
 
-    /// Completes a solve: the displacements for z and dλ.
+    /// Completes a solve: computes the displacements for z and dλ.
     ///
     /// # Errors
     /// [`SolveError`] of the solve.
@@ -204,8 +204,8 @@ impl System {
         Ok(())
     }
 
-    /// An estimate of the norm of the bordered inverse where that of the bodies on their springs is `norm`: a fixed vector is
-    /// solved for, and what the border takes off the solution it takes off the norm.
+    /// Estimated norm of the bordered inverse, given the `norm` for the bodies on their springs. A fixed vector is solved for,
+    /// and the norm is scaled by the border's reduction of the solution.
     pub(super) fn bordered_norm(&mut self, norm: f64) -> Result<f64, SolveError> {
         let Some(factors) = self.whole.as_mut().filter(|_| norm > ORDINARY) else {
             return Ok(norm);

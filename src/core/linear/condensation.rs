@@ -1,32 +1,31 @@
-//! The bodies condensed to their interface (eqn 6), once a major iteration, from one sparse factorization.
+//! Condenses the bodies to their interface (eqn 6) once per major iteration, with one sparse factorization.
 //!
-//! The interface's unknowns are the displacements of all slave nodes and of all nodes of the surfaces that they may
-//! touch; they are eliminated last, so that the condensed stiffness S falls out of the factors
-//! ([`SymmetricFactors`]). With springs of stiffness k between every slave node and its S*, and z the gaps that the
-//! springs are given,
+//! The interface's unknowns are the displacements of all slave nodes and of all nodes of the surfaces that they may touch. They
+//! are eliminated last, so that the condensed stiffness S is a by-product of the factorization ([`SymmetricFactors`]). With
+//! springs of stiffness k between every slave node and its S*, and the gaps z imposed on the springs,
 //!
 //! ```text
 //! A u_c = r̃ + k Gᵀ z,      A = S + k Gᵀ G + T,      v = G u_c,      ΔF = k (v − z),
 //! ```
 //!
-//! where v is the relative motion of all slave nodes, normal and tangential, r̃ the condensed out-of-balance force and
-//! T what turning interaction forces add. The springs make a body regular that only its contacts hold, and drop out
-//! again exactly when z is solved for. All of it is of the interface's size, and each body's factors are read no more than
-//! twice: for r̃, and to recover the displacements inside. Bodies know nothing of each other before they meet in A, so they are
-//! factored side by side where somebody has threads to give ([`Executor`]).
+//! where v is the relative motion of all slave nodes, normal and tangential, r̃ the condensed out-of-balance force, and T the
+//! contribution of rotating interaction forces. The springs make bodies regular that only their contacts support, and they cancel
+//! exactly when z is solved for. All matrices have the size of the interface, and each body's factors are used at most twice: for
+//! r̃, and to recover the interior displacements. Bodies are coupled only through A, so they can be factored in parallel
+//! ([`Executor`]).
 //!
-//! Where a bond gives way by c ([`crate::interface::kinematics`]), its spring is softer, 1 / (1 / k + c), and v is the motion of the
-//! touching point.
+//! If a bond has a compliance c ([`crate::interface::kinematics`]), its spring is softer, 1 / (1 / k + c), and v is the motion of
+//! the touching point.
 //!
-//! Where all bodies are solids, no bond gives way, and every slave node can move both ways and is no master's, no springs are needed
-//! ([`Way::Direct`]): with F the frames and M the master nodes' shares in S*, v = F (M u_m − u_s), so that the slave nodes'
-//! displacements give way to v,
+//! If all bodies are solids, no bond has a compliance, and every slave node can move in both directions and belongs to no master,
+//! no springs are needed ([`Way::Direct`]). With the frames F and the weights M of the master nodes in S*, v = F (M u_m − u_s),
+//! so v can replace the slave nodes' displacements,
 //!
 //! ```text
 //! u_s = M u_m − Fᵀ v,      K' = Bᵀ (S + T) B over (u_m, v),      ΔF = r'_v − K'_vm u_m − K'_vv v,
 //! ```
 //!
-//! and only the masters' block K'_mm has to be factored: the relation of `condensed` in the limit of stiff springs.
+//! and only the masters' block K'_mm must be factored. This is the relation of `condensed` in the limit of stiff springs.
 
 use crate::executor::{Executor, each};
 use crate::interface::response::InterfaceResponse;
@@ -36,15 +35,15 @@ use crate::model::{Body, BodyKind, Contact, Model};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Bodies with fewer unknowns together are factored as one.
+/// Bodies with fewer unknowns in total are factored as one.
 const SMALL: usize = 1000;
 
-/// How the interface's answer is found.
+/// Method for computing the interface response.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Way {
-    /// About springs between slave nodes and masters.
+    /// With springs between slave nodes and masters.
     Springs,
-    /// In relative motions instead of the slave nodes' displacements, which are the last unknowns.
+    /// With relative motions instead of the slave nodes' displacements, which are the last unknowns.
     Direct,
 }
 
@@ -54,34 +53,34 @@ pub struct Condensation {
     parts: Vec<Part>,
     executor: Arc<dyn Executor>,
     way: Way,
-    /// Number among the interface's unknowns, by equation.
+    /// Index among the interface's unknowns, by equation.
     number: Vec<Option<usize>>,
-    /// The equations of the interface's unknowns.
+    /// Equations of the interface's unknowns.
     equations: Vec<usize>,
     /// T.
     pub turning: Vec<f64>,
-    /// A, or S + T and then K'.
+    /// A; or S + T, then K'.
     matrix: Vec<f64>,
-    /// What is factored.
+    /// The matrix to factor.
     inner: Vec<f64>,
     dense: DenseFactors,
     /// Out-of-balance force of all equations.
     residual: Vec<f64>,
-    /// u_c at z = 0; directly, r' and then u_m at v = 0.
+    /// u_c at z = 0; with [`Way::Direct`], r', then u_m at v = 0.
     start: Vec<f64>,
-    /// Change of u_c by z; directly, that of u_m by −v.
+    /// Derivative of u_c with respect to z; with [`Way::Direct`], of u_m with respect to −v.
     motions: Vec<f64>,
     /// u_c of the last solve.
     moved: Vec<f64>,
 }
 
-/// Bodies that no stiffness joins to others.
+/// Bodies without stiffness coupling to other bodies.
 struct Part {
     factors: SymmetricFactors,
-    /// Their equations, and the values of their stiffness among all.
+    /// Their equations, and their range of the stiffness values.
     equations: Range<usize>,
     values: Range<usize>,
-    /// Their unknowns among those of the interface.
+    /// Their unknowns, as indices into those of the interface.
     unknowns: Vec<usize>,
     /// S, column by column, and r̃.
     schur: Vec<f64>,
@@ -93,7 +92,7 @@ struct Part {
 }
 
 impl Condensation {
-    /// Lays out the bodies' stiffness; `entries` are its places `(row, column)`, in equations.
+    /// Prepares the bodies' stiffness; `entries` are its positions `(row, column)`, in equations.
     ///
     /// # Errors
     /// [`SolveError`] if it cannot be analysed.
@@ -141,7 +140,7 @@ impl Condensation {
         &self.pattern
     }
 
-    /// The equations of the parts that are factored by themselves.
+    /// The equations of the separately factored parts.
     pub fn parts(&self) -> Vec<Range<usize>> {
         self.parts
             .iter()
@@ -149,21 +148,21 @@ impl Condensation {
             .collect()
     }
 
-    /// Number of an equation among the interface's unknowns, if it is one.
+    /// Index of an equation among the interface's unknowns, if it is one.
     pub fn number(&self, equation: usize) -> Option<usize> {
         self.number[equation]
     }
 
-    /// Place of an entry in the matrices of the interface.
+    /// Index of an entry in the matrices of the interface.
     pub fn place(&self, row: usize, column: usize) -> Option<usize> {
         Some(column * self.equations.len() + row)
     }
 
-    /// Factors the stiffness with these values, unless that of the last time `stands`, and finds how the interface answers: fills `start` and `response` of
-    /// `out`, whose springs it takes. Returns an estimate of the norm of A's scaled inverse.
+    /// Factors the stiffness with these values (unless the previous one `stands`) and computes the interface response: fills
+    /// `start` and `response` of `out`, using its springs. Returns an estimate of the norm of A's scaled inverse.
     ///
     /// # Errors
-    /// [`SolveError::Singular`] where the stiffness cannot be factored without pivoting.
+    /// [`SolveError::Singular`] if the stiffness cannot be factored without pivoting.
     pub fn condense(
         &mut self,
         stands: bool,
@@ -196,7 +195,7 @@ impl Condensation {
         Ok(self.dense.inverse_norm())
     }
 
-    /// The relation without springs, and an estimate of the norm of the scaled inverse of K'_mm.
+    /// The relation without springs; returns an estimate of the norm of the scaled inverse of K'_mm.
     fn relate(
         &mut self,
         interfaces: &[Interface],
@@ -232,7 +231,7 @@ impl Condensation {
         Ok(self.dense.inverse_norm())
     }
 
-    /// Bᵀ (S + T) B into `matrix`, Bᵀ r̃ into `start`.
+    /// Writes Bᵀ (S + T) B to `matrix`, and Bᵀ r̃ to `start`.
     fn transform(&mut self, interfaces: &[Interface], frames: &[[[f64; 2]; 2]]) {
         let c = self.equations.len();
         let m = c - 2 * interfaces.len();
@@ -271,7 +270,7 @@ impl Condensation {
         }
     }
 
-    /// S + T into `matrix`.
+    /// Writes S + T to `matrix`.
     fn add_turning(&mut self) {
         let c = self.equations.len();
         self.matrix.copy_from_slice(&self.turning);
@@ -286,7 +285,7 @@ impl Condensation {
         }
     }
 
-    /// A.
+    /// Assembles A.
     fn assemble(&mut self, interfaces: &[Interface], frames: &[[[f64; 2]; 2]], k: f64) {
         let c = self.equations.len();
         self.add_turning();
@@ -306,7 +305,7 @@ impl Condensation {
         }
     }
 
-    /// Adds springs of their own along n and t to A.
+    /// Adds springs along n and t with separate stiffnesses to A.
     fn add_springs(&mut self, interface: &Interface, frame: &[[f64; 2]; 2], springs: [f64; 2]) {
         let c = self.equations.len();
         for col in &interface.links {
@@ -321,7 +320,7 @@ impl Condensation {
         }
     }
 
-    /// k Gᵀ into `motions`.
+    /// Writes k Gᵀ to `motions`.
     fn push(&mut self, interfaces: &[Interface], frames: &[[[f64; 2]; 2]], k: f64) {
         let c = self.equations.len();
         self.motions.fill(0.0);
@@ -344,7 +343,7 @@ impl Condensation {
         }
     }
 
-    /// ΔF at z = 0, and its change by z.
+    /// ΔF at z = 0, and its derivative with respect to z.
     fn respond(
         &self,
         interfaces: &[Interface],
@@ -381,10 +380,10 @@ impl Condensation {
         }
     }
 
-    /// Displacement increments of all equations for these z, of which there is one for each of `frames`' directions.
+    /// Displacement increments of all equations for these z, one per direction in `frames`.
     ///
     /// # Errors
-    /// [`SolveError::Singular`] if they cannot be found.
+    /// [`SolveError::Singular`] if they cannot be computed.
     pub fn recover(
         &mut self,
         gaps: &[f64],
@@ -420,13 +419,13 @@ impl Condensation {
         Ok(())
     }
 
-    /// u_m at v = 0 into `moved`.
+    /// Writes u_m at v = 0 to `moved`.
     fn move_masters(&mut self, gaps: &[f64]) {
         let m = self.equations.len() - gaps.len();
         self.moved[..m].copy_from_slice(&self.start[..m]);
     }
 
-    /// u_s into `moved`, which has u_m.
+    /// Writes u_s to `moved`, which already contains u_m.
     fn move_slaves(&mut self, gaps: &[f64], interfaces: &[Interface], frames: &[[[f64; 2]; 2]]) {
         let (masters, slaves) = self.moved.split_at_mut(self.equations.len() - gaps.len());
         let nodes = interfaces.iter().zip(frames).zip(gaps.chunks_exact(2));
@@ -469,7 +468,7 @@ impl Part {
         })
     }
 
-    /// S and r̃, S only where that of the last time does not stand; the shift makes it regular where nothing but the interface holds a body.
+    /// Computes r̃, and S unless the previous one stands; the shift makes S regular if only the interface supports a body.
     fn condense(
         &mut self,
         stands: bool,
@@ -492,7 +491,7 @@ impl Part {
         Ok(())
     }
 
-    /// All displacements for u_c of the whole interface.
+    /// All displacements, given u_c of the whole interface.
     fn recover(&mut self, residual: &[f64], interface: &[f64]) -> Result<(), SolveError> {
         for (known, &k) in self.known.iter_mut().zip(&self.unknowns) {
             *known = interface[k];
@@ -502,7 +501,7 @@ impl Part {
     }
 }
 
-/// The bodies in parts that no stiffness joins, laid out side by side; small ones that follow each other are one part.
+/// Groups the bodies into uncoupled parts, prepared in parallel; consecutive small parts are merged.
 fn parts(
     pattern: &Pattern,
     interface: &[usize],
@@ -522,7 +521,7 @@ fn parts(
     parts.into_iter().filter_map(|(_, part)| part).collect()
 }
 
-/// Springs of a slave node along n and t: k, in series with what its bond gives.
+/// Springs of a slave node along n and t: k in series with the compliance of its bond.
 fn springs(interface: &Interface, k: f64) -> [f64; 2] {
     interface.bond.give().map(|give| match give {
         0.0 => k,
@@ -535,8 +534,8 @@ fn along(direction: [f64; 2], x: f64, y: f64) -> f64 {
     direction[0] * x + direction[1] * y
 }
 
-/// The interface's equations for [`Way::Direct`]: the masters' first, then x and y of every slave node. None where some body
-/// is no solid, or a slave node cannot move both ways, is a master's too, or is listed twice; or where a bond gives way.
+/// The interface's equations for [`Way::Direct`]: the masters' first, then x and y of every slave node. `None` if some body is
+/// not a solid, a bond has a compliance, or a slave node cannot move in both directions, belongs to a master, or is listed twice.
 fn direct_equations(model: &Model) -> Option<Vec<usize>> {
     let solid = |body: &Body| matches!(body.kind, BodyKind::Solid(_));
     let gives = |slave: &Contact| slave.bond.give() != [0.0; 2];
@@ -561,7 +560,7 @@ fn direct_equations(model: &Model) -> Option<Vec<usize>> {
     Some(masters.into_iter().chain(slaves).collect())
 }
 
-/// The equations of all slave nodes' displacements and of those of the surfaces that they may touch, ascending.
+/// The equations of all slave nodes and of the surfaces that they may touch, ascending.
 fn interface_equations(model: &Model) -> Vec<usize> {
     let slaves = model.contacts.iter().map(|slave| slave.node);
     let mut equations = equations_of(model, slaves);
@@ -571,7 +570,7 @@ fn interface_equations(model: &Model) -> Vec<usize> {
     equations
 }
 
-/// Those of the surfaces that slave nodes may touch, ascending.
+/// The equations of the surfaces that slave nodes may touch, ascending.
 fn master_equations(model: &Model) -> Vec<usize> {
     let masters = model
         .contacts

@@ -1,27 +1,27 @@
-//! The interface alone: the bodies condensed to it (eqn 6), as the minor iterations see them.
+//! The condensed interface (eqn 6), as the minor iterations use it.
 //!
-//! For springs of stiffness k between every slave node and its S*, the interface forces answer gaps z that the springs
-//! are given by `ΔF = start + response z`, and the relative motion is `v = z + ΔF / k`. Table 1's equations in v and
-//! ΔF are then a dense system for z, of two unknowns a slave node, whatever the size of the bodies. Where k is infinite,
-//! z is the motion itself: what Table 1 prescribes is known, and only the other motions are unknowns.
+//! With springs of stiffness k between every slave node and its S*, the interface forces depend on the gaps z imposed on the
+//! springs by `ΔF = start + response z`, and the relative motion is `v = z + ΔF / k`. Table 1's equations in v and ΔF then form a
+//! dense system for z with two unknowns per slave node, independent of the size of the bodies. If k is infinite, z is the motion
+//! itself: motions prescribed by Table 1 are known, and only the other motions are unknowns.
 
 use crate::contact::table1::{Equation, Motion};
 use crate::interface::response::InterfaceResponse;
 use crate::linalg::{DenseFactors, SolveError};
 
-/// The condensed interface of a major iteration, and the last minor iteration's answer.
+/// The condensed interface of a major iteration, and the result of the last minor iteration.
 pub struct Condensed {
-    /// Whether `relation` belongs to the present linearisation.
+    /// Whether `relation` belongs to the current linearisation.
     pub fresh: bool,
-    /// Estimated norm of the inverse of what was factored to get there.
+    /// Estimated norm of the inverse of the factored matrices.
     pub norm: f64,
-    /// How the forces answer the motions.
+    /// Relation between forces and motions.
     pub relation: InterfaceResponse,
-    /// Table 1's equations in z, column by column.
+    /// Table 1's equations in z, in column-major order.
     matrix: Vec<f64>,
     /// Their right-hand sides.
     rhs: Vec<f64>,
-    /// For rigid springs, the equations of forces, each with its slave node, and the numbers of the unknown motions.
+    /// For rigid springs: the force equations with their slave nodes, and the indices of the unknown motions.
     rows: Vec<(usize, Equation)>,
     unknown: Vec<usize>,
     /// ΔF of the last minor iteration.
@@ -31,12 +31,12 @@ pub struct Condensed {
     dense: Option<DenseFactors>,
     /// ΔF_n, ΔF_t of each slave node in the last minor iteration.
     pub forces: Vec<[f64; 2]>,
-    /// Normal and tangential relative motion of each slave node in it, prescribed motion included.
+    /// Normal and tangential relative motion of each slave node in the last minor iteration, including prescribed motion.
     pub motions: Vec<[f64; 2]>,
 }
 
 impl Condensed {
-    /// Room for the answers of this many slave nodes; for the condensed matrices once they are wanted.
+    /// Allocates results for this many slave nodes; the condensed matrices are allocated on demand.
     pub fn new(slaves: usize) -> Self {
         Condensed {
             fresh: false,
@@ -58,7 +58,7 @@ impl Condensed {
         }
     }
 
-    /// Makes room for the condensed matrices.
+    /// Allocates the condensed matrices.
     ///
     /// # Errors
     /// [`SolveError::OutOfMemory`].
@@ -85,20 +85,20 @@ impl Condensed {
         self.relation.stiffness.is_infinite()
     }
 
-    /// Forgets the equations that were entered.
+    /// Removes all equations.
     pub fn clear(&mut self) {
         self.rows.clear();
         self.unknown.clear();
     }
 
-    /// Enters equation k (0 normal, 1 tangential) of a slave node; see [`InterfaceResponse::place_row`].
+    /// Sets equation k (0 normal, 1 tangential) of a slave node; see [`InterfaceResponse::place_row`].
     pub fn place_row(&mut self, slave: usize, k: usize, row: &Equation, prescribed: [f64; 2]) {
         if !self.is_rigid() {
             let (relation, matrix) = (&self.relation, &mut self.matrix);
             self.rhs[2 * slave + k] = relation.place_row(slave, k, row, prescribed, matrix);
             return;
         }
-        // An equation of motion is that of its own component.
+        // A motion equation belongs to the component with the same index.
         if row.motion == Motion::None {
             self.rows.push((slave, *row));
             self.unknown.push(2 * slave + k);
@@ -108,10 +108,10 @@ impl Condensed {
         }
     }
 
-    /// Solves the entered equations for z; returns an estimate of the norm of their matrix' inverse.
+    /// Solves the equations for z; returns an estimate of the norm of their matrix's inverse.
     ///
     /// # Errors
-    /// [`SolveError::Singular`] where they have no solution.
+    /// [`SolveError::Singular`] if they have no solution.
     pub fn solve(&mut self) -> Result<f64, SolveError> {
         if self.is_rigid() {
             return self.solve_motions();
@@ -126,7 +126,7 @@ impl Condensed {
         Ok(dense.inverse_norm())
     }
 
-    /// The same where z is the motion itself.
+    /// The same if z is the motion itself.
     fn solve_motions(&mut self) -> Result<f64, SolveError> {
         let (count, size) = (self.gaps.len(), self.unknown.len());
         self.answer.copy_from_slice(&self.relation.start);
@@ -157,7 +157,7 @@ impl Condensed {
         Ok(norm)
     }
 
-    /// Adds what the motions with these numbers do to the forces.
+    /// Adds the contribution of the motions with these indices to the forces.
     fn add_response(&mut self, wanted: impl Fn(usize) -> bool) {
         let columns = self.relation.response.chunks_exact(self.gaps.len().max(1));
         for (j, (column, &z)) in columns.zip(&self.gaps).enumerate() {
@@ -169,7 +169,7 @@ impl Condensed {
         }
     }
 
-    /// Reads a slave node's force and motion off the solution z.
+    /// Computes a slave node's force and motion from the solution z.
     pub fn read(&mut self, slave: usize, prescribed: [f64; 2]) {
         if self.is_rigid() {
             let here = [2 * slave, 2 * slave + 1];

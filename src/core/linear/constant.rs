@@ -1,13 +1,13 @@
-//! A constant interface response as a source: no bodies and no geometry, contacts over straight lines that do not move.
+//! A constant interface response as a source, without bodies and geometry: contacts on straight, fixed lines.
 //!
-//! With w the displacements of the slave nodes, normal (away from the surface) and tangential for each contact in turn, λ the
-//! load factor, p the load and F the contact forces on the slave nodes,
+//! Let w be the displacements of the slave nodes, normal (away from the surface) and tangential for each contact in turn, λ the
+//! load factor, p the load and F the contact forces on the slave nodes:
 //!
 //! ```text
 //! K w = λ p + F,      g = g_0 + w_n,      v = −w  (motion of S* against S),      ΔF = (K w − λ p − F) − K v.
 //! ```
 //!
-//! The smallest thing that can be stepped, and an example of what another code has to give ([`crate::linear::source`]).
+//! This is the simplest source that can be stepped, and an example of what another code must provide ([`crate::linear::source`]).
 
 use crate::contact::projection::SurfacePoint;
 use crate::contact::state::ContactState;
@@ -19,10 +19,10 @@ use crate::linear::source::{At, Source};
 use crate::linear::violation::violation;
 use crate::model::{Bond, Contact, Dofs, Friction, Mode, Model, Node, Settings, Touch};
 
-/// A constant interface: how the slave nodes resist, what loads them, and how far they are from their surfaces.
+/// A constant interface: its stiffness, loads and gaps.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Constant {
-    /// K (force by length), column by column, two rows a contact: normal, tangential.
+    /// K (force per length), column-major, two rows per contact: normal, tangential.
     stiffness: Vec<f64>,
     /// p (force) at load factor 1.
     load: Vec<f64>,
@@ -30,29 +30,29 @@ pub struct Constant {
     gaps: Vec<f64>,
     /// Friction of each contact.
     friction: Vec<Friction>,
-    /// The scene's unit of length for tolerances.
+    /// The length scale for tolerances.
     length: f64,
 }
 
-/// Lists whose lengths do not fit together.
+/// Lists with inconsistent lengths.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("{name} has {found} entries, and {contacts} contacts need {wanted}")]
+#[error("{name} has {found} entries, but {contacts} contacts need {wanted}")]
 pub struct WrongSize {
-    /// Which list.
+    /// Name of the list.
     pub name: &'static str,
-    /// How many entries it has.
+    /// Its number of entries.
     pub found: usize,
-    /// How many it needs.
+    /// The required number.
     pub wanted: usize,
     /// The number of contacts.
     pub contacts: usize,
 }
 
 impl Constant {
-    /// An interface of `gaps.len()` contacts, whose unit of length is `length` (positive).
+    /// An interface with `gaps.len()` contacts and the (positive) length scale `length`.
     ///
     /// # Errors
-    /// [`WrongSize`] where the lists do not fit together.
+    /// [`WrongSize`] if the lists have inconsistent lengths.
     pub fn try_new(
         stiffness: Vec<f64>,
         load: Vec<f64>,
@@ -85,7 +85,7 @@ impl Constant {
         })
     }
 
-    /// The model to step it with: a history of the load factor, and settings.
+    /// A model for stepping it: a history of the load factor, and settings.
     pub fn model(&self, path: Vec<f64>, increment: f64, settings: Settings) -> Model {
         let contact = |(node, &friction)| Contact {
             node,
@@ -102,7 +102,7 @@ impl Constant {
             name: format!("contact.{}", k + 1),
             at: [0.0; 2],
         };
-        // As interface problems are posed: one step of Coulomb's law.
+        // As for all interface problems: one step of Coulomb's law.
         let touch = match settings.touch {
             Touch::Auto => Touch::Start,
             touch => touch,
@@ -133,7 +133,7 @@ impl Constant {
         }
     }
 
-    /// What the stepper drives.
+    /// The source for a stepper.
     pub fn source(self) -> ConstantSource {
         let contacts = self.gaps.len();
         ConstantSource {
@@ -144,7 +144,7 @@ impl Constant {
         }
     }
 
-    /// K w − λ p − F: the forces that are missing for balance.
+    /// K w − λ p − F: the out-of-balance forces.
     fn missing(&self, w: &[f64], target: f64, contacts: &[ContactState], out: &mut [f64]) {
         for (k, out) in out.iter_mut().enumerate() {
             let state = &contacts[k / 2];
@@ -170,7 +170,7 @@ pub struct ConstantSource {
 }
 
 impl ConstantSource {
-    /// Where a contact stands: its tangential displacement is the coordinate on its line.
+    /// Position of a contact: its tangential displacement is the coordinate on its line.
     fn point(contact: usize, w: &[f64]) -> SurfacePoint {
         SurfacePoint {
             surface: contact,
@@ -179,7 +179,7 @@ impl ConstantSource {
         }
     }
 
-    /// Size of forces: loads, and what the present forces are.
+    /// Force scale: the loads and the current forces.
     fn scale(&self, at: &At<'_>) -> f64 {
         let loads = self.interface.load.iter().map(|p| (at.target * p).abs());
         let forces = at.contacts.iter().map(|c| c.f_n.abs().max(c.f_t.abs()));

@@ -1,4 +1,4 @@
-//! A slave node's part of the linearised system: what moves in its equations, and where that stands in the matrices.
+//! A slave node's part of the linearised system: the displacements in its equations, and their matrix entries.
 
 use crate::contact::geometric_tangent::Variation;
 use crate::contact::point_force::Linearised;
@@ -7,19 +7,19 @@ use crate::contact::state::ContactState;
 use crate::linalg::Pattern;
 use crate::model::{Bond, Model};
 
-/// What moves, in a slave node's equations: one Cartesian displacement with its share in u_S* − u_S.
+/// A Cartesian displacement in a slave node's equations, with its weight in u_S* − u_S.
 #[derive(Debug, Clone, Copy)]
 pub struct Link {
     pub dof: usize,
     pub axis: usize,
     pub weight: f64,
-    /// Derivative of the share by ξ.
+    /// Derivative of the weight with respect to ξ.
     pub slope: f64,
     pub variation: Variation,
-    /// Places of (normal row, dof), (dof, normal column), (tangential row, dof), (dof, tangential column); none
-    /// where the degree of freedom has no equation.
+    /// Entries (normal row, dof), (dof, normal column), (tangential row, dof), (dof, tangential column); `None` if the degree of
+    /// freedom has no equation.
     pub slots: Option<[usize; 4]>,
-    /// Its number among the unknowns of the condensed bodies' interface.
+    /// Its index among the unknowns of the condensed bodies' interface.
     pub unknown: Option<usize>,
 }
 
@@ -28,9 +28,9 @@ pub struct Link {
 pub struct Partner {
     /// Number of the other contact.
     pub other: usize,
-    /// c_ij (length by force).
+    /// c_ij (length per force).
     pub give: f64,
-    /// ∂c_ij/∂ξ_i and ∂c_ij/∂ξ_j; `cross` is ∂²c_ij/∂ξ_i∂ξ_j (all length by force).
+    /// ∂c_ij/∂ξ_i and ∂c_ij/∂ξ_j; `cross` is ∂²c_ij/∂ξ_i∂ξ_j (all length per force).
     pub slopes: [f64; 2],
     pub cross: f64,
     /// F_j, and its derivative with respect to F_n of the other contact.
@@ -49,9 +49,9 @@ pub struct Partner {
 #[derive(Debug, Default)]
 pub struct Interface {
     pub projection: Option<Projection>,
-    /// What is left of the overlap that the node started with (length), by which it may be inside.
+    /// Remaining initial overlap (length), which is an allowed penetration.
     pub allowed: f64,
-    /// What holds where the node touches, and how far that gives way along n to the normal force at hand (length).
+    /// Contact law, and its deformation along n under the current normal force (length).
     pub bond: Bond,
     pub given: f64,
     /// The linearised contact on an element with local flexibility (a single entry); empty for other elements.
@@ -59,28 +59,27 @@ pub struct Interface {
     /// Couplings with the other contacts on that element.
     pub partners: Vec<Partner>,
     pub links: Vec<Link>,
-    /// The element that `links` reach into, once they are listed.
+    /// The element that `links` refer to, once they are listed.
     linked: Option<Option<(usize, usize)>>,
-    /// Whether their places are those of the present matrices.
+    /// Whether the entry positions belong to the current matrices.
     pub placed: bool,
-    /// Place of (link i, link j), row by row, for the geometric tangent: in the whole system's values, or in the
-    /// condensed matrix, as [`Interface::find_slots`] or [`Interface::find_unknowns`] was last; none where either
-    /// has no equation.
+    /// Entry (link i, link j), row by row, for the geometric tangent: in the full system or in the condensed matrix, depending on
+    /// whether [`Interface::find_slots`] or [`Interface::find_unknowns`] ran last; `None` if either link has no equation.
     pub pairs: Vec<Option<usize>>,
-    /// Places of the 2 by 2 block of ΔF_n, ΔF_t.
+    /// Entries of the 2 by 2 block of ΔF_n, ΔF_t.
     pub block: [usize; 4],
-    /// Ways along −t and +t to the ends of the side, where another meets it at an angle (length).
+    /// Distances along −t and +t to the ends of the side, where it meets another side at an angle (length).
     pub room: [Option<f64>; 2],
-    /// Whether the normal and the tangential motion have any coefficient on an unknown.
+    /// Whether the normal and the tangential motion have nonzero coefficients of unknowns.
     pub moves: [bool; 2],
-    /// u_S* − u_S that prescribed motion alone brings in this major iteration, by axis.
+    /// Contribution of prescribed motion to u_S* − u_S in this major iteration, by axis.
     pub prescribed: [f64; 2],
     /// Contribution of prescribed motions to the normal and tangential rows on an element with local flexibility (length).
     pub pushed: [f64; 2],
 }
 
 impl Interface {
-    /// n and t, frozen; where there is no surface, those that the node had.
+    /// n and t, frozen; without a surface, the previous ones of the node.
     pub fn frame(&self, node: &ContactState) -> [[f64; 2]; 2] {
         let normal = self.projection.map_or(node.normal, |f| f.normal);
         [normal, tangent(normal)]
@@ -116,14 +115,14 @@ impl Interface {
         }
     }
 
-    /// Compliances along n and t (length by force): bond and element in series.
+    /// Compliances along n and t (length per force): bond and element in series.
     pub fn give(&self) -> [f64; 2] {
         let [normal, tangential] = self.bond.give();
         let own = self.point.first().map_or(0.0, |point| point.give);
         [normal + own, tangential]
     }
 
-    /// Lists the displacements of S and S*; on the element of before, only their shares are renewed.
+    /// Lists the displacements of S and S*; on an unchanged element, only updates their weights.
     pub fn link(&mut self, model: &Model, node: &ContactState, slave: usize) {
         let on = node.spot.zip(self.projection);
         let element = on.map(|(spot, _)| (spot.surface, spot.element));
@@ -163,7 +162,7 @@ impl Interface {
         }));
     }
 
-    /// Finds its places, unless it has them, in the whole system, where its two equations are from row `row` on.
+    /// Looks up its entries in the full system if necessary; its two equations start at row `row`.
     pub fn find_slots(&mut self, model: &Model, pattern: &Pattern, row: usize) {
         if std::mem::replace(&mut self.placed, true) {
             return;
@@ -197,8 +196,8 @@ impl Interface {
         }
     }
 
-    /// Finds its places, unless it has them, in condensed bodies: `number` gives the number of an equation among their
-    /// unknowns, `place` that of an entry in their matrices.
+    /// Looks up its entries in the condensed bodies if necessary: `number` maps equations to unknowns, `place` maps entries to
+    /// matrix indices.
     pub fn find_unknowns(
         &mut self,
         model: &Model,

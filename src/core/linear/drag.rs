@@ -1,4 +1,4 @@
-//! The drag of a damped motion: a force against every displacement since the last accepted state, and its derivative.
+//! The drag of a damped motion, a force against all displacements since the last accepted state, and its derivative.
 //!
 //! ```text
 //! −d (u − u_accepted),   d = c / Δt      ([`crate::step`], damped motion)
@@ -8,7 +8,7 @@ use super::sizes::{Balanced, Sizes};
 use super::source::At;
 use crate::model::Model;
 
-/// Degrees of freedom with a drag: displacements that have an equation.
+/// Degrees of freedom with a drag: all free displacements.
 fn dragged<'a>(model: &'a Model, sizes: &'a Sizes) -> impl Iterator<Item = (usize, usize)> + 'a {
     let kinds = sizes.kind.iter().zip(&model.dofs.equation).enumerate();
     kinds.filter_map(|(dof, (kind, equation))| {
@@ -17,7 +17,7 @@ fn dragged<'a>(model: &'a Model, sizes: &'a Sizes) -> impl Iterator<Item = (usiz
     })
 }
 
-/// Adds the drag to the load at every degree of freedom.
+/// Adds the drag to the load on every degree of freedom.
 pub fn add_drag(model: &Model, at: &At<'_>, sizes: &Sizes, load: &mut [f64]) {
     let Some(drag) = at.drag else { return };
     for (dof, _) in dragged(model, sizes) {
@@ -25,7 +25,7 @@ pub fn add_drag(model: &Model, at: &At<'_>, sizes: &Sizes, load: &mut [f64]) {
     }
 }
 
-/// Adds its derivative to a stiffness whose diagonal is found by `place`, by equation.
+/// Adds its derivative to a stiffness; `place` maps an equation to the index of its diagonal entry.
 pub fn stiffen(
     model: &Model,
     at: &At<'_>,

@@ -1,74 +1,75 @@
-//! What the two solvers take of time and memory, estimated from a scene's sizes before anything is built.
+//! Estimates time and memory of both solvers from the size of a scene, before anything is built.
 //!
-//! An estimate is good to a factor of two or three, which is enough to choose by and to refuse what cannot fit. It counts,
-//! for each body, the entries of the factors and the operations that make them:
+//! Estimates are accurate to a factor of two or three, which is enough to select a solver and to reject scenes that do not fit.
+//! They count the entries of the factors and the operations for each body:
 //!
-//! - a chain of beam elements with f unknowns each: f² entries an element, f³ / 3 operations;
-//! - n unknowns of a plane mesh of 8-node quadrilaterals, in a good order: entries as n log n, operations as n^1.5;
+//! - a chain of beam elements with f unknowns each: f² entries per element, f³ / 3 operations;
+//! - n unknowns of a plane mesh of 8-node quadrilaterals in a good order: entries proportional to n log n, operations to n^1.5;
 //! - a dense matrix over d unknowns: d² entries, d³ / 3 operations.
 //!
-//! The whole system is unsymmetric and is pivoted: twice the operations, and several times the entries; a further minor
-//! iteration repeats the part that its changes reach. Condensing adds dense matrices over the interface: over the c
-//! displacements of the slave nodes and of all nodes of the surfaces that they may touch, and over the z forces of the slave
-//! nodes. With m = c − z, c³ / 3 operations make the condensed stiffness, m³ / 3 + m² z the compliance, z³ / 3 each minor
-//! iteration. All constants are measured (README).
+//! The full system is unsymmetric and pivoted: twice the operations and several times the entries; later minor iterations repeat
+//! only the part affected by the changes. Condensation adds dense matrices over the interface: over the c displacements of the
+//! slave nodes and of all nodes of the surfaces that they may touch, and over the z forces of the slave nodes. With m = c − z,
+//! the condensed stiffness needs c³ / 3 operations, the compliance m³ / 3 + m² z, and each minor iteration z³ / 3. All constants
+//! are measured (README).
 
 use crate::model::{Body, BodyKind, Form, Linear, Model, Solver};
 use std::fmt;
 
-/// Bytes of a gigabyte, as settings and messages count them.
+/// Bytes per gigabyte in settings and messages.
 pub const GIGABYTE: f64 = 1e9;
-/// How many times more unknowns than the interface the bodies must have for condensing to pay (measured: README).
+/// Minimum ratio of the bodies' unknowns to the interface's for condensation to pay off (measured: README).
 const MANY_TIMES: usize = 8;
-/// Part of the whole system that a minor iteration factors again, with its solves.
+/// Fraction of the full system that a minor iteration factors again, including its solves.
 const REPEATED: f64 = 0.15;
-/// Minor iterations of a typical major one.
+/// Minor iterations of a typical major iteration.
 const MINORS: f64 = 3.0;
-/// Operations a second: of a sparse LDLᵀ, of a sparse LU of a mesh and of a chain, and of dense matrices.
+/// Operations per second: of a sparse LDLᵀ, of a sparse LU of a mesh and of a chain, and of dense matrices.
 const SYMMETRIC: f64 = 1.6e9;
 const MESH: f64 = 1.6e9;
 const CHAIN: f64 = 0.7e9;
 const DENSE: f64 = 12e9;
-/// Entries of the factors of a mesh over n log2 n, and operations over n^1.5, both for LDLᵀ; entries of an LU over those.
+/// Entries of a mesh's factors divided by n log2 n, and operations divided by n^1.5, both for LDLᵀ; ratio of LU entries to LDLᵀ
+/// entries.
 const MESH_ENTRIES: f64 = 10.0;
 const MESH_OPERATIONS: f64 = 21.0;
 const LU_ENTRIES: f64 = 6.0;
 /// Operations of a stability check divided by c³, for c remaining unknowns: products of conditions and stiffness, and a factorization.
 const LOOK: f64 = 4.0;
-/// Bytes of an unknown, with its share of elements, pattern and stiffness, and of an entry of a given matrix.
+/// Bytes per unknown, including its share of elements, pattern and stiffness, and per entry of a given matrix.
 const UNKNOWN: f64 = 2500.0;
 const GIVEN: f64 = 180.0;
-/// Matrices over the interface's displacements, and over its forces, that condensing keeps.
+/// Number of stored matrices over the interface's displacements, and over its forces, for condensation.
 const OVER_DISPLACEMENTS: f64 = 7.0;
 const OVER_FORCES: f64 = 4.0;
 /// Bytes of the program itself.
 const PROGRAM: f64 = 10e6;
 
-/// Seconds of a major iteration with its minor ones, and bytes in all.
+/// Time of a major iteration including its minor iterations, and total memory.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Effort {
-    /// Time of a major iteration with its minor ones (seconds).
+    /// Time of a major iteration including its minor iterations (seconds).
     pub seconds: f64,
-    /// Memory in all (bytes).
+    /// Total memory (bytes).
     pub bytes: f64,
 }
 
-/// What a scene takes.
+/// Estimated cost of a scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
     /// With the augmented system (eqn 9).
     pub augmented: Effort,
     /// With the bodies condensed (eqn 6).
     pub condensed: Effort,
-    /// Whether `auto` stands for condensed.
+    /// Whether `auto` selects condensation.
     pub condenses: bool,
     /// Cost of a stability check ([`crate::linear::stability`]) in major iterations.
     pub stability: f64,
-    /// Bytes that the scene may take.
+    /// Memory limit (bytes).
     pub budget: f64,
 }
 
-/// Seconds and entries of a factorization.
+/// Time and entries of a factorization.
 #[derive(Debug, Clone, Copy, Default)]
 struct Factoring {
     seconds: f64,
@@ -76,7 +77,7 @@ struct Factoring {
 }
 
 impl Estimate {
-    /// What a scene with these settings takes.
+    /// Estimates the cost of a scene with these settings.
     pub fn of(model: &Model) -> Estimate {
         let budget = model
             .settings
@@ -139,7 +140,7 @@ impl Estimate {
         estimate
     }
 
-    /// What a solver takes, and its name.
+    /// Cost and name of a solver.
     pub fn with(&self, solver: Solver) -> (Effort, &'static str) {
         if self.is_condensed(solver) {
             (self.condensed, "condensed")
@@ -148,7 +149,7 @@ impl Estimate {
         }
     }
 
-    /// Whether a solver condenses.
+    /// Whether a solver uses condensation.
     pub fn is_condensed(&self, solver: Solver) -> bool {
         match solver {
             Solver::Auto => self.condenses,
@@ -157,7 +158,7 @@ impl Estimate {
         }
     }
 
-    /// Why a scene does not fit with a solver; `None` where it does.
+    /// Why a scene does not fit into memory with a solver; `None` if it does.
     pub fn too_large(&self, solver: Solver) -> Option<TooLarge> {
         let (effort, name) = self.with(solver);
         let other = match solver {
@@ -174,16 +175,16 @@ impl Estimate {
     }
 }
 
-/// A scene takes more memory than it may.
+/// A scene needs more memory than the limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct TooLarge {
-    /// Bytes that it takes.
+    /// Required bytes.
     pub bytes: f64,
-    /// The solver that takes them.
+    /// The solver.
     pub name: &'static str,
-    /// Bytes that it may take.
+    /// Memory limit in bytes.
     pub budget: f64,
-    /// Another solver, and the bytes that it takes.
+    /// The other solver and its required bytes, if that fits.
     pub other: Option<(&'static str, f64)>,
 }
 
@@ -194,13 +195,13 @@ impl fmt::Display for TooLarge {
         let (takes, may) = (bytes(self.bytes), bytes(self.budget));
         write!(
             f,
-            "the scene takes about {takes} of memory ({}), and may take {may}",
+            "the scene needs about {takes} of memory ({}); the limit is {may}",
             self.name
         )?;
         if let Some((other, takes)) = self.other {
-            write!(f, "; settings.solver={other} takes about {}", bytes(takes))?;
+            write!(f, "; settings.solver={other} needs about {}", bytes(takes))?;
         }
-        f.write_str("; a coarser mesh takes less, and settings.memory sets what it may take (GB)")
+        f.write_str("; a coarser mesh needs less, and settings.memory sets the limit (GB)")
     }
 }
 
@@ -212,7 +213,7 @@ impl fmt::Display for Effort {
             s if s >= 1e-3 => format!("{:.0} ms", s * 1e3),
             _ => "less than 1 ms".to_owned(),
         };
-        write!(f, "{seconds} a major iteration, {}", bytes(self.bytes))
+        write!(f, "{seconds} per major iteration, {}", bytes(self.bytes))
     }
 }
 
@@ -223,7 +224,7 @@ impl Factoring {
     }
 }
 
-/// What it takes to factor a body's stiffness by LDLᵀ, and its part of the whole system by LU.
+/// Cost of factoring a body's stiffness by LDLᵀ, and its part of the full system by LU.
 fn factoring(body: &Body) -> (Factoring, Factoring) {
     let pair = |operations: f64, rates: [f64; 2], entries: f64, more: f64| {
         let symmetric = Factoring {
@@ -282,7 +283,7 @@ fn factoring(body: &Body) -> (Factoring, Factoring) {
     }
 }
 
-/// Whether a good part of a matrix is not zero.
+/// Whether a large fraction of a matrix is nonzero.
 fn is_dense(linear: &Linear, nodes: usize) -> bool {
     linear.entries.len() as f64 > (nodes as f64).powi(2)
 }
@@ -326,9 +327,9 @@ fn kept(model: &Model, c: f64) -> f64 {
     c + pivoted.sum::<usize>() as f64
 }
 
-/// Whether all bodies of a scene have a stiffness that can be factored without pivoting. Shear-rigid beams have not:
-/// their shear forces are unknowns of a saddle point. So are the forces on a body that is given by its compliance, and a
-/// given stiffness may be unsymmetric, and that of a pressure that follows its faces is.
+/// Whether all bodies of a scene have a stiffness that can be factored without pivoting. Shear-rigid beams do not, because their
+/// shear forces are unknowns of a saddle point; nor do bodies given by a compliance. A given stiffness may be unsymmetric, and
+/// that of a following pressure is.
 pub fn condensable(model: &Model) -> bool {
     let symmetric = |body: &Body| match &body.kind {
         BodyKind::Beam(beam) => beam.first_shear.is_none(),
@@ -343,7 +344,7 @@ pub fn condensable(model: &Model) -> bool {
     plain && model.pressures.is_empty() && model.bodies.iter().all(symmetric)
 }
 
-/// A number of bytes for a person.
+/// Formats a number of bytes.
 pub fn bytes(bytes: f64) -> String {
     match bytes {
         b if b >= 1e10 => format!("{:.0} GB", b / 1e9),

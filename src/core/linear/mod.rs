@@ -1,15 +1,15 @@
-//! The linearised equations of a major iteration, behind a seam.
+//! The linearised equations of a major iteration, behind the trait [`source::Source`].
 //!
-//! - [`source`]: what the stepper needs of what deforms; [`bodies`]: our own bodies as one; [`constant`]: a constant
-//!   interface response as another.
-//! - `system`: the bodies' system about a state; `residual`: its out-of-balance forces; [`norms`] of them; `sizes`: what is
-//!   large, what is nothing, and what double precision leaves.
-//! - `augmented` (eqn 9) and `reduced` (eqn 6): the two ways to solve a minor iteration; `condensation`: the bodies
-//!   condensed; `condensed`: the interface alone; `coupling`: a contact's part of the equations; `point_forces` and `partners`: contacts
-//!   on elements with local flexibility; `ordering`: the order of elimination; `bordered` and `border`: the load factor as an additional
+//! - [`source`]: what the stepper needs from the deformable part; [`bodies`]: the program's bodies as a source; [`constant`]: a
+//!   constant interface response as a source.
+//! - `system`: the linearised system of the bodies; `residual`: its out-of-balance forces; [`norms`]: their norms; `sizes`: force
+//!   scales and round-off levels.
+//! - `augmented` (eqn 9) and `reduced` (eqn 6): the two methods for minor iterations; `condensation`: condenses the bodies;
+//!   `condensed`: the interface alone; `coupling`: a contact's part of the equations; `point_forces` and `partners`: contacts on
+//!   elements with local flexibility; `ordering`: elimination order; `bordered` and `border`: the load factor as an additional
 //!   unknown; `drag`: resistance of a damped motion.
-//! - [`singular`]: why there is no solution; [`stability`]: which way a state of equilibrium leads, by its `tangent`;
-//!   [`estimate`]: what a scene takes of time and memory.
+//! - [`singular`]: explains a singular system; [`stability`]: stability of an equilibrium state, from its `tangent`;
+//!   [`estimate`]: estimated time and memory of a scene.
 
 mod augmented;
 pub mod bodies;

@@ -1,33 +1,33 @@
-//! How far a state is from equilibrium, in forces and relative to the scene's own scales.
+//! Residual norms: distance of a state from equilibrium, in forces and relative to the scene's scales.
 
 use serde::{Deserialize, Serialize};
 
-/// Sizes of what is not yet in balance; relative ones against the scene's own scales.
+/// Residual norms; relative ones use the scene's scales.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Norms {
-    /// Largest out-of-balance force (a moment over the scene's length counts as a force), in force.
+    /// Largest out-of-balance force; moments are divided by the scene's length (force).
     pub force: f64,
-    /// The same over the force scale.
+    /// The same divided by the force scale.
     pub relative: f64,
-    /// Largest violation of the interface conditions, relative: gaps of touching nodes and penetration of free
-    /// ones, and drift of fixed ones where they are anchored, over the length scale; force on free nodes and |F_t − T_max| of sliding ones over the force scale.
+    /// Largest relative violation of the interface conditions: gaps of touching nodes, penetration of free ones and drift of
+    /// anchored fixed ones, divided by the length scale; forces on free nodes and |F_t − T_max| of sliding ones, divided by the
+    /// force scale.
     pub interface: f64,
-    /// Largest displacement change in the last major iteration over the length scale; 0 before the first.
+    /// Largest displacement correction in the last major iteration divided by the length scale; 0 before the first.
     pub correction: f64,
     /// The force scale.
     pub scale: f64,
-    /// What `relative` must not exceed to be in balance: the tolerance, or the round-off of the stiffest forces
-    /// where that is larger.
+    /// Tolerance for `relative`: the setting, or the round-off of the stiffest forces if that is larger.
     pub limit: f64,
-    /// Round-off of the stiffest forces over the loads and contact forces: what part of these is not known. Also of
-    /// lengths that are to vanish, over the length scale.
+    /// Round-off of the stiffest forces relative to the loads and contact forces, that is, their relative uncertainty; also the
+    /// round-off of lengths that should vanish, relative to the length scale.
     #[serde(default)]
     pub noise: f64,
 }
 
 impl Norms {
-    /// Noise above which no answer is accepted.
+    /// Noise above which no result is accepted.
     pub const LOUDEST: f64 = 1e-2;
-    /// Noise from which on a run says what accuracy is left.
+    /// Noise above which a run reports the remaining accuracy.
     pub const AUDIBLE: f64 = 1e-6;
 }

@@ -1,14 +1,14 @@
-//! The order of elimination in the whole system of bodies and interface.
+//! Elimination order in the full system of bodies and interface.
 
 use super::coupling::Link;
 use super::system::System;
 use crate::model::{Beam, BodyKind, Component, Model};
 
 impl System {
-    /// Groups of unknowns, for the elimination: a node's displacements, with the forces of its interface equations; each
-    /// of the bodies' own unknowns. Where a slave node has no displacement, its forces go with a master node's. An
-    /// element of a shear-rigid beam has one shear force more than nodes inside, which all may be held by their contacts:
-    /// the last of these forces goes with a node at its end.
+    /// Groups of unknowns for the elimination: a node's displacements with the forces of its interface equations, and each
+    /// internal unknown of a body. If a slave node has no unknown displacement, its forces join a master node's group. An element
+    /// of a shear-rigid beam has one more shear force than interior nodes, and contacts may hold all of these; the last shear
+    /// force therefore joins the group of an end node.
     pub(super) fn groups(&self, model: &Model) -> Vec<usize> {
         let dofs = &model.dofs;
         let mut groups = vec![0; dofs.equations + 2 * self.interfaces.len()];
@@ -42,8 +42,8 @@ impl System {
     }
 }
 
-/// Says of every element's last shear force that it goes with the node at the element's end, or, where the beam's own end
-/// does not turn freely, at its start.
+/// Assigns every element's last shear force to the node at the element's end, or at its start if the beam's end cannot rotate
+/// freely.
 fn give_shears(model: &Model, beam: &Beam, node_of: &mut [Option<usize>]) {
     let turns = |node: &usize| {
         let dof = model.dofs.dof(*node, Component::Rotation);

@@ -11,7 +11,7 @@ use crate::fem::lagrange::MAX_NODES;
 use crate::linalg::Pattern;
 use crate::model::Model;
 
-/// Linearises all contacts on elements with local flexibility for the current forces.
+/// Linearises all contacts on elements with local flexibility at the current forces.
 pub fn find_points(
     (points, interfaces): (&mut PointForces, &mut [Interface]),
     (positions, step): (&[[f64; 2]], &[f64]),

@@ -1,4 +1,5 @@
-//! Point forces of all contacts on elements with local flexibility ([`crate::contact::point_force`]), including their mutual effects.
+//! Point forces of all contacts on elements with local flexibility ([`crate::contact::point_force`]), including their
+//! interaction.
 
 use crate::contact::element::Element;
 use crate::contact::point_force::{self, Others, Pair, tilt, turned};

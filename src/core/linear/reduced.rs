@@ -1,4 +1,4 @@
-//! A minor iteration on the interface alone, the bodies condensed to it once a major iteration (eqn 6).
+//! Minor iterations on the interface alone; the bodies are condensed to it once per major iteration (eqn 6).
 
 use super::augmented::{springs, suspicion};
 use super::source::{At, Solved};
@@ -8,12 +8,12 @@ use crate::interface::problem::{InterfaceProblem, ProblemNode};
 use crate::linalg::{Factors, SolveError};
 use crate::model::Model;
 
-/// Estimated norm of the scaled inverse from which on the interface's system is suspected to be singular: the springs that
-/// hold a loose body cost digits before they drop out.
+/// Estimated norm of the scaled inverse above which the interface's system is suspected to be singular. The limit is lower than
+/// for the full system because the springs that support a loose body cost digits before they cancel.
 const SUSPICIOUS: f64 = 1e9;
 
 impl System {
-    /// Solves for the interface alone, about a compliance of it that is made once a major iteration.
+    /// Solves for the interface alone, using its compliance, which is computed once per major iteration.
     pub(super) fn solve_condensed(&mut self, model: &Model, at: &At<'_>) -> Solved {
         if !self.condensed.fresh {
             self.condensed.norm = match self.condense(model, at) {
@@ -47,11 +47,11 @@ impl System {
         suspicion(self.condensed.norm)
     }
 
-    /// The interface problem of the last linearisation, to be looked at by itself, its tied nodes eliminated; costs a condensation, unless the
-    /// minor iterations have made it already.
+    /// The interface problem of the last linearisation for analysis, with tied nodes eliminated. Costs a condensation unless the
+    /// minor iterations have already done it.
     ///
     /// # Errors
-    /// [`SolveError`] where the bodies cannot be condensed.
+    /// [`SolveError`] if the bodies cannot be condensed.
     pub fn problem(&mut self, model: &Model, at: &At<'_>) -> Result<InterfaceProblem, SolveError> {
         if !self.condensed.fresh {
             if self.estimate.condensed.bytes > self.estimate.budget {
@@ -86,7 +86,7 @@ impl System {
             settings: at.settings,
             relation,
         };
-        // Tied nodes have nothing to choose: what decides about modes does without them.
+        // Tied nodes have no mode to choose, so they are eliminated.
         let tied = model.contacts.iter().any(|slave| slave.bond.is_tied());
         if !tied {
             return Ok(problem);
@@ -98,9 +98,9 @@ impl System {
         problem.reduced(&keep).ok_or(SolveError::Singular)
     }
 
-    /// Condenses the bodies to the interface; returns an estimate of the norm of the inverse of what was factored.
+    /// Condenses the bodies to the interface; returns an estimate of the norm of the inverse of the factored matrix.
     ///
-    /// Bodies that [`Bodies`] cannot factor in this state are factored with the interface, and with pivoting.
+    /// Bodies that [`Bodies`] cannot factor in this state are factored together with the interface, with pivoting.
     pub(super) fn condense(&mut self, model: &Model, at: &At<'_>) -> Result<f64, SolveError> {
         self.condensed.resize(self.interfaces.len())?;
         self.frames.clear();
@@ -130,8 +130,8 @@ impl System {
         self.condense_whole(model, at)
     }
 
-    /// Condenses with every interface equation replaced by `motion − ΔF / stiffness = z`: the forces are then a linear
-    /// function of z, found column by column. Where a bond gives way, the motion is that of its touching point
+    /// Condenses with every interface equation replaced by `motion − ΔF / stiffness = z`; the forces are then a linear function
+    /// of z, computed column by column. If a bond has a compliance, the motion is that of its touching point
     /// ([`crate::interface::kinematics`]).
     pub(super) fn condense_whole(&mut self, model: &Model, at: &At<'_>) -> Result<f64, SolveError> {
         self.scale(model, at);
@@ -191,8 +191,9 @@ impl System {
         Ok(norm)
     }
 
-    /// Stiffness of the springs. What lies k times above or below it loses as many digits when the springs drop out, so
-    /// it is midway between the stiffest degree of freedom of the interface and the softest body as a whole.
+    /// Stiffness of the springs. A stiffness k times larger or smaller loses a corresponding number of digits when the springs
+    /// cancel, so this one is the geometric mean of the stiffest degree of freedom of the interface and the softest body as a
+    /// whole.
     pub fn spring(&self, model: &Model) -> f64 {
         let Some(pattern) = self.pattern() else {
             return 1.0;
@@ -211,8 +212,8 @@ impl System {
         }
     }
 
-    /// Completes a solve: finds what it does to the bodies. Costs one back substitution where the bodies were
-    /// condensed, else nothing.
+    /// Completes a solve by computing the displacements of the bodies. Costs one back substitution if the bodies were condensed,
+    /// otherwise nothing.
     pub fn recover(&mut self, model: &Model) -> Solved {
         if !self.condensed.fresh {
             return Solved::Well;

@@ -1,4 +1,4 @@
-//! Out-of-balance forces of a linearisation (eqn 22), their norms, and what round-off leaves of them.
+//! Out-of-balance forces of a linearisation (eqn 22), their norms, and their round-off.
 
 use super::drag::add_drag;
 use super::norms::Norms;
@@ -11,7 +11,7 @@ use crate::linalg::Factors;
 use crate::model::{Factor, Model};
 
 impl System {
-    /// Out-of-balance force R − F of eqn (22) and its norms.
+    /// Computes the out-of-balance force R − F of eqn (22) and its norms.
     pub(super) fn balance(&mut self, model: &Model, at: &At<'_>) {
         self.interaction.fill(0.0);
         if self.has_points {
@@ -63,7 +63,7 @@ impl System {
             }
         }
         let [floor, mut length_floor] = self.floors;
-        // Positions are exact up to their round-off; it is the floor where it exceeds the tolerance.
+        // Positions are exact up to their round-off, which is the lower limit if it exceeds the tolerance.
         let placed = ROUND_OFF * f64::EPSILON * self.reach;
         if placed > tolerance * model.length {
             length_floor = length_floor.max(placed);
@@ -85,7 +85,8 @@ impl System {
         self.norms.interface = self.violation(model, at);
     }
 
-    /// Largest force that a solve has to balance: out of balance now, and by what prescribed motions add; over the scale of forces.
+    /// Largest force that a solve has to balance: the current out-of-balance force, plus the contribution of prescribed motions;
+    /// relative to the force scale.
     pub fn asked(&self, model: &Model) -> f64 {
         let mut largest = 0.0_f64;
         for (d, equation) in model.dofs.equation.iter().enumerate() {
@@ -96,8 +97,8 @@ impl System {
         largest / self.norms.scale.max(f64::MIN_POSITIVE)
     }
 
-    /// Aims the last linearisation at another load, at the same displacements; but for what is prescribed, nothing else of it
-    /// changes where no element remembers what was accepted.
+    /// Changes the target load of the last linearisation at the same displacements. Apart from prescribed displacements, nothing
+    /// else changes if no element has a history.
     pub fn aim(&mut self, model: &Model, at: &At<'_>) {
         self.load(model, at);
         self.allow(model, at);
@@ -120,13 +121,13 @@ impl System {
         add_drag(model, at, &self.sizes, &mut self.external);
     }
 
-    /// Renews the residual after the forces of the interface were changed, geometry and stiffness staying.
+    /// Recomputes the residual after interface forces have changed; geometry and stiffness stay.
     pub fn rebalance(&mut self, model: &Model, at: &At<'_>) {
         self.balance(model, at);
     }
 
-    /// Finds the round-off of the internal forces, and of the lengths that are to vanish: the machine precision times |K| |u|.
-    /// It is that of a linearisation, whatever forces and loads are balanced in it afterwards.
+    /// Computes the round-off of the internal forces, and of lengths that should vanish: the machine precision times |K| |u|. It
+    /// belongs to a linearisation, independent of later changes of forces and loads.
     pub(super) fn round_off(&mut self, model: &Model, u: &[f64]) {
         self.floors = [0.0; 2];
         let Some(pattern) = self.pattern().cloned() else {
@@ -157,8 +158,8 @@ impl System {
         violation(at, model.length, self.norms.scale, kinematics)
     }
 
-    /// Norms of the last linearisation, with the interface conditions of this state: what is told of it must not hang on
-    /// whether the workspace was made anew since.
+    /// Norms of the last linearisation with the interface conditions of this state. They must not depend on whether the workspace
+    /// has been rebuilt since.
     pub fn norms_of(&mut self, model: &Model, at: &At<'_>) -> Norms {
         self.norms.interface = self.violation(model, at);
         self.norms
@@ -169,7 +170,7 @@ impl System {
         &self.force
     }
 
-    /// Internal force less applied load at a degree of freedom: what support or surface must give there.
+    /// Internal force minus applied load at a degree of freedom: the force from the support or surface.
     pub fn nodal_force(&self, dof: usize) -> f64 {
         #[cfg(mutants)]
         if crate::mutants::is_active("reactions-without-loads") {

@@ -1,7 +1,7 @@
-//! Which rigid motion makes a system singular: names the body and the motion.
+//! Explains a singular system: finds the body and the rigid motion.
 //!
-//! Every body may translate and turn; supports, shared nodes and touching slave nodes are linear conditions on these
-//! motions. What satisfies them all meets no resistance but that of the stresses already there.
+//! Every body may translate and rotate; supports, shared nodes and touching slave nodes are linear conditions on these motions.
+//! Motions that satisfy all conditions are resisted only by existing stresses.
 
 use crate::contact::projection::{Projection, tangent};
 use crate::contact::state::ContactState;
@@ -10,27 +10,27 @@ use crate::model::{Component, Mode};
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
-/// Condition values and amplitudes below this count as zero; both are of size one.
+/// Condition values and amplitudes below this count as zero; both are of order one.
 const ZERO: f64 = 1e-9;
 
 /// A singular system.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Singular {
-    /// Nothing holds a body against a rigid motion.
+    /// A body is free to move rigidly.
     Rigid {
-        /// The motions, at least one.
+        /// The rigid motions, at least one.
         motions: Vec<RigidMotion>,
     },
-    /// No rigid motion explains it: a limit point, a bifurcation, or dependent constraints.
+    /// Not due to a rigid motion: a limit point, a bifurcation, or dependent constraints.
     Unexplained,
 }
 
-/// A rigid motion that meets no resistance.
+/// A rigid motion without resistance.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RigidMotion {
     /// Name of the body.
     pub body: String,
-    /// How it moves.
+    /// The motion.
     pub motion: Motion,
 }
 
@@ -43,7 +43,7 @@ pub enum Motion {
     Rotation([f64; 2]),
 }
 
-/// The rigid motions that nothing resists, for these modes and this geometry.
+/// The rigid motions without resistance, for these modes and this geometry.
 pub fn diagnose<'a>(
     model: &Model,
     positions: &[[f64; 2]],
@@ -86,7 +86,7 @@ pub fn diagnose<'a>(
     }
 }
 
-/// Rigid motions of all bodies: columns x, y and turn (times the scene's length) of each.
+/// Rigid motions of all bodies: columns x, y and rotation (times the scene's length) for each.
 struct Frame<'a> {
     model: &'a Model,
     positions: &'a [[f64; 2]],
@@ -116,7 +116,7 @@ impl Frame<'_> {
             .position(|b| b.nodes.contains(&node))
     }
 
-    /// Adds weight times the motion of a node of a body in a direction.
+    /// Adds weight times the motion of a body's node in a direction.
     fn add_as(&self, row: &mut [f64], body: usize, node: usize, direction: [f64; 2], weight: f64) {
         let (center, x) = (self.center(body), self.positions[node]);
         let arm = [x[0] - center[0], x[1] - center[1]];
@@ -132,7 +132,7 @@ impl Frame<'_> {
         }
     }
 
-    /// A component of a node of a body: a displacement, or the turn.
+    /// A component of a body's node: a displacement or the rotation.
     fn add_component(
         &self,
         row: &mut [f64],
@@ -155,7 +155,7 @@ impl Frame<'_> {
                     let Some(dof) = self.model.dofs.dof(n, component) else {
                         continue;
                     };
-                    // The turn of a node that a solid shares with a beam is the beam's.
+                    // The rotation of a node shared by a solid and a beam is the beam's.
                     if component == Component::Rotation && !matches!(body.kind, BodyKind::Beam(_)) {
                         continue;
                     }
@@ -175,7 +175,7 @@ impl Frame<'_> {
                 let Some(first) = self.body_of(n).filter(|&first| first != b) else {
                     continue;
                 };
-                // A solid's node does not know how it turns.
+                // A solid's node has no rotation.
                 let stiff = [first, b]
                     .iter()
                     .all(|&b| matches!(self.model.bodies[b].kind, BodyKind::Beam(_)));
@@ -190,11 +190,10 @@ impl Frame<'_> {
         }
     }
 
-    /// What is given by a matrix, or made of bars, has no rigid motion that could be told; nor, then, have bodies where they share its
-    /// nodes.
+    /// Bodies given by a matrix or made of bars have no identifiable rigid motion, nor do bodies that share nodes with them.
     fn linear(&self, conditions: &mut Vec<Vec<f64>>) {
         for (b, body) in self.model.bodies.iter().enumerate() {
-            // A ring can be shifted along the axis alone.
+            // A body of revolution can only translate along the axis.
             let stiff: &[usize] = match &body.kind {
                 BodyKind::Linear(_) | BodyKind::Truss(_) => &[0, 1, 2],
                 BodyKind::Solid(_) if body.is_axisymmetric() => &[0, 2],
@@ -208,7 +207,7 @@ impl Frame<'_> {
         }
     }
 
-    /// Names what a null vector does to each body.
+    /// Describes the motion of each body in a null vector.
     fn name(&self, v: &[f64]) -> Vec<RigidMotion> {
         let size = v.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
         let moved = |b: &usize| v[3 * b..3 * b + 3].iter().any(|x| x.abs() > ZERO * size);
@@ -232,7 +231,7 @@ impl Frame<'_> {
     }
 }
 
-/// Basis of the vectors that satisfy all conditions, in reduced echelon form so that each names one motion.
+/// Basis of the vectors that satisfy all conditions, in reduced echelon form so that each describes one motion.
 fn null_space(mut conditions: Vec<Vec<f64>>, columns: usize) -> Vec<Vec<f64>> {
     let zero = vec![0.0; columns];
     while conditions.len() < columns {
@@ -251,7 +250,7 @@ fn null_space(mut conditions: Vec<Vec<f64>>, columns: usize) -> Vec<Vec<f64>> {
     basis
 }
 
-/// Gauss-Jordan elimination from the first column on.
+/// Gauss-Jordan elimination.
 fn reduce(basis: &mut [Vec<f64>], columns: usize) {
     let mut done = 0;
     for col in 0..columns {

@@ -1,41 +1,39 @@
-//! The sizes that a scene itself gives: which forces are large, which are nothing, and what double precision leaves of
-//! them.
+//! Scales of a scene: which forces are large, which are negligible, and how accurate double precision makes them.
 //!
-//! - *scale*: what residuals are divided by. The loads of the whole history, and the forces in the bodies. Where no load
-//!   is named (prescribed motions, bodies that want to move), the answer may be that there is no force at all; round-off
-//!   would then be its own scale. So a force counts as nothing that moves the softest body by the round-off of lengths.
-//! - *noise*: the round-off of the stiffest terms, |K| |u|, against the forces that are wanted: loads, contact forces,
-//!   reactions of what is moved. A beam that is 1e16 times stiffer along its axis than across has axial forces that are
-//!   known to a few loads only; whatever the residual says, no digit of its contact forces is right.
+//! - *scale*: residuals are divided by it. It contains the loads of the whole history and the forces in the bodies. Without loads
+//!   (prescribed displacements, free displacements of matrix bodies) the solution may have no forces at all, and round-off would
+//!   be its own scale. Therefore forces that move the softest body by less than the round-off of lengths are negligible.
+//! - *noise*: the round-off of the stiffest terms, |K| |u|, relative to the forces of interest: loads, contact forces, and
+//!   reactions of prescribed displacements. The axial forces of a beam that is 1e16 times stiffer along its axis than across are
+//!   only accurate to a few times the loads: regardless of the residual, no digit of its contact forces is right.
 
 use crate::fem::pressure::Pressures;
 use crate::linear::source::At;
 use crate::model::Component;
 use crate::model::{Body, BodyKind, Factor, Form, Model};
 
-/// Round-off of an internal force, or of a length, in units of the machine precision times the terms that it sums up.
+/// Round-off of an internal force or length, in units of the machine precision times the sum of its terms' magnitudes.
 pub const ROUND_OFF: f64 = 8.0;
-/// Sizes of units are rounded to powers of two with this step in the exponent: far enough for scenes in common units to
-/// be in units of one.
+/// Unit sizes are rounded to powers of two with this step in the exponent, so large that scenes in common units have units of
+/// one.
 const STEP: f64 = 32.0;
 
-/// What the equation of a degree of freedom balances.
+/// Quantity balanced by the equation of a degree of freedom.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Balanced {
     /// Forces.
     Force,
-    /// Moments, which count as forces over the scene's length.
+    /// Moments, which are divided by the scene's length to compare with forces.
     Moment,
-    /// Lengths: the shear of a shear-rigid beam, or how far a body that is given by its compliance is from where its
-    /// forces put it.
+    /// Lengths: the shear of a shear-rigid beam, or the displacement error of a body given by its compliance.
     Length,
 }
 
-/// Sizes of a scene.
+/// Scales of a scene.
 pub struct Sizes {
-    /// Of each degree of freedom.
+    /// Quantity balanced by each degree of freedom's equation.
     pub kind: Vec<Balanced>,
-    /// Largest force that the loads reach over the history.
+    /// Largest load over the history (force).
     pub reference: f64,
     /// Stiffness of the softest body as a whole.
     pub softest: f64,
@@ -44,7 +42,7 @@ pub struct Sizes {
 }
 
 impl Sizes {
-    /// Computes the sizes of a scene.
+    /// Computes the scales of a scene.
     pub fn new(model: &Model) -> Self {
         let kind = kinds(model);
         let mut sizes = Sizes {
@@ -71,7 +69,7 @@ impl Sizes {
         sizes
     }
 
-    /// What a force at a degree of freedom is divided by to count as a force; none where lengths are balanced.
+    /// Divisor that converts a generalised force at a degree of freedom to a force; `None` if lengths are balanced.
     pub fn lever(&self, dof: usize) -> Option<f64> {
         match self.kind[dof] {
             Balanced::Force => Some(1.0),
@@ -80,7 +78,7 @@ impl Sizes {
         }
     }
 
-    /// Least scale of forces: where no load sets one, residuals that are nothing are within this tolerance of it.
+    /// Minimum force scale: without loads, negligible residuals are within this tolerance of it.
     pub fn least_scale(&self, tolerance: f64) -> f64 {
         if self.reference > 0.0 {
             return 0.0;
@@ -88,8 +86,8 @@ impl Sizes {
         ROUND_OFF * f64::EPSILON * self.softest * self.length / tolerance
     }
 
-    /// The forces that are wanted: loads, contact forces, and reactions where motions are prescribed; `reaction` is the
-    /// force there. Where no load is named, at least what it takes to move the softest body as far as the scene has moved.
+    /// The forces of interest: loads, contact forces, and reactions of prescribed displacements; `reaction` returns the reaction
+    /// force. Without loads, at least the force that moves the softest body as far as the scene has moved.
     pub fn wanted(&self, model: &Model, at: &At<'_>, reaction: impl Fn(usize) -> f64) -> f64 {
         let mut wanted = self.reference;
         for node in at.contacts {
@@ -109,9 +107,9 @@ impl Sizes {
         wanted
     }
 
-    /// Sizes of the unknowns in the scene's own units, so that a scene in other units is as regular: with a stiffness k and
-    /// the length l, the square root of k for forces and its inverse for displacements, over l for rotations. They are
-    /// rounded to powers of two far apart; what is left, the scaling of the matrix evens out.
+    /// Units of the unknowns, which make the regularity of a scene independent of its physical units: with a stiffness k and the
+    /// length l, √k for forces and 1/√k for displacements, divided by l for rotations. They are rounded to widely spaced powers
+    /// of two; the scaling of the matrix equilibrates the rest.
     pub fn units(&self, model: &Model, stiffness: f64, units: &mut [f64]) {
         let root = (0.5 * coarse(stiffness)).exp2();
         let length = coarse(self.length).exp2();
@@ -126,14 +124,14 @@ impl Sizes {
         }
     }
 
-    /// Largest displacement; a rotation counts as the displacement that it makes over the scene's length.
+    /// Largest displacement; rotations are multiplied by the scene's length.
     pub fn largest_motion(&self, u: &[f64]) -> f64 {
         let motion = |(u, kind): (&f64, &Balanced)| match kind {
             Balanced::Force => u.abs(),
             Balanced::Moment => u.abs() * self.length,
             Balanced::Length => 0.0,
         };
-        // Not max, which takes no notice of what is no number.
+        // Not `max`, which ignores NaN.
         let motions = u.iter().zip(&self.kind).map(motion);
         motions.fold(0.0, |most, u| if u <= most { most } else { u })
     }
@@ -162,12 +160,12 @@ pub fn expected_noise(model: &Model) -> Option<(usize, f64)> {
     ))
 }
 
-/// Exponent of the power of two that a size is rounded to.
+/// Exponent of the power of two to which a size is rounded.
 fn coarse(size: f64) -> f64 {
     STEP * (size.log2() / STEP).round()
 }
 
-/// Largest size of a load's factor over a path: at its corners, and where the factor itself turns between them.
+/// Largest magnitude of a load's factor over a path: at its corners, and at corners of the amplitude between them.
 fn peak(path: &[f64], scale: &Factor) -> f64 {
     let (low, high) = path
         .iter()
@@ -182,7 +180,7 @@ fn peak(path: &[f64], scale: &Factor) -> f64 {
         .fold(0.0_f64, |most, factor| most.max(factor.abs()))
 }
 
-/// What the equation of each degree of freedom balances.
+/// Quantity balanced by the equation of each degree of freedom.
 fn kinds(model: &Model) -> Vec<Balanced> {
     let mut kinds = vec![Balanced::Length; model.dofs.len()];
     for (&first, &count) in model.dofs.first.iter().zip(&model.dofs.count) {
@@ -197,7 +195,7 @@ fn kinds(model: &Model) -> Vec<Balanced> {
     kinds
 }
 
-/// Order of magnitude of the softest body's stiffness as a whole: that of a beam in bending, of a solid by itself.
+/// Order of magnitude of the softest body's overall stiffness: bending stiffness for a beam.
 fn softest_body(model: &Model) -> f64 {
     let of = |body: &Body| match &body.kind {
         BodyKind::Beam(beam) => beam.ei / model.length.powi(3),

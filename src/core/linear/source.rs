@@ -1,9 +1,9 @@
-//! The seam between the stepper and what deforms: bodies of our own, constant matrices, or another code.
+//! The interface between the stepper and the deformable part: the program's own bodies, constant matrices, or another code.
 //!
-//! A major iteration freezes geometry and stiffness. What it needs from then on is how the interface answers (eqn 6):
-//! the response of the forces to the motions, the gap and the frame of every contact, and what is prescribed. When its
-//! minor iterations have settled, the source takes the forces back: it moves its bodies, follows the slave nodes over
-//! their surfaces, and linearises anew. Whoever can do this can be stepped.
+//! A major iteration freezes geometry and stiffness. From then on it needs the interface response (eqn 6): the dependence of the
+//! forces on the motions, the gap and frame of every contact, and prescribed motions. When its minor iterations have converged,
+//! the source receives the forces, moves its bodies, projects the slave nodes on their surfaces, and linearises again. Anything
+//! that implements this trait can be stepped.
 
 use crate::contact::laws::{Finding, Law, Numbers, Scales, Verdict};
 use crate::contact::projection::SurfacePoint;
@@ -29,7 +29,7 @@ const TOLERANCE: f64 = 1e-8;
 /// The state about which a source linearises.
 #[derive(Debug, Clone, Copy)]
 pub struct At<'a> {
-    /// The source's own unknowns at the start of the present major iteration; of our bodies the values of all degrees
+    /// The source's own unknowns at the start of the current major iteration; for the program's bodies, the values of all degrees
     /// of freedom ([`crate::model::Dofs`]).
     pub u: &'a [f64],
     /// The last accepted state.
@@ -38,59 +38,59 @@ pub struct At<'a> {
     pub leg: usize,
     /// Load factor of the last accepted state.
     pub start_load: f64,
-    /// Load factor that the present major iteration aims at.
+    /// Target load factor of the current major iteration.
     pub target: f64,
-    /// Load factor that the last major iteration aimed at: that of `u`.
+    /// Target load factor of the last major iteration, to which `u` belongs.
     pub last_target: f64,
-    /// One entry a contact.
+    /// One entry per contact.
     pub contacts: &'a [ContactState],
-    /// Friction in force, by contact.
+    /// Current friction, by contact.
     pub friction: &'a [Friction],
-    /// What went into the first minor iteration of the present major one, by contact; empty before that.
+    /// Input of the first minor iteration of the current major iteration, by contact; empty before that.
     pub entered: &'a [Input],
-    /// Largest displacement change in the last major iteration over the scene's length.
+    /// Largest displacement correction in the last major iteration divided by the scene's length.
     pub correction: f64,
-    /// Stiffness that holds sliding back in this major iteration (force by length); 0 where nothing does
+    /// Stiffness that resists sliding in this major iteration (force per length); 0 for none
     /// ([`crate::step::recovery::proximal`]).
     pub brake: f64,
-    /// The source's own unknowns about which the stiffness in use is taken; `None` for `u`.
+    /// Values of the source's unknowns at which the stiffness in use was computed; `None` for `u`.
     pub factored: Option<&'a [f64]>,
-    /// Drag of a damped motion since the last accepted state (force by length), on every displacement.
+    /// Drag on every displacement in a damped motion since the last accepted state (force per length).
     pub drag: Option<f64>,
-    /// The settings as the user has them.
+    /// The settings chosen by the user.
     pub chosen: &'a Settings,
-    /// The settings in force: the strategy is the rung that the ladder has come to.
+    /// The effective settings: the strategy is the current rung of the ladder.
     pub settings: Settings,
-    /// What the present major iteration is bound by where the load factor is an unknown; `target` is then the load factor
-    /// that the solve adds to. `None` under load control.
+    /// The constraint of the current major iteration if the load factor is an unknown; the solve then adds to `target`. `None`
+    /// under load control.
     pub along: Option<Along<'a>>,
     /// Arc from the start of the history to the last accepted state; 0 under load control.
     pub arc: f64,
 }
 
-/// One equation more, for the load factor as an unknown.
+/// The additional equation if the load factor is an unknown.
 #[derive(Debug, Clone, Copy)]
 pub enum Along<'a> {
-    /// The load factor changes by this much.
+    /// The load factor changes by a given amount.
     Load {
         /// Change of the load factor.
         step: f64,
     },
-    /// row · Δu = step, with an entry a degree of freedom.
+    /// row · Δu = step, with one entry per degree of freedom.
     Displacements {
         /// Weights of the degrees of freedom.
         row: &'a [f64],
-        /// What they add up to.
+        /// Right-hand side.
         step: f64,
     },
-    /// One degree of freedom changes by this much.
+    /// One degree of freedom changes by a given amount.
     Dof {
         /// Its number.
         dof: usize,
         /// Its change.
         step: f64,
     },
-    /// A contact's relative tangential motion is this much.
+    /// A contact has a given relative tangential motion.
     Slip {
         /// Contact number.
         contact: usize,
@@ -111,18 +111,18 @@ impl Along<'_> {
     }
 }
 
-/// The last accepted state, from which the present increment started.
+/// The last accepted state, from which the current increment started.
 #[derive(Debug, Clone, Copy)]
 pub struct Accepted<'a> {
-    /// The source's own unknowns there.
+    /// The source's unknowns.
     pub u: &'a [f64],
-    /// What the elements remember of it.
+    /// History variables of the elements.
     pub history: &'a [f64],
-    /// One entry a contact.
+    /// One entry per contact.
     pub contacts: &'a [ContactState],
 }
 
-/// What has been done since a source was made.
+/// Work done since the source was created.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Work {
     /// Assemblies of the bodies' stiffness.
@@ -131,34 +131,31 @@ pub struct Work {
     pub factorizations: u64,
 }
 
-/// How one solve ended.
+/// Result of a solve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Solved {
     /// The solution satisfies the equations.
     Well,
     /// It does, but the matrix is singular to working precision.
     NearlySingular,
-    /// There is no solution, or none that can be computed.
+    /// There is no solution, or it cannot be computed.
     Not,
 }
 
-/// What deforms under the interface.
+/// The deformable part under the interface.
 ///
-/// Everything but the methods' arguments is workspace: it can be made again from a state, and is never saved.
-///
-/// A source that condenses its bodies to the interface keeps a [`Condensed`] and returns it from [`Source::condensed`]; it then
-/// needs the six methods without a body here. [`crate::linear::constant`] is the smallest example.
+/// Everything except the methods' arguments is workspace: it can be rebuilt from a state and is never saved.
 pub trait Source: Send {
-    /// Its own unknowns before the first increment.
+    /// The source's unknowns before the first increment.
     fn start(&self) -> Vec<f64>;
 
-    /// What its elements remember before the first increment.
+    /// History variables of its elements before the first increment.
     fn history(&self) -> Vec<f64> {
         Vec::new()
     }
 
-    /// A contact as it is held in a concave corner: in that at the end of its side, towards which it slides where S* moves along
-    /// t relative to S as `motion` does; or, without a motion, in that where it sticks. `None` where there is no such corner.
+    /// The state of a contact held in a concave corner: at the end of its side towards which it slides if S* moves along t
+    /// relative to S by `motion`; without a motion, in the corner where it sticks. `None` if there is no such corner.
     fn held_in_corner(
         &self,
         _contact: usize,
@@ -168,8 +165,8 @@ pub trait Source: Send {
         None
     }
 
-    /// Finds where every contact stands in a state: the point on its surface, normal, stick point and drift. `anew` says
-    /// that a sliding contact takes its stick point along. `friction` is that in force, by contact.
+    /// Finds the position of every contact in a state: surface point, normal, stick point and drift. With `anew`, a sliding
+    /// contact takes its stick point along. `friction` is the current one, by contact.
     fn follow(
         &mut self,
         u: &[f64],
@@ -178,46 +175,46 @@ pub trait Source: Send {
         anew: bool,
     );
 
-    /// Places the stick points of contacts that bring slip into the scene.
+    /// Sets the stick points of contacts whose initial state has slip.
     fn place_stick_points(&mut self, _contacts: &mut [ContactState]) {}
 
-    /// Goes back, or on, to a state. What keeps nothing but workspace has nothing to do. Returns whether the last linearisation
-    /// still stands, where it was about such a state; where it does not, [`Source::linearise`] follows.
+    /// Called when the stepper jumps to another state; sources that only have workspace need not do anything. Returns whether the
+    /// last linearisation is valid for such a state; if not, [`Source::linearise`] follows.
     fn restore(&mut self, _at: &At<'_>) -> bool {
         true
     }
 
-    /// Goes over to a model that differs from its own in friction, loads, history and settings alone, with what it has laid
-    /// out; what follows has the same bits as that of a new one. False, and nothing is changed, where it cannot.
+    /// Switches to a model that differs only in friction, loads, history and settings, and keeps the layout; results have the
+    /// same bits as with a new source. If that is not possible, returns false and changes nothing.
     fn renew(&mut self, _model: &Arc<Model>) -> bool {
         false
     }
 
-    /// Freezes geometry, stiffness and out-of-balance forces about a state (eqn 5).
+    /// Freezes geometry, stiffness and out-of-balance forces at a state (eqn 5).
     ///
     /// # Errors
-    /// [`SolveError`] if the equations cannot be laid out.
+    /// [`SolveError`] if the equations cannot be set up.
     fn linearise(&mut self, at: &At<'_>) -> Result<(), SolveError>;
 
-    /// Adds to the linearisation what turning and travelling interaction forces do, once the state has its final forces.
+    /// Adds the effect of rotating and moving interaction forces to the linearisation, once the state has its final forces.
     fn turn(&mut self, _at: &At<'_>) {}
 
-    /// Whether the last linearisation holds for a state that differs in the load factor only; then its out-of-balance
-    /// forces are renewed.
+    /// Whether the last linearisation is valid for a state that differs only in the load factor; if so, updates its
+    /// out-of-balance forces.
     fn aim(&mut self, _at: &At<'_>) -> bool {
         false
     }
 
-    /// How far the state of the last linearisation is from equilibrium, with its interface conditions.
+    /// Residual norms of the state of the last linearisation, including its interface conditions.
     fn norms(&mut self, at: &At<'_>) -> Norms;
 
-    /// Largest force that the next solve has to balance, what prescribed motions add included, over the scale of
-    /// [`Norms::relative`].
+    /// Largest force that the next solve has to balance, including the contribution of prescribed motions, relative to the scale
+    /// of [`Norms::relative`].
     fn asked(&self) -> f64 {
         f64::INFINITY
     }
 
-    /// How a contact stands over its surface in the last linearisation; `None` where it has no surface.
+    /// Position of a contact relative to its surface in the last linearisation; `None` without a surface.
     fn kinematics(&self, contact: usize) -> Option<NodeKinematics>;
 
     /// The response of the interface in the last linearisation. `None` for a source that solves by itself.
@@ -260,17 +257,17 @@ pub trait Source: Send {
         }
     }
 
-    /// What the last solve adds to the load factor where that is an unknown ([`At::along`]).
+    /// Change of the load factor in the last solve, if it is an unknown ([`At::along`]).
     fn load_step(&self) -> f64 {
         0.0
     }
 
-    /// Whether it can solve for the load factor; where not, a history along the path fails at once.
+    /// Whether it can solve for the load factor; if not, arc-length histories fail at once.
     fn follows_paths(&self) -> bool {
         false
     }
 
-    /// What the last solve gave at a contact.
+    /// Result of the last solve at a contact.
     fn increment(&self, contact: usize) -> NodeIncrement {
         let of = |condensed: &Condensed| NodeIncrement {
             force: condensed.forces[contact],
@@ -321,42 +318,42 @@ pub trait Source: Send {
         })
     }
 
-    /// Whether [`At::brake`] holds sliding back.
+    /// Whether it supports [`At::brake`].
     fn brakes(&self) -> bool {
         false
     }
 
-    /// Whether the minor iterations are solved on the condensed interface with these settings.
+    /// Whether minor iterations are solved on the condensed interface with these settings.
     fn condenses(&self, _settings: &Settings) -> bool {
         true
     }
 
-    /// Finds what the last solve does to the bodies.
+    /// Computes the effect of the last solve on the bodies.
     fn recover(&mut self) -> Solved {
         Solved::Well
     }
 
-    /// Takes the forces of the last minor iteration back: moves the bodies on. Returns the largest displacement.
+    /// Moves the bodies according to the forces of the last minor iteration. Returns the largest displacement.
     fn advance(&mut self, u: &mut [f64]) -> f64;
 
-    /// The stick point of a contact that touched in this major iteration: where its path pierced the surface.
+    /// The stick point of a contact that touched in this major iteration: where its path meets the surface.
     fn stick_point(&self, _contact: usize, _state: &ContactState) -> Option<SurfacePoint> {
         None
     }
 
-    /// Gives contacts the forces that the stresses call for (residual method 2), where these tell them. Returns whether
-    /// any changed; the out-of-balance forces are renewed by [`Source::rebalance`].
+    /// Sets the contact forces to those computed from the stresses (residual method 2), where possible. Returns whether any
+    /// changed; [`Source::rebalance`] then updates the out-of-balance forces.
     fn take_forces_from_stresses(&mut self, _contacts: &mut [ContactState]) -> bool {
         false
     }
 
-    /// Renews the out-of-balance forces after forces of contacts were changed.
+    /// Updates the out-of-balance forces after contact forces have changed.
     fn rebalance(&mut self, _at: &At<'_>) {}
 
-    /// The state is accepted: renews what the elements remember.
+    /// Updates the history variables of the elements when the state is accepted.
     fn accept(&mut self, _u: &[f64], _before: &[f64], _history: &mut [f64]) {}
 
-    /// Which motions nothing resists, for these modes.
+    /// Motions without resistance, for these modes.
     fn explain(&self, _contacts: &[ContactState]) -> Singular {
         Singular::Unexplained
     }
@@ -367,7 +364,7 @@ pub trait Source: Send {
         self.kinematics(contact).map_or([0.0; 2], over)
     }
 
-    /// Largest displacement of a state; a rotation counts as the displacement that it makes over the scene's length.
+    /// Largest displacement in a state; rotations are multiplied by the scene's length.
     fn largest_motion(&self, u: &[f64]) -> f64 {
         u.iter().fold(0.0, |most: f64, u| most.max(u.abs()))
     }
@@ -384,7 +381,7 @@ pub trait Source: Send {
         None
     }
 
-    /// Judges a converged state by positions and forces alone ([`crate::contact::judge`]).
+    /// Judges a converged state from positions and forces alone ([`crate::contact::judge`]).
     fn judge(&mut self, at: &At<'_>, after: &Norms) -> Verdict {
         let tolerance = (10.0 * at.chosen.tolerance).max(TOLERANCE);
         let scales = Scales {
@@ -431,8 +428,8 @@ pub trait Source: Send {
         None
     }
 
-    /// Gives contacts that touched in the last accepted state the stick points of there back, so that their net slip
-    /// counts. The state has been judged just before.
+    /// Restores the stick points of contacts that already touched in the last accepted state, so that their net slip counts.
+    /// Called directly after the state was judged.
     fn count_net_slip(
         &mut self,
         _tolerance: f64,
@@ -441,12 +438,12 @@ pub trait Source: Send {
     ) {
     }
 
-    /// Whether it takes the drag of a damped motion into account.
+    /// Whether it supports the drag of damped motions.
     fn damps(&self) -> bool {
         false
     }
 
-    /// Stability of the state of the last linearisation, with the modes that its contacts have.
+    /// Stability of the state of the last linearisation, with its contacts' modes.
     fn stability(&mut self, _at: &At<'_>) -> Stability {
         Stability::NotKnown
     }
@@ -456,7 +453,7 @@ pub trait Source: Send {
         f64::INFINITY
     }
 
-    /// What it has done so far, as far as it counts.
+    /// Work done so far, if the source counts it.
     fn work(&self) -> Work {
         Work::default()
     }

@@ -1,58 +1,59 @@
-//! Whether a state of equilibrium is stable: the signs of the tangent on admissible motions.
+//! Stability of an equilibrium state: the signs of the tangent on admissible motions.
 //!
-//! Admissible are the motions that keep what touches together: no relative motion of a fixed node, no normal one of a sliding
-//! node; loads and prescribed motions stay. With K the tangent of the bodies, T what turning and travelling contact forces add
-//! to it ([`crate::contact::geometric_tangent`]), and G the rows that an admissible motion makes zero, A = K + T and
+//! Admissible motions maintain contact: fixed nodes have no relative motion, sliding nodes no normal one; loads and prescribed
+//! motions are constant. With K the tangent of the bodies, T the contribution of rotating and moving contact forces
+//! ([`crate::contact::geometric_tangent`]), and G the rows that vanish on admissible motions, A = K + T and
 //!
 //! ```text
 //! smooth or stuck:  ΔF = −Gᵀ λ,    u = N y with G N = 0,      R = Nᵀ A N     (symmetric)
 //! sliding, rough:   ΔF = −Cᵀ λ,    C = g_n ± tan φ g_t,       R = Wᵀ A N     (not symmetric)
 //! ```
 //!
-//! where W = N + Gᵀ Z, C W = 0, is a test motion with its part along the constraints changed so that λ drops out. C is what a
-//! change of F_n brings along in friction.
+//! where W = N + Gᵀ Z, C W = 0, is a test motion whose part along the constraints is chosen so that λ cancels. C contains the
+//! change of friction with F_n.
 //!
-//! Where a bond gives way, its spring 1 / c comes to A in place of the condition.
+//! If a bond has a compliance c, its spring 1 / c is added to A instead of the condition.
 //!
-//! - R symmetric: stable where no eigenvalue is negative (Lagrange and Dirichlet); else as many directions lead away.
-//! - R not symmetric: an odd number of motions grows where det R < 0, which is called **divergence** (Ziegler, *Principles of
-//!   Structural Stability*). Where det R > 0 nothing follows yet; the state is stable if the symmetric part of R, of all
-//!   unknowns, is positive definite, since no admissible motion then finds energy. Else it is not known.
+//! - R symmetric: stable if no eigenvalue is negative (Lagrange and Dirichlet); otherwise the number of negative eigenvalues is
+//!   the number of unstable directions.
+//! - R unsymmetric: if det R < 0, an odd number of motions grows, which is called **divergence** (Ziegler, *Principles of
+//!   Structural Stability*). If det R > 0, the state is stable if the symmetric part of R, of all unknowns, is positive definite,
+//!   because no admissible motion then gains energy. Otherwise stability is unknown.
 //!
-//! The modes are taken as they are: whether a sliding node that is moved back would stick is not asked.
+//! The current modes are assumed to persist: whether a sliding node sticks when it moves back is not considered.
 //!
-//! What is inside the bodies (i) is eliminated by a sparse LDLᵀ, whose pivots count its negative eigenvalues, and the rest (c),
-//! the equations that touching nodes reach into, is small and dense. With S = K_cc − K_ci K_ii⁻¹ K_ic the eigenvalues of K_ii
-//! and of R made with S + T add up (Haynsworth's inertia formula). For the symmetric part, K_ic stands between i and the mean
-//! M = (N + W) / 2: it is definite with K_ii and with sym(Wᵀ (K_cc + T) N) − Mᵀ (K_cc − S) M. Equations of lengths, that
-//! have no diagonal, are left in the dense part with all of their body, and take one negative eigenvalue each.
+//! The interior unknowns (i) are eliminated by a sparse LDLᵀ, whose pivots count the negative eigenvalues; the rest (c), the
+//! equations that touching nodes involve, is small and dense. With S = K_cc − K_ci K_ii⁻¹ K_ic, the negative eigenvalues of K_ii
+//! and of R formed with S + T add up (Haynsworth's inertia formula). For the symmetric part, K_ic couples i and the mean M = (N +
+//! W) / 2: it is definite if K_ii and sym(Wᵀ (K_cc + T) N) − Mᵀ (K_cc − S) M are. Bodies with length equations, which have no
+//! diagonal, are entirely in the dense part, and each such equation accounts for one negative eigenvalue.
 
 use nalgebra::{Cholesky, DMatrix};
 use serde::{Deserialize, Serialize};
 
-/// A pivot, or an eigenvalue of a matrix with a unit diagonal, of at most this size may be round-off.
+/// A pivot, or an eigenvalue of a matrix with unit diagonal, up to this size may be round-off.
 pub(super) const ZERO: f64 = 1e-12;
-/// A row whose largest coefficient (of size one) is at most this depends on those before it.
+/// A row whose largest coefficient is at most this depends on earlier rows; independent rows are of order one.
 const DEPENDENT: f64 = 1e-9;
 
-/// What is known of the stability of a state of equilibrium.
+/// Stability of an equilibrium state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Stability {
-    /// No admissible motion leads away from it.
+    /// Stable.
     Stable,
-    /// The tangent is symmetric and has so many negative eigenvalues on admissible motions, at least one.
+    /// The tangent is symmetric and has this number of negative eigenvalues on admissible motions, at least one.
     Unstable {
-        /// Their number.
+        /// Number of negative eigenvalues.
         modes: usize,
     },
     /// With sliding friction: the determinant of the tangent on admissible motions is negative.
     Divergence,
-    /// Neither is proven.
+    /// Neither stability nor instability is proven.
     NotKnown,
 }
 
 impl Stability {
-    /// Whether an admissible motion away from the state was found.
+    /// Whether an unstable direction was found.
     pub fn is_unstable(self) -> bool {
         matches!(self, Stability::Unstable { .. } | Stability::Divergence)
     }
@@ -69,7 +70,7 @@ impl std::fmt::Display for Stability {
     }
 }
 
-/// The tangent condensed to the equations c that touching nodes reach into.
+/// The tangent condensed to the equations c that touching nodes involve.
 pub(super) struct Dense {
     /// S + T.
     pub condensed: DMatrix<f64>,
@@ -77,20 +78,20 @@ pub(super) struct Dense {
     pub given_way: DMatrix<f64>,
     /// Negative eigenvalues of K_ii.
     pub negative: usize,
-    /// Number of equations of lengths in c, each of which takes one negative eigenvalue.
+    /// Number of length equations in c, each of which accounts for one negative eigenvalue.
     pub lengths: usize,
 }
 
 /// Linear conditions on the motions in c.
 #[derive(Default)]
 pub(super) struct Conditions {
-    /// G: what an admissible motion makes zero.
+    /// G: rows that vanish on admissible motions.
     pub motion: Vec<Vec<f64>>,
-    /// C: where the forces of the conditions act.
+    /// C: directions of the constraint forces.
     pub force: Vec<Vec<f64>>,
-    /// Whether friction makes C another than G.
+    /// Whether friction makes C different from G.
     pub slides: bool,
-    /// Motions that bonds resist in place of holding them, each with the stiffness (force by length).
+    /// Motions that bonds resist elastically, each with its stiffness (force per length).
     pub springs: Vec<(Vec<f64>, f64)>,
 }
 
@@ -116,7 +117,7 @@ impl Conditions {
         }
     }
 
-    /// Leaves out what follows from the others: conditions that supports meet, or other nodes.
+    /// Removes dependent conditions, which supports or other nodes already satisfy.
     pub fn keep_independent(&mut self) {
         let reduced = Reduced::of(&self.motion);
         let mut kept = reduced.kept.iter();
@@ -125,7 +126,7 @@ impl Conditions {
         self.force.retain(|_| *kept.next().unwrap_or(&true));
     }
 
-    /// N: a basis of the admissible motions of c unknowns, a column each.
+    /// N: a basis of the admissible motions of c unknowns, as columns.
     pub fn admissible(&self, c: usize) -> DMatrix<f64> {
         let reduced = Reduced::of(&self.motion);
         let free: Vec<usize> = (0..c).filter(|k| !reduced.pivots.contains(k)).collect();
@@ -140,11 +141,11 @@ impl Conditions {
     }
 }
 
-/// Rows in reduced echelon form: each has its largest entry made one, and no other has one in its column.
+/// Rows in reduced echelon form: the largest entry of each is one, and zero in all other rows.
 struct Reduced {
     rows: Vec<Vec<f64>>,
     pivots: Vec<usize>,
-    /// Whether each of the rows given was independent of those before.
+    /// Whether each given row was independent of the earlier ones.
     kept: Vec<bool>,
 }
 
@@ -190,7 +191,7 @@ fn subtract(row: &mut [f64], other: &[f64], factor: f64) {
     }
 }
 
-/// Without sliding friction: by inertia.
+/// Without sliding friction: from the inertia.
 pub(super) fn smooth(dense: &Dense, basis: &DMatrix<f64>) -> Option<Stability> {
     let reduced = basis.transpose() * &dense.condensed * basis;
     let negative = dense.negative + negative_eigenvalues(&reduced)?;
@@ -206,7 +207,7 @@ pub(super) fn smooth(dense: &Dense, basis: &DMatrix<f64>) -> Option<Stability> {
     })
 }
 
-/// With sliding friction: by the sign of the determinant, and the symmetric part.
+/// With sliding friction: from the sign of the determinant and the symmetric part.
 pub(super) fn sliding(
     dense: &Dense,
     conditions: &Conditions,
@@ -240,7 +241,7 @@ pub(super) fn sliding(
     definite.then_some(Stability::Stable)
 }
 
-/// Factors that give a matrix a diagonal of size one; where that is zero, a largest entry of size one.
+/// Factors that scale a matrix to a diagonal of size one; for a zero diagonal, to a largest entry of size one.
 fn scales(matrix: &DMatrix<f64>) -> Vec<f64> {
     let n = matrix.nrows();
     let largest = matrix.amax();
@@ -265,7 +266,7 @@ fn scaled(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     DMatrix::from_fn(n, n, |i, j| scales[i] * matrix[(i, j)] * scales[j])
 }
 
-/// Number of negative eigenvalues of the symmetric part. `None` where one is round-off.
+/// Number of negative eigenvalues of the symmetric part. `None` if one is within round-off.
 fn negative_eigenvalues(matrix: &DMatrix<f64>) -> Option<usize> {
     let matrix = scaled(matrix);
     if matrix.iter().any(|x| !x.is_finite()) {
@@ -283,7 +284,7 @@ fn negative_eigenvalues(matrix: &DMatrix<f64>) -> Option<usize> {
     certain.then(|| values.iter().filter(|value| **value < 0.0).count())
 }
 
-/// 1 or −1. `None` where the matrix may be singular.
+/// 1 or −1. `None` if the matrix may be singular.
 fn sign_of_determinant(matrix: &DMatrix<f64>) -> Option<f64> {
     let n = matrix.nrows();
     let lu = scaled(matrix).full_piv_lu();

@@ -1,8 +1,8 @@
-//! The augmented system of a major iteration (eqn 9), uncondensed: bodies, interface, right-hand side.
+//! The full augmented system of a major iteration (eqn 9): bodies, interface, right-hand side.
 //!
-//! Everything here is rebuilt from a state ([`At`]); nothing of it is saved. [`System::linearise`] freezes geometry,
-//! stiffness and residual at the start of a major iteration; [`System::solve`] solves it for the modes of one minor
-//! iteration. After a first pass neither allocates, unless a slave node finds another deformable master element.
+//! All data are rebuilt from a state ([`At`]) and never saved. [`System::linearise`] freezes geometry, stiffness and residual at
+//! the start of a major iteration; [`System::solve`] solves the system for the modes of one minor iteration. After the first pass
+//! neither allocates, unless a slave node moves to another deformable master element.
 
 use crate::contact::geometric_tangent::{Variation, geometric_tangent};
 use crate::contact::projection::{Projection, projection_at, tangent};
@@ -30,65 +30,64 @@ use crate::linear::source::{At, Solved, Work};
 use crate::model::{Geometry, Model, Refactor, Settings};
 use std::sync::Arc;
 
-/// An equation whose coefficients are all smaller than this (the largest is one) is empty.
+/// An equation whose coefficients are all below this is empty; otherwise the largest is one.
 const EMPTY: f64 = 1e-12;
 
-/// What the stiffness is laid out for.
+/// Layout of the stiffness.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Layout {
     /// Bodies and interface in one matrix.
     Whole,
-    /// The bodies alone, to be condensed.
+    /// Only the bodies, to be condensed.
     Bodies,
 }
 
-/// Where turning interaction forces are entered.
+/// Where the effect of rotating interaction forces is added.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Turned {
-    /// In the stiffness, and in what prescribed motions do through it.
+    /// To the stiffness, and to the coupling with prescribed motions.
     Both,
-    /// In the latter alone.
+    /// Only to the coupling with prescribed motions.
     Coupling,
 }
 
-/// The linearised system about a state.
+/// The system linearised at a state.
 pub struct System {
-    /// The elements, once they are laid out: a solver that only looks at contacts does without.
+    /// The elements, set up on demand: strategies that only use the contacts do not need them.
     assembly: Assembly,
     laid_out: bool,
-    /// Loads that follow the faces they act on; a scene that has any takes its stiffness anew in every major iteration, and is
-    /// solved with a whole, unsymmetric matrix.
+    /// Following pressures. They require a new stiffness in every major iteration, and a full, unsymmetric matrix.
     pub(super) pressures: Pressures,
-    /// What `stiffness` is laid out for.
+    /// Current layout of `stiffness`.
     pub(super) layout: Option<Layout>,
     pub whole: Option<Factors>,
-    /// Displacements about which `stiffness` was taken, what the elements remembered then, and its values before the interface's
-    /// part; where it may be used again.
+    /// The displacements and element histories at which `stiffness` was computed, and its values without the interface, if it may
+    /// be reused.
     taken: Vec<f64>,
     remembered: Vec<f64>,
     plain: Vec<f64>,
-    /// Whether the stiffness of the last linearisation was taken about others, and is factored already.
+    /// Whether the stiffness of the last linearisation was computed at an earlier state, and is already factored.
     pub(super) stands: bool,
-    /// What has been done so far.
+    /// Work done so far.
     pub done: Work,
-    /// Whether there is a drag in the last linearisation.
+    /// Whether the last linearisation contains a drag.
     dragged: bool,
-    /// Whether `whole` is scaled for the present linearisation.
+    /// Whether `whole` is scaled for the current linearisation.
     pub(super) scaled: bool,
     pub(super) bodies: Option<Condensation>,
-    /// Who works on bodies side by side.
+    /// Processes bodies in parallel.
     executor: Arc<dyn Executor>,
     pub(super) estimate: Estimate,
-    /// Whether the scene's bodies may be condensed by [`Condensation`].
+    /// Whether [`Condensation`] can condense the scene's bodies.
     pub(super) condensable: bool,
     /// Contacts over elements with local flexibility under point forces, and whether such elements exist.
     pub(super) points: PointForces,
     pub(super) has_points: bool,
-    /// The elements that `whole` has places for.
+    /// The elements for which `whole` has entries.
     pub(super) pairing: Vec<Option<(usize, usize)>>,
     /// n and t of every slave node in the last condensation.
     pub(super) frames: Vec<[[f64; 2]; 2]>,
-    /// Sizes that the scene gives.
+    /// Scales of the scene.
     pub sizes: Sizes,
     /// Current position of every node.
     pub positions: Vec<[f64; 2]>,
@@ -110,17 +109,17 @@ pub struct System {
     pub(super) rhs: Vec<f64>,
     pub(super) x: Vec<f64>,
     pub(super) work: Vec<f64>,
-    /// Right-hand sides of a condensation, some at a time.
+    /// Right-hand sides of a condensation, in blocks.
     pub(super) block: Vec<f64>,
-    /// What the load factor as an unknown adds.
+    /// Data for the load factor as an unknown.
     pub(super) border: Border,
     pub(super) norms: Norms,
-    /// Round-off of forces and of lengths that are to vanish, in the last linearisation.
+    /// Round-off of forces and of lengths that should vanish, in the last linearisation.
     pub(super) floors: [f64; 2],
 }
 
 impl System {
-    /// Lays out the system of a scene.
+    /// Sets up the system of a scene.
     pub fn new(model: &Model, executor: Arc<dyn Executor>) -> Self {
         let (dofs, equations) = (model.dofs.len(), model.dofs.equations);
         let interfaces: Vec<Interface> = model
@@ -173,7 +172,7 @@ impl System {
         }
     }
 
-    /// Whether the minor iterations are solved on the condensed interface with these settings.
+    /// Whether minor iterations are solved on the condensed interface with these settings.
     pub fn condenses(&self, settings: &Settings) -> bool {
         self.estimate.is_condensed(settings.solver)
     }
@@ -224,9 +223,9 @@ impl System {
             let over = |spot| projection_at(&model.surfaces, spot, &self.positions, point);
             interface.projection = node.spot.map(over).map(|here| match node.second {
                 Some(_) => here.along(node.normal, point),
-                // The sides of a border may be rotated by the force.
+                // The force may rotate the sides of a border between elements.
                 None if self.has_points && here.curve.is_none() => here.along(node.normal, point),
-                // A tied node does not travel over its surface.
+                // A tied node does not move over its surface.
                 None if slave.bond.is_tied() => here.along(node.normal, point),
                 None => here,
             });
@@ -248,7 +247,7 @@ impl System {
         Ok(())
     }
 
-    /// Internal forces, and the stiffness: about the displacements at hand, or about those of before where these stand.
+    /// Computes the internal forces and the stiffness; the stiffness may be one from earlier displacements.
     fn take_stiffness(&mut self, layout: Layout, model: &Model, at: &At<'_>) {
         let about = at.factored.unwrap_or(at.u);
         self.stands =
@@ -277,7 +276,7 @@ impl System {
         }
     }
 
-    /// What is left of the overlaps at the load that is aimed at.
+    /// Computes the remaining overlaps at the target load.
     pub(super) fn allow(&mut self, model: &Model, at: &At<'_>) {
         let unclosed = model.unclosed(at.leg, at.target);
         for (interface, slave) in self.interfaces.iter_mut().zip(&model.contacts) {
@@ -285,7 +284,7 @@ impl System {
         }
     }
 
-    /// What prescribed motions have still to do.
+    /// Computes the remaining increments of prescribed displacements.
     pub(super) fn prescribe(&mut self, model: &Model, at: &At<'_>) {
         self.step.fill(0.0);
         for p in &model.prescribed {
@@ -293,14 +292,14 @@ impl System {
         }
     }
 
-    /// Finds anew what they do through the stiffness of the last linearisation.
+    /// Recomputes their effect through the stiffness of the last linearisation.
     pub(super) fn couple(&mut self, model: &Model, at: &At<'_>) {
         let moved = moved(at.factored.unwrap_or(at.u), &self.step, at);
         self.assembly.couple(&model.dofs, moved, &mut self.coupling);
         self.turn_into(model, at, Turned::Coupling);
     }
 
-    /// Internal forces and stiffness of the bodies, and what prescribed motions do through it.
+    /// Internal forces and stiffness of the bodies, and the effect of prescribed displacements through it.
     pub(super) fn assemble(&mut self, model: &Model, at: &At<'_>) {
         let out = Assembled {
             force: &mut self.force,
@@ -327,12 +326,12 @@ impl System {
         }
     }
 
-    /// Whether there is a drag in the last linearisation, or is one wanted now.
+    /// Whether the last linearisation contains a drag, or the next one needs one.
     pub fn is_dragged(&self, at: &At<'_>) -> bool {
         self.dragged || at.drag.is_some()
     }
 
-    /// Renews the pattern where a slave node has found another element with unknowns; rigid ones have no entries.
+    /// Updates the pattern if a slave node has moved to another element with unknowns; rigid elements have no entries.
     fn bind_whole(&mut self, model: &Model, at: &At<'_>) -> Result<(), SolveError> {
         let changed = self.whole.is_none()
             || at
@@ -372,7 +371,7 @@ impl System {
         Ok(())
     }
 
-    /// The bodies' own pattern never changes.
+    /// Prepares the layout for the bodies alone, whose pattern never changes.
     fn bind_bodies(&mut self, model: &Model, at: &At<'_>) -> Result<(), SolveError> {
         self.link(model, at);
         if self.bodies.is_none() {
@@ -411,7 +410,7 @@ impl System {
         }
     }
 
-    /// The pattern that `stiffness` has its values in.
+    /// The pattern of `stiffness`.
     pub(super) fn pattern(&self) -> Option<&Arc<Pattern>> {
         match self.layout? {
             Layout::Whole => self.whole.as_ref().map(Factors::pattern),
@@ -470,8 +469,8 @@ impl System {
         }
     }
 
-    /// Adds what turning and travelling interaction forces do to the stiffness, where the settings want it; once
-    /// after each linearisation, when the state has its final forces.
+    /// Adds the effect of rotating and moving interaction forces to the stiffness, if the settings request it; once per
+    /// linearisation, when the state has its final forces.
     pub fn turn(&mut self, model: &Model, at: &At<'_>) {
         self.turn_into(model, at, Turned::Both);
     }
@@ -529,7 +528,7 @@ impl System {
         }
     }
 
-    /// Renews what the elements remember, once displacements `u` are accepted; `before` are those accepted last.
+    /// Updates the elements' history variables when displacements `u` are accepted; `before` are the previous ones.
     pub fn advance(&mut self, u: &[f64], before: &[f64], history: &mut [f64]) {
         self.assembly.advance(u, before, history);
     }
@@ -539,8 +538,8 @@ impl System {
         self.interfaces[slave].projection.as_ref()
     }
 
-    /// Solves the linearised system for a state's modes; the interface's answer is there at once, that of the
-    /// bodies after [`System::recover`].
+    /// Solves the linearised system for a state's modes. The interface's result is available at once, that of the bodies after
+    /// [`System::recover`].
     pub fn solve(&mut self, model: &Model, at: &At<'_>) -> Solved {
         if self.condenses(at.chosen) || at.along.is_some() {
             self.solve_condensed(model, at)
@@ -556,11 +555,11 @@ impl System {
         rows::rows(node, kinematics.as_ref(), &friction, &at.settings, at.brake)
     }
 
-    /// How a contact stands over its surface in the last linearisation; `None` where it has no surface.
+    /// Position of a contact relative to its surface in the last linearisation; `None` without a surface.
     pub fn kinematics(&self, contact: usize) -> Option<NodeKinematics> {
         let interface = &self.interfaces[contact];
         let projection = interface.projection.as_ref()?;
-        // A gap of -0 stays what it is.
+        // Preserves a gap of -0.
         let gap = match interface.allowed {
             0.0 => projection.gap,
             allowed => projection.gap + allowed,
@@ -576,13 +575,13 @@ impl System {
             normal: point.map_or(projection.normal, |point| point.normal),
             foot: projection.foot,
             room: interface.room,
-            // A force on a spring moves something whatever else is held.
+            // A force on a spring causes motion even if everything else is held.
             moves: [0, 1].map(|k| interface.moves[k] || give[k] > 0.0),
             bond: interface.bond,
         })
     }
 
-    /// What the last solve gave at a slave node.
+    /// Result of the last solve at a slave node.
     pub fn given(&self, slave: usize) -> NodeIncrement {
         NodeIncrement {
             force: self.condensed.forces[slave],
@@ -596,7 +595,7 @@ impl System {
     }
 }
 
-/// Displacements `u` in the present increment, and what those that are prescribed do in it.
+/// Displacements `u` within the current increment, with the prescribed ones.
 fn moved<'a>(u: &'a [f64], step: &'a [f64], at: &At<'a>) -> Moved<'a> {
     Moved {
         u,
@@ -606,7 +605,7 @@ fn moved<'a>(u: &'a [f64], step: &'a [f64], at: &At<'a>) -> Moved<'a> {
     }
 }
 
-/// The element that a node's equations reach into, if that has unknowns.
+/// The element that a node's equations involve, if it has unknowns.
 fn pairing(model: &Model, node: &ContactState) -> Option<(usize, usize)> {
     node.spot
         .filter(|s| !model.surfaces[s.surface].rigid)

@@ -1,7 +1,7 @@
-//! The tangent of a state of equilibrium as stability needs it ([`super::stability`]): the bodies' own, condensed to the equations
-//! that touching nodes reach into, and the conditions that these nodes put on its motions.
+//! The tangent of an equilibrium state for [`super::stability`]: the bodies' tangent, condensed to the equations that touching
+//! nodes involve, and the conditions that these nodes impose.
 //!
-//! It is assembled anew, whatever the minor iterations solve, and asked for only where somebody wants to know.
+//! It is assembled separately from the minor iterations, and only on demand.
 
 use super::coupling::Interface;
 use super::drag::stiffen;
@@ -17,20 +17,20 @@ use crate::model::{Body, BodyKind, Form, Mode, Model};
 use nalgebra::DMatrix;
 use std::sync::Arc;
 
-/// Most unknowns of the dense part.
+/// Maximum number of unknowns of the dense part.
 const MOST: usize = 1500;
-/// Local flexibility is neglected where the scene's force deflects the element by less than this fraction of the scene's length.
+/// Local flexibility is neglected if the scene's force deflects the element by less than this fraction of the scene's length.
 const RIGID: f64 = 1e-9;
 
-/// The bodies' tangent as stability needs it.
+/// The bodies' tangent for stability checks.
 pub struct Tangent {
     assembly: Assembly,
-    /// Pattern of its upper half, and its values.
+    /// Pattern and values of its upper half.
     pattern: Arc<Pattern>,
     values: Vec<f64>,
-    /// By equation, whether it belongs to a body that cannot be factored without pivoting.
+    /// Whether each equation belongs to a body that requires pivoting.
     pivoted: Vec<bool>,
-    /// By equation, whether it is one of lengths.
+    /// Whether each equation is a length equation.
     lengths: Vec<bool>,
     /// Factor by equation that converts a motion to a length: the scene's length for rotations, 1 otherwise.
     levers: Vec<f64>,
@@ -39,7 +39,7 @@ pub struct Tangent {
 }
 
 impl Tangent {
-    /// Lays out the tangent of a model.
+    /// Sets up the tangent of a model.
     pub fn new(model: &Model, system: &System) -> Self {
         let mut assembly = Assembly::new(model);
         let mut entries = assembly.entries(&model.dofs);
@@ -66,16 +66,16 @@ impl Tangent {
         }
     }
 
-    /// Stability of the state of the system's last linearisation, for the modes that its contacts have.
+    /// Stability of the state of the system's last linearisation, with its contacts' modes.
     pub fn stability(&mut self, system: &System, model: &Model, at: &At<'_>) -> Stability {
         let found = is_symmetric(model).then(|| self.assess(system, model, at));
         found.flatten().unwrap_or(Stability::NotKnown)
     }
 
-    /// `None` where round-off decides, or where there are too many unknowns.
+    /// `None` if round-off decides, or if there are too many unknowns.
     fn assess(&mut self, system: &System, model: &Model, at: &At<'_>) -> Option<Stability> {
         if self.pattern.size() == 0 {
-            // Nothing can move.
+            // There are no unknowns.
             return Some(Stability::Stable);
         }
         let last = self.reached(system, model, at);
@@ -96,7 +96,7 @@ impl Tangent {
         }
     }
 
-    /// The equations that touching nodes reach into, and those of bodies that want pivoting.
+    /// The equations that touching nodes involve, and those of bodies that require pivoting.
     fn reached(&self, system: &System, model: &Model, at: &At<'_>) -> Vec<usize> {
         let mut reached = self.pivoted.clone();
         for (interface, _) in touching(system, at) {
@@ -148,7 +148,7 @@ impl Tangent {
         let (last, factors) = self.factors.as_mut()?;
         let (n, c, shift) = (self.pattern.size(), last.len(), system.spring(model));
         factors.factor(&self.values, shift).ok()?;
-        // Growth shows in a solution of some right-hand side.
+        // Growth shows in the solution for almost any right-hand side.
         let (ones, mut x) = (vec![1.0; n], vec![0.0; n]);
         factors.solve(&ones, &mut x).ok()?;
         factors.pivots(&mut x);
@@ -199,7 +199,7 @@ fn is_symmetric(model: &Model) -> bool {
     model.pressures.is_empty() && model.bodies.iter().all(symmetric)
 }
 
-/// The equations of bodies with equations of lengths.
+/// Marks the equations of bodies with length equations.
 fn pivoted(model: &Model, lengths: &[bool]) -> Vec<bool> {
     let mut pivoted = lengths.to_vec();
     for body in &model.bodies {
@@ -220,7 +220,7 @@ fn pivoted(model: &Model, lengths: &[bool]) -> Vec<bool> {
     pivoted
 }
 
-/// The nodes that touch, with their part of the equations.
+/// The touching nodes with their part of the equations.
 fn touching<'a>(
     system: &'a System,
     at: &At<'a>,
@@ -268,8 +268,8 @@ fn turn(matrix: &mut DMatrix<f64>, system: &System, model: &Model, at: &At<'_>, 
     }
 }
 
-/// The conditions of the nodes that touch. `None` if the direction of a rough sliding node is not known, if its bond or element
-/// gives way, or if several nodes press on one element that gives.
+/// The conditions of the touching nodes. `None` if the sliding direction of a node with friction is unknown, if its bond or
+/// element has a compliance, or if several nodes press on one flexible element.
 fn conditions(system: &System, model: &Model, at: &At<'_>, last: &[usize]) -> Option<Conditions> {
     let mut all = Conditions::default();
     for (interface, s) in touching(system, at) {
@@ -288,11 +288,11 @@ fn conditions(system: &System, model: &Model, at: &At<'_>, last: &[usize]) -> Op
         let [normal, tangential] = [0, 1].map(row);
         let mut give = interface.bond.give();
         if let Some(point) = interface.point.first() {
-            // The forces on one element move each other's points, which no spring of one node describes.
+            // Forces on the same element displace each other's points, which springs of single nodes cannot describe.
             if !interface.partners.is_empty() {
                 return None;
             }
-            // Near a border the local flexibility is too small for a spring.
+            // Near a border between elements the local flexibility is too small for a spring.
             if point.compliance > RIGID * model.length / system.norms.scale {
                 give[0] += point.compliance;
             }
@@ -310,7 +310,7 @@ fn conditions(system: &System, model: &Model, at: &At<'_>, last: &[usize]) -> Op
         }
         let friction = node.friction(&at.friction[s]);
         if give[0] > 0.0 {
-            // Friction would make the spring's share of the tangent one that is not symmetric.
+            // Friction would make the spring's contribution to the tangent unsymmetric.
             if !friction.is_smooth() {
                 return None;
             }

@@ -1,11 +1,11 @@
-//! By how much a state is against the conditions of its own modes.
+//! Violation of the conditions of a state's modes.
 
 use super::source::At;
 use crate::interface::kinematics::NodeKinematics;
 use crate::model::{Mode, Sticking};
 
-/// Largest violation of the interface conditions by a state's forces and gaps, relative to a length and a force: gaps of
-/// touching contacts and penetration of free ones, drift of anchored ones, and |F_t − T_max| of sliding ones.
+/// Largest violation of the interface conditions by a state's forces and gaps, relative to a length and a force: gaps of touching
+/// contacts, penetration of free ones, drift of anchored ones, and |F_t − T_max| of sliding ones.
 pub fn violation(
     at: &At<'_>,
     length: f64,
@@ -14,7 +14,7 @@ pub fn violation(
 ) -> f64 {
     let mut worst = 0.0_f64;
     for (contact, state) in at.contacts.iter().enumerate() {
-        // Also in the middle of a major iteration this is about what it began with.
+        // Even within a major iteration, the violation refers to its initial modes.
         let (mode, t_max) = match at.entered.get(contact) {
             Some(input) => (input.mode, input.t_max),
             None => (state.mode, state.t_max),

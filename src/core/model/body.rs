@@ -1,4 +1,4 @@
-//! What deforms: beams, continua of elements, and bodies that are given by a matrix.
+//! Deformable bodies: beams, continua, trusses, and bodies given by a matrix.
 
 use super::documented::documented;
 use super::mesh::ElementKind;
@@ -35,7 +35,7 @@ impl Body {
         matches!(&self.kind, BodyKind::Solid(solid) if solid.materials.iter().any(round))
     }
 
-    /// Whether forces are in balance on its undeformed shape, all of it ([`Update::Small`]).
+    /// Whether equilibrium of the whole body is written on its undeformed shape ([`Update::Small`]).
     pub fn is_small(&self) -> bool {
         match &self.kind {
             BodyKind::Solid(solid) => solid.materials.iter().all(|m| m.update == Update::Small),
@@ -46,7 +46,7 @@ impl Body {
 }
 
 impl BodyKind {
-    /// The lines of a drawing of it: a beam's elements, a solid's outline, bars between two nodes.
+    /// Polylines that draw the body: a beam's elements, a solid's outline, a truss's bars.
     pub fn lines(&self) -> &[Vec<usize>] {
         match self {
             BodyKind::Beam(beam) => &beam.elements,
@@ -60,20 +60,20 @@ impl BodyKind {
 /// A chain of m-node beam elements with one section.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Beam {
-    /// Node numbers of each element, all of the same count (2 to 9).
+    /// Node numbers of each element; all elements have the same number of nodes (2 to 9).
     pub elements: Vec<Vec<usize>>,
     /// Axial stiffness (force).
     pub ea: f64,
     /// Bending stiffness (force · length²).
     pub ei: f64,
-    /// Shear stiffness (force). `None` is shear-rigid.
+    /// Shear stiffness (force). `None` means shear-rigid.
     pub ga: Option<f64>,
     /// First shear degree of freedom of a shear-rigid body; Gauss point p of element e has
     /// `first_shear + e * (m - 1) + p`. `None` if the body has a shear stiffness.
     pub first_shear: Option<usize>,
 }
 
-/// Bars between two nodes each, hinged at both.
+/// Bars between two nodes, hinged at both ends.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Truss {
     /// The two nodes of each bar.
@@ -84,44 +84,44 @@ pub struct Truss {
     pub small: bool,
 }
 
-/// A continuum of elements, of one kind or of several.
+/// A continuum of elements, of one or several kinds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solid {
-    /// Its elements.
+    /// The elements.
     pub elements: Vec<SolidElement>,
-    /// What they are made of.
+    /// The materials of the elements.
     pub materials: Vec<Elastic>,
     /// Names of the materials in the scene, in the same order.
     pub material_names: Vec<String>,
-    /// The faces around it ([`boundary`](super::mesh::boundary)).
+    /// The boundary faces ([`boundary`](super::mesh::boundary)).
     pub edges: Vec<Vec<usize>>,
 }
 
 /// An element of a continuum.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SolidElement {
-    /// What it is.
+    /// Kind of element.
     pub kind: ElementKind,
-    /// Its nodes, in the order that [`ElementKind`] says.
+    /// Nodes, in the order defined by [`ElementKind`].
     pub nodes: Vec<usize>,
     /// Index into [`Solid::materials`].
     pub material: usize,
 }
 
-/// An elastic continuum's numbers.
+/// Parameters of an elastic continuum.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Elastic {
-    /// Young's modulus (force by area).
+    /// Young's modulus (force per area).
     pub young: f64,
     /// Poisson's ratio.
     pub poisson: f64,
-    /// How stress follows from strain.
+    /// Stress-strain law.
     pub law: Law,
-    /// What is assumed across the plane.
+    /// Assumption about the out-of-plane direction.
     pub plane: Plane,
-    /// Thickness across the plane, undeformed (length); without meaning in axisymmetry.
+    /// Undeformed thickness across the plane (length); unused in axisymmetry.
     pub thickness: f64,
-    /// What strains and stresses are referred to.
+    /// Reference configuration of strains and stresses.
     pub update: Update,
 }
 
@@ -136,78 +136,79 @@ impl Elastic {
 }
 
 documented! {
-    /// How stress follows from strain.
+    /// Stress-strain law.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
     #[serde(rename_all = "lowercase")]
     pub enum Law {
-        /// St Venant-Kirchhoff, S = λ tr(E) I + 2μ E: large rotations; softens below a stretch of 1/√3 under compression.
+        /// St Venant-Kirchhoff, S = λ tr(E) I + 2μ E: for large rotations and small strains. In compression it softens below a
+        /// stretch of 1/√3.
         #[default]
         Svk,
-        /// Compressible neo-Hookean, W = μ/2 (I1 − 3 − 2 ln J) + λ/2 (ln J)²: large strains too; compression does not soften it.
+        /// Compressible neo-Hookean, W = μ/2 (I1 − 3 − 2 ln J) + λ/2 (ln J)²: for large strains too; it does not soften in
+        /// compression.
         NeoHookean,
     }
 }
 
 documented! {
-    /// What happens across the plane.
+    /// Assumption about the out-of-plane direction.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
     #[serde(rename_all = "lowercase")]
     pub enum Plane {
-        /// No strain: a long body.
+        /// No out-of-plane strain: a long body.
         #[default]
         Strain,
-        /// No stress: a thin sheet.
+        /// No out-of-plane stress: a thin sheet.
         Stress,
-        /// A body of revolution: x is the radius, y the axis, and rings strain as they grow, E33 = u_x/X + (u_x/X)²/2. Forces
-        /// (loads, contact forces, reactions, cohesion) are those of the whole circumference, 2 pi x.
+        /// A body of revolution: x is the radius and y the axis. The hoop strain is E33 = u_x/X + (u_x/X)²/2. Forces (loads,
+        /// contact forces, reactions, cohesion) refer to the whole circumference, 2 pi x.
         Axisymmetric,
     }
 }
 
 documented! {
-    /// What strains and stresses are referred to.
+    /// Reference configuration of strains and stresses.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
     #[serde(rename_all = "lowercase")]
     pub enum Update {
-        /// The undeformed shape: the answer does not depend on the increments.
+        /// The undeformed shape (total Lagrangian): the result does not depend on the increment size.
         #[default]
         Total,
-        /// The shape at the last accepted increment, as in the paper: stress grows by the small-strain moduli times each
-        /// increment's strain, and the answer depends on the size of the increments (its Fig. 8). Law svk only.
+        /// The shape at the last accepted increment, as in the paper: each increment adds the small-strain moduli times its
+        /// strain to the stress, so the result depends on the increment size (Fig. 8 of the paper). Requires law svk.
         Updated,
-        /// Small strains and rotations: strains linear in the displacements, forces in balance on the undeformed shape, a
-        /// constant stiffness (linear elasticity). Turning strains such a body. Law svk only.
+        /// Linear elasticity: strains are linear in the displacements, equilibrium is written on the undeformed shape, and the
+        /// stiffness is constant. Rotations strain such a body. Requires law svk.
         Small,
     }
 }
 
-/// A body that is given by a matrix over the x and y of its nodes, in their order.
+/// A body given by a matrix over the x and y degrees of freedom of its nodes, in node order.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Linear {
-    /// What the matrix means.
+    /// Meaning of the matrix.
     pub form: Form,
-    /// Row, column and value of the entries of the matrix, row by row: the whole diagonal, and all others that are not
-    /// zero.
+    /// Row, column and value of the matrix entries, row by row: the whole diagonal and all nonzero off-diagonal entries.
     pub entries: Vec<(usize, usize, f64)>,
-    /// Pairs of nodes that bars join, for a drawing.
+    /// Pairs of nodes connected by bars, for drawing.
     pub bars: Vec<Vec<usize>>,
 }
 
-/// What the matrix of a [`Linear`] body is.
+/// Meaning of the matrix of a [`Linear`] body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
     /// f = K u.
     Stiffness,
-    /// u = free λ + W f. The forces f are unknowns of their own, from this degree of freedom on, in the order of the
-    /// matrix; their equations are u − W f = free λ. The displacements where no force acts are loads there.
+    /// u = free λ + W f. The forces f are additional unknowns, numbered from `first_force` in matrix order; their equations are u
+    /// − W f = free λ. The displacements under zero force enter as loads.
     Compliance {
-        /// Degree of freedom of the first of the forces.
+        /// Degree of freedom of the first force.
         first_force: usize,
     },
 }
 
 impl Linear {
-    /// Whether the matrix equals its transpose, to the last bit.
+    /// Whether the matrix is exactly (bitwise) symmetric.
     pub fn is_symmetric(&self) -> bool {
         let mut turned: Vec<(usize, usize, f64)> =
             self.entries.iter().map(|&(i, j, v)| (j, i, v)).collect();

@@ -1,21 +1,21 @@
-//! The interface: master surfaces, and the contacts that slave nodes may make with them.
+//! The interface: master surfaces and the contacts of slave nodes with them.
 
 use super::friction::{Friction, InitialState, Mode};
 use serde::{Deserialize, Serialize};
 
-/// A master surface: a chain of m-node interface elements; the outward side is on the right of the walk.
+/// A master surface: a chain of m-node interface elements. The outward side is on the right when walking along the chain.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surface {
     /// Name in the scene.
     pub name: String,
-    /// Node numbers of each element in walking order; neighbours share their end node.
+    /// Node numbers of each element in walking order; neighbouring elements share an end node.
     pub elements: Vec<Vec<usize>>,
-    /// Whether no node of it can move by an unknown.
+    /// Whether no node of the surface has an unknown.
     pub rigid: bool,
-    /// Whether it goes on straight past its ends; such a surface is one element of 2 nodes.
+    /// Whether the surface extends straight beyond its ends. Such a surface is a single element of 2 nodes.
     pub endless: bool,
-    /// The pieces of a smooth curve through all nodes, one for each element, whose nodes are then those that the piece
-    /// depends on. Empty where each element is the Lagrange curve through its own nodes.
+    /// Pieces of a smooth curve through all nodes, one per element. The nodes of an element are then those that its piece depends
+    /// on. Empty if each element is the Lagrange curve through its own nodes.
     pub smooth: Vec<Piece>,
     /// Local flexibilities of each element under point forces, in addition to its interpolation. Empty if all are zero.
     pub gives: Vec<PointGive>,
@@ -39,24 +39,23 @@ impl Surface {
 /// length; zeros for any other element.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct PointGive {
-    /// L / (8 GA), length by force.
+    /// L / (8 GA), length per force.
     pub shear: f64,
-    /// L³ / (32 EI), length by force; 0 omits the bending part.
+    /// L³ / (32 EI), length per force; 0 omits the bending part.
     pub bending: f64,
 }
 
-/// A piece of a smooth curve, from one node to the next: a cubic whose slope at each end depends on the nodes around
+/// A piece of a smooth curve between two neighbouring nodes: a cubic whose end slopes depend on nearby nodes
 /// ([`crate::contact::smooth`]).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Piece {
-    /// Place among the element's nodes of the one where the piece begins; it ends at the one behind.
+    /// Index, among the element's nodes, of the start node of the piece; the next node is its end.
     pub first: usize,
-    /// Share of each of the element's nodes in the slope at the beginning and at the end, by the part of the piece that is
-    /// walked: dx/dt with t from 0 to 1.
+    /// Weights of the element's nodes in the slope dx/dt at the start and at the end of the piece, with t from 0 to 1.
     pub slopes: [[f64; STENCIL]; 2],
 }
 
-/// Most nodes that a piece depends on.
+/// Maximum number of nodes that a piece depends on.
 pub const STENCIL: usize = 4;
 
 /// A slave node with the surfaces that it may touch.
@@ -66,19 +65,19 @@ pub struct Contact {
     pub node: usize,
     /// Numbers of the surfaces that it may touch.
     pub surfaces: Vec<usize>,
-    /// Friction at the start; a user may change it during a run.
+    /// Initial friction; the user may change it during a run.
     pub friction: Friction,
     /// Mode of the first minor iteration.
     pub start: Mode,
-    /// What the node brings into the first minor iteration.
+    /// Values carried into the first minor iteration.
     pub state: InitialState,
-    /// How deep the node starts inside its surface, where that is closed over the first leg of the path only
-    /// ([`crate::model::InitialGaps::Ramp`]); 0 for all others (length).
+    /// Initial penetration to be closed over the first leg of the path ([`crate::model::InitialGaps::Ramp`]); 0 for all other
+    /// contacts (length).
     pub overlap: f64,
-    /// What holds where it touches.
+    /// Contact law.
     pub bond: Bond,
-    /// Tributary area of the undeformed slave node, by which forces are pressures; that of a whole turn where its body is
-    /// axisymmetric. `None` where nothing tells it.
+    /// Undeformed tributary area of the slave node, which converts forces to pressures; in axisymmetry that of the whole
+    /// circumference. `None` if it is unknown.
     pub area: Option<f64>,
     /// Data for selecting the pieces of a cut master that the node may touch. `None` if none of its masters is cut, or if the node
     /// has no outward side.
@@ -96,7 +95,7 @@ pub struct Facing {
 }
 
 impl Contact {
-    /// A node that starts free, with friction, and may touch these surfaces.
+    /// A contact that starts free, with this friction and these candidate surfaces.
     pub fn new(node: usize, surfaces: Vec<usize>, friction: Friction) -> Self {
         Contact {
             node,
@@ -111,33 +110,33 @@ impl Contact {
         }
     }
 
-    /// Contact pressure and shear (force by undeformed area) of these forces along n and t. `None` without an area.
+    /// Contact pressure and shear traction (force per undeformed area) of these forces along n and t. `None` without an area.
     pub fn pressure(&self, f_n: f64, f_t: f64) -> Option<[f64; 2]> {
         let area = self.area.filter(|area| *area > 0.0)?;
         Some([f_n / area, f_t / area])
     }
 }
 
-/// What holds between a slave node and its surface where they touch, beside friction. The default is hard contact: g >= 0 and
-/// F_n >= 0, one of them zero, and sticking without any motion.
+/// The contact law of a slave node and its surface, apart from friction. The default is hard contact: g >= 0, F_n >= 0, one of
+/// them zero, and rigid stick.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub enum Bond {
-    /// Nothing gives way.
+    /// Rigid.
     #[default]
     Hard,
-    /// Springs in series with these compliances along n and along t (length by force), at least one of them positive. While the
-    /// node touches, g + c_n F_n = 0; while it sticks, it has gone c_t F_t along t from its stick point.
+    /// Springs in series with these compliances along n and t (length per force), at least one of them positive. While the node
+    /// touches, g + c_n F_n = 0; while it sticks, it is displaced by c_t F_t along t from its stick point.
     Giving([f64; 2]),
-    /// Held at a point of its surface, in tension too.
+    /// Tied to a point of its surface; transmits tension too.
     Tied {
-        /// Whether its normal is the axis nearest to the surface's: where supports leave it and its surface nothing to do along
-        /// the other axis, equations along n and t would be the same one twice.
+        /// Whether the normal is replaced by the nearest coordinate axis. Needed if supports restrain the node and its surface
+        /// along the other axis, because the equations along n and t would then be linearly dependent.
         upright: bool,
     },
 }
 
 impl Bond {
-    /// The bond with these compliances, along n and along t (length by force).
+    /// The law with these compliances along n and t (length per force).
     pub fn giving(give: [f64; 2]) -> Self {
         if give == [0.0; 2] {
             Bond::Hard
@@ -146,7 +145,7 @@ impl Bond {
         }
     }
 
-    /// Compliances in series along n and along t (length by force).
+    /// Compliances in series along n and t (length per force).
     pub fn give(&self) -> [f64; 2] {
         match self {
             Bond::Giving(give) => *give,
@@ -159,7 +158,7 @@ impl Bond {
         *self == Bond::Hard
     }
 
-    /// Whether it holds the node for ever.
+    /// Whether the node is tied.
     pub fn is_tied(&self) -> bool {
         matches!(self, Bond::Tied { .. })
     }

@@ -1,6 +1,6 @@
-//! Types whose doc comments the program can show: a comment is written once, for rustdoc and for the manual.
+//! Types whose doc comments are shown by the program: rustdoc and the manual use the same text.
 
-/// What the source says of a type and of its parts (fields or variants, in the order of the source).
+/// Doc comments of a type and its parts (fields or variants, in source order).
 #[derive(Debug, Clone, Copy)]
 pub struct Docs {
     /// Name of the type.
@@ -11,10 +11,10 @@ pub struct Docs {
     pub parts: &'static [(&'static str, Lines)],
 }
 
-/// The attributes of an item: a line of its doc comment each, `None` for any other attribute.
+/// The attributes of an item: each line of the doc comment, `None` for any other attribute.
 pub type Lines = &'static [Option<&'static str>];
 
-/// A doc comment as one text: lines are joined, empty lines part paragraphs.
+/// A doc comment as one text: lines are joined, and empty lines separate paragraphs.
 pub fn text(lines: Lines) -> String {
     let mut text = String::new();
     for line in lines.iter().flatten().map(|line| line.trim()) {
@@ -29,7 +29,7 @@ pub fn text(lines: Lines) -> String {
     text.trim().to_owned()
 }
 
-/// The text of an attribute that is a line of a doc comment.
+/// The text of a doc attribute.
 #[macro_export]
 #[doc(hidden)]
 macro_rules! doc_line {
@@ -43,7 +43,7 @@ macro_rules! doc_line {
 
 pub(crate) use doc_line;
 
-/// Defines a struct of plain fields, or an enum of plain words, and gives it `DOCS`.
+/// Defines a struct of plain fields or an enum of unit variants, and adds `DOCS`.
 macro_rules! documented {
     ($(#[$($meta:tt)*])* $vis:vis struct $name:ident {
         $($(#[$($part_meta:tt)*])* $part_vis:vis $part:ident : $type:ty),* $(,)?
@@ -65,7 +65,7 @@ macro_rules! documented {
     };
     (@docs $name:ident [$([$($meta:tt)*])*] $($part:ident [$([$($part_meta:tt)*])*])*) => {
         impl $name {
-            /// What the source says of it and of its parts.
+            /// Doc comments of the type and its parts.
             pub const DOCS: $crate::model::documented::Docs = $crate::model::documented::Docs {
                 name: stringify!($name),
                 lines: &[$($crate::model::documented::doc_line!($($meta)*)),*],

@@ -11,11 +11,11 @@ pub struct Dofs {
     pub first: Vec<usize>,
     /// Number of degrees of freedom of each node: 2, or 3 on beams.
     pub count: Vec<u8>,
-    /// Number of the equation of each degree of freedom; `None` if it is restrained or prescribed.
+    /// Equation number of each degree of freedom; `None` if it is restrained or prescribed.
     pub equation: Vec<Option<usize>>,
     /// Number of equations.
     pub equations: usize,
-    /// Number of the bodies' own unknowns among them, which belong to no node and come last.
+    /// Number of internal unknowns of bodies; they belong to no node and come last.
     pub inner: usize,
 }
 
@@ -72,7 +72,7 @@ impl Dofs {
         self.equation.len()
     }
 
-    /// Whether there are none.
+    /// Whether there are no degrees of freedom.
     pub fn is_empty(&self) -> bool {
         self.equation.is_empty()
     }
@@ -85,7 +85,7 @@ impl Dofs {
 }
 
 documented! {
-    /// A degree of freedom of a node. Prints as the scene file has it.
+    /// A degree of freedom of a node. `Display` prints the word of the scene file.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
     #[serde(rename_all = "lowercase")]
     pub enum Component {

@@ -39,12 +39,13 @@ documented! {
     }
 }
 
-/// Angles that are looked at on either side of arctan μ, one bit apart: that, its change to degrees, and tan with its own change
-/// back round off by less.
+/// Number of floating-point neighbours searched on either side of arctan μ. The combined rounding error of arctan, the conversion
+/// to degrees and back, and tan is smaller.
 const NEAR: u64 = 8;
 
 impl Friction {
-    /// With a coefficient of friction. Of the angles that give it back to the last bit, it is the one that is shortest to write.
+    /// Friction with a given coefficient. Of all angles that reproduce the coefficient exactly, the one with the shortest decimal
+    /// form.
     pub fn from_coefficient(mu: f64, cohesion: f64) -> Friction {
         let near = mu.atan().to_degrees();
         let of = |angle| Friction { angle, cohesion };
@@ -72,18 +73,19 @@ impl Friction {
 }
 
 documented! {
-    /// What a slave node brings into the first minor iteration, as of a step taken over from elsewhere. A node that starts
-    /// free brings no forces. Forces that the bodies do not answer yet are out of balance, as after a major iteration.
+    /// Values that a slave node carries into the first minor iteration, as for a step taken over from another code. A node that
+    /// starts free carries no forces. Forces that are not balanced by the bodies count as out of balance, as after a major
+    /// iteration.
     #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
     #[serde(deny_unknown_fields, default)]
     pub struct InitialState {
-        /// Normal force on the slave node, along the master's outward normal n: compression positive.
+        /// Normal force on the slave node along the master's outward normal n; compression is positive.
         pub f_n: f64,
         /// Tangential force along t, which is n turned 90 degrees anticlockwise.
         pub f_t: f64,
-        /// T_max of the first minor iteration, with its sign.
+        /// Signed T_max of the first minor iteration.
         pub t_max: f64,
-        /// Slip u_tS* − u_tS counted so far in the increment (length).
+        /// Slip u_tS* − u_tS accumulated so far in the increment (length).
         pub slip: f64,
         /// Ratio of tangential to normal travel of a node that has just touched.
         pub ratio: f64,
@@ -95,7 +97,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_coefficient_comes_back_to_the_last_bit_and_a_round_angle_too() {
+    fn coefficients_and_round_angles_are_reproduced_exactly() {
         for tenth in 0..899 {
             let angle = f64::from(tenth) / 10.0;
             let friction = Friction {

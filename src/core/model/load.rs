@@ -1,36 +1,36 @@
-//! What drives a scene: loads, prescribed motions, and the path of the load factor.
+//! Loads, prescribed displacements, and the path of the load factor.
 
 use super::documented::documented;
 use serde::{Deserialize, Serialize};
 
-/// A dead load on one degree of freedom (a force, or a moment).
+/// A dead load (force or moment) on one degree of freedom.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Load {
     /// Number of the degree of freedom.
     pub dof: usize,
-    /// Force, or moment on a rotation, at a factor of 1.
+    /// Force, or moment on a rotation, at factor 1.
     pub value: f64,
-    /// Factor of the value, as a function of the load factor.
+    /// Amplitude as a function of the load factor.
     pub scale: Factor,
 }
 
-/// A pressure on faces of solids, which follows them: a force by current area, into the body.
+/// A following pressure on faces of solids: force per current area, positive into the body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pressure {
     /// The faces.
     pub faces: Vec<PressedFace>,
-    /// Pressure (force by area) at a factor of 1; positive pushes into the body.
+    /// Pressure (force per area) at factor 1; positive pushes into the body.
     pub value: f64,
-    /// Factor of the value, as a function of the load factor.
+    /// Amplitude as a function of the load factor.
     pub scale: Factor,
 }
 
 /// A face under pressure.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PressedFace {
-    /// Its nodes, walked with the body on the left.
+    /// Nodes, walked with the body on the left.
     pub nodes: Vec<usize>,
-    /// Thickness across the plane (length); `None` in axisymmetry, where it is a ring.
+    /// Thickness across the plane (length); `None` in axisymmetry, where the face is a ring.
     pub thickness: Option<f64>,
 }
 
@@ -39,20 +39,18 @@ pub struct PressedFace {
 pub struct Prescribed {
     /// Number of the degree of freedom.
     pub dof: usize,
-    /// Length, or angle of a rotation (radians), at a factor of 1.
+    /// Length, or rotation angle (radians), at factor 1.
     pub value: f64,
-    /// Factor of the value, as a function of the load factor.
+    /// Amplitude as a function of the load factor.
     pub scale: Factor,
 }
 
-/// A load's own factor as a function of the scene's load factor: pairs of load factor and own factor, the load factors
-/// ascending.
+/// Amplitude of a load as a function of the scene's load factor: pairs (load factor, factor) with ascending load factors.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Factor(pub Vec<(f64, f64)>);
 
 impl Factor {
-    /// The factor at a load factor: piecewise linear, constant beyond the ends; without points the load factor
-    /// itself.
+    /// The factor at a load factor: piecewise linear and constant beyond the ends. Without points, the load factor itself.
     pub fn at(&self, load_factor: f64) -> f64 {
         let points = &self.0;
         let (Some(first), Some(last)) = (points.first(), points.last()) else {
@@ -70,7 +68,7 @@ impl Factor {
         last.1
     }
 
-    /// Its derivative by the load factor; at a kink that of the piece below.
+    /// Derivative with respect to the load factor; at a kink, that of the segment below.
     pub fn slope(&self, load_factor: f64) -> f64 {
         let points = &self.0;
         let Some(first) = points.first() else {
@@ -88,39 +86,39 @@ impl Factor {
 }
 
 documented! {
-    /// What an increment does that jumps to another branch of equilibrium.
+    /// What to do with an increment that jumps to another equilibrium branch.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
     #[serde(rename_all = "lowercase")]
     pub enum Jumps {
-        /// It is accepted whole, marked where it moved beyond what its tangent and the increments before it predict.
+        /// Accept and mark the increment if it moved further than its tangent and the previous increments predict.
         Accept,
-        /// It is cut; where the least increment still jumps, that is accepted, marked.
+        /// Cut the increment; if the smallest increment still jumps, accept and mark it.
         #[default]
         Cut,
-        /// It is cut; where the least increment still jumps, the history fails.
+        /// Cut the increment; if the smallest increment still jumps, the history fails.
         Stop,
-        /// The load at which equilibrium ends is found by halves, to `settings.limit_load`; then a damped motion leads from the
-        /// last equilibrium to the next stable one, which is marked.
+        /// Find the limit load by bisection, to the tolerance `settings.limit_load`. A damped motion then leads from the last
+        /// equilibrium to the next stable one, which is marked.
         Dynamic,
     }
 }
 
 impl Jumps {
-    /// Whether it is what a scene that does not name it has.
+    /// Whether this is the default, which scenes may omit.
     pub fn is_default(&self) -> bool {
         *self == Jumps::default()
     }
 }
 
-/// Size of the increments on a leg of the path: what the list says, or `increment` where it ends.
+/// Increment size on a leg of the path: the entry of the list, or `increment` beyond its end.
 pub fn on_leg(increments: &[f64], increment: f64, leg: usize) -> f64 {
     increments.get(leg).copied().unwrap_or(increment)
 }
 
-/// Size below which an increment is not cut further: `given`, or 1/64 of `increment`.
+/// Size below which an increment is no longer cut: `given`, or 1/64 of `increment`.
 pub fn least(given: Option<f64>, increment: f64) -> f64 {
     given.unwrap_or(increment / FINEST)
 }
 
-/// An increment is cut to no less than this part (1/64) of its size, unless the scene says otherwise.
+/// By default, an increment is cut to no less than 1/64 of its size.
 const FINEST: f64 = 64.0;

@@ -1,28 +1,28 @@
-//! Kinds of continuum elements, as far as a model must know them: their nodes and their faces.
+//! Kinds of continuum elements: the nodes and faces that a model needs.
 
 use super::documented::documented;
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 
 documented! {
-    /// A kind of element of the plane continuum. Its nodes are the corners, anticlockwise, then the middles of the sides that
-    /// start at them, then the middle.
+    /// A kind of plane continuum element. Nodes are ordered: the corners, anticlockwise; then the midside nodes, starting on the
+    /// side after the first corner; then the centre.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
     #[serde(rename_all = "lowercase")]
     pub enum ElementKind {
-        /// Triangles of 3 nodes: constant strains, one point. Stiff in bending; locks where nu is near 0.5.
+        /// 3-node triangle: constant strain, 1 integration point. Stiff in bending; locks if nu is near 0.5.
         Triangle3,
-        /// Triangles of 6 nodes: quadratic displacements, three points.
+        /// 6-node triangle: quadratic displacements, 3 integration points.
         Triangle6,
-        /// Quadrilaterals of 4 nodes, 2 x 2 points. Stiff in bending; locks where nu is near 0.5.
+        /// 4-node quadrilateral, 2 x 2 points. Stiff in bending; locks if nu is near 0.5.
         Quad4,
-        /// Quadrilaterals of 8 nodes (serendipity), 3 x 3 points.
+        /// 8-node quadrilateral (serendipity), 3 x 3 points.
         #[default]
         Quad8,
-        /// Quadrilaterals of 8 nodes with reduced integration, 2 x 2 points: softer, and without locking.
+        /// 8-node quadrilateral with reduced integration, 2 x 2 points: softer, and does not lock.
         #[serde(rename = "quad8r")]
         Quad8Reduced,
-        /// Quadrilaterals of 9 nodes, 3 x 3 points.
+        /// 9-node quadrilateral, 3 x 3 points.
         Quad9,
     }
 }
@@ -38,12 +38,12 @@ crate::words! {
 }
 
 impl ElementKind {
-    /// Whether it is what a mesh that names no kind has.
+    /// Whether this is the default, which scenes may omit.
     pub fn is_default(&self) -> bool {
         *self == ElementKind::default()
     }
 
-    /// Number of nodes of an element.
+    /// Number of nodes per element.
     pub fn nodes(self) -> usize {
         match self {
             ElementKind::Triangle3 => 3,
@@ -59,7 +59,7 @@ impl ElementKind {
         matches!(self, ElementKind::Triangle3 | ElementKind::Triangle6)
     }
 
-    /// Nodes of each of its faces: 2 or 3.
+    /// Number of nodes per face: 2 or 3.
     pub fn per_face(self) -> usize {
         match self {
             ElementKind::Triangle3 | ElementKind::Quad4 => 2,
@@ -67,8 +67,8 @@ impl ElementKind {
         }
     }
 
-    /// The faces: for each the places of its nodes in the element, anticlockwise around it, so that outside lies on the
-    /// right of the walk. A face with m nodes is an m-node interface element.
+    /// The faces as local node indices, anticlockwise around the element, so that the outward side is on the right. A face with m
+    /// nodes is an m-node interface element.
     pub fn faces(self) -> &'static [&'static [usize]] {
         match self {
             ElementKind::Triangle3 => &[&[0, 1], &[1, 2], &[2, 0]],
@@ -80,20 +80,20 @@ impl ElementKind {
         }
     }
 
-    /// The corners, where its faces begin: places in the element, anticlockwise.
+    /// Local indices of the corners, anticlockwise; faces start there.
     pub fn corners(self) -> impl Iterator<Item = usize> {
         self.faces().iter().filter_map(|face| face.first()).copied()
     }
 
-    /// The faces of an element with these nodes, by node number.
+    /// The faces of an element with these nodes, as node numbers.
     pub fn faces_of(self, nodes: &[usize]) -> impl Iterator<Item = Vec<usize>> {
         let faces = self.faces().iter();
         faces.map(|face| face.iter().map(|&place| nodes[place]).collect())
     }
 }
 
-/// The faces that belong to one of these elements only, by node number: the boundary of the body that they make, as surface
-/// elements. Faces that follow each other stand one after the other.
+/// The faces that belong to exactly one of these elements, as node numbers: the boundary of the body. Connected faces are
+/// consecutive.
 pub fn boundary<'a>(
     elements: impl Iterator<Item = (ElementKind, &'a [usize])> + Clone,
 ) -> Vec<Vec<usize>> {
@@ -117,7 +117,7 @@ pub fn boundary<'a>(
     )
 }
 
-/// Faces walked from one to the next; where a walk closes or ends, the first face that is left begins another.
+/// Sorts faces into walks; where a walk closes or ends, the first remaining face starts the next one.
 fn in_order(faces: Vec<Vec<usize>>) -> Vec<Vec<usize>> {
     let starts: HashMap<usize, usize> = faces
         .iter()
@@ -158,7 +158,7 @@ mod tests {
     }
 
     #[test]
-    fn the_boundary_of_two_elements_is_walked_around_both_and_not_between_them() {
+    fn the_boundary_of_two_elements_surrounds_both() {
         // 6-5-4-13-12
         // 7   3    11     two quadrilaterals that share the side 2-3-4
         // 0-1-2-9-10
@@ -182,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn the_boundary_of_elements_of_several_kinds_is_walked_around_all() {
+    fn the_boundary_of_mixed_elements_surrounds_all() {
         // 3---2       a quadrilateral, with a triangle on its right
         // |   | \
         // 0---1--4

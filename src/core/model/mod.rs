@@ -1,12 +1,12 @@
-//! The model: what the solver works on, the ground on which everything else stands.
+//! The model that the solver works on.
 //!
-//! Everything refers to everything else by index (not by name), generated nodes are laid out, and degrees of freedom are
-//! numbered. Nodes of rigid surfaces have no unknowns, and beams with a shear stiffness GA have no shear unknowns.
+//! Objects refer to each other by index, not by name; generated nodes are laid out and degrees of freedom numbered. Nodes of
+//! rigid surfaces have no unknowns, and beams with a shear stiffness GA have no shear unknowns.
 //!
-//! Degrees of freedom are laid out node by node (x, y and, on beams, the rotation), then the bodies' own, body by body:
-//! the shear forces of shear-rigid beams, one per Gauss point, and the forces on bodies that are given by a compliance,
-//! whose equations are lengths, all of them. `equation[d]` is the number of the unknown of degree of freedom d, and
-//! `None` if that is restrained or prescribed.
+//! Degrees of freedom are numbered node by node (x, y and, on beams, the rotation), followed by the internal ones of each body:
+//! the shear forces of shear-rigid beams, one per Gauss point, and the forces on bodies given by a compliance, whose equations
+//! all have the unit length. `equation[d]` is the number of the unknown for degree of freedom d, or `None` if d is restrained or
+//! prescribed.
 
 pub mod documented;
 
@@ -42,47 +42,47 @@ pub use settings::{
 pub struct Model {
     /// Title, one line.
     pub title: String,
-    /// What the scene shows, as free text; may be empty.
+    /// Description of the scene; may be empty.
     pub about: String,
-    /// All nodes, in the reference configuration; indices of nodes point here.
+    /// All nodes, in the reference configuration. Node indices refer to this list.
     pub nodes: Vec<Node>,
-    /// What deforms.
+    /// The deformable bodies.
     pub bodies: Vec<Body>,
-    /// Master surfaces; indices of surfaces point here.
+    /// Master surfaces. Surface indices refer to this list.
     pub surfaces: Vec<Surface>,
-    /// The slave nodes, one contact each; slave numbers point here.
+    /// The contacts, one per slave node. Slave numbers refer to this list.
     pub contacts: Vec<Contact>,
     /// Numbering of the degrees of freedom and of the unknowns.
     pub dofs: Dofs,
     /// Dead loads.
     pub loads: Vec<Load>,
-    /// Pressures that follow the faces they act on.
+    /// Following pressures.
     pub pressures: Vec<Pressure>,
-    /// Prescribed motions other than zero.
+    /// Prescribed nonzero displacements.
     pub prescribed: Vec<Prescribed>,
-    /// Corners of the path of the load factor, at least two.
+    /// Corners of the load-factor path, at least two.
     pub path: Vec<f64>,
-    /// Increment of the load factor, positive.
+    /// Increment of the load factor (positive).
     pub increment: f64,
-    /// Increments on each leg of the path, positive, one a leg; none where all have `increment`.
+    /// Increment on each leg of the path (positive); empty if all legs use `increment`.
     pub increments: Vec<f64>,
-    /// Size below which an increment that fails is not cut further. `None` stands for 1/64 of the increment in force.
+    /// Size below which a failing increment is no longer cut. `None` stands for 1/64 of the leg's increment.
     pub least: Option<f64>,
-    /// What happens to an increment that jumps to another branch of equilibrium.
+    /// What to do with an increment that jumps to another equilibrium branch.
     pub jumps: Jumps,
-    /// What drives the history.
+    /// What controls the history.
     pub control: Control,
-    /// How the path is followed, where that drives it.
+    /// Parameters of arc-length control, if `control` is [`Control::Arc`].
     pub arc: ArcLength,
-    /// Choices of the method, and its limits.
+    /// Options and limits of the method.
     pub settings: Settings,
-    /// Numbers to report, in the order of the columns of outputs.
+    /// Quantities to report, in the order of the output columns.
     pub monitors: Vec<Monitor>,
-    /// Memory that the solver may take (bytes), unless `settings.memory` says otherwise.
+    /// Memory available to the solver (bytes), unless `settings.memory` sets a limit.
     pub budget: f64,
-    /// Diagonal of the bounding box of all bodies' nodes: the scene's unit of length for tolerances.
+    /// Diagonal of the bounding box of all bodies' nodes: the length scale for tolerances.
     pub length: f64,
-    /// How a finished run of another program counts. `None` for everything that can be stepped.
+    /// Data of a finished run of another program. `None` for everything that can be stepped.
     pub finished: Option<FinishedRun>,
 }
 
@@ -92,7 +92,7 @@ pub struct Model {
 pub struct FinishedRun {
     /// Names of the increments, by number from 1.
     pub increments: Vec<String>,
-    /// The first turn of each cycle, as iterations of the whole run, from 0.
+    /// First period of each cycle, as iteration numbers of the whole run, from 0.
     pub cycles: Vec<std::ops::Range<usize>>,
     /// Limit of the displacement correction (relative).
     pub correction_limit: f64,
@@ -108,16 +108,16 @@ pub struct Node {
     pub at: [f64; 2],
 }
 
-/// A number to report.
+/// A quantity to report.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Monitor {
     /// Name of the column in outputs.
     pub name: String,
-    /// What it reports.
+    /// The reported quantity.
     pub of: Watched,
 }
 
-/// What a monitor reports.
+/// The quantity that a monitor reports.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Watched {
     /// Value of a degree of freedom.
@@ -125,9 +125,9 @@ pub enum Watched {
         /// Number of the degree of freedom.
         dof: usize,
     },
-    /// Component of the interaction force on slaves (by slave number).
+    /// Component of the contact force, summed over slaves.
     Contact {
-        /// Slave numbers; their forces are added up.
+        /// Slave numbers.
         slaves: Vec<usize>,
         /// The component.
         axis: Axis,
@@ -137,38 +137,38 @@ pub enum Watched {
         /// Number of the degree of freedom.
         dof: usize,
     },
-    /// How many slaves have a mode.
+    /// Number of slaves in a mode.
     Modes {
         /// Slave numbers.
         slaves: Vec<usize>,
         /// The mode.
         mode: Mode,
     },
-    /// Largest drift of slaves (by slave number).
+    /// Largest drift among slaves.
     Drift {
         /// Slave numbers.
         slaves: Vec<usize>,
     },
-    /// Contact pressure F_n / A, or shear F_t / A, of one of some slaves: the one where it is largest in size (force by
-    /// undeformed area).
+    /// Contact pressure F_n / A or shear F_t / A (force per undeformed area), taken from the slave where its magnitude is
+    /// largest.
     Pressure {
-        /// Slave numbers, each of a contact with an area.
+        /// Slave numbers; each contact must have an area.
         slaves: Vec<usize>,
-        /// Whether it is the shear.
+        /// Whether to report the shear.
         shear: bool,
     },
-    /// A number that an attached solver tells.
+    /// A number reported by an attached solver.
     Told {
-        /// Its place among those that it tells.
+        /// Index among the numbers that it reports.
         number: usize,
-        /// What kind of number it is.
+        /// Kind of number.
         kind: ToldKind,
     },
-    /// Arc along the path of equilibrium from the start of the history, in what [`ArcLength::along`] measures.
+    /// Arc along the equilibrium path from the start of the history, in the quantity that [`ArcLength::along`] measures.
     Arc,
 }
 
-/// What kind of number an attached solver tells.
+/// Kind of a number reported by an attached solver.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ToldKind {
@@ -176,11 +176,11 @@ pub enum ToldKind {
     Length,
     /// A force.
     Force,
-    /// A force by area.
+    /// A force per area.
     Pressure,
     /// A count.
     Count,
-    /// It does not say.
+    /// Not specified.
     #[default]
     Other,
 }
@@ -203,8 +203,8 @@ pub fn diagonal<'a>(nodes: impl Iterator<Item = &'a Node>) -> f64 {
 }
 
 impl Model {
-    /// A scene of which another solver knows what deforms: nodes, masters and contacts, load factors from 0 to 1 in one
-    /// increment, and no unknowns. What else is known is changed in it.
+    /// A model whose bodies are known to another solver only: nodes, masters and contacts, a load factor from 0 to 1 in one
+    /// increment, and no unknowns. Callers fill in what else is known.
     pub fn of_contacts(
         title: &str,
         nodes: Vec<Node>,
@@ -214,7 +214,7 @@ impl Model {
         let count = nodes.len();
         let length = match diagonal(nodes.iter()) {
             length if length > 0.0 => length,
-            // One node has no size, and its motions are compared with something all the same.
+            // A single node has no extent, but its motion still needs a length scale.
             _ => 1.0,
         };
         Model {
@@ -249,7 +249,7 @@ impl Model {
         }
     }
 
-    /// Name of an increment: its number, or what a finished run calls it.
+    /// Name of an increment: its number, or its name in a finished run.
     pub fn increment_name(&self, number: u32) -> String {
         let names = self
             .finished
@@ -259,7 +259,7 @@ impl Model {
         named.map_or_else(|| number.to_string(), String::clone)
     }
 
-    /// Size of the increments on a leg of the path, as the scene has them.
+    /// Increment size on a leg of the path, as the scene defines it.
     pub fn on_leg(&self, leg: usize) -> f64 {
         on_leg(&self.increments, self.increment, leg)
     }
@@ -270,12 +270,12 @@ impl Model {
         bodies.any(|body| matches!(body.kind, BodyKind::Solid(_)))
     }
 
-    /// Whether x is a radius and y the axis: forces are then those of the whole circumference.
+    /// Whether x is a radius and y the axis; forces then refer to the whole circumference.
     pub fn is_axisymmetric(&self) -> bool {
         self.bodies.iter().any(Body::is_axisymmetric)
     }
 
-    /// Where a node is when all degrees of freedom have these values: its place in the reference shape, displaced.
+    /// Current position of a node for these degrees of freedom: reference position plus displacement.
     pub fn place(&self, u: &[f64], node: usize) -> [f64; 2] {
         let at = self.nodes[node].at;
         let Some(&first) = self.dofs.first.get(node) else {
@@ -288,7 +288,7 @@ impl Model {
         }
     }
 
-    /// What part of the overlaps that are closed over the first leg of the path ([`Contact::overlap`]) is left at a load
+    /// Fraction of the initial overlaps ([`Contact::overlap`]), closed over the first leg of the path, that remains at a load
     /// factor on a leg.
     pub fn unclosed(&self, leg: usize, load_factor: f64) -> f64 {
         match self.path.as_slice() {
@@ -297,7 +297,7 @@ impl Model {
         }
     }
 
-    /// The places of all nodes ([`Model::place`]).
+    /// Current positions of all nodes ([`Model::place`]).
     pub fn places(&self, u: &[f64]) -> Vec<[f64; 2]> {
         (0..self.nodes.len())
             .map(|node| self.place(u, node))

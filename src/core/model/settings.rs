@@ -1,51 +1,51 @@
-//! Choices of the method and its limits: which of the paper's variants is used where it leaves a choice.
+//! Options and limits of the method: which of the paper's variants is used where it offers several.
 
 use super::documented::documented;
 use serde::{Deserialize, Serialize};
 
 documented! {
-    /// Choices of the method, and its limits.
+    /// Options and limits of the method.
     #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields, default)]
     pub struct Settings {
-        /// How the next modes are chosen. Default: ladder.
+        /// How the next modes are selected. Default: ladder.
         pub strategy: Strategy,
-        /// How the total force of a slave node is found after a major iteration. Default: stress.
+        /// How the total force on a slave node is computed after a major iteration. Default: stress.
         pub residual: ResidualMethod,
-        /// What the minor iterations solve. Default: auto.
+        /// The system that the minor iterations solve. Default: auto.
         pub solver: Solver,
-        /// How often the bodies' stiffness is taken and factored. Default: each.
+        /// How often the stiffness of the bodies is computed and factored. Default: each.
         #[serde(skip_serializing_if = "Refactor::is_default")]
         pub factor: Refactor,
-        /// Whether the tangent knows that the contact geometry changes. Default: consistent.
+        /// Whether the tangent includes the change of the contact geometry. Default: consistent.
         pub geometry: Geometry,
-        /// What a beam with a shear stiffness gives where a slave node presses on it. Default: exact.
+        /// Local deformation of a beam with a shear stiffness under the point force of a slave node. Default: exact.
         #[serde(skip_serializing_if = "PointForce::is_default")]
         pub point_force: PointForce,
-        /// How the sliding node's T_max enters the equations. Default: lagged.
+        /// How T_max of a sliding node enters the equations. Default: lagged.
         pub t_max: BoundUpdate,
-        /// Over what the slip of Table 2's sliding row is counted. Default: increment.
+        /// Period over which the slip in Table 2's sliding row is accumulated. Default: increment.
         pub slip: SlipCount,
-        /// What a fixed node holds on to. Default: anchored.
+        /// Reference point of a fixed node. Default: anchored.
         pub sticking: Sticking,
-        /// Where a node is held that touches within an increment. Default: auto.
+        /// Stick point of a node that touches within an increment. Default: auto.
         pub touch: Touch,
-        /// What a tie in Table 2 does. Default: keep.
+        /// How ties in Table 2 are resolved. Default: keep.
         pub ties: Ties,
-        /// Most minor iterations in a major one. Default: 100.
+        /// Maximum number of minor iterations per major iteration. Default: 100.
         pub minors: u32,
-        /// Most major iterations in an increment. Default: 60.
+        /// Maximum number of major iterations per increment. Default: 60.
         pub majors: u32,
-        /// What happens when `minors` are used up. Default: stop.
+        /// What to do after `minors` minor iterations. Default: stop.
         pub at_minor_limit: AtLimit,
-        /// What happens when the minor iterations cycle. Default: stop.
+        /// What to do if the minor iterations cycle. Default: stop.
         pub at_cycle: AtCycle,
-        /// What happens when `majors` are used up. Default: stop.
+        /// What to do after `majors` major iterations. Default: stop.
         pub at_major_limit: AtLimit,
-        /// Relative tolerance of equilibrium, gap, and T_max. Default: 1e-11.
+        /// Relative tolerance for equilibrium, gaps and T_max. Default: 1e-11.
         pub tolerance: f64,
-        /// With `history.jumps: dynamic`, the load at which equilibrium ends is found to this part of the path's largest load
-        /// factor. Default: 1e-6.
+        /// With `history.jumps: dynamic`, accuracy of the limit load relative to the largest load factor of the path. Default:
+        /// 1e-6.
         #[serde(skip_serializing_if = "is_default_limit_load")]
         pub limit_load: f64,
         /// Whether the strategy `ladder` searches for a way out where an increment fails. Default: auto.
@@ -57,10 +57,10 @@ documented! {
         /// What becomes of gaps that are there before the first increment. Default: keep.
         #[serde(skip_serializing_if = "InitialGaps::is_default")]
         pub initial_gaps: InitialGaps,
-        /// With `initial_gaps: adjust`, nodes with a gap of at most this are moved onto their surface, too (length). Default: 0.
+        /// With `initial_gaps: adjust`, nodes with a gap up to this value are moved onto their surface too (length). Default: 0.
         #[serde(skip_serializing_if = "is_zero")]
         pub adjust_gap: f64,
-        /// Memory that the scene may take, in GB. Default: what is free.
+        /// Memory that the scene may use, in GB. Default: the free memory.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub memory: Option<f64>,
     }
@@ -96,7 +96,7 @@ impl Default for Settings {
     }
 }
 
-/// How exactly the load at which equilibrium ends is found, unless the scene says otherwise.
+/// Default accuracy of the limit load.
 const LIMIT_LOAD: f64 = 1e-6;
 
 fn is_default_limit_load(value: &f64) -> bool {
@@ -115,36 +115,36 @@ fn is_zero(value: &f64) -> bool {
 }
 
 documented! {
-    /// How the modes of the next minor iteration are chosen, as README's list of strategies says.
+    /// How the modes of the next minor iteration are selected.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
     #[serde(rename_all = "snake_case")]
     pub enum Strategy {
-        /// Table 2 first; if it cycles or cannot go on, then `sliding`, `sliding_least`, `lemke`, `census`, `gauss_seidel`
-        /// and `copositive`, the last two right after `sliding` with more than 20 contacts, with T_max in the matrix. If none of them finds a consistent state, the increment is halved, down to
-        /// `history.least`, and grows again afterwards.
+        /// Table 2 first. If it cycles or fails: `sliding`, `sliding_least`, `lemke`, `census`, `gauss_seidel` and `copositive`,
+        /// the last two directly after `sliding` with more than 20 contacts, with T_max in the matrix. If none of them finds a
+        /// consistent state, the increment is halved, down to `history.least`, and grows again afterwards.
         #[default]
         Ladder,
         /// Table 2 as printed.
         Table2,
-        /// Table 2, but a rough node that touches enters sliding, against its travel.
+        /// Table 2, except that a node with friction that touches starts to slide, with friction opposing its motion.
         Sliding,
-        /// Table 2, one change at a time: of all nodes that would change, only the first does.
+        /// Table 2, one change at a time: only the first of all nodes that would change does.
         Least,
         /// `sliding`, one change at a time.
         SlidingLeast,
-        /// `sliding`, all changes at once; one at a time while their number does not fall.
+        /// `sliding` with all changes at once; one at a time while the number of changes does not fall.
         Block,
-        /// Semismooth Newton on the projections of the forces; T_max stands in the matrix.
+        /// Semismooth Newton on the projected forces; T_max is in the matrix.
         Newton,
-        /// Lemke's pivoting on the linear complementarity problem of Coulomb's law in the plane.
+        /// Lemke's pivoting on the linear complementarity problem of planar Coulomb friction.
         Lemke,
-        /// All assumptions of what the nodes do, tried; for few nodes.
+        /// Tries all combinations of modes; for few nodes.
         Census,
-        /// Lemke's pivoting with the friction force in two parts, from all nodes free. Wherever forces that move nothing take
-        /// no energy, its path ends in an answer, however long it is; it is given up after 100 pivots per row.
+        /// Lemke's pivoting with the friction force split into two parts, starting with all nodes free. If forces that cause no
+        /// motion do no work, it always ends at a solution, but the path may be long; it stops after 100 pivots per row.
         Copositive,
-        /// Projected Gauss-Seidel: Coulomb's law at one node after the other, the forces of all others held, and then a solve
-        /// for the modes that this comes to.
+        /// Projected Gauss-Seidel: applies Coulomb's law at one node after the other with all other forces frozen, then solves
+        /// for the resulting modes.
         GaussSeidel,
     }
 }
@@ -165,40 +165,40 @@ crate::words! {
 }
 
 documented! {
-    /// What becomes of gaps that are there before the first increment.
+    /// What to do with gaps that exist before the first increment.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
     #[serde(rename_all = "lowercase")]
     pub enum InitialGaps {
-        /// They are what they are: a node that starts inside is pushed out by the first increment.
+        /// Leave them: the first increment pushes out nodes that start inside.
         #[default]
         Keep,
-        /// Slave nodes that start inside, or up to `adjust_gap` away, are moved onto their surface before anything is
-        /// solved, without stress, as decks of other codes do.
+        /// Before the first solve, move slave nodes that start inside, or at most `adjust_gap` away, onto their surface without
+        /// stress, as input decks of other codes do.
         Adjust,
-        /// Slave nodes that start inside stay there, and are pushed out over the first leg of the path, in proportion to the
-        /// load factor: a press fit.
+        /// Press fit: slave nodes that start inside are pushed out over the first leg of the path, in proportion to the load
+        /// factor.
         Ramp,
     }
 }
 
 impl InitialGaps {
-    /// Whether it is what a scene that does not name it has.
+    /// Whether this is the default, which scenes may omit.
     pub fn is_default(&self) -> bool {
         *self == InitialGaps::default()
     }
 }
 
 documented! {
-    /// Where a node is held that touches within an increment.
+    /// Stick point of a node that touches within an increment.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
     #[serde(rename_all = "lowercase")]
     pub enum Touch {
-        /// `ratio` where a body is a mesh; `start` where all are given by numbers, as interface problems are posed.
+        /// `ratio` if any body is a mesh; `start` if all bodies are given by matrices or springs, as in interface problems.
         #[default]
         Auto,
-        /// Where its straight way meets the surface (ρ, eqn 14), as in the paper.
+        /// Where the node's straight path meets the surface (ρ, eqn 14), as in the paper.
         Ratio,
-        /// At the foot of where it was when the major iteration started: one step of Coulomb's law.
+        /// The projection of its position at the start of the major iteration: one step of Coulomb's law.
         Start,
     }
 }
@@ -208,27 +208,27 @@ documented! {
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
     #[serde(rename_all = "lowercase")]
     pub enum ResidualMethod {
-        /// Method 1: interaction forces at the slave nodes are accumulated over the major iterations.
+        /// Method 1: accumulate the interaction forces at the slave nodes over the major iterations.
         Accumulate,
-        /// Method 2: the interaction force at a slave node is the nodal force of the current stresses less the load.
+        /// Method 2: the interaction force at a slave node is the nodal force of the current stresses minus the load.
         #[default]
         Stress,
     }
 }
 
 documented! {
-    /// What the minor iterations solve; all give the same to round-off.
+    /// The system that the minor iterations solve; the results agree to round-off.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
     #[serde(rename_all = "lowercase")]
     pub enum Solver {
-        /// Condensed where the bodies have many times more unknowns than the interface and their displacements there are few
-        /// enough for it to be cheaper, else augmented; the other one where only that fits the memory.
+        /// `condensed` if the bodies have many times more unknowns than the interface and it is cheaper, else `augmented`; the
+        /// other one if only that fits into memory.
         #[default]
         Auto,
-        /// The whole system of bodies and interface (eqn 9), factored anew for every assumption of modes.
+        /// The full system of bodies and interface (eqn 9), factored for every combination of modes.
         Augmented,
-        /// The bodies condensed to the interface (eqn 6) once a major iteration, as in the paper; a minor iteration then
-        /// costs a dense solve of the size of the interface.
+        /// Bodies condensed to the interface (eqn 6) once per major iteration, as in the paper. A minor iteration then costs a
+        /// dense solve of the interface's size.
         Condensed,
     }
 }
@@ -259,137 +259,137 @@ documented! {
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
     #[serde(rename_all = "lowercase")]
     pub enum Refactor {
-        /// In each major iteration, as in the paper.
+        /// In every major iteration, as in the paper.
         #[default]
         Each,
-        /// In the first of an increment, and where the out-of-balance force or the correction of the displacements fell by less
-        /// than ten times. That force is always the true one and the interface's geometry that of the major iteration, so that
-        /// the answers are the same within the tolerance; there are more major iterations, and they cost less. With `history.control: arc`, in
-        /// damped motions and under a following pressure as `each`.
+        /// In the first major iteration of an increment, and whenever the out-of-balance force or the displacement correction has
+        /// fallen by less than a factor of ten. The out-of-balance force and the contact geometry are always current, so the
+        /// result is the same within the tolerance; there are more major iterations, but each costs less. Acts like `each` with
+        /// `history.control: arc`, in damped motions and under a following pressure.
         Needed,
     }
 }
 
 impl Refactor {
-    /// Whether it is what a scene that does not name it has.
+    /// Whether this is the default, which scenes may omit.
     pub fn is_default(&self) -> bool {
         *self == Refactor::default()
     }
 }
 
 documented! {
-    /// Whether the change of normal, projection and gap stands in the tangent of a major iteration.
+    /// Whether the tangent includes the change of normal, projection and gap within a major iteration.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
     #[serde(rename_all = "lowercase")]
     pub enum Geometry {
-        /// It does: major iterations converge quadratically at the end.
+        /// It does: major iterations converge quadratically near the solution.
         #[default]
         Consistent,
-        /// It does not, as in the paper: they converge linearly where nodes slide.
+        /// It does not, as in the paper: convergence is linear if nodes slide.
         Frozen,
     }
 }
 
 documented! {
-    /// What a beam with a shear stiffness GA gives where a slave node presses on it. Shear-rigid beams are the plain elements
-    /// always.
+    /// Local deformation of a beam with a shear stiffness GA under the point force of a slave node. Shear-rigid beams are always
+    /// plain elements.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
     #[serde(rename_all = "lowercase")]
     pub enum PointForce {
-        /// What the beam theory says: a kink of F_n / GA in its line and a kink in its moment, which the element's polynomials
-        /// smear, are put back in closed form (page `theory`).
+        /// Beam theory: a slope jump of F_n / GA in the axis and a kink in the moment, which the element's polynomials smear out,
+        /// are added in closed form (page `theory`).
         #[default]
         Exact,
-        /// The kink in the line alone.
+        /// The slope jump of the axis only.
         Shear,
-        /// The plain element, as in the paper.
+        /// Plain element, as in the paper.
         Plain,
     }
 }
 
 impl PointForce {
-    /// Whether the value is the default, which scenes omit.
+    /// Whether this is the default, which scenes may omit.
     pub fn is_default(&self) -> bool {
         *self == PointForce::default()
     }
 }
 
 documented! {
-    /// How T_max enters the equations of a sliding node.
+    /// How T_max of a sliding node enters the equations.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
     #[serde(rename_all = "lowercase")]
     pub enum BoundUpdate {
-        /// From the previous minor iteration, as in the paper.
+        /// Taken from the previous minor iteration, as in the paper.
         #[default]
         Lagged,
-        /// tan φ ΔF_n stands in the matrix (unsymmetric); no lag.
+        /// tan φ ΔF_n is in the matrix, which becomes unsymmetric; T_max does not lag.
         Consistent,
     }
 }
 
 documented! {
-    /// Over what the slip of a sliding node is counted.
+    /// Period over which the slip of a sliding node is accumulated.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
     #[serde(rename_all = "lowercase")]
     pub enum SlipCount {
-        /// Since the last converged increment, or since touch.
+        /// Since the last converged increment, or since the node touched.
         #[default]
         Increment,
-        /// Over the present major iteration only: the literal reading of Table 2.
+        /// Within the current major iteration only: the literal reading of Table 2.
         Major,
     }
 }
 
 documented! {
-    /// What a fixed node holds on to.
+    /// Reference point of a fixed node.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
     #[serde(rename_all = "lowercase")]
     pub enum Sticking {
-        /// To the point of the surface where it stuck, which it remembers: what it has gone from there, it takes back.
+        /// The surface point where it stuck: any motion away from that point is undone.
         #[default]
         Anchored,
-        /// To nothing, as in the paper: no tangential motion in a major iteration, but that the slip counted is taken back.
+        /// None, as in the paper: no tangential motion within a major iteration, except that slip already accumulated is undone.
         Increments,
     }
 }
 
 documented! {
-    /// What a tie in Table 2 does.
+    /// How ties in Table 2 are resolved.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
     #[serde(rename_all = "lowercase")]
     pub enum Ties {
-        /// A tie, within the tolerance, keeps the mode that the node has.
+        /// Within the tolerance, a tie keeps the current mode.
         #[default]
         Keep,
-        /// The inequalities as printed, without a tolerance: F_n <= 0 opens.
+        /// The inequalities as printed, without tolerance: F_n <= 0 opens.
         Printed,
     }
 }
 
 documented! {
-    /// What happens when a limit of iterations is reached.
+    /// What to do when an iteration limit is reached.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
     #[serde(rename_all = "lowercase")]
     pub enum AtLimit {
         /// The increment fails.
         #[default]
         Stop,
-        /// Go on with what there is, as the paper's studies do; the increment is marked.
+        /// Continue with the current state, as the paper's studies do; the increment is marked.
         Accept,
     }
 }
 
 documented! {
-    /// What happens when the minor iterations return to where they had been.
+    /// What to do when the minor iterations return to an earlier state.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
     #[serde(rename_all = "lowercase")]
     pub enum AtCycle {
         /// The increment fails.
         #[default]
         Stop,
-        /// Aim the present major iteration at half the load that is left of the increment, and at half of that again,
-        /// until its minor iterations settle; the next major iteration aims at the whole again. For cycles that the
-        /// error of the linearisation makes, as where a force goes to zero. Fails where no part can be taken.
+        /// The current major iteration applies half of the increment's remaining load, then a quarter, and so on, until its minor
+        /// iterations converge; the next major iteration applies the full load again. Helps with cycles caused by linearisation
+        /// errors, for example if a force drops to zero. Fails if no fraction works.
         Damp,
     }
 }

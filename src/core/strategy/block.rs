@@ -1,12 +1,12 @@
-//! Block pivoting: all changes at once, and one at a time while their number does not fall.
+//! Block pivoting: all changes at once, but one at a time while their number does not fall.
 //!
-//! While the number of changing nodes has reached a new minimum within the last few minor iterations of a major one, the
-//! modes may return to earlier ones without that being a cycle.
+//! As long as the number of changing nodes has reached a new minimum within the last few minor iterations of a major iteration,
+//! returning to earlier modes does not count as a cycle.
 
 use crate::contact::table2::Entry;
 use crate::interface::method::Method;
 
-/// Rough nodes enter sliding; all changes at once until that stalls.
+/// Nodes with friction start to slide; all changes at once until the number of changes stalls.
 pub struct Block;
 
 impl Method for Block {

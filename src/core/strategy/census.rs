@@ -1,5 +1,5 @@
-//! The census as a strategy: all assumptions of what the nodes do are tried ([`crate::interface::census`]). The consistent
-//! ones are proposed one after the other, beginning with the one that changes the fewest nodes.
+//! The census as a strategy: tries all combinations of modes ([`crate::interface::census`]). Consistent ones are proposed in
+//! sequence, starting with the one that changes the fewest nodes.
 
 use crate::contact::table2::Rule;
 use crate::interface::census;
@@ -7,7 +7,7 @@ use crate::interface::method::{Asked, Method, NoProposal, NotFound, Proposal, Se
 use crate::interface::problem::{Assumed, NodeAnswer};
 use crate::model::BoundUpdate;
 
-/// All assumptions over the nodes that can touch.
+/// All combinations of modes of the nodes that can touch.
 pub struct Census;
 
 impl Method for Census {
@@ -21,7 +21,7 @@ impl Method for Census {
 }
 
 impl Search for Census {
-    /// The answer of number `asked.start`.
+    /// Proposes solution number `asked.start`.
     fn propose(&self, asked: Asked<'_>) -> Result<Proposal, NoProposal> {
         let problem = (asked.problem)().ok_or(NotFound::NotCondensed)?;
         let undecided: Vec<usize> = (0..problem.nodes.len())

@@ -1,8 +1,8 @@
-//! Lemke's pivoting in the form that does not end on a ray ([`crate::interface::copositive`]), a pivot a minor iteration; on
-//! a path that is longer than the tableau has rows, fifty.
+//! The form of Lemke's pivoting that does not end on a ray ([`crate::interface::copositive`]), with one pivot per minor
+//! iteration, or fifty once the path is longer than the tableau has rows.
 //!
-//! Where forces are not unique, those that pivoting comes to are taken on to a state whose modes have one solution
-//! ([`crate::interface::vertex`]). What is found is checked by Table 2 in the minor iteration after.
+//! If forces are not unique, those found by pivoting are moved to a state whose modes have a unique solution
+//! ([`crate::interface::vertex`]). Table 2 checks the result in the next minor iteration.
 
 use crate::contact::table2::Rule;
 use crate::interface::copositive::{Copositive as Pivoting, STARTS};
@@ -11,13 +11,13 @@ use crate::interface::tableau::PathEnd;
 use crate::interface::vertex::vertices;
 use crate::model::BoundUpdate;
 
-/// Pivoting from all nodes free, with the friction force in two parts.
+/// Pivoting from all nodes free, with the friction force split into two parts.
 pub struct Copositive;
 
-/// Pivots in a minor iteration of a long path.
+/// Pivots per minor iteration on a long path.
 const STRIDE: usize = 50;
 
-/// A path, its start, and the steps done: minor iterations of it.
+/// A path, its start, and the number of minor iterations done.
 struct Path {
     pivoting: Pivoting,
     start: usize,
@@ -25,7 +25,7 @@ struct Path {
 }
 
 impl Path {
-    /// The pivots of a minor iteration.
+    /// Performs the pivots of a minor iteration.
     fn go(&mut self) {
         let most = match self.step < self.pivoting.rows() {
             true => 1,
@@ -47,7 +47,7 @@ impl Method for Copositive {
 }
 
 impl Search for Copositive {
-    /// One step of the path; after one that has ended on a ray, the next start follows.
+    /// One step of the path; if it has ended on a ray, continues with the next start.
     fn propose(&self, mut asked: Asked<'_>) -> Result<Proposal, NoProposal> {
         if asked.start >= STARTS {
             return Err(match asked.unconfirmed {
@@ -100,7 +100,7 @@ fn path_is_at(path: &Path, asked: &Asked<'_>) -> bool {
     (path.start, path.step) == (asked.start, asked.step)
 }
 
-/// The path after so many pivots.
+/// The path after the pivots done so far.
 fn path(asked: &mut Asked<'_>) -> Result<Path, NotFound> {
     let problem = (asked.problem)().ok_or(NotFound::NotCondensed)?;
     let mut path = Path {

@@ -1,8 +1,8 @@
-//! Projected Gauss-Seidel ([`crate::interface::sweep`]), some sweeps a minor iteration, made fast by Newton's step: as soon as
-//! the modes last, the next minor iteration solves for them, and Table 2 checks them. If they do not hold, the sweeps go on
-//! to others, which must last twice as long.
+//! Projected Gauss-Seidel ([`crate::interface::sweep`]) with several sweeps per minor iteration, accelerated by Newton steps:
+//! once the modes are stable, the next minor iteration solves for them, and Table 2 checks them. If they are wrong, the sweeps
+//! continue until other modes have been stable for twice as long.
 //!
-//! Where forces are not unique, those of the sweeps are taken on to a state whose modes have one solution
+//! If forces are not unique, those of the sweeps are moved to a state whose modes have a unique solution
 //! ([`crate::interface::vertex`]).
 
 use crate::contact::table2::Rule;
@@ -12,26 +12,26 @@ use crate::interface::sweep::Sweep;
 use crate::interface::vertex::vertices;
 use crate::model::BoundUpdate;
 
-/// Sweeps with a solve for the modes that last.
+/// Sweeps, with a solve when the modes are stable.
 pub struct GaussSeidel;
 
-/// Sweeps in a minor iteration.
+/// Sweeps per minor iteration.
 const SWEEPS: usize = 10;
-/// Most minor iterations of sweeps. Most problems take fewer than 100.
+/// Maximum number of minor iterations with sweeps. Most problems need fewer than 100.
 const MOST: usize = 500;
 
-/// Sweeps on their way.
+/// State of the sweeps.
 struct Going {
     sweep: Sweep,
-    /// What was found so far, and the minor iterations since then.
+    /// Number of proposals so far, and of minor iterations since the last one.
     start: usize,
     step: usize,
-    /// All of them.
+    /// Total number of minor iterations.
     done: usize,
-    /// Minor iterations for which the modes have lasted, and those for which they must.
+    /// Number of minor iterations for which the modes have been stable, and the required number.
     lasted: usize,
     patience: usize,
-    /// What the nodes did before, and in what was found last.
+    /// The previous modes, and those of the last proposal.
     does: Vec<Assumed>,
     found: Vec<Assumed>,
     /// Change in the last sweep (relative).
@@ -53,7 +53,8 @@ impl Going {
         }
     }
 
-    /// The sweeps of a minor iteration; true if the modes have lasted, and others were found before.
+    /// Performs the sweeps of a minor iteration; returns whether the modes have been stable long enough and differ from the last
+    /// proposal.
     fn go(&mut self, nodes: usize) -> bool {
         for _ in 0..SWEEPS {
             self.change = self.sweep.sweep();
@@ -76,7 +77,7 @@ impl Going {
         lasts
     }
 
-    /// Whether more sweeps would change nothing, or there have been too many.
+    /// Whether further sweeps would change nothing, or the limit is reached.
     fn is_over(&self) -> bool {
         self.change == 0.0 && self.does == self.found || self.done >= MOST
     }
@@ -93,7 +94,7 @@ impl Method for GaussSeidel {
 }
 
 impl Search for GaussSeidel {
-    /// Some sweeps over all nodes.
+    /// Several sweeps over all nodes.
     fn propose(&self, mut asked: Asked<'_>) -> Result<Proposal, NoProposal> {
         let nodes = asked.brought.len();
         let kept = asked.kept.take().and_then(|kept| kept.downcast().ok());
@@ -140,7 +141,7 @@ fn is_at(going: &Going, asked: &Asked<'_>) -> bool {
     (going.start, going.step) == (asked.start, asked.step)
 }
 
-/// The sweeps that have come so far.
+/// The state of the sweeps so far.
 fn going(asked: &mut Asked<'_>) -> Result<Going, NotFound> {
     let problem = (asked.problem)().ok_or(NotFound::NotCondensed)?;
     let mut going = Going::new(Sweep::new(&problem).ok_or(NotFound::NoStart)?);

@@ -1,18 +1,18 @@
-//! The ladder: Table 2 first; if it cycles or cannot go on, the next rung, from the cheapest to the most expensive.
+//! The ladder: Table 2 first; if it cycles or fails, the next rung, from the cheapest to the most expensive.
 //!
 //! From the second rung on, T_max follows F_n within the solve. If no rung finds a consistent state, the increment is cut.
 //!
-//! With more contacts than [`MANY`], sweeps and the pivoting that they leave some problems to come before what changes one node
-//! at a time or walks all starts: a step of these costs a solve, and there are as many steps as nodes, or more. Sweeps alone
-//! solve 248 of the 276 problems of `cargo bench --bench hyperstatic`, and pivoting the rest.
+//! With more than [`MANY`] contacts, sweeps and then pivoting precede the strategies that change one node at a time or try all
+//! starts: a step of those costs a solve, and they need at least as many steps as there are nodes. Sweeps alone solve 248 of the
+//! 276 problems of `cargo bench --bench hyperstatic`, and pivoting solves the rest.
 
 use crate::interface::method::Method;
 use crate::model::Strategy;
 
-/// The rungs, one after the other.
+/// Tries the rungs in order.
 pub struct Ladder;
 
-/// The rungs of the ladder, the cheapest first where contacts are few.
+/// The rungs of the ladder for few contacts, cheapest first.
 const RUNGS: [Strategy; 7] = [
     Strategy::Table2,
     Strategy::Sliding,
@@ -23,7 +23,7 @@ const RUNGS: [Strategy; 7] = [
     Strategy::Copositive,
 ];
 
-/// The same, the cheapest first where contacts are many.
+/// The rungs for many contacts, cheapest first.
 const RUNGS_OF_MANY: [Strategy; 7] = [
     Strategy::Table2,
     Strategy::Sliding,
@@ -34,11 +34,11 @@ const RUNGS_OF_MANY: [Strategy; 7] = [
     Strategy::Census,
 ];
 
-/// Most contacts that are few.
+/// Maximum number of contacts that counts as few.
 const MANY: usize = 20;
-/// Most contacts with which `lemke` is tried.
+/// Maximum number of contacts for `lemke`.
 const MOST_PIVOTED: usize = 64;
-/// Most contacts with which `copositive` is tried: its numbers take 300 bytes for every pair of contacts.
+/// Maximum number of contacts for `copositive`, which needs 300 bytes per pair of contacts.
 const MOST_COPOSITIVE: usize = 1000;
 
 impl Method for Ladder {

@@ -1,6 +1,6 @@
-//! One change at a time: of all nodes that would change, only the first does, and the others wait (Bland's least index).
+//! One change at a time: only the first of all nodes that would change does, and the others wait (Bland's least index rule).
 //!
-//! Nodes that react to each other's changes then no longer cycle together. The price is one minor iteration for each change.
+//! Nodes that react to each other's changes then no longer cycle together. The cost is one minor iteration per change.
 
 use crate::contact::table2::Entry;
 use crate::interface::method::Method;
@@ -14,7 +14,7 @@ impl Method for Least {
     }
 }
 
-/// One change at a time, and a rough node enters sliding.
+/// One change at a time, and a node with friction that touches starts to slide.
 pub struct SlidingLeast;
 
 impl Method for SlidingLeast {

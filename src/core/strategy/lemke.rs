@@ -1,5 +1,5 @@
-//! Lemke's pivoting on the linear complementarity problem of Coulomb's law ([`crate::interface::lemke`]), a pivot a minor
-//! iteration. What it finds is checked by Table 2 in the minor iteration after.
+//! Lemke's pivoting on the linear complementarity problem of Coulomb's law ([`crate::interface::lemke`]), with one pivot per
+//! minor iteration. Table 2 checks the result in the next minor iteration.
 
 use crate::contact::table2::Rule;
 use crate::interface::lemke::{Lemke as Tableau, PathEnd, STARTS};
@@ -27,14 +27,14 @@ impl Method for Lemke {
 }
 
 impl Search for Lemke {
-    /// One pivot; after a path that has ended on a ray, the next start follows.
+    /// One pivot; if a path has ended on a ray, continues with the next start.
     fn propose(&self, mut asked: Asked<'_>) -> Result<Proposal, NoProposal> {
         let kept = asked.kept.take().and_then(|kept| kept.downcast().ok());
         let mut path: Box<Path> = match kept {
             Some(path) if is_at(&path, &asked) => path,
             _ => Box::new(path(&mut asked)?),
         };
-        // A path whose start is the answer has ended already.
+        // A path that starts at the solution has already ended.
         if path.tableau.pivot().is_some() {
             path.step += 1;
         }
@@ -71,7 +71,7 @@ fn is_at(path: &Path, asked: &Asked<'_>) -> bool {
     (path.start, path.step) == (asked.start, asked.step)
 }
 
-/// The tableau after so many pivots from a start, or from the first one behind it whose basis is regular.
+/// The tableau after the pivots done so far, for a start or the next one with a regular basis.
 fn path(asked: &mut Asked<'_>) -> Result<Path, NotFound> {
     let problem = (asked.problem)().ok_or(NotFound::NotCondensed)?;
     let mut starts = (asked.start..STARTS).filter_map(|number| {

@@ -1,4 +1,4 @@
-//! The strategies, one file each. A new one is a file, a line of [`method`], and its name in [`Strategy`].
+//! The strategies, one file each. To add one, add a file, a line of [`method`], and its name in [`Strategy`].
 
 mod block;
 mod census;
@@ -53,20 +53,20 @@ pub fn method(strategy: Strategy) -> &'static dyn Method {
     }
 }
 
-/// The strategies that `chosen` tries one after the other; empty if it stands for itself.
+/// The strategies that `chosen` tries in order; empty if it is a single strategy.
 pub fn rungs(chosen: Strategy) -> &'static [Strategy] {
     method(chosen).rungs()
 }
 
-/// The rung after one (both from 0) with so many contacts, and what it is. `None` after the last.
+/// The rung after the given one (both from 0) with this number of contacts, and its strategy. `None` after the last.
 pub fn next_rung(chosen: Strategy, rung: usize, contacts: usize) -> Option<(usize, Strategy)> {
     let method = method(chosen);
     let next = method.after(rung, contacts)?;
     Some((next, *method.rungs().get(next)?))
 }
 
-/// The settings in force on a rung (from 0; past the last one, those of the last). The strategy is that of the rung, and
-/// `t_max` is what this strategy needs.
+/// The effective settings on a rung (from 0; beyond the last one, those of the last). The strategy is that of the rung, and
+/// `t_max` is what this strategy requires.
 pub fn in_force(chosen: &Settings, rung: usize) -> Settings {
     let mut settings = *chosen;
     let rungs = rungs(chosen.strategy);

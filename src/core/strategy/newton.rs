@@ -1,13 +1,13 @@
 //! Semismooth Newton's method on the projection equations of contact and friction.
 //!
-//! With a spring of stiffness k that compares lengths with forces, Coulomb's law is
+//! With a spring stiffness k that relates lengths to forces, Coulomb's law is
 //!
 //! ```text
 //! F_n = max(0, F_n − k g)
 //! F_t = projection of F_t + k slip on |F_t| <= tan φ (F_n − k g) + c
 //! ```
 //!
-//! and a step of Newton's method takes the branch of each equation that holds at the present numbers:
+//! and a Newton step uses the branch of each equation that holds at the current numbers:
 //!
 //! ```text
 //! opens    F_n − k g <= 0
@@ -37,7 +37,7 @@ impl Method for Newton {
         let pressure = numbers.f_n - stiffness * numbers.gap;
         let drag = numbers.f_t + stiffness * known.slip;
         let limit = friction.coefficient() * pressure + friction.cohesion;
-        // A tie keeps what the node does.
+        // A tie keeps the current mode.
         let tie = if ties.keep { ties.force } else { 0.0 };
         let opens = pressure <= if before == Mode::Free { tie } else { -tie };
         let goes_on = before == Mode::Sliding && had * drag >= limit - tie;

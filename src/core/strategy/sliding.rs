@@ -1,12 +1,12 @@
-//! Table 2, but a rough node that touches enters sliding, against its travel.
+//! Table 2, except that a node with friction that touches starts to slide, with friction opposing its motion.
 //!
-//! In Table 2 it sticks first. If the friction bound is soon exceeded, sticking and sliding may then alternate for ever. A
-//! node that slides from the start takes the direction of its travel, and settles.
+//! In Table 2 it sticks first. If the friction bound is soon exceeded, sticking and sliding may then alternate forever. A node
+//! that slides from the start gets the direction of its motion and converges.
 
 use crate::contact::table2::Entry;
 use crate::interface::method::Method;
 
-/// A rough node enters sliding.
+/// A node with friction starts to slide when it touches.
 pub struct Sliding;
 
 impl Method for Sliding {

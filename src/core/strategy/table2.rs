@@ -1,4 +1,4 @@
-//! Table 2 as printed: every node's next mode follows from its own numbers, and all nodes change at once.
+//! Table 2 as printed: every node's next mode follows from its own numbers, and all nodes change at the same time.
 
 use crate::interface::method::Method;
 

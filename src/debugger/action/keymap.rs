@@ -311,7 +311,7 @@ mod tests {
             ),
             (
                 "{\"step\": \"x\"}",
-                "keys.ron:1:10: step: \"x\" will not do; it must be a list",
+                "keys.ron:1:10: step: \"x\" is not valid; it must be a list",
             ),
             ("{\"step\": [\"x\"]", "keys.ron:1:"),
             ("[]", "keys.ron:1:"),

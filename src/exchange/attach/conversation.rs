@@ -1,14 +1,14 @@
-//! A kept exchange: every line that went between debugger and solver, in order.
+//! A transcript: every line exchanged between debugger and solver, in order.
 //!
-//! The first line of such a file is [`SEALED_HEAD`]; every other line begins with a sign for its direction and a blank: `>`
-//! to the solver, `<` from it, `!` its standard error, `#` other events (start, end). Messages are stored verbatim, for
-//! people, scripts and [`Kept::read`]. Each line ends with its digest ([`crate::seal`]); files of earlier versions begin
-//! with [`HEAD`] alone and have no digests.
+//! The first line of such a file is [`SEALED_HEAD`]. Every other line starts with a character for its direction and a space: `>`
+//! to the solver, `<` from the solver, `!` the solver's standard error, `#` other events (start, end). Messages are stored
+//! verbatim, for people, scripts and [`Kept::read`]. Each line ends with its digest ([`crate::seal`]); files of earlier versions
+//! start with just [`HEAD`] and have no digests.
 
 use crate::broken::Broken;
 use crate::seal::{self, Seal};
 
-/// Beginning of the first line.
+/// Start of the first line.
 pub const HEAD: &str = "# stickslip exchange 1";
 /// The first line of a file whose lines have digests.
 pub const SEALED_HEAD: &str = "# stickslip exchange 1, each line with its digest";
@@ -16,7 +16,7 @@ pub const SEALED_HEAD: &str = "# stickslip exchange 1, each line with its digest
 /// Error for a line whose digest does not match.
 const CHANGED: &str = "the line was changed after it was written (its digest differs)";
 
-/// Where a line went.
+/// Direction of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Side {
     /// To the solver.
@@ -25,7 +25,7 @@ pub enum Side {
     Answered,
     /// To the solver's standard error.
     Logged,
-    /// Something happened.
+    /// Another event.
     Noted,
 }
 
@@ -43,20 +43,20 @@ impl Side {
     }
 }
 
-/// What is noted where a solver was started.
+/// Text of the event when a solver is started.
 pub const STARTED: &str = "started";
 
-/// A line of a kept exchange.
+/// A line of a transcript.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Kept {
-    /// Where it went.
+    /// Direction.
     pub side: Side,
-    /// What it says, without its end.
+    /// Text without the line end.
     pub text: String,
 }
 
 impl Kept {
-    /// The line of a file, with its end; several where the text has several.
+    /// The line of the file with its line end; several lines if the text has several.
     pub fn line(side: Side, text: &str) -> String {
         let text = text.trim_end_matches(['\n', '\r']);
         let lines = text.split('\n');
@@ -64,18 +64,18 @@ impl Kept {
         sealed.collect()
     }
 
-    /// Whether a text is a kept exchange.
+    /// Whether a text is a transcript.
     pub fn is_one(text: &str) -> bool {
         matches!(text.lines().next(), Some(HEAD | SEALED_HEAD))
     }
 
-    /// Reads a file. A last line that is torn (the writer was killed) is left out.
+    /// Reads a file. An incomplete last line (the writer was killed) is dropped.
     ///
     /// # Errors
-    /// If the file is no stored exchange, a line has no sign, or a line was changed after it was written.
+    /// If the file is not a transcript, a line has no direction, or a line was changed after it was written.
     pub fn read(text: &str) -> Result<Vec<Kept>, Broken> {
         if !Kept::is_one(text) {
-            let message = format!("the first line of a kept exchange begins with {HEAD:?}");
+            let message = format!("the first line of a transcript must begin with {HEAD:?}");
             return Err(Broken::at(1, 1, message));
         }
         let are_sealed = text.starts_with(SEALED_HEAD);
@@ -97,7 +97,11 @@ impl Kept {
                     .find(|(_, known)| sign.starts_with(*known))
                     .map(|(side, _)| *side)
                     .ok_or_else(|| {
-                        Broken::at(number + 1, 1, "a line begins with >, <, ! or # and a blank")
+                        Broken::at(
+                            number + 1,
+                            1,
+                            "a line must begin with >, <, ! or # and a space",
+                        )
                     })?;
                 let text = text.strip_prefix(' ').unwrap_or(text).to_owned();
                 Ok(Kept { side, text })
@@ -111,7 +115,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_kept_is_read_again_but_for_a_torn_end() {
+    fn a_transcript_is_read_back_without_its_incomplete_last_line() {
         let lines = [
             (Side::Noted, STARTED),
             (Side::Asked, "{\"type\":\"step\"}\n"),
@@ -133,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn a_changed_digit_is_noticed_and_a_file_without_digests_is_read() {
+    fn a_changed_digit_is_detected_and_a_file_without_digests_is_read() {
         let answer = "{\"type\":\"state\",\"f_n\":1.25}";
         let text = format!("{SEALED_HEAD}\n{}", Kept::line(Side::Answered, answer));
         assert_eq!(Kept::read(&text).expect("sound")[0].text, answer);
@@ -151,7 +155,7 @@ mod tests {
     }
 
     #[test]
-    fn every_line_of_a_text_has_its_sign() {
+    fn every_line_of_a_text_has_its_direction() {
         let text = format!("{SEALED_HEAD}\n{}", Kept::line(Side::Noted, "lost:\nall\n"));
         let read = Kept::read(&text).expect("sound");
         let texts: Vec<&str> = read.iter().map(|kept| kept.text.as_str()).collect();
@@ -160,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn another_file_is_told_from_one() {
+    fn other_files_are_not_transcripts() {
         assert!(Kept::read("Scene(").is_err());
         let broken = Kept::read(&format!("{HEAD}\n?\n")).expect_err("no sign");
         assert_eq!(broken.at, Some((2, 1)));

@@ -1,15 +1,15 @@
-//! Lines from a stream that may hold anything: each is bounded, and what is no line is told.
+//! Reads lines from an untrusted stream: line length is bounded, and invalid lines are reported.
 
 use std::io::{self, BufRead, Read};
 
-/// What came.
+/// Result of reading a line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Line {
-    /// A whole line, without its end.
+    /// A whole line, without its line end.
     Text(String),
-    /// A line that is no UTF-8: its beginning, with marks for what cannot be shown.
+    /// A line that is not UTF-8: its beginning, with placeholders for invalid bytes.
     NoText(String),
-    /// A line of more bytes than there may be: its beginning.
+    /// A line longer than the limit: its beginning.
     TooLong(String),
     /// The stream ended in the middle of a line.
     Torn(String),
@@ -17,10 +17,10 @@ pub enum Line {
     End,
 }
 
-/// Characters that are shown of a line that is refused.
+/// Number of characters shown of a rejected line.
 const SHOWN: usize = 80;
 
-/// A stream, line by line.
+/// Reads a stream line by line.
 #[derive(Debug)]
 pub struct Lines<R> {
     stream: R,
@@ -28,12 +28,12 @@ pub struct Lines<R> {
 }
 
 impl<R: BufRead> Lines<R> {
-    /// Lines of at most so many bytes.
+    /// Limits lines to `most` bytes.
     pub fn new(stream: R, most: usize) -> Self {
         Lines { stream, most }
     }
 
-    /// The next line; waits for it. After [`Line::TooLong`] nothing sensible follows.
+    /// Waits for the next line. After [`Line::TooLong`] the rest of the stream is unusable.
     ///
     /// # Errors
     /// If the stream cannot be read.
@@ -60,7 +60,7 @@ impl<R: BufRead> Lines<R> {
     }
 }
 
-/// The first characters of a line, as far as they are text.
+/// The first characters of a line, up to any invalid bytes.
 pub fn beginning(bytes: &[u8]) -> String {
     let text = String::from_utf8_lossy(&bytes[..bytes.len().min(4 * SHOWN)]);
     let mut begun: String = text.chars().take(SHOWN).collect();
@@ -88,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn a_stream_comes_apart_at_its_line_feeds() {
+    fn a_stream_is_split_at_line_feeds() {
         let text = |s: &str| Line::Text(s.into());
         assert_eq!(
             all(b"a\n\nb\n", 9),
@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_may_have_as_many_bytes_as_are_allowed_and_no_more() {
+    fn lines_longer_than_the_limit_are_rejected() {
         assert_eq!(all(b"1234\n", 4)[0], Line::Text("1234".into()));
         assert_eq!(all(b"12345\n", 4), [Line::TooLong("12345".into())]);
         assert_eq!(all(b"12345678", 4), [Line::TooLong("12345".into())]);

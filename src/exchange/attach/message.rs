@@ -1,4 +1,4 @@
-//! What debugger and solver say to each other. Units are the solver's; forces act on the slave node, compression positive.
+//! Messages between debugger and solver. Units are the solver's; forces act on the slave node, and compression is positive.
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -7,22 +7,22 @@ pub use stickslip_core::model::{Mode, Node, ToldKind};
 pub use stickslip_core::step::event::Position;
 pub use stickslip_core::step::solver::PosedForm;
 
-/// What the debugger asks. Each gets one answer, but for [`Request::Interrupt`] and [`Request::Bye`].
+/// A request from the debugger. Each has one answer, except [`Request::Interrupt`] and [`Request::Bye`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "type", rename_all = "lowercase")]
 pub enum Request {
-    /// Who is there; answered by [`Answer::Hello`].
+    /// Identify yourself; answered by [`Answer::Hello`].
     Hello {
-        /// The version that the debugger speaks.
+        /// Protocol version of the debugger.
         protocol: u32,
         /// The debugger's name.
         name: String,
         /// Its version.
         version: String,
     },
-    /// What is solved; answered by [`Answer::Scene`].
+    /// Describe the scene; answered by [`Answer::Scene`].
     Scene,
-    /// One iteration; answered by [`Answer::State`].
+    /// Perform one iteration; answered by [`Answer::State`].
     Step,
     /// Force a contact into a mode; answered by [`Answer::Ok`].
     Force {
@@ -30,11 +30,11 @@ pub enum Request {
         contact: Id,
         /// The mode.
         mode: Mode,
-        /// Whether it is held until released; else it is for the next iteration.
+        /// Whether to hold it until it is released; otherwise only for the next iteration.
         #[serde(default)]
         hold: bool,
     },
-    /// Give a contact back to the solver; answered by [`Answer::Ok`].
+    /// Release a forced contact; answered by [`Answer::Ok`].
     Release {
         /// The contact.
         contact: Id,
@@ -43,65 +43,65 @@ pub enum Request {
     Set {
         /// Its name.
         name: String,
-        /// Its value: a number, a flag or a text.
+        /// A number, a flag or a text.
         value: Value,
     },
-    /// Keep the present state; answered by [`Answer::Saved`].
+    /// Save the current state; answered by [`Answer::Saved`].
     Save,
-    /// Go to a state that was kept; answered by [`Answer::Ok`].
+    /// Return to a saved state; answered by [`Answer::Ok`].
     Restore {
-        /// What `saved` gave.
+        /// The token from `saved`.
         token: Value,
     },
-    /// The frozen interface problem; answered by [`Answer::Problem`].
+    /// Send the frozen interface problem; answered by [`Answer::Problem`].
     Problem,
-    /// End the request at hand soon; not answered.
+    /// Stop the current request soon; not answered.
     Interrupt,
-    /// End; not answered.
+    /// Exit; not answered.
     Bye,
 }
 
-/// What the solver says.
+/// A message from the solver.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "type", rename_all = "lowercase")]
 pub enum Answer {
-    /// Who it is.
+    /// Identification of the solver.
     Hello(Box<Hello>),
-    /// What it solves.
+    /// The scene.
     Scene(Box<Scene>),
-    /// What an iteration did.
+    /// Result of an iteration.
     State(Box<State>),
-    /// Done as asked.
+    /// The request succeeded.
     Ok,
-    /// Not done.
+    /// The request was refused.
     Refused {
-        /// Why.
+        /// Reason.
         reason: String,
     },
-    /// The present state is kept.
+    /// The current state was saved.
     Saved {
-        /// By which it is found again.
+        /// Token for restoring it.
         token: Value,
     },
     /// The frozen interface problem.
     Problem(Box<Problem>),
-    /// Something for the user to read; no answer to anything.
+    /// Text for the user; not an answer to a request.
     Message {
-        /// How grave it is.
+        /// Severity.
         #[serde(default)]
         level: Level,
-        /// What it says.
+        /// The text.
         text: String,
     },
-    /// The solver ends on its own.
+    /// The solver exits on its own.
     Bye {
-        /// Why.
+        /// Reason.
         #[serde(default)]
         reason: String,
     },
 }
 
-/// By what a solver calls a contact.
+/// Identifier of a contact.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(untagged, expecting = "an id is a whole number or a text")]
 pub enum Id {
@@ -120,103 +120,103 @@ impl std::fmt::Display for Id {
     }
 }
 
-/// How grave a message is.
+/// Severity of a message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Level {
-    /// Good to know.
+    /// Information.
     #[default]
     Info,
-    /// Doubtful.
+    /// A possible problem.
     Warning,
-    /// Wrong.
+    /// A definite problem.
     Error,
 }
 
-/// Who the solver is, and what it can do.
+/// Identity and abilities of the solver.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Hello {
-    /// The version that it speaks.
+    /// Protocol version of the solver.
     pub protocol: u32,
     /// Its name.
     pub name: String,
     /// Its version.
     #[serde(default)]
     pub version: String,
-    /// What it offers.
+    /// Supported features.
     #[serde(default)]
     pub abilities: Abilities,
-    /// By which rules it chooses modes, where the debugger is to check them.
+    /// The rules by which it chooses modes, if the debugger should check them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub decides: Option<Decides>,
-    /// What can be changed during a run.
+    /// Parameters that can be changed during a run.
     #[serde(default)]
     pub parameters: Vec<Parameter>,
 }
 
-/// What a solver offers; what is left out it does not.
+/// Optional features of a solver; omitted ones are not supported.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Abilities {
-    /// Modes can be forced for one iteration.
+    /// Can force a mode for one iteration.
     pub force: bool,
-    /// Modes can be held until released.
+    /// Can hold a mode until it is released.
     pub hold: bool,
-    /// Which states can be kept and gone back to.
+    /// States that can be saved and restored.
     pub restore: Restore,
-    /// The frozen interface problem can be asked for.
+    /// Can send the frozen interface problem.
     pub problem: bool,
-    /// It looks at its input while it works.
+    /// Reads its input while it works.
     pub interrupt: bool,
 }
 
-/// Which states can be kept and gone back to.
+/// States that can be saved and restored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Restore {
-    /// None: going back starts the solver anew.
+    /// None: going back restarts the solver.
     #[default]
     None,
-    /// The start, and those in which an increment was accepted.
+    /// The start, and states in which an increment was accepted.
     Increment,
-    /// Every one.
+    /// Every state.
     Any,
 }
 
-/// By which rules a solver chooses the next modes.
+/// Rules by which a solver chooses the next modes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Decides {
     /// Table 2 of El-Sawy & Moore (1996).
     Table2,
-    /// Newton's method on the projections, with [`State::spring`].
+    /// Newton's method on the projected forces, with [`State::spring`].
     Newton,
 }
 
-/// Something that can be changed during a run.
+/// A parameter that can be changed during a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Parameter {
-    /// What it is called. `increment`, `friction` and `cohesion` have a meaning.
+    /// Its name. `increment`, `friction` and `cohesion` have a predefined meaning.
     pub name: String,
-    /// What values it takes.
+    /// Kind of value.
     pub kind: ParameterKind,
-    /// The value that it has.
+    /// Current value.
     pub value: Value,
-    /// The least; `None` is no bound.
+    /// Lower bound; `None` if there is none.
     #[serde(default)]
     pub least: Option<f64>,
-    /// The most; `None` is no bound.
+    /// Upper bound; `None` if there is none.
     #[serde(default)]
     pub most: Option<f64>,
-    /// What a choice is between.
+    /// The options of a choice.
     #[serde(default)]
     pub choices: Vec<String>,
-    /// What it does, in a line.
+    /// One-line description.
     #[serde(default)]
     pub about: String,
 }
 
-/// What values a parameter takes.
+/// Kind of a parameter's value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum ParameterKind {
@@ -226,23 +226,23 @@ pub enum ParameterKind {
     Integer,
     /// True or false.
     Flag,
-    /// One of some texts.
+    /// One of several texts.
     Choice,
     /// A text.
     Text,
 }
 
-/// What is solved.
+/// The scene.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Scene {
-    /// One line.
+    /// One-line title.
     pub title: String,
-    /// More for the reader.
+    /// Description for the reader.
     #[serde(default)]
     pub about: String,
-    /// What there is to draw, and the contacts' nodes.
+    /// Nodes for drawing, including those of the contacts.
     pub nodes: Vec<Node>,
-    /// Curves through nodes, by their place in `nodes`.
+    /// Curves through nodes, as indices into `nodes`.
     #[serde(default)]
     pub lines: Vec<Vec<usize>>,
     /// Masters.
@@ -250,16 +250,16 @@ pub struct Scene {
     pub surfaces: Vec<Surface>,
     /// The slave nodes.
     pub contacts: Vec<Contact>,
-    /// Load factors between which the history goes.
+    /// Load factors at the start and at the end of the history.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub load: Option<[f64; 2]>,
-    /// The numbers that states report.
+    /// Numbers that states report.
     #[serde(default)]
     pub monitors: Vec<Monitor>,
-    /// Whether states tell the arc along the path of equilibrium, which drives the history.
+    /// Whether states report the arc along the equilibrium path, which drives the history.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub arc: bool,
-    /// Whether states tell the drag of damped motions.
+    /// Whether states report the drag of damped motions.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub drag: bool,
 }
@@ -268,28 +268,28 @@ pub struct Scene {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(
     untagged,
-    expecting = "a monitor is a name, or an object with name and kind"
+    expecting = "a monitor must be a name, or an object with name and kind"
 )]
 pub enum Monitor {
-    /// By its name alone.
+    /// Only a name.
     Name(String),
-    /// With what it is.
+    /// With its kind.
     Kind {
-        /// What the user reads.
+        /// Name shown to the user.
         name: String,
-        /// What it is.
+        /// Kind of number.
         kind: ToldKind,
     },
 }
 
-/// A master surface: a chain of nodes, the outward side on the right of the walk.
+/// A master surface: a chain of nodes with the outward side on the right of the walk.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Surface {
-    /// What the user reads.
+    /// Name shown to the user.
     pub name: String,
-    /// Places in [`Scene::nodes`].
+    /// Indices into [`Scene::nodes`].
     pub nodes: Vec<usize>,
-    /// Whether it moves with no body.
+    /// Whether the surface is fixed.
     #[serde(default)]
     pub rigid: bool,
 }
@@ -297,29 +297,29 @@ pub struct Surface {
 /// A slave node.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Contact {
-    /// By what requests call it.
+    /// Identifier used in requests.
     pub id: Id,
-    /// What the user reads; that of its node where it is left out.
+    /// Name shown to the user; by default that of its node.
     #[serde(default)]
     pub name: String,
-    /// Place in [`Scene::nodes`].
+    /// Index into [`Scene::nodes`].
     pub node: usize,
     /// Name of the surface that it may touch.
     #[serde(default)]
     pub surface: Option<String>,
-    /// Coulomb's law at it.
+    /// Coulomb's law.
     #[serde(default)]
     pub friction: Friction,
     /// Mode of the first iteration.
     #[serde(default)]
     pub mode: Mode,
-    /// Tributary area (of the undeformed shape).
+    /// Undeformed tributary area.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub area: Option<f64>,
-    /// Compliances in series along n and along t (length by force): what touches gives way, and penetrates by that.
+    /// Compliances in series along n and t (length per force); a touching node penetrates by compliance times force.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gives: Option<[f64; 2]>,
-    /// Whether it is held at its point of the surface, in tension too.
+    /// Whether it is tied to its point of the surface, in tension too.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub tied: bool,
 }
@@ -330,131 +330,131 @@ pub struct Friction {
     /// Coefficient.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mu: Option<f64>,
-    /// The same as an angle, in degrees; it goes before `mu`.
+    /// The same as an angle in degrees; takes precedence over `mu`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub angle: Option<f64>,
-    /// What friction gives without a normal force (force).
+    /// Friction without a normal force (force).
     #[serde(default)]
     pub cohesion: f64,
 }
 
-/// What an iteration did, and what is solved next.
+/// Result of an iteration, and modes of the next one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct State {
-    /// The iteration.
+    /// Number of the iteration.
     pub at: Position,
-    /// Load factor at the end of its increment.
+    /// Load factor at the end of the increment.
     #[serde(default)]
     pub load: Option<f64>,
-    /// What ended with it.
+    /// The level that ended with this iteration.
     pub ended: Ended,
-    /// Why, where something failed or was cut.
+    /// Reason of a failure or cut.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub reason: String,
-    /// Size of the increment that is tried next, where it was cut (load factor).
+    /// Size of the next increment after a cut (load factor).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub size: Option<f64>,
-    /// All contacts, in the order of the scene; none where the iteration could not be solved.
+    /// All contacts in scene order; empty if the iteration could not be solved.
     pub contacts: Vec<Found>,
-    /// Norms about which the iteration was solved.
+    /// Norms before the solve.
     #[serde(default)]
     pub residual: Norms,
     /// Norms at the end of a major iteration.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub after: Option<Norms>,
-    /// Of the scene's nodes, along x and y (length); as before where it is left out.
+    /// Displacements of the scene's nodes along x and y (length); unchanged if omitted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub displacements: Option<Vec<[f64; 2]>>,
-    /// Stiffness that compares gaps with forces, for [`Decides::Newton`] (force by length).
+    /// Stiffness that relates gaps to forces, for [`Decides::Newton`] (force per length).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub spring: Option<f64>,
-    /// The numbers that the scene named, where an increment was accepted.
+    /// Values of the scene's monitors, if an increment was accepted.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub monitors: Vec<Option<f64>>,
-    /// Arc along the path, where the scene says that it is told.
+    /// Arc along the path, if the scene declares it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub arc: Option<f64>,
-    /// Drag of the damped motion that it is a part of (force by length).
+    /// Drag of the current damped motion (force per length).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drag: Option<f64>,
 }
 
-/// What ended with an iteration.
+/// The level that ended with an iteration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Ended {
-    /// Nothing else.
+    /// Only the iteration.
     Iteration,
     /// The major iteration.
     Equilibrium,
-    /// The increment: it is accepted.
+    /// The increment was accepted.
     Increment,
-    /// The attempt: the increment starts again with another size.
+    /// The attempt was cut: the increment restarts with a different size.
     Cut,
-    /// The increment: it failed.
+    /// The increment failed.
     Failure,
-    /// The increment is accepted, and the history is over.
+    /// The increment was accepted and the history is complete.
     Done,
 }
 
-/// What an iteration found at a contact. `None` where the solver does not know a number, or it is infinite.
+/// Result of an iteration at a contact. `None` if a number is unknown or infinite.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Found {
     /// The contact.
     pub id: Id,
-    /// Mode of the solve that was made.
+    /// Mode used in this solve.
     pub mode: Mode,
-    /// Mode of the next one.
+    /// Mode of the next solve.
     pub next: Mode,
-    /// Gap after the solve (length), negative inside.
+    /// Gap after the solve (length); negative is penetration.
     #[serde(default)]
     pub gap: Option<f64>,
-    /// Normal force, compression positive.
+    /// Normal force; compression is positive.
     #[serde(default)]
     pub f_n: Option<f64>,
     /// Tangential force along t.
     #[serde(default)]
     pub f_t: Option<f64>,
-    /// T_max, with the sign of the friction force that a sliding node has.
+    /// T_max, with the sign of the friction force on a sliding node.
     #[serde(default)]
     pub limit: Option<f64>,
-    /// How far the surface has gone ahead of the node, along t (length).
+    /// Motion of the surface relative to the node along t (length).
     #[serde(default)]
     pub slip: Option<f64>,
-    /// Why it takes its next mode: a row of Table 2 by its name, or words of the solver's own.
+    /// Rule that selected the next mode: the name of a row of Table 2, or the solver's own text.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub rule: String,
-    /// Signed distance from switching; positive kept the mode (force or length).
+    /// Signed distance from switching; positive if the mode is kept (force or length).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub margin: Option<f64>,
-    /// The inequalities that were tested.
+    /// The tested inequalities.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub tests: Vec<Test>,
-    /// Mode that its rules want, where something else (a hold) had the last word.
+    /// Mode selected by the rules, if it was overridden (by a hold).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wanted: Option<Mode>,
-    /// T_max that the solve was made with.
+    /// T_max used in this solve.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limit_used: Option<f64>,
-    /// Length of the surface to where the node stuck, with the sign of slip.
+    /// Distance along the surface from the stick point, with the sign of slip.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drift: Option<f64>,
     /// Outward normal of the master.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub normal: Option<[f64; 2]>,
-    /// The point of the master.
+    /// The closest point on the master.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub foot: Option<[f64; 2]>,
-    /// Half the angle (radians) between the normals of two sides that hold it.
+    /// Half the angle (radians) between the normals of the two sides of a corner that holds the node.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub corner: Option<f64>,
-    /// Whether a force component is left to the supports.
+    /// Whether the supports carry a force component.
     #[serde(default, skip_serializing_if = "no")]
     pub carried: [bool; 2],
-    /// Whether the mode of the solve, or the next, was forced from outside.
+    /// Whether the mode of this or the next solve was forced from outside.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub forced: Option<Forced>,
-    /// False past the ends of all surfaces: there is nothing to touch.
+    /// False beyond the ends of all surfaces, where no contact is possible.
     #[serde(default = "yes", skip_serializing_if = "Clone::clone")]
     pub over: bool,
 }
@@ -473,15 +473,15 @@ fn yes() -> bool {
 pub enum Forced {
     /// For one iteration.
     Once,
-    /// Until released.
+    /// Until it is released.
     Held,
 }
 
-/// Sizes of what is not yet in balance; all but `force` and `scale` are relative.
+/// Residual norms; all except `force` and `scale` are relative.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
 pub struct Norms {
-    /// Out-of-balance force over the force scale.
+    /// Out-of-balance force divided by the force scale.
     pub relative: Option<f64>,
     /// Out-of-balance force.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -489,65 +489,65 @@ pub struct Norms {
     /// Violation of the interface conditions.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub interface: Option<f64>,
-    /// Displacement change in the last major iteration.
+    /// Displacement correction of the last major iteration.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub correction: Option<f64>,
     /// The force scale.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub scale: Option<f64>,
-    /// What `relative` must not exceed.
+    /// Tolerance for `relative`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub limit: Option<f64>,
-    /// Round-off.
+    /// Round-off level.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub noise: Option<f64>,
 }
 
-/// The frozen interface problem: (gap, u) = W f + q, with f = (f_n, f_t) in total at the end of the increment and u the motion of
-/// the node relative to its master along t since the increment began; u = 0 sticks.
+/// The frozen interface problem: (gap, u) = W f + q, with the total forces f = (f_n, f_t) at the end of the increment and the
+/// motion u of the node relative to its master along t since the start of the increment; u = 0 for stick.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Problem {
-    /// The contacts that take part, in the order of the pairs.
+    /// The participating contacts, in the order of the pairs.
     pub contacts: Vec<Id>,
-    /// What the matrix is.
+    /// Kind of matrix.
     pub kind: PosedForm,
-    /// Of size 2n.
+    /// The matrix, of size 2n.
     pub matrix: Matrix,
-    /// Gap and motion without any force (length).
+    /// Gap and motion without forces (length).
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub q: Vec<f64>,
-    /// In place of `q`, with a stiffness: f = K (gap, u) − load (force).
+    /// Replaces `q` for a stiffness: f = K (gap, u) − load (force).
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub load: Vec<f64>,
-    /// Friction coefficient of each.
+    /// Friction coefficient of each contact.
     pub mu: Vec<f64>,
-    /// Cohesion of each (force); none where it is left out.
+    /// Cohesion of each contact (force); 0 if omitted.
     #[serde(default)]
     pub cohesion: Vec<f64>,
 }
 
-/// A matrix, row by row or entry by entry.
+/// A matrix, by rows or by entries.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Matrix {
     /// Rows.
     Rows(Vec<Vec<f64>>),
-    /// Row, column (from 0) and value; entries of one place add up.
+    /// Row, column (from 0) and value; duplicate entries are added.
     Triplets {
-        /// Rows and columns.
+        /// Number of rows and columns.
         size: usize,
         /// The entries.
         triplets: Vec<(usize, usize, f64)>,
     },
 }
 
-/// A number as it is sent: `None` for what JSON has no word for.
+/// A number for JSON: `None` if it is not finite.
 pub fn number(x: f64) -> Option<f64> {
     x.is_finite().then_some(x)
 }
 
 impl Answer {
-    /// Its `type`.
+    /// The value of its `type` field.
     pub fn kind(&self) -> &'static str {
         match self {
             Answer::Hello(_) => "hello",

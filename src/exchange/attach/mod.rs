@@ -1,12 +1,12 @@
-//! The protocol by which a debugger steps a solver that is a program of its own: lines of JSON, version [`PROTOCOL`].
+//! The protocol by which the debugger steps a solver in another process: lines of JSON, version [`PROTOCOL`].
 //!
-//! The debugger asks ([`Request`]), the solver answers ([`Answer`]), one line each. JSON knows no infinity and no NaN: `null`
-//! stands for what is infinite or missing. Floats are written with as many digits as they need to read back to the same bits.
-//! The manual's page `protocol` describes all messages; the types here say the same in Rust.
+//! The debugger sends requests ([`Request`]) and the solver answers ([`Answer`]), one message per line. JSON has no infinity and
+//! NaN: `null` stands for infinite or missing numbers. Floats are written with enough digits to be read back exactly. The
+//! manual's page `protocol` describes all messages; the types here define the same in Rust.
 //!
-//! - [`message`]: what the two sides say; `reading`: as lines, and from lines.
-//! - [`mod@line`]: lines of bounded length from a stream that may hold anything.
-//! - [`conversation`]: a kept exchange, line by line with its direction.
+//! - [`message`]: the messages; `reading`: converts them to and from lines.
+//! - [`mod@line`]: reads lines of bounded length from an untrusted stream.
+//! - [`conversation`]: transcripts.
 
 pub mod conversation;
 pub mod line;
@@ -17,8 +17,8 @@ pub use conversation::{Kept, Side};
 pub use line::{Line, Lines};
 pub use message::{Answer, Request};
 
-/// The version of the protocol that is spoken here.
+/// Supported protocol version.
 pub const PROTOCOL: u32 = 1;
 
-/// Most bytes of a message: a state of 100,000 contacts takes about a third of it.
+/// Maximum size of a message in bytes; a state of 100,000 contacts needs about a third of it.
 pub const MOST_BYTES: usize = 64 << 20;

@@ -1,8 +1,7 @@
-//! Messages as lines, and lines as messages.
+//! Converts messages to lines and back.
 //!
-//! An answer is read twice: first for its `type` alone, which passes over all else, and then as what that says. So numbers go where
-//! they belong without a detour (a state of 1,000 contacts is 0.3 MB), and what is wrong is told with its place in the message and
-//! its column in the line.
+//! An answer is parsed twice: first only its `type`, then the whole message as that type. This avoids an intermediate tree (a
+//! state of 1,000 contacts is 0.3 MB), and errors have a path in the message and a column in the line.
 
 use super::message::{Answer, Matrix, Request};
 use crate::broken::Broken;
@@ -11,21 +10,21 @@ use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::fmt;
 
-/// Most characters of a place in a message that are told.
+/// Maximum number of characters of a message path in an error.
 const MOST_PATH: usize = 60;
-/// What JSON has no word for, as languages write it all the same.
+/// Spellings of non-finite numbers that languages write although JSON does not allow them.
 const NO_NUMBERS: [&str; 6] = ["NaN", "nan", "Infinity", "inf", "Inf", "-Infinity"];
 
 impl Request {
-    /// The line, with its line feed.
+    /// The message as a line, with line feed.
     pub fn line(&self) -> String {
         line(self)
     }
 
-    /// Reads a line.
+    /// Parses a line.
     ///
     /// # Errors
-    /// What is wrong with it, at its column.
+    /// The error, with its column.
     pub fn read(line: &str) -> Result<Request, Broken> {
         kind(line)?;
         body(line)
@@ -33,28 +32,28 @@ impl Request {
 }
 
 impl Answer {
-    /// The line, with its line feed.
+    /// The message as a line, with line feed.
     pub fn line(&self) -> String {
         line(self)
     }
 
-    /// Reads a line.
+    /// Parses a line.
     ///
     /// # Errors
-    /// What is wrong with it, at its column.
+    /// The error, with its column.
     pub fn read(line: &str) -> Result<Answer, Broken> {
         Ok(match &*kind(line)? {
             "state" => Answer::State(body(line)?),
             "scene" => Answer::Scene(body(line)?),
             "problem" => Answer::Problem(body(line)?),
             "hello" => Answer::Hello(body(line)?),
-            // Small, or none at all.
+            // The remaining messages are small or empty.
             _ => body(line)?,
         })
     }
 }
 
-/// No message of ours has a map with other keys than texts, which is all that could fail.
+/// Serialization can only fail for maps with non-text keys, which the messages do not have.
 fn line(message: &impl Serialize) -> String {
     let text = serde_json::to_string(message);
     text.unwrap_or_default() + "\n"
@@ -72,7 +71,7 @@ fn kind(line: &str) -> Result<Cow<'_, str>, Broken> {
 
 fn body<'a, T: Deserialize<'a>>(line: &'a str) -> Result<T, Broken> {
     serde_json::from_str(line).map_err(|error| {
-        // The path is looked for only where something is wrong; what ends too early may have ended anywhere.
+        // The path is only computed for errors; a message that ends too early has no meaningful path.
         let mut again = serde_json::Deserializer::from_str(line);
         let found = serde_path_to_error::deserialize::<_, T>(&mut again).err();
         let path = found.filter(|_| !error.is_eof());
@@ -84,24 +83,24 @@ fn body<'a, T: Deserialize<'a>>(line: &'a str) -> Result<T, Broken> {
     })
 }
 
-/// What serde says of a line, with the place in the message, at its column.
+/// Converts a serde error to one with the message path and the column.
 fn broken(line: &str, path: &str, error: &serde_json::Error) -> Broken {
     let told = error.to_string();
-    // Where it stands is told beside it.
+    // The position is reported separately.
     let mut told = told.split(" at line ").next().unwrap_or(&told).to_owned();
-    // Columns of serde_json are bytes.
+    // serde_json counts columns in bytes.
     let at = error.column().saturating_sub(1).min(line.len());
     let mut at = (0..=at)
         .rev()
         .find(|&at| line.is_char_boundary(at))
         .unwrap_or(0);
-    // What begins as null does is refused one letter later.
+    // For text that starts like null, serde_json reports the error one letter later.
     let letters = line[..at].trim_end_matches(|c: char| c.is_ascii_alphanumeric() || c == '-');
     if NO_NUMBERS
         .iter()
         .any(|none| line[letters.len()..].starts_with(none))
     {
-        told = "JSON knows no NaN and no infinity; null stands for both".to_owned();
+        told = "JSON has no NaN and infinity; write null instead".to_owned();
         at = letters.len();
     }
     let mut letters = path.chars();
@@ -122,7 +121,7 @@ impl<'de> Deserialize<'de> for Matrix {
     }
 }
 
-/// Reads a matrix, of which there can be millions of numbers, as it comes.
+/// Reads a matrix, possibly with millions of numbers, directly from the stream.
 struct OfMatrix;
 
 impl<'de> Visitor<'de> for OfMatrix {
@@ -155,7 +154,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn infinite_and_missing_numbers_are_null_and_come_back_as_none() {
+    fn infinite_and_missing_numbers_are_null_and_read_as_none() {
         let norms = Norms {
             relative: number(f64::INFINITY),
             force: number(-0.0),
@@ -169,7 +168,7 @@ mod tests {
     }
 
     #[test]
-    fn what_json_does_not_know_is_said_at_its_column() {
+    fn invalid_json_is_reported_with_its_column() {
         for (none, column) in [("NaN", 25), ("Infinity", 25), ("nan", 25)] {
             let text = format!(r#"{{"type":"saved","token":{none}}}"#);
             let broken = Answer::read(&text).expect_err(none);
@@ -183,7 +182,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told_with_its_place_in_the_message() {
+    fn errors_have_a_path_in_the_message() {
         let text = r#"{"type":"state","at":{"increment":1},"ended":"iteration","contacts":[{"id":1,"mode":"free","next":"free","gap":0.5}]}"#;
         assert!(Answer::read(text).is_ok());
         for (that, this, told) in [
@@ -243,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn depths_that_would_exhaust_the_stack_are_refused_or_passed_over() {
+    fn excessive_nesting_is_rejected_or_skipped() {
         let deep = |depth: usize| "[".repeat(depth) + &"]".repeat(depth);
         let token = |depth| format!(r#"{{"type":"saved","token":{}}}"#, deep(depth));
         assert!(Answer::read(&token(50)).is_ok());
@@ -372,12 +371,12 @@ mod tests {
         }
 
         #[test]
-        fn a_state_reads_back_as_it_was_written(state in state()) {
+        fn a_state_survives_a_round_trip(state in state()) {
             prop_assert_eq!(Answer::read(&state.line()), Ok(state));
         }
 
         #[test]
-        fn a_damaged_line_is_read_or_refused_at_a_column_of_it(
+        fn a_damaged_line_is_read_or_rejected_with_a_valid_column(
             state in state(),
             place in any::<prop::sample::Index>(),
             damage in prop_oneof![Just(""), Just("\""), Just("}"), Just("]"), Just("NaN"), Just("é"), Just("\u{0}"), Just("-")],

@@ -1,16 +1,16 @@
-//! `job.cel`: the contact elements of every iteration, as `*CONTACT FILE` with CONTACT ELEMENTS has them written.
+//! `job.cel`: the contact elements of every iteration, written by `*CONTACT FILE` with CONTACT ELEMENTS.
 //!
 //! An element takes two lines: `*ELEMENT,TYPE=T,ELSET=contactelements_stS_inI_atA_itK`, and its number with its nodes. The set
-//! tells step, increment, attempt and iteration. By type (sources of CalculiX, gencontelem_n2f.f and gencontelem_f2f.f):
+//! contains step, increment, attempt and iteration. Types (CalculiX sources, gencontelem_n2f.f and gencontelem_f2f.f):
 //!
-//! - `C3D6`, nodes m2 s m3 m1 s m4: node to surface; the slave node s stands twice, the m are a master face of four sides;
-//! - `C3D4`, nodes m1 m2 m3 s: the same with a triangle;
-//! - `C3D8`, nodes m1 m2 m3 m4 s2 s1 s4 s3: surface to surface, once for each integration point of the slave face that is in
-//!   contact; a triangle has its last corner twice;
-//! - `C3D6`, nodes m1 m2 m3 s2 s1 s3: the same with two triangles.
+//! - `C3D6`, nodes m2 s m3 m1 s m4: node to surface; the slave node s occurs twice, the m are a four-sided master face;
+//! - `C3D4`, nodes m1 m2 m3 s: node to surface with a triangle;
+//! - `C3D8`, nodes m1 m2 m3 m4 s2 s1 s4 s3: surface to surface, one element per integration point of the slave face in contact; a
+//!   triangle repeats its last corner;
+//! - `C3D6`, nodes m1 m2 m3 s2 s1 s3: surface to surface with two triangles.
 //!
-//! An iteration without any contact element does not stand in the file. Memory is 12 bytes for each slave node or face that an
-//! iteration has in contact, whatever the number of its integration points.
+//! Iterations without contact elements are not in the file. Memory use is 12 bytes per slave node or face in contact and
+//! iteration, independent of the number of integration points.
 
 use super::Stop;
 use super::lines::{Field, Line, Lines};
@@ -19,58 +19,58 @@ use std::collections::HashMap;
 use std::io::BufRead;
 use std::ops::Range;
 
-/// Where a run was.
+/// Position in a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct At {
     /// Step, from 1.
     pub step: u32,
     /// Increment of the step, from 1.
     pub increment: u32,
-    /// Attempt at the increment, from 1: one more than how often it was cut.
+    /// Attempt at the increment, from 1; one more than the number of cuts.
     pub attempt: u32,
     /// Iteration of the attempt, from 1.
     pub iteration: u32,
 }
 
-/// What can be in contact: a slave node, or a slave face by its corners.
+/// A slave node, or a slave face given by its corners.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Slave {
-    /// Node to surface: the slave node.
+    /// Node-to-surface contact.
     Node(u32),
-    /// Surface to surface: the corners of the slave face, ascending; of a triangle the last one twice.
+    /// Surface-to-surface contact: the corners of the slave face, ascending; a triangle repeats its last corner.
     Face([u32; 4]),
 }
 
-/// A slave that is in contact with a master face in an iteration.
+/// A slave in contact with a master face in an iteration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Closed {
-    /// Position in [`ContactElements::slaves`].
+    /// Index into [`ContactElements::slaves`].
     pub slave: u32,
-    /// Position in [`ContactElements::masters`].
+    /// Index into [`ContactElements::masters`].
     pub master: u32,
-    /// Number of contact elements between the two: 1, or as many as there are integration points in contact.
+    /// Number of contact elements between the two: 1, or the number of integration points in contact.
     pub elements: u32,
 }
 
-/// What a file holds.
+/// Contents of a file.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct ContactElements {
-    /// Every slave node and face that was ever in contact, in the order of the file.
+    /// Every slave node and face that was ever in contact, in file order.
     pub slaves: Vec<Slave>,
-    /// Every master face that was ever touched: its corners, ascending; of a triangle the last one twice.
+    /// Every master face that was ever touched: its corners, ascending; a triangle repeats its last corner.
     pub masters: Vec<[u32; 4]>,
-    /// The iterations that have any contact element, ascending, each with its part of `closed`.
+    /// The iterations with contact elements, ascending, each with its range of `closed`.
     pub iterations: Vec<(At, Range<usize>)>,
-    /// Who is in contact, iteration after iteration, in each ascending by slave and master.
+    /// The closed contacts, iteration by iteration, each sorted by slave and master.
     pub closed: Vec<Closed>,
-    /// Where the file breaks off, if it does.
+    /// Where the file is truncated, if it is.
     pub stop: Option<Stop>,
 }
 
 /// Reads a file.
 ///
 /// # Errors
-/// If it cannot be read, a line of it is something else, or its iterations go back.
+/// If it cannot be read, a line is invalid, or its iterations are not in order.
 pub fn read(from: impl BufRead) -> Result<ContactElements, Broken> {
     let mut lines = Lines::new(from);
     let mut reading = Reading::default();
@@ -88,23 +88,23 @@ pub fn read(from: impl BufRead) -> Result<ContactElements, Broken> {
     Ok(reading.end())
 }
 
-/// The types of contact elements, and how many nodes each has.
+/// The types of contact elements, and their numbers of nodes.
 const TYPES: [(&str, usize); 3] = [("C3D4", 4), ("C3D6", 6), ("C3D8", 8)];
-/// Most nodes that one has.
+/// Maximum number of nodes.
 const MOST: usize = 8;
 
-/// What is known while a file is read.
+/// State of the reader.
 #[derive(Default)]
 struct Reading {
     found: ContactElements,
     slaves: HashMap<Slave, u32>,
     masters: HashMap<[u32; 4], u32>,
-    /// The iteration that is read, and how many nodes its next element has.
+    /// The current iteration, and the number of nodes of its next element.
     now: Option<(At, usize)>,
-    /// Number and nodes of the element that is read, and how many of these stood there yet.
+    /// Number and nodes of the current element, and how many of them have been read.
     element: [u32; MOST + 1],
     read: usize,
-    /// Line of the header whose element is not whole yet.
+    /// Line of the header of an incomplete element.
     open: Option<usize>,
 }
 
@@ -112,7 +112,7 @@ impl Reading {
     fn header(&mut self, line: Line) -> Result<(), Broken> {
         if self.open.is_some() {
             let message = format!(
-                "a new element begins, and of the one before only {} numbers stand there",
+                "a new element begins, but the previous one has only {} numbers",
                 self.read
             );
             return Err(line.wrong(0, message));
@@ -120,7 +120,8 @@ impl Reading {
         let (at, nodes) = header(line)?;
         match self.now {
             Some((before, _)) if at < before => {
-                let message = "the iterations go back here: a .cel of one run has them in order";
+                let message =
+                    "iterations must be in order in the .cel of one run; this one goes back";
                 return Err(line.wrong(0, message));
             }
             Some((before, _)) if at == before => {}
@@ -140,12 +141,12 @@ impl Reading {
             let nodes = match (self.open, self.now) {
                 (Some(_), Some((_, nodes))) => nodes,
                 (None, Some(_)) => {
-                    let message = "the element has all its nodes already; *ELEMENT should follow";
+                    let message = "the element already has all its nodes; *ELEMENT should follow";
                     return Err(field.wrong(message));
                 }
                 _ => return Err(field.wrong(NO_CEL)),
             };
-            self.element[self.read] = field.whole_number("number of a node")?;
+            self.element[self.read] = field.whole_number("node number")?;
             self.read += 1;
             if self.read == nodes + 1 {
                 self.take(field)?;
@@ -154,7 +155,7 @@ impl Reading {
         Ok(())
     }
 
-    /// Takes the element that is whole with this field.
+    /// Adds the element that this field completes.
     fn take(&mut self, field: Field) -> Result<(), Broken> {
         let nodes = &self.element[1..self.read];
         let (slave, master) = match *nodes {
@@ -162,7 +163,7 @@ impl Reading {
             [b, s, c, a, t, d] if s == t => (Slave::Node(s), [a, b, c, d]),
             [a, b, c, s, t, u] => (Slave::Face(corners([s, t, u, u])), [a, b, c, c]),
             [a, b, c, d, s, t, u, v] => (Slave::Face(corners([s, t, u, v])), [a, b, c, d]),
-            _ => return Err(field.wrong("an element of so many nodes is no contact element")),
+            _ => return Err(field.wrong("no contact element has this number of nodes")),
         };
         let slave = number(&mut self.slaves, &mut self.found.slaves, slave);
         let master = number(&mut self.masters, &mut self.found.masters, corners(master));
@@ -171,7 +172,7 @@ impl Reading {
             .iterations
             .last()
             .map_or(0, |(_, range)| range.start);
-        // Elements of one slave and one master follow each other.
+        // Elements of one slave and one master are consecutive.
         let last = self.found.closed[begun..].last_mut();
         match last.filter(|closed| (closed.slave, closed.master) == (slave, master)) {
             Some(closed) => closed.elements = closed.elements.saturating_add(1),
@@ -185,7 +186,7 @@ impl Reading {
         Ok(())
     }
 
-    /// Ends the iteration that was read: its slaves in order, each master once.
+    /// Finishes the current iteration: sorts its slaves, each master once.
     fn close(&mut self) {
         let closed = &mut self.found.closed;
         let Some((_, range)) = self.found.iterations.last_mut() else {
@@ -219,10 +220,11 @@ impl Reading {
     }
 }
 
-const NO_CEL: &str = "this is no .cel of CalculiX: its lines are in pairs, \
-    *ELEMENT,TYPE=C3D6,ELSET=contactelements_st1_in1_at1_it1 and the number of an element with its nodes";
+const NO_CEL: &str = "this is not a CalculiX .cel: it needs pairs of lines, \
+    *ELEMENT,TYPE=C3D6,ELSET=contactelements_st1_in1_at1_it1 and the number of an element with \
+    its nodes";
 
-/// Position of a value in a list of all that there are; a new one goes to the list's end.
+/// Index of a value in a list of distinct values; a new value is appended.
 fn number<T: Copy + Eq + std::hash::Hash>(
     known: &mut HashMap<T, u32>,
     all: &mut Vec<T>,
@@ -234,7 +236,7 @@ fn number<T: Copy + Eq + std::hash::Hash>(
     })
 }
 
-/// Corners of a face, so that the same face is always the same: ascending, and of a triangle the last one twice.
+/// Canonical corners of a face: ascending, and a triangle repeats its last one.
 fn corners(mut face: [u32; 4]) -> [u32; 4] {
     face.sort_unstable();
     if let Some(twice) = (0..3).find(|k| face[*k] == face[k + 1]) {
@@ -244,7 +246,7 @@ fn corners(mut face: [u32; 4]) -> [u32; 4] {
     face
 }
 
-/// What a header tells: where the run was, and how many nodes the element has.
+/// Parses a header: position in the run, and number of nodes of the element.
 fn header(line: Line) -> Result<(At, usize), Broken> {
     let mut fields = line.fields();
     let first = fields.next().ok_or_else(|| line.ends_early(NO_CEL))?;
@@ -260,14 +262,14 @@ fn header(line: Line) -> Result<(At, usize), Broken> {
                 .iter()
                 .find(|(kind, _)| kind.eq_ignore_ascii_case(value));
             let (_, count) = kind.ok_or_else(|| {
-                field.wrong("contact elements are of type C3D4, C3D6 or C3D8; this one is not")
+                field.wrong("contact elements must be of type C3D4, C3D6 or C3D8")
             })?;
             nodes = Some(*count);
         }
         if name.eq_ignore_ascii_case("ELSET") {
             let found = place(value).ok_or_else(|| {
                 field.wrong(
-                    "the set should be contactelements_stS_inI_atA_itK with four whole numbers",
+                    "the set must be contactelements_stS_inI_atA_itK with four whole numbers",
                 )
             })?;
             at = Some(found);
@@ -278,7 +280,7 @@ fn header(line: Line) -> Result<(At, usize), Broken> {
     Ok((at, nodes))
 }
 
-/// What the name of a set tells.
+/// Parses the name of a set.
 fn place(name: &str) -> Option<At> {
     let name = name.to_ascii_lowercase();
     let mut rest = name.strip_prefix("contactelements")?;
@@ -311,7 +313,7 @@ mod tests {
         1003 , 3, 1, 2, 9
 ";
 
-    /// Surface to surface: two faces and a triangle, the elements of one face not one after the other.
+    /// Surface to surface: two faces and a triangle; the elements of one face are not consecutive.
     const FACES: &str = "*ELEMENT,TYPE=C3D8,ELSET=contactelements_st2_in3_at1_it1
 27 , 1, 2, 3, 4, 12, 11, 14, 13
 *ELEMENT,TYPE=C3D8,ELSET=contactelements_st2_in3_at1_it1
@@ -366,13 +368,13 @@ mod tests {
     }
 
     #[test]
-    fn an_element_may_stand_on_several_lines() {
+    fn an_element_may_span_several_lines() {
         let text = NODES.replace("1005 ,", "1005 ,\n");
         assert_eq!(read(text.as_bytes()), read(NODES.as_bytes()));
     }
 
     #[test]
-    fn a_file_that_breaks_off_is_read_up_to_there() {
+    fn a_truncated_file_is_read_up_to_its_end() {
         let lines = |count: usize| NODES.split_inclusive('\n').take(count).collect::<String>();
         for (text, closed, stop) in [
             (lines(4) + "*ELEM", 2, Some(Stop::Cut(5))),
@@ -387,40 +389,40 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told_with_line_and_column() {
+    fn errors_have_a_line_and_column() {
         let after = |text: &str| refused(&format!("{NODES}{text}\n"));
         for (told, wanted) in [
-            (refused("hello\n"), "1:1: this is no .cel of CalculiX"),
+            (refused("hello\n"), "1:1: this is not a CalculiX .cel"),
             (after("*NODE"), "7:1: this is no .cel"),
             (after("1, 2"), "7:1: the element has all its nodes already"),
             (
                 after("*ELEMENT,TYPE=C3D10,ELSET=contactelements_st1_in1_at1_it2"),
-                "7:10: contact elements are of type C3D4, C3D6 or C3D8",
+                "7:10: contact elements must be of type C3D4, C3D6 or C3D8",
             ),
             (
                 after("*ELEMENT,TYPE=C3D4,ELSET=EALL"),
-                "7:20: the set should be contactelements_stS_inI_atA_itK",
+                "7:20: the set must be contactelements_stS_inI_atA_itK",
             ),
             (after("*ELEMENT,TYPE=C3D4"), "7:19: ELSET= is missing"),
             (
                 after("*ELEMENT,TYPE=C3D4,ELSET=contactelements_st1_in1_at1_it1"),
-                "7:1: the iterations go back here",
+                "7:1: iterations must be in order in the .cel of one run",
             ),
             (
                 after("*ELEMENT,TYPE=C3D4,ELSET=contactelements_st1_in1_at1_it3\n1, 2, x, 4, 5"),
-                "8:7: 'x' stands where the number of a node should",
+                "8:7: found 'x' where the node number, a whole number, was expected",
             ),
             (
                 after(
                     "*ELEMENT,TYPE=C3D4,ELSET=contactelements_st1_in1_at1_it3\n1, 2, 99999999999",
                 ),
-                "8:7: '99999999999' stands where",
+                "8:7: found '99999999999' where",
             ),
             (
                 after(
                     "*ELEMENT,TYPE=C3D4,ELSET=contactelements_st1_in1_at1_it3\n1, 2\n*ELEMENT,TYPE=C3D4",
                 ),
-                "9:1: a new element begins, and of the one before only 2 numbers stand there",
+                "9:1: a new element begins, but the previous one has only 2 numbers",
             ),
         ] {
             assert!(told.starts_with(wanted), "{told}\n{wanted}");

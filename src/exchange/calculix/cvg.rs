@@ -1,8 +1,8 @@
-//! `job.cvg`: a row for every iteration.
+//! `job.cvg`: one row per iteration.
 //!
-//! Columns: step, increment, attempt, iteration, number of contact elements; then in percent the largest residual force over the
-//! mean force, the largest correction of a displacement over the largest increment of one, and the same two of heat flux and
-//! temperature. 1e-30 stands for nought over nought, 1e30 for something over nought (CalculiX's writecvg.f).
+//! Columns: step, increment, attempt, iteration, number of contact elements; then in percent the largest residual force relative
+//! to the mean force, the largest displacement correction relative to the largest displacement increment, and the same two for
+//! heat flux and temperature. 1e-30 stands for 0/0, and 1e30 for x/0 (CalculiX's writecvg.f).
 
 use super::Table;
 use super::cel::At;
@@ -15,20 +15,20 @@ use std::io::BufRead;
 pub struct Norms {
     /// Number of contact elements.
     pub elements: u32,
-    /// Residual of the forces (percent).
+    /// Force residual (percent).
     pub residual: f64,
-    /// Correction of the displacements (percent).
+    /// Displacement correction (percent).
     pub correction: f64,
-    /// Residual of the heat flux (percent).
+    /// Heat flux residual (percent).
     pub flux: f64,
-    /// Correction of the temperatures (percent).
+    /// Temperature correction (percent).
     pub temperature: f64,
 }
 
-/// Reads a file: the iterations in its order, and where it breaks off.
+/// Reads a file: its iterations in order, and where it is truncated.
 ///
 /// # Errors
-/// If it is no such file, or a row is not as it should be.
+/// If it is not such a file, or a row is invalid.
 pub fn read(from: impl BufRead) -> Result<Table<(At, Norms)>, Broken> {
     let mut rows = Vec::new();
     let take = |line: Line, fields: &[Field]| {
@@ -54,21 +54,21 @@ pub fn read(from: impl BufRead) -> Result<Table<(At, Norms)>, Broken> {
         };
         let norms = Norms {
             elements: elements.whole_number("number of contact elements")?,
-            residual: residual.number("residual of the forces")?,
-            correction: correction.number("correction of the displacements")?,
-            flux: flux.number("residual of the flux")?,
-            temperature: temperature.number("correction of the temperatures")?,
+            residual: residual.number("force residual")?,
+            correction: correction.number("displacement correction")?,
+            flux: flux.number("flux residual")?,
+            temperature: temperature.number("temperature correction")?,
         };
         rows.push((at, norms));
         Ok(())
     };
-    // The nought in its title is CalculiX's own.
+    // The zero in the title is CalculiX's.
     let stop = table(from, "SUMMARY OF C0NVERGENCE INFORMATION", ".cvg", take)?;
     Ok((rows, stop))
 }
 
 fn short(count: usize) -> String {
-    format!("a row has 9 columns, and here are {count}")
+    format!("a row must have 9 columns; this one has {count}")
 }
 
 #[cfg(test)]
@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told_and_what_breaks_off_is_read_up_to_there() {
+    fn errors_are_reported_and_truncated_files_are_read_up_to_their_end() {
         let (rows, stop) = read(&CVG.as_bytes()[..CVG.len() - 1]).unwrap();
         assert_eq!((rows.len(), stop), (1, Some(Stop::Cut(6))));
         let row = |text: &str| read(format!("{CVG}{text}\n").as_bytes()).unwrap_err().at;

@@ -1,13 +1,13 @@
-//! Lines of a file that may be as long as a disk, one at a time, and the fields in them.
+//! Reads possibly huge files line by line, and splits lines into fields.
 //!
-//! Fields are parted by blanks and commas. Numbers stand as Fortran writes them: `0.1000-100` is 1e-101, and `****` is a
-//! number that has no room.
+//! Fields are separated by spaces and commas. Numbers use Fortran formats: `0.1000-100` is 1e-101, and `****` is a number that
+//! does not fit its column.
 
 use super::Stop;
 use crate::broken::Broken;
 use std::io::{BufRead, Read};
 
-/// Most bytes of a line; the longest that CalculiX writes has 160.
+/// Maximum length of a line in bytes; the longest line of CalculiX has 160.
 const MOST: usize = 4096;
 
 /// The lines of a file.
@@ -20,11 +20,11 @@ pub(super) struct Lines<R> {
 /// A line.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Line<'a> {
-    /// Its number, from 1.
+    /// Line number, from 1.
     pub number: usize,
-    /// What stands in it, without its end.
+    /// Content without the line end.
     pub bytes: &'a [u8],
-    /// Whether it has an end; only the last one may have none.
+    /// Whether it has a line end; only the last line may lack one.
     pub whole: bool,
 }
 
@@ -50,13 +50,14 @@ impl<R: BufRead> Lines<R> {
             .by_ref()
             .take(most)
             .read_until(b'\n', &mut self.bytes);
-        read.map_err(|error| Broken::at(self.number, 1, format!("it cannot be read on: {error}")))?;
+        read.map_err(|error| Broken::at(self.number, 1, format!("reading failed: {error}")))?;
         if self.bytes.is_empty() {
             return Ok(None);
         }
         let whole = self.bytes.last() == Some(&b'\n');
         if !whole && self.bytes.len() > MOST {
-            let message = format!("a line of more than {MOST} bytes; CalculiX writes none");
+            let message =
+                format!("the line is longer than {MOST} bytes; CalculiX writes no such lines");
             return Err(Broken::at(self.number, 1, message));
         }
         let end = self.bytes.len() - usize::from(whole);
@@ -69,17 +70,17 @@ impl<R: BufRead> Lines<R> {
     }
 }
 
-/// A field of a line: where it begins, from 1, and what stands there.
+/// A field of a line: its first byte, from 1, and its content.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Field<'a> {
     line: Line<'a>,
     start: usize,
-    /// What stands there.
+    /// Content.
     pub bytes: &'a [u8],
 }
 
 impl<'a> Line<'a> {
-    /// The fields, without those that are empty.
+    /// The nonempty fields.
     pub fn fields(self) -> impl Iterator<Item = Field<'a>> {
         let parts = |byte: &u8| byte.is_ascii_whitespace() || *byte == b',';
         let mut start = 0;
@@ -97,20 +98,20 @@ impl<'a> Line<'a> {
         })
     }
 
-    /// Something wrong behind a byte of the line.
+    /// An error after a byte of the line.
     pub fn wrong(self, byte: usize, message: impl Into<String>) -> Broken {
         let before = String::from_utf8_lossy(&self.bytes[..byte.min(self.bytes.len())]);
         Broken::at(self.number, 1 + before.chars().count(), message)
     }
 
-    /// Something missing at the end of the line.
+    /// Something is missing at the end of the line.
     pub fn ends_early(self, message: impl Into<String>) -> Broken {
         self.wrong(self.bytes.len(), message)
     }
 }
 
 impl Field<'_> {
-    /// The field without what it ends with, if it does.
+    /// The field without this suffix, if it has it.
     pub fn without(self, end: &[u8]) -> Self {
         Field {
             bytes: self.bytes.strip_suffix(end).unwrap_or(self.bytes),
@@ -118,12 +119,12 @@ impl Field<'_> {
         }
     }
 
-    /// Something wrong with the field.
+    /// An error in the field.
     pub fn wrong(self, message: impl Into<String>) -> Broken {
         self.line.wrong(self.start, message)
     }
 
-    /// As it is shown in a message.
+    /// The field for a message.
     fn shown(self) -> String {
         const MOST: usize = 20;
         let text = String::from_utf8_lossy(self.bytes);
@@ -133,12 +134,12 @@ impl Field<'_> {
             .collect()
     }
 
-    /// Whether this is a number that had no room.
+    /// Whether this is a number that did not fit its column.
     pub fn overflows(self) -> bool {
         !self.bytes.is_empty() && self.bytes.iter().all(|byte| *byte == b'*')
     }
 
-    /// The field as a whole number; `what` tells which.
+    /// The field as a whole number; `what` names it in errors.
     pub fn whole_number(self, what: &str) -> Result<u32, Broken> {
         let text = std::str::from_utf8(self.bytes).ok();
         let plain = text.filter(|text| text.bytes().all(|byte| byte.is_ascii_digit()));
@@ -146,28 +147,28 @@ impl Field<'_> {
         number.ok_or_else(|| {
             let shown = self.shown();
             self.wrong(format!(
-                "'{shown}' stands where the {what} should, a whole number"
+                "found '{shown}' where the {what}, a whole number, was expected"
             ))
         })
     }
 
-    /// The field as a number; `what` tells which.
+    /// The field as a number; `what` names it in errors.
     pub fn number(self, what: &str) -> Result<f64, Broken> {
         let text = std::str::from_utf8(self.bytes).ok();
         text.and_then(fortran).ok_or_else(|| {
             let shown = self.shown();
             self.wrong(format!(
-                "'{shown}' stands where the {what} should, a number"
+                "found '{shown}' where the {what}, a number, was expected"
             ))
         })
     }
 }
 
-/// Reads a table: a title, headings, and below them rows that begin with a whole number. Returns where it breaks off, if it
-/// does; what is behind a number that has no room is not read.
+/// Reads a table: a title, headings, and rows that begin with a whole number. Returns where it is truncated, if it is; text after
+/// a number that does not fit its column is ignored.
 ///
 /// # Errors
-/// If the first line does not begin with the title, or a row is refused.
+/// If the first line does not begin with the title, or a row is rejected.
 pub(super) fn table(
     from: impl BufRead,
     title: &str,
@@ -181,7 +182,7 @@ pub(super) fn table(
             return Ok(Some(Stop::Cut(line.number)));
         }
         if line.number == 1 && !line.bytes.trim_ascii_start().starts_with(title.as_bytes()) {
-            let message = format!("this is no {what} of CalculiX: it should begin with '{title}'");
+            let message = format!("this is not a CalculiX {what}: it must begin with '{title}'");
             return Err(line.wrong(0, message));
         }
         let fields: Vec<Field> = line.fields().collect();
@@ -200,7 +201,7 @@ pub(super) fn table(
     Ok(None)
 }
 
-/// A number as Fortran writes it: the letter before an exponent of three digits is left out.
+/// Parses a Fortran number: before an exponent of three digits, the letter is omitted.
 fn fortran(text: &str) -> Option<f64> {
     if let Ok(number) = text.parse() {
         return Some(number);
@@ -230,14 +231,14 @@ mod tests {
             ("1e-x", None),
         ] {
             let read = fortran(text);
-            // An exponent without digits is none.
+            // An exponent needs digits.
             assert_eq!(read, number, "{text}");
         }
         assert!(fortran("NaN").is_some_and(f64::is_nan));
     }
 
     #[test]
-    fn fields_know_their_columns_in_characters() {
+    fn field_columns_count_characters() {
         let text = " 12 ,ü, x".as_bytes();
         let line = Line {
             number: 3,
@@ -250,13 +251,13 @@ mod tests {
         assert_eq!(wrong.at, Some((3, 9)));
         assert_eq!(
             wrong.message,
-            "'x' stands where the node should, a whole number"
+            "found 'x' where the node, a whole number, was expected"
         );
         assert_eq!(line.ends_early("").at, Some((3, 10)));
     }
 
     #[test]
-    fn a_line_without_an_end_is_told_and_an_endless_one_refused() {
+    fn an_unterminated_last_line_is_marked_and_an_endless_one_rejected() {
         let mut lines = Lines::new(&b"a\r\nbc"[..]);
         let first = lines.next().unwrap().unwrap();
         assert_eq!((first.bytes, first.whole), (&b"a"[..], true));

@@ -1,11 +1,11 @@
-//! Files of CalculiX: how a run went, and the stiffness that it stores.
+//! CalculiX files: the progress of a run, and a stored stiffness.
 //!
-//! - `lines`: lines of such files, no longer than they can be, and the fields in them.
+//! - `lines`: lines of bounded length, and their fields.
 //! - [`cel`]: the contact elements of every iteration.
-//! - [`sta`]: how every attempt of an increment ended.
+//! - [`sta`]: result of every attempt at an increment.
 //! - [`cvg`]: residual and correction of every iteration.
-//! - [`past`]: the three together: a run that is over.
-//! - [`stiffness`]: the stiffness matrix that it stores.
+//! - [`past`]: these three together: a finished run.
+//! - [`stiffness`]: a stored stiffness matrix.
 
 pub mod cel;
 pub mod cvg;
@@ -14,14 +14,14 @@ pub mod past;
 pub mod sta;
 pub mod stiffness;
 
-/// Where a file could not be read to its end, by its line.
+/// Where and why reading a file stopped, with the line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stop {
-    /// It breaks off in the middle of something: whoever wrote it was stopped.
+    /// The file is truncated: its writer was stopped.
     Cut(usize),
-    /// A whole number had no room in its column, so that it is not known which iterations follow.
+    /// A whole number did not fit its column, so the following iterations are unknown.
     NoRoom(usize),
 }
 
-/// The rows of a table, in its order, and where it breaks off, if it does.
+/// The rows of a table, in order, and where it is truncated, if it is.
 pub type Table<T> = (Vec<T>, Option<Stop>);

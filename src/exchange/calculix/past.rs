@@ -1,7 +1,7 @@
-//! A run that is over, from its .cel and what lies beside it: attempts at increments, and their iterations.
+//! A finished CalculiX run, from its .cel and the files next to it: attempts at increments, and their iterations.
 //!
-//! The .cel alone does not tell iterations without contact elements, residuals, and how the last attempt ended. Stick and slip
-//! are in none of the three files.
+//! The .cel alone has no iterations without contact elements, no residuals, and no result of the last attempt. None of the three
+//! files contains stick and slip.
 
 use super::cel::{At, Closed, ContactElements, Slave};
 use super::cvg::Norms;
@@ -10,35 +10,35 @@ use super::{Stop, Table};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-/// A run that is over.
+/// A finished run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PastRun {
     /// Every slave node and face that was ever in contact.
     pub slaves: Vec<Slave>,
     /// Every master face that was ever touched: its corners.
     pub masters: Vec<[u32; 4]>,
-    /// The attempts, one after the other; none of them is without an iteration and a row of the .sta.
+    /// The attempts in order. Each has at least one iteration or a row of the .sta.
     pub attempts: Vec<Attempt>,
-    /// The iterations of all attempts, one after the other.
+    /// The iterations of all attempts, in order.
     pub iterations: Vec<Iteration>,
-    /// Who is in contact, iteration after iteration, in each ascending by slave and master.
+    /// The closed contacts, iteration by iteration, each sorted by slave and master.
     pub closed: Vec<Closed>,
-    /// Where the .cel breaks off.
+    /// Where the .cel is truncated.
     pub cel: Option<Stop>,
-    /// The .sta.
+    /// State of the .sta.
     pub sta: Beside,
-    /// The .cvg.
+    /// State of the .cvg.
     pub cvg: Beside,
-    /// Iterations of which .cel and .cvg tell different numbers of contact elements: the first, and how many.
+    /// Iterations where .cel and .cvg disagree on the number of contact elements: the first one, and their number.
     pub differs: Option<(At, usize)>,
 }
 
-/// A file that lies beside the .cel, or should.
+/// State of an optional file next to the .cel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Beside {
-    /// It is not there.
+    /// The file does not exist.
     Missing,
-    /// It was read, to its end or up to there.
+    /// It was read, to its end or up to the given position.
     Read(Option<Stop>),
 }
 
@@ -51,42 +51,42 @@ pub struct Attempt {
     pub increment: u32,
     /// Attempt, from 1.
     pub attempt: u32,
-    /// How it ended.
+    /// Result.
     pub end: End,
-    /// Its row of the .sta.
+    /// Its row in the .sta.
     pub row: Option<Ended>,
-    /// Its part of [`PastRun::iterations`]; empty where no file but the .sta tells of it.
+    /// Its range of [`PastRun::iterations`]; empty if only the .sta contains it.
     pub iterations: Range<usize>,
 }
 
-/// How an attempt ended.
+/// Result of an attempt.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum End {
     /// The increment converged.
     Converged,
-    /// It did not; where another attempt follows, with a smaller increment.
+    /// It did not converge; another attempt with a smaller increment may follow.
     NotConverged,
-    /// No file tells: the run was stopped there, or is at it still.
+    /// Unknown: the run was stopped there, or is still running.
     Unknown,
 }
 
 /// An iteration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Iteration {
-    /// Its number in the attempt, from 1.
+    /// Number in the attempt, from 1.
     pub number: u32,
-    /// Its part of [`PastRun::closed`]; `None` where the .cvg counts contact elements that the .cel does not have.
+    /// Its range of [`PastRun::closed`]; `None` if the .cvg counts contact elements that are missing in the .cel.
     pub closed: Option<Range<usize>>,
-    /// Whether it kept the contact elements of the iteration before: node-to-surface contact holds them fixed after iteration 8
-    /// of an attempt, with SMALL SLIDING after the first (CalculiX's nonlingeo.c), and then they do not stand in the .cel. The
-    /// .cvg counts as many.
+    /// Whether it kept the contact elements of the previous iteration. Node-to-surface contact freezes them after iteration 8 of
+    /// an attempt, or after the first with SMALL SLIDING (CalculiX's nonlingeo.c), and does not write them to the .cel. The .cvg
+    /// still counts them.
     pub kept: bool,
-    /// Its row of the .cvg.
+    /// Its row in the .cvg.
     pub norms: Option<Norms>,
 }
 
 impl PastRun {
-    /// Puts together what was read; `None` for a file that is missing.
+    /// Combines the files; `None` for a missing one.
     pub fn new(
         cel: ContactElements,
         sta: Option<Table<Ended>>,
@@ -135,14 +135,14 @@ impl PastRun {
         run
     }
 
-    /// Who is in contact in an iteration; `None` where no file tells.
+    /// The closed contacts in an iteration; `None` if unknown.
     pub fn closed(&self, iteration: usize) -> Option<&[Closed]> {
         let range = self.iterations.get(iteration)?.closed.clone()?;
         self.closed.get(range)
     }
 
-    /// An iteration of the last attempt. One that has no contact element does not stand in the .cel, nor does one that kept
-    /// those before it: the .cvg tells which.
+    /// Adds an iteration to the last attempt. Iterations without contact elements, and those that kept the previous ones, are not
+    /// in the .cel; the .cvg distinguishes them.
     fn add(&mut self, number: u32, listed: Option<Range<usize>>, norms: Option<Norms>) {
         let counted = norms
             .filter(|_| listed.is_none())
@@ -161,7 +161,7 @@ impl PastRun {
         });
     }
 
-    /// The part of the iteration before the next one, in the same attempt.
+    /// The range of the previous iteration in the same attempt.
     fn before(&self) -> Option<Range<usize>> {
         let attempt = self
             .attempts
@@ -173,13 +173,13 @@ impl PastRun {
             .clone()
     }
 
-    /// Number of contact elements in a part.
+    /// Number of contact elements in a range.
     fn elements(&self, part: &Range<usize>) -> u64 {
         let closed = self.closed[part.clone()].iter();
         closed.map(|closed| u64::from(closed.elements)).sum()
     }
 
-    /// Iterations that are told differently, with the next one.
+    /// Iterations on which the files disagree, including the next one.
     fn told_differently(
         &self,
         at: At,
@@ -200,7 +200,7 @@ impl PastRun {
         }
     }
 
-    /// Attempts of which nothing but a row of the .sta tells.
+    /// Adds attempts that only the .sta contains.
     fn add_rows_before(
         &mut self,
         rows: &mut BTreeMap<(u32, u32, u32), Ended>,
@@ -224,7 +224,7 @@ impl PastRun {
         });
     }
 
-    /// How each attempt ended: as its row tells, or by what follows it.
+    /// Determines the result of each attempt from its row, or from what follows it.
     fn end_attempts(&mut self) {
         for k in 0..self.attempts.len() {
             let (step, increment, _) = self.attempts[k].key();
@@ -267,7 +267,8 @@ mod tests {
         format!(" 1 {increment} {attempt} {iteration} {elements} 0.1E+01 0.2E+01 0. 0.\n")
     }
 
-    /// An increment that is cut once, in whose second iteration nothing touches, and one that the run was killed in.
+    /// A run with an increment that is cut once, where no contact is closed in the second iteration, and with an increment in
+    /// which the run was killed.
     fn files() -> [String; 3] {
         let cel = [(1, 1, 1), (1, 1, 3), (1, 2, 1), (2, 1, 1)];
         let cel = cel.map(|(i, a, k)| element(i, a, k, 9)).concat();
@@ -288,7 +289,7 @@ mod tests {
     }
 
     #[test]
-    fn three_files_make_attempts_and_iterations() {
+    fn three_files_are_combined_to_attempts_and_iterations() {
         let [cel, sta, cvg] = files();
         let run = read(cel.as_bytes(), Some(sta.as_bytes()), Some(cvg.as_bytes())).unwrap();
         let ends: Vec<_> = run
@@ -312,7 +313,7 @@ mod tests {
     }
 
     #[test]
-    fn without_the_others_the_cel_tells_what_it_has() {
+    fn the_cel_can_be_read_alone() {
         let [cel, ..] = files();
         let run = read(cel.as_bytes(), None, None).unwrap();
         assert_eq!((run.sta, run.cvg), (Beside::Missing, Beside::Missing));
@@ -327,7 +328,7 @@ mod tests {
     }
 
     #[test]
-    fn files_of_different_runs_are_told_and_what_no_file_tells_is_not_invented() {
+    fn mismatching_files_are_detected_and_no_data_is_invented() {
         let [cel, _, cvg] = files();
         let cvg = cvg.replace(" 1 1 1 2 0 ", " 1 1 1 2 4 ");
         let run = read(cel.as_bytes(), None, Some(cvg.as_bytes())).unwrap();
@@ -337,7 +338,7 @@ mod tests {
     }
 
     #[test]
-    fn contact_elements_that_calculix_held_fixed_are_those_of_the_iteration_before() {
+    fn frozen_contact_elements_are_those_of_the_previous_iteration() {
         let cel = element(1, 1, 8, 9) + &element(1, 1, 8, 7) + &element(1, 2, 1, 9);
         let rows = [(1, 8, 2), (1, 9, 2), (1, 10, 3), (2, 1, 1)];
         let rows = rows
@@ -361,7 +362,7 @@ mod tests {
     }
 
     #[test]
-    fn attempts_of_which_only_the_sta_tells_are_there_too() {
+    fn attempts_found_only_in_the_sta_are_included() {
         let [cel, sta, _] = files();
         let sta = format!("{sta} 2 1 1U 9 0. 0. 1.\n");
         let run = read(cel.as_bytes(), Some(sta.as_bytes()), None).unwrap();
@@ -372,7 +373,7 @@ mod tests {
         );
     }
 
-    /// What every run must keep, whatever the files hold.
+    /// Invariants of every run, whatever the files contain.
     fn holds(run: &PastRun) -> Result<(), TestCaseError> {
         let mut end = 0;
         for attempt in &run.attempts {
@@ -390,7 +391,7 @@ mod tests {
         Ok(())
     }
 
-    /// What is wrong is told with a line and a column of the file.
+    /// Errors have a line and a column in the file.
     fn told(broken: &Broken, files: [&[u8]; 3]) -> Result<(), TestCaseError> {
         let (line, column) = broken.at.expect("a place");
         let lines = files.map(|file| file.split(|byte| *byte == b'\n').count());
@@ -410,7 +411,7 @@ mod tests {
         }
 
         #[test]
-        fn no_change_of_a_sound_file_makes_it_panic(
+        fn no_change_of_a_valid_file_makes_it_panic(
             changes in prop::collection::vec((0..3_usize, any::<prop::sample::Index>(), 0..3_u8, any::<u8>()), 1..8),
             short in prop::option::of((0..3_usize, any::<prop::sample::Index>())),
         ) {
@@ -436,13 +437,13 @@ mod tests {
         }
 
         #[test]
-        fn a_run_that_was_killed_anywhere_is_read_up_to_there(at in prop::array::uniform3(any::<prop::sample::Index>())) {
+        fn a_run_killed_at_any_point_is_read_up_to_there(at in prop::array::uniform3(any::<prop::sample::Index>())) {
             let files = files();
             let whole = read(files[0].as_bytes(), Some(files[1].as_bytes()), Some(files[2].as_bytes())).unwrap();
             let cut = |k: usize| &files[k].as_bytes()[..at[k].index(files[k].len() + 1)];
             let run = read(cut(0), Some(cut(1)), Some(cut(2))).unwrap();
             holds(&run)?;
-            // No iteration is told that there was not.
+            // No iteration is invented.
             prop_assert!(run.iterations.len() <= whole.iterations.len());
             prop_assert!(run.attempts.iter().all(|a| whole.attempts.iter().any(|b| a.key() == b.key())));
         }

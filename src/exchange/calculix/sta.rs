@@ -1,44 +1,44 @@
-//! `job.sta`: a row for every attempt at an increment that ended.
+//! `job.sta`: one row per finished attempt at an increment.
 //!
-//! Columns: step, increment, attempt (with a U if it did not converge), iterations, total time, time of the step, size of the
-//! increment. Of an attempt that did not converge the times are those at its start.
+//! Columns: step, increment, attempt (with a U if it did not converge), iterations, total time, step time, increment size. For an
+//! attempt that did not converge, the times are those at its start.
 
 use super::Table;
 use super::lines::{Field, Line, table};
 use crate::broken::Broken;
 use std::io::BufRead;
 
-/// An attempt that ended.
+/// A finished attempt.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ended {
     /// Step, from 1.
     pub step: u32,
     /// Increment of the step, from 1.
     pub increment: u32,
-    /// Attempt at it, from 1.
+    /// Attempt, from 1.
     pub attempt: u32,
     /// Whether it converged.
     pub converged: bool,
     /// Number of iterations.
     pub iterations: u32,
-    /// Time over all steps: at its end if it converged, else at its start.
+    /// Total time: at its end if it converged, else at its start.
     pub total_time: f64,
-    /// The same of the step.
+    /// The same for the step time.
     pub step_time: f64,
     /// Size of the increment.
     pub size: f64,
 }
 
-/// Reads a file: the attempts in its order, and where it breaks off.
+/// Reads a file: its attempts in order, and where it is truncated.
 ///
 /// # Errors
-/// If it is no such file, or a row is not as it should be.
+/// If it is not such a file, or a row is invalid.
 pub fn read(from: impl BufRead) -> Result<Table<Ended>, Broken> {
     let mut rows = Vec::new();
     let take = |line: Line, fields: &[Field]| {
         let &[step, increment, attempt, iterations, total, of_step, size] = fields else {
             return Err(line.ends_early(format!(
-                "a row has 7 columns, and here are {}",
+                "a row must have 7 columns; this one has {}",
                 fields.len()
             )));
         };
@@ -49,8 +49,8 @@ pub fn read(from: impl BufRead) -> Result<Table<Ended>, Broken> {
             converged: !attempt.bytes.ends_with(b"U"),
             iterations: iterations.whole_number("number of iterations")?,
             total_time: total.number("total time")?,
-            step_time: of_step.number("time of the step")?,
-            size: size.number("size of the increment")?,
+            step_time: of_step.number("step time")?,
+            size: size.number("increment size")?,
         });
         Ok(())
     };
@@ -85,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told_and_what_breaks_off_is_read_up_to_there() {
+    fn errors_are_reported_and_truncated_files_are_read_up_to_their_end() {
         let (rows, stop) = read(&STA.as_bytes()[..STA.len() - 30]).unwrap();
         assert_eq!((rows.len(), stop), (1, Some(Stop::Cut(4))));
         let row = |text: &str| read(format!("{STA}{text}\n").as_bytes());

@@ -1,8 +1,8 @@
-//! The stiffness that CalculiX stores (`*FREQUENCY, SOLVER=MATRIXSTORAGE`): `JOB.sti` and `JOB.dof`.
+//! Stiffness matrices stored by CalculiX (`*FREQUENCY, SOLVER=MATRIXSTORAGE`): `JOB.sti` and `JOB.dof`.
 //!
-//! A line of the .dof is an unknown, `NODE.DIRECTION`, with 1 for x and 2 for y; components that are restrained are left out.
-//! A line of the .sti is an entry, `ROW COLUMN VALUE`, numbered from 1 as the lines of the .dof are; the matrix is
-//! symmetric, and each pair of entries stands there once.
+//! Each line of the .dof is an unknown, `NODE.DIRECTION`, with 1 for x and 2 for y; restrained components are omitted. Each line
+//! of the .sti is an entry, `ROW COLUMN VALUE`, where rows and columns are line numbers of the .dof, from 1. The matrix is
+//! symmetric, and each pair of entries is stored once.
 
 use crate::broken::Broken;
 use crate::problem::Matrix;
@@ -11,7 +11,7 @@ use crate::words::Words;
 /// An unknown of a stiffness: a component of a node's displacement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Unknown {
-    /// The number that the deck gives the node.
+    /// Node number in the deck.
     pub node: u64,
     /// 0 for x, 1 for y.
     pub direction: usize,
@@ -20,7 +20,7 @@ pub struct Unknown {
 /// Reads a .dof.
 ///
 /// # Errors
-/// What is wrong, with its place: an unknown out of the plane, too.
+/// The error with its position, also for an unknown out of the plane.
 pub fn unknowns(text: &str) -> Result<Vec<Unknown>, Broken> {
     let mut words = Words::new(text);
     let mut unknowns = Vec::new();
@@ -36,7 +36,7 @@ pub fn unknowns(text: &str) -> Result<Vec<Unknown>, Broken> {
             2 => 1,
             3_usize => {
                 return Err(words.broken(format!(
-                    "node {node} moves along z; only problems in the plane can be read (elements CPS, CPE, CAX)"
+                    "node {node} has a displacement along z; only plane problems are supported (elements CPS, CPE, CAX)"
                 )));
             }
             _ => return Err(words.unlike(word, wanted)),
@@ -44,15 +44,15 @@ pub fn unknowns(text: &str) -> Result<Vec<Unknown>, Broken> {
         unknowns.push(Unknown { node, direction });
     }
     match unknowns.is_empty() {
-        true => Err(Broken::whole("there are no unknowns in it")),
+        true => Err(Broken::whole("the file contains no unknowns")),
         false => Ok(unknowns),
     }
 }
 
-/// Reads a .sti of so many unknowns; entries off the diagonal are given on both of its sides.
+/// Reads a .sti with this number of unknowns; off-diagonal entries are returned on both sides.
 ///
 /// # Errors
-/// What is wrong, with its place.
+/// The error with its position.
 pub fn matrix(text: &str, unknowns: usize) -> Result<Matrix, Broken> {
     let mut words = Words::new(text);
     let mut entries = Vec::new();
@@ -74,7 +74,7 @@ pub fn matrix(text: &str, unknowns: usize) -> Result<Matrix, Broken> {
         }
     }
     match entries.is_empty() {
-        true => Err(Broken::whole("there are no entries in it")),
+        true => Err(Broken::whole("the file contains no entries")),
         false => Ok(Matrix {
             rows: unknowns,
             columns: unknowns,
@@ -89,7 +89,7 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
-    fn a_half_is_read_as_the_whole() {
+    fn half_of_a_symmetric_matrix_is_completed() {
         let found = unknowns("7.1\n7.2\n 12.1\n").unwrap();
         let told: Vec<_> = found.iter().map(|u| (u.node, u.direction)).collect();
         assert_eq!(told, [(7, 0), (7, 1), (12, 0)]);
@@ -98,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told_with_its_place() {
+    fn errors_have_a_position() {
         let of_dof = [
             ("1.1\n1.3\n", (2, 1), "z"),
             ("1.1 x", (1, 5), "NODE"),

@@ -1,4 +1,4 @@
-//! Refuses fclib's files in a build without the feature `fclib`.
+//! Replacement in a build without the feature `fclib`: rejects fclib files.
 
 use crate::broken::Broken;
 use crate::problem::{Local, Problem};
@@ -6,12 +6,12 @@ use crate::problem::{Local, Problem};
 /// Whether this build reads and writes such files.
 ///
 /// # Errors
-/// How to build it so that it does.
+/// How to build a version that does.
 pub fn ready() -> Result<(), Broken> {
     Err(not_built())
 }
 
-/// Refuses the file.
+/// Always fails.
 ///
 /// # Errors
 /// Always.
@@ -19,7 +19,7 @@ pub fn read(_: Vec<u8>) -> Result<Problem, Broken> {
     Err(not_built())
 }
 
-/// Refuses to write.
+/// Always fails.
 ///
 /// # Errors
 /// Always.
@@ -28,5 +28,7 @@ pub fn write(_: &Local, _: &str) -> Result<Vec<u8>, Broken> {
 }
 
 fn not_built() -> Broken {
-    Broken::whole("this build has no fclib (HDF5) files; cargo install stickslip --features fclib")
+    Broken::whole(
+        "this build does not support fclib (HDF5) files; use cargo install stickslip --features fclib",
+    )
 }

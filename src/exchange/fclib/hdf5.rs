@@ -1,27 +1,27 @@
-//! fclib's files, read and written with hdf5-pure.
+//! Reads and writes fclib files with hdf5-pure.
 //!
 //! ```text
 //! /fclib_local    spacedim, W, vectors (q, mu), and with V and R: vectors/s        u = W r + V l + q,  Vᵀ r + R l + s = 0
 //! /fclib_global   spacedim, M, H, vectors (f, w, mu), and with G: vectors/b        M v = H r + G l + f,  Gᵀ v + b = 0,  u = Hᵀ v + w
 //! ```
 //!
-//! A matrix is a group: `m` rows, `n` columns, and CSparse's arrays `p`, `i` and `x`; `nz` is -1 for compressed columns, -2
-//! for compressed rows, and else the number of triplets, of which `p` are the columns and `i` the rows (the library's own
-//! comment says the reverse; CSparse, to which it hands them, and Siconos take them so). Other groups of a file, `solution`
-//! and `guesses`, are not read.
+//! A matrix is a group: `m` rows, `n` columns, and CSparse's arrays `p`, `i` and `x`. `nz` is -1 for compressed columns, -2 for
+//! compressed rows, and otherwise the number of triplets, with the columns in `p` and the rows in `i` (the library's own comment
+//! states the reverse, but CSparse, which it calls, and Siconos use this order). Other groups of a file, `solution` and
+//! `guesses`, are ignored.
 
 use crate::broken::Broken;
 use crate::problem::{Bilateral, Global, Local, Matrix, Problem, is_there};
 use hdf5_pure::{Dataset, File, FileBuilder, GroupBuilder, LibVer};
 
-/// Numbers of a file are taken to have this many bytes for each byte that they take in it: it may be compressed.
+/// Assumed maximum compression: bytes of numbers per byte of file.
 const COMPRESSION: u64 = 64;
 /// Compressed columns.
 const BY_COLUMNS: i64 = -1;
 /// Compressed rows.
 const BY_ROWS: i64 = -2;
 
-/// Whether this build reads and writes such files: it does.
+/// Whether this build reads and writes such files.
 ///
 /// # Errors
 /// Never.
@@ -32,21 +32,21 @@ pub fn ready() -> Result<(), Broken> {
 /// Reads such a file.
 ///
 /// # Errors
-/// What is wrong; there are no lines to name.
+/// The error; it has no line.
 pub fn read(bytes: Vec<u8>) -> Result<Problem, Broken> {
     let size = bytes.len() as u64;
     let file = File::from_bytes(bytes)
-        .map_err(|why| Broken::whole(format!("the file is no sound HDF5 file: {why}")))?;
+        .map_err(|why| Broken::whole(format!("invalid HDF5 file: {why}")))?;
     let groups = file.root().groups().unwrap_or_default();
     let has = |name: &str| groups.iter().any(|group| group == name);
     if has("fclib_global_rolling") {
         return Err(Broken::whole(
-            "the problem has rolling friction (fclib_global_rolling), which is not read; fclib_local and fclib_global are",
+            "the problem has rolling friction (fclib_global_rolling), which is not supported; fclib_local and fclib_global are",
         ));
     }
     if !has("fclib_local") && !has("fclib_global") {
         return Err(Broken::whole(
-            "there is neither fclib_local nor fclib_global in it; an HDF5 file is read as a problem of fclib",
+            "the file contains neither fclib_local nor fclib_global; HDF5 files are read as fclib problems",
         ));
     }
     let root = match has("fclib_local") {
@@ -63,7 +63,7 @@ pub fn read(bytes: Vec<u8>) -> Result<Problem, Broken> {
         3 => {
             return Err(part.broken(
                 "spacedim",
-                "is 3: the problem is one in space; only those in the plane (2) can be read",
+                "is 3: the problem is three-dimensional; only plane problems (2) are supported",
             ));
         }
         other => return Err(part.broken("spacedim", &format!("is {other}; it must be 2"))),
@@ -93,7 +93,7 @@ fn local(part: &Part<'_>) -> Result<Problem, Broken> {
     Ok(Problem::Mixed(local, Bilateral { v, r, s }))
 }
 
-/// Bilateral constraints are unknowns more: `[M −G; Gᵀ 0] (v, l) = (H r + f, −b)`.
+/// Bilateral constraints add unknowns: `[M −G; Gᵀ 0] (v, l) = (H r + f, −b)`.
 fn global(part: &Part<'_>) -> Result<Problem, Broken> {
     let (mut m, mut h) = (part.matrix("M")?, part.matrix("H")?);
     part.sized("M", &m, m.rows, m.rows)?;
@@ -123,11 +123,11 @@ fn global(part: &Part<'_>) -> Result<Problem, Broken> {
     }))
 }
 
-/// The part of a file that has the problem.
+/// The group of a file that contains the problem.
 struct Part<'f> {
     file: &'f File,
     root: &'static str,
-    /// Bytes of the file.
+    /// Size of the file in bytes.
     size: u64,
 }
 
@@ -140,7 +140,7 @@ impl Part<'_> {
         self.file.group(&format!("{}/{group}", self.root)).is_ok()
     }
 
-    /// A list, as long as the file can hold.
+    /// A dataset, no longer than the file can contain.
     fn dataset(&self, name: &str) -> Result<Dataset, Broken> {
         let path = format!("{}/{name}", self.root);
         let unread =
@@ -155,7 +155,7 @@ impl Part<'_> {
             Some(bytes) if bytes <= self.size.saturating_mul(COMPRESSION) => Ok(dataset),
             _ => Err(self.broken(
                 name,
-                &format!("has {shape:?} numbers, more than a file of this size can"),
+                &format!("has {shape:?} numbers, more than a file of this size can contain"),
             )),
         }
     }
@@ -185,7 +185,7 @@ impl Part<'_> {
             return Err(self.broken(name, &what));
         }
         match found.iter().position(|value| !value.is_finite()) {
-            Some(k) => Err(self.broken(name, &format!("has {:?} at place {k}", found[k]))),
+            Some(k) => Err(self.broken(name, &format!("has {:?} at position {k}", found[k]))),
             None => Ok(found),
         }
     }
@@ -212,14 +212,14 @@ impl Part<'_> {
         Err(self.broken(name, &what))
     }
 
-    /// Refuses a size that is no number of contacts, two components each.
+    /// Rejects a size that is not two components per contact.
     fn pairs(&self, name: &str, of: &Matrix, size: usize) -> Result<(), Broken> {
         if size > 0 && size.is_multiple_of(2) {
             let rows = if name == "W" { size } else { of.rows };
             return self.sized(name, of, rows, size);
         }
         let what =
-            format!("has {size} columns; it must have two a contact, and one contact at least");
+            format!("has {size} columns; it must have two per contact, and at least one contact");
         Err(self.broken(name, &what))
     }
 
@@ -261,7 +261,7 @@ impl Part<'_> {
             };
             let at = (usize::try_from(row), usize::try_from(column));
             let (Ok(row), Ok(column)) = at else {
-                return Err(self.broken(name, "has an entry at a negative place"));
+                return Err(self.broken(name, "has an entry with a negative index"));
             };
             if row >= rows || column >= columns || !value.is_finite() {
                 let what =
@@ -279,7 +279,7 @@ impl Part<'_> {
         })
     }
 
-    /// The number of its column (or row) for every entry, where `p` says at which entry each begins, and the last ends.
+    /// The column (or row) of every entry, where `p` contains the first entry of each and the total count.
     fn lists(
         &self,
         name: &str,
@@ -290,7 +290,7 @@ impl Part<'_> {
         let wrong = || {
             self.broken(
                 &format!("{name}/p"),
-                "must begin with 0, rise, and end with the number of entries",
+                "must begin with 0, be ascending, and end with the number of entries",
             )
         };
         if p.len() != lists.saturating_add(1) || p.first() != Some(&0) {
@@ -314,10 +314,11 @@ impl Part<'_> {
 /// # Errors
 /// If it has more entries than fclib can count.
 pub fn write(problem: &Local, title: &str) -> Result<Vec<u8>, Broken> {
-    let failed =
-        |why: &dyn std::fmt::Display| Broken::whole(format!("the HDF5 file cannot be made: {why}"));
+    let failed = |why: &dyn std::fmt::Display| {
+        Broken::whole(format!("creating the HDF5 file failed: {why}"))
+    };
     let mut file = FileBuilder::new();
-    // Readable by every HDF5 library from 1.8 on.
+    // Readable by every HDF5 library from version 1.8.
     file.with_libver_bounds(LibVer::Earliest, LibVer::V18);
     let mut local = file.create_group("fclib_local");
     local.create_dataset("spacedim").with_i32_data(&[2]);
@@ -342,7 +343,7 @@ pub fn write(problem: &Local, title: &str) -> Result<Vec<u8>, Broken> {
     file.finish().map_err(|why| failed(&why))
 }
 
-/// Compressed columns; an empty list is no data set, so that a matrix of zeros has one of them written.
+/// Writes compressed columns. HDF5 datasets cannot be empty, so one zero of a zero matrix is written.
 fn write_matrix(group: &mut GroupBuilder, matrix: &Matrix) -> Result<(), Broken> {
     let mut entries = matrix.entries.clone();
     entries.sort_by_key(|&(row, column, _)| (column, row));
@@ -352,7 +353,7 @@ fn write_matrix(group: &mut GroupBuilder, matrix: &Matrix) -> Result<(), Broken>
     let small = |n: usize| {
         i32::try_from(n).map_err(|_| {
             Broken::whole(format!(
-                "fclib counts with 32 bits, and the matrix has {n} entries"
+                "fclib uses 32-bit counts, and the matrix has {n} entries"
             ))
         })
     };
@@ -401,7 +402,7 @@ mod tests {
         problem(&[vec![2.0, -0.1], vec![0.0, 1.0 / 3.0]], &[-1.0, 0.25])
     }
 
-    /// A file of fclib, made by what is given the group of the problem.
+    /// An fclib file whose problem group is filled by a function.
     fn file(root: &str, fill: impl FnOnce(&mut GroupBuilder)) -> Vec<u8> {
         let mut file = FileBuilder::new();
         let mut group = file.create_group(root);
@@ -437,7 +438,7 @@ mod tests {
     }
 
     #[test]
-    fn a_global_problem_with_bilateral_constraints_is_one_of_more_unknowns() {
+    fn bilateral_constraints_become_additional_unknowns() {
         let bytes = file("fclib_global", |group| {
             group.create_dataset("spacedim").with_i32_data(&[2]);
             // Rows, columns and triplets, in this order.
@@ -469,7 +470,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_read_is_refused_by_name() {
+    fn unsupported_content_is_rejected_by_name() {
         let with = |dimension: i32, n: i32, mu: f64| {
             file("fclib_local", |group| {
                 group.create_dataset("spacedim").with_i32_data(&[dimension]);
@@ -519,7 +520,7 @@ mod tests {
 
     proptest! {
         #[test]
-        fn what_is_written_is_read_back_to_the_last_bit(
+        fn written_files_are_read_back_exactly(
             rows in prop::collection::vec(prop::collection::vec(-1e300..1e300_f64, 4), 4),
             q in prop::collection::vec(-1e300..1e300_f64, 4),
         ) {

@@ -1,6 +1,6 @@
-//! Friction problems in the HDF5 files of the library fclib (Acary & al., INRIA technical report 444), in the plane.
+//! Plane friction problems in the HDF5 files of the library fclib (Acary et al., INRIA technical report 444).
 //!
-//! The feature `fclib` reads and writes them (`hdf5.rs`); a build without it refuses them (`disabled.rs`).
+//! With the feature `fclib`, `hdf5.rs` reads and writes them; otherwise `disabled.rs` rejects them.
 
 #[cfg_attr(feature = "fclib", path = "hdf5.rs")]
 #[cfg_attr(not(feature = "fclib"), path = "disabled.rs")]
@@ -8,5 +8,5 @@ mod files;
 
 pub use files::{read, ready, write};
 
-/// How every HDF5 file begins.
+/// First bytes of every HDF5 file.
 pub const MARK: &[u8] = b"\x89HDF\r\n\x1a\n";

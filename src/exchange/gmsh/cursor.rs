@@ -1,12 +1,12 @@
-//! A walk through a file whose numbers are words or bytes, as its head says.
+//! A cursor in a file whose numbers are text or binary, as its header states.
 
 use crate::broken::Broken;
 
-/// How the numbers of a file are written.
+/// Number format of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Form {
     Text,
-    /// Bytes, the greatest first if `big`.
+    /// Binary, big-endian if `big`.
     Binary {
         big: bool,
     },
@@ -15,7 +15,7 @@ pub(super) enum Form {
 pub(super) struct Cursor<'a> {
     bytes: &'a [u8],
     next: usize,
-    /// Where the last thing that was read begins.
+    /// Start of the last item read.
     last: usize,
     pub form: Form,
 }
@@ -30,12 +30,12 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// Where the last thing that was read begins.
+    /// Start of the last item read.
     pub fn last(&self) -> usize {
         self.last
     }
 
-    /// Something wrong at a byte: told by line and column in a text.
+    /// An error at a byte; in a text file with line and column.
     pub fn fault(&self, byte: usize, message: impl Into<String>) -> Broken {
         let message = message.into();
         if self.form != Form::Text {
@@ -54,12 +54,12 @@ impl<'a> Cursor<'a> {
         )
     }
 
-    /// Something wrong with what was read last.
+    /// An error in the last item read.
     pub fn wrong(&self, message: impl Into<String>) -> Broken {
         self.fault(self.last, message)
     }
 
-    /// The next word, up to a blank or the end of a line; `None` at the end of the file.
+    /// The next word, up to white space; `None` at the end of the file.
     pub fn word(&mut self) -> Option<&'a [u8]> {
         let rest = &self.bytes[self.next..];
         let start = rest.iter().position(|b| !b.is_ascii_whitespace())?;
@@ -71,7 +71,7 @@ impl<'a> Cursor<'a> {
         Some(word)
     }
 
-    /// The rest of the line, its end included.
+    /// The rest of the line, including its end.
     pub fn line(&mut self) -> &'a [u8] {
         let rest = &self.bytes[self.next..];
         let end = rest.iter().position(|&b| b == b'\n').unwrap_or(rest.len());
@@ -80,7 +80,7 @@ impl<'a> Cursor<'a> {
         &rest[..end]
     }
 
-    /// Goes behind the next place where these bytes stand; whether there is one.
+    /// Moves past the next occurrence of these bytes; returns whether there is one.
     pub fn skip_to(&mut self, mark: &[u8]) -> bool {
         let rest = &self.bytes[self.next..];
         let Some(found) = rest.windows(mark.len()).position(|window| window == mark) else {
@@ -93,7 +93,7 @@ impl<'a> Cursor<'a> {
     /// A count or a tag.
     pub fn size(&mut self, what: &str) -> Result<u64, Broken> {
         match self.form {
-            Form::Text => self.parsed(what, "a whole number that is not negative"),
+            Form::Text => self.parsed(what, "a nonnegative whole number"),
             Form::Binary { big } => {
                 let bytes = self.take(what)?;
                 Ok(if big {
@@ -105,7 +105,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// A number of 32 bits, of either sign.
+    /// A signed 32-bit number.
     pub fn int(&mut self, what: &str) -> Result<i64, Broken> {
         match self.form {
             Form::Text => self.parsed(what, "a whole number"),
@@ -121,7 +121,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    /// A coordinate: a finite number.
+    /// A finite coordinate.
     pub fn float(&mut self, what: &str) -> Result<f64, Broken> {
         let value = match self.form {
             Form::Text => self.parsed(what, "a number")?,
@@ -140,24 +140,24 @@ impl<'a> Cursor<'a> {
         Err(self.wrong(format!("{what} is {value}; it must be a finite number")))
     }
 
-    /// A number that is a word in binary files, too.
+    /// A number that is text even in binary files.
     pub fn number<T: std::str::FromStr>(&mut self, what: &str, kind: &str) -> Result<T, Broken> {
         self.parsed(what, kind)
     }
 
-    /// How many of something that takes at least so many numbers each: no more than the rest of the file can hold.
+    /// Checks a count of items with at least this many numbers each against the rest of the file.
     pub fn count(&self, count: u64, numbers: usize, what: &str) -> Result<usize, Broken> {
         let least = match self.form {
-            // A digit and a blank.
+            // One digit and a space.
             Form::Text => 2,
             Form::Binary { .. } => 4,
         };
-        // The last one of a text may end the file.
+        // The last number of a text need not be followed by a space.
         let room = (self.bytes.len() + 1 - self.next) / (least * numbers.max(1));
         match usize::try_from(count) {
             Ok(count) if count <= room => Ok(count),
             _ => Err(self.wrong(format!(
-                "{count} {what} are announced, and the file ends before that many"
+                "{count} {what} are declared, but the file ends before that"
             ))),
         }
     }
@@ -166,14 +166,14 @@ impl<'a> Cursor<'a> {
         let Some(word) = self.word() else {
             return Err(self.fault(
                 self.bytes.len(),
-                format!("the file ends where {what} should stand"),
+                format!("the file ends where {what} was expected"),
             ));
         };
         let text = std::str::from_utf8(word).ok();
         text.and_then(|text| text.parse().ok()).ok_or_else(|| {
             let shown: String = String::from_utf8_lossy(word).chars().take(40).collect();
             self.wrong(format!(
-                "{shown:?} stands where {what} should; it must be {kind}"
+                "found {shown:?} where {what} was expected; it must be {kind}"
             ))
         })
     }
@@ -182,7 +182,7 @@ impl<'a> Cursor<'a> {
         self.last = self.next;
         let found = self.bytes[self.next..].first_chunk::<N>();
         let found =
-            found.ok_or_else(|| self.wrong(format!("the file ends where {what} should stand")))?;
+            found.ok_or_else(|| self.wrong(format!("the file ends where {what} was expected")))?;
         self.next += N;
         Ok(*found)
     }

@@ -1,4 +1,4 @@
-//! Nodes and elements as they stand in a file, and the kinds of elements by Gmsh's numbers.
+//! Nodes and elements as stored in a file, and Gmsh's numbers of element kinds.
 
 use crate::mesh::CellKind;
 
@@ -6,21 +6,21 @@ use crate::mesh::CellKind;
 pub(super) struct RawNode {
     pub tag: u64,
     pub at: [f64; 3],
-    /// Where it stands in the file.
+    /// Byte offset in the file.
     pub byte: usize,
 }
 
 /// An element.
 pub(super) struct RawCell {
     pub kind: CellKind,
-    /// Geometric entity, of the cell's own dimension.
+    /// Geometric entity of the cell's dimension.
     pub entity: i64,
-    /// Physical group where the cell itself names it, 0 for none; else that of its entity.
+    /// Physical group if given for the cell itself, 0 for none; otherwise that of its entity.
     pub physical: Option<i64>,
     pub byte: usize,
 }
 
-/// The kind of cell that a number of Gmsh stands for.
+/// The cell kind for a number of Gmsh.
 pub(super) fn kind(number: i64) -> Result<CellKind, String> {
     Ok(match number {
         1 => CellKind::Line2,
@@ -35,35 +35,36 @@ pub(super) fn kind(number: i64) -> Result<CellKind, String> {
     })
 }
 
-/// Why elements of another kind are not read.
+/// Error for an unsupported element kind.
 fn refused(number: i64) -> String {
-    let order = "elements of first and second order are read; set Mesh.ElementOrder to 1 or 2";
-    let plane = "only plane meshes are read; mesh the surfaces alone, by `gmsh -2`";
+    let order =
+        "only first- and second-order elements are supported; set Mesh.ElementOrder to 1 or 2";
+    let plane = "only plane meshes are supported; mesh only the surfaces, with `gmsh -2`";
     let (what, right) = match number {
-        4 => ("a tetrahedron of 4 nodes", plane),
-        5 => ("a hexahedron of 8 nodes", plane),
-        6 => ("a prism of 6 nodes", plane),
-        7 => ("a pyramid of 5 nodes", plane),
-        11 => ("a tetrahedron of 10 nodes", plane),
-        12 => ("a hexahedron of 27 nodes", plane),
-        13 => ("a prism of 18 nodes", plane),
-        14 => ("a pyramid of 14 nodes", plane),
-        17 => ("a hexahedron of 20 nodes", plane),
-        18 => ("a prism of 15 nodes", plane),
-        19 => ("a pyramid of 13 nodes", plane),
-        20 => ("a triangle of 9 nodes", order),
-        21 => ("a triangle of 10 nodes", order),
-        22 => ("a triangle of 12 nodes", order),
-        23 | 24 => ("a triangle of 15 nodes", order),
-        25 => ("a triangle of 21 nodes", order),
-        26 => ("a line of 4 nodes", order),
-        27 => ("a line of 5 nodes", order),
-        28 => ("a line of 6 nodes", order),
-        36 => ("a quadrilateral of 16 nodes", order),
-        37 => ("a quadrilateral of 25 nodes", order),
-        39 => ("a quadrilateral of 12 nodes", order),
+        4 => ("a 4-node tetrahedron", plane),
+        5 => ("an 8-node hexahedron", plane),
+        6 => ("a 6-node prism", plane),
+        7 => ("a 5-node pyramid", plane),
+        11 => ("a 10-node tetrahedron", plane),
+        12 => ("a 27-node hexahedron", plane),
+        13 => ("an 18-node prism", plane),
+        14 => ("a 14-node pyramid", plane),
+        17 => ("a 20-node hexahedron", plane),
+        18 => ("a 15-node prism", plane),
+        19 => ("a 13-node pyramid", plane),
+        20 => ("a 9-node triangle", order),
+        21 => ("a 10-node triangle", order),
+        22 => ("a 12-node triangle", order),
+        23 | 24 => ("a 15-node triangle", order),
+        25 => ("a 21-node triangle", order),
+        26 => ("a 4-node line", order),
+        27 => ("a 5-node line", order),
+        28 => ("a 6-node line", order),
+        36 => ("a 16-node quadrilateral", order),
+        37 => ("a 25-node quadrilateral", order),
+        39 => ("a 12-node quadrilateral", order),
         other => {
-            return format!("elements of type {other} are not read: {order}, and in the plane");
+            return format!("elements of type {other} are not supported: {order}, and plane");
         }
     };
     format!("the element is {what}; {right}")

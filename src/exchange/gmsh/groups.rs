@@ -1,15 +1,15 @@
-//! Physical groups: which cells each has, and what it is called.
+//! Physical groups: their cells and names.
 
 use super::elements::RawCell;
 use crate::mesh::{Cell, Group};
 use std::collections::HashMap;
 
-/// What a file says of its groups.
+/// The groups defined in a file.
 #[derive(Default)]
 pub(super) struct Groups {
-    /// Dimension, number and name, in the order of the file.
+    /// Dimension, number and name, in file order.
     names: Vec<(u8, i64, String)>,
-    /// The groups of each entity, by its dimension and number.
+    /// The groups of each entity, by dimension and number.
     of_entity: HashMap<(u8, i64), Vec<i64>>,
 }
 
@@ -19,7 +19,7 @@ impl Groups {
         self.names.push((dimension, tag, name.to_owned()));
     }
 
-    /// Puts an entity into a group. Gmsh marks by the sign that a curve is walked the other way there.
+    /// Adds an entity to a group. In Gmsh a negative sign means that a curve is reversed there.
     pub fn has(&mut self, dimension: u8, entity: i64, group: i64) {
         let group = group.saturating_abs();
         self.of_entity
@@ -28,8 +28,8 @@ impl Groups {
             .push(group);
     }
 
-    /// The cells, each once, and the groups that have any, in the order of their names; then those without a name, in the order
-    /// of the cells. Version 2.2 repeats a cell for every group that it is in.
+    /// The cells, each once, and the nonempty groups: named groups in the order of their names, then unnamed ones in the order of
+    /// their cells. Version 2.2 repeats a cell for every group that contains it.
     pub fn of_cells(&self, raw: &[RawCell], cells: Vec<Cell>) -> (Vec<Cell>, Vec<Group>) {
         let mut made = Vec::new();
         let mut place_of: HashMap<(u8, i64), usize> = HashMap::new();
@@ -85,7 +85,7 @@ impl Groups {
     }
 }
 
-/// Whether an entity stands there for more than one group, so that its cells stand there as often.
+/// Whether an entity is listed for more than one group, so that its cells are repeated.
 fn repeats(raw: &[RawCell]) -> bool {
     let mut group_of = HashMap::new();
     raw.iter().any(|cell| {

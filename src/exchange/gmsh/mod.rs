@@ -1,14 +1,14 @@
-//! Meshes of Gmsh: MSH files of version 2.2 and 4.1, text and binary.
+//! Gmsh meshes: MSH files of version 2.2 and 4.1, text and binary.
 //!
-//! A file is a row of sections, `$Nodes` to `$EndNodes`; those that no mesh needs (`$Periodic`, `$NodeData`, …) are skipped.
-//! The format is that of the reference manual of Gmsh, "MSH file format". Gmsh numbers the nodes of an element as we do: the
-//! corners, then the middles of the sides that start at them, then the middle. Nodes and cells are named by tags, which need
-//! neither be dense nor in order.
+//! A file is a sequence of sections, `$Nodes` to `$EndNodes`; sections without mesh data (`$Periodic`, `$NodeData`, …) are
+//! skipped. The format is described in the Gmsh reference manual, "MSH file format". Gmsh uses the same node order as this
+//! program: the corners, then the midside nodes, starting on the side after the first corner, then the centre. Nodes and cells
+//! are identified by tags, which need not be dense or ordered.
 //!
-//! Physical groups become [`Group`](crate::mesh::Group)s; one without a name is called after its dimension and number, `surface2`. A file
-//! without any groups has one for each geometric entity, by the same rule. Coordinates must lie in a plane z = const.
+//! Physical groups become [`Group`](crate::mesh::Group)s; one without a name is named by dimension and number, `surface2`. A file
+//! without groups gets one group per geometric entity, named by the same rule. Coordinates must lie in a plane z = const.
 //!
-//! The reader is our own: of the crates there are, mshio reads version 4.1 only and has had no release since 2020, and it takes
+//! This reader replaces existing crates: mshio reads version 4.1 only, has had no release since 2020, and allocates as much
 //! memory as a file's counts claim.
 
 mod cursor;
@@ -24,7 +24,7 @@ use crate::mesh::Mesh;
 use cursor::Cursor;
 use sections::HEAD;
 
-/// Whether a file says that it is one of Gmsh.
+/// Whether a file is a Gmsh mesh.
 pub fn is_one(bytes: &[u8]) -> bool {
     bytes.trim_ascii_start().starts_with(HEAD)
 }
@@ -32,8 +32,8 @@ pub fn is_one(bytes: &[u8]) -> bool {
 /// Reads a mesh.
 ///
 /// # Errors
-/// If the file is none of Gmsh, broken, of another version, or has cells that are not of the plane or of third order; in text
-/// with line and column, in a binary file with the number of the byte.
+/// If the file is not a Gmsh mesh, has errors or another version, or has non-plane or third-order cells. Errors have a line and
+/// column in a text file, and a byte offset in a binary one.
 pub fn read(bytes: &[u8]) -> Result<Mesh, Broken> {
     let mut cursor = Cursor::new(bytes);
     let raw = sections::read(&mut cursor)?;

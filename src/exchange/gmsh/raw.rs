@@ -1,4 +1,4 @@
-//! All that a mesh needs of a file, by the file's own tags, and the mesh that it makes.
+//! The mesh data of a file, identified by the file's tags, and its conversion to a mesh.
 
 use super::cursor::Cursor;
 use super::elements::{RawCell, RawNode};
@@ -6,25 +6,25 @@ use super::groups::Groups;
 use crate::broken::Broken;
 use crate::mesh::{Cell, Mesh};
 
-/// Nodes are in one plane if their z differ by no more than this part of what they measure in x and y.
+/// Nodes are in one plane if their z differ by at most this fraction of the extent in x and y.
 const FLAT: f64 = 1e-9;
 
-/// What stands in a file, by its own tags.
+/// Contents of a file, identified by its tags.
 #[derive(Default)]
 pub(super) struct Raw {
     pub nodes: Vec<RawNode>,
     pub cells: Vec<RawCell>,
-    /// Tags of the nodes of all cells, one cell after the other.
+    /// Node tags of all cells, in sequence.
     pub tags: Vec<u64>,
     pub groups: Groups,
 }
 
 impl Raw {
-    /// The mesh, if its nodes lie in a plane and are all there.
+    /// The mesh, if its nodes exist and lie in a plane.
     pub fn mesh(self, cursor: &Cursor<'_>) -> Result<Mesh, Broken> {
         if self.cells.is_empty() {
             let message =
-                "the file has no elements; a mesh is made first, by `gmsh -2` or Mesh > 2D";
+                "the file has no elements; generate a mesh first, with `gmsh -2` or Mesh > 2D";
             return Err(Broken::whole(message));
         }
         let index = self.index(cursor)?;
@@ -37,7 +37,7 @@ impl Raw {
                 place(&index, *tag).ok_or_else(|| {
                     cursor.fault(
                         cell.byte,
-                        format!("the element names node {tag}, which the file does not have"),
+                        format!("the element refers to node {tag}, which is not in the file"),
                     )
                 })
             };
@@ -60,7 +60,7 @@ impl Raw {
         })
     }
 
-    /// Tags of the nodes with their positions, ascending.
+    /// Tags of the nodes with their indices, ascending.
     fn index(&self, cursor: &Cursor<'_>) -> Result<Vec<(u64, usize)>, Broken> {
         let tags = self.nodes.iter().enumerate();
         let mut index: Vec<(u64, usize)> = tags.map(|(k, node)| (node.tag, k)).collect();
@@ -70,14 +70,14 @@ impl Raw {
                 let node = &self.nodes[pair[1].1];
                 Err(cursor.fault(
                     node.byte,
-                    format!("node {} stands in the file twice", node.tag),
+                    format!("node {} occurs twice in the file", node.tag),
                 ))
             }
             None => Ok(index),
         }
     }
 
-    /// Refuses nodes of cells that do not lie in one plane z = const.
+    /// Rejects cells whose nodes do not lie in one plane z = const.
     fn check_flat(&self, cells: &[Cell], cursor: &Cursor<'_>) -> Result<(), Broken> {
         let used = || {
             cells
@@ -105,9 +105,9 @@ impl Raw {
     }
 }
 
-/// Position of a node by its tag.
+/// Index of a node by its tag.
 fn place(index: &[(u64, usize)], tag: u64) -> Option<usize> {
-    // Tags without gaps, which are the rule, are found at once.
+    // Fast path for consecutive tags, the usual case.
     let guess = index.first().and_then(|(first, _)| tag.checked_sub(*first));
     let guess = guess.and_then(|far| index.get(usize::try_from(far).ok()?));
     if let Some((_, place)) = guess.filter(|(found, _)| *found == tag) {

@@ -1,14 +1,14 @@
-//! The sections of a file, whatever its version.
+//! The sections of a file of any version.
 
 use super::cursor::{Cursor, Form};
 use super::raw::Raw;
 use super::{v2, v4};
 use crate::broken::Broken;
 
-/// What a file is to begin with.
+/// Required start of a file.
 pub(super) const HEAD: &[u8] = b"$MeshFormat";
 
-/// Versions whose sections differ.
+/// Versions with different sections.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Version {
     Two,
@@ -18,7 +18,7 @@ enum Version {
 /// Reads all sections that a mesh needs.
 pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<Raw, Broken> {
     if cursor.word() != Some(HEAD) {
-        let message = "a mesh of Gmsh begins with $MeshFormat";
+        let message = "a Gmsh mesh must begin with $MeshFormat";
         return Err(cursor.wrong(message));
     }
     let version = head(cursor)?;
@@ -28,7 +28,7 @@ pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<Raw, Broken> {
         let Some(name) = word.strip_prefix(b"$").filter(|name| !name.is_empty()) else {
             let shown: String = String::from_utf8_lossy(word).chars().take(40).collect();
             return Err(cursor.wrong(format!(
-                "{shown:?} stands where a section should begin, as $Nodes"
+                "found {shown:?} where a section, e.g. $Nodes, was expected"
             )));
         };
         let begin = cursor.last();
@@ -41,7 +41,7 @@ pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<Raw, Broken> {
             (b"Elements", Version::Two) => v2::elements,
             (b"Elements", Version::Four) => v4::elements,
             (b"PartitionedEntities", _) => {
-                let message = "the mesh is partitioned; write it whole, with Mesh.PartitionCreateTopology = 0";
+                let message = "the mesh is partitioned; save it unpartitioned, with Mesh.PartitionCreateTopology = 0";
                 return Err(cursor.fault(begin, message));
             }
             _ => {
@@ -56,7 +56,7 @@ pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<Raw, Broken> {
             }
         };
         if seen.contains(&name) {
-            return Err(cursor.fault(begin, format!("a second section ${}", shown(name))));
+            return Err(cursor.fault(begin, format!("duplicate section ${}", shown(name))));
         }
         seen.push(name);
         reader(cursor, &mut raw)?;
@@ -83,14 +83,18 @@ fn end(cursor: &mut Cursor<'_>, name: &[u8]) -> Result<(), Broken> {
     match cursor.word() {
         Some(word) if word == wanted => Ok(()),
         Some(word) => {
-            let message = format!("{:?} stands where {} should", shown(word), shown(&wanted));
+            let message = format!(
+                "found {:?} where {} was expected",
+                shown(word),
+                shown(&wanted)
+            );
             Err(cursor.wrong(message))
         }
         None => Err(cursor.wrong(format!("the file ends before {}", shown(&wanted)))),
     }
 }
 
-/// Reads version and form.
+/// Reads version and number format.
 fn head(cursor: &mut Cursor<'_>) -> Result<Version, Broken> {
     let version: f64 = cursor.number("the version", "4.1 or 2.2")?;
     let known = match version {
@@ -98,31 +102,29 @@ fn head(cursor: &mut Cursor<'_>) -> Result<Version, Broken> {
         4.1 => Version::Four,
         other => {
             let message = format!(
-                "the file has version {other} of the format; 4.1 and 2.2 are read, which `gmsh FILE -save -format msh41` writes"
+                "version {other} of the format is not supported; convert the file to 4.1 with `gmsh FILE -save -format msh41`, or to 2.2"
             );
             return Err(cursor.wrong(message));
         }
     };
-    let binary: u8 = cursor.number("the form of the file", "0 (text) or 1 (binary)")?;
+    let binary: u8 = cursor.number("the number format", "0 (text) or 1 (binary)")?;
     if binary > 1 {
-        return Err(cursor.wrong("the form of the file is 0 (text) or 1 (binary)"));
+        return Err(cursor.wrong("the number format must be 0 (text) or 1 (binary)"));
     }
     let size: u8 = cursor.number("the size of a number", "8")?;
     if binary == 1 {
         if size != 8 {
-            return Err(cursor.wrong(format!("numbers of {size} bytes are not read, only of 8")));
+            return Err(cursor.wrong(format!("numbers of {size} bytes are not supported, only 8")));
         }
         cursor.line();
         cursor.form = Form::Binary { big: false };
         let one = cursor.int("the number 1")?;
         match one {
             1 => {}
-            // The bytes of 1 the other way round.
+            // The bytes of 1 in reverse order.
             0x0100_0000 => cursor.form = Form::Binary { big: true },
             _ => {
-                return Err(
-                    cursor.wrong("the bytes after the head are those of no 1, in either order")
-                );
+                return Err(cursor.wrong("the byte-order mark is not 1 in either byte order"));
             }
         }
     }
@@ -130,7 +132,7 @@ fn head(cursor: &mut Cursor<'_>) -> Result<Version, Broken> {
     Ok(known)
 }
 
-/// Names of physical groups, which are text in binary files, too.
+/// Names of physical groups; text even in binary files.
 fn names(cursor: &mut Cursor<'_>, raw: &mut Raw) -> Result<(), Broken> {
     let count: u64 = cursor.number("the number of physical names", "a whole number")?;
     for _ in 0..count {
@@ -142,9 +144,7 @@ fn names(cursor: &mut Cursor<'_>, raw: &mut Raw) -> Result<(), Broken> {
             .and_then(|rest| rest.strip_suffix(b"\""));
         let name = quoted.and_then(|name| std::str::from_utf8(name).ok());
         let Some(name) = name else {
-            return Err(
-                cursor.wrong("the name of a physical group stands in quotes, as text in UTF-8")
-            );
+            return Err(cursor.wrong("the name of a physical group must be in quotes and in UTF-8"));
         };
         raw.groups.name(dimension, tag, name);
     }

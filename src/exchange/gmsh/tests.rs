@@ -1,4 +1,4 @@
-//! The four forms of one mesh, and what is wrong with broken ones. The files are made by `tests/peers/mesh.py --size 0.5`.
+//! Tests with the four formats of one mesh, and with damaged files. `tests/peers/mesh.py --size 0.5` generates the files.
 
 use super::*;
 use crate::mesh::{Cell, CellKind, Group};
@@ -22,7 +22,7 @@ fn group<'m>(mesh: &'m Mesh, name: &str) -> Vec<&'m Cell> {
 }
 
 #[test]
-fn all_four_forms_of_a_mesh_are_the_same_mesh() {
+fn all_four_formats_give_the_same_mesh() {
     let [first, rest @ ..] = FILES.map(|file| read(file).unwrap());
     let names: Vec<&str> = first.groups.iter().map(|g| g.name.as_str()).collect();
     assert_eq!(names, ["bottom", "top", "arc", "flat", "block", "disc"]);
@@ -64,14 +64,14 @@ fn all_four_forms_of_a_mesh_are_the_same_mesh() {
             mesh.groups.iter().map(of).collect::<Vec<_>>()
         };
         assert_eq!(groups(&mesh), groups(&first));
-        // Text has 16 digits.
+        // Text files have 16 digits.
         for (a, b) in mesh.nodes.iter().zip(&first.nodes) {
             assert!((a[0] - b[0]).abs() <= 1e-15 * 4.0 && (a[1] - b[1]).abs() <= 1e-15 * 4.0);
         }
     }
 }
 
-/// A mesh of one triangle in version 2.2, and what elements it has besides.
+/// A mesh of one triangle in version 2.2, with additional elements.
 fn small(more: &str) -> String {
     let count = 1 + more.lines().count();
     format!(
@@ -86,11 +86,11 @@ fn broken(text: &str) -> (Option<(usize, usize)>, String) {
 }
 
 #[test]
-fn tags_may_have_gaps_and_stand_in_any_order() {
+fn tags_may_have_gaps_and_any_order() {
     let mesh = read(small("").as_bytes()).unwrap();
     assert_eq!(mesh.labels, [10, 7, 30, 5]);
     assert_eq!(mesh.cells[0].nodes, [0, 1, 2]);
-    // No groups: each entity is one.
+    // Without groups, each entity is one.
     assert_eq!(
         mesh.groups,
         [Group {
@@ -120,7 +120,7 @@ fn a_group_without_a_name_has_its_number_and_a_cell_in_two_groups_is_one_cell() 
 }
 
 #[test]
-fn the_other_order_of_bytes_is_read_too() {
+fn the_other_byte_order_is_read_too() {
     let mut bytes = b"$MeshFormat\n2.2 1 8\n".to_vec();
     bytes.extend(1_i32.to_be_bytes());
     bytes.extend(b"\n$EndMeshFormat\n$Nodes\n3\n");
@@ -141,7 +141,7 @@ fn the_other_order_of_bytes_is_read_too() {
 }
 
 #[test]
-fn sections_that_no_mesh_needs_are_skipped_and_parametric_nodes_are_read() {
+fn unneeded_sections_are_skipped_and_parametric_nodes_are_read() {
     let text = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Comments\n$Nodes are not here\n$EndComments\n\
                 $Nodes\n1 3 1 3\n2 1 1 3\n1\n2\n3\n0 0 0 0.5 0.5\n1 0 0 1 0\n0 1 0 0 1\n$EndNodes\n\
                 $Periodic\n1\n1 1 2\n$EndPeriodic\n$Elements\n1 1 1 1\n2 1 2 1\n1 1 2 3\n$EndElements\n";
@@ -150,42 +150,42 @@ fn sections_that_no_mesh_needs_are_skipped_and_parametric_nodes_are_read() {
 }
 
 #[test]
-fn what_is_wrong_is_told_with_its_place() {
+fn errors_have_a_position() {
     let cases = [
-        ("$Mesh", "$MeshX", "1:1", "begins with $MeshFormat"),
+        ("$Mesh", "$MeshX", "1:1", "must begin with $MeshFormat"),
         ("2.2 0", "4.0 0", "2:1", "version 4"),
         (
             "$Nodes\n4",
             "$Nodes\n4000000000",
             "5:1",
-            "4000000000 nodes are announced",
+            "4000000000 nodes are declared",
         ),
         ("7 1 0 0", "7 1 nan 0", "7:5", "finite"),
         (
             "7 1 0 0",
             "7 1 1,5 0",
             "7:5",
-            "\"1,5\" stands where y of a node should",
+            "found \"1,5\" where y of a node was expected",
         ),
         ("7 1 0 0", "7 1 0 0.5", "7:1", "node 7 is at z = 0.5"),
         (
             "30 0 1 0",
             "7 0 1 0",
             "8:1",
-            "node 7 stands in the file twice",
+            "node 7 occurs twice in the file",
         ),
-        ("10 7 30", "10 7 31", "13:1", "names node 31"),
+        ("10 7 30", "10 7 31", "13:1", "refers to node 31"),
         (
             "1 2 2 0 6 10 7 30",
             "1 4 2 0 6 10 7 30 5",
             "13:3",
-            "a tetrahedron of 4 nodes; only plane",
+            "a 4-node tetrahedron; only plane",
         ),
         (
             "1 2 2 0 6 10 7 30",
             "1 21 2 0 6 10 7 30 5",
             "13:3",
-            "a triangle of 10 nodes; elements of first",
+            "a 10-node triangle; only first",
         ),
         (
             "1 2 2 0 6 10 7 30",
@@ -203,7 +203,7 @@ fn what_is_wrong_is_told_with_its_place() {
             "$EndNodes",
             "$Nodes",
             "10:1",
-            "\"$Nodes\" stands where $EndNodes should",
+            "found \"$Nodes\" where $EndNodes was expected",
         ),
     ];
     for (old, new, place, told) in cases {
@@ -219,7 +219,7 @@ fn what_is_wrong_is_told_with_its_place() {
 }
 
 #[test]
-fn in_a_binary_file_the_byte_is_told() {
+fn errors_in_binary_files_have_a_byte_offset() {
     let whole = FILES[1];
     let start = whole.windows(7).position(|w| w == b"$Nodes\n").unwrap();
     let cut = read(&whole[..start + 40]).unwrap_err();
@@ -243,7 +243,7 @@ proptest! {
     }
 
     #[test]
-    fn cut_and_changed_files_are_read_or_refused(
+    fn truncated_and_changed_files_are_read_or_rejected(
         which in 0..4_usize,
         cut in 0.0..1.0_f64,
         changes in prop::collection::vec((0.0..1.0_f64, any::<u8>()), 0..8),
@@ -256,7 +256,7 @@ proptest! {
         }
         let _ = read(&bytes);
         bytes.truncate(place(cut, bytes.len()));
-        // Without its end no file is whole.
+        // A truncated file is always an error.
         prop_assert!(read(&bytes).is_err());
     }
 }

@@ -5,7 +5,7 @@ use super::elements::{RawCell, RawNode, kind};
 use super::raw::Raw;
 use crate::broken::Broken;
 
-/// `count`, then number, x, y, z of each node.
+/// Reads `count`, then number, x, y, z of each node.
 pub(super) fn nodes(cursor: &mut Cursor<'_>, raw: &mut Raw) -> Result<(), Broken> {
     let count = announced(cursor, 4, "nodes")?;
     raw.nodes.reserve_exact(count);
@@ -22,8 +22,8 @@ pub(super) fn nodes(cursor: &mut Cursor<'_>, raw: &mut Raw) -> Result<(), Broken
     Ok(())
 }
 
-/// `count`, then number, type, tags and nodes of each element; in binary files elements that have type and number of tags in
-/// common stand behind these.
+/// Reads `count`, then number, type, tags and nodes of each element; in binary files, elements with the same type and number of
+/// tags share a header.
 pub(super) fn elements(cursor: &mut Cursor<'_>, raw: &mut Raw) -> Result<(), Broken> {
     let count = announced(cursor, 3, "elements")?;
     raw.cells.reserve_exact(count);
@@ -45,7 +45,7 @@ pub(super) fn elements(cursor: &mut Cursor<'_>, raw: &mut Raw) -> Result<(), Bro
             .filter(|alike| (1..=left).contains(alike));
         let Some(alike) = alike else {
             return Err(cursor.wrong(format!(
-                "{left} elements are left, and here should be 1 to {left} of them"
+                "{left} elements are left, so this must be 1 to {left}"
             )));
         };
         let tags = cursor.int("the number of tags of an element")?;
@@ -82,9 +82,9 @@ pub(super) fn elements(cursor: &mut Cursor<'_>, raw: &mut Raw) -> Result<(), Bro
     Ok(())
 }
 
-/// A count, which is text in binary files, too.
+/// A count; text even in binary files.
 fn announced(cursor: &mut Cursor<'_>, numbers: usize, what: &str) -> Result<usize, Broken> {
-    let count = cursor.number("a count", "a whole number that is not negative")?;
+    let count = cursor.number("a count", "a nonnegative whole number")?;
     let count = cursor.count(count, numbers, what)?;
     if cursor.form != Form::Text {
         cursor.line();

@@ -1,11 +1,11 @@
-//! Entities, nodes and elements of version 4.1: block by block, each of one geometric entity.
+//! Entities, nodes and elements of version 4.1: in blocks, each for one geometric entity.
 
 use super::cursor::Cursor;
 use super::elements::{RawCell, RawNode, kind};
 use super::raw::Raw;
 use crate::broken::Broken;
 
-/// What each geometric entity is in: its physical groups.
+/// Reads the physical groups of each geometric entity.
 pub(super) fn entities(cursor: &mut Cursor<'_>, raw: &mut Raw) -> Result<(), Broken> {
     let mut counts = [0; 4];
     for count in &mut counts {
@@ -14,7 +14,7 @@ pub(super) fn entities(cursor: &mut Cursor<'_>, raw: &mut Raw) -> Result<(), Bro
     for (dimension, count) in (0..).zip(counts) {
         for _ in 0..cursor.count(count, 4, "entities")? {
             let entity = cursor.int("the number of an entity")?;
-            // Of a point its place, of others the box around it.
+            // A point has its position, other entities a bounding box.
             for _ in 0..if dimension == 0 { 3 } else { 6 } {
                 cursor.float("a coordinate of an entity")?;
             }
@@ -29,14 +29,14 @@ pub(super) fn entities(cursor: &mut Cursor<'_>, raw: &mut Raw) -> Result<(), Bro
     Ok(())
 }
 
-/// A count and so many numbers.
+/// A count and that many numbers.
 fn list(cursor: &mut Cursor<'_>, what: &str) -> Result<Vec<i64>, Broken> {
     let count = cursor.size("a count")?;
     let count = cursor.count(count, 1, "numbers")?;
     (0..count).map(|_| cursor.int(what)).collect()
 }
 
-/// How many blocks there are, and how many nodes or elements in all; their least and greatest numbers follow.
+/// Number of blocks, and total number of nodes or elements; their smallest and largest numbers follow.
 fn announced(
     cursor: &mut Cursor<'_>,
     numbers: usize,
@@ -46,12 +46,13 @@ fn announced(
     let blocks = cursor.count(blocks, 4, "blocks")?;
     let count = cursor.size("a count")?;
     let count = cursor.count(count, numbers, what)?;
-    cursor.size("the least number")?;
-    cursor.size("the greatest number")?;
+    cursor.size("the smallest number")?;
+    cursor.size("the largest number")?;
     Ok((blocks, count))
 }
 
-/// The blocks of nodes: their numbers, then their coordinates, with those on their entity behind where they are parametric.
+/// Reads the blocks of nodes: their numbers, then their coordinates, followed by parameters on their entity if they are
+/// parametric.
 pub(super) fn nodes(cursor: &mut Cursor<'_>, raw: &mut Raw) -> Result<(), Broken> {
     let (blocks, count) = announced(cursor, 4, "nodes")?;
     raw.nodes.reserve_exact(count);
@@ -63,7 +64,7 @@ pub(super) fn nodes(cursor: &mut Cursor<'_>, raw: &mut Raw) -> Result<(), Broken
             )));
         }
         cursor.int("the number of an entity")?;
-        let parametric = cursor.int("whether nodes are parametric")?;
+        let parametric = cursor.int("the flag for parametric nodes")?;
         let more = if parametric == 0 { 0 } else { dimension };
         let alike = cursor.size("a number of nodes")?;
         let alike = within(cursor, alike, count - raw.nodes.len(), "nodes")?;
@@ -93,7 +94,7 @@ pub(super) fn nodes(cursor: &mut Cursor<'_>, raw: &mut Raw) -> Result<(), Broken
     whole(cursor, raw.nodes.len(), count, "nodes")
 }
 
-/// The blocks of elements: number and nodes of each.
+/// Reads the blocks of elements: number and nodes of each.
 pub(super) fn elements(cursor: &mut Cursor<'_>, raw: &mut Raw) -> Result<(), Broken> {
     let (blocks, count) = announced(cursor, 2, "elements")?;
     raw.cells.reserve_exact(count);
@@ -122,22 +123,22 @@ pub(super) fn elements(cursor: &mut Cursor<'_>, raw: &mut Raw) -> Result<(), Bro
     whole(cursor, raw.cells.len(), count, "elements")
 }
 
-/// How many a block has of those that are left.
+/// Size of a block, limited by the remaining total.
 fn within(cursor: &Cursor<'_>, alike: u64, left: usize, what: &str) -> Result<usize, Broken> {
     let alike = usize::try_from(alike).ok().filter(|alike| *alike <= left);
     alike.ok_or_else(|| {
         cursor.wrong(format!(
-            "the block has more {what} than the {left} that are left of those announced"
+            "the block has more {what} than the {left} left of the declared total"
         ))
     })
 }
 
-/// Refuses blocks that have fewer together than were announced.
+/// Rejects blocks with fewer items than declared.
 fn whole(cursor: &Cursor<'_>, found: usize, count: usize, what: &str) -> Result<(), Broken> {
     match found == count {
         true => Ok(()),
         false => Err(cursor.wrong(format!(
-            "the blocks have {found} {what}, and {count} were announced"
+            "the blocks have {found} {what}, but {count} were declared"
         ))),
     }
 }

@@ -1,4 +1,4 @@
-//! Cards: a keyword with its parameters, and the lines of data that follow it.
+//! Cards: a keyword with its parameters, and the data lines after it.
 //!
 //! ```text
 //! ** a comment
@@ -6,17 +6,16 @@
 //! U, RF
 //! ```
 //!
-//! Upper and lower case are the same, and so are words with and without blanks in them, as CalculiX reads them. The
-//! parameters go on in the next line where a line of them ends with a comma.
+//! Case and spaces within words do not matter, as in CalculiX. Parameters continue on the next line after a trailing comma.
 
 use super::source::{Fault, Line, Place, plain};
 
-/// A keyword with all that belongs to it.
+/// A keyword with its parameters and data.
 #[derive(Debug)]
 pub(super) struct Card<'t> {
-    /// In capitals, without the star and without blanks.
+    /// Uppercase, without the star and without spaces.
     pub key: String,
-    /// As it is written, without the star.
+    /// As written, without the star.
     pub shown: String,
     pub place: Place,
     parameters: Vec<Parameter>,
@@ -25,14 +24,14 @@ pub(super) struct Card<'t> {
 
 #[derive(Debug, Clone)]
 pub(super) struct Parameter {
-    /// In capitals, without blanks.
+    /// Uppercase, without spaces.
     pub name: String,
-    /// In capitals, without blanks and quotes.
+    /// Uppercase, without spaces and quotes.
     pub value: Option<String>,
     pub place: Place,
 }
 
-/// A word of a line of data.
+/// A word of a data line.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Cell<'t> {
     pub text: &'t str,
@@ -63,7 +62,7 @@ pub(super) fn cards<'t>(lines: impl Iterator<Item = Line<'t>>) -> Result<Vec<Car
             None => {
                 return Err(Fault::new(
                     line.place(0),
-                    "data stand before the first keyword; a deck begins with one, as *HEADING or *NODE",
+                    "data before the first keyword; a deck begins with a keyword, e.g. *HEADING or *NODE",
                 ));
             }
         }
@@ -72,7 +71,7 @@ pub(super) fn cards<'t>(lines: impl Iterator<Item = Line<'t>>) -> Result<Vec<Car
 }
 
 impl<'t> Card<'t> {
-    /// A card without its data, and whether its parameters go on in the next line.
+    /// A card without its data, and whether its parameters continue on the next line.
     fn begin(line: Line<'t>) -> Result<(Card<'t>, bool), Fault> {
         let star = line.text.find('*').unwrap_or(0);
         let end = line.text.find(',').unwrap_or(line.text.len());
@@ -82,7 +81,7 @@ impl<'t> Card<'t> {
         if key.is_empty() {
             return Err(Fault::new(
                 place,
-                "a keyword should follow the star; a comment has two",
+                "the star must be followed by a keyword; comments start with two stars",
             ));
         }
         let (parameters, open) = match end < line.text.len() {
@@ -99,22 +98,22 @@ impl<'t> Card<'t> {
         Ok((card, open))
     }
 
-    /// What is wrong with it.
+    /// An error about the card.
     pub fn wrong(&self, message: impl std::fmt::Display) -> Fault {
         Fault::new(self.place, format!("*{}: {message}", self.shown))
     }
 
-    /// Refuses parameters other than these.
+    /// Rejects parameters other than these.
     pub fn only(&self, known: &[&str]) -> Result<(), Fault> {
         for parameter in &self.parameters {
             if !known.contains(&parameter.name.as_str()) {
                 let list = match known {
-                    [] => "it has none that can be read".to_owned(),
-                    _ => format!("those that can be read are {}", known.join(", ")),
+                    [] => "it has no supported parameters".to_owned(),
+                    _ => format!("supported are {}", known.join(", ")),
                 };
                 let name = short(&parameter.name);
                 let message = format!(
-                    "*{}: the parameter {name} cannot be read; {list}",
+                    "*{}: the parameter {name} is not supported; {list}",
                     self.shown
                 );
                 return Err(Fault::new(parameter.place, message));
@@ -131,7 +130,7 @@ impl<'t> Card<'t> {
         self.parameter(name).is_some()
     }
 
-    /// The value of a parameter, where there is one.
+    /// The value of a parameter, if present.
     pub fn value(&self, name: &str) -> Result<Option<&str>, Fault> {
         let Some(parameter) = self.parameter(name) else {
             return Ok(None);
@@ -153,7 +152,7 @@ impl<'t> Card<'t> {
             .ok_or_else(|| self.wrong(format!("the parameter {name}=... is missing")))
     }
 
-    /// What a parameter chooses among words; the first one where it is missing.
+    /// The index of a parameter's value in a list of words; 0 if the parameter is missing.
     pub fn choice(&self, name: &str, words: &[&str]) -> Result<usize, Fault> {
         let Some(value) = self.value(name)? else {
             return Ok(0);
@@ -162,7 +161,7 @@ impl<'t> Card<'t> {
         found.ok_or_else(|| {
             let place = self.parameter(name).map_or(self.place, |p| p.place);
             let message = format!(
-                "*{}: {name}={} cannot be read; it must be {}",
+                "*{}: {name}={} is not supported; it must be {}",
                 self.shown,
                 short(value),
                 words.join(" or ")
@@ -171,33 +170,33 @@ impl<'t> Card<'t> {
         })
     }
 
-    /// Where a parameter stands.
+    /// Location of a parameter.
     pub fn place_of(&self, name: &str) -> Place {
         self.parameter(name).map_or(self.place, |p| p.place)
     }
 
-    /// The only line of data.
+    /// The only data line.
     pub fn one_line(&self, what: &str) -> Result<Vec<Cell<'t>>, Fault> {
         match self.lines.as_slice() {
             [line] => Ok(cells(*line)),
-            [] => Err(self.wrong(format!("a line with {what} should follow"))),
+            [] => Err(self.wrong(format!("a line with {what} is missing"))),
             [_, more, ..] => Err(Fault::new(
                 more.place(0),
                 format!(
-                    "*{}: a second line of data cannot be read; one with {what} is right",
+                    "*{}: unexpected second data line; only one with {what} is allowed",
                     self.shown
                 ),
             )),
         }
     }
 
-    /// Refuses lines of data.
+    /// Rejects data lines.
     pub fn no_lines(&self) -> Result<(), Fault> {
         match self.lines.first() {
             None => Ok(()),
             Some(line) => Err(Fault::new(
                 line.place(0),
-                format!("*{} has no data; a keyword should stand here", self.shown),
+                format!("*{} has no data; a keyword was expected", self.shown),
             )),
         }
     }
@@ -236,7 +235,7 @@ fn parameters_of(line: Line<'_>, from: usize) -> Result<(Vec<Parameter>, bool), 
     Ok((parameters, open))
 }
 
-/// The words of a line; what follows the last comma counts only if it is there.
+/// The words of a line; text after the last comma counts only if it is not empty.
 pub(super) fn cells(line: Line<'_>) -> Vec<Cell<'_>> {
     let mut found = Vec::new();
     let mut byte = 0;
@@ -264,7 +263,7 @@ impl Cell<'_> {
         Fault::new(self.place(), message)
     }
 
-    /// A number; Fortran's exponents with D too.
+    /// A number; Fortran exponents with D are accepted too.
     pub fn number(&self, what: &str) -> Result<f64, Fault> {
         let read = self.text.parse().ok().or_else(|| {
             let fortran: String = self.text.replace(['d', 'D'], "e");
@@ -272,24 +271,24 @@ impl Cell<'_> {
         });
         read.filter(|value: &f64| value.is_finite()).ok_or_else(|| {
             self.wrong(format!(
-                "{:?} stands where {what}, a number, should",
+                "found {:?} where {what}, a number, was expected",
                 short(self.text)
             ))
         })
     }
 
-    /// A whole number that is not negative.
+    /// A nonnegative whole number.
     pub fn whole(&self, what: &str) -> Result<u64, Fault> {
         self.text.parse().map_err(|_| {
             self.wrong(format!(
-                "{:?} stands where {what}, a whole number, should",
+                "found {:?} where {what}, a whole number, was expected",
                 short(self.text)
             ))
         })
     }
 }
 
-/// The number in a place of a line, 0 if it is left out.
+/// The number at an index of a line; 0 if omitted.
 pub(super) fn number_or_zero(cells: &[Cell<'_>], at: usize, what: &str) -> Result<f64, Fault> {
     match cells.get(at).filter(|cell| !cell.text.is_empty()) {
         Some(cell) => cell.number(what),

@@ -1,18 +1,18 @@
-//! What stands in a deck, as plain data: everything refers to everything else by position.
+//! The contents of a deck as plain data; objects refer to each other by index.
 
 use super::source::Place;
 use crate::mesh::CellKind;
 
-/// A deck of CalculiX or Abaqus.
+/// A CalculiX or Abaqus deck.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Deck {
-    /// The deck's own name, then those of the files that it includes.
+    /// The deck's own name, then those of its include files.
     pub files: Vec<String>,
-    /// What stands below `*HEADING`, on one line.
+    /// Text of `*HEADING`, on one line.
     pub heading: String,
-    /// The nodes, in the order of the deck.
+    /// Nodes in deck order.
     pub nodes: Vec<Node>,
-    /// The elements, in the order of the deck.
+    /// Elements in deck order.
     pub elements: Vec<Element>,
     /// Sets of nodes.
     pub node_sets: Vec<Set>,
@@ -22,7 +22,7 @@ pub struct Deck {
     pub surfaces: Vec<Surface>,
     /// Materials.
     pub materials: Vec<Material>,
-    /// Sections; where two name the same element, the later one holds.
+    /// Sections; a later section overrides an earlier one for the same element.
     pub sections: Vec<Section>,
     /// Amplitudes.
     pub amplitudes: Vec<Amplitude>,
@@ -30,90 +30,90 @@ pub struct Deck {
     pub interactions: Vec<Interaction>,
     /// Contact pairs.
     pub pairs: Vec<Pair>,
-    /// Surfaces that are tied to others.
+    /// Ties between surfaces.
     pub ties: Vec<Tie>,
-    /// Supports that hold from the beginning.
+    /// Supports that are active from the start.
     pub supports: Vec<Value>,
-    /// The steps, one after another; one at least.
+    /// The steps in order, at least one.
     pub steps: Vec<Step>,
-    /// Sets of nodes whose displacements are printed.
+    /// Node sets whose displacements are printed.
     pub printed: Vec<usize>,
-    /// What is not read, or read as something else, in the order of the deck; each once.
+    /// Warnings about ignored or reinterpreted input, in deck order, each once.
     pub remarks: Vec<Remark>,
 }
 
 /// A node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Node {
-    /// Its number in the deck.
+    /// Number in the deck.
     pub label: u64,
-    /// Where it stands.
+    /// Position.
     pub at: [f64; 2],
     /// Where it is defined.
     pub place: Place,
 }
 
-/// What a part of an element list is made for.
+/// Family of elements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Family {
-    /// CPE: no strain across the plane.
+    /// CPE: plane strain.
     PlaneStrain,
-    /// CPS: no stress across the plane.
+    /// CPS: plane stress.
     PlaneStress,
     /// CAX: rings about the axis x = 0.
     Axisymmetric,
-    /// B21, B22 and their like: beams that bend in the plane.
+    /// B21, B22 and similar: plane beams.
     Beam,
 }
 
 /// A kind of element.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct ElementType {
-    /// What it is made for.
+    /// Family.
     pub family: Family,
-    /// Its shape, and the order of its nodes. A beam of three nodes has its middle in the middle here: start, middle, end.
+    /// Shape and node order. The nodes of a 3-node beam are stored as start, middle, end.
     pub cell: CellKind,
-    /// Whether a quadrilateral of eight nodes is integrated in 2 x 2 points.
+    /// Whether an 8-node quadrilateral uses 2 x 2 integration points.
     pub reduced: bool,
 }
 
 /// An element.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Element {
-    /// Its number in the deck.
+    /// Number in the deck.
     pub label: u64,
-    /// What it is.
+    /// Kind of element.
     pub kind: ElementType,
-    /// Positions in [`Deck::nodes`].
+    /// Indices into [`Deck::nodes`].
     pub nodes: Vec<usize>,
     /// Where it is defined.
     pub place: Place,
 }
 
-/// Nodes or elements by a name.
+/// A named set of nodes or elements.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Set {
-    /// Its name, in capitals.
+    /// Name in uppercase.
     pub name: String,
-    /// Positions, ascending, each once.
+    /// Indices, ascending, each once.
     pub members: Vec<usize>,
 }
 
 /// A surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surface {
-    /// Its name, in capitals.
+    /// Name in uppercase.
     pub name: String,
-    /// What it is made of.
+    /// Faces or nodes of the surface.
     pub of: Faces,
     /// Where it is defined.
     pub place: Place,
 }
 
-/// What a surface is made of.
+/// Faces or nodes of a surface.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Faces {
-    /// Sides of elements: position of the element, and of the side in it from 0.
+    /// Sides of elements: index of the element, and of its side from 0.
     Elements(Vec<(usize, usize)>),
     /// Nodes.
     Nodes(Vec<usize>),
@@ -122,40 +122,40 @@ pub enum Faces {
 /// An elastic material.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Material {
-    /// Its name, in capitals.
+    /// Name in uppercase.
     pub name: String,
     /// Young's modulus and Poisson's ratio.
     pub elastic: Option<(f64, f64)>,
-    /// Mass by volume.
+    /// Mass per volume.
     pub density: Option<f64>,
     /// Where it is defined.
     pub place: Place,
-    /// Where `*ELASTIC` stands.
+    /// Location of `*ELASTIC`.
     pub elastic_place: Place,
 }
 
-/// What elements are made of.
+/// Assigns a material to elements.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Section {
     /// The set of elements.
     pub set: usize,
     /// The material.
     pub material: usize,
-    /// Its form.
+    /// Kind of section.
     pub form: Form,
-    /// Where it stands.
+    /// Location.
     pub place: Place,
 }
 
-/// The form of a section.
+/// Kind of section.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Form {
-    /// A continuum of this thickness; 1 where none is given, and for rings.
+    /// A continuum with this thickness; 1 by default and for rings.
     Solid {
         /// Across the plane.
         thickness: f64,
     },
-    /// A beam of a rectangular section.
+    /// A beam with a rectangular section.
     Rectangle {
         /// Across the plane.
         width: f64,
@@ -167,48 +167,48 @@ pub enum Form {
 /// A factor as a function of time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Amplitude {
-    /// Its name, in capitals.
+    /// Name in uppercase.
     pub name: String,
-    /// Whether its time is that since the first step's beginning, and not the step's own.
+    /// Whether its time counts from the start of the first step instead of the current step.
     pub total: bool,
-    /// Time and factor, times rising.
+    /// Time and factor, with ascending times.
     pub points: Vec<(f64, f64)>,
     /// Where it is defined.
     pub place: Place,
 }
 
-/// How surfaces act on each other.
+/// Interaction of two surfaces.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Interaction {
-    /// Its name, in capitals.
+    /// Name in uppercase.
     pub name: String,
-    /// Across the surface.
+    /// Law in the normal direction.
     pub normal: Normal,
-    /// Coefficient of friction, 0 where there is none.
+    /// Coefficient of friction; 0 for none.
     pub friction: f64,
-    /// Stick slope: shear stress by elastic slip; none where sticking is rigid.
+    /// Stick slope: shear stress per elastic slip; `None` for rigid stick.
     pub stick: Option<f64>,
     /// Where it is defined.
     pub place: Place,
-    /// Where `*SURFACE BEHAVIOR` stands.
+    /// Location of `*SURFACE BEHAVIOR`.
     pub normal_place: Place,
-    /// Where `*FRICTION` stands.
+    /// Location of `*FRICTION`.
     pub friction_place: Place,
 }
 
-/// A contact law across the surface.
+/// A contact law in the normal direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Normal {
-    /// Nothing goes through.
+    /// No penetration.
     Hard,
-    /// Pressure by overclosure.
+    /// Pressure proportional to overclosure.
     Linear {
-        /// Pressure by length.
+        /// Pressure per length.
         stiffness: f64,
     },
-    /// Held together, in tension too.
+    /// Tied, in tension too.
     Tied {
-        /// Stress by length of opening.
+        /// Stress per length of opening.
         stiffness: f64,
     },
 }
@@ -216,64 +216,64 @@ pub enum Normal {
 /// A contact pair.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pair {
-    /// The surface whose nodes are slaves.
+    /// The slave surface.
     pub slave: usize,
-    /// The surface of the masters.
+    /// The master surface.
     pub master: usize,
     /// The contact law.
     pub interaction: usize,
-    /// Whether the deck asks for the integrated contact of faces.
+    /// Whether the deck requests surface-to-surface contact.
     pub faces: bool,
-    /// Whether masters are found once, at the beginning.
+    /// Whether master faces are determined only once, at the start.
     pub small_sliding: bool,
-    /// Which nodes are moved onto the master at the beginning.
+    /// Nodes that are moved onto the master at the start.
     pub adjust: Option<Adjust>,
-    /// Where it stands.
+    /// Location.
     pub place: Place,
 }
 
-/// Which nodes are moved onto their master before the first step, without stress.
+/// Nodes that are moved onto their master before the first step, without stress.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Adjust {
-    /// Those inside, or at most so far away.
+    /// Nodes inside, or at most this far away.
     Within(f64),
-    /// Those of a set.
+    /// The nodes of a set.
     Set(usize),
 }
 
 /// A surface tied to another.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tie {
-    /// The surface whose nodes are tied.
+    /// The slave surface.
     pub slave: usize,
-    /// The surface to which they are.
+    /// The master surface.
     pub master: usize,
-    /// How far apart they may be; none where the deck does not say.
+    /// Maximum distance; `None` if not given.
     pub tolerance: Option<f64>,
     /// Whether tied nodes are moved onto the master without stress.
     pub adjust: bool,
-    /// Where it stands.
+    /// Location.
     pub place: Place,
 }
 
 /// A step.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Step {
-    /// Where it begins.
+    /// Location of its first line.
     pub place: Place,
-    /// Where `*STATIC` stands.
+    /// Location of `*STATIC`.
     pub static_place: Place,
-    /// Whether strains and rotations are large in it.
+    /// Whether strains and rotations are large.
     pub nlgeom: bool,
-    /// Whether loads without an amplitude are there at once, and not in proportion to time.
+    /// Whether loads without an amplitude apply at once instead of in proportion to time.
     pub at_once: bool,
     /// Its increments.
     pub time: Time,
-    /// Whether supports and prescribed motions of the steps before are given up.
+    /// Whether prescribed displacements of earlier steps are removed.
     pub new_motions: bool,
-    /// Whether point loads of the steps before are given up.
+    /// Whether point loads of earlier steps are removed.
     pub new_forces: bool,
-    /// Whether loads on elements of the steps before are given up.
+    /// Whether element loads of earlier steps are removed.
     pub new_pressures: bool,
     /// Prescribed degrees of freedom.
     pub motions: Vec<Value>,
@@ -281,33 +281,33 @@ pub struct Step {
     pub forces: Vec<Value>,
     /// Pressure on sides of elements.
     pub pressures: Vec<Pressure>,
-    /// Weight.
+    /// Volume forces.
     pub weights: Vec<Weight>,
 }
 
 /// The increments of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Time {
-    /// The first increment.
+    /// First increment.
     pub initial: f64,
-    /// All of the step.
+    /// Duration of the step.
     pub period: f64,
-    /// Least increment.
+    /// Minimum increment.
     pub least: Option<f64>,
-    /// Largest increment.
+    /// Maximum increment.
     pub most: Option<f64>,
-    /// Whether all increments are as the first.
+    /// Whether all increments have the size of the first.
     pub direct: bool,
 }
 
-/// A component of a node's motion or load.
+/// A component of a nodal displacement or load.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Direction {
     /// 1.
     X,
     /// 2.
     Y,
-    /// 6, about the normal of the plane.
+    /// 6, about the out-of-plane axis.
     Rotation,
 }
 
@@ -318,11 +318,11 @@ pub struct Value {
     pub node: usize,
     /// The component.
     pub direction: Direction,
-    /// Length, angle, force or moment.
+    /// Displacement, angle, force or moment.
     pub value: f64,
     /// Its amplitude.
     pub amplitude: Option<usize>,
-    /// Where it stands.
+    /// Location.
     pub place: Place,
 }
 
@@ -331,45 +331,45 @@ pub struct Value {
 pub struct Pressure {
     /// The element.
     pub element: usize,
-    /// The side, from 0.
+    /// Index of the side.
     pub side: usize,
-    /// Force by area, towards the element.
+    /// Force per area, towards the element.
     pub value: f64,
     /// Its amplitude.
     pub amplitude: Option<usize>,
-    /// Where it stands.
+    /// Location.
     pub place: Place,
 }
 
-/// Force by volume on an element.
+/// A volume force on an element.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Weight {
     /// The element.
     pub element: usize,
-    /// What acts.
+    /// Kind and value.
     pub load: Volume,
     /// Its amplitude.
     pub amplitude: Option<usize>,
-    /// Where it stands.
+    /// Location.
     pub place: Place,
 }
 
-/// A force on all of an element.
+/// Kind of a volume force.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Volume {
-    /// Acceleration, which acts on the density.
+    /// Acceleration, multiplied by the density.
     Gravity([f64; 2]),
-    /// Force by volume.
+    /// Force per volume.
     Force([f64; 2]),
 }
 
-/// Something that a reader of results should know.
+/// A warning for the user.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Remark {
-    /// Where it stands first.
+    /// First location.
     pub place: Place,
-    /// What is done with it.
+    /// How the input was interpreted.
     pub text: String,
-    /// How often it stands there.
+    /// Number of occurrences.
     pub times: usize,
 }

@@ -1,35 +1,32 @@
-//! Keywords: which are read, which make no difference here, and which cannot be read, with what would be right.
+//! Keywords: supported, ignored, and unsupported ones, with alternatives.
 
-/// What becomes of a keyword.
+/// Treatment of a keyword.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Treatment {
-    /// It is read; the words say how, where there is something to say.
+    /// Supported; with a note on its interpretation, if needed.
     Read(&'static str),
-    /// It is passed over, and `check` lists it; the words say why.
+    /// Ignored and listed by `check`; with the reason.
     Ignored(&'static str),
-    /// It cannot be read; the words say why, and what would be right.
+    /// Unsupported; with the reason and an alternative.
     Refused(&'static str),
 }
 
 use Treatment::{Ignored, Read, Refused};
 
-const OUTPUT: &str = "what is written is chosen by the command";
-const HEAT: &str = "it acts with temperatures only, and there are none";
+const OUTPUT: &str = "output is selected on the command line";
+const HEAT: &str = "it concerns temperatures, which are not supported";
 const COUPLED: &str =
-    "nodes cannot be bound to one another by equations; give both bodies common nodes, or use *TIE";
-const OTHER: &str = "only *STATIC steps can be read";
-const INELASTIC: &str = "only *ELASTIC materials, isotropic and linear, can be read";
-const ASSEMBLED: &str = "parts and assemblies cannot be read; write the deck flat (in Abaqus/CAE: Model, Edit Attributes, \"Do not use \
-                         parts and assemblies in input files\")";
-const FRAMES: &str = "components in other frames cannot be read; write x and y";
-const CHANGES: &str = "contact must stay what it is over all steps";
+    "equations between nodes are not supported; give both bodies common nodes, or use *TIE";
+const OTHER: &str = "only *STATIC steps are supported";
+const INELASTIC: &str = "only isotropic, linear *ELASTIC materials are supported";
+const ASSEMBLED: &str = "parts and assemblies are not supported; write a flat deck (in Abaqus/CAE: Model, Edit \
+                         Attributes, \"Do not use parts and assemblies in input files\")";
+const FRAMES: &str = "other coordinate systems are not supported; write x and y";
+const CHANGES: &str = "contact definitions must be the same in all steps";
 
-/// The keywords that are known, in the order of the alphabet.
+/// The known keywords, in alphabetical order.
 pub const KEYWORDS: &[(&str, Treatment)] = &[
-    (
-        "AMPLITUDE",
-        Read("tabular, in the step's or the total time"),
-    ),
+    ("AMPLITUDE", Read("tabular, in step or total time")),
     ("ASSEMBLY", Refused(ASSEMBLED)),
     (
         "BEAM SECTION",
@@ -40,7 +37,7 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
     (
         "BOUNDARY",
         Read(
-            "directions 1 and 2, and 6 on beams; others that are held at 0 hold themselves in the plane",
+            "directions 1 and 2, and 6 on beams; other zero values are fulfilled by plane problems",
         ),
     ),
     ("BUCKLE", Refused(OTHER)),
@@ -48,36 +45,36 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
     ("CHANGE SURFACE BEHAVIOR", Refused(CHANGES)),
     (
         "CLOAD",
-        Read("on axisymmetric elements the force on the whole ring"),
+        Read("on axisymmetric elements, the force on the whole ring"),
     ),
     ("CONDUCTIVITY", Ignored(HEAT)),
     (
         "CONTACT CONTROLS",
-        Ignored("contact is solved in another way"),
+        Ignored("this program solves contact differently"),
     ),
     (
         "CONTACT DAMPING",
-        Refused("contact has no damping; leave it out"),
+        Refused("contact damping is not supported; leave it out"),
     ),
     ("CONTACT FILE", Ignored(OUTPUT)),
     ("CONTACT OUTPUT", Ignored(OUTPUT)),
     (
         "CONTACT PAIR",
-        Read("both types node to surface; masters are the sides of the second surface"),
+        Read("both types as node to surface; masters are the sides of the second surface"),
     ),
     ("CONTACT PRINT", Ignored(OUTPUT)),
     (
         "CONTROLS",
-        Ignored("increments are solved and cut in another way; see `stickslip help settings`"),
+        Ignored("this program controls increments differently; see `stickslip help settings`"),
     ),
     ("COUPLED TEMPERATURE-DISPLACEMENT", Refused(OTHER)),
     ("COUPLING", Refused(COUPLED)),
     ("CREEP", Refused(INELASTIC)),
     ("CYCLIC SYMMETRY MODEL", Refused(COUPLED)),
-    ("DAMPING", Ignored("it acts in *DYNAMIC steps only")),
+    ("DAMPING", Ignored("it only affects *DYNAMIC steps")),
     (
         "DASHPOT",
-        Refused("dashpots cannot be read; only *STATIC steps can"),
+        Refused("dashpots are not supported; only *STATIC steps are"),
     ),
     ("DEFORMATION PLASTICITY", Refused(INELASTIC)),
     ("DENSITY", Read("for GRAV in *DLOAD")),
@@ -96,7 +93,7 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
     (
         "ELEMENT",
         Read(
-            "CPE, CPS, CAX with 3, 4, 6, 8 nodes and 8R; B21, B22, B31, B31R, B32, B32R in the plane",
+            "CPE, CPS, CAX with 3, 4, 6, 8 nodes and 8R; B21, B22, B31, B31R, B32, B32R as plane elements",
         ),
     ),
     ("ELEMENT OUTPUT", Ignored(OUTPUT)),
@@ -109,33 +106,30 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
     ("ENERGY OUTPUT", Ignored(OUTPUT)),
     ("EQUATION", Refused(COUPLED)),
     ("EXPANSION", Ignored(HEAT)),
-    ("FILM", Refused("only mechanical loads can be read")),
+    ("FILM", Refused("only mechanical loads are supported")),
     ("FREQUENCY", Refused(OTHER)),
     (
         "FRICTION",
-        Read("the stick slope as the stiffness of elastic slip"),
+        Read("with the stick slope as the stiffness of elastic slip"),
     ),
     (
         "GAP",
-        Refused("gap elements cannot be read; use *CONTACT PAIR"),
+        Refused("gap elements are not supported; use *CONTACT PAIR"),
     ),
     ("GAP CONDUCTANCE", Ignored(HEAT)),
     ("HEADING", Read("as the title")),
     ("HEAT TRANSFER", Refused(OTHER)),
     ("HYPERELASTIC", Refused(INELASTIC)),
     ("HYPERFOAM", Refused(INELASTIC)),
-    (
-        "INCLUDE",
-        Read("files beside the deck or in folders below it"),
-    ),
+    ("INCLUDE", Read("files in the folder of the deck or below")),
     (
         "INITIAL CONDITIONS",
-        Ignored("TYPE=TEMPERATURE only, since there are no other temperatures"),
+        Ignored("only TYPE=TEMPERATURE, because temperatures are ignored"),
     ),
     ("INSTANCE", Refused(ASSEMBLED)),
     ("KINEMATIC", Refused(COUPLED)),
     ("KINEMATIC COUPLING", Refused(COUPLED)),
-    ("MASS", Ignored("it acts in *DYNAMIC steps only")),
+    ("MASS", Ignored("it only affects *DYNAMIC steps")),
     ("MATERIAL", Read("")),
     ("MODAL DYNAMIC", Refused(OTHER)),
     ("MODEL CHANGE", Refused(CHANGES)),
@@ -143,7 +137,7 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
     ("MPC", Refused(COUPLED)),
     (
         "NO ANALYSIS",
-        Refused("nothing would be solved; leave it out"),
+        Refused("it would disable the solve; leave it out"),
     ),
     ("NODE", Read("in the plane z = 0")),
     ("NODE FILE", Ignored(OUTPUT)),
@@ -156,44 +150,41 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
     ("ORIENTATION", Refused(FRAMES)),
     ("OUTPUT", Ignored(OUTPUT)),
     ("PART", Refused(ASSEMBLED)),
-    ("PHYSICAL CONSTANTS", Ignored("it acts with heat only")),
+    ("PHYSICAL CONSTANTS", Ignored("it only concerns heat")),
     ("PLASTIC", Refused(INELASTIC)),
     (
         "PRE-TENSION SECTION",
         Refused(
-            "a pre-tension section binds nodes by an equation; press or move an end instead, by *BOUNDARY",
+            "pre-tension sections couple nodes by an equation, which is not supported; displace an end by *BOUNDARY instead",
         ),
     ),
     ("PREPRINT", Ignored(OUTPUT)),
     ("PRINT", Ignored(OUTPUT)),
-    ("RADIATE", Refused("only mechanical loads can be read")),
-    (
-        "RESTART",
-        Ignored("states are kept in snapshots, by --snapshot of run"),
-    ),
+    ("RADIATE", Refused("only mechanical loads are supported")),
+    ("RESTART", Ignored("use run's --snapshot to save states")),
     (
         "RIGID BODY",
         Refused(
-            "rigid bodies with a reference node cannot be read; hold or move all nodes of it by *BOUNDARY",
+            "rigid bodies with a reference node are not supported; fix or move all of their nodes by *BOUNDARY",
         ),
     ),
     ("SECTION PRINT", Ignored(OUTPUT)),
     (
         "SHELL SECTION",
-        Refused("shells are elements of space; only those of the plane can be read"),
+        Refused("shells are three-dimensional; only plane elements are supported"),
     ),
-    ("SOLID SECTION", Read("the thickness too")),
+    ("SOLID SECTION", Read("including the thickness")),
     ("SPECIFIC HEAT", Ignored(HEAT)),
-    ("SPRING", Refused("springs cannot be read")),
+    ("SPRING", Refused("springs are not supported")),
     (
         "STATIC",
-        Read("the first, least and largest increment and the step's period"),
+        Read("the first, minimum and maximum increment and the duration of the step"),
     ),
     ("STEADY STATE DYNAMICS", Refused(OTHER)),
     ("STEP", Read("NLGEOM, INC, AMPLITUDE")),
     (
         "SUBMODEL",
-        Refused("submodels cannot be read; write the motion by *BOUNDARY"),
+        Refused("submodels are not supported; prescribe displacements by *BOUNDARY"),
     ),
     ("SUBSTRUCTURE GENERATE", Refused(OTHER)),
     (
@@ -208,10 +199,10 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
     (
         "TEMPERATURE",
         Refused(
-            "thermal expansion cannot be read; leave the temperatures out, or press by *BOUNDARY",
+            "thermal expansion is not supported; leave the temperatures out, or prescribe displacements by *BOUNDARY",
         ),
     ),
-    ("TIE", Read("as a contact that neither opens nor slides")),
+    ("TIE", Read("as contacts that neither open nor slide")),
     ("TIME POINTS", Ignored(OUTPUT)),
     ("TRANSFORM", Refused(FRAMES)),
     ("UNCOUPLED TEMPERATURE-DISPLACEMENT", Refused(OTHER)),
@@ -219,7 +210,7 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
     ("VISCO", Refused(OTHER)),
 ];
 
-/// What becomes of a keyword, by its name in capitals and without blanks.
+/// Treatment of a keyword, by its name in uppercase without spaces.
 pub(super) fn treatment(key: &str) -> Option<Treatment> {
     let plain = |name: &str| name.chars().filter(|c| !c.is_whitespace()).eq(key.chars());
     KEYWORDS
@@ -228,7 +219,7 @@ pub(super) fn treatment(key: &str) -> Option<Treatment> {
         .map(|(_, treatment)| *treatment)
 }
 
-/// The keyword that is most like one that is not known, if one begins alike.
+/// The known keyword closest to an unknown one, if any has the same beginning.
 pub(super) fn nearest(key: &str) -> Option<&'static str> {
     let alike = |name: &str| {
         let letters = name.chars().filter(|c| !c.is_whitespace());

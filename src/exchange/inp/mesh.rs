@@ -6,11 +6,11 @@ use super::source::{Fault, Place, plain};
 use crate::mesh::CellKind;
 use std::collections::{BTreeMap, HashMap};
 
-/// Most members of all sets and surfaces together, and most loads on nodes and elements of sets: more than any mesh in the
-/// plane calls for, and few enough for any memory.
+/// Maximum number of members of all sets and surfaces together, and of loads on members of sets: more than a plane mesh needs,
+/// and few enough to fit in memory.
 const MEMBERS: usize = 20_000_000;
 
-/// Where labels and names of a deck are found.
+/// Lookup tables for labels and names of a deck.
 #[derive(Debug, Default)]
 pub(super) struct Names {
     nodes: BTreeMap<u64, usize>,
@@ -22,20 +22,20 @@ pub(super) struct Names {
 }
 
 impl Names {
-    /// Counts members of sets.
+    /// Counts members of sets against the limit.
     pub fn count(&mut self, more: usize, place: Place) -> Result<(), Fault> {
         self.members += more;
         match self.members <= MEMBERS {
             true => Ok(()),
             false => Err(Fault::new(
                 place,
-                format!("sets, surfaces and loads have more than {MEMBERS} members together"),
+                format!("sets, surfaces and loads have more than {MEMBERS} members in total"),
             )),
         }
     }
 }
 
-/// Reads a card of the mesh, if it is one.
+/// Reads a card of the mesh; returns whether it is one.
 pub(super) fn read(card: &Card<'_>, deck: &mut Deck, names: &mut Names) -> Result<bool, Fault> {
     match card.key.as_str() {
         "NODE" => nodes(card, deck, names)?,
@@ -56,28 +56,25 @@ fn nodes(card: &Card<'_>, deck: &mut Deck, names: &mut Names) -> Result<(), Faul
         let Some(label) = cells.first() else {
             continue;
         };
-        let number = label.whole("the number of a node")?;
+        let number = label.whole("a node number")?;
         let coordinate = |k: usize| super::cards::number_or_zero(&cells, k, "a coordinate");
         let (x, y, z) = (coordinate(1)?, coordinate(2)?, coordinate(3)?);
         if let Some(more) = cells.get(4) {
             deck.remark(
                 more.place(),
-                "what follows a node's three coordinates is not read",
+                "the text after a node's three coordinates is ignored",
             );
         }
         if z != 0.0 {
             let at = cells.get(3).map_or(label.place(), Cell::place);
             return Err(Fault::new(
                 at,
-                format!("node {number} stands at z = {z:?}; only what lies in z = 0 can be read"),
+                format!("node {number} is at z = {z:?}; only z = 0 is supported"),
             ));
         }
         let place = label.place();
         if names.nodes.insert(number, deck.nodes.len()).is_some() {
-            return Err(Fault::new(
-                place,
-                format!("node {number} stands here a second time"),
-            ));
+            return Err(Fault::new(place, format!("node {number} is defined twice")));
         }
         deck.nodes.push(Node {
             label: number,
@@ -103,8 +100,8 @@ fn elements(card: &Card<'_>, deck: &mut Deck, names: &mut Names) -> Result<(), F
     if matches!(kind.cell, CellKind::Triangle3 | CellKind::Quad4) {
         deck.remark(
             card.place_of("TYPE"),
-            "elements of 3 and 4 nodes are fully integrated as they are; CalculiX makes elements of space of them, whose answers \
-             differ by percents where the mesh is coarse",
+            "elements with 3 and 4 nodes are fully integrated plane elements; CalculiX expands them to \
+             three-dimensional elements, whose results differ by some percent on coarse meshes",
         );
     }
     let first = deck.elements.len();
@@ -122,34 +119,34 @@ fn elements(card: &Card<'_>, deck: &mut Deck, names: &mut Names) -> Result<(), F
         let Some(label) = words.first() else {
             continue;
         };
-        let number = label.whole("the number of an element")?;
+        let number = label.whole("an element number")?;
         if words.len() != count + 1 {
             return Err(label.wrong(format!(
-                "element {number} has {} nodes; one of type {} has {count}",
+                "element {number} has {} nodes; type {} needs {count}",
                 words.len() - 1,
                 short(name)
             )));
         }
         let mut of = Vec::with_capacity(count);
         for word in &words[1..] {
-            let node = word.whole("the number of a node")?;
+            let node = word.whole("a node number")?;
             let known = names.nodes.get(&node).copied();
             of.push(known.ok_or_else(|| {
-                word.wrong(format!("there is no node {node}; *NODE must stand before"))
+                word.wrong(format!("there is no node {node}; *NODE must come first"))
             })?);
         }
         let mut sorted = of.clone();
         sorted.sort_unstable();
         if sorted.windows(2).any(|pair| pair[0] == pair[1]) {
             return Err(label.wrong(format!(
-                "element {number} names a node twice; write it as one with fewer nodes"
+                "element {number} has a repeated node; use a type with fewer nodes"
             )));
         }
         let place = label.place();
         if names.elements.insert(number, deck.elements.len()).is_some() {
             return Err(Fault::new(
                 place,
-                format!("element {number} stands here a second time"),
+                format!("element {number} is defined twice"),
             ));
         }
         deck.elements.push(Element {
@@ -169,16 +166,17 @@ fn elements(card: &Card<'_>, deck: &mut Deck, names: &mut Names) -> Result<(), F
     )
 }
 
-/// Refuses elements that cannot be read.
+/// Rejects unsupported element types.
 pub(super) fn known_type(card: &Card<'_>) -> Result<(), Fault> {
     let kind = element_type(card.required("TYPE")?);
     kind.map(|_| ())
         .map_err(|why| Fault::new(card.place_of("TYPE"), why))
 }
 
-/// A kind of element by its name, or why it cannot be read.
+/// An element type by name, or why it is not supported.
 fn element_type(name: &str) -> Result<ElementType, String> {
-    const RIGHT: &str = "those that can be read are CPE, CPS and CAX with 3, 4, 6, 8 and 8R, and B21, B22, B31, B31R, B32, B32R";
+    const RIGHT: &str =
+        "supported are CPE, CPS and CAX with 3, 4, 6, 8 and 8R, and B21, B22, B31, B31R, B32, B32R";
     let plane = |family: Family, rest: &str| {
         let (cell, reduced) = match rest {
             "3" => (CellKind::Triangle3, false),
@@ -189,14 +187,14 @@ fn element_type(name: &str) -> Result<ElementType, String> {
             "4R" => {
                 let full = name.trim_end_matches('R');
                 return Err(format!(
-                    "{name} is integrated in one point and needs a stiffness against its hourglass modes, which codes choose \
+                    "{name} has one integration point and needs hourglass stabilisation, which codes choose \
                      differently; use {full} or, better, {}8R",
                     full.trim_end_matches('4')
                 ));
             }
             _ => {
                 return Err(format!(
-                    "elements of type {} cannot be read; {RIGHT}",
+                    "elements of type {} are not supported; {RIGHT}",
                     short(name)
                 ));
             }
@@ -230,16 +228,16 @@ fn element_type(name: &str) -> Result<ElementType, String> {
         }
     }
     let why = match name {
-        _ if name.starts_with("C3D") => "is an element of space",
+        _ if name.starts_with("C3D") => "is a three-dimensional element",
         _ if name.starts_with('S') && name[1..].starts_with(|c: char| c.is_ascii_digit()) => {
-            "is a shell, in space"
+            "is a shell element"
         }
-        _ => "cannot be read",
+        _ => "is not supported",
     };
     Err(format!("{} {why}; {RIGHT}", short(name)))
 }
 
-/// What a set is made of.
+/// Kind of a set's members.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     Nodes,
@@ -282,7 +280,7 @@ fn set(card: &Card<'_>, deck: &mut Deck, names: &mut Names, kind: Kind) -> Resul
     add(card, deck, names, kind, parameter, members)
 }
 
-/// Members that are counted from one number to another.
+/// Members generated from a first to a last number.
 fn generated(
     words: &[Cell<'_>],
     names: &Names,
@@ -293,7 +291,7 @@ fn generated(
         return Ok(());
     };
     let Some(last) = words.get(1) else {
-        return Err(first.wrong("GENERATE needs a first and a last number, and may have a step"));
+        return Err(first.wrong("GENERATE needs a first and a last number, and optionally a step"));
     };
     let from = first.whole("the first number")?;
     let to = last.whole("the last number")?;
@@ -302,12 +300,13 @@ fn generated(
         None => 1,
     };
     if by == 0 || to < from {
-        return Err(first
-            .wrong("the numbers must rise from the first to the last, by a step of 1 at least"));
+        return Err(first.wrong(
+            "the last number must not be below the first one, and the step must be at least 1",
+        ));
     }
     if let Some(more) = words.get(3) {
         return Err(
-            more.wrong("GENERATE has a first and a last number and a step; this is one more")
+            more.wrong("unexpected value; GENERATE takes a first number, a last number and a step")
         );
     }
     let labels = match kind {
@@ -324,7 +323,7 @@ fn generated(
     }
 }
 
-/// What a word of a list stands for: one node or element by its number, or a set by its name.
+/// Members that a word of a list refers to: one node or element by number, or a set by name.
 pub(super) fn members_of(
     cell: &Cell<'_>,
     deck: &Deck,
@@ -345,13 +344,13 @@ pub(super) fn members_of(
     match sets.get(&name) {
         Some(&set) => Ok(all[set].members.clone()),
         None => Err(cell.wrong(format!(
-            "there is no {word} set {}; it must stand before",
+            "there is no {word} set {}; it must be defined first",
             short(&name)
         ))),
     }
 }
 
-/// Position of a set by its name.
+/// Index of a set by name.
 pub(super) fn set_of(name: &str, place: Place, names: &Names, kind: Kind) -> Result<usize, Fault> {
     let sets = match kind {
         Kind::Nodes => &names.node_sets,
@@ -366,7 +365,7 @@ pub(super) fn set_of(name: &str, place: Place, names: &Names, kind: Kind) -> Res
     })
 }
 
-/// Position of a surface by its name.
+/// Index of a surface by name.
 pub(super) fn surface_of(cell: &Cell<'_>, names: &Names) -> Result<usize, Fault> {
     let name = plain(cell.text);
     let known = names.surfaces.get(&name).copied();
@@ -378,7 +377,7 @@ pub(super) fn surface_of(cell: &Cell<'_>, names: &Names) -> Result<usize, Fault>
     })
 }
 
-/// Adds members to the set that a parameter names, if it does.
+/// Adds members to the set named by a parameter, if the card has it.
 fn add(
     card: &Card<'_>,
     deck: &mut Deck,
@@ -395,7 +394,7 @@ fn add(
         return Err(Fault::new(
             place,
             format!(
-                "a set called {} is like a number; call it by a letter",
+                "the set name {} looks like a number; start it with a letter",
                 short(name)
             ),
         ));
@@ -445,7 +444,7 @@ fn surface(card: &Card<'_>, deck: &mut Deck, names: &mut Names) -> Result<(), Fa
         Faces::Nodes(nodes) => (nodes.len(), nodes.is_empty()),
     };
     if empty {
-        return Err(card.wrong(format!("the surface {} has nothing in it", short(&name))));
+        return Err(card.wrong(format!("the surface {} is empty", short(&name))));
     }
     names.count(count, card.place)?;
     if names
@@ -453,7 +452,7 @@ fn surface(card: &Card<'_>, deck: &mut Deck, names: &mut Names) -> Result<(), Fa
         .insert(name.clone(), deck.surfaces.len())
         .is_some()
     {
-        return Err(card.wrong(format!("the surface {} is there already", short(&name))));
+        return Err(card.wrong(format!("the surface {} is defined twice", short(&name))));
     }
     deck.surfaces.push(Surface {
         name,
@@ -463,7 +462,7 @@ fn surface(card: &Card<'_>, deck: &mut Deck, names: &mut Names) -> Result<(), Fa
     Ok(())
 }
 
-/// In the order of their first appearance.
+/// The distinct values, in the order of their first occurrence.
 fn once<T: Copy + Eq + std::hash::Hash>(members: Vec<T>) -> Vec<T> {
     let mut seen = std::collections::HashSet::new();
     members
@@ -480,9 +479,9 @@ fn sides(card: &Card<'_>, deck: &Deck, names: &Names) -> Result<Vec<(usize, usiz
             continue;
         };
         let Some(label) = words.get(1) else {
-            return Err(first.wrong(
-                "a side of an element is named by the element and the side, as \"12, S2\"; without a side nothing can be read",
-            ));
+            return Err(
+                first.wrong("the side is missing; write the element and the side, e.g. \"12, S2\"")
+            );
         };
         for element in members_of(first, deck, names, Kind::Elements)? {
             sides.push((element, side_of(label, 'S', &deck.elements[element])?));
@@ -494,14 +493,14 @@ fn sides(card: &Card<'_>, deck: &Deck, names: &Names) -> Result<Vec<(usize, usiz
     Ok(once(sides))
 }
 
-/// A side of an element by a letter and its number from 1, from 0.
+/// Index of a side of an element, given by a letter and its number from 1.
 pub(super) fn side_of(cell: &Cell<'_>, letter: char, element: &Element) -> Result<usize, Fault> {
     let most = match element.kind.cell {
         CellKind::Triangle3 | CellKind::Triangle6 => 3,
         CellKind::Quad4 | CellKind::Quad8 => 4,
         _ => {
             return Err(cell.wrong(format!(
-                "element {} is a beam, which has no sides; name its nodes instead, with TYPE=NODE",
+                "element {} is a beam and has no sides; use its nodes instead, with TYPE=NODE",
                 element.label
             )));
         }
@@ -512,9 +511,9 @@ pub(super) fn side_of(cell: &Cell<'_>, letter: char, element: &Element) -> Resul
     match number {
         Some(side) if (1..=most).contains(&side) => Ok(side - 1),
         _ => Err(cell.wrong(format!(
-            "{:?} is no side of element {}; it must be {letter}1 to {letter}{most}",
-            short(cell.text),
-            element.label
+            "element {} has no side {:?}; it must be {letter}1 to {letter}{most}",
+            element.label,
+            short(cell.text)
         ))),
     }
 }

@@ -1,12 +1,12 @@
-//! Decks of CalculiX and Abaqus (`.inp`), as far as they are of the plane: a list of keywords with data.
+//! Plane CalculiX and Abaqus decks (`.inp`): a list of keywords with data.
 //!
-//! - `source`: the lines, with those of included files, and places in them; `cards`: keywords with their parameters and data.
-//! - [`keywords`]: what becomes of each keyword.
-//! - [`deck`]: what stands in a deck; `mesh`, `property` and `step` read it, keyword by keyword.
+//! - `source`: lines, including those of included files, and locations; `cards`: keywords with their parameters and data.
+//! - [`keywords`]: treatment of each keyword.
+//! - [`deck`]: the contents of a deck, read keyword by keyword in `mesh`, `property` and `step`.
 //!
-//! The meaning is that of CalculiX ("CalculiX CrunchiX user's manual", G. Dhondt), which takes it from Abaqus. Nodes, elements,
-//! sets and surfaces are read first, then materials and laws, then what uses them, so that the order of cards matters within
-//! these only.
+//! Keywords have the meaning of CalculiX ("CalculiX CrunchiX user's manual", G. Dhondt), which follows Abaqus. Nodes, elements,
+//! sets and surfaces are read first, then materials and laws, then the cards that use them; the order of cards only matters
+//! within these groups.
 
 pub mod deck;
 pub mod keywords;
@@ -42,10 +42,10 @@ pub fn is_one(text: &str) -> bool {
     }
 }
 
-/// Reads a deck. `include` gives the texts of files that it includes, by the name that stands there, or says why not.
+/// Reads a deck. `include` returns the text of an include file by name, or the reason for a failure.
 ///
 /// # Errors
-/// The first thing that is wrong or cannot be read, and what would be right.
+/// The first error or unsupported input, with what is expected.
 pub fn read(name: &str, text: &str, include: &mut Include<'_>) -> Result<Deck, Wrong> {
     let (sources, gathered) = Sources::gather(name, text, include);
     let deck = gathered.and_then(|()| whole(&sources));
@@ -97,20 +97,20 @@ fn whole(sources: &Sources) -> Result<Deck, Fault> {
     Ok(deck)
 }
 
-/// Refuses keywords that cannot be read, and notes those that are passed over.
+/// Rejects unsupported keywords, and adds warnings about ignored ones.
 fn known(card: &Card<'_>, deck: &mut Deck) -> Result<(), Fault> {
     match treatment(&card.key) {
         Some(Treatment::Refused(why)) => {
-            return Err(card.wrong(format!("it cannot be read: {why}")));
+            return Err(card.wrong(why));
         }
         None => {
             let like = nearest(&card.key)
                 .map_or_else(String::new, |name| format!("; did you mean *{name}?"));
-            return Err(card.wrong(format!("it is no keyword that can be read{like}")));
+            return Err(card.wrong(format!("it is not a supported keyword{like}")));
         }
         Some(Treatment::Read(_)) => {}
         Some(Treatment::Ignored(why)) => {
-            deck.remark(card.place, format!("*{} is passed over: {why}", card.shown))
+            deck.remark(card.place, format!("*{} is ignored: {why}", card.shown))
         }
     }
     match card.key.as_str() {
@@ -141,12 +141,12 @@ impl Deck {
         }
     }
 
-    /// The name of the file in which something stands.
+    /// The name of the file of a location.
     pub fn file(&self, place: Place) -> &str {
         self.files.get(place.file).map_or("", String::as_str)
     }
 
-    /// The nodes of a side of an element, anticlockwise around it: start, end, and the middle between them where it has one.
+    /// The nodes of a side of an element, anticlockwise around it: start, end, and the midside node between them, if any.
     pub fn side(&self, element: usize, side: usize) -> Vec<usize> {
         let element = &self.elements[element];
         let corners = match element.kind.cell {
@@ -161,7 +161,7 @@ impl Deck {
 }
 
 impl Value {
-    /// The component of the node that it is for.
+    /// The component and node that it applies to.
     pub fn target(&self) -> (usize, deck::Direction) {
         (self.node, self.direction)
     }

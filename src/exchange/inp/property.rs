@@ -1,4 +1,4 @@
-//! Materials, sections, amplitudes and contact of a deck.
+//! Materials, sections, amplitudes and contact definitions of a deck.
 
 use super::cards::{Card, Cell, cells, number_or_zero, short};
 use super::deck::{
@@ -7,14 +7,14 @@ use super::deck::{
 use super::mesh::{Kind, Names, set_of, surface_of};
 use super::source::{Fault, Place};
 
-/// The cards that others belong to.
+/// The card to which subsequent cards belong.
 #[derive(Debug, Default)]
 pub(super) struct Open {
     material: Option<usize>,
     interaction: Option<usize>,
 }
 
-/// Reads a card that defines a material, an amplitude or a contact law, if it is one.
+/// Reads a card that defines a material, an amplitude or a contact law; returns whether it is one.
 pub(super) fn define(card: &Card<'_>, deck: &mut Deck, open: &mut Open) -> Result<bool, Fault> {
     match card.key.as_str() {
         "MATERIAL" => material(card, deck, open)?,
@@ -29,7 +29,7 @@ pub(super) fn define(card: &Card<'_>, deck: &mut Deck, open: &mut Open) -> Resul
     Ok(true)
 }
 
-/// Reads a card that uses what others define, if it is one.
+/// Reads a card that uses definitions; returns whether it is one.
 pub(super) fn apply(card: &Card<'_>, deck: &mut Deck, names: &Names) -> Result<bool, Fault> {
     match card.key.as_str() {
         "SOLIDSECTION" => solid_section(card, deck, names)?,
@@ -51,7 +51,7 @@ fn free<T>(card: &Card<'_>, all: &[T], name: impl Fn(&T) -> &str) -> Result<Stri
         None => Ok(wanted.to_owned()),
         Some(_) => Err(Fault::new(
             card.place_of("NAME"),
-            format!("*{}: {} is there already", card.shown, short(wanted)),
+            format!("*{}: {} is defined twice", card.shown, short(wanted)),
         )),
     }
 }
@@ -77,7 +77,7 @@ fn of_material<'a>(
     open: &Open,
 ) -> Result<&'a mut Material, Fault> {
     let found = open.material.and_then(|k| deck.materials.get_mut(k));
-    found.ok_or_else(|| card.wrong("it belongs to a material; *MATERIAL should stand before"))
+    found.ok_or_else(|| card.wrong("it belongs to a material; *MATERIAL must come first"))
 }
 
 fn elastic(card: &Card<'_>, deck: &mut Deck, open: &Open) -> Result<(), Fault> {
@@ -86,11 +86,11 @@ fn elastic(card: &Card<'_>, deck: &mut Deck, open: &Open) -> Result<(), Fault> {
     let material = of_material(card, deck, open)?;
     let words = card.one_line("Young's modulus and Poisson's ratio, at one temperature,")?;
     let [young, poisson, ..] = words.as_slice() else {
-        return Err(card.wrong("Young's modulus and Poisson's ratio should follow"));
+        return Err(card.wrong("Young's modulus and Poisson's ratio are missing"));
     };
     if let Some(more) = words.get(3) {
         return Err(more.wrong(
-            "an isotropic material has a modulus, a ratio and a temperature; this is one more",
+            "unexpected value; an isotropic material has a modulus, a ratio and a temperature",
         ));
     }
     material.elastic = Some((
@@ -107,7 +107,7 @@ fn density(card: &Card<'_>, deck: &mut Deck, open: &Open) -> Result<(), Fault> {
     let words = card.one_line("the density, at one temperature,")?;
     let first = words
         .first()
-        .ok_or_else(|| card.wrong("the density should follow"))?;
+        .ok_or_else(|| card.wrong("the density is missing"))?;
     material.density = Some(first.number("the density")?);
     Ok(())
 }
@@ -122,12 +122,12 @@ fn amplitude(card: &Card<'_>, deck: &mut Deck) -> Result<(), Fault> {
     for line in &card.lines {
         for pair in cells(*line).chunks(2) {
             let [time, factor] = pair else {
-                return Err(pair[0].wrong("a time without a factor; they come in pairs"));
+                return Err(pair[0].wrong("a time without a factor; they must come in pairs"));
             };
             let point = (time.number("a time")?, factor.number("a factor")?);
             if points.last().is_some_and(|last| last.0 >= point.0) {
                 return Err(time.wrong(format!(
-                    "time {:?} does not follow the one before; times must rise",
+                    "time {:?} does not follow the previous one; times must be ascending",
                     point.0
                 )));
             }
@@ -135,7 +135,7 @@ fn amplitude(card: &Card<'_>, deck: &mut Deck) -> Result<(), Fault> {
         }
     }
     if points.is_empty() {
-        return Err(card.wrong("times and factors should follow, in pairs"));
+        return Err(card.wrong("times and factors, in pairs, are missing"));
     }
     deck.amplitudes.push(Amplitude {
         name,
@@ -152,7 +152,7 @@ fn interaction(card: &Card<'_>, deck: &mut Deck, open: &mut Open) -> Result<(), 
     if !card.lines.is_empty() {
         deck.remark(
             card.lines[0].place(0),
-            "the thickness of the surface is not read: contact forces are those of the mesh",
+            "the thickness of the surface is ignored: contact forces are those of the mesh",
         );
     }
     open.interaction = Some(deck.interactions.len());
@@ -175,7 +175,7 @@ fn of_interaction<'a>(
 ) -> Result<&'a mut Interaction, Fault> {
     let found = open.interaction.and_then(|k| deck.interactions.get_mut(k));
     found.ok_or_else(|| {
-        card.wrong("it belongs to a contact law; *SURFACE INTERACTION should stand before")
+        card.wrong("it belongs to a contact law; *SURFACE INTERACTION must come first")
     })
 }
 
@@ -190,15 +190,15 @@ fn behavior(card: &Card<'_>, deck: &mut Deck, open: &Open) -> Result<(), Fault> 
             if let Some(line) = card.lines.first() {
                 deck.remark(
                     line.place(0),
-                    "PRESSURE-OVERCLOSURE=HARD needs no numbers: nothing goes through at all",
+                    "PRESSURE-OVERCLOSURE=HARD takes no numbers, because there is no penetration",
                 );
             }
         }
         "LINEAR" | "TIED" => {
-            let words = card.one_line("the stiffness, pressure by length,")?;
+            let words = card.one_line("the stiffness (pressure per length)")?;
             let first = words
                 .first()
-                .ok_or_else(|| card.wrong("the stiffness, pressure by length, should follow"))?;
+                .ok_or_else(|| card.wrong("the stiffness (pressure per length) is missing"))?;
             let stiffness = positive(first, "the stiffness of the surface")?;
             let normal = match law {
                 "LINEAR" => Normal::Linear { stiffness },
@@ -211,8 +211,8 @@ fn behavior(card: &Card<'_>, deck: &mut Deck, open: &Open) -> Result<(), Fault> 
             if let Some(more) = words.get(1) {
                 deck.remark(
                     more.place(),
-                    "the tension at large gaps and the clearance c0 are not read: the pressure is K times the overclosure, and 0 where \
-                     there is a gap",
+                    "the tension at large gaps and the clearance c0 are ignored: the pressure is K times the \
+                     overclosure, and 0 with a gap",
                 );
             }
             return Ok(());
@@ -221,8 +221,8 @@ fn behavior(card: &Card<'_>, deck: &mut Deck, open: &Open) -> Result<(), Fault> 
             return Err(Fault::new(
                 card.place_of(NAME),
                 format!(
-                    "*{}: {NAME}={} cannot be read: a pressure that is not linear has no complementarity problem; it must be HARD, \
-                     LINEAR or TIED",
+                    "*{}: {NAME}={} is not supported: nonlinear pressure laws do not give a complementarity \
+                     problem; it must be HARD, LINEAR or TIED",
                     card.shown,
                     short(law)
                 ),
@@ -245,10 +245,10 @@ fn positive(cell: &Cell<'_>, what: &str) -> Result<f64, Fault> {
 
 fn friction(card: &Card<'_>, deck: &mut Deck, open: &Open) -> Result<(), Fault> {
     card.only(&["SLIPTOLERANCE"])?;
-    let words = card.one_line("the coefficient of friction, and maybe the stick slope,")?;
+    let words = card.one_line("the coefficient of friction, and optionally the stick slope,")?;
     let first = words
         .first()
-        .ok_or_else(|| card.wrong("the coefficient of friction should follow"))?;
+        .ok_or_else(|| card.wrong("the coefficient of friction is missing"))?;
     let coefficient = first.number("the coefficient of friction")?;
     if coefficient < 0.0 {
         return Err(first.wrong(format!(
@@ -260,12 +260,12 @@ fn friction(card: &Card<'_>, deck: &mut Deck, open: &Open) -> Result<(), Fault> 
         .map(|cell| positive(cell, "the stick slope"))
         .transpose()?;
     if let Some(more) = words.get(2) {
-        return Err(more.wrong("friction has a coefficient and a stick slope; this is one more"));
+        return Err(more.wrong("unexpected value; friction has a coefficient and a stick slope"));
     }
     if card.has("SLIPTOLERANCE") {
         deck.remark(
             card.place_of("SLIPTOLERANCE"),
-            "SLIP TOLERANCE is not read: a node that sticks does not slip at all",
+            "SLIP TOLERANCE is ignored: a stuck node does not slip at all",
         );
     }
     let interaction = of_interaction(card, deck, open)?;
@@ -275,7 +275,7 @@ fn friction(card: &Card<'_>, deck: &mut Deck, open: &Open) -> Result<(), Fault> 
     Ok(())
 }
 
-/// Position of the material that a section names.
+/// Index of the material named by a section.
 fn section_material(card: &Card<'_>, deck: &Deck) -> Result<usize, Fault> {
     let name = card.required("MATERIAL")?;
     named(&deck.materials, |m| &m.name, name).ok_or_else(|| {
@@ -295,7 +295,7 @@ fn section_set(card: &Card<'_>, names: &Names) -> Result<usize, Fault> {
     )
 }
 
-/// Refuses a section whose elements are of the other sort.
+/// Rejects a section whose elements are of the wrong family.
 fn suits(card: &Card<'_>, deck: &Deck, set: usize, beams: bool) -> Result<(), Fault> {
     let elements = deck.element_sets[set]
         .members
@@ -307,7 +307,7 @@ fn suits(card: &Card<'_>, deck: &Deck, set: usize, beams: bool) -> Result<(), Fa
         Some(element) => Err(card.wrong(format!(
             "element {} of its set is {}; its section must be {}",
             element.label,
-            if beams { "no beam" } else { "a beam" },
+            if beams { "not a beam" } else { "a beam" },
             if beams {
                 "*SOLID SECTION"
             } else {
@@ -339,21 +339,19 @@ fn beam_section(card: &Card<'_>, deck: &mut Deck, names: &Names) -> Result<(), F
     if card.required("SECTION")? != "RECT" {
         return Err(Fault::new(
             card.place_of("SECTION"),
-            format!("*{}: only SECTION=RECT can be read", card.shown),
+            format!("*{}: only SECTION=RECT is supported", card.shown),
         ));
     }
     let (set, material) = (section_set(card, names)?, section_material(card, deck)?);
     suits(card, deck, set, true)?;
     let [sides, rest @ ..] = card.lines.as_slice() else {
-        return Err(
-            card.wrong("the thickness across the plane and that in the plane should follow")
-        );
+        return Err(card.wrong("the thicknesses across the plane and in the plane are missing"));
     };
     let words = cells(*sides);
     let [width, height] = words.as_slice() else {
         return Err(Fault::new(
             sides.place(0),
-            "a rectangle has two thicknesses, across the plane and in it",
+            "unexpected value; a rectangle has two thicknesses, across the plane and in the plane",
         ));
     };
     if let Some(axis) = rest.first() {
@@ -363,14 +361,14 @@ fn beam_section(card: &Card<'_>, deck: &mut Deck, names: &Names) -> Result<(), F
         if x != 0.0 || y != 0.0 || z == 0.0 {
             return Err(Fault::new(
                 axis.place(0),
-                "the section's first axis must stand across the plane, as 0, 0, -1; the first thickness is the one along it",
+                "the section's first axis must be perpendicular to the plane, as 0, 0, -1; the first thickness is measured along it",
             ));
         }
     }
     if let Some(more) = rest.get(1) {
         return Err(Fault::new(
             more.place(0),
-            "a beam section has two lines of data; this is one more",
+            "unexpected line; a beam section has two data lines",
         ));
     }
     let form = Form::Rectangle {
@@ -386,7 +384,7 @@ fn beam_section(card: &Card<'_>, deck: &mut Deck, names: &Names) -> Result<(), F
     Ok(())
 }
 
-/// The slave and the master that a line names.
+/// The slave and the master named on a line.
 fn two_surfaces(
     line: super::source::Line<'_>,
     deck: &Deck,
@@ -396,17 +394,16 @@ fn two_surfaces(
     let [slave, master] = words.as_slice() else {
         return Err(Fault::new(
             line.place(0),
-            "two surfaces should stand here, the slave's and the master's",
+            "two surfaces were expected, the slave and the master",
         ));
     };
     let pair = (surface_of(slave, names)?, surface_of(master, names)?);
     if pair.0 == pair.1 {
-        return Err(slave.wrong("a surface that touches itself cannot be read; name two"));
+        return Err(slave.wrong("self-contact is not supported; name two surfaces"));
     }
     if matches!(deck.surfaces[pair.1].of, Faces::Nodes(_)) {
-        return Err(master.wrong(
-            "a master must be a surface of sides of elements (TYPE=ELEMENT), not of nodes",
-        ));
+        return Err(master
+            .wrong("a master must be a surface of element sides (TYPE=ELEMENT), not of nodes"));
     }
     Ok(pair)
 }
@@ -425,8 +422,8 @@ fn pair(card: &Card<'_>, deck: &mut Deck, names: &Names) -> Result<(), Fault> {
     if faces {
         deck.remark(
             card.place_of("TYPE"),
-            "SURFACE TO SURFACE is read node to surface: the law holds at each slave node with its part of the surface, not at \
-             points of the sides",
+            "SURFACE TO SURFACE is treated as node to surface: the law holds at each slave node with \
+             its tributary area, not at points of the sides",
         );
     }
     let adjust = card
@@ -434,7 +431,7 @@ fn pair(card: &Card<'_>, deck: &mut Deck, names: &Names) -> Result<(), Fault> {
         .map(|value| adjusted(value, card.place_of("ADJUST"), names));
     let adjust = adjust.transpose()?;
     if card.lines.is_empty() {
-        return Err(card.wrong("two surfaces should follow, the slave's and the master's"));
+        return Err(card.wrong("two surfaces are missing, the slave and the master"));
     }
     for line in &card.lines {
         let (slave, master) = two_surfaces(*line, deck, names)?;
@@ -456,7 +453,7 @@ fn adjusted(value: &str, place: Place, names: &Names) -> Result<Adjust, Fault> {
         Ok(within) if within.is_finite() && within >= 0.0 => Ok(Adjust::Within(within)),
         Ok(within) => Err(Fault::new(
             place,
-            format!("ADJUST={within:?}; it must be a distance that is not negative, or a set"),
+            format!("ADJUST={within:?}; it must be a nonnegative distance, or a set"),
         )),
         Err(_) => Ok(Adjust::Set(set_of(value, place, names, Kind::Nodes)?)),
     }
@@ -471,13 +468,13 @@ fn tie(card: &Card<'_>, deck: &mut Deck, names: &Names) -> Result<(), Fault> {
         Ok(length) if length.is_finite() && length >= 0.0 => Ok(length),
         _ => Err(Fault::new(
             place,
-            format!("POSITION TOLERANCE={} is no length", short(value)),
+            format!("POSITION TOLERANCE={} is not a length", short(value)),
         )),
     });
     let tolerance = tolerance.transpose()?;
     let adjust = card.choice("ADJUST", &["YES", "NO"])? == 0;
     if card.lines.is_empty() {
-        return Err(card.wrong("two surfaces should follow, the slave's and the master's"));
+        return Err(card.wrong("two surfaces are missing, the slave and the master"));
     }
     for line in &card.lines {
         let (slave, master) = two_surfaces(*line, deck, names)?;

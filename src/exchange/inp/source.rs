@@ -1,6 +1,6 @@
-//! The lines of a deck, those of included files in their places, and where something stands in them.
+//! The lines of a deck with those of its include files, and their locations.
 
-/// Where something stands: the number of the file ([`Deck::files`](super::Deck::files)), and line and column in it, both from 1.
+/// A location: file number ([`Deck::files`](super::Deck::files)), line and column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Place {
     /// 0 is the deck itself.
@@ -11,25 +11,25 @@ pub struct Place {
     pub column: usize,
 }
 
-/// What is wrong with a deck.
+/// An error in a deck.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{file}:{}:{}: {message}", place.line, place.column)]
 pub struct Wrong {
-    /// Name of the file in which it stands.
+    /// Name of the file.
     pub file: String,
-    /// Where.
+    /// Location.
     pub place: Place,
-    /// What is wrong, and what would be right.
+    /// What is wrong and what is expected.
     pub message: String,
 }
 
-/// A word as CalculiX compares it: in capitals, without blanks and quotes.
+/// A word as CalculiX compares it: uppercase, without spaces and quotes.
 pub(super) fn plain(word: &str) -> String {
     let letters = word.chars().filter(|c| !c.is_whitespace() && *c != '"');
     letters.flat_map(char::to_uppercase).collect()
 }
 
-/// What is wrong, before the file has its name.
+/// An error before its file name is known.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Fault {
     pub place: Place,
@@ -45,12 +45,12 @@ impl Fault {
     }
 }
 
-/// A deck and what it includes, as texts.
+/// The texts of a deck and its include files.
 #[derive(Debug, Default)]
 pub(super) struct Sources {
     pub names: Vec<String>,
     texts: Vec<String>,
-    /// Lines of files in the order in which they count: file, first line (from 0), and the bytes.
+    /// Line ranges in reading order: file, first line (from 0), and byte range.
     pieces: Vec<(usize, usize, std::ops::Range<usize>)>,
 }
 
@@ -64,7 +64,7 @@ pub(super) struct Line<'t> {
 }
 
 impl Line<'_> {
-    /// The place of a byte of it.
+    /// The location of a byte of the line.
     pub fn place(&self, byte: usize) -> Place {
         let before = self.text.get(..byte).unwrap_or(self.text);
         Place {
@@ -74,7 +74,7 @@ impl Line<'_> {
         }
     }
 
-    /// Whether it is a comment, or blank.
+    /// Whether it is a comment or blank.
     pub fn is_nothing(&self) -> bool {
         let text = self.text.trim_start();
         text.is_empty() || text.starts_with("**")
@@ -86,18 +86,18 @@ impl Line<'_> {
     }
 }
 
-/// Most files in a row, each of which includes the next.
+/// Maximum depth of nested includes.
 const DEEPEST: usize = 16;
-/// Most inclusions in all.
+/// Maximum number of inclusions.
 const INCLUSIONS: usize = 1000;
-/// Most bytes of a deck with all that it includes, however often.
+/// Maximum size of a deck in bytes, including all inclusions.
 pub const DECK_BYTES: usize = 512 << 20;
 
-/// What gives the text of a file that a deck includes, or says why there is none.
+/// Returns the text of an include file, or the reason for a failure.
 pub type Include<'a> = dyn FnMut(&str) -> Result<String, String> + 'a;
 
 impl Sources {
-    /// A deck and all that it includes. What is wrong comes with what has been read by then.
+    /// Collects a deck and its include files. On an error, returns what was read until then.
     pub fn gather(
         name: &str,
         text: &str,
@@ -144,7 +144,7 @@ impl Sources {
         Ok(())
     }
 
-    /// Number of the file of this name, which is read if it has not been.
+    /// Number of the file with this name; reads it on first use.
     fn included(
         &mut self,
         wanted: &str,
@@ -166,22 +166,20 @@ impl Sources {
             return Err(format!("the file {wanted:?} includes itself"));
         }
         if above.len() > DEEPEST {
-            return Err(format!(
-                "more than {DEEPEST} files include one another in a row"
-            ));
+            return Err(format!("includes are nested more than {DEEPEST} deep"));
         }
         budget.inclusions += 1;
         budget.bytes += self.texts[inner].len();
         if budget.inclusions > INCLUSIONS || budget.bytes > DECK_BYTES {
             return Err(format!(
-                "the deck with all that it includes is too large; at most {INCLUSIONS} inclusions and {} MB can be read",
+                "the deck with its include files is too large; at most {INCLUSIONS} inclusions and {} MB are supported",
                 DECK_BYTES >> 20
             ));
         }
         Ok(inner)
     }
 
-    /// All lines.
+    /// All lines in reading order.
     pub fn lines(&self) -> impl Iterator<Item = Line<'_>> {
         self.pieces.iter().flat_map(|(file, first, bytes)| {
             let text = self
@@ -203,12 +201,12 @@ struct Budget {
     inclusions: usize,
 }
 
-/// An `*INCLUDE` of a text.
+/// An `*INCLUDE` in a text.
 struct Inclusion {
-    /// The bytes of its line.
+    /// First byte of its line.
     begin: usize,
     end: usize,
-    /// Lines up to it, it too.
+    /// Number of lines up to and including it.
     line: usize,
     place: Place,
     file: Result<String, &'static str>,
@@ -239,10 +237,10 @@ fn inclusions(file: usize, text: &str) -> Vec<Inclusion> {
     found
 }
 
-/// The file that the parameters of an inclusion name.
+/// The file named by the parameters of an include.
 fn input(parameters: &str) -> Result<String, &'static str> {
     const RIGHT: &str =
-        "*INCLUDE must name its file, and nothing else, as in \"*INCLUDE, INPUT=mesh.inp\"";
+        "*INCLUDE takes exactly one parameter, its file, as in \"*INCLUDE, INPUT=mesh.inp\"";
     let (name, value) = parameters.split_once('=').ok_or(RIGHT)?;
     let value = value.trim().trim_end_matches(',').trim().trim_matches('"');
     match name.trim().eq_ignore_ascii_case("input") && !value.is_empty() {

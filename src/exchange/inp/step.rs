@@ -7,16 +7,16 @@ use super::deck::{
 use super::mesh::{Kind, Names, members_of, set_of, side_of, surface_of};
 use super::source::{Fault, Line, Place, plain};
 
-/// The step that is being read.
+/// State of reading the steps.
 #[derive(Debug, Default)]
 pub(super) struct Open {
     step: Option<Step>,
     has_time: bool,
-    /// NLGEOM stays until it is taken back.
+    /// NLGEOM stays on in later steps until it is switched off.
     nlgeom: bool,
 }
 
-/// Reads a card of a step, or a support of the model, if it is one.
+/// Reads a card of a step, or a support of the model; returns whether it is one.
 pub(super) fn read(
     card: &Card<'_>,
     deck: &mut Deck,
@@ -37,26 +37,26 @@ pub(super) fn read(
     Ok(true)
 }
 
-/// Refuses a deck that ends within a step, or has none.
+/// Rejects a deck without steps or with an unfinished step.
 pub(super) fn finish(deck: &Deck, open: &Open, last: Place) -> Result<(), Fault> {
     match &open.step {
         Some(step) => Err(Fault::new(
             step.place,
-            "this step has no end; *END STEP is missing",
+            "the step has no end; *END STEP is missing",
         )),
         None if deck.steps.is_empty() => Err(Fault::new(
             last,
-            "the deck has no step; it must have one at least, with *STEP, *STATIC and *END STEP",
+            "the deck has no step; it needs at least one, with *STEP, *STATIC and *END STEP",
         )),
         None => Ok(()),
     }
 }
 
-/// Refuses what defines the model once a step has begun.
+/// Rejects model definitions after the first step.
 pub(super) fn before(card: &Card<'_>, open: &Open) -> Result<(), Fault> {
     match open.step {
         None => Ok(()),
-        Some(_) => Err(card.wrong("it belongs to the model, before the first *STEP")),
+        Some(_) => Err(card.wrong("it belongs to the model and must come before the first *STEP")),
     }
 }
 
@@ -71,7 +71,7 @@ fn begin(card: &Card<'_>, deck: &mut Deck, open: &mut Open) -> Result<(), Fault>
         "INCF1",
     ])?;
     if open.step.is_some() {
-        return Err(card.wrong("the step before has no end; *END STEP is missing"));
+        return Err(card.wrong("the previous step has no end; *END STEP is missing"));
     }
     if card.has("NLGEOM") {
         open.nlgeom = match card.parameter("NLGEOM").and_then(|p| p.value.as_deref()) {
@@ -82,7 +82,7 @@ fn begin(card: &Card<'_>, deck: &mut Deck, open: &mut Open) -> Result<(), Fault>
     if card.has("INC") {
         deck.remark(
             card.place_of("INC"),
-            "INC is not read: there is no limit to the number of increments",
+            "INC is ignored: the number of increments is not limited",
         );
     }
     open.has_time = false;
@@ -114,14 +114,14 @@ fn end(card: &Card<'_>, deck: &mut Deck, open: &mut Open) -> Result<(), Fault> {
             deck.steps.push(step);
             Ok(())
         }
-        None => Err(card.wrong("there is no step to end")),
+        None => Err(card.wrong("*END STEP without a *STEP")),
     }
 }
 
 fn in_step<'a>(card: &Card<'_>, open: &'a mut Open) -> Result<&'a mut Step, Fault> {
     open.step
         .as_mut()
-        .ok_or_else(|| card.wrong("it belongs to a step; *STEP should stand before"))
+        .ok_or_else(|| card.wrong("it belongs to a step; *STEP must come first"))
 }
 
 fn time(card: &Card<'_>, deck: &mut Deck, open: &mut Open) -> Result<(), Fault> {
@@ -129,19 +129,19 @@ fn time(card: &Card<'_>, deck: &mut Deck, open: &mut Open) -> Result<(), Fault> 
     if card.has("STABILIZE") {
         return Err(Fault::new(
             card.place_of("STABILIZE"),
-            "*STATIC: STABILIZE adds damping that is not in the model; leave it out",
+            "*STATIC: STABILIZE adds damping that is not part of the model; leave it out",
         ));
     }
     if card.has("TIMERESET") {
         return Err(Fault::new(
             card.place_of("TIMERESET"),
-            "*STATIC: TIME RESET cannot be read; time goes on over the steps",
+            "*STATIC: TIME RESET is not supported; time continues over the steps",
         ));
     }
     if card.has("SOLVER") {
         deck.remark(
             card.place_of("SOLVER"),
-            "SOLVER is not read; see settings.solver",
+            "SOLVER is ignored; see settings.solver",
         );
     }
     let words = match card.lines.as_slice() {
@@ -150,7 +150,7 @@ fn time(card: &Card<'_>, deck: &mut Deck, open: &mut Open) -> Result<(), Fault> 
         [_, more, ..] => {
             return Err(Fault::new(
                 more.place(0),
-                "*STATIC has one line of data; this is one more",
+                "unexpected line; *STATIC has one data line",
             ));
         }
     };
@@ -163,7 +163,7 @@ fn time(card: &Card<'_>, deck: &mut Deck, open: &mut Open) -> Result<(), Fault> 
         },
     };
     if let Some(more) = words.get(4) {
-        return Err(more.wrong("*STATIC has a first increment, a period, a least and a largest increment; this is one more"));
+        return Err(more.wrong("unexpected value; *STATIC takes a first increment, a period, a minimum and a maximum increment"));
     }
     let period = positive(1, "the period of the step")?.unwrap_or(1.0);
     let initial = positive(0, "the first increment")?.unwrap_or(period);
@@ -175,13 +175,13 @@ fn time(card: &Card<'_>, deck: &mut Deck, open: &mut Open) -> Result<(), Fault> 
     let time = Time {
         initial,
         period,
-        least: positive(2, "the least increment")?,
-        most: positive(3, "the largest increment")?,
+        least: positive(2, "the minimum increment")?,
+        most: positive(3, "the maximum increment")?,
         direct: card.has("DIRECT"),
     };
     let place = card.lines.first().map_or(card.place, |line| line.place(0));
     if open.has_time {
-        return Err(card.wrong("the step has one *STATIC already"));
+        return Err(card.wrong("the step already has a *STATIC"));
     }
     let step = in_step(card, open)?;
     step.time = time;
@@ -190,7 +190,7 @@ fn time(card: &Card<'_>, deck: &mut Deck, open: &mut Open) -> Result<(), Fault> 
     Ok(())
 }
 
-/// Notes the nodes whose displacements are printed. What else could be printed is not read.
+/// Records the nodes whose displacements are printed; other output is ignored.
 fn print(card: &Card<'_>, deck: &mut Deck, names: &Names) -> Result<(), Fault> {
     let Some(name) = card.value("NSET")? else {
         return Ok(());
@@ -203,7 +203,7 @@ fn print(card: &Card<'_>, deck: &mut Deck, names: &Names) -> Result<(), Fault> {
     Ok(())
 }
 
-/// The amplitude that a card names.
+/// The amplitude named by a card.
 fn amplitude(card: &Card<'_>, deck: &Deck) -> Result<Option<usize>, Fault> {
     let Some(name) = card.value("AMPLITUDE")? else {
         return Ok(None);
@@ -217,7 +217,7 @@ fn amplitude(card: &Card<'_>, deck: &Deck) -> Result<Option<usize>, Fault> {
     })
 }
 
-/// Whether a card gives up what was before it.
+/// Whether a card removes earlier values.
 fn is_new(card: &Card<'_>) -> Result<bool, Fault> {
     Ok(card.choice("OP", &["MOD", "NEW"])? == 1)
 }
@@ -252,18 +252,18 @@ fn boundary(
                 3..=5 if value == 0.0 => {
                     deck.remark(
                         first.place(),
-                        "directions 3, 4 and 5 are held by the plane itself",
+                        "directions 3, 4 and 5 are always fixed in plane problems",
                     );
                     continue;
                 }
                 3..=5 => {
                     return Err(last.wrong(format!(
-                        "a motion of {value:?} along direction {direction} leaves the plane"
+                        "a displacement of {value:?} along direction {direction} leaves the plane"
                     )));
                 }
                 _ => {
                     return Err(words.get(1).unwrap_or(first).wrong(format!(
-                        "direction {direction} cannot be read; it must be 1 or 2, or 6 on beams"
+                        "direction {direction} is not supported; it must be 1 or 2, or 6 on beams"
                     )));
                 }
             };
@@ -282,7 +282,7 @@ fn boundary(
                 Some(step) => step.motions.extend(values),
                 None if value != 0.0 => {
                     return Err(last.wrong(
-                        "before the first step nothing can move; write this value inside a step",
+                        "nonzero values are not allowed before the first step; write this one inside a step",
                     ));
                 }
                 None => deck.supports.extend(values),
@@ -295,11 +295,9 @@ fn boundary(
 /// First and last direction of a line of `*BOUNDARY`, and its value.
 fn directions(first: &Cell<'_>, words: &[Cell<'_>]) -> Result<(u64, u64, f64), Fault> {
     let Some(second) = words.get(1) else {
-        return Err(
-            first.wrong("a node or a set should be followed by the directions that are held")
-        );
+        return Err(first.wrong("the restrained directions are missing after the node or set"));
     };
-    // Abaqus' names for what is held; those of symmetry hold the direction across it.
+    // Abaqus' names for supports; symmetry conditions fix the direction normal to the symmetry plane.
     match plain(second.text).as_str() {
         "XSYMM" => return Ok((1, 1, 0.0)),
         "YSYMM" => return Ok((2, 2, 0.0)),
@@ -315,12 +313,12 @@ fn directions(first: &Cell<'_>, words: &[Cell<'_>]) -> Result<(u64, u64, f64), F
     };
     if to < from || from == 0 || to > 11 {
         return Err(second.wrong(format!(
-            "directions {from} to {to}; they must rise, from 1 to 6"
+            "directions {from} to {to}; they must be ascending, from 1 to 6"
         )));
     }
     if let Some(more) = words.get(4) {
         return Err(more.wrong(
-            "a node, the first and the last direction and a value are all; this is one more",
+            "unexpected value; the line takes a node, the first and the last direction and a value",
         ));
     }
     Ok((from, to, number_or_zero(words, 3, "the value")?))
@@ -342,7 +340,7 @@ fn force(
         let [first, second, third] = words.as_slice() else {
             return Err(Fault::new(
                 line.place(0),
-                "a node or a set, a direction and a force should stand here",
+                "a node or a set, a direction and a force were expected",
             ));
         };
         let value = third.number("a force")?;
@@ -353,7 +351,7 @@ fn force(
             3 if value == 0.0 => continue,
             other => {
                 return Err(second.wrong(format!(
-                    "direction {other} cannot be read; it must be 1 or 2, or 6 on beams"
+                    "direction {other} is not supported; it must be 1 or 2, or 6 on beams"
                 )));
             }
         };
@@ -381,7 +379,7 @@ fn load(card: &Card<'_>, deck: &mut Deck, names: &mut Names, open: &mut Open) ->
         let [first, label, rest @ ..] = words.as_slice() else {
             return Err(Fault::new(
                 line.place(0),
-                "an element or a set, a load's name and its size should stand here",
+                "an element or a set, a load name and its size were expected",
             ));
         };
         let elements = members_of(first, deck, names, Kind::Elements)?;
@@ -409,43 +407,43 @@ fn load(card: &Card<'_>, deck: &mut Deck, names: &mut Names, open: &mut Open) ->
     Ok(())
 }
 
-/// The side on which a load of `*DLOAD` presses.
+/// The side that a load of `*DLOAD` acts on.
 fn pressed(label: &Cell<'_>, kind: &str, element: &Element) -> Result<usize, Fault> {
     let digits = kind.strip_prefix('P').unwrap_or_default();
     let numbered = !digits.is_empty() && digits.chars().all(|c| c.is_ascii_digit());
     match numbered && element.kind.family != Family::Beam {
         true => side_of(label, 'P', element),
         false => Err(label.wrong(format!(
-            "the load {} cannot be read on element {}; those that can are P1 to P4 on sides, GRAV, BX and BY",
+            "the load {} is not supported on element {}; supported are P1 to P4 on sides, GRAV, BX and BY",
             short(kind),
             element.label
         ))),
     }
 }
 
-/// The only number that is left of a line.
+/// The only remaining number of a line.
 fn one(before: &Cell<'_>, rest: &[Cell<'_>], what: &str) -> Result<f64, Fault> {
     match rest {
         [cell] => cell.number(what),
-        [] => Err(before.wrong(format!("{what} should follow"))),
-        [_, more, ..] => Err(more.wrong(format!("{what} is one number; this is one more"))),
+        [] => Err(before.wrong(format!("{what} is missing"))),
+        [_, more, ..] => Err(more.wrong(format!("unexpected value; {what} is one number"))),
     }
 }
 
 fn volume(kind: &str, label: &Cell<'_>, rest: &[Cell<'_>]) -> Result<Option<Volume>, Fault> {
     match kind {
         "BX" => Ok(Some(Volume::Force([
-            one(label, rest, "the force by volume")?,
+            one(label, rest, "the force per volume")?,
             0.0,
         ]))),
         "BY" => Ok(Some(Volume::Force([
             0.0,
-            one(label, rest, "the force by volume")?,
+            one(label, rest, "the force per volume")?,
         ]))),
         "GRAV" => {
             let [size, x, y, z @ ..] = rest else {
                 return Err(label.wrong(
-                    "an acceleration and the three components of its direction should follow",
+                    "an acceleration and the three components of its direction were expected",
                 ));
             };
             let size = size.number("the acceleration")?;
@@ -454,7 +452,7 @@ fn volume(kind: &str, label: &Cell<'_>, rest: &[Cell<'_>]) -> Result<Option<Volu
             let length = x.hypot(y);
             if z != 0.0 || length == 0.0 || !length.is_finite() {
                 return Err(label.wrong(
-                    "the direction of the acceleration must lie in the plane, and not be 0",
+                    "the direction of the acceleration must lie in the plane and not be zero",
                 ));
             }
             Ok(Some(Volume::Gravity([
@@ -508,12 +506,12 @@ fn pressed_surface(line: Line<'_>, deck: &Deck, names: &Names) -> Result<Pressed
     let [first, label, size] = words.as_slice() else {
         return Err(Fault::new(
             line.place(0),
-            "a surface, P and a pressure should stand here",
+            "a surface, P and a pressure were expected",
         ));
     };
     if plain(label.text) != "P" {
         return Err(label.wrong(format!(
-            "the load {:?} cannot be read; it must be P, a pressure",
+            "the load {:?} is not supported; it must be P, a pressure",
             short(label.text)
         )));
     }
@@ -525,7 +523,7 @@ fn pressed_surface(line: Line<'_>, deck: &Deck, names: &Names) -> Result<Pressed
             value: size.number("the pressure")?,
         }),
         Faces::Nodes(_) => Err(first.wrong(
-            "a surface of nodes has no area to press on; it must be one of sides (TYPE=ELEMENT)",
+            "a surface of nodes has no area for a pressure; use one of sides (TYPE=ELEMENT)",
         )),
     }
 }

@@ -1,4 +1,4 @@
-//! Decks read, refused, and damaged.
+//! Tests with valid, rejected and damaged decks.
 
 use super::deck::{Adjust, Direction, Faces, Family, Form, Normal, Volume};
 use super::*;
@@ -27,14 +27,14 @@ fn refusal(text: &str) -> String {
     }
 }
 
-/// The block's deck with one piece of text in place of another.
+/// The block's deck with one piece of text replaced.
 fn but(text: &str, from: &str, to: &str) -> String {
     assert!(text.contains(from), "{from:?} is not in the deck");
     text.replacen(from, to, 1)
 }
 
 #[test]
-fn nodes_elements_sections_and_laws_are_what_the_deck_says() {
+fn nodes_elements_sections_and_laws_match_the_deck() {
     let deck = deck(PLATES);
     assert_eq!(
         deck.heading,
@@ -77,7 +77,7 @@ fn nodes_elements_sections_and_laws_are_what_the_deck_says() {
 }
 
 #[test]
-fn sets_are_generated_and_made_of_sets_and_steps_follow_each_other() {
+fn sets_may_be_generated_and_nested_and_steps_are_in_order() {
     let deck = deck(BLOCK);
     let set = |name: &str| {
         deck.node_sets
@@ -119,7 +119,7 @@ fn a_rectangular_beam_has_its_second_thickness_in_the_plane() {
 }
 
 #[test]
-fn case_blanks_comments_continued_lines_and_fortran_numbers_make_no_difference() {
+fn case_spaces_comments_continuation_lines_and_fortran_numbers_do_not_matter() {
     let text = but(
         BLOCK,
         "*SURFACE INTERACTION, NAME=ROUGH",
@@ -139,7 +139,7 @@ fn case_blanks_comments_continued_lines_and_fortran_numbers_make_no_difference()
 }
 
 #[test]
-fn an_included_file_is_read_in_its_place_and_its_faults_have_their_own_lines() {
+fn an_include_file_is_read_in_place_and_its_errors_have_its_lines() {
     let mut give = |name: &str| match name {
         "parts/glued-mesh.inp" => Ok(GLUED_MESH.to_owned()),
         _ => Err("no such file".to_owned()),
@@ -155,7 +155,7 @@ fn an_included_file_is_read_in_its_place_and_its_faults_have_their_own_lines() {
     let wrong = read("glued.inp", GLUED, &mut damaged).expect_err("node 15 is not there");
     assert_eq!(
         wrong.to_string(),
-        "parts/glued-mesh.inp:13:16: there is no node 15; *NODE must stand before"
+        "parts/glued-mesh.inp:13:16: there is no node 15; *NODE must come first"
     );
     let mut none = |_: &str| Err("there is no such file".to_owned());
     let wrong = read("glued.inp", GLUED, &mut none).expect_err("no file");
@@ -163,7 +163,7 @@ fn an_included_file_is_read_in_its_place_and_its_faults_have_their_own_lines() {
 }
 
 #[test]
-fn files_that_include_each_other_end() {
+fn recursive_includes_are_rejected() {
     let mut itself = |_: &str| Ok("*INCLUDE, INPUT=a.inp\n".to_owned());
     let wrong = read("job.inp", "*INCLUDE, INPUT=a.inp\n", &mut itself).expect_err("endless");
     assert_eq!(
@@ -177,10 +177,12 @@ fn files_that_include_each_other_end() {
     };
     let wrong = read("job.inp", "*INCLUDE, INPUT=a.inp\n", &mut deeper).expect_err("too deep");
     assert!(
-        wrong.to_string().contains("include one another in a row"),
+        wrong
+            .to_string()
+            .contains("includes are nested more than 16 deep"),
         "{wrong}"
     );
-    // Each file includes the next one twice: 2^k of the last.
+    // Each file includes the next one twice: 2^k times the last.
     let mut twice = |name: &str| {
         let next = name.trim_end_matches(".inp").parse::<u32>().unwrap_or(0) + 1;
         Ok(format!("*INCLUDE, INPUT={next}.inp\n").repeat(if next < 14 { 2 } else { 0 }))
@@ -190,72 +192,72 @@ fn files_that_include_each_other_end() {
 }
 
 #[test]
-fn what_cannot_be_read_is_refused_where_it_stands_with_what_would_be_right() {
+fn errors_have_a_location_and_the_expected_input() {
     let cases = [
         (
             "TYPE=CPE4, ELSET=BLOCK",
             "TYPE=CPE4R, ELSET=BLOCK",
-            "job.inp:14:11: CPE4R is integrated in one point and needs a stiffness against its hourglass modes, which codes choose differently; use CPE4 or, better, CPE8R",
+            "job.inp:14:11: CPE4R has one integration point and needs hourglass stabilisation, which codes choose differently; use CPE4 or, better, CPE8R",
         ),
         (
             "TYPE=CPE4, ELSET=BLOCK",
             "TYPE=C3D8, ELSET=BLOCK",
-            "job.inp:14:11: C3D8 is an element of space; those that can be read are CPE, CPS and CAX with 3, 4, 6, 8 and 8R, and B21, B22, B31, B31R, B32, B32R",
+            "job.inp:14:11: C3D8 is a three-dimensional element; supported are CPE, CPS and CAX with 3, 4, 6, 8 and 8R, and B21, B22, B31, B31R, B32, B32R",
         ),
         (
             "PRESSURE-OVERCLOSURE=HARD",
             "PRESSURE-OVERCLOSURE=EXPONENTIAL\n1.E-4, .1",
-            "job.inp:35:20: *SURFACE BEHAVIOR: PRESSURE-OVERCLOSURE=EXPONENTIAL cannot be read: a pressure that is not linear has no complementarity problem; it must be HARD, LINEAR or TIED",
+            "job.inp:35:20: *SURFACE BEHAVIOR: PRESSURE-OVERCLOSURE=EXPONENTIAL is not supported: nonlinear pressure laws do not give a complementarity problem; it must be HARD, LINEAR or TIED",
         ),
         (
             "*ELASTIC\n",
             "*ELASTIC, TYPE=ORTHO\n",
-            "job.inp:30:11: *ELASTIC: TYPE=ORTHO cannot be read; it must be ISO or ISOTROPIC",
+            "job.inp:30:11: *ELASTIC: TYPE=ORTHO is not supported; it must be ISO or ISOTROPIC",
         ),
         (
             "*AMPLITUDE, NAME=FORTH",
             "*EQUATION",
-            "job.inp:40:1: *EQUATION: it cannot be read: nodes cannot be bound to one another by equations; give both bodies common nodes, or use *TIE",
+            "job.inp:40:1: *EQUATION: equations between nodes are not supported; give both bodies common nodes, or use *TIE",
         ),
         (
             "*STATIC, DIRECT",
             "*DYNAMIC",
-            "job.inp:45:1: *DYNAMIC: it cannot be read: only *STATIC steps can be read",
+            "job.inp:45:1: *DYNAMIC: only *STATIC steps are supported",
         ),
         (
             "*STATIC, DIRECT",
             "*STATICS",
-            "job.inp:45:1: *STATICS: it is no keyword that can be read; did you mean *STATIC?",
+            "job.inp:45:1: *STATICS: it is not a supported keyword; did you mean *STATIC?",
         ),
         (
             "2, 1., 0.",
             "2, 1., 0., 0.5",
-            "job.inp:5:13: node 2 stands at z = 0.5; only what lies in z = 0 can be read",
+            "job.inp:5:13: node 2 is at z = 0.5; only z = 0 is supported",
         ),
         (
             "2, 1., 0.",
             "2, 1., abc",
-            "job.inp:5:9: \"abc\" stands where a coordinate, a number, should",
+            "job.inp:5:9: found \"abc\" where a coordinate, a number, was expected",
         ),
         (
             "2, 1., 0.",
             "2, 1., 1e999",
-            "job.inp:5:9: \"1e999\" stands where a coordinate, a number, should",
+            "job.inp:5:9: found \"1e999\" where a coordinate, a number, was expected",
         ),
         (
             "2, 1., 0.",
             "1, 1., 0.",
-            "job.inp:5:2: node 1 stands here a second time",
+            "job.inp:5:2: node 1 is defined twice",
         ),
         (
             "BLOCK, S1",
             "BLOCK, S5",
-            "job.inp:26:8: \"S5\" is no side of element 1; it must be S1 to S4",
+            "job.inp:26:8: element 1 has no side \"S5\"; it must be S1 to S4",
         ),
         (
             "BLOCK, S1",
             "BLOCKS, S1",
-            "job.inp:26:1: there is no element set BLOCKS; it must stand before",
+            "job.inp:26:1: there is no element set BLOCKS; it must be defined first",
         ),
         (
             "BELOW, ABOVE",
@@ -265,17 +267,17 @@ fn what_cannot_be_read_is_refused_where_it_stands_with_what_would_be_right() {
         (
             "TOP, 2, 2, -0.02",
             "TOP, 3, 3, -0.02",
-            "job.inp:49:12: a motion of -0.02 along direction 3 leaves the plane",
+            "job.inp:49:12: a displacement of -0.02 along direction 3 leaves the plane",
         ),
         (
             "GROUND, 1, 2",
             "GROUND, 1, 2, 0.5",
-            "job.inp:43:15: before the first step nothing can move; write this value inside a step",
+            "job.inp:43:15: nonzero values are not allowed before the first step; write this one inside a step",
         ),
         (
             "*STEP\n",
             "*STEP, PERTURBATION\n",
-            "job.inp:44:8: *STEP: the parameter PERTURBATION cannot be read; those that can be read are NLGEOM, INC, AMPLITUDE, NAME, UNSYMM, INCF, INCF1",
+            "job.inp:44:8: *STEP: the parameter PERTURBATION is not supported; supported are NLGEOM, INC, AMPLITUDE, NAME, UNSYMM, INCF, INCF1",
         ),
         (
             "0.5, 1.\n*BOUNDARY",
@@ -285,7 +287,7 @@ fn what_cannot_be_read_is_refused_where_it_stands_with_what_would_be_right() {
         (
             "0., 0., 0.5, 1., 1., -1.",
             "0., 0., 0.5",
-            "job.inp:41:9: a time without a factor; they come in pairs",
+            "job.inp:41:9: a time without a factor; they must come in pairs",
         ),
     ];
     for (from, to, message) in cases {
@@ -293,14 +295,14 @@ fn what_cannot_be_read_is_refused_where_it_stands_with_what_would_be_right() {
     }
     assert!(
         refusal(BLOCK.rsplit_once("*END STEP").map_or("", |(most, _)| most))
-            .contains("this step has no end")
+            .contains("the step has no end")
     );
     assert!(refusal("*NODE\n1, 0., 0.\n").contains("the deck has no step"));
     assert!(refusal("1, 2\n").contains("before the first keyword"));
 }
 
 #[test]
-fn what_is_passed_over_or_read_as_something_else_is_listed_with_its_line() {
+fn ignored_and_reinterpreted_input_is_listed_with_its_line() {
     let lines = |deck: &Deck| -> Vec<String> {
         let remarks = deck.remarks.iter();
         remarks
@@ -309,11 +311,11 @@ fn what_is_passed_over_or_read_as_something_else_is_listed_with_its_line() {
     };
     let found = lines(&deck(RINGS)).join("\n");
     assert!(
-        found.contains("30: *EXPANSION is passed over: it acts with temperatures only"),
+        found.contains("30: *EXPANSION is ignored: it concerns temperatures"),
         "{found}"
     );
     assert!(
-        found.contains("36: SURFACE TO SURFACE is read node to surface"),
+        found.contains("36: SURFACE TO SURFACE is treated as node to surface"),
         "{found}"
     );
     let twice = but(
@@ -325,7 +327,7 @@ fn what_is_passed_over_or_read_as_something_else_is_listed_with_its_line() {
     let remark = deck
         .remarks
         .iter()
-        .find(|remark| remark.text.contains("plane itself"))
+        .find(|remark| remark.text.contains("always fixed"))
         .expect("a remark");
     assert_eq!((remark.place.line, remark.times), (43, 2));
 }
@@ -362,12 +364,12 @@ fn loads_on_sides_and_volumes_and_adjusted_gaps_are_read() {
 }
 
 #[test]
-fn keywords_stand_once_and_in_order() {
+fn keywords_are_unique_and_sorted() {
     let names: Vec<&str> = keywords::KEYWORDS.iter().map(|(name, _)| *name).collect();
     assert!(names.windows(2).all(|pair| pair[0] < pair[1]), "{names:?}");
 }
 
-/// One deck with a few bytes, lines or words of it changed, or taken from another.
+/// A deck with some bytes, lines or words changed, or taken from another deck.
 fn damaged() -> impl Strategy<Value = String> {
     let decks = prop::sample::select(vec![PLATES, RINGS, BLOCK, BEAM, GLUED]);
     let change = (
@@ -401,7 +403,7 @@ proptest! {
     }
 
     #[test]
-    fn no_row_of_cards_makes_the_reader_panic(
+    fn no_sequence_of_cards_makes_the_reader_panic(
         cards in prop::collection::vec((prop::sample::select(keywords::KEYWORDS), "[A-Z, =0-9.*-]{0,40}", "[A-Z0-9,. \n-]{0,60}"), 0..12),
     ) {
         let lines = cards.iter().map(|((name, _), parameters, data)| format!("*{name},{parameters}\n{data}\n"));
@@ -409,7 +411,7 @@ proptest! {
     }
 
     #[test]
-    fn a_damaged_deck_is_read_or_refused_at_a_line_that_it_has(text in damaged()) {
+    fn a_damaged_deck_is_read_or_rejected_with_a_valid_line(text in damaged()) {
         let mut give = |_: &str| Ok(GLUED_MESH.to_owned());
         if let Err(wrong) = read("job.inp", &text, &mut give) {
             let lines = if wrong.place.file == 0 { text.lines().count() } else { GLUED_MESH.lines().count() };

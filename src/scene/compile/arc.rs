@@ -1,4 +1,4 @@
-//! How the path of equilibrium is followed.
+//! Compiles the arc-length settings.
 
 use super::super::nodes::Names;
 use crate::format::error::{Fault, Path, at, some_of};
@@ -7,7 +7,7 @@ use stickslip_core::model::{
     ArcLength, Bound, Contact, Control, InitialGaps, Measured, Monitor, Solver, Watched,
 };
 
-/// Resolves `history.arc`, and refuses what cannot be followed.
+/// Resolves `history.arc`, and rejects invalid settings.
 pub(super) fn arc(
     spec: &Spec,
     names: &Names,
@@ -30,7 +30,7 @@ pub(super) fn arc(
         }
     }
     if given.iterations == 0 {
-        let message = "the iterations that keep the size are 0; they must be at least 1";
+        let message = "iterations is 0; it must be at least 1";
         return Err(Fault::new(here.then("iterations"), message));
     }
     let along = match (given.monitor.as_str(), given.slip.as_str()) {
@@ -38,7 +38,7 @@ pub(super) fn arc(
         (name, "") => Measured::Dof(displacement(&here.then("monitor"), name, monitors)?),
         ("", name) => Measured::Slip(slave(&here.then("slip"), name, names, slaves)?),
         _ => {
-            let message = "the path is followed by a monitor or by the slip of a node, not by both";
+            let message = "monitor and slip are both given; the path can follow only one of them";
             return Err(Fault::new(here.then("slip"), message));
         }
     };
@@ -62,21 +62,22 @@ pub(super) fn arc(
     })
 }
 
-/// Refuses settings that cannot go with a load factor that is an unknown.
+/// Rejects settings that do not work with an unknown load factor.
 fn follows(spec: &Spec) -> Result<(), Fault> {
     let settings = at!["settings"];
     if spec.settings.solver == Solver::Augmented {
-        let message = "the path is followed on the condensed interface: solver is auto or condensed with control: arc";
+        let message = "control: arc needs the condensed interface: set solver to auto or condensed";
         return Err(Fault::new(settings.then("solver"), message));
     }
     if spec.settings.initial_gaps == InitialGaps::Ramp {
-        let message = "gaps that are closed over the first leg go with the load factor as it is given: initial_gaps is keep or adjust with control: arc";
+        let message =
+            "control: arc cannot close gaps over the first leg: set initial_gaps to keep or adjust";
         return Err(Fault::new(settings.then("initial_gaps"), message));
     }
     Ok(())
 }
 
-/// The degree of freedom of a displacement's monitor.
+/// The degree of freedom of a displacement monitor.
 fn displacement(here: &Path, name: &str, monitors: &[Monitor]) -> Result<usize, Fault> {
     let is_displacement = |monitor: &&Monitor| matches!(monitor.of, Watched::Displacement { .. });
     match monitors.iter().find(|monitor| monitor.name == name) {
@@ -88,8 +89,8 @@ fn displacement(here: &Path, name: &str, monitors: &[Monitor]) -> Result<usize, 
             let all = monitors.iter().filter(is_displacement);
             let all = some_of(all.map(|monitor| monitor.name.as_str()));
             let what = match found {
-                Some(_) => "watches no displacement",
-                None => "is no monitor",
+                Some(_) => "does not monitor a displacement",
+                None => "is not a monitor",
             };
             let message = format!("{name:?} {what} (displacements: {all})");
             Err(Fault::new(here.clone(), message))
@@ -105,13 +106,16 @@ fn slave(here: &Path, name: &str, names: &Names, slaves: &[Contact]) -> Result<u
     let is_elastic = |slave: &Contact| slave.bond.is_tied() || slave.bond.give()[1] > 0.0;
     if found.is_some_and(|found| is_elastic(&slaves[found])) {
         let message = format!(
-            "the slip of node {name:?} cannot be followed, since it is tied, or slips elastically before it slides; take a monitor"
+            "the slip of node {name:?} cannot be followed, because the node is tied or slips elastically before it slides; use a monitor"
         );
         return Err(Fault::new(here.clone(), message));
     }
     found.ok_or_else(|| {
         let all = slaves.iter().map(|s| names.nodes[s.node].name.as_str());
-        let message = format!("node {name:?} is no slave node (slaves: {})", some_of(all));
+        let message = format!(
+            "node {name:?} is not a slave node (slaves: {})",
+            some_of(all)
+        );
         Fault::new(here.clone(), message)
     })
 }

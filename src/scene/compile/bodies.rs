@@ -12,7 +12,7 @@ use std::collections::HashSet;
 use stickslip_core::model::{Beam, Body, BodyKind, Elastic, Node, Solid, SolidElement, boundary};
 use stickslip_core::model::{Law, Plane, Update};
 
-/// Refuses materials without usable stiffnesses.
+/// Rejects materials with invalid stiffnesses.
 pub(super) fn materials(spec: &Spec) -> Result<(), Fault> {
     unique("materials", spec.materials.iter().map(Material::id))?;
     for (k, material) in spec.materials.iter().enumerate() {
@@ -31,7 +31,7 @@ pub(super) fn materials(spec: &Spec) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Refuses elastic constants that no material has.
+/// Rejects invalid elastic constants.
 fn elastic(here: &Path, material: &Material) -> Result<(), Fault> {
     let Some(made) = elastic_of(material) else {
         return Ok(());
@@ -39,7 +39,7 @@ fn elastic(here: &Path, material: &Material) -> Result<(), Fault> {
     limits::stiffness(&here.then("E"), made.young, "E")?;
     if !(0.0..limits::POISSON).contains(&made.poisson) {
         let message = format!(
-            "nu is {:?}; it must be at least 0 and below 0.5, where a material cannot be compressed",
+            "nu is {:?}; it must be at least 0 and below 0.5 (incompressible)",
             made.poisson
         );
         return Err(Fault::new(here.then("nu"), message));
@@ -51,14 +51,12 @@ fn elastic(here: &Path, material: &Material) -> Result<(), Fault> {
         return Err(Fault::new(here.then("thickness"), message));
     }
     if made.plane == Plane::Axisymmetric && thickness != 1.0 {
-        let message = "a body of revolution has no thickness: forces are those of the whole circumference; leave it out";
+        let message = "a body of revolution has no thickness, because forces refer to the whole circumference; leave it out";
         return Err(Fault::new(here.then("thickness"), message));
     }
     let why = match made.update {
-        Update::Updated => {
-            "the updated update has a law of its own, the moduli of svk for every increment"
-        }
-        Update::Small => "small strains are those of linear elasticity, to which every law comes",
+        Update::Updated => "update: updated uses the moduli of svk in every increment",
+        Update::Small => "update: small is linear elasticity for every law",
         Update::Total => return Ok(()),
     };
     if made.law != Law::Svk {
@@ -68,7 +66,7 @@ fn elastic(here: &Path, material: &Material) -> Result<(), Fault> {
     Ok(())
 }
 
-/// The elastic constants of a material that is no section.
+/// The elastic constants of a material; `None` for a section.
 fn elastic_of(material: &Material) -> Option<Elastic> {
     match *material {
         Material::Section { .. } => None,
@@ -91,12 +89,12 @@ fn elastic_of(material: &Material) -> Option<Elastic> {
     }
 }
 
-/// The bodies. Their shear unknowns are numbered later, with the others.
+/// The bodies. Their shear unknowns are numbered later, with all others.
 pub(super) fn bodies(spec: &Spec, names: &Names) -> Result<Vec<Body>, Fault> {
     if spec.bodies.is_empty() {
         return Err(Fault::new(
             at!["bodies"],
-            "the scene has no body; nothing could deform",
+            "the scene has no body, so nothing can deform",
         ));
     }
     unique("bodies", spec.bodies.iter().map(BodySpec::id))?;
@@ -141,7 +139,8 @@ pub(super) fn bodies(spec: &Spec, names: &Names) -> Result<Vec<Body>, Fault> {
         .collect()
 }
 
-/// Refuses a scene that is axisymmetric in part, and bodies of revolution that reach over their axis; `length` is the scene's.
+/// Rejects scenes that are only partly axisymmetric, and bodies of revolution that extend beyond the axis; `length` is the
+/// scene's.
 pub(super) fn check_axis(
     spec: &Spec,
     names: &Names,
@@ -155,14 +154,14 @@ pub(super) fn check_axis(
     for (k, body) in bodies.iter().enumerate() {
         let plane = |m: &Elastic| m.plane != Plane::Axisymmetric;
         let (field, what) = match &body.kind {
-            BodyKind::Beam(_) => ("along", "is a beam of the plane"),
+            BodyKind::Beam(_) => ("along", "is a plane beam"),
             BodyKind::Solid(solid) if solid.materials.iter().any(plane) => {
-                ("material", "is made of a material of the plane")
+                ("material", "has a plane material")
             }
             _ => continue,
         };
         let message = format!(
-            "body {:?} {what}, and body {name:?} is axisymmetric; a scene is axisymmetric as a whole or not at all",
+            "body {:?} {what}, but body {name:?} is axisymmetric; a scene is axisymmetric as a whole or not at all",
             body.name
         );
         return Err(Fault::new(at!["bodies", k, field], message));
@@ -187,7 +186,7 @@ pub(super) fn check_axis(
                 .is_some_and(|rest| rest.starts_with('.'))
     });
     let message = format!(
-        "node {name:?} is at x = {:?}; in axisymmetry x is the radius, which cannot be negative",
+        "node {name:?} is at x = {:?}; in axisymmetry x is the radius and must not be negative",
         at[0]
     );
     Err(Fault::new(
@@ -196,7 +195,7 @@ pub(super) fn check_axis(
     ))
 }
 
-/// A chain with an id, along which elements will be; `total` counts their nodes.
+/// Chain for elements, by id; `total` counts the nodes of the elements.
 pub(super) fn chain<'n>(
     here: &Path,
     names: &'n Names,
@@ -237,13 +236,14 @@ fn beam(
     let path = here.then("along");
     let elements = chain(&path, names, along, total, spec)?.elements();
     if elements.iter().any(|e| e.len() != elements[0].len()) {
-        let message =
-            format!("{along:?} has sides of 2 nodes and of 3; a beam's elements have as many each");
+        let message = format!(
+            "{along:?} has sides with 2 and with 3 nodes; the elements of a beam must all have the same number"
+        );
         return Err(Fault::new(path, message));
     }
     let here = here.then("material");
     let Material::Section { EA, EI, GA, .. } = material(&here, spec, of)? else {
-        let message = format!("material {of:?} is a continuum's; a beam needs a Section");
+        let message = format!("material {of:?} is a continuum material; a beam needs a Section");
         return Err(Fault::new(here, message));
     };
     let mut seen = HashSet::new();
@@ -265,7 +265,7 @@ fn beam(
     })
 }
 
-/// A mesh, and what each of its elements is made of.
+/// A mesh with the material of each element.
 fn solid(
     here: &Path,
     mesh: Mesh,
@@ -279,7 +279,7 @@ fn solid(
         ..
     } = body
     else {
-        return Err(Fault::new(here.clone(), "the body is no solid"));
+        return Err(Fault::new(here.clone(), "the body is not a solid"));
     };
     let faces = mesh
         .elements
@@ -311,12 +311,12 @@ fn solid(
 
 fn continuum(here: &Path, spec: &Spec, id: &str) -> Result<Elastic, Fault> {
     elastic_of(material(here, spec, id)?).ok_or_else(|| {
-        let message = format!("material {id:?} is a beam's section; a solid needs Elastic");
+        let message = format!("material {id:?} is a beam section; a solid needs Elastic");
         Fault::new(here.clone(), message)
     })
 }
 
-/// Gives the elements in a region its material.
+/// Assigns the material of a region to its elements.
 fn apply(
     here: &Path,
     region: &Region,
@@ -341,8 +341,8 @@ fn apply(
     }
     if none {
         let message = format!(
-            "no element has its middle in the region from {from:?} to {to:?}; it goes from a lower left corner to \
-             an upper right one"
+            "the region from {from:?} to {to:?} contains no element's midpoint; give its lower left \
+             corner, then its upper right one"
         );
         return Err(Fault::new(here.clone(), message));
     }
@@ -361,7 +361,7 @@ fn contains((from, to): (Point, Point), [x, y]: [f64; 2]) -> bool {
     (from.0..=to.0).contains(&x) && (from.1..=to.1).contains(&y)
 }
 
-/// Refuses bodies whose elements are no sound curves, or whose edges are none.
+/// Rejects bodies with invalid elements or edges.
 pub(super) fn check_bodies(
     spec: &Spec,
     names: &Names,
@@ -373,7 +373,7 @@ pub(super) fn check_bodies(
             (BodyKind::Beam(beam), BodySpec::Beam { along, .. }) => {
                 check_chain(names, along, &beam.elements, length)?;
             }
-            // The elements themselves were checked when their block was made.
+            // The elements were already checked when their block was generated.
             (BodyKind::Solid(solid), BodySpec::Solid { mesh, .. }) => {
                 check_chain(names, mesh, &solid.edges, length)?;
             }
@@ -383,7 +383,7 @@ pub(super) fn check_bodies(
     Ok(())
 }
 
-/// Refuses elements along a chain that are no sound curves.
+/// Rejects chains with invalid elements.
 pub(super) fn check_chain(
     names: &Names,
     along: &str,

@@ -1,11 +1,11 @@
-//! The path of the load factor, and the settings of the method.
+//! The load-factor path and the settings.
 
 use super::super::limits;
 use crate::format::error::{Fault, at};
 use crate::format::spec::History;
 use stickslip_core::model::{Body, BodyKind, Control, Settings, Touch};
 
-/// Refuses a path that goes nowhere, or that has no end.
+/// Rejects an empty or endless path.
 pub(super) fn history(history: &History) -> Result<(), Fault> {
     let History {
         path, increment, ..
@@ -13,7 +13,7 @@ pub(super) fn history(history: &History) -> Result<(), Fault> {
     let here = at!["history", "path"];
     if path.len() < 2 {
         let message = format!(
-            "the path has {} corners; it needs two at least, as [0, 1]",
+            "the path has {} corners; it needs at least two, e.g. [0, 1]",
             path.len()
         );
         return Err(Fault::new(here, message));
@@ -23,7 +23,7 @@ pub(super) fn history(history: &History) -> Result<(), Fault> {
         if k > 0 && path[k - 1] == *corner {
             return Err(Fault::new(
                 here.then(k),
-                format!("the corner {corner:?} stands twice in a row"),
+                format!("the corner {corner:?} is repeated"),
             ));
         }
     }
@@ -33,7 +33,7 @@ pub(super) fn history(history: &History) -> Result<(), Fault> {
         return Err(Fault::new(
             size,
             format!(
-                "the increment is {increment:?}; it must be positive, also where the path falls"
+                "the increment is {increment:?}; it must be positive, even where the path falls"
             ),
         ));
     }
@@ -45,7 +45,7 @@ pub(super) fn history(history: &History) -> Result<(), Fault> {
         return Err(Fault::new(
             at!["history", "least"],
             format!(
-                "the least increment is {least:?}; it must be above 0 and at most the increment, {smallest:?}"
+                "the least increment is {least:?}; it must be positive and at most the increment, {smallest:?}"
             ),
         ));
     }
@@ -53,10 +53,12 @@ pub(super) fn history(history: &History) -> Result<(), Fault> {
     if count > limits::INCREMENTS {
         let message = match history.increments.is_empty() {
             true => format!(
-                "the history would have {count:e} increments of {increment:?}; at most a million can be had"
+                "the history would have {count:e} increments of {increment:?}; at most a million are allowed"
             ),
             false => {
-                format!("the history would have {count:e} increments; at most a million can be had")
+                format!(
+                    "the history would have {count:e} increments; at most a million are allowed"
+                )
             }
         };
         return Err(Fault::new(size, message));
@@ -64,7 +66,7 @@ pub(super) fn history(history: &History) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Refuses increments of legs that are not one for each, or that lead nowhere.
+/// Rejects increments of legs with the wrong count or an invalid size.
 fn of_legs(history: &History) -> Result<(), Fault> {
     let (sizes, legs) = (&history.increments, history.path.len() - 1);
     if sizes.is_empty() {
@@ -73,20 +75,20 @@ fn of_legs(history: &History) -> Result<(), Fault> {
     let here = at!["history", "increments"];
     if sizes.len() != legs {
         let message = format!(
-            "there are {} increments for {legs} legs of the path; list one for each, or leave them out",
+            "there are {} increments for {legs} legs of the path; list one per leg, or leave them out",
             sizes.len()
         );
         return Err(Fault::new(here, message));
     }
     if history.control == Control::Arc {
-        let message = "the way along the path has sizes of its own (history.arc): leave increments out with control: arc";
+        let message = "control: arc takes its step sizes from history.arc; leave increments out";
         return Err(Fault::new(here, message));
     }
     for (k, size) in sizes.iter().enumerate() {
         limits::finite(&here.then(k), *size, "the increment")?;
         if *size <= 0.0 {
             let message = format!(
-                "the increment is {size:?}; it must be positive, also where the path falls"
+                "the increment is {size:?}; it must be positive, even where the path falls"
             );
             return Err(Fault::new(here.then(k), message));
         }
@@ -94,9 +96,9 @@ fn of_legs(history: &History) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Number of increments along a path: each leg is cut into whole ones of its size, and what is left.
+/// Number of increments along a path: each leg is divided into increments of its size, plus a shorter last one if needed.
 pub fn increments(path: &[f64], size: impl Fn(usize) -> f64) -> f64 {
-    // A leg of ten tenths has ten increments, whatever the last bit of the sum says.
+    // A leg of length 1 has exactly ten increments of 0.1, despite round-off.
     const ROUNDING: f64 = 1e-9;
     let of_leg = |(leg, pair): (usize, &[f64])| {
         ((pair[1] - pair[0]).abs() / size(leg) * (1.0 - ROUNDING))
@@ -106,7 +108,7 @@ pub fn increments(path: &[f64], size: impl Fn(usize) -> f64) -> f64 {
     path.windows(2).enumerate().map(of_leg).sum()
 }
 
-/// Refuses what is no size of a memory.
+/// Rejects invalid memory sizes.
 pub(super) fn memory(settings: &Settings) -> Result<(), Fault> {
     match settings.memory {
         Some(memory) if !(memory > 0.0 && memory.is_finite()) => Err(Fault::new(
@@ -117,7 +119,7 @@ pub(super) fn memory(settings: &Settings) -> Result<(), Fault> {
     }
 }
 
-/// Refuses settings with which no solve could end.
+/// Rejects settings that make every solve fail.
 pub(super) fn settings(settings: &Settings) -> Result<(), Fault> {
     let here = at!["settings"];
     for (field, value) in [("minors", settings.minors), ("majors", settings.majors)] {
@@ -133,14 +135,14 @@ pub(super) fn settings(settings: &Settings) -> Result<(), Fault> {
     if !(gap.is_finite() && gap >= 0.0) {
         return Err(Fault::new(
             here.then("adjust_gap"),
-            format!("the gap is {gap:?}; it must be a length that is not negative"),
+            format!("the gap is {gap:?}; it must not be negative"),
         ));
     }
     let limit_load = settings.limit_load;
     if !(limit_load > 0.0 && limit_load < 1.0) {
         return Err(Fault::new(
             here.then("limit_load"),
-            format!("it is {limit_load:?}; it must be a part, above 0 and below 1"),
+            format!("limit_load is {limit_load:?}; it must be above 0 and below 1"),
         ));
     }
     let tolerance = settings.tolerance;
@@ -153,7 +155,7 @@ pub(super) fn settings(settings: &Settings) -> Result<(), Fault> {
     ))
 }
 
-/// Settings as the solver takes them, in a scene of these bodies: a node that touches is held where `auto` stands for.
+/// The settings for the solver, with `touch: auto` resolved for these bodies.
 pub(super) fn resolved(settings: &Settings, bodies: &[Body]) -> Settings {
     let is_mesh = |body: &Body| !matches!(body.kind, BodyKind::Linear(_));
     let touch = match settings.touch {

@@ -16,10 +16,10 @@ use stickslip_core::contact::smooth::smooth;
 use stickslip_core::model::{Component, Friction, InitialState};
 use stickslip_core::model::{Contact, Dofs, Surface};
 
-/// The surfaces of a scene: those of its list, in its order, one for each piece.
+/// The surfaces of a scene in list order, one per piece.
 pub(super) struct Surfaces {
     pub made: Vec<Surface>,
-    /// Position in the scene's list of each.
+    /// Index of each surface in the scene's list.
     pub listed: Vec<usize>,
 }
 
@@ -32,8 +32,8 @@ impl Surfaces {
     }
 }
 
-/// The surfaces, walked so that the outward side is on the right. Sides of a given mesh that do not hang together are a surface
-/// each, `ID.1`, `ID.2`, …
+/// The surfaces, walked so that the outward side is on the right. Unconnected sides of a given mesh become separate surfaces
+/// `ID.1`, `ID.2`, …
 pub(super) fn surfaces(spec: &Spec, names: &Names, length: f64) -> Result<Surfaces, Fault> {
     unique("surfaces", spec.surfaces.iter().map(|s| s.id.as_str()))?;
     let mut all = Surfaces {
@@ -46,8 +46,8 @@ pub(super) fn surfaces(spec: &Spec, names: &Names, length: f64) -> Result<Surfac
         let chain = chain(&here, names, &surface.along, &mut total, spec)?;
         if chain.is_inside() {
             let message = format!(
-                "{} has sides between two elements, where nothing is outside; bodies that are to touch must not share \
-                 their nodes there",
+                "{} has sides between two elements, which have no outward side; bodies that should touch \
+                 must not share nodes there",
                 quoted(&surface.along)
             );
             return Err(Fault::new(here, message));
@@ -67,14 +67,14 @@ pub(super) fn surfaces(spec: &Spec, names: &Names, length: f64) -> Result<Surfac
         let several = pieces.len() > 1;
         if several && surface.endless {
             let message = format!(
-                "the surface has {} pieces; an endless one has one",
+                "the surface has {} pieces; an endless surface must have one",
                 pieces.len()
             );
             return Err(Fault::new(at!["surfaces", k, "endless"], message));
         }
         for (number, elements) in (1..).zip(pieces) {
             if surface.endless && !geometry::straight(&names.nodes, &elements, length) {
-                let message = "only a straight surface can be endless";
+                let message = "an endless surface must be straight";
                 return Err(Fault::new(at!["surfaces", k, "endless"], message));
             }
             let name = match several {
@@ -96,7 +96,7 @@ pub(super) fn surfaces(spec: &Spec, names: &Names, length: f64) -> Result<Surfac
     Ok(all)
 }
 
-/// Makes smooth the surfaces of which the scene wants it, with the nodes where they are before anything deforms.
+/// Smooths the surfaces with `smooth`, at the undeformed positions of the nodes.
 pub(super) fn smoothed(spec: &Spec, names: &Names, surfaces: &mut Surfaces) -> Result<(), Fault> {
     for (surface, &k) in surfaces.made.iter_mut().zip(&surfaces.listed) {
         let wanted = &spec.surfaces[k];
@@ -106,19 +106,19 @@ pub(super) fn smoothed(spec: &Spec, names: &Names, surfaces: &mut Surfaces) -> R
         }
         let fault = |message: &str| Err(Fault::new(at!["surfaces", k, "smooth"], message));
         if wanted.endless {
-            return fault("an endless surface is straight, and smooth as it is; leave smooth out");
+            return fault("an endless surface is already smooth; leave smooth out");
         }
         let distinct: HashSet<usize> = surface.elements.iter().flatten().copied().collect();
         if closed(surface) && distinct.len() < 3 {
-            return fault("a closed surface needs three nodes at least to be a smooth curve");
+            return fault("a smooth closed surface needs at least three nodes");
         }
         smooth(surface, &names.nodes);
     }
     Ok(())
 }
 
-/// The slave nodes, in the order in which the file names them, and the pair (entry of the list) that each is of. What holds
-/// between them and their surfaces follows ([`super::laws`]).
+/// The slave nodes in file order, with the pair (entry of the list) of each. Their contact laws are added later
+/// ([`super::laws`]).
 pub(super) fn slaves(
     spec: &Spec,
     names: &Names,
@@ -181,7 +181,7 @@ pub(super) fn slaves(
     Ok((made, pairs))
 }
 
-/// Numbers of the surfaces that a group of slaves may touch.
+/// Surfaces that a group of slaves may touch.
 fn candidates(
     here: &Path,
     group: &SlaveSpec,
@@ -215,7 +215,7 @@ fn candidates(
     Ok(on)
 }
 
-/// Refuses a slave node that is named twice, lies on its own master, or is out of reach of it.
+/// Rejects a slave node that is listed twice, lies on its own master, or is far away from it.
 fn check_slave(
     slave: &Contact,
     fresh: bool,
@@ -226,13 +226,13 @@ fn check_slave(
 ) -> Result<(), String> {
     let node = &names.nodes[slave.node];
     if !fresh {
-        return Err(format!("node {:?} is a slave node already", node.name));
+        return Err(format!("node {:?} is already a slave node", node.name));
     }
     let mut least = f64::INFINITY;
     for &s in &slave.surfaces {
         if members[s].contains(&slave.node) {
             return Err(format!(
-                "node {:?} is a node of the surface {:?} that it is to touch; a node cannot touch itself",
+                "node {:?} belongs to the surface {:?} that it may touch; a node cannot touch itself",
                 node.name, surfaces[s].name
             ));
         }
@@ -258,8 +258,8 @@ fn check_slave(
         .map(|&s| surfaces[s].name.as_str())
         .collect();
     Err(format!(
-        "node {:?} at ({:?}, {:?}) is {least:.4} away from {}, farther than all bodies measure together ({length:.4}); \
-         is it the right node, or the right surface?",
+        "node {:?} at ({:?}, {:?}) is {least:.4} away from {}, more than the size of all bodies \
+         together ({length:.4}); check the node and the surface",
         node.name,
         node.at[0],
         node.at[1],
@@ -267,7 +267,7 @@ fn check_slave(
     ))
 }
 
-/// Refuses a state that is none.
+/// Rejects an invalid initial state.
 fn initial_state(here: &Path, state: &InitialState) -> Result<(), Fault> {
     let InitialState {
         f_n,
@@ -288,7 +288,7 @@ fn initial_state(here: &Path, state: &InitialState) -> Result<(), Fault> {
         .try_for_each(|(field, value)| limits::finite(&here.then(*field), *value, "the value"))
 }
 
-/// Refuses friction that no surface has.
+/// Rejects invalid friction.
 pub(super) fn friction(here: &Path, friction: &FrictionSpec) -> Result<(), Fault> {
     let FrictionSpec {
         angle,
@@ -314,13 +314,15 @@ pub(super) fn friction(here: &Path, friction: &FrictionSpec) -> Result<(), Fault
     if adhesion < 0.0 {
         return Err(Fault::new(
             here.then("adhesion"),
-            format!("the adhesion is {adhesion:?}; it is a force by area and must not be negative"),
+            format!(
+                "the adhesion is {adhesion:?}; it is a force per area and must not be negative"
+            ),
         ));
     }
     Ok(())
 }
 
-/// Refuses nodes that nothing uses.
+/// Rejects unused nodes.
 pub(super) fn check_use(
     spec: &Spec,
     names: &Names,
@@ -335,8 +337,8 @@ pub(super) fn check_use(
         .for_each(|&n| used[n] = true);
     slaves.iter().for_each(|s| used[s.node] = true);
     for entry in names.entries() {
-        // A block's edges share its nodes, and it has an entry of its own.
-        // A given mesh may have nodes to spare: `check` counts them.
+        // A block's edges share its nodes, and the block has a separate entry. A given mesh may have unused nodes: `check` counts
+        // them.
         let shares = matches!(
             spec.nodes[entry.at],
             Nodes::Chain { .. } | Nodes::Mesh { .. } | Nodes::Given { .. }
@@ -344,7 +346,7 @@ pub(super) fn check_use(
         let idle = entry.nodes.iter().find(|&&n| !used[n]);
         if let (Some(&node), false) = (idle, shares) {
             let message = format!(
-                "node {:?} is used by no body, no surface and no slaves; remove it or use it",
+                "node {:?} is not used by any body, surface or slave; remove it or use it",
                 names.nodes[node].name
             );
             return Err(Fault::new(at!["nodes", entry.at, "id"], message));
@@ -353,7 +355,7 @@ pub(super) fn check_use(
     Ok(())
 }
 
-/// Whether a block takes its curve from the chain with this id.
+/// Whether a block uses the curve of the chain with this id.
 fn is_side(spec: &Spec, id: &str) -> bool {
     let follows = |side: &&Side| matches!(side, Side::Along { chain } if chain == id);
     spec.nodes.iter().any(|nodes| match nodes {
@@ -362,10 +364,10 @@ fn is_side(spec: &Spec, id: &str) -> bool {
     })
 }
 
-/// Marks the surfaces that no unknown can move, and makes each endless one a single element.
+/// Marks the surfaces that have no unknowns, and turns each endless surface into a single element.
 ///
 /// # Errors
-/// If an endless one is not among them.
+/// If an endless surface is not rigid.
 pub(super) fn find_rigid(dofs: &Dofs, surfaces: &mut Surfaces) -> Result<(), Fault> {
     for (surface, &k) in surfaces.made.iter_mut().zip(&surfaces.listed) {
         surface.rigid = surface
@@ -374,7 +376,7 @@ pub(super) fn find_rigid(dofs: &Dofs, surfaces: &mut Surfaces) -> Result<(), Fau
             .flatten()
             .all(|&n| !can_move(dofs, n));
         if surface.endless && !surface.rigid {
-            let message = "a surface that a body can move has ends; endless is for rigid ones";
+            let message = "endless surfaces must be rigid; this one moves with a body";
             return Err(Fault::new(at!["surfaces", k, "endless"], message));
         }
         let mut nodes = surface.elements.iter().flatten();
@@ -395,7 +397,7 @@ fn can_move(dofs: &Dofs, node: usize) -> bool {
     })
 }
 
-/// Takes nodes off that only a name for many made slaves, and that can do nothing: held, over held surfaces.
+/// Removes slave nodes that were listed only through a collective name and cannot do anything: fixed nodes over fixed surfaces.
 pub(super) fn drop_idle_slaves(
     spec: &Spec,
     names: &Names,
@@ -414,7 +416,7 @@ pub(super) fn drop_idle_slaves(
     });
 }
 
-/// Refuses slave nodes whose constraint would have no unknown at all.
+/// Rejects slave nodes whose constraint would contain no unknown.
 pub(super) fn check_held_slaves(
     spec: &Spec,
     names: &Names,
@@ -427,8 +429,8 @@ pub(super) fn check_held_slaves(
             continue;
         };
         let message = format!(
-            "node {:?} cannot move, nor can the surface {:?}: its contact would have no unknown; \
-             free one of them, or take the node off the list",
+            "node {:?} and surface {:?} are both fixed, so their contact has no unknown; free one of \
+             them, or remove the node from the list",
             names.nodes[slave.node].name, surfaces[rigid].name
         );
         return Err(Fault::new(

@@ -1,4 +1,4 @@
-//! The laws of the pairs: tributary areas, what holds where their nodes touch, and the friction of each node.
+//! Contact laws of the pairs: tributary areas, bonds, and friction of each node.
 
 use super::super::areas::tributary;
 use super::super::limits;
@@ -13,13 +13,13 @@ use stickslip_core::model::{
     Body, Bond, Contact, Dofs, Friction, InitialState, Mode, Node, Surface,
 };
 
-/// Most that a tied node is moved, as a part of the scene's length: what is farther away was not meant to be joined.
+/// Maximum distance that a tied node is moved, relative to the scene's length; nodes further away are not meant to be tied.
 const JOINED: f64 = 0.05;
 
-/// Parts of a side that are round-off.
+/// Fractions of a side below this are round-off.
 const TOUCHES: f64 = 1e-9;
 
-/// Refuses a pair's law that makes no sense by itself.
+/// Rejects invalid parameters of a pair's law.
 pub(super) fn check(here: &Path, group: &SlaveSpec) -> Result<(), Fault> {
     let positive = |at: Path, value: f64, what: &str| {
         limits::finite(&at, value, what)?;
@@ -55,19 +55,19 @@ pub(super) fn check(here: &Path, group: &SlaveSpec) -> Result<(), Fault> {
         SlaveSpec {
             friction: Some(_), ..
         } => idle("friction", "has no friction"),
-        SlaveSpec { stick: Some(_), .. } => idle("stick", "is held rigidly"),
+        SlaveSpec { stick: Some(_), .. } => idle("stick", "is tied rigidly"),
         SlaveSpec {
             start: Mode::Sliding,
             ..
         } => idle("start", "is always fixed"),
         _ if [t_max, slip, ratio] != [0.0; 3] => {
-            idle("state", "never slides, and brings forces at most")
+            idle("state", "never slides; only its forces can be given")
         }
         _ => Ok(()),
     }
 }
 
-/// Puts the tied nodes onto their surfaces, and holds them there.
+/// Moves the tied nodes onto their surfaces and ties them.
 pub(super) fn tie(
     spec: &Spec,
     names: &mut Names,
@@ -85,19 +85,19 @@ pub(super) fn tie(
         let at = places[slave.node];
         let refused = |why: String| {
             let message = format!(
-                "node {:?} is to be tied, and {why}",
+                "node {:?} cannot be tied: it {why}",
                 names.nodes[slave.node].name
             );
             Fault::new(slave_path(spec, names, slave.node), message)
         };
         let Some(spot) = project(at, surfaces, &slave.surfaces, &places, None) else {
-            let why = "lies past the ends of its surface: there is no point to hold it at; take it off the list, or make the surface longer";
+            let why = "lies beyond the ends of its surface; remove it from the list, or extend the surface";
             return Err(refused(why.to_owned()));
         };
         let over = projection_at(surfaces, spot, &places, at);
         if over.gap.abs() > JOINED * length {
             let why = format!(
-                "is {:.4e} away from its surface, more than a twentieth of the scene: it would be moved there; bring them together, or take it off the list",
+                "is {:.4e} away from its surface, more than 5 % of the scene's size; move it closer, or remove it from the list",
                 over.gap.abs()
             );
             return Err(refused(why));
@@ -110,8 +110,8 @@ pub(super) fn tie(
     Ok(moved)
 }
 
-/// Finds areas, bonds and friction of all slave nodes. A node without any area under a penalty bears no force: it is taken off
-/// the list.
+/// Determines areas, bonds and friction of all slave nodes. A node under a penalty that has no area carries no force and is
+/// removed.
 pub(super) fn apply(
     spec: &Spec,
     names: &Names,
@@ -141,7 +141,7 @@ pub(super) fn apply(
     Ok(())
 }
 
-/// Finds the tied nodes which supports, and those of their surfaces, leave one axis to move along only.
+/// Marks the tied nodes that, because of supports, can move along one axis only relative to their surfaces.
 pub(super) fn stand_upright(dofs: &Dofs, surfaces: &[Surface], slaves: &mut [Contact]) {
     for slave in slaves.iter_mut().filter(|slave| slave.bond.is_tied()) {
         let masters = slave
@@ -160,7 +160,7 @@ pub(super) fn stand_upright(dofs: &Dofs, surfaces: &[Surface], slaves: &mut [Con
     }
 }
 
-/// Refuses nodes whose bond gives way over two rigid surfaces that cross: both laws would have to hold in their corner.
+/// Rejects nodes with a compliance over two rigid surfaces that cross: in the corner both laws would apply.
 pub(super) fn check_corners(
     spec: &Spec,
     names: &Names,
@@ -179,7 +179,7 @@ pub(super) fn check_corners(
                 }
                 if cross(&names.nodes, both) {
                     let message = format!(
-                        "node {:?} has a penalty or a stick stiffness, and the surfaces {:?} and {:?} cross: in their corner both laws would have to hold at once; name one of them, or take hard contact",
+                        "node {:?} has a penalty or a stick stiffness, but the surfaces {:?} and {:?} cross, and both laws would apply in their corner; name one of them, or use hard contact",
                         names.nodes[slave.node].name, both[0].name, both[1].name
                     );
                     return Err(Fault::new(slave_path(spec, names, slave.node), message));
@@ -191,7 +191,7 @@ pub(super) fn check_corners(
     Ok(())
 }
 
-/// Whether two surfaces cross or meet at an angle, each taken as straight from node to node.
+/// Whether two surfaces cross or meet at an angle; each is treated as straight between nodes.
 fn cross(nodes: &[Node], surfaces: [&Surface; 2]) -> bool {
     let sides = |surface: &Surface| -> Vec<[[f64; 2]; 2]> {
         let elements = surface
@@ -218,13 +218,13 @@ fn cross(nodes: &[Node], surfaces: [&Surface; 2]) -> bool {
     })
 }
 
-/// What holds at a node of a pair.
+/// Contact law at a node of a pair.
 fn bond(group: &SlaveSpec, area: f64) -> Bond {
     let normal = match group.law {
         ContactLaw::Penalty { stiffness } => 1.0 / (stiffness * area),
         ContactLaw::Hard | ContactLaw::Tied => 0.0,
     };
-    // No friction acts on a hard node without an area, where there is no cohesion by node.
+    // A hard node without an area has no friction if there is no cohesion per node.
     let tangential = match group.stick {
         Some(stick) if area > 0.0 => 1.0 / (stick * area),
         _ => 0.0,
@@ -232,7 +232,7 @@ fn bond(group: &SlaveSpec, area: f64) -> Bond {
     Bond::giving([normal, tangential])
 }
 
-/// Refuses laws by area at a node that has none.
+/// Rejects laws per area at a node without an area.
 fn check_area(
     spec: &Spec,
     names: &Names,
@@ -242,19 +242,19 @@ fn check_area(
 ) -> Result<(), Fault> {
     let wants = match (group.law, group.stick, friction.adhesion != 0.0) {
         _ if slave.area.is_some() => return Ok(()),
-        (ContactLaw::Penalty { .. }, ..) => "a penalty stiffness is a pressure by length",
-        (_, Some(_), _) => "a stick stiffness is a stress by length",
-        (_, _, true) => "an adhesion is a force by area",
+        (ContactLaw::Penalty { .. }, ..) => "a penalty stiffness is a pressure per length",
+        (_, Some(_), _) => "a stick stiffness is a stress per length",
+        (_, _, true) => "an adhesion is a force per area",
         _ => return Ok(()),
     };
     let message = format!(
-        "{wants}, and node {:?} has no tributary area, since it is on no side of a beam or of a body of elements; give the pair an `area`, that of each of its nodes",
+        "{wants}, but node {:?} has no tributary area, because it is on no side of a beam or solid; give the pair an `area` per node",
         names.nodes[slave.node].name
     );
     Err(Fault::new(slave_path(spec, names, slave.node), message))
 }
 
-/// The name in the file that made a node a slave.
+/// Location of the name that made a node a slave.
 pub(super) fn slave_path(spec: &Spec, names: &Names, node: usize) -> Path {
     for (k, group) in spec.slaves.iter().enumerate() {
         for (j, name) in group.nodes.iter().enumerate() {

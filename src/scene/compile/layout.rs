@@ -1,4 +1,4 @@
-//! Degrees of freedom: which there are, what holds them, what loads them, and the numbers of the rest.
+//! Layout of the degrees of freedom: supports, loads, and equation numbers.
 
 use super::super::limits;
 use super::super::nodes::Names;
@@ -9,18 +9,18 @@ use std::collections::HashMap;
 use stickslip_core::model::Component;
 use stickslip_core::model::{Body, Dofs, Factor, Load, Prescribed, Pressure};
 
-/// What the loads of a scene make of a model's degrees of freedom.
+/// The loads of a scene on the model's degrees of freedom.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Loads {
-    /// Loads that stay as they are.
+    /// Dead loads.
     pub dead: Vec<Load>,
-    /// Pressures that follow their faces.
+    /// Following pressures.
     pub pressures: Vec<Pressure>,
-    /// Motions.
+    /// Prescribed displacements.
     pub prescribed: Vec<Prescribed>,
 }
 
-/// The degrees of freedom while it is found out which are held, and by what.
+/// The degrees of freedom while their supports are being determined.
 pub(super) struct Layout {
     dofs: Dofs,
     /// Node and component of each degree of freedom.
@@ -32,7 +32,7 @@ pub(super) struct Layout {
 const COMPONENTS: [Component; 3] = [Component::X, Component::Y, Component::Rotation];
 
 impl Layout {
-    /// Three degrees of freedom for each node on a beam, two for the others; nothing held yet.
+    /// Three degrees of freedom for each beam node, two for other nodes; none is restrained yet.
     pub(super) fn new(on_body: Vec<bool>, bodies: &[Body]) -> Self {
         let dofs = Dofs::new(on_body.len(), bodies);
         let components = |(node, &count): (usize, &u8)| {
@@ -54,7 +54,7 @@ impl Layout {
             .ok_or_else(|| no_rotation(names, node))
     }
 
-    /// Holds what the supports name.
+    /// Applies the supports.
     pub(super) fn supports(&mut self, spec: &Spec, names: &Names) -> Result<(), Fault> {
         for (k, support) in spec.supports.iter().enumerate() {
             let here = at!["supports", k];
@@ -62,7 +62,7 @@ impl Layout {
                 .nodes(&support.node)
                 .map_err(|m| Fault::new(here.then("node"), m))?;
             if support.fix.is_empty() {
-                let message = "the list is empty; it must hold some of x, y, rotation";
+                let message = "the list is empty; it must contain some of x, y, rotation";
                 return Err(Fault::new(here.then("fix"), message));
             }
             for (j, component) in support.fix.iter().enumerate() {
@@ -79,14 +79,14 @@ impl Layout {
         Ok(())
     }
 
-    /// Loads and prescribed displacements.
+    /// Applies loads and prescribed displacements.
     pub(super) fn loads(
         &mut self,
         spec: &Spec,
         names: &Names,
         bodies: &[Body],
     ) -> Result<Loads, Fault> {
-        // Prescribed displacements first: a force on one of them acts on nothing.
+        // Prescribed displacements come first, because a force on one of them has no effect.
         let mut loads = Loads {
             prescribed: self.prescribed(spec, names)?,
             ..Loads::default()
@@ -115,7 +115,7 @@ impl Layout {
                 .map_err(|m| Fault::new(here.then("node"), m))?
             {
                 let dof = self.prescribe(&here, names, node, *component)?;
-                // What is held at zero is simply restrained.
+                // A prescribed zero is a support.
                 if *value != 0.0 {
                     made.push(Prescribed {
                         dof,
@@ -216,8 +216,8 @@ impl Layout {
         Ok(())
     }
 
-    /// Loads of forces at the nodes of what has a name. What falls on a held degree of freedom goes into the support, where
-    /// it counts for the reaction.
+    /// Nodal loads for the nodes of a name. Forces on restrained degrees of freedom go into the support and count in its
+    /// reaction.
     fn acting(
         &self,
         here: &Path,
@@ -230,7 +230,7 @@ impl Layout {
         if let Some((node, _)) = forces.iter().find(|(node, _)| !self.on_body[*node]) {
             let name = &names.nodes[*node].name;
             return Err(fault(format!(
-                "node {name:?} is on no body; a load there would act on nothing"
+                "node {name:?} belongs to no body, so a load there has no effect"
             )));
         }
         let mut made = Vec::new();
@@ -245,7 +245,7 @@ impl Layout {
         }
         if !made.is_empty() && made.iter().all(|load| self.held.contains_key(&load.dof)) {
             return Err(fault(format!(
-                "every node of {on:?} is held where this load acts; it does nothing"
+                "every node of {on:?} is restrained in the direction of this load, so it has no effect"
             )));
         }
         Ok(made)
@@ -263,13 +263,13 @@ impl Layout {
         if let Some(other) = self.held.insert(dof, here.clone()) {
             let name = &names.nodes[node].name;
             return Err(fault(format!(
-                "{component} of node {name:?} is held by {other} already"
+                "{component} of node {name:?} is already restrained by {other}"
             )));
         }
         Ok(dof)
     }
 
-    /// The degree of freedom on which a load acts, if it can act there.
+    /// The degree of freedom that a load acts on, if it is free.
     fn loaded(
         &self,
         here: &Path,
@@ -279,7 +279,8 @@ impl Layout {
     ) -> Result<usize, Fault> {
         let name = &names.nodes[node].name;
         if !self.on_body[node] {
-            let message = format!("node {name:?} is on no body; a load there would act on nothing");
+            let message =
+                format!("node {name:?} belongs to no body, so a load there has no effect");
             return Err(Fault::new(here.then("node"), message));
         }
         let dof = self
@@ -288,7 +289,7 @@ impl Layout {
         match self.held.get(&dof) {
             Some(holder) if value != 0.0 => {
                 let message = format!(
-                    "{component} of node {name:?} is held by {holder}; a load there does nothing"
+                    "{component} of node {name:?} is restrained by {holder}, so a load there has no effect"
                 );
                 Err(Fault::new(here.then(field), message))
             }
@@ -296,7 +297,7 @@ impl Layout {
         }
     }
 
-    /// Numbers the equations.
+    /// Numbers the equations node by node, followed by those of the bodies' internal unknowns.
     pub(super) fn number(mut self, bodies: &mut [Body]) -> Dofs {
         let is_free = |dof: usize| self.on_body[self.of[dof].0] && !self.held.contains_key(&dof);
         self.dofs.number(bodies, is_free);
@@ -304,25 +305,25 @@ impl Layout {
     }
 }
 
-/// What to say of a node that is asked for its rotation and has none.
+/// Error for a node without a rotation.
 pub(super) fn no_rotation(names: &Names, node: usize) -> String {
     format!(
-        "node {:?} is on no beam and has no rotation, only x and y",
+        "node {:?} is not on a beam and has only x and y, no rotation",
         names.nodes[node].name
     )
 }
 
-/// A scale of a load, its load factors rising.
+/// Checks the amplitude of a load: its load factors must be ascending.
 fn factor(here: &Path, scale: &[Point]) -> Result<Factor, Fault> {
     for (k, (x, y)) in scale.iter().enumerate() {
         let point = here.then(k);
         limits::finite(&point.then(0), *x, "the load factor")?;
-        limits::finite(&point.then(1), *y, "the own factor")?;
+        limits::finite(&point.then(1), *y, "the factor")?;
         if k > 0 && *x <= scale[k - 1].0 {
             return Err(Fault::new(
                 point.then(0),
                 format!(
-                    "the load factors of a scale must rise; {x:?} follows {:?}",
+                    "the load factors of a scale must be ascending; {x:?} follows {:?}",
                     scale[k - 1].0
                 ),
             ));

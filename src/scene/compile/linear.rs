@@ -1,4 +1,4 @@
-//! Linear bodies: matrices as the file gives them, and springs made into one.
+//! Linear bodies: matrices from the file, and springs assembled into a matrix.
 
 use super::super::limits;
 use super::super::nodes::Names;
@@ -7,8 +7,8 @@ use crate::format::spec::{Bar, BodySpec, Spec};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use stickslip_core::model::{Body, BodyKind, Dofs, Factor, Form, Linear, Load, Truss};
 
-/// A body given by a stiffness or a compliance. Where the forces of a compliance stand is found later, with the other
-/// degrees of freedom.
+/// A body given by a stiffness or a compliance. The degrees of freedom of a compliance's forces are numbered later, with all
+/// others.
 pub(super) fn matrix(here: &Path, body: &BodySpec, names: &Names) -> Result<Body, Fault> {
     let BodySpec::Matrix {
         id,
@@ -18,7 +18,7 @@ pub(super) fn matrix(here: &Path, body: &BodySpec, names: &Names) -> Result<Body
         free,
     } = body
     else {
-        return Err(Fault::new(here.clone(), "the body is no Matrix"));
+        return Err(Fault::new(here.clone(), "the body is not a Matrix"));
     };
     let nodes = distinct(&here.then("nodes"), list, names)?;
     let (key, rows, form) = match (stiffness.is_empty(), compliance.is_empty()) {
@@ -34,7 +34,7 @@ pub(super) fn matrix(here: &Path, body: &BodySpec, names: &Names) -> Result<Body
             } else {
                 "both stiffness and"
             };
-            let message = format!("the body has {what} compliance; it must have one of them");
+            let message = format!("the body has {what} compliance; give exactly one");
             return Err(Fault::new(here.clone(), message));
         }
     };
@@ -68,7 +68,7 @@ fn distinct(here: &Path, list: &[String], names: &Names) -> Result<Vec<usize>, F
         for node in names.nodes(name).map_err(fault)? {
             if !known.insert(node) {
                 let name = &names.nodes[node].name;
-                return Err(fault(format!("node {name:?} is in the matrix already")));
+                return Err(fault(format!("node {name:?} is already in the matrix")));
             }
             nodes.push(node);
         }
@@ -80,7 +80,7 @@ fn distinct(here: &Path, list: &[String], names: &Names) -> Result<Vec<usize>, F
     Ok(nodes)
 }
 
-/// Refuses what is no square matrix of this size.
+/// Rejects anything but a square matrix of this size.
 fn square(here: &Path, rows: &[Vec<f64>], size: usize) -> Result<(), Fault> {
     if rows.len() != size {
         let message = format!(
@@ -109,7 +109,7 @@ fn sized(here: &Path, row: &[f64], size: usize) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Bars whose directions stay: each adds stiffness · e eᵀ to its node, and the opposite between its nodes.
+/// Bars with fixed directions: each adds stiffness · e eᵀ to its nodes, and the negative between them.
 pub(super) fn springs(here: &Path, id: &str, bars: &[Bar], names: &Names) -> Result<Body, Fault> {
     if bars.is_empty() {
         let message = "the list is empty; name at least one bar";
@@ -151,7 +151,7 @@ pub(super) fn springs(here: &Path, id: &str, bars: &[Bar], names: &Names) -> Res
     })
 }
 
-/// The direction of a bar: at its angle, or along the line between its nodes.
+/// The direction of a bar: its angle, or along the line between its nodes.
 fn direction(here: &Path, bar: &Bar, ends: &[usize], names: &Names) -> Result<[f64; 2], Fault> {
     if let Some(angle) = bar.angle {
         limits::finite(&here.then("angle"), angle, "the angle")?;
@@ -172,7 +172,7 @@ fn along(here: &Path, names: &Names, a: usize, b: usize) -> Result<[f64; 2], Fau
     let length = line[0].hypot(line[1]);
     if length == 0.0 {
         let message = format!(
-            "nodes {:?} and {:?} are in one place, and no line leads from one to the other",
+            "nodes {:?} and {:?} are at the same position, so the bar has no direction",
             a.name, b.name
         );
         return Err(Fault::new(here.clone(), message));
@@ -180,7 +180,7 @@ fn along(here: &Path, names: &Names, a: usize, b: usize) -> Result<[f64; 2], Fau
     Ok(line.map(|x| x / length))
 }
 
-/// Bars that turn with their nodes.
+/// Bars that rotate with their nodes.
 pub(super) fn truss(here: &Path, body: &BodySpec, names: &Names) -> Result<Body, Fault> {
     let BodySpec::Truss {
         id,
@@ -189,7 +189,7 @@ pub(super) fn truss(here: &Path, body: &BodySpec, names: &Names) -> Result<Body,
         small,
     } = body
     else {
-        return Err(Fault::new(here.clone(), "the body is no Truss"));
+        return Err(Fault::new(here.clone(), "the body is not a Truss"));
     };
     limits::stiffness(&here.then("EA"), *EA, "EA")?;
     if bars.is_empty() {
@@ -230,14 +230,14 @@ fn ends(here: &Path, bar: &Bar, names: &Names) -> Result<Vec<usize>, Fault> {
         let fault = |message| Fault::new(here.then(k), message);
         let node = names.node(name).map_err(fault)?;
         if ends.contains(&node) {
-            return Err(fault("a bar joins two different nodes".to_owned()));
+            return Err(fault("a bar connects two different nodes".to_owned()));
         }
         ends.push(node);
     }
     Ok(ends)
 }
 
-/// The number of a node in a list, to which it is added where it is new.
+/// The index of a node in a list; a new node is appended.
 fn number(nodes: &mut Vec<usize>, known: &mut HashMap<usize, usize>, node: usize) -> usize {
     *known.entry(node).or_insert_with(|| {
         nodes.push(node);
@@ -245,7 +245,8 @@ fn number(nodes: &mut Vec<usize>, known: &mut HashMap<usize, usize>, node: usize
     })
 }
 
-/// What moves the unloaded matrices, as loads: K · free on the nodes, or `free` itself in a compliance's equations.
+/// Equivalent loads of the free displacements of matrix bodies: K · free on the nodes, or `free` itself in the equations of a
+/// compliance.
 pub(super) fn free_motions(spec: &Spec, bodies: &[Body], dofs: &Dofs) -> Vec<Load> {
     let mut loads = Vec::new();
     for (named, body) in spec.bodies.iter().zip(bodies) {

@@ -1,7 +1,7 @@
-//! From what the author wrote to what the solver uses: every reference resolved, every number checked.
+//! Converts a scene to a model: resolves every reference and checks every number.
 //!
-//! One file per part of the scene; each refuses what makes no sense with a [`Fault`] that has the path of the offending
-//! value. `renewed` puts other choices into a model that is there.
+//! One file per part of the scene; each rejects invalid values with a [`Fault`] that contains the path of the value. `renewed`
+//! changes values of an existing model.
 
 mod arc;
 mod bodies;
@@ -51,13 +51,13 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     let of_bodies = names.nodes.iter().zip(&on_body).filter(|(_, on)| **on);
     let mut length = diagonal(of_bodies.map(|(node, _)| node));
     if length == 0.0 {
-        // Bodies that are given by matrices may have a single node, or all of them in one place.
+        // Bodies given by matrices may have a single node, or all nodes at the same position.
         length = diagonal(names.nodes.iter());
     }
     bodies::check_axis(spec, &names, &bodies, length)?;
     bodies::check_bodies(spec, &names, &bodies, length)?;
     if length == 0.0 {
-        let message = "all nodes are in one place; the scene has no size to compare lengths with";
+        let message = "all nodes are at the same position, so the scene has no length scale";
         return Err(Fault::new(at!["nodes"], message));
     }
     let mut surfaces = interface::surfaces(spec, &names, length)?;
@@ -140,7 +140,7 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     }
 }
 
-/// Refuses texts that would spoil a terminal.
+/// Rejects texts that would garble a terminal.
 fn check_texts(spec: &Spec) -> Result<(), Fault> {
     if spec.title.trim().is_empty() || spec.title.chars().count() > limits::TITLE {
         let message = format!("the title must have 1 to {} characters", limits::TITLE);
@@ -155,13 +155,13 @@ fn check_texts(spec: &Spec) -> Result<(), Fault> {
         .chars()
         .any(|c| c.is_control() && !matches!(c, '\n' | '\r' | '\t'))
     {
-        let message = "the text must have no control characters but line breaks";
+        let message = "the text must have no control characters except line breaks";
         return Err(Fault::new(at!["about"], message));
     }
     Ok(())
 }
 
-/// Refuses lists that are too long to be meant.
+/// Rejects lists that are unreasonably long.
 fn check_lengths(spec: &Spec) -> Result<(), Fault> {
     let lengths = [
         ("materials", spec.materials.len()),

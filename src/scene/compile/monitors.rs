@@ -1,4 +1,4 @@
-//! What is to be reported.
+//! Compiles the monitors.
 
 use super::super::limits;
 use super::super::nodes::Names;
@@ -8,13 +8,13 @@ use crate::format::spec::{Quantity, Spec};
 use std::collections::HashMap;
 use stickslip_core::model::{Contact, Control, Dofs, Monitor, Watched};
 
-/// The last monitor of a history that follows the path.
+/// Name of the last monitor of an arc-length history.
 const ARC: &str = "arc";
 
 /// Columns that every CSV has.
 const RESERVED: [&str; 4] = ["increment", "load", "majors", "minors"];
 
-/// The monitors, with the degrees of freedom and slaves that they watch.
+/// The monitors with their degrees of freedom and slaves.
 pub(super) fn monitors(
     spec: &Spec,
     names: &Names,
@@ -29,7 +29,7 @@ pub(super) fn monitors(
         let name = &monitor.name;
         monitor_name(name).map_err(|message| Fault::new(here.then("name"), message))?;
         if let Some(first) = seen.insert(name.as_str(), k) {
-            let message = format!("the name {name:?} is taken already by monitors[{first}]");
+            let message = format!("the name {name:?} is already used by monitors[{first}]");
             return Err(Fault::new(here.then("name"), message));
         }
         let of = watched(&here.then("of"), &monitor.of, names, on_body, dofs, slaves)?;
@@ -41,7 +41,7 @@ pub(super) fn monitors(
     if spec.history.control == Control::Arc {
         if let Some(k) = seen.get(ARC) {
             let message = format!(
-                "the name {ARC:?} is that of the way along the path (control: arc); take another"
+                "the name {ARC:?} is reserved for the arc length (control: arc); use another name"
             );
             return Err(Fault::new(at!["monitors", *k, "name"], message));
         }
@@ -65,11 +65,11 @@ fn monitor_name(name: &str) -> Result<(), String> {
         || name.trim() != name
     {
         Err(format!(
-            "the name {shown} heads a CSV column; it must be without commas, quotes, line breaks and outer blanks"
+            "the name {shown} is the header of a CSV column; it must not contain commas, quotes or line breaks, or start or end with a space"
         ))
     } else if RESERVED.contains(&name) {
         Err(format!(
-            "the name {shown} is a CSV column already, as are {}; take another",
+            "the name {shown} is a reserved CSV column ({}); use another name",
             RESERVED.join(", ")
         ))
     } else {
@@ -104,13 +104,13 @@ fn watched(
             let name = &names.nodes[node].name;
             if !on_body[node] {
                 let message = format!(
-                    "node {name:?} is on no body and has no support force; a Contact monitor tells what acts on slaves"
+                    "node {name:?} belongs to no body and has no support force; use a Contact monitor for forces on slaves"
                 );
                 return Err(Fault::new(here.then("node"), message));
             }
             if dofs.equation[dof].is_some() {
                 let message = format!(
-                    "{component} of node {name:?} is free and has no reaction; fix it in supports, or watch a Displacement"
+                    "{component} of node {name:?} is free and has no reaction; fix it in supports, or use a Displacement monitor"
                 );
                 return Err(Fault::new(here.then("component"), message));
             }
@@ -132,7 +132,7 @@ fn watched(
     }
 }
 
-/// Pressure or shear at the slave of that name, or where it is largest.
+/// Pressure or shear at a slave, or at the one where it is largest.
 fn pressure(
     here: &Path,
     name: Option<&str>,
@@ -143,7 +143,7 @@ fn pressure(
     let mut found = slave_numbers(here, name, "contact pressure", names, slaves)?;
     found.retain(|&slave| slaves[slave].area.is_some_and(|area| area > 0.0));
     if found.is_empty() {
-        let message = "no slave node that is meant has a tributary area, by which a force is a pressure; give its pair an `area`";
+        let message = "none of these slave nodes has a tributary area, which a pressure needs; give the pair an `area`";
         return Err(Fault::new(here.then("node"), message));
     }
     Ok(Watched::Pressure {
@@ -152,7 +152,7 @@ fn pressure(
     })
 }
 
-/// The slave of that name, or all of them; `what` says what there is none of without any.
+/// The slave with that name, or all slaves; `what` names the quantity in errors.
 fn slave_numbers(
     here: &Path,
     name: Option<&str>,
@@ -169,7 +169,7 @@ fn slave_numbers(
         }
         None if slaves.is_empty() => Err(Fault::new(
             here.clone(),
-            format!("the scene has no slave nodes, and so no {what}"),
+            format!("the scene has no slave nodes, so there is no {what}"),
         )),
         None => Ok((0..slaves.len()).collect()),
     }
@@ -191,7 +191,10 @@ fn slave_number(
                 .map(|slave| names.nodes[slave.node].name.as_str());
             Fault::new(
                 here.then("node"),
-                format!("node {name:?} is no slave node (slaves: {})", some_of(all)),
+                format!(
+                    "node {name:?} is not a slave node (slaves: {})",
+                    some_of(all)
+                ),
             )
         })
 }

@@ -1,14 +1,14 @@
-//! Compliance of surface elements under point forces ([`stickslip_core::contact::point_force`]): those of a beam with a shear
-//! stiffness.
+//! Compliance of beam elements with a shear stiffness under point forces, for surfaces
+//! ([`stickslip_core::contact::point_force`]).
 
 use std::collections::HashMap;
 use stickslip_core::fem::lagrange::{gauss, shape};
 use stickslip_core::model::{Beam, Body, BodyKind, Node, PointForce, PointGive, Surface};
 
-/// Gauss points for the length of an element, which may be strongly curved.
+/// Number of Gauss points for the length of an element, which may be strongly curved.
 const POINTS: usize = 36;
 
-/// Computes the compliance for all surfaces. Smooth surfaces do not follow a beam's line and have none.
+/// Computes the compliances of all surfaces. Smooth surfaces do not follow the beam's axis and have none.
 pub(super) fn find_gives(
     wanted: PointForce,
     bodies: &[Body],
@@ -35,7 +35,7 @@ pub(super) fn find_gives(
     }
 }
 
-/// The nodes of an element, in either direction.
+/// The nodes of an element, independent of its direction.
 fn walked(element: &[usize]) -> Vec<usize> {
     let mut nodes = element.to_vec();
     if nodes.first() > nodes.last() {

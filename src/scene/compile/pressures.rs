@@ -1,4 +1,4 @@
-//! Which faces of solids a pressure acts on, and what it is where displacements are small.
+//! Faces of solids under pressure, and the equivalent dead load for small displacements.
 
 use super::super::nodes::Names;
 use super::tractions;
@@ -6,7 +6,7 @@ use crate::format::error::{Fault, Path};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use stickslip_core::model::{Body, BodyKind, Elastic, Plane, PressedFace, Update};
 
-/// Faces under a pressure, of bodies with large displacements and with small ones.
+/// Faces under pressure of bodies with large displacements, and of those with small ones.
 #[derive(Default)]
 pub(super) struct Pressed {
     pub following: Vec<PressedFace>,
@@ -26,7 +26,7 @@ pub(super) fn faces(
     let outer = outer_faces(bodies);
     let mut pressed = Pressed::default();
     for element in chain.elements() {
-        // Walked one way or the other, the body is where it is.
+        // The chain may run in either direction; the body determines the side.
         let ends = ends(&element);
         let found = ends.and_then(|(a, b)| outer.get(&(a, b)).or_else(|| outer.get(&(b, a))));
         let inner = |face: &[usize]| {
@@ -36,7 +36,7 @@ pub(super) fn faces(
         let Some((nodes, elastic)) = found.filter(|(nodes, _)| inner(nodes)) else {
             let name = |node: Option<&usize>| node.map_or("", |&n| names.nodes[n].name.as_str());
             let message = format!(
-                "the element {} to {} of {along:?} is no outer face of a solid, which is what a pressure acts on",
+                "the element {} to {} of {along:?} is not an outer face of a solid; pressures act only on these",
                 name(element.first()),
                 name(element.last())
             );
@@ -58,7 +58,7 @@ fn ends(face: &[usize]) -> Option<(usize, usize)> {
     Some((*face.first()?, *face.last()?))
 }
 
-/// The outer faces of all solids by their ends, and what they are made of.
+/// The outer faces of all solids by their end nodes, with their materials.
 fn outer_faces(bodies: &[Body]) -> HashMap<(usize, usize), (Vec<usize>, Elastic)> {
     let mut outer = HashMap::new();
     for body in bodies {

@@ -1,6 +1,6 @@
-//! A model with other choices: what nothing else of the model hangs on is put in, and the rest stays as it was compiled.
+//! Changes values of a compiled model on which no other part of the model depends.
 //!
-//! Where this says nothing the way through [`compile`](super::compile) is left, and what is wrong is said there.
+//! If a function here returns nothing, compile the scene with [`compile`](super::compile), which also reports errors.
 
 use super::super::nodes::Names;
 use super::layout::{Layout, Loads};
@@ -12,23 +12,23 @@ use crate::format::spec::{SlaveSpec, Spec};
 use stickslip_core::linear::estimate::Estimate;
 use stickslip_core::model::{Control, Model};
 
-/// Settings that are used outside the solver, too: they move nodes, create surfaces, or make the scene invalid.
+/// Settings that are used outside the solver too: they move nodes, create surfaces, or make the scene invalid.
 const DEEP: [&str; 4] = ["initial_gaps", "adjust_gap", "point_force", "memory"];
-/// What of the history the model has as it is written.
+/// Fields of the history that the model stores unchanged.
 const OF_HISTORY: [&str; 5] = ["path", "increment", "increments", "least", "jumps"];
-/// What of a load says how large it is, and not what it acts on or holds.
+/// Fields of a load that set its size, not where it acts or what it restrains.
 const OF_LOADS: [&str; 5] = ["x", "y", "normal", "value", "scale"];
 
-/// The choices of a scene, as its author writes them.
+/// The choices of a scene, as its author wrote them.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Choices {
-    /// A scene that has nothing else, but what its loads lean on; its groups of slaves name no nodes.
+    /// A scene that contains nothing else except what its loads refer to; its slave groups name no nodes.
     spec: Spec,
-    /// Whether a load was set.
+    /// Whether a load was changed.
     loaded: bool,
 }
 
-/// A model, and what it was compiled from.
+/// A model and the scene from which it was compiled.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Compiled<'a> {
     pub(crate) spec: &'a Spec,
@@ -36,12 +36,12 @@ pub(crate) struct Compiled<'a> {
     pub(crate) model: &'a Model,
 }
 
-/// The group of slaves of each contact.
+/// The slave group of each contact.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Groups(Vec<usize>);
 
 impl Choices {
-    /// Those of a scene.
+    /// The choices of a scene.
     pub(crate) fn of(spec: &Spec) -> Choices {
         let group = |own: &SlaveSpec| SlaveSpec {
             nodes: Vec::new(),
@@ -62,18 +62,18 @@ impl Choices {
         }
     }
 
-    /// The scene that has nothing else, to find scalars in.
+    /// The reduced scene, for looking up scalars.
     pub(crate) fn spec(&self) -> &Spec {
         &self.spec
     }
 
-    /// Sets one that was found there; `None` if the value is not of its kind.
+    /// Sets a scalar that was found there; `None` if the value has the wrong kind.
     pub(crate) fn set(&mut self, found: &Found, value: &str) -> Option<()> {
         self.loaded |= key(&found.at, 0) == "loads";
         found.set(&mut self.spec, value)
     }
 
-    /// Whether what stands at a path of a scene is nothing but a choice.
+    /// Whether the value at a path is a choice.
     pub(crate) fn has(path: &Path) -> bool {
         match key(path, 0) {
             "friction" => true,
@@ -83,7 +83,7 @@ impl Choices {
         }
     }
 
-    /// Whether it is one that says how a scene is solved.
+    /// Whether the value at a path is part of the solution method.
     pub(crate) fn has_of_method(path: &Path) -> bool {
         match key(path, 0) {
             "settings" => !DEEP.contains(&key(path, 1)),
@@ -92,7 +92,7 @@ impl Choices {
         }
     }
 
-    /// These with the settings and the history of others.
+    /// These choices with the settings and the history of others.
     pub(crate) fn with_method_of(&self, other: &Choices) -> Choices {
         let mut own = self.clone();
         own.spec.settings = other.spec.settings;
@@ -100,8 +100,8 @@ impl Choices {
         own
     }
 
-    /// The loads under these choices, in a model that is sound with other ones of its scene; `None` if they cannot be had
-    /// with it.
+    /// The loads for these choices, in a model that is valid with other choices of its scene; `None` if they do not fit the
+    /// model.
     pub(crate) fn loads(&self, with: &Compiled<'_>) -> Option<Loads> {
         let solver = self.spec.settings.solver;
         let fits = || Estimate::of(with.model).too_large(solver).is_none();
@@ -124,7 +124,7 @@ impl Choices {
         }
     }
 
-    /// The same where they are others.
+    /// The same for changed loads.
     fn other_loads(&self, with: &Compiled<'_>) -> Option<Loads> {
         let (names, bodies) = (with.names, &with.model.bodies);
         let mut on_body = vec![false; names.nodes.len()];
@@ -139,7 +139,7 @@ impl Choices {
         Some(loads)
     }
 
-    /// Whether they are sound by themselves.
+    /// Whether the choices are valid by themselves.
     pub(crate) fn are_sound(&self) -> bool {
         let Spec {
             history,
@@ -148,7 +148,7 @@ impl Choices {
             slaves,
             ..
         } = &self.spec;
-        // What is followed along the path is checked against the settings.
+        // Arc-length parameters are checked against the settings.
         let load = history.control == Control::Load;
         let own = slaves.iter().filter_map(|group| group.friction.as_ref());
         let mut frictions = std::iter::once(friction).chain(own);
@@ -157,21 +157,21 @@ impl Choices {
             && frictions.all(|own| interface::friction(&Path::default(), own).is_ok())
     }
 
-    /// Whether any friction is by area.
+    /// Whether any friction is per area.
     fn has_adhesion(&self) -> bool {
         let own = self.spec.slaves.iter().filter_map(|group| group.friction);
         let mut all = own.chain([self.spec.friction]);
         all.any(|friction| friction.adhesion != 0.0)
     }
 
-    /// Number of increments of their history.
+    /// Number of increments of the history.
     pub fn increments(&self) -> f64 {
         let history = &self.spec.history;
         history::increments(&history.path, |leg| history.on_leg(leg))
     }
 }
 
-/// A step of a path, where it has a name.
+/// A step of a path, if it is a key.
 fn key(path: &Path, step: usize) -> &str {
     match path.0.get(step) {
         Some(Step::Key(key)) => key,
@@ -180,7 +180,7 @@ fn key(path: &Path, step: usize) -> &str {
 }
 
 impl Groups {
-    /// Those of a scene; `None` if a contact is of no group, which does not happen.
+    /// The groups of a scene; `None` if a contact belongs to no group, which does not happen.
     pub(crate) fn of(scene: &Compiled<'_>) -> Option<Groups> {
         let mut of_node = vec![None; scene.model.nodes.len()];
         for (k, group) in scene.spec.slaves.iter().enumerate() {
@@ -196,7 +196,7 @@ impl Groups {
     }
 }
 
-/// A model with choices of the same scene, and with what loads they make.
+/// A model with choices of the same scene and the resulting loads.
 pub(crate) fn renewed(model: &Model, groups: &Groups, choices: &Choices, loads: Loads) -> Model {
     let spec = &choices.spec;
     let mut model = model.clone();

@@ -8,18 +8,18 @@ use crate::format::error::{Fault, Path};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-/// A uniform load per unit of undeformed length, or in axisymmetry of undeformed area.
+/// A uniform load per undeformed length, or in axisymmetry per undeformed area.
 pub(super) struct Load<'a> {
     pub along: &'a str,
-    /// Along the outward normal, to the right of the walk.
+    /// Component along the outward normal, which is on the right of the walk.
     pub normal: f64,
-    /// Along x and y.
+    /// Components along x and y.
     pub vector: [f64; 2],
-    /// Whether the chain stands for a surface of revolution: the load is per area, all around.
+    /// Whether the chain represents a surface of revolution: the load is then per area of the circumference.
     pub round: bool,
 }
 
-/// Consistent forces ∫ N_i q ds at the nodes of a chain, in the order of the nodes' numbers.
+/// Consistent forces ∫ N_i q ds at the nodes of a chain, by ascending node number.
 pub(super) fn forces(
     here: &Path,
     names: &Names,
@@ -46,7 +46,7 @@ pub(super) fn forces(
     Ok(forces.into_iter().collect())
 }
 
-/// Those at the nodes of one element.
+/// The forces at the nodes of one element.
 pub(super) fn on_nodes(
     names: &Names,
     element: &[usize],
@@ -56,8 +56,8 @@ pub(super) fn on_nodes(
     element.iter().copied().zip(on_element(&at, load)).collect()
 }
 
-/// Gauss-Legendre points and weights on −1 to 1, exact up to the ninth degree. Used from node to node, that makes
-/// loads on straight elements exact, and normal ones on curved elements of up to five nodes.
+/// Gauss-Legendre points and weights on −1 to 1, exact up to degree nine. Applied between neighbouring nodes, they are exact for
+/// loads on straight elements, and for normal loads on curved elements with up to five nodes.
 const GAUSS: [(f64, f64); 5] = [
     (-0.906_179_845_938_664, 0.236_926_885_056_189_1),
     (-0.538_469_310_105_683_1, 0.478_628_670_499_366_5),

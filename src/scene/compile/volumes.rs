@@ -1,4 +1,4 @@
-//! Nodal forces of loads that act on each unit of undeformed volume.
+//! Nodal forces of loads per undeformed volume.
 
 use super::super::limits;
 use super::super::nodes::Names;
@@ -7,8 +7,8 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use stickslip_core::fem::continuum::{self, Sample};
 use stickslip_core::model::{Body, BodyKind, Elastic, ElementKind, Solid, SolidElement};
 
-/// Consistent forces ∫ N_i b w dA of a force b by volume, in the order of the nodes' numbers, where w is the width across the
-/// plane; `on` names a solid, or a block or mesh that solids stand on.
+/// Consistent forces ∫ N_i b w dA of a force b per volume, by ascending node number, where w is the width across the plane; `on`
+/// names a solid, or a block or mesh used by solids.
 pub(super) fn forces(
     here: &Path,
     names: &Names,
@@ -38,7 +38,7 @@ pub(super) fn forces(
     Ok(sums.into_iter().collect())
 }
 
-/// The elements that a name stands for, with their materials.
+/// The elements that a name refers to, with their materials.
 fn parts<'b>(
     names: &Names,
     bodies: &'b [Body],
@@ -58,9 +58,7 @@ fn parts<'b>(
         return Ok(of(solid).collect());
     }
     if bodies.iter().any(|body| body.name == on) {
-        return Err(format!(
-            "body {on:?} is no solid; only a solid has a volume"
-        ));
+        return Err(format!("body {on:?} is not a solid and has no volume"));
     }
     let Ok(mesh) = names.mesh(on) else {
         let known = || solids().map(|(body, _)| body.name.as_str());
@@ -78,7 +76,7 @@ fn parts<'b>(
         .collect();
     if found.is_empty() {
         return Err(format!(
-            "no solid stands on {on:?}; a load there would act on nothing"
+            "no solid uses {on:?}, so a load there has no effect"
         ));
     }
     Ok(found)

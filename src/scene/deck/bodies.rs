@@ -9,14 +9,14 @@ use stickslip_core::model::{ElementKind, Law, Plane, Update};
 use stickslip_exchange::inp::deck::{Element, ElementType, Family, Form, Section};
 use stickslip_exchange::mesh::CellKind;
 
-/// The part of a shear section that carries shear, for a rectangle (E. Reissner).
+/// Shear correction factor of a rectangular section (E. Reissner).
 const SHEAR: f64 = 5.0 / 6.0;
 
-/// What makes elements one body: their section, what they are made for, and a node of theirs.
+/// Elements with equal keys form one body: their section, their element family, and a representative of their connected nodes.
 type Part = (usize, Family, usize);
 
 impl Made<'_> {
-    /// The mesh, its bodies and their materials.
+    /// Creates the mesh, its bodies and their materials.
     pub(super) fn bodies(&mut self, nlgeom: bool) -> Result<(), Fault> {
         let section_of = self.sections()?;
         let material = |&section: &usize| self.deck.sections[section].material;
@@ -32,7 +32,7 @@ impl Made<'_> {
                 .unwrap_or_default();
             return Err(Fault::new(
                 place,
-                "the deck has no elements of a continuum (CPE, CPS, CAX); one at least is needed",
+                "the deck has no continuum elements (CPE, CPS, CAX); at least one is needed",
             ));
         }
         self.mesh(cells);
@@ -61,7 +61,7 @@ impl Made<'_> {
         both.map(known).collect()
     }
 
-    /// The elements of continua that make a body each, in the order of the deck.
+    /// The continuum elements of each body, in deck order.
     fn parts(&self, section_of: &[usize]) -> BTreeMap<Part, Vec<usize>> {
         let mut groups = Groups::of(self.deck.nodes.len());
         let solids = || {
@@ -89,7 +89,7 @@ impl Made<'_> {
         parts
     }
 
-    /// Bodies and materials of continua, and the cells of which they are made.
+    /// Bodies and materials of continua, and the cells of their mesh.
     fn solids(
         &mut self,
         parts: &BTreeMap<Part, Vec<usize>>,
@@ -161,7 +161,7 @@ impl Made<'_> {
         });
     }
 
-    /// The id of a continuum's material, which is made if it is not there yet.
+    /// The id of a continuum material, which is created if necessary.
     fn continuum(
         &mut self,
         section: &Section,
@@ -191,7 +191,7 @@ impl Made<'_> {
         Ok(self.material(section, &name, wanted))
     }
 
-    /// The id of a material of a section, which is made if it is not there yet.
+    /// The id of a section's material, which is created if necessary.
     fn material(
         &mut self,
         section: &Section,
@@ -222,7 +222,7 @@ impl Made<'_> {
         }
     }
 
-    /// Beams: elements that follow each other and have one section are one.
+    /// Beams: connected elements with the same section form one beam.
     fn beams(&mut self, section_of: &[usize], nlgeom: bool) -> Result<(), Fault> {
         let deck = self.deck;
         let mut chains: Vec<(usize, CellKind, Vec<usize>)> = Vec::new();
@@ -245,7 +245,7 @@ impl Made<'_> {
             if k == 0 && !nlgeom {
                 self.remark(
                     section.place,
-                    "beams turn and bend by as much as they do, without NLGEOM too",
+                    "beams use large rotations even without NLGEOM",
                 );
             }
             self.beam(section, kind, &nodes)?;
@@ -296,7 +296,7 @@ fn kind_of(kind: ElementType) -> ElementKind {
     }
 }
 
-/// Nodes that hang together.
+/// Groups of connected nodes.
 pub(super) struct Groups(Vec<usize>);
 
 impl Groups {
@@ -304,7 +304,7 @@ impl Groups {
         Groups((0..nodes).collect())
     }
 
-    /// The node that stands for a node's group, the least of them.
+    /// The representative of a node's group: its smallest node.
     pub fn root(&mut self, mut node: usize) -> usize {
         while self.0[node] != node {
             self.0[node] = self.0[self.0[node]];

@@ -12,10 +12,10 @@ use stickslip_core::model::{InitialGaps, Mode};
 use stickslip_exchange::inp::Place;
 use stickslip_exchange::inp::deck::{Adjust, Faces, Family, Normal, Tie};
 
-/// Without a POSITION TOLERANCE, nodes are tied that are at most this part of a side's length away, as CalculiX has it.
+/// Without a POSITION TOLERANCE, nodes within this fraction of a side's length are tied, as in CalculiX.
 const TOLERANCE: f64 = 0.025;
 
-/// What holds between a slave node and the surfaces that it may touch.
+/// The contact law between a slave node and the surfaces that it may touch.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Laws {
     law: ContactLaw,
@@ -23,15 +23,15 @@ struct Laws {
     stick: Option<f64>,
 }
 
-/// A pair or a tie: who touches what, and how.
+/// A contact pair or a tie.
 struct Touching {
-    /// The slaves' surface.
+    /// The slave surface.
     name: String,
     slaves: Vec<usize>,
     master: usize,
     laws: Laws,
     place: Place,
-    /// Where the law and the friction stand; a tie has neither.
+    /// Locations of the law and the friction; a tie has neither.
     of_laws: Option<[Place; 2]>,
 }
 
@@ -49,13 +49,13 @@ impl Made<'_> {
             if tied {
                 self.remark(
                     interaction.normal_place,
-                    "TIED holds rigidly: its stiffness and its stick slope are not read",
+                    "TIED is rigid: stiffness and stick slope are ignored",
                 );
             }
             if pair.small_sliding {
                 self.remark(
                     pair.place,
-                    "SMALL SLIDING is not read: a slave node's place on its master is found anew in each iteration",
+                    "SMALL SLIDING is ignored: the projection of a slave node on its master is computed in each iteration",
                 );
             }
             all.push(Touching {
@@ -94,7 +94,7 @@ impl Made<'_> {
         {
             self.remark(
                 pair.place,
-                "without NLGEOM strains are small, but contact is where nodes and surfaces have gone, not where they were",
+                "without NLGEOM strains are small, but contact is detected at the displaced positions",
             );
         }
         self.adjusted()?;
@@ -118,7 +118,7 @@ impl Made<'_> {
         self.nodes_of(surface).into_iter().filter(used).collect()
     }
 
-    /// The master surfaces as lines of sides, each with the ids of its parts that hang together.
+    /// The master surfaces as lines of sides, with the ids of their connected parts.
     fn masters(&mut self, all: &[Touching]) -> BTreeMap<usize, Vec<String>> {
         let deck = self.deck;
         let mut made = BTreeMap::new();
@@ -138,14 +138,14 @@ impl Made<'_> {
             if cut {
                 self.remark(
                     surface.place,
-                    "the surface is cut at its convex corners, and a slave node touches the pieces that its own side faces",
+                    "the surface is cut at its convex corners; a slave node touches the pieces that its own side faces",
                 );
             }
             if smooth {
                 self.remark(
                     surface.place,
-                    "the surface is one smooth curve through its nodes, since it is touched by way of springs: where the normal \
-                     jumps, a node inside would hop between two sides",
+                    "the surface is smoothed into one curve through its nodes, because its contact has a \
+                     stiffness: a node inside would hop between two sides where the normal jumps",
                 );
             }
             for id in &ids {
@@ -196,7 +196,7 @@ impl Made<'_> {
         ]
     }
 
-    /// Whether all slave nodes of a master are on continua, which have an outside.
+    /// Whether all slave nodes of a master are on continua, which have an outward side.
     fn have_outsides(&self, master: usize, all: &[Touching]) -> bool {
         let continua = self.deck.elements.iter();
         let continua = continua.filter(|element| element.kind.family != Family::Beam);
@@ -205,7 +205,7 @@ impl Made<'_> {
         touching.all(|touching| touching.slaves.iter().all(|node| on.contains(node)))
     }
 
-    /// Enters sides of elements as lines of the mesh, one for those that hang together; their names.
+    /// Adds sides of elements as lines of the mesh, one per connected part; returns their names.
     pub(super) fn lines(
         &mut self,
         sides: &[(usize, usize)],
@@ -250,7 +250,7 @@ impl Made<'_> {
         pieces.into_values().map(enter).collect()
     }
 
-    /// Slave nodes by what they may touch and how.
+    /// Slave nodes grouped by candidate surfaces and law.
     fn groups(
         &mut self,
         all: &[Touching],
@@ -262,7 +262,7 @@ impl Made<'_> {
                 .nodes_of(touching.master)
                 .iter()
                 .all(|&n| self.still[n] == [true; 2]);
-            // A node that stands still over a surface that does has no force to be found.
+            // A fixed node over a fixed surface has no unknown force.
             let moves = |node: &&usize| !(rigid && self.still[**node] == [true; 2]);
             for &node in touching.slaves.iter().filter(moves) {
                 of_node.entry(node).or_default().push(k);
@@ -284,7 +284,7 @@ impl Made<'_> {
         Ok(())
     }
 
-    /// Friction that all pairs have is the scene's, so that it is set at one place.
+    /// Friction common to all pairs becomes the scene's, so that it can be set in one place.
     fn common_friction(&mut self) {
         let mut own = self.spec.slaves.iter().filter_map(|slaves| slaves.friction);
         let Some(first) = own.next().filter(|first| own.all(|other| other == *first)) else {
@@ -314,7 +314,7 @@ impl Made<'_> {
         {
             let label = self.deck.nodes[nodes[0]].label;
             let message = format!(
-                "node {label} is a slave of another pair, with another law; a node has one law"
+                "node {label} is a slave of another pair with a different law; a node can have only one law"
             );
             return Err(Fault::new(other.place, message));
         }
@@ -352,7 +352,7 @@ impl Made<'_> {
         Ok(())
     }
 
-    /// What becomes of the gaps at the start: one choice for the whole scene.
+    /// Initial gap adjustment: one choice for the whole scene.
     fn adjusted(&mut self) -> Result<(), Fault> {
         let pairs = &self.deck.pairs;
         let Some(first) = pairs.first() else {
@@ -361,7 +361,7 @@ impl Made<'_> {
         if let Some(other) = pairs.iter().find(|pair| pair.adjust != first.adjust) {
             return Err(Fault::new(
                 other.place,
-                "ADJUST must be the same for all pairs: initial gaps are adjusted in the whole scene or nowhere",
+                "ADJUST must be the same for all pairs: initial gaps are adjusted in the whole scene or not at all",
             ));
         }
         let gap = match &first.adjust {
@@ -376,7 +376,7 @@ impl Made<'_> {
                     .find(missing);
                 if let Some(node) = slaves {
                     let message = format!(
-                        "ADJUST names a set without the slave node {}; either all slave nodes are moved, or those within a distance",
+                        "ADJUST names a set without the slave node {}; move either all slave nodes, or those within a distance",
                         self.deck.nodes[node].label
                     );
                     return Err(Fault::new(first.place, message));
@@ -390,7 +390,7 @@ impl Made<'_> {
         Ok(())
     }
 
-    /// Diagonal of the box around all nodes.
+    /// Diagonal of the bounding box of all nodes.
     fn size(&self) -> f64 {
         let range = |axis: usize| {
             let at = self.deck.nodes.iter().map(|node| node.at[axis]);
@@ -402,7 +402,7 @@ impl Made<'_> {
         range(0).hypot(range(1))
     }
 
-    /// The nodes that a tie holds: those near enough to the master.
+    /// The nodes of a tie that are close enough to the master.
     fn near(&mut self, tie: &Tie) -> Result<Vec<usize>, Fault> {
         let at = |node: &usize| self.deck.nodes[*node].at;
         let Faces::Elements(sides) = &self.deck.surfaces[tie.master].of else {
@@ -440,7 +440,7 @@ impl Made<'_> {
         }
         if near.len() < slaves.len() {
             let text = format!(
-                "{} of {} nodes are farther than {tolerance:.3e} away and are not tied",
+                "{} of {} nodes are further than {tolerance:.3e} away and are not tied",
                 slaves.len() - near.len(),
                 slaves.len()
             );
@@ -449,14 +449,14 @@ impl Made<'_> {
         if !tie.adjust {
             self.remark(
                 tie.place,
-                "ADJUST=NO is not read: tied nodes are put onto their master",
+                "ADJUST=NO is ignored: tied nodes are moved onto their master",
             );
         }
         Ok(near)
     }
 }
 
-/// Coulomb friction of a coefficient.
+/// Coulomb friction with a coefficient.
 fn rough(coefficient: f64) -> FrictionSpec {
     FrictionSpec {
         angle: coefficient.atan().to_degrees(),
@@ -464,7 +464,7 @@ fn rough(coefficient: f64) -> FrictionSpec {
     }
 }
 
-/// Distance of a point from a straight piece.
+/// Distance of a point from a line segment.
 fn distance(at: [f64; 2], (a, b): ([f64; 2], [f64; 2])) -> f64 {
     let along = [b[0] - a[0], b[1] - a[1]];
     let square = along[0] * along[0] + along[1] * along[1];

@@ -1,15 +1,14 @@
-//! What acts as a function of time, over all steps.
+//! Loads of a deck as functions of time, over all steps.
 //!
-//! In each step a load that is given there goes from what it was to its value, in proportion to time, or at once, or as its
-//! amplitude says; one that is not given stays what it is. A load that is there at once is there in the step's first increment.
+//! A load given in a step changes from its previous value to the new one: in proportion to time, at once, or by its amplitude.
+//! Other loads stay constant. A load that is applied at once is fully present in the step's first increment.
 //!
-//! The load factor counts time, so that a step from t0 to t1 is the leg of the path between them, with the increments of that
-//! step.
+//! The load factor counts time: a step from t0 to t1 is the leg of the path between these values, with the step's increment size.
 
 use stickslip_exchange::inp::deck::{Amplitude, Deck, Step, Time};
 
-/// With automatic increments, a step is cut into so many at most: the first one of a deck is often far smaller than all that
-/// follow.
+/// Maximum number of increments per step with automatic increments, because the first increment of a deck is often much smaller
+/// than the following ones.
 const AUTOMATIC: f64 = 10.0;
 
 /// The times of a deck's steps, and their load factors.
@@ -20,7 +19,7 @@ pub(super) struct Clock {
 /// A step.
 #[derive(Debug, Clone, Copy)]
 struct Leg {
-    /// Time at its beginning, since the first step's.
+    /// Start time, measured from the start of the first step.
     begin: f64,
     period: f64,
     increment: f64,
@@ -32,7 +31,7 @@ impl Leg {
     }
 }
 
-/// Size of the increments of a step.
+/// Increment size of a step.
 fn increment(time: &Time) -> f64 {
     if time.direct {
         return time.initial;
@@ -64,24 +63,24 @@ impl Clock {
         std::iter::once(0.0).chain(ends).collect()
     }
 
-    /// Sizes of the increments of each step.
+    /// Increment size of each step.
     pub fn increments(&self) -> impl Iterator<Item = f64> + use<'_> {
         self.steps.iter().map(|leg| leg.increment)
     }
 }
 
-/// What a step says of a load.
+/// Values given for a load in a step.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Given {
-    /// Values with their amplitudes, which add up.
+    /// Values with their amplitudes; they are added.
     pub values: Vec<(f64, Option<usize>)>,
-    /// Whether what the steps before gave is given up.
+    /// Whether values of earlier steps are removed.
     pub new: bool,
-    /// Whether what has no amplitude is there at once.
+    /// Whether values without an amplitude apply at once.
     pub at_once: bool,
 }
 
-/// A value as a function of the load factor: points, the load factors rising, from (0, 0) on.
+/// A value as a function of the load factor: points with ascending load factors, starting at (0, 0).
 pub(super) fn curve(clock: &Clock, amplitudes: &[Amplitude], given: &[Given]) -> Vec<(f64, f64)> {
     let mut points = vec![(0.0, 0.0)];
     let mut before = 0.0;
@@ -125,20 +124,20 @@ pub(super) fn curve(clock: &Clock, amplitudes: &[Amplitude], given: &[Given]) ->
     points
 }
 
-/// What acts in a step.
+/// A load within a step.
 struct Acting<'a> {
     loads: &'a [(f64, Option<usize>)],
     amplitudes: &'a [Amplitude],
     begin: f64,
     period: f64,
-    /// What acted when it began.
+    /// Value at the start of the step.
     before: f64,
-    /// Whether what has no amplitude is there at once.
+    /// Whether values without an amplitude apply at once.
     jump: bool,
 }
 
 impl Acting<'_> {
-    /// At a time since the step began.
+    /// Value at a time since the start of the step.
     fn at(&self, time: f64) -> f64 {
         let own = |a: usize| {
             if self.amplitudes[a].total {
@@ -161,7 +160,7 @@ impl Acting<'_> {
             return swung;
         }
         let goal: f64 = plain.iter().sum();
-        // A load with an amplitude as well starts from nothing.
+        // A load that also has an amplitude starts from zero.
         let start = if plain.len() == self.loads.len() {
             self.before
         } else {
@@ -171,7 +170,7 @@ impl Acting<'_> {
         swung + start + (goal - start) * part
     }
 
-    /// Times inside the step at which its course has a corner, from one on that is a corner if it is not 0.
+    /// Times within the step at which the value has a corner; `from` is included if it is not 0.
     fn corners(&self, from: f64) -> Vec<f64> {
         let of_amplitude = |&(_, amplitude): &(f64, Option<usize>)| {
             let amplitude = &self.amplitudes[amplitude?];
@@ -197,7 +196,7 @@ fn interpolated(points: &[(f64, f64)], time: f64) -> f64 {
     stickslip_core::model::Factor(points.to_vec()).at(time)
 }
 
-/// A curve as a value and a scale: the largest size that it has, and what part of it acts. `None` where nothing ever acts.
+/// A curve as a value and a scale: its largest magnitude, and the fraction that acts. `None` if it is always zero.
 pub(super) fn scaled(points: &[(f64, f64)]) -> Option<(f64, Vec<(f64, f64)>)> {
     let larger = |a: f64, b: f64| if b.abs() > a.abs() { b } else { a };
     let largest = points.iter().map(|p| p.1).fold(0.0, larger);
@@ -207,7 +206,7 @@ pub(super) fn scaled(points: &[(f64, f64)]) -> Option<(f64, Vec<(f64, f64)>)> {
     match points {
         [(_, _), (end, value)] if *end == 1.0 => Some((*value, Vec::new())),
         _ => {
-            // No negative zeros.
+            // Avoids negative zeros.
             let part = |&(at, value): &(f64, f64)| (at, value / largest + 0.0);
             Some((largest, points.iter().map(part).collect()))
         }

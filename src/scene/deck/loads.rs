@@ -1,4 +1,4 @@
-//! Supports, motions and loads of a deck, its increments, and what it prints.
+//! Supports, prescribed displacements, loads, increments and output requests of a deck.
 
 use super::curves::{Clock, Given, curve, scaled};
 use super::{Fault, MESH, Made};
@@ -10,32 +10,32 @@ use stickslip_core::model::{Axis, Component};
 use stickslip_exchange::inp::Place;
 use stickslip_exchange::inp::deck::{Direction, Family, Step, Value, Volume};
 
-/// Most nodes of a printed set whose displacements become monitors.
+/// Maximum number of nodes in a printed set for which displacement monitors are created.
 const PRINTED: usize = 20;
 
-/// What acts on something, step by step, and where it stands first.
+/// The values on a target, step by step, and their first location.
 struct Course {
     place: Place,
     given: Vec<Given>,
 }
 
-/// What a step says of a target: its value, its amplitude, and where that stands.
+/// A value given in a step: its target, value, amplitude and location.
 type Said<T> = (T, f64, Option<usize>, Place);
 /// An element and one of its sides.
 type Side = (usize, usize);
-/// Forces by volume that are one load: body, axis, whether it is weight, and the curve.
+/// Key of volume forces that form one load: body, axis, whether it is weight, and the curve.
 type Alike = (usize, usize, bool, Vec<u64>);
 
-/// A value, and the scale by which it acts.
+/// A value and its amplitude.
 type Acts = (f64, Vec<(f64, f64)>);
 
-/// Values of nodes as [`Made::courses`] takes them.
+/// Nodal values in the form that [`Made::courses`] takes.
 fn listed(values: &[Value]) -> Vec<Said<(usize, Direction)>> {
     let one = |value: &Value| (value.target(), value.value, value.amplitude, value.place);
     values.iter().map(one).collect()
 }
 
-/// Points of a curve to compare by.
+/// Points of a curve as a comparison key.
 fn bits(points: &[(f64, f64)]) -> Vec<u64> {
     points
         .iter()
@@ -53,8 +53,8 @@ impl Made<'_> {
         Ok(())
     }
 
-    /// The courses of what steps give to targets: `values` lists target, value, amplitude and place; where `adds` does not hold, a
-    /// later value of a step stands for an earlier one.
+    /// The course of the value on each target: `values` lists target, value, amplitude and location. Unless `adds` is set, a
+    /// later value of a step replaces an earlier one.
     fn courses<T: Ord>(
         &self,
         values: impl Fn(&Step) -> Vec<Said<T>>,
@@ -167,7 +167,7 @@ impl Made<'_> {
         Ok(())
     }
 
-    /// Refuses what is held or moved in some steps and free in others.
+    /// Rejects degrees of freedom that are prescribed in some steps and free in others.
     fn stays(
         &self,
         target: &(usize, Direction),
@@ -188,14 +188,14 @@ impl Made<'_> {
             };
             if step.new_motions && !given(k) && (k > 0 || from_model) {
                 let message = format!(
-                    "OP=NEW sets the {direction} of node {label} free in this step; what is held must be held in all steps"
+                    "OP=NEW frees the {direction} of node {label} in this step; a prescribed direction must stay prescribed in all steps"
                 );
                 return Err(Fault::new(step.place, message));
             }
             if given(k) && k > 0 && !from_model && !(0..k).any(given) {
                 let place = course.map_or(step.place, |course| course.place);
                 let message = format!(
-                    "the {direction} of node {label} is free in the steps before; what is moved must be held from the first step on"
+                    "the {direction} of node {label} is free in earlier steps; a prescribed direction must be prescribed from the first step on"
                 );
                 return Err(Fault::new(place, message));
             }
@@ -226,7 +226,7 @@ impl Made<'_> {
         }
     }
 
-    /// What nodes are called together: by the number of the only one, else as a set, the deck's where it has one.
+    /// A name for a list of nodes: the number of a single node, else a set, if possible one of the deck.
     pub(super) fn group(&mut self, nodes: &[usize], wanted: &str) -> String {
         if let [only] = nodes {
             return self.node(*only);
@@ -262,15 +262,13 @@ impl Made<'_> {
             if !self.used[node] {
                 return Err(Fault::new(
                     course.place,
-                    format!(
-                        "node {label} belongs to no element; a force must act on one that does"
-                    ),
+                    format!("node {label} belongs to no element, so a force there has no effect"),
                 ));
             }
             if direction == Direction::Rotation && !on_beam[node] {
                 return Err(Fault::new(
                     course.place,
-                    format!("node {label} is on no beam; a moment must act on one that is"),
+                    format!("node {label} is not on a beam, so it cannot carry a moment"),
                 ));
             }
             let points = curve(clock, &self.deck.amplitudes, &course.given);
@@ -280,7 +278,7 @@ impl Made<'_> {
             if self.held.contains(&(node, direction)) {
                 self.remark(
                     course.place,
-                    "a force along a direction that is held goes into the support, and is left out",
+                    "forces along restrained directions go into the support and are left out",
                 );
                 continue;
             }
@@ -312,7 +310,7 @@ impl Made<'_> {
         Ok(())
     }
 
-    /// Pressures: sides that are pressed alike are one load.
+    /// Pressures: sides with the same pressure form one load.
     fn pressures(&mut self, clock: &Clock) {
         let listed = |step: &Step| {
             let pressed = step.pressures.iter();
@@ -331,7 +329,7 @@ impl Made<'_> {
             if self.is_held(side) {
                 self.remark(
                     course.place,
-                    "pressure on a side that is held goes into the supports, and is left out",
+                    "pressure on restrained sides goes into the supports and is left out",
                 );
                 continue;
             }
@@ -362,7 +360,7 @@ impl Made<'_> {
             .all(|node| held(node, Direction::X) && held(node, Direction::Y))
     }
 
-    /// Forces by volume, one load for each component on each body.
+    /// Volume forces, one load per component and body.
     fn weights(&mut self, clock: &Clock) -> Result<(), Fault> {
         let deck = self.deck;
         let listed = |step: &Step| {
@@ -394,7 +392,7 @@ impl Made<'_> {
                     None => {
                         return Err(Fault::new(
                             course.place,
-                            format!("element {label} is of a beam; only continua have weight here"),
+                            format!("element {label} is a beam; only continua have weight here"),
                         ));
                     }
                 }
@@ -409,7 +407,7 @@ impl Made<'_> {
             let on = self.spec.bodies[body].id().to_owned();
             if count < members {
                 let message = format!(
-                    "the load acts on {count} of the {members} elements of {on}, which hang together; it must act on all of them"
+                    "the load acts on {count} of the {members} connected elements of {on}; it must act on all of them"
                 );
                 return Err(Fault::new(place, message));
             }
@@ -435,7 +433,7 @@ impl Made<'_> {
         let material = element.map(|element| &self.deck.materials[self.material_of[element]]);
         material
             .and_then(|material| material.density)
-            .ok_or_else(|| Fault::new(place, "the material that is to have weight has no *DENSITY"))
+            .ok_or_else(|| Fault::new(place, "the material has weight, but no *DENSITY"))
     }
 
     /// The increments, and the path of the load factor.
@@ -470,13 +468,13 @@ impl Made<'_> {
         {
             self.remark(
                 step.static_place,
-                "automatic increments: a step is cut into increments as long as its first one, but not into more than ten unless its \
-                 largest one says so; see history.increment",
+                "automatic increments: a step is divided into increments of the size of its first one, but \
+                 into at most ten unless its maximum increment requires more; see history.increment",
             );
         }
     }
 
-    /// Displacements of printed nodes, and the contact force.
+    /// Monitors for the displacements of printed nodes and for the contact force.
     fn monitors(&mut self) {
         let deck = self.deck;
         let mut nodes: Vec<usize> = Vec::new();
@@ -514,7 +512,7 @@ impl Made<'_> {
     }
 }
 
-/// Nodes that move alike.
+/// Nodes with the same prescribed displacement.
 struct Moved {
     nodes: Vec<usize>,
     direction: Direction,

@@ -1,16 +1,14 @@
-//! Decks of CalculiX and Abaqus as scenes.
+//! Reads CalculiX and Abaqus decks as scenes.
 //!
-//! What a deck means here, file by file:
+//! How a deck is interpreted, file by file:
 //!
-//! - `bodies`: one given mesh `n` whose nodes keep the deck's numbers (`n.12`). Elements that hang together and have one
-//!   section are a body, which is called after the section's set. Steps with NLGEOM have large strains on St
-//!   Venant-Kirchhoff's law in total Lagrangian form, as CalculiX's linear elastic material has there; steps without it have
-//!   small ones.
-//! - `contact`: pairs and ties: the nodes of the first surface are slaves on the sides of the second.
-//! - `curves`: what acts as a function of time, over all steps; `loads`: supports, motions and loads with these.
+//! - `bodies`: one given mesh `n` whose nodes keep the deck's numbers (`n.12`). Connected elements with the same section form a
+//!   body, named after the section's set. Steps with NLGEOM use large strains with St Venant-Kirchhoff's law in total Lagrangian
+//!   form, like CalculiX's linear elastic material; steps without it use small strains.
+//! - `contact`: pairs and ties; the nodes of the first surface are slaves on the sides of the second.
+//! - `curves`: loads as functions of time over all steps; `loads`: supports, prescribed displacements and loads that use them.
 //!
-//! Where a value of the scene comes from is kept in [`Origin`], so that what is found wrong when the scene is compiled is told
-//! with the deck's line.
+//! [`Origin`] records where each value of the scene comes from, so that errors found later are reported with the deck's line.
 
 mod bodies;
 mod contact;
@@ -32,7 +30,7 @@ use stickslip_exchange::inp::{self, DECK_BYTES, Deck, Place, Wrong};
 
 pub(super) use stickslip_exchange::inp::is_one;
 
-/// Id of the mesh that has all nodes and elements.
+/// Id of the mesh with all nodes and elements.
 const MESH: &str = "n";
 
 /// A deck as a scene.
@@ -41,25 +39,25 @@ pub(super) struct Read {
     pub spec: Spec,
     /// Where its values come from.
     pub origin: Origin,
-    /// What was passed over or read as something else, with file and line.
+    /// Warnings about input that was ignored or reinterpreted, with file and line.
     pub remarks: Vec<String>,
 }
 
-/// Where the values of a scene stand in its deck.
+/// Locations in the deck of the values of a scene.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Origin {
-    /// Names of the deck and of the files that it includes.
+    /// Names of the deck and of its include files.
     files: Vec<String>,
-    /// Of each node of the mesh.
+    /// Location of each node of the mesh.
     nodes: Vec<Place>,
-    /// Of each element of each list of cells.
+    /// Location of each element of each list of cells.
     cells: Vec<Vec<Place>>,
-    /// Of all else.
+    /// Locations of all other values.
     others: Vec<(Path, Place)>,
 }
 
 impl Origin {
-    /// File, line and column of a value, or of the nearest one around it that has them.
+    /// File, line and column of a value, or of the nearest enclosing one with a known location.
     pub fn of(&self, path: &Path) -> Option<(&str, (usize, usize))> {
         let place = self.place(path)?;
         Some((self.files.get(place.file)?, (place.line, place.column)))
@@ -96,7 +94,7 @@ impl Origin {
     }
 }
 
-/// What is wrong with a deck that reads well.
+/// A semantic error in a deck.
 #[derive(Debug)]
 struct Fault {
     place: Place,
@@ -112,12 +110,12 @@ impl Fault {
     }
 }
 
-/// Names that are still free: those of sets, parts, surfaces and bodies of a deck all stand behind one mesh.
+/// Names in use: sets, parts, surfaces and bodies of a deck share the names of one mesh.
 #[derive(Debug, Default)]
 struct Free(HashSet<String>);
 
 impl Free {
-    /// A name like the wanted one that can stand in a scene and is not taken yet.
+    /// A valid, unused name similar to the wanted one; marks it as used.
     fn take(&mut self, wanted: &str) -> String {
         const MOST: usize = 50;
         let plain = |c: char| {
@@ -141,7 +139,7 @@ impl Free {
     }
 }
 
-/// Reads a deck, with what it includes from beside it.
+/// Reads a deck and its include files, which must be in its folder.
 pub(super) fn read(name: &str, text: &str) -> Result<Read, SceneError> {
     let mut include = |wanted: &str| included(FilePath::new(name), wanted);
     let deck = inp::read(name, text, &mut include).map_err(|wrong| unread(name, wrong))?;
@@ -158,7 +156,7 @@ fn unread(name: &str, wrong: Wrong) -> SceneError {
     }
 }
 
-/// The name of a file of a deck as it is opened from here.
+/// The path of one of a deck's files, relative to the working directory.
 fn shown(deck: &str, file: &str) -> String {
     match FilePath::new(deck).parent() {
         Some(folder) if file != deck => folder.join(file).to_string_lossy().into_owned(),
@@ -166,7 +164,7 @@ fn shown(deck: &str, file: &str) -> String {
     }
 }
 
-/// The text of a file that a deck includes.
+/// The text of an include file.
 fn included(deck: &FilePath, wanted: &str) -> Result<String, String> {
     let named = wanted.trim_start_matches("./");
     let quoted = |why: &dyn std::fmt::Display| format!("{}: {why}", error::quoted(wanted));
@@ -174,10 +172,10 @@ fn included(deck: &FilePath, wanted: &str) -> Result<String, String> {
     text(&path).map_err(|why| quoted(&why))
 }
 
-/// The text of a deck, in Latin-1 where it is not UTF-8: comments are in any language.
+/// The text of a deck, decoded as Latin-1 if it is not UTF-8, because comments may be in any language.
 ///
 /// # Errors
-/// If it is no file, too large, or cannot be read.
+/// If it is not a file, too large, or cannot be read.
 pub(super) fn text(path: &FilePath) -> Result<String, Unreadable> {
     let bytes = input::bytes(path, DECK_BYTES as u64, "a deck is a list of keywords")?;
     match std::str::from_utf8(&bytes) {
@@ -186,13 +184,13 @@ pub(super) fn text(path: &FilePath) -> Result<String, Unreadable> {
     }
 }
 
-/// Whether a file is called as decks are.
+/// Whether a file has the extension of a deck.
 pub(super) fn is_called_so(name: &str) -> bool {
     let extension = FilePath::new(name).extension();
     extension.is_some_and(|extension| extension.eq_ignore_ascii_case("inp"))
 }
 
-/// The scene that a deck means.
+/// Converts a deck to a scene.
 fn scene(name: &str, deck: &Deck) -> Result<Read, Fault> {
     let mut made = Made::new(name, deck);
     let nlgeom = one_geometry(deck)?;
@@ -204,35 +202,35 @@ fn scene(name: &str, deck: &Deck) -> Result<Read, Fault> {
     Ok(made.whole(name))
 }
 
-/// Whether strains are large, in all steps alike.
+/// Whether strains are large; must be the same in all steps.
 fn one_geometry(deck: &Deck) -> Result<bool, Fault> {
     let first = deck.steps.first().is_some_and(|step| step.nlgeom);
     match deck.steps.iter().find(|step| step.nlgeom != first) {
         None => Ok(first),
         Some(step) => Err(Fault::new(
             step.place,
-            "NLGEOM must hold in all steps or in none: strains do not change their meaning on the way",
+            "NLGEOM must be set in all steps or in none: the strain measure cannot change between steps",
         )),
     }
 }
 
-/// A scene in the making.
+/// A scene under construction.
 struct Made<'d> {
     deck: &'d Deck,
     spec: Spec,
     origin: Origin,
-    /// With where they stand.
+    /// Warnings with their locations.
     remarks: Vec<(Place, String)>,
     free: Free,
-    /// The body of each element of a continuum.
+    /// The body of each continuum element.
     body_of: Vec<Option<usize>>,
-    /// The material of each element in the deck.
+    /// The deck's material of each element.
     material_of: Vec<usize>,
     /// Which nodes belong to an element.
     used: Vec<bool>,
-    /// Components of nodes that are held or moved.
+    /// Components of nodes that are restrained or prescribed.
     held: HashSet<(usize, Direction)>,
-    /// Which nodes stand still for ever, in x and in y.
+    /// Which nodes never move in x and in y.
     still: Vec<[bool; 2]>,
 }
 
@@ -280,7 +278,7 @@ impl<'d> Made<'d> {
         }
     }
 
-    /// What stands at a place is read in this way.
+    /// Adds a warning about a location.
     fn remark(&mut self, place: Place, text: &str) {
         let remark = (place, text.to_owned());
         if self.remarks.last() != Some(&remark) {

@@ -1,4 +1,4 @@
-//! What decks become, and where what is wrong with them stands.
+//! Tests of the conversion of decks and of error locations.
 
 use crate::Scene;
 use crate::format::spec::LoadSpec;
@@ -26,7 +26,7 @@ fn refusal(text: &str) -> String {
 }
 
 #[test]
-fn bodies_are_what_hangs_together_and_nodes_keep_their_numbers() {
+fn connected_elements_form_bodies_and_nodes_keep_their_numbers() {
     let scene = scene(BLOCK);
     let bodies: Vec<&str> = scene
         .model
@@ -150,8 +150,9 @@ fn weight_is_density_times_acceleration_on_a_whole_body() {
     assert_eq!(volume, Some(("EVERYTHING".to_owned(), 0.0, -30.0)));
     let half = heavy.replace("BLOCK, GRAV", "1, GRAV");
     assert!(
-        refusal(&half)
-            .starts_with("job.inp:53:1: the load acts on 1 of the 2 elements of EVERYTHING"),
+        refusal(&half).starts_with(
+            "job.inp:53:1: the load acts on 1 of the 2 connected elements of EVERYTHING"
+        ),
         "{}",
         refusal(&half)
     );
@@ -160,7 +161,7 @@ fn weight_is_density_times_acceleration_on_a_whole_body() {
 }
 
 #[test]
-fn what_is_found_wrong_with_the_scene_is_told_with_the_line_of_the_deck() {
+fn errors_in_the_scene_have_the_line_of_the_deck() {
     let cases = [
         (
             "1000., 0.3",
@@ -185,17 +186,17 @@ fn what_is_found_wrong_with_the_scene_is_told_with_the_line_of_the_deck() {
         (
             "TOP, 1, 1, 0.\n",
             "",
-            "job.inp:54:1: the x of node 4 is free in the steps before",
+            "job.inp:54:1: the x of node 4 is free in earlier steps",
         ),
         (
             "*STEP\n*STATIC, DIRECT\n0.125",
             "*STEP, NLGEOM\n*STATIC, DIRECT\n0.125",
-            "job.inp:51:1: NLGEOM must hold in all steps",
+            "job.inp:51:1: NLGEOM must be set in all steps",
         ),
         (
             "*BOUNDARY, AMPLITUDE=FORTH",
             "*BOUNDARY, OP=NEW, AMPLITUDE=FORTH",
-            "job.inp:51:1: OP=NEW sets the ",
+            "job.inp:51:1: OP=NEW frees the ",
         ),
         (
             "BELOW, ABOVE",
@@ -209,9 +210,9 @@ fn what_is_found_wrong_with_the_scene_is_told_with_the_line_of_the_deck() {
     }
 }
 
-/// OP=NEW removes the prescribed values of earlier steps: a value that is not repeated would become free, which is refused.
+/// OP=NEW removes the prescribed values of earlier steps: a value that is not repeated would become free, which is rejected.
 #[test]
-fn a_new_boundary_that_gives_all_again_is_a_changed_one_and_one_that_frees_a_node_is_refused() {
+fn op_new_may_repeat_all_values_but_not_free_a_node() {
     let all = "GROUND, 1, 2\nTOP, 2, 2, -0.02\n";
     let card = |op: &str, lines: &str| {
         but(
@@ -234,14 +235,14 @@ fn a_new_boundary_that_gives_all_again_is_a_changed_one_and_one_that_frees_a_nod
     ] {
         let told = refusal(&card(", OP=NEW", &but(all, missing, "")));
         assert!(
-            told.contains("OP=NEW sets the ") && told.contains(freed),
+            told.contains("OP=NEW frees the ") && told.contains(freed),
             "{told}"
         );
     }
 }
 
 #[test]
-fn a_new_pressure_takes_back_those_of_the_steps_before() {
+fn op_new_removes_the_pressures_of_earlier_steps() {
     let first = but(
         BLOCK,
         "TOP, 2, 2, -0.02\n",
@@ -267,7 +268,7 @@ fn a_new_pressure_takes_back_those_of_the_steps_before() {
 }
 
 #[test]
-fn included_files_must_lie_beside_the_deck() {
+fn include_files_must_be_in_the_folder_of_the_deck() {
     for outside in ["../mesh.inp", "/etc/passwd", "a/../../b"] {
         let found = refusal(&format!("*INCLUDE, INPUT={outside}\n"));
         assert!(
@@ -281,7 +282,7 @@ proptest! {
     #![proptest_config(ProptestConfig::with_cases(64))]
 
     #[test]
-    fn no_damaged_deck_makes_the_way_to_a_model_panic(
+    fn no_damaged_deck_makes_compilation_panic(
         deck in prop::sample::select(vec![BLOCK, PLATES, RINGS]),
         changes in prop::collection::vec((any::<prop::sample::Index>(), any::<prop::sample::Index>(), 0..4usize), 1..5),
     ) {

@@ -1,51 +1,51 @@
-//! `history.arc`: how the path of equilibrium is followed.
+//! `history.arc`: arc-length control.
 
 use super::described::macros::described;
 use serde::{Deserialize, Serialize};
 use stickslip_core::model::ArcLength;
 
 described! {
-    /// How the path of equilibrium is followed (`control: arc`): every increment goes a given way along it, and the load
-    /// factor follows. Sizes are lengths, or those of the monitor that is followed.
+    /// Arc-length control (`control: arc`): every increment advances a given distance along the equilibrium path, and the load
+    /// factor is an unknown. Sizes are lengths, or in the unit of the followed monitor.
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields, default)]
     pub struct ArcSpec {
-        /// Monitor of a displacement, whose changes are the increments. Default: none, all displacements are followed together,
-        /// along the tangent; the size of an increment is the largest displacement on the tangent.
+        /// Displacement monitor whose changes define the increments. Default: none, all displacements are followed together along
+        /// the tangent, and the size of an increment is the largest displacement along it.
         #[serde(skip_serializing_if = "String::is_empty")]
         pub monitor: String,
         /// Slave node whose net slip is followed instead. Default: none.
         #[serde(skip_serializing_if = "String::is_empty")]
         pub slip: String,
-        /// Size of the first increment. Default: what the tangent goes while the load factor moves by `increment`.
+        /// Size of the first increment. Default: the change along the tangent for one `increment` of the load factor.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub step: Option<f64>,
-        /// Largest size of an increment. Default: ten times the first.
+        /// Maximum size of an increment. Default: ten times the first.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub largest: Option<f64>,
-        /// Size below which an increment that fails is not cut any more. Default: a 1024th of the first.
+        /// Size below which a failing increment is no longer cut. Default: 1/1024 of the first.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub least: Option<f64>,
-        /// Major iterations that keep the size: with fewer the next increment is larger, with more it is smaller. Default: 6.
+        /// Target number of major iterations: with fewer, the next increment is larger; with more, smaller. Default: 6.
         #[serde(skip_serializing_if = "is_usual")]
         pub iterations: u32,
-        /// Arc at which the history ends, the sum of all sizes. Default: ten times the diagonal of the scene.
+        /// Total arc (the sum of all sizes) at which the history ends. Default: ten times the diagonal of the scene.
         #[serde(skip_serializing_if = "Option::is_none")]
         pub length: Option<f64>,
-        /// Monitors at whose values the history ends, whichever is met first. Default: none.
+        /// Monitor values that end the history; the first one reached counts. Default: none.
         #[serde(skip_serializing_if = "Vec::is_empty")]
         pub ends: Vec<EndSpec>,
     }
 }
 
 described! {
-    /// A displacement at which a history along the path ends.
+    /// A displacement that ends an arc-length history.
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
     pub struct EndSpec {
-        /// Name of the monitor, which is that of a displacement.
+        /// Name of a displacement monitor.
         pub monitor: String,
-        /// Its value there.
+        /// Value at which the history ends.
         pub at: f64,
     }
 }
@@ -70,7 +70,7 @@ impl Default for ArcSpec {
 }
 
 impl ArcSpec {
-    /// Whether it is what a scene that does not name it has.
+    /// Whether this is the default, which scenes may omit.
     pub fn is_default(&self) -> bool {
         *self == ArcSpec::default()
     }

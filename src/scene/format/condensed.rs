@@ -1,16 +1,16 @@
-//! An interface problem by itself: contacts, and a matrix that says how what carries them answers.
+//! Interface problems without bodies: contacts and the matrix that couples them.
 //!
-//! Everything is in the frame of each contact: n is the outward normal of its master, t is n turned 90 degrees
-//! anticlockwise; displacements u and forces f are those of the slave node, f_n > 0 pushes it away. Components come in
-//! pairs, (n, t) of the first contact, of the second, and so on:
+//! All values are in the frame of each contact: n is the outward normal of its master, t is n turned 90 degrees anticlockwise.
+//! Displacements u and forces f are those of the slave node; f_n > 0 pushes it away. Components are ordered in pairs: (n, t) of
+//! the first contact, of the second, and so on:
 //!
 //! ```text
 //! K (u − free λ) = load λ + f        or        u = free λ + W (load λ + f),        gap = gap_0 + u_n
 //! ```
 //!
-//! A RON file that begins with `Contacts(` is one, with the fields of [`Problem`]; [`Problem::text`] writes it.
-//! [`Problem::spec`] makes a scene of it that everything else understands: the contacts in a row over one endless floor
-//! y = 0, where u_n = u_y and u_t = −u_x.
+//! A RON file that begins with `Contacts(` is such a problem, with the fields of [`Problem`]; [`Problem::text`] writes it.
+//! [`Problem::spec`] converts it to an ordinary scene: the contacts in a row above an endless floor y = 0, where u_n = u_y and
+//! u_t = −u_x.
 
 use super::contact_law::ContactLaw;
 use super::error::{Path, Step, at};
@@ -20,15 +20,15 @@ use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize};
 use stickslip_core::model::{Friction, InitialState, Mode, Settings};
 
-/// What a file with an interface problem begins with.
+/// First word of an interface problem file.
 pub const HEAD: &str = "Contacts";
 
-/// How what carries the contacts answers; row by row.
+/// Response of the body that carries the contacts, row by row.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Matrix {
-    /// K, force by length.
+    /// K, force per length.
     Stiffness(Vec<Vec<f64>>),
-    /// W, length by force; may be singular.
+    /// W, length per force; may be singular.
     Compliance(Vec<Vec<f64>>),
 }
 
@@ -36,21 +36,21 @@ pub enum Matrix {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Contact {
-    /// What its node is called.
+    /// Name of the node.
     pub id: String,
-    /// Distance to the master, undeformed; negative is penetration. Default: 0.
+    /// Undeformed distance to the master; negative is penetration. Default: 0.
     #[serde(default)]
     pub gap: f64,
-    /// Default: smooth.
+    /// Friction of the contact. Default: smooth.
     #[serde(default)]
     pub friction: Friction,
-    /// Load on the node along n and t, at load factor 1. Default: none.
+    /// Load on the node along n and t at load factor 1. Default: none.
     #[serde(default)]
     pub load: [f64; 2],
-    /// Default: free.
+    /// Mode of the first minor iteration. Default: free.
     #[serde(default)]
     pub start: Mode,
-    /// Default: nothing.
+    /// Values from iterations before the first one. Default: nothing.
     #[serde(default)]
     pub state: InitialState,
 }
@@ -59,26 +59,26 @@ pub struct Contact {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename = "Contacts", deny_unknown_fields)]
 pub struct Problem {
-    /// What it is, in one line.
+    /// One-line title.
     pub title: String,
-    /// What there is to say of it. Default: empty.
+    /// Description. Default: empty.
     #[serde(default)]
     pub about: String,
     /// The contacts, in the order of the rows and columns of `matrix`.
     pub contacts: Vec<Contact>,
-    /// How what carries them answers.
+    /// Response of the body that carries the contacts.
     pub matrix: Matrix,
-    /// Displacement under no force, at load factor 1: two components a contact, or none at all. Default: none.
+    /// Displacement without contact forces at load factor 1: two components per contact, or an empty list. Default: none.
     #[serde(default)]
     pub free: Vec<f64>,
-    /// Distance of neighbours in the row, a length that gaps and motions are comparable with: tolerances of lengths are
-    /// parts of it. Default: the largest gap or free motion.
+    /// Spacing of neighbouring contacts: a typical length of gaps and motions, to which length tolerances are relative. Default:
+    /// the largest gap or free motion.
     #[serde(default, deserialize_with = "positive")]
     pub spacing: Option<f64>,
-    /// Default: one increment from 0 to 1.
+    /// Path of the load factor. Default: one increment from 0 to 1.
     #[serde(default)]
     pub history: History,
-    /// How it is solved. Default: as for a scene.
+    /// Options of the method. Default: as for a scene.
     #[serde(default)]
     pub settings: Settings,
 }
@@ -87,14 +87,14 @@ fn positive<'de, D: Deserializer<'de>>(reader: D) -> Result<Option<f64>, D::Erro
     let value = Option::<f64>::deserialize(reader)?;
     match value {
         Some(x) if !(x > 0.0 && x.is_finite()) => Err(D::Error::custom(format!(
-            "the spacing is {x:?}; it must be a positive length"
+            "spacing is {x:?}; it must be a positive length"
         ))),
         _ => Ok(value),
     }
 }
 
 impl Problem {
-    /// Where a value of the scene that it is comes from: the path in the problem's own file.
+    /// The path in the problem's own file of a value of the converted scene.
     pub(crate) fn origin(&self, of_scene: &Path) -> Path {
         let Some((Step::Key(list), rest)) = of_scene.0.split_first() else {
             return Path::default();
@@ -109,7 +109,7 @@ impl Problem {
         };
         let after = |path: Path, rest: &[Step]| Path([&path.0[..], rest].concat());
         let contact = |k: usize| at!["contacts", k];
-        // Rows and components come as (n, t) there and as (x, y) = (-t, n) here.
+        // Rows and components are (n, t) in the file and (x, y) = (-t, n) in the scene.
         let turned: Vec<Step> = rest.iter().map(other_of_pair).collect();
         match (list.as_str(), key) {
             ("nodes", _) if number >= self.contacts.len() => at!["spacing"],
@@ -135,7 +135,7 @@ impl Problem {
         }
     }
 
-    /// The scene that it is; it is checked when it is compiled.
+    /// The problem as a scene; compiling the scene checks it.
     pub fn spec(&self) -> Spec {
         let spacing = self.length();
         let ids = || self.contacts.iter().map(|contact| contact.id.clone());
@@ -187,7 +187,7 @@ impl Problem {
         }
     }
 
-    /// A length that its gaps and motions are comparable with.
+    /// Length scale of the gaps and motions.
     fn length(&self) -> f64 {
         if let Some(spacing) = self.spacing {
             return spacing;
@@ -200,8 +200,8 @@ impl Problem {
 }
 
 impl Problem {
-    /// The file that it is: comment lines first, then every field that differs from its default. Numbers are written so
-    /// that they are read back to the last bit.
+    /// The text of the file: comment lines, then every field that differs from its default. Numbers are written with enough
+    /// digits to be read back exactly.
     pub fn text(&self, comments: &[String]) -> String {
         let mut text = String::new();
         for line in comments {
@@ -251,7 +251,7 @@ impl Problem {
 }
 
 impl Contact {
-    /// Its fields that differ from their defaults.
+    /// The fields that differ from their defaults.
     fn fields(&self) -> Vec<String> {
         let mut fields = vec![format!("id: {}", quoted(&self.id))];
         if self.gap != 0.0 {
@@ -275,7 +275,7 @@ impl Contact {
     }
 }
 
-/// Numbers apart by commas; 0 has no sign.
+/// Numbers separated by commas; zero is written without a sign.
 fn list(numbers: &[f64]) -> String {
     let words = numbers.iter().map(|&x| format!("{:?}", x + 0.0));
     words.collect::<Vec<_>>().join(", ")
@@ -291,7 +291,7 @@ fn ron(value: &impl Serialize) -> Option<String> {
 
 /// The fields of a flat struct that differ from those of another, as `name: value`.
 fn differences<T: Serialize>(value: &T, other: &T) -> Vec<String> {
-    // Pretty-printed, each field has a line.
+    // Pretty-printing puts each field on its own line.
     let pretty = || ron::ser::PrettyConfig::new().indentor("").new_line("\n");
     let lines = |value: &T| notation::strict_lines(value, pretty()).unwrap_or_default();
     let (ours, theirs) = (lines(value), lines(other));
@@ -327,7 +327,7 @@ fn load(contact: &Contact) -> Option<LoadSpec> {
     })
 }
 
-/// A matrix over (n, t) as one over (x, y) = (−t, n).
+/// Converts a matrix over (n, t) to one over (x, y) = (−t, n).
 fn turned(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let pairs = rows.chunks(2).flat_map(|pair| {
         let x = pair.get(1).map(|row| turned_row(row, -1.0));
@@ -337,7 +337,7 @@ fn turned(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
     pairs.collect()
 }
 
-/// A row over (n, t), times a sign, as one over (x, y).
+/// A row over (n, t), times a sign, as a row over (x, y).
 fn turned_row(row: &[f64], sign: f64) -> Vec<f64> {
     let times = |value: f64| if sign < 0.0 { negative(value) } else { value };
     let pairs = row.chunks(2).flat_map(|pair| {
@@ -348,7 +348,7 @@ fn turned_row(row: &[f64], sign: f64) -> Vec<f64> {
     pairs.collect()
 }
 
-/// The other one of a pair, where the step is a number.
+/// The other index of a pair, if the step is an index.
 fn other_of_pair(step: &Step) -> Step {
     match step {
         Step::Index(k) => Step::Index(k ^ 1),
@@ -356,7 +356,7 @@ fn other_of_pair(step: &Step) -> Step {
     }
 }
 
-/// −x, and 0 for 0.
+/// −x, but 0 for 0.
 fn negative(x: f64) -> f64 {
     if x == 0.0 { 0.0 } else { -x }
 }

@@ -1,32 +1,32 @@
-//! The laws of a pair of slave nodes and surfaces: what holds where they touch, and what friction does there.
+//! The interaction between slave nodes and surfaces: contact law and friction.
 
 use super::described::macros::described;
 use serde::{Deserialize, Serialize};
 use stickslip_core::model::Friction;
 
 described! {
-    /// What holds between a slave node and its surface where they touch. Coulomb friction goes with the first two.
+    /// The contact law between a slave node and its surface. Coulomb friction applies to the first two.
     #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
     pub enum ContactLaw {
         /// g >= 0 and F_n >= 0, one of them zero.
         #[default]
         Hard,
-        /// The surface gives way in proportion to the pressure: g + F_n / (K A) = 0 while the node touches, with the total F_n and
-        /// the node's tributary area A. To the interface it is a compliance 1 / (K A) in series. A node on the axis of an
-        /// axisymmetric body bears no force; what it has of the area goes to its neighbour.
+        /// Linear penalty: the surface yields in proportion to the pressure. While the node touches, g + F_n / (K A) = 0 with the
+        /// total F_n and the node's tributary area A, which is a compliance 1 / (K A) in series. A node on the axis of an
+        /// axisymmetric body carries no force; its share of the area is assigned to its neighbour.
         Penalty {
-            /// K, a pressure by length of penetration.
+            /// K, pressure per length of penetration.
             stiffness: f64,
         },
-        /// Held at its point of the surface for ever, in tension too, without friction. The node is put onto the surface
-        /// before anything deforms, without stress.
+        /// Tied to its point of the surface, in tension too, without friction. The node is first moved onto the surface without
+        /// stress.
         Tied,
     }
 }
 
 impl ContactLaw {
-    /// Whether it is the one that pairs have who name none.
+    /// Whether this is the default, which scenes may omit.
     pub fn is_hard(&self) -> bool {
         *self == ContactLaw::Hard
     }
@@ -43,7 +43,7 @@ described! {
         /// Cohesion, a force per slave node. Default: 0.
         #[serde(default)]
         pub cohesion: f64,
-        /// Cohesion by area of the interface, a pressure: it does not hang on the mesh. Default: 0.
+        /// Cohesion per area of the interface, a pressure; independent of the mesh. Default: 0.
         #[serde(default, skip_serializing_if = "is_zero")]
         pub adhesion: f64,
     }
@@ -64,7 +64,7 @@ impl From<Friction> for FrictionSpec {
 }
 
 impl FrictionSpec {
-    /// The friction of a node with this tributary area. Without an area there is no cohesion by area.
+    /// Friction of a node with this tributary area. Without an area, `adhesion` does not count.
     pub fn of_node(&self, area: Option<f64>) -> Friction {
         let by_area = match self.adhesion {
             0.0 => 0.0,

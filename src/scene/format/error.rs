@@ -1,4 +1,4 @@
-//! What is wrong with a scene, and where.
+//! Errors in a scene, with their location.
 
 use crate::shown;
 use crate::shown::first_of;
@@ -25,19 +25,19 @@ impl From<usize> for Step {
     }
 }
 
-/// The way from the root of a scene file to a value: `slaves[0].nodes[1]`. Names of enum variants are no steps.
+/// The path from the root of a scene file to a value: `slaves[0].nodes[1]`. Enum variant names are not steps.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Hash)]
 pub struct Path(pub Vec<Step>);
 
 impl Path {
-    /// This path and one step more.
+    /// This path with one step appended.
     pub fn then(&self, step: impl Into<Step>) -> Path {
         let mut steps = self.0.clone();
         steps.push(step.into());
         Path(steps)
     }
 
-    /// Whether `other` is this value or lies in it.
+    /// Whether `other` is this value or inside it.
     pub fn contains(&self, other: &Path) -> bool {
         other.0.starts_with(&self.0)
     }
@@ -65,33 +65,33 @@ macro_rules! at {
 }
 pub use at;
 
-/// Why a scalar of a scene cannot be set.
+/// Reasons why a scalar of a scene cannot be set.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum NotSet {
-    /// No scalar has this path; the message says what is near it.
+    /// No scalar has this path; the message suggests similar ones.
     #[error("{0}")]
     NoScalar(String),
-    /// The value cannot be read as one of the scalar's kind.
-    #[error("{value} will not do; it must be {kind}")]
+    /// The value has the wrong kind.
+    #[error("{value} is not valid; it must be {kind}")]
     NoValue {
-        /// What was typed, in quotes.
+        /// The typed text, in quotes.
         value: String,
-        /// What would do: "a number", "one of lagged, consistent".
+        /// The accepted kind: "a number", "one of lagged, consistent".
         kind: String,
     },
 }
 
-/// Something wrong at a place of a [`Spec`](super::Spec), before anybody has looked for its line.
+/// An error at a path of a [`Spec`](super::Spec), not yet resolved to a line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fault {
-    /// The place.
+    /// Path of the value.
     pub path: Path,
-    /// What is wrong.
+    /// Error message.
     pub message: String,
 }
 
 impl Fault {
-    /// From the place and the message.
+    /// Creates a fault from its path and message.
     pub fn new(path: Path, message: impl Into<String>) -> Self {
         Fault {
             path,
@@ -100,26 +100,26 @@ impl Fault {
     }
 }
 
-/// A scene that cannot be used: one message, with the place in the file where there is one.
+/// An invalid scene: one message, with its location in the file if known.
 ///
-/// It prints as one line, `file:line:column: path: message`; a value that was set from outside is named instead of a
+/// Displayed as one line, `file:line:column: path: message`. For a value set from outside, the setting is shown instead of a
 /// line.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub struct SceneError {
     /// Path of the file, or name of the built-in scene.
     pub file: String,
-    /// Line and column, both from 1; columns count characters.
+    /// Line and column, from 1; columns count characters.
     pub at: Option<(usize, usize)>,
-    /// The setting from outside to which the fault is due, as `friction.angle=95`.
+    /// The external setting that caused the error, e.g. `friction.angle=95`.
     pub set: Option<String>,
-    /// Path of the value, as `slaves[0].nodes[1]`; empty where no value is to blame.
+    /// Path of the value, e.g. `slaves[0].nodes[1]`; empty if no single value is wrong.
     pub path: String,
-    /// What is wrong, and what would be right.
+    /// What is wrong and what is expected.
     pub message: String,
 }
 
 impl SceneError {
-    /// An error about a file as a whole.
+    /// An error about the whole file.
     pub fn whole(file: &str, message: impl Into<String>) -> Self {
         SceneError {
             file: file.to_owned(),
@@ -147,7 +147,7 @@ impl fmt::Display for SceneError {
     }
 }
 
-/// `; did you mean "beam.end"?` where a candidate is near enough to be a slip of the finger, else nothing.
+/// `; did you mean "beam.end"?` if a candidate is close enough to be a typo, else an empty string.
 pub fn did_you_mean<'a>(wrong: &str, candidates: impl IntoIterator<Item = &'a str>) -> String {
     match nearest(wrong, candidates) {
         Some(right) => format!("; did you mean {right:?}?"),
@@ -155,14 +155,14 @@ pub fn did_you_mean<'a>(wrong: &str, candidates: impl IntoIterator<Item = &'a st
     }
 }
 
-/// The candidate with the smallest edit distance, if that is at most a third of what differs.
+/// The candidate with the smallest edit distance, if that is at most a third of the differing part.
 ///
-/// Only what follows the common beginning counts: `settings.foo` is not near to `settings.slip`, long as they are.
+/// The common prefix is ignored, so `settings.foo` is not close to `settings.slip` despite their long common part.
 pub(crate) fn nearest<'a>(
     wrong: &str,
     candidates: impl IntoIterator<Item = &'a str>,
 ) -> Option<&'a str> {
-    // Longer words are no slips, and the distance costs the square of the length.
+    // Longer words are not typos, and the distance costs quadratic time.
     const LONGEST: usize = 64;
     let wrong: Vec<char> = wrong.chars().take(LONGEST + 1).collect();
     let far = |right: &str| {
@@ -184,7 +184,7 @@ pub(crate) fn nearest<'a>(
         .map(|(_, right)| right)
 }
 
-/// Edit distance in which swapping two neighbours counts as one change.
+/// Edit distance in which swapping two adjacent characters counts as one change.
 fn distance(a: &[char], b: &[char]) -> usize {
     let mut rows = vec![(0..=b.len()).collect::<Vec<usize>>()];
     for i in 1..=a.len() {
@@ -204,7 +204,7 @@ fn distance(a: &[char], b: &[char]) -> usize {
     rows[a.len()][b.len()]
 }
 
-/// A few names for a message, in quotes; the rest is counted.
+/// Some of the names for a message, in quotes; the others are only counted.
 pub fn some_of<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     let quoted = names.into_iter().map(|name| format!("{name:?}"));
     match first_of(quoted, 8, ", ") {
@@ -213,14 +213,14 @@ pub fn some_of<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     }
 }
 
-/// Most characters of a message; lists of choices are half as long.
+/// Maximum number of characters of a message; lists of choices get half of that.
 const LONGEST_MESSAGE: usize = 1500;
-/// Most characters of a file's name in a message.
+/// Maximum number of characters of a file name in a message.
 const LONGEST_NAME: usize = 300;
-/// Most characters that a message repeats of a text from outside.
+/// Maximum number of characters quoted from external text.
 const MOST: usize = 60;
 
-/// A text from outside for a message: quoted, and not longer than a line can bear.
+/// External text for a message: quoted and shortened.
 pub fn quoted(text: &str) -> String {
     match text.char_indices().nth(MOST) {
         Some((end, _)) => format!("{:?}…", &text[..end]),
@@ -228,7 +228,7 @@ pub fn quoted(text: &str) -> String {
     }
 }
 
-/// A text from outside, on one line and not longer than a line can bear.
+/// External text on one line, shortened.
 pub fn shortened(text: &str) -> String {
     shown::cut(text, MOST)
 }
@@ -247,7 +247,7 @@ mod tests {
     }
 
     #[test]
-    fn slips_are_recognised_and_strangers_are_not() {
+    fn typos_are_recognised_and_unrelated_words_are_not() {
         assert_eq!(
             nearest("beam.edn", ["floor.end", "beam.end", "beam.start"]),
             Some("beam.end")

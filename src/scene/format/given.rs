@@ -1,48 +1,48 @@
-//! Parts of a mesh that is given node by node: elements, sets of nodes, and sets of sides.
+//! Parts of a mesh that is given node by node: elements, node sets and side sets.
 
 use super::described::macros::described;
 use serde::{Deserialize, Serialize};
 use stickslip_core::model::ElementKind;
 
 described! {
-    /// Elements of a given mesh that are of one kind and belong to one part.
+    /// Elements of a given mesh with the same kind and part.
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
     pub struct Cells {
-        /// Name of the part; several lists may name the same one.
+        /// Name of the part; several lists may use the same name.
         pub part: String,
-        /// Other parts to which these elements belong as well. Default: none.
+        /// Other parts that also contain these elements. Default: none.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         pub also: Vec<String>,
-        /// What the elements are.
+        /// Kind of element.
         pub kind: ElementKind,
-        /// The labels of the nodes of each element: the corners around it, then the middles of the sides that start at
-        /// them, then the middle. Whichever way round: an element that is given clockwise is turned.
+        /// Node labels of each element: the corners around it, then the midside nodes, starting on the side after the first
+        /// corner, then the centre. Clockwise elements are reversed.
         pub nodes: Vec<Vec<usize>>,
     }
 }
 
 described! {
-    /// Nodes of a given mesh under a name.
+    /// A named set of nodes of a given mesh.
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
     pub struct NodeSet {
-        /// Its name; `ID.name` stands for all these nodes.
+        /// Name; `ID.name` refers to all these nodes.
         pub name: String,
-        /// Their labels.
+        /// Node labels.
         pub nodes: Vec<usize>,
     }
 }
 
 described! {
-    /// Sides of elements of a given mesh, or lines that belong to no element, under a name.
+    /// A named set of element sides, or of lines that belong to no element, of a given mesh.
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
     pub struct SideSet {
-        /// Its name; `ID.name` can be used wherever a chain or the edge of a block can.
+        /// Name; `ID.name` can be used wherever a chain or an edge of a block can.
         pub name: String,
-        /// The labels of the nodes of each side from its start to its end, the middle between them where it has one. Sides
-        /// of elements are put in walking order, with the element on the left, whatever their order here.
+        /// Node labels of each side from start to end, with its midside node, if any, between them. Sides of elements are sorted
+        /// into walking order with the element on the left; their order here does not matter.
         pub sides: Vec<Vec<usize>>,
     }
 }

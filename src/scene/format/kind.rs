@@ -1,49 +1,49 @@
-//! What a file is that was given where another kind is read: told by its text, with the command that reads it.
+//! Recognises the kind of a file from its text, and names the command that reads it.
 //!
-//! Whoever cannot read a text asks here before saying why: a snapshot is no scene with a field too many.
+//! Readers call this before reporting a syntax error: for a snapshot the message is not "unknown field in a scene".
 
 use super::error::{Path, Step};
 use super::locate::{head, locate, too_deep};
 use crate::{calculix, shown};
 use stickslip_platform::input;
 
-/// The kinds of files that the program writes or reads.
+/// The kinds of files that the program reads or writes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FileKind {
-    /// A scene, or an interface problem: in RON, or in the form of another program.
+    /// A scene or an interface problem, in RON or in another program's format.
     Scene,
-    /// A mesh of Gmsh.
+    /// A Gmsh mesh.
     Mesh,
     /// A recorded state.
     Snapshot,
-    /// What was done in a session.
+    /// The commands of a session.
     Journal,
     /// A guided lesson.
     Lesson,
-    /// A scene with many settings.
+    /// A parameter study of a scene.
     Study,
-    /// What a work-precision chart is to run.
+    /// Definition of a work-precision chart.
     Chart,
-    /// The table of a work-precision chart.
+    /// Result table of a work-precision chart.
     ChartTable,
-    /// Any other table that a run or a sweep writes.
+    /// Any other table written by a run or a sweep.
     Table,
-    /// Results that a map keeps.
+    /// Stored results of a map.
     Results,
-    /// A session to be played in a terminal.
+    /// A terminal recording of a session.
     Cast,
-    /// The contact elements of a CalculiX run.
+    /// Contact elements of a CalculiX run.
     Contacts,
-    /// How such a run went: its increments, or its residuals.
+    /// Convergence of a CalculiX run: its increments or its residuals.
     Progress,
 }
 
-/// How a kind of file is recognised, called, and read.
+/// How a kind of file is recognised, named and read.
 struct Entry {
     kind: FileKind,
-    /// After "this is".
+    /// Name, as in "this is NAME".
     name: &'static str,
-    /// The command that reads it, with `{}` for the file; empty where there is none.
+    /// The command that reads it, with `{}` for the file; empty if there is none.
     command: &'static str,
     recognise: fn(&Start) -> bool,
 }
@@ -65,11 +65,11 @@ const fn entry(
 /// All kinds, in the order in which they are tried.
 #[rustfmt::skip]
 const KINDS: [Entry; 13] = [
-    entry(FileKind::Mesh, "a mesh of Gmsh", "stickslip export {} -o SCENE.ron", |start| start.text.trim_start().starts_with("$MeshFormat")),
-    entry(FileKind::Results, "a file of kept results", "stickslip map SCENE --resume {}", |start| start.first.starts_with("stickslip ") && start.first.contains(" results, ")),
-    entry(FileKind::Contacts, "the .cel of a finished CalculiX run", "stickslip {}", |start| is_contacts(start.first)),
+    entry(FileKind::Mesh, "a Gmsh mesh", "stickslip export {} -o SCENE.ron", |start| start.text.trim_start().starts_with("$MeshFormat")),
+    entry(FileKind::Results, "a file of stored results", "stickslip map SCENE --resume {}", |start| start.first.starts_with("stickslip ") && start.first.contains(" results, ")),
+    entry(FileKind::Contacts, "the .cel file of a finished CalculiX run", "stickslip {}", |start| is_contacts(start.first)),
     entry(FileKind::Progress, "a table of a finished CalculiX run", "stickslip {}", |start| ["SUMMARY OF JOB INFORMATION", "SUMMARY OF C0NVERGENCE INFORMATION"].contains(&start.first)),
-    entry(FileKind::Cast, "a session to be played in a terminal", "asciinema play {}", |start| start.first.starts_with("{\"version\"")),
+    entry(FileKind::Cast, "a terminal recording of a session", "asciinema play {}", |start| start.first.starts_with("{\"version\"")),
     entry(FileKind::ChartTable, "the table of a work-precision chart", "stickslip chart --from {}", |start| start.first.starts_with("scene,series,run,")),
     entry(FileKind::Table, "a table of results", "", |start| {
         let columns = ["increment,load,", "increment,attempt,", "scene,"];
@@ -78,7 +78,7 @@ const KINDS: [Entry; 13] = [
     entry(FileKind::Journal, "a journal", "stickslip resume {}", |start| start.has_format() && start.first.contains("began:")),
     entry(FileKind::Snapshot, "a snapshot", "stickslip replay {}", |start| start.has_format()),
     entry(FileKind::Lesson, "a lesson", "stickslip lesson {}", |start| start.has(&["scene", "steps"])),
-    entry(FileKind::Chart, "the file of a work-precision chart", "", |start| start.has(&["scene", "series"])),
+    entry(FileKind::Chart, "the definition of a work-precision chart", "", |start| start.has(&["scene", "series"])),
     entry(FileKind::Scene, "a scene", "stickslip run {}", |start| {
         let heads = [super::condensed::HEAD, super::stored::HEAD];
         let number = start.first.split_whitespace().next().is_some_and(|word| word.parse::<u32>().is_ok());
@@ -92,22 +92,22 @@ const KINDS: [Entry; 13] = [
     }),
 ];
 
-/// What a file is recognised by.
+/// The parts of a text used to recognise its kind.
 struct Start<'a> {
     text: &'a str,
-    /// The first line that is neither blank nor a comment of a table.
+    /// The first line that is neither blank nor a table comment.
     first: &'a str,
-    /// Whether the text can be searched for fields.
+    /// Whether brackets are nested shallowly enough to search for fields.
     is_shallow: bool,
 }
 
 impl Start<'_> {
-    /// Whether the value in RON has all these fields; the text need not be sound.
+    /// Whether the RON value has all these fields; the text need not be valid.
     fn has(&self, fields: &[&str]) -> bool {
         self.is_shallow && fields.iter().all(|field| is_field(self.text, field))
     }
 
-    /// Whether the value in RON begins with its format, as no scene does.
+    /// Whether the RON value begins with a format field, which scenes do not have.
     fn has_format(&self) -> bool {
         let value = self.text.trim_start_matches(['(', ' ', '\t', '\r', '\n']);
         value.starts_with("format")
@@ -115,14 +115,14 @@ impl Start<'_> {
 }
 
 impl FileKind {
-    /// What a file is, by its beginning.
+    /// Kind of a file, from its first part.
     pub fn of_file(path: &std::path::Path) -> Option<FileKind> {
         const READ: u64 = 4096;
         let start = input::start(path, READ).ok()?;
         FileKind::of(&String::from_utf8_lossy(&start))
     }
 
-    /// What a text is, as far as its beginning and its outermost fields tell; `None` where they do not.
+    /// Kind of a text, from its beginning and its outermost fields; `None` if unknown.
     pub fn of(text: &str) -> Option<FileKind> {
         let text = text.trim_start_matches(input::MARK);
         let rows = text.lines().filter(|line| !line.starts_with('#'));
@@ -139,14 +139,14 @@ impl FileKind {
         KINDS.iter().find(|entry| entry.kind == self)
     }
 
-    /// What it is called, after "this is".
+    /// Name, as in "this is NAME".
     pub fn name(self) -> &'static str {
         self.entry().map_or("", |entry| entry.name)
     }
 
-    /// The command that reads a file of this kind; none where the program has none.
+    /// The command that reads a file of this kind; `None` if there is none.
     pub fn reader(self, file: &str) -> Option<String> {
-        // The tables of a run are read with its contact elements.
+        // The tables of a run are read together with its contact elements.
         let cel = calculix::cel_of(file).filter(|_| self == FileKind::Progress);
         let cel = cel.map(|cel| cel.display().to_string());
         let file = shown::cut(cel.as_deref().unwrap_or(file), 120);
@@ -159,7 +159,7 @@ impl FileKind {
     }
 }
 
-/// Whether the value in RON that a text holds has a field; the text need not be sound.
+/// Whether the RON value in a text has a field; the text need not be valid.
 pub fn has_field(text: &str, field: &str) -> bool {
     too_deep(text).is_none() && is_field(text, field)
 }
@@ -168,19 +168,19 @@ fn is_field(text: &str, field: &str) -> bool {
     locate(text, &Path(vec![Step::from(field)])) != locate(text, &Path::default())
 }
 
-/// Whether a text begins as the contact elements of a CalculiX run do.
+/// Whether a text begins like the contact elements of a CalculiX run.
 pub fn is_contacts(text: &str) -> bool {
     let first = text.lines().next().unwrap_or_default();
     first.starts_with("*ELEMENT") && first.contains("=contactelements_st")
 }
 
-/// The message where a text is of another kind than `wanted`: ``this is a snapshot; `stickslip replay FILE` reads it``.
+/// The message if a text is not of the kind `wanted`: ``this is a snapshot; `stickslip replay FILE` reads it``.
 pub fn mistaken(file: &str, text: &str, wanted: FileKind) -> Option<String> {
     let kind = FileKind::of(text).filter(|kind| *kind != wanted)?;
     let name = kind.name();
     Some(match kind.reader(file) {
         Some(reader) => format!("this is {name}; `{reader}` reads it"),
-        None => format!("this is {name}, and not {}", wanted.name()),
+        None => format!("this is {name}, not {}", wanted.name()),
     })
 }
 
@@ -189,7 +189,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_kind_is_told_by_its_text() {
+    fn every_kind_is_recognised_by_its_text() {
         for (text, kind) in [
             (
                 "(format:1,version:\"0.1.0\",began:1,name:\"a\",scene:(title:\"a\"))\nDone()\n",
@@ -238,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_mistake_is_not_told() {
+    fn the_wanted_kind_is_not_reported() {
         let scene = "(title: \"a\", nodes: [], bodies: [])";
         assert_eq!(mistaken("a.ron", scene, FileKind::Scene), None);
         assert_eq!(

@@ -1,15 +1,14 @@
-//! Where a value stands in a RON text.
+//! Finds the position of a value in a RON text.
 //!
-//! ron tells the position of what it cannot read; of a value that reads well and means nothing (a name that nothing
-//! has) nobody knows the place any more. This finds it again, by walking the text along the value's path ([`locate`]). And of
-//! what ron cannot read, it finds the path to the place ([`path_at`]), so that the deserializer need not keep it for all that
-//! is well. It relies on the text being RON that has been read so far; on any other text it finds something or other, and
-//! never fails.
+//! ron reports the position of syntax and type errors, but not of valid values with a wrong meaning, such as an unknown name.
+//! [`locate`] finds such a value again by walking the text along its path. Conversely, [`path_at`] finds the path at an error
+//! position of ron, so that the deserializer need not track paths. Both assume that the text up to that position is valid RON; on
+//! other text they return some position, but never fail.
 
 use super::error::{Path, Step};
 use std::ops::Range;
 
-/// Byte range of the value at a path, or of the innermost value around it that the text has.
+/// Byte range of the value at a path, or of the innermost enclosing value that the text contains.
 pub fn locate(text: &str, path: &Path) -> Range<usize> {
     let mut scan = Scan::new(text);
     scan.skip_attributes();
@@ -26,7 +25,7 @@ pub fn locate(text: &str, path: &Path) -> Range<usize> {
     here..scan.end_of_value.max(here)
 }
 
-/// The byte at a line and a column, both from 1.
+/// Byte offset of a line and column, both from 1.
 pub fn byte_at(text: &str, line: usize, column: usize) -> usize {
     let before = text.split_inclusive('\n').take(line.saturating_sub(1));
     let start: usize = before.map(str::len).sum();
@@ -35,7 +34,7 @@ pub fn byte_at(text: &str, line: usize, column: usize) -> usize {
     start + within.sum::<usize>()
 }
 
-/// The path of the innermost value around a byte, or just before it; names of fields are no values.
+/// Path of the innermost value at or just before a byte; field names are not values.
 pub fn path_at(text: &str, byte: usize) -> Path {
     let mut scan = Scan::new(text);
     scan.skip_attributes();
@@ -50,17 +49,17 @@ pub fn path_at(text: &str, byte: usize) -> Path {
     path
 }
 
-/// The name before the first bracket, if the text has one there.
+/// The name before the first bracket, if there is one.
 pub fn head(text: &str) -> Option<&str> {
     let mut scan = Scan::new(text);
     scan.skip_attributes();
     scan.word()
 }
 
-/// Deepest nesting of brackets that a file may have; no file of ours has more than a fifth of it.
+/// Maximum nesting depth of brackets; the files of this program use less than a fifth of it.
 pub const DEEPEST: usize = 64;
 
-/// The byte of the first bracket that is nested too deep. Whoever reads by recursion, or looks for places, asks this first.
+/// Byte offset of the first bracket that is nested too deep. Recursive readers and position searches check this first.
 pub fn too_deep(text: &str) -> Option<usize> {
     let mut scan = Scan::new(text);
     let mut depth = 0usize;
@@ -96,11 +95,11 @@ pub fn line_and_column(text: &str, byte: usize) -> (usize, usize) {
     (line, 1 + before[start..].chars().count())
 }
 
-/// A place in the text.
+/// A cursor in the text.
 struct Scan<'a> {
     text: &'a str,
     at: usize,
-    /// Where the last skipped value ended, before the blanks and comments that follow it.
+    /// End of the last skipped value, before the blanks and comments after it.
     end_of_value: usize,
 }
 
@@ -116,7 +115,7 @@ impl<'a> Scan<'a> {
     }
 
     fn rest(&self) -> &'a str {
-        // Every move ends at a character's border; a bug there must not become a panic.
+        // Every move should end on a character boundary; if it does not, avoid a panic.
         self.text.get(self.at..).unwrap_or("")
     }
 
@@ -128,7 +127,7 @@ impl<'a> Scan<'a> {
         self.at += self.peek().map_or(0, char::len_utf8);
     }
 
-    /// Moves past a literal if it stands here.
+    /// Moves past a literal if it is next.
     fn eat(&mut self, literal: &str) -> bool {
         let here = self.rest().starts_with(literal);
         if here {
@@ -137,7 +136,7 @@ impl<'a> Scan<'a> {
         here
     }
 
-    /// Moves to just behind the next occurrence of a text, or to the end.
+    /// Moves past the next occurrence of a text, or to the end.
     fn past(&mut self, needle: &str) {
         self.at += self
             .rest()
@@ -186,7 +185,7 @@ impl<'a> Scan<'a> {
         c == '_' || c.is_alphabetic()
     }
 
-    /// Reads an identifier, raw ones (`r#name`) without their mark.
+    /// Reads an identifier; a raw one (`r#name`) without its prefix.
     fn word(&mut self) -> Option<&'a str> {
         if self.rest().starts_with("r#") && !self.rest()[2..].starts_with(['"', '#']) {
             self.at += 2;
@@ -203,7 +202,7 @@ impl<'a> Scan<'a> {
         Some(&self.text[start..self.at])
     }
 
-    /// Whether a string starts here: length of its opening, and of hash marks if it is raw.
+    /// Whether a string starts here: length of its opening, and number of hash marks if it is raw.
     fn starts_string(&self) -> Option<(usize, Option<usize>)> {
         let rest = self.rest();
         let body = rest.strip_prefix('b').unwrap_or(rest);
@@ -233,7 +232,7 @@ impl<'a> Scan<'a> {
         }
     }
 
-    /// Skips a character literal; an apostrophe that starts none is skipped alone.
+    /// Skips a character literal, or a single apostrophe that does not start one.
     fn skip_char(&mut self) {
         self.bump();
         if self.eat("\\") {
@@ -247,8 +246,8 @@ impl<'a> Scan<'a> {
         }
     }
 
-    /// Moves to what ends the value that starts here: a comma, a colon or a closing bracket of the value around it,
-    /// or the end of the text.
+    /// Moves to the end of the value that starts here: a comma, a colon, the closing bracket of the enclosing value, or the end
+    /// of the text.
     fn skip_value(&mut self) {
         let mut depth = 0usize;
         self.skip_blanks();
@@ -276,8 +275,8 @@ impl<'a> Scan<'a> {
         }
     }
 
-    /// Moves past the opening bracket of the value that starts here, past its name and any `Some(`; tells whether it has a
-    /// name, and which bracket it is.
+    /// Moves past the name, any `Some(` and the opening bracket of the value that starts here. Returns whether it has a name, and
+    /// the bracket.
     fn open(&mut self) -> Option<(bool, char)> {
         loop {
             self.skip_blanks();
@@ -291,9 +290,9 @@ impl<'a> Scan<'a> {
         }
     }
 
-    /// Finds the start of an inner value of the value that starts here.
+    /// Start of an inner value of the value that starts here.
     fn enter(&mut self, step: &Step) -> Option<usize> {
-        // More layers than these no value has, and a text of nothing but brackets would take for ever.
+        // No value has more layers than this, and a text of only brackets would take very long.
         const LAYERS: usize = 4;
         for _ in 0..LAYERS {
             let (named, bracket) = self.open()?;
@@ -307,7 +306,7 @@ impl<'a> Scan<'a> {
             if found.is_some() {
                 return found;
             }
-            // A newtype, `Name((...))`: its only value stands for it.
+            // A newtype, `Name((...))`, is transparent.
             self.at = first;
             self.skip_blanks();
             let inner = match step {
@@ -321,8 +320,8 @@ impl<'a> Scan<'a> {
         None
     }
 
-    /// Moves to the start of that inner value of the value that starts here in which a byte lies, from what parts it from the one
-    /// before up to its end; tells the step to it, if it is one. `None` where there is no such value.
+    /// Moves to the start of the inner value that contains a byte; the separator before a value belongs to it. Returns the step
+    /// to it, if there is one; `None` without such a value.
     fn enter_at(&mut self, byte: usize) -> Option<Option<Step>> {
         self.skip_blanks();
         let name = self.word();
@@ -352,7 +351,7 @@ impl<'a> Scan<'a> {
             if byte <= end && (key.is_none() || byte >= start) {
                 let step = match key {
                     Some(key) => Some(Step::Key(key)),
-                    // `Some(x)`, `Name(x)`, `((...))`: the only value stands for it.
+                    // `Some(x)`, `Name(x)`, `((...))`: the wrapper is transparent.
                     None if bracket == '(' && index == 0 && last => None,
                     None if name == Some("Some") => None,
                     None => Some(Step::Index(index)),
@@ -367,7 +366,7 @@ impl<'a> Scan<'a> {
         None
     }
 
-    /// Whether what follows an opening bracket is a list. Leaves the place as it is.
+    /// Whether an opening bracket is followed by a list. Does not move the cursor.
     fn is_list(&mut self) -> bool {
         let start = self.at;
         self.skip_blanks();
@@ -376,7 +375,7 @@ impl<'a> Scan<'a> {
         list
     }
 
-    /// Whether what follows an opening bracket is a single value without a key. Leaves the place as it is.
+    /// Whether an opening bracket is followed by a single value without a key. Does not move the cursor.
     fn is_newtype(&mut self) -> bool {
         let start = self.at;
         self.skip_value();
@@ -385,7 +384,7 @@ impl<'a> Scan<'a> {
         alone
     }
 
-    /// Start of the value number `index` of a list or tuple whose bracket is just behind.
+    /// Start of value number `index` of a list or tuple; the cursor is just behind its bracket.
     fn nth(&mut self, index: usize) -> Option<usize> {
         for _ in 0..index {
             self.skip_value();
@@ -400,7 +399,7 @@ impl<'a> Scan<'a> {
             .map(|_| start)
     }
 
-    /// Start of the value of a key in a struct or map whose bracket is just behind.
+    /// Start of the value of a key in a struct or map; the cursor is just behind its bracket.
     fn keyed(&mut self, key: &str) -> Option<usize> {
         loop {
             self.skip_blanks();
@@ -431,7 +430,7 @@ impl<'a> Scan<'a> {
     }
 }
 
-/// What RON takes for white space.
+/// Whether RON treats a character as white space.
 fn is_blank(c: char) -> bool {
     matches!(
         c,
@@ -468,7 +467,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_there_is_the_nearest_thing_around_it() {
+    fn a_missing_value_is_located_at_the_innermost_enclosing_one() {
         let text = "(friction: (angle: 3), slaves: [(nodes: [])])";
         assert_eq!(found(text, at!["friction", "cohesion"]), "(angle: 3)");
         assert_eq!(found(text, at!["slaves", 0, "nodes", 4]), "[]");
@@ -477,7 +476,7 @@ mod tests {
     }
 
     #[test]
-    fn the_path_to_a_place_leads_back_to_it() {
+    fn paths_and_positions_are_inverse() {
         let text = "#![enable(implicit_some)]\n(\n  a: 1, /* ( */ b: [(x: \"),\", y: Some(2)), (3, 4)],\n  c: Name(u: {\"k\": 5}),\n  d: Two([6]),\n)";
         for (value, path) in [
             ("1", "a"),
@@ -495,13 +494,13 @@ mod tests {
             assert_eq!(found.to_string(), path, "{value}");
             assert!(text[locate(text, &found)].contains(value), "{value}");
         }
-        // A field's name is in the value around it, and so is what is no text any more.
+        // A field's name belongs to the enclosing value, and so does the text after an error.
         assert_eq!(path_at(text, byte_at(text, 4, 11)).to_string(), "c");
         assert_eq!(path_at(text, byte_at(text, 99, 1)), Path::default());
     }
 
     #[test]
-    fn comments_strings_and_characters_hide_nothing() {
+    fn brackets_in_comments_strings_and_characters_are_ignored() {
         let text = "#![enable(implicit_some)] // (a: 1)\n/* [ /* nested ) */ \" */\nScene(\n  // b: 2,\n  \
                     a: r#\"raw \" , ) \"#, c: '\\'', d: '(', e: b\"x\\\")\", s: \"\\\\\", /* ] */ b : 5 /* x */ , )";
         assert_eq!(found(text, at!["a"]), "r#\"raw \" , ) \"#");
@@ -536,7 +535,7 @@ mod tests {
     }
 
     #[test]
-    fn too_deep_nesting_is_seen_at_once_and_what_is_no_bracket_is_not_counted() {
+    fn excessive_nesting_is_found_and_only_brackets_count() {
         let deep = |k: usize| format!("{}1{}", "[(".repeat(k), ")]".repeat(k));
         assert_eq!(too_deep(&deep(DEEPEST / 2)), None);
         assert_eq!(too_deep(&deep(DEEPEST / 2 + 1)), Some(DEEPEST));
@@ -580,13 +579,13 @@ mod tests {
 
     proptest! {
         #[test]
-        fn any_text_has_an_answer(text in "[\\PC\n]{0,80}", path in any_path()) {
+        fn no_text_makes_it_fail(text in "[\\PC\n]{0,80}", path in any_path()) {
             let range = locate(&text, &path);
             prop_assert!(text.get(range).is_some());
         }
 
         #[test]
-        fn any_near_ron_has_an_answer(text in "[](){}\"'/*,:abSomer#\\\\\n é1]{0,60}", path in any_path()) {
+        fn no_text_similar_to_ron_makes_it_fail(text in "[](){}\"'/*,:abSomer#\\\\\n é1]{0,60}", path in any_path()) {
             let range = locate(&text, &path);
             prop_assert!(text.get(range).is_some());
         }

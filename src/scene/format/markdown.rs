@@ -1,12 +1,12 @@
-//! The scene reference as the manual's pages show it.
+//! The scene reference as Markdown for the manual's pages.
 
 use super::described::{Field, Form, Type};
 use super::reference::reference;
 
-/// Every type of the file but the settings, which have a page of their own.
+/// All types of the file except the settings, which have a separate page.
 ///
 /// # Errors
-/// If the reference cannot be made.
+/// If the reference cannot be generated.
 pub fn types() -> Result<String, String> {
     let all = reference()?;
     let is_word = |one: &Type| one.forms.iter().all(|form| form.fields.is_empty());
@@ -29,10 +29,10 @@ pub fn types() -> Result<String, String> {
     Ok(text.trim_end().replace("(#settings)", "(settings.md)") + "\n")
 }
 
-/// The settings, each with its choices.
+/// The settings with their choices.
 ///
 /// # Errors
-/// If the reference cannot be made.
+/// If the reference cannot be generated.
 pub fn settings() -> Result<String, String> {
     let all = reference()?;
     let found = all.iter().find(|one| one.name == "Settings");
@@ -74,7 +74,7 @@ fn fields(form: &Form, all: &[Type]) -> String {
     text
 }
 
-/// The words that a field can be.
+/// The allowed words of a field.
 fn words<'a>(field: &Field, all: &'a [Type]) -> Option<&'a [Form]> {
     let listed = field.kind.strip_prefix("one of ")?;
     let names = |one: &Type| {
@@ -89,7 +89,7 @@ fn words<'a>(field: &Field, all: &'a [Type]) -> Option<&'a [Form]> {
         .map(|one| &one.forms[..])
 }
 
-/// A comment without the default at its end, where that is a plain value: it stands before, as it is read.
+/// A doc comment without a plain default at its end, because the default is shown separately.
 fn said(docs: &str) -> String {
     let docs = plain(docs);
     match docs.split_once("Default: ") {
@@ -102,7 +102,7 @@ fn said(docs: &str) -> String {
     }
 }
 
-/// A comment without rustdoc's links, which lead nowhere on a page.
+/// A doc comment without rustdoc links, which do not work on a page.
 fn plain(docs: &str) -> String {
     docs.replace("[`", "`").replace("`]", "`")
 }

@@ -1,15 +1,14 @@
-//! The scene file as its author writes it: from its text to a [`Spec`], and from that back to a line.
+//! The scene file as written by its author: converts text to a [`Spec`], and back.
 //!
-//! - [`spec`]: the types of the file; [`loads`]: loads; [`arc`]: how a path is followed; [`given`]: meshes node by node;
-//!   [`condensed`]: those of a file with an interface problem without bodies; [`stored`]: those of one about a stiffness that
-//!   another program has stored.
-//! - [`described`]: the types, described once for [`paths`] and for the [`reference`](mod@reference), which
-//!   [`markdown`] writes.
-//! - [`notation`]: how RON is written here; [`read`]: from a text to a value; [`locate`]: from a path to its line.
-//! - [`paths`]: every scalar of a scene by its path, to list and to set.
-//! - [`error`]: what is wrong, and where; [`kind`]: what a file is that is none of these.
+//! - [`spec`]: the types of the file; [`loads`]: loads; [`arc`]: arc-length control; [`given`]: meshes node by node;
+//!   [`condensed`]: files with an interface problem; [`stored`]: files about a stiffness stored by another program.
+//! - [`described`]: descriptions of the types, used by [`paths`] and by the [`reference`](mod@reference), which [`markdown`]
+//!   writes.
+//! - [`notation`]: the RON dialect; [`read`]: converts text to values; [`locate`]: converts paths to lines.
+//! - [`paths`]: lists and sets every scalar of a scene by its path.
+//! - [`error`]: errors with their location; [`kind`]: recognises other kinds of files.
 //!
-//! Whether what is written makes sense is for [`scene`](crate) to say.
+//! [`scene`](crate) checks whether the values make sense.
 
 pub mod arc;
 pub mod condensed;

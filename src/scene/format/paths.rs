@@ -1,7 +1,7 @@
-//! Every scalar of a scene by a path that a person can type: `friction.angle`, `nodes.beam.elements`.
+//! Addresses every scalar of a scene by a path that a user can type: `friction.angle`, `nodes.beam.elements`.
 //!
-//! Paths name things by their ids where they have any, and by their position where not; a point's parts are `x` and
-//! `y`. One walk over the scene serves listing and setting, so that neither can know more than the other.
+//! Paths use ids where they exist, otherwise positions; the parts of a point are `x` and `y`. Listing and setting use the same
+//! walk over the scene, so they always agree.
 
 use super::described::{Described, ScalarPlace, Visit};
 use super::error::{NotSet, Path, nearest, quoted};
@@ -11,31 +11,31 @@ use stickslip_core::model::Settings;
 /// A value set from outside.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Override {
-    /// The path as it was typed.
+    /// The path as typed.
     pub path: String,
-    /// The value as it was typed.
+    /// The value as typed.
     pub value: String,
-    /// Where the value stands in the scene.
+    /// Path of the value in the scene.
     pub(crate) at: Path,
 }
 
-/// A scalar of a scene, its value, and what it may be.
+/// A scalar of a scene with its value and accepted values.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Listed {
-    /// Its path, as a person types it.
+    /// Path as a user types it.
     pub path: String,
-    /// Its value, as a person types it.
+    /// Value as a user types it.
     pub value: String,
-    /// What can be set: "a number", "one of lagged, consistent".
+    /// Accepted values: "a number", "one of lagged, consistent".
     pub kind: String,
-    /// The words that it can be; none where it is no word.
+    /// The allowed words; empty for other kinds.
     pub words: &'static [&'static str],
 }
 
-/// All scalars of a scene, in the order of the file.
+/// All scalars of a scene, in file order.
 pub fn list(spec: &Spec) -> Vec<Listed> {
     let mut all = Vec::new();
-    // The walk is for setting too and needs a scene that it may change.
+    // The walk also serves setting, so it needs a mutable scene.
     walk(&mut spec.clone(), &mut |place, scalar| {
         all.push(Listed {
             path: place.name(),
@@ -47,7 +47,7 @@ pub fn list(spec: &Spec) -> Vec<Listed> {
     all
 }
 
-/// The settings by their paths, and the words that each can be; no words for a number.
+/// All settings by path, with their allowed words; no words for a number.
 pub fn of_settings() -> Vec<(String, &'static [&'static str])> {
     let mut all = Vec::new();
     let root = ScalarPlace::root();
@@ -58,10 +58,10 @@ pub fn of_settings() -> Vec<(String, &'static [&'static str])> {
     all
 }
 
-/// Sets one scalar. Whether the scene is sound with it shows when it is compiled.
+/// Sets one scalar. Compiling the scene shows whether it is still valid.
 ///
 /// # Errors
-/// If there is no such path, or the value is not of its kind.
+/// If the path does not exist, or the value has the wrong kind.
 pub fn set(spec: &mut Spec, path: &str, value: &str) -> Result<Override, NotSet> {
     let path = path.trim();
     let mut done = None;
@@ -80,20 +80,20 @@ pub fn set(spec: &mut Spec, path: &str, value: &str) -> Result<Override, NotSet>
     }
 }
 
-/// Where a scalar of a scene stands, found once for many settings of it.
+/// Location of a scalar in a scene, found once for many settings of it.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Found {
-    /// Its number in the walk, which no setting changes: what is listed hangs on nothing that can be set.
+    /// Its number in the walk. Setting values does not change it, because the list of scalars does not depend on their values.
     number: usize,
-    /// Where it stands in the scene.
+    /// Path in the scene.
     pub(crate) at: Path,
 }
 
-/// Finds a scalar; `None` if there is none of that path.
+/// Finds a scalar; `None` if the path does not exist.
 pub(crate) fn find(spec: &Spec, path: &str) -> Option<Found> {
     let path = path.trim();
     let (mut number, mut found) = (0, None);
-    // The walk is for setting too and needs a scene that it may change.
+    // The walk also serves setting, so it needs a mutable scene.
     walk(&mut spec.clone(), &mut |place, _| {
         if found.is_none() && place.is(path) {
             let at = place.at();
@@ -105,8 +105,8 @@ pub(crate) fn find(spec: &Spec, path: &str) -> Option<Found> {
 }
 
 impl Found {
-    /// Sets the scalar, in the scene where it was found or one that differs from that in scalars only; `None` if the
-    /// value is not of its kind.
+    /// Sets the scalar in the scene where it was found, or in one that differs from that only in scalars; `None` if the value has
+    /// the wrong kind.
     pub(crate) fn set(&self, spec: &mut Spec, value: &str) -> Option<()> {
         let (mut number, mut done) = (0, None);
         walk(spec, &mut |_, scalar| {
@@ -119,8 +119,8 @@ impl Found {
     }
 }
 
-/// The whole path for one without its first or last step, where a person may leave it out: `increment` for
-/// `history.increment`, `t_max` for `settings.t_max`, `friction` for `friction.angle`. What is none of these stays.
+/// Completes a path without its first or last step if that can be omitted: `increment` for `history.increment`, `t_max` for
+/// `settings.t_max`, `friction` for `friction.angle`. Other paths are returned unchanged.
 pub fn whole(spec: &Spec, path: &str) -> String {
     let path = path.trim();
     let mut wholes = [
@@ -129,7 +129,7 @@ pub fn whole(spec: &Spec, path: &str) -> String {
         format!("settings.{path}"),
         format!("{path}.angle"),
     ];
-    // The walk is for setting too and needs a scene that it may change.
+    // The walk also serves setting, so it needs a mutable scene.
     let mut spec = spec.clone();
     let mut first = None;
     walk(&mut spec, &mut |place, _| {
@@ -152,7 +152,7 @@ fn unknown(spec: &Spec, path: &str) -> String {
         .collect();
     if !inside.is_empty() {
         return format!(
-            "{} is no single value; it has {}",
+            "{} is not a single value; it has {}",
             quoted(path),
             first_of(&inside)
         );
@@ -163,7 +163,7 @@ fn unknown(spec: &Spec, path: &str) -> String {
             quoted(path)
         );
     }
-    // Not near to any: what the longest beginning that does exist goes on with.
+    // Not close to any path: show how the longest existing prefix continues.
     let mut head = path;
     while let Some(cut) = head.rfind(['.', '[']) {
         head = &head[..cut];
@@ -199,9 +199,9 @@ fn first_of(names: &[&str]) -> String {
         + more
 }
 
-/// Visits every scalar, in the order of the file. What a group of slaves or the history leaves to a default that hangs on
-/// other values is shown as that default, and stays left out unless it is set to something else. Where `history.increment` is set,
-/// the increments of each leg change in proportion.
+/// Visits every scalar in file order. Omitted fields of slave groups and of the history whose default depends on other values are
+/// visited with that default, and stay omitted unless set to a different value. Setting `history.increment` scales the increments
+/// of all legs.
 fn walk(spec: &mut Spec, visit: &mut Visit<'_>) {
     let friction = spec.friction;
     let least = spec.history.least();

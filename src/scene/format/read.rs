@@ -1,4 +1,4 @@
-//! From the text of a file to a [`Spec`]: syntax and types, with the place of what is wrong.
+//! Reads the text of a file into a [`Spec`]; errors of syntax and type have a location.
 
 use super::condensed::Problem;
 use super::error::{Path, SceneError, did_you_mean, quoted, shortened};
@@ -12,15 +12,15 @@ use serde::de::DeserializeOwned;
 use stickslip_exchange::broken::Broken;
 use stickslip_platform::input::{self, Unreadable};
 
-/// Most bytes of a scene file: a dense matrix of 2,500 contacts to the last digit.
+/// Maximum size of a scene file in bytes: enough for a dense matrix of 2,500 contacts with all digits.
 pub const FILE_BYTES: usize = 512 << 20;
 
-/// Reads a scene's text.
+/// Reads a scene from its text.
 pub fn spec(file: &str, text: &str) -> Result<Spec, SceneError> {
     value(file, text, "scene").map_err(|error| or_mistaken(error, file, text, FileKind::Scene))
 }
 
-/// An error of reading a text, or, where the text is of another kind than wanted, that.
+/// The given error, or a better one if the text is a file of another kind.
 pub fn or_mistaken(error: SceneError, file: &str, text: &str, wanted: FileKind) -> SceneError {
     match mistaken(file, text, wanted) {
         Some(message) => SceneError::whole(file, message),
@@ -28,44 +28,41 @@ pub fn or_mistaken(error: SceneError, file: &str, text: &str, wanted: FileKind) 
     }
 }
 
-/// Reads an interface problem's text.
+/// Reads an interface problem from its text.
 pub(crate) fn problem(file: &str, text: &str) -> Result<Problem, SceneError> {
     value(file, text, "scene")
 }
 
-/// Reads the text of a file that holds one value; messages call it a `what`.
+/// Reads a file that contains one value; messages call it a `what`.
 pub fn value<T: DeserializeOwned>(file: &str, text: &str, what: &str) -> Result<T, SceneError> {
     shallow(file, text, what)?;
     notation::read(text).map_err(|error| unreadable(file, text, what, &error))
 }
 
-/// Refuses a text whose brackets are nested deeper than those of any file; messages call it a `what`.
+/// Rejects a text whose brackets are nested deeper than in any valid file; messages call it a `what`.
 pub fn shallow(file: &str, text: &str, what: &str) -> Result<(), SceneError> {
     match too_deep(text) {
         None => Ok(()),
         Some(byte) => Err(SceneError {
             at: Some(line_and_column(text, byte)),
-            ..SceneError::whole(
-                file,
-                format!("brackets are nested far too deep for a {what}"),
-            )
+            ..SceneError::whole(file, format!("brackets are nested too deeply for a {what}"))
         }),
     }
 }
 
-/// ron's error in our form.
+/// Converts an error of ron.
 fn unreadable(file: &str, text: &str, what: &str, error: &SpannedError) -> SceneError {
     let path = path_of(text, error);
     let value = locate(text, &path);
     let of_value = line_and_column(text, value.start);
-    // Where a whole value is wrong, its start is the place. Else it is ron's cursor, of which the start of the span is
-    // nearer to the fault than the end.
+    // If a whole value is wrong, report its start. Otherwise report ron's cursor: the start of its span is closer to the error
+    // than the end.
     let (at, message) = match (wanted(&error.code), &error.code) {
         (Some(wanted), _) if !path.0.is_empty() => {
             let shown = shortened(text.get(value).unwrap_or_default());
             (
                 of_value,
-                format!("{shown} will not do; it must be {wanted}"),
+                format!("{shown} is not valid; it must be {wanted}"),
             )
         }
         (_, code @ ron::Error::MissingStructField { .. }) => (of_value, message(code, what)),
@@ -83,10 +80,10 @@ fn unreadable(file: &str, text: &str, what: &str, error: &SpannedError) -> Scene
     }
 }
 
-/// The path to what ron cannot read.
+/// The path to the text that ron cannot read.
 pub fn path_of(text: &str, error: &SpannedError) -> Path {
     use ron::Error as E;
-    // That a field is missing shows at the end of its struct.
+    // A missing field is detected at the end of its struct.
     let place = match error.code {
         E::MissingStructField { .. } => error.span.end,
         _ => error.span.start,
@@ -94,7 +91,7 @@ pub fn path_of(text: &str, error: &SpannedError) -> Path {
     let byte = byte_at(text, place.line, place.col);
     let mut path = path_at(text, byte);
     match &error.code {
-        // What goes on wrongly behind a value is the value around it.
+        // An error after a value concerns the enclosing value.
         E::ExpectedComma | E::ExpectedArrayEnd | E::ExpectedMapEnd | E::ExpectedStructLikeEnd => {
             path.0.pop();
         }
@@ -107,7 +104,7 @@ pub fn path_of(text: &str, error: &SpannedError) -> Path {
     path
 }
 
-/// What a value should be that is something else.
+/// What was expected instead of the value.
 fn wanted(error: &ron::Error) -> Option<&'static str> {
     use ron::Error as E;
     match error {
@@ -119,7 +116,7 @@ fn wanted(error: &ron::Error) -> Option<&'static str> {
         E::ExpectedArray => Some("a list in square brackets, [ ]"),
         E::ExpectedDifferentLength { .. } => Some("two numbers, (x, y)"),
         E::ExpectedStructLike | E::ExpectedNamedStructLike(_) => {
-            Some("something in round brackets, ( )")
+            Some("a value in round brackets, ( )")
         }
         _ => None,
     }
@@ -132,7 +129,7 @@ pub fn text(file: &str) -> Result<String, SceneError> {
         .map_err(|error| unread(file, error))
 }
 
-/// Why a file with a scene is not read.
+/// Error for a scene file that cannot be read.
 pub fn unread(file: &str, error: Unreadable) -> SceneError {
     let mut error = not_read(file, &error);
     if error.at.is_some() {
@@ -141,7 +138,7 @@ pub fn unread(file: &str, error: Unreadable) -> SceneError {
     error
 }
 
-/// Why a file is not read.
+/// Error for a file that cannot be read.
 pub fn not_read(file: &str, error: &Unreadable) -> SceneError {
     SceneError {
         at: match error {
@@ -152,7 +149,7 @@ pub fn not_read(file: &str, error: &Unreadable) -> SceneError {
     }
 }
 
-/// What is wrong with a file of another program.
+/// Error in a file of another program.
 pub fn of_file(file: &str, broken: Broken) -> SceneError {
     SceneError {
         at: broken.at,
@@ -160,7 +157,7 @@ pub fn of_file(file: &str, broken: Broken) -> SceneError {
     }
 }
 
-/// What ron refuses in a text that begins at this line, after words about it.
+/// Error of ron in a text that starts at this line, with an introduction.
 pub fn refused(file: &str, line: usize, words: &str, error: &SpannedError) -> SceneError {
     let start = error.span.start;
     SceneError {
@@ -169,14 +166,14 @@ pub fn refused(file: &str, line: usize, words: &str, error: &SpannedError) -> Sc
     }
 }
 
-/// ron's message, in words for an author who is no programmer where that helps.
+/// ron's message, rephrased for authors who are not programmers where that helps.
 fn message(error: &ron::Error, what: &str) -> String {
     use ron::Error as E;
     match error {
         E::NoSuchStructField {
             expected, found, ..
         } => format!(
-            "there is no field {} here{} (fields: {})",
+            "unknown field {}{} (fields: {})",
             quoted(found),
             did_you_mean(found, expected.iter().copied()),
             expected.join(", ")
@@ -184,7 +181,7 @@ fn message(error: &ron::Error, what: &str) -> String {
         E::NoSuchEnumVariant {
             expected, found, ..
         } => format!(
-            "{} is none of the choices{} (choices: {})",
+            "{} is not one of the choices{} (choices: {})",
             quoted(found),
             did_you_mean(found, expected.iter().copied()),
             expected.join(", ")
@@ -192,7 +189,7 @@ fn message(error: &ron::Error, what: &str) -> String {
         E::MissingStructField { field, .. } => {
             format!("the field {field:?} is missing; it has no default")
         }
-        E::DuplicateStructField { field, .. } => format!("the field {field:?} stands here twice"),
+        E::DuplicateStructField { field, .. } => format!("the field {field:?} is given twice"),
         E::ExpectedStructLike | E::ExpectedNamedStructLike(_) => {
             let second = if what == "scene" { "nodes" } else { "steps" };
             format!(
@@ -203,20 +200,20 @@ fn message(error: &ron::Error, what: &str) -> String {
             if found.starts_with(|c: char| c.is_ascii_digit()) =>
         {
             format!(
-                "{} stands where a field's name should; decimals have a point, not a comma",
+                "{} is not a field name; decimals are written with a point, not a comma",
                 quoted(found)
             )
         }
-        E::ExceededRecursionLimit => format!("brackets are nested far too deep for a {what}"),
+        E::ExceededRecursionLimit => format!("brackets are nested too deeply for a {what}"),
         E::Eof => "the file ends too early; a bracket or a quote is not closed".to_owned(),
         E::TrailingCharacters => {
-            format!("something follows the end of the {what}, its closing bracket")
+            format!("unexpected text after the closing bracket of the {what}")
         }
         other => plainly(other),
     }
 }
 
-/// ron's own message, not longer than one can read.
+/// ron's own message, shortened to a readable length.
 pub fn plainly(error: &ron::Error) -> String {
     const MOST: usize = 300;
     let text = shown::cut(&error.to_string(), MOST);

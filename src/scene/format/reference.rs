@@ -1,12 +1,12 @@
-//! The scene reference: every type of the file, its fields, what may be written and what holds where nothing is.
+//! The scene reference: every type of the file with its fields, accepted values and defaults.
 
 use super::described::{Described, Type};
 use super::spec::Spec;
 
-/// All types of the scene file, the scene itself first, each after one in which it stands.
+/// All types of the scene file: the scene first, each other type after the first one that uses it.
 ///
 /// # Errors
-/// If the defaults of a type cannot be read, which would be a fault of this module; the tests call it.
+/// If the defaults of a type cannot be read. That would be a bug in this module; the tests check it.
 pub fn reference() -> Result<Vec<Type>, String> {
     let mut all = Vec::new();
     Spec::types(&mut all)?;
@@ -34,7 +34,7 @@ mod tests {
     }
 
     #[test]
-    fn defaults_of_the_reference_are_those_that_are_read() {
+    fn reference_defaults_are_those_that_serde_reads() {
         assert_eq!(field("Spec", None, "title").default, None);
         assert_eq!(field("Spec", None, "refine").default.as_deref(), Some("1"));
         assert_eq!(field("Spec", None, "loads").default.as_deref(), Some("[]"));
@@ -65,9 +65,9 @@ mod tests {
         );
     }
 
-    /// What a comment says of a default, where that is a plain value, against the value itself.
+    /// A plain default named in a comment, compared with the actual default.
     #[test]
-    fn a_default_that_a_comment_names_is_the_one_that_is_read() {
+    fn defaults_named_in_comments_are_correct() {
         let mut compared = 0;
         for field in all()
             .iter()
@@ -104,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn every_type_and_word_says_what_it_is() {
+    fn every_type_and_word_is_documented() {
         for one in all() {
             assert!(!one.docs.is_empty(), "{} is not described", one.name);
             assert!(!one.forms.is_empty(), "{} has no form", one.name);

@@ -1,8 +1,7 @@
 //! The scene file as its author writes it: one Rust type per RON construct.
 //!
-//! Nothing here is checked beyond what a type can say; [`stickslip_core::model`] turns a [`Spec`] into a
-//! [`Model`](stickslip_core::model::Model), and refuses what makes no sense. Every field is either required or has the
-//! default that its comment names.
+//! Only types are checked here; [`stickslip_core::model`] turns a [`Spec`] into a [`Model`](stickslip_core::model::Model) and
+//! rejects invalid values. Every field is either required or has the default named in its comment.
 
 use super::arc::ArcSpec;
 use super::contact_law::{ContactLaw, FrictionSpec};
@@ -24,19 +23,19 @@ described! {
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
     pub struct Spec {
-        /// One line that says what the scene is.
+        /// One-line title of the scene.
         pub title: String,
-        /// A few sentences for the reader: source, units, what to look for. Default: empty.
+        /// A short description for the reader: source, units, what to look for. Default: empty.
         #[serde(default)]
         pub about: String => skip,
-        /// Divides every generated element into this many. Default: 1.
+        /// Number of parts into which every generated element is divided (per direction). Default: 1.
         #[serde(default = "one")]
         pub refine: usize,
-        /// Nodes, one by one or generated along curves.
+        /// Nodes, given one by one or generated along curves.
         pub nodes: Vec<Nodes>,
         /// Materials and sections by name.
         pub materials: Vec<Material>,
-        /// What deforms.
+        /// Deformable bodies.
         pub bodies: Vec<BodySpec>,
         /// Master surfaces. Default: none.
         #[serde(default)]
@@ -44,7 +43,7 @@ described! {
         /// Slave nodes. Default: none.
         #[serde(default)]
         pub slaves: Vec<SlaveSpec>,
-        /// Coulomb friction of every slave node that names none of its own. Default: smooth.
+        /// Coulomb friction of all slave nodes without a `friction` value. Default: smooth.
         #[serde(default)]
         pub friction: FrictionSpec,
         /// Restrained degrees of freedom. Default: none.
@@ -55,21 +54,21 @@ described! {
         pub loads: Vec<LoadSpec>,
         /// The path of the load factor and its increments.
         pub history: History,
-        /// Choices of the method and its limits. Default: those of [`Settings`].
+        /// Options and limits of the method. Default: those of [`Settings`].
         #[serde(default)]
         pub settings: Settings,
-        /// What `--csv` and the load-displacement view report. Default: none.
+        /// Quantities that `--csv` and the load-displacement view report. Default: none.
         #[serde(default)]
         pub monitors: Vec<MonitorSpec>,
-        /// The scene of an attached solver, as it told it; nothing else of the file counts then, and nothing of ours solves it
-        /// (manual page `attaching`). Default: none.
+        /// Scene of an attached solver, as sent by that solver. The rest of the file is then ignored, and only the attached
+        /// solver can solve the scene (manual page `attaching`). Default: none.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub attached: Option<String> => skip,
     }
 }
 
 impl Default for Spec {
-    /// A scene without bodies, nodes and all that stands on them.
+    /// A scene without nodes and bodies.
     fn default() -> Self {
         Spec {
             title: String::new(),
@@ -96,144 +95,144 @@ fn one() -> usize {
 }
 
 described! {
-    /// Nodes, one by one or in chains of m-node elements.
+    /// Nodes, given one by one or in chains of m-node elements.
     ///
-    /// A chain's nodes are called `ID.1`, `ID.2`, … in order; `ID.start`, `ID.end`, `ID@0.5` (at that fraction of the
-    /// chain's parameter) and `ID.all` name them whatever the refinement. So do they for each edge of a block.
+    /// The nodes of a chain are `ID.1`, `ID.2`, … in order. `ID.start`, `ID.end`, `ID@0.5` (at that fraction of the chain's
+    /// parameter) and `ID.all` are independent of the refinement. The same names exist for each edge of a block.
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
     pub enum Nodes {
-        /// One node, called `id`.
+        /// A single node named `id`.
         Node {
-            /// Name of the node, or of the chain.
+            /// Name of the node.
             id: String => name,
-            /// Where it stands.
+            /// Position.
             at: Point,
         },
         /// A straight chain.
         Line {
-            /// Name of the node, or of the chain.
+            /// Name of the chain.
             id: String => name,
-            /// Its first node.
+            /// First node.
             from: Point,
-            /// Its last node.
+            /// Last node.
             to: Point,
             /// Number of elements, before refinement.
             elements: usize,
             /// Nodes per element, 2 to 9.
             per_element: usize,
         },
-        /// A circular arc; angles in degrees, anticlockwise from +x, `from` may exceed `to`.
+        /// A circular arc. Angles are in degrees, anticlockwise from +x; `from` may exceed `to`.
         Arc {
-            /// Name of the node, or of the chain.
+            /// Name of the chain.
             id: String => name,
             /// Center of the circle.
             center: Point,
             /// Radius of the circle, a length.
             radius: f64,
-            /// Angle of its first node.
+            /// Angle of the first node.
             from: f64,
-            /// Angle of its last node.
+            /// Angle of the last node.
             to: f64,
             /// Number of elements, before refinement.
             elements: usize,
             /// Nodes per element, 2 to 9.
             per_element: usize,
         },
-        /// A chain through given points; elements are the Lagrange curves through them.
+        /// A chain through given points; each element is the Lagrange curve through its points.
         Through {
-            /// Name of the node, or of the chain.
+            /// Name of the chain.
             id: String => name,
-            /// The nodes before refinement, in order; each element shares its last one with the next.
+            /// The nodes before refinement, in order; neighbouring elements share a node.
             points: Vec<Point>,
             /// Nodes per element, 2 to 9.
             per_element: usize,
         },
-        /// A mesh on a block with four sides: of 8-node quadrilaterals, or of another kind of element.
+        /// A mesh on a block with four sides, made of 8-node quadrilaterals or another kind of element.
         ///
-        /// Its edges are chains of elements of 2 or 3 nodes, as its elements have along a side, `ID.bottom`, `ID.right`, `ID.top` and `ID.left`, walked anticlockwise
-        /// so that the outward side is on the right. They can be used wherever a chain can, and, as lists of nodes, without
-        /// `.all`. All nodes are `ID.1`, `ID.2`, … row by row from the bottom, and `ID.all`.
+        /// Its edges are chains `ID.bottom`, `ID.right`, `ID.top` and `ID.left`, walked anticlockwise, so that the outward side
+        /// is on the right. Their elements have 2 or 3 nodes, like the sides of the block's elements. Edges can be used wherever
+        /// a chain can, and without `.all` in lists of nodes. All nodes are `ID.1`, `ID.2`, … row by row from the bottom, and
+        /// `ID.all`.
         Block {
             /// Name of the block.
             id: String => name,
-            /// Two opposite corners of an upright rectangle, lower left and upper right; or all four of a
-            /// quadrilateral, anticlockwise, the bottom edge first.
+            /// Two opposite corners of an axis-parallel rectangle, lower left and upper right; or all four corners of a
+            /// quadrilateral, anticlockwise, starting with the bottom edge.
             corners: Vec<Point>,
             /// Number of elements along the bottom and along the left edge, before refinement.
             elements: (usize, usize),
-            /// What it is made of; each quadrilateral is cut into two triangles where these are named. Default: quad8.
+            /// Kind of element; for a triangle, each cell is cut into two. Default: quad8.
             #[serde(default, skip_serializing_if = "ElementKind::is_default")]
             element: ElementKind,
-            /// Length of the last element over that of the first along bottom and top (left to right), and along left and
-            /// right (upwards); lengths between grow by a constant factor. Refinement divides each element evenly.
-            /// Default: (1, 1).
+            /// Ratio of the last to the first element length, along bottom and top (left to right) and along left and right
+            /// (upwards); lengths grow by a constant factor. Refinement divides each element evenly. Default: (1, 1).
             #[serde(default = "even")]
             grading: (f64, f64),
-            /// Sides that are not straight; what lies between is blended from all four. Default: none.
+            /// Curved sides; the interior is blended from all four sides. Default: none.
             #[serde(default)]
             sides: Sides,
-            /// Turns and shifts the block, curved sides and all, once it is made. Default: as it lies.
+            /// Rotation and translation applied to the finished block, including its curved sides. Default: as it lies.
             #[serde(default)]
             place: Place,
         },
-        /// One mesh of several blocks, joined along sides. Blocks lie apart, however close, where no joint names them.
+        /// Several blocks joined along edges into one mesh. Blocks without a joint stay separate, however close they are.
         Mesh {
             /// Name of the mesh.
             id: String => name,
-            /// The blocks. Their edges keep their names; their common nodes have one name for each.
+            /// Ids of the blocks. Their edges keep their names; a common node keeps its name from each block.
             of: Vec<String>,
-            /// Pairs of edges that become one, as `("a.right", "b.left")`: their nodes must coincide one by one.
+            /// Pairs of edges to merge, for example `("a.right", "b.left")`; their nodes must coincide one by one.
             joints: Vec<(String, String)>,
-            /// How far two nodes that become one may be apart, in lengths of the edge; the first edge's stays.
+            /// Maximum distance of two merged nodes, relative to the length of the edge; the node of the first edge stays.
             /// Default: 1e-6.
             #[serde(default = "joint_tolerance")]
             tolerance: f64,
         },
-        /// A chain over nodes that exist already, which it shares: a rigid joint between beams, or a line along several
-        /// edges of blocks, around a corner too. Refined as far as its parts are.
+        /// A chain over existing nodes, which it shares: a rigid joint between beams, or a line along several edges of blocks,
+        /// including around corners. It is refined with its parts.
         Chain {
-            /// Name of the node, or of the chain.
+            /// Name of the chain.
             id: String => name,
-            /// Names of single nodes, of whole chains (`ID.all`) and of edges of blocks. A chain or edge goes on from the
-            /// node at which the one before it ends.
+            /// Names of single nodes, of whole chains (`ID.all`) and of block edges. Each chain or edge must start at the last
+            /// node of the previous one.
             of: Vec<String>,
             /// Nodes per element, 2 to 9.
             per_element: usize,
         },
-        /// A mesh that is given node by node. `refine` does not divide its elements.
+        /// A mesh given node by node. `refine` does not divide its elements.
         ///
-        /// Its nodes are called `ID.label`, and all of them `ID.all`. A solid on `ID` takes all elements, one on `ID.part`
-        /// those of a part; `ID.part` and `ID.set` stand for all nodes of theirs, and `ID.side` is a line of sides, walked
-        /// with the body on the left. Sides that do not hang together are several surfaces.
+        /// Its nodes are `ID.label`, together `ID.all`. A solid on `ID` contains all elements, a solid on `ID.part` those of a
+        /// part. `ID.part` and `ID.set` refer to all nodes of a part or set, and `ID.side` to a line of sides, walked with the
+        /// body on the left. Unconnected sides become several surfaces.
         Given {
             /// Name of the mesh.
             id: String => name,
-            /// The nodes as `(label, x, y)`, in any order; no label stands twice.
+            /// The nodes as `(label, x, y)`, in any order; labels are unique.
             nodes: Vec<(usize, f64, f64)> => skip,
             /// The elements, part by part.
             elements: Vec<Cells> => skip,
-            /// Nodes by name. Default: none.
+            /// Named sets of nodes. Default: none.
             #[serde(default)]
             sets: Vec<NodeSet> => skip,
-            /// Sides by name. Default: none.
+            /// Named sets of sides. Default: none.
             #[serde(default)]
             sides: Vec<SideSet> => skip,
         },
-        /// A mesh from a file of Gmsh (.msh, version 2.2 or 4.1, text or binary), which becomes a Given one. Snapshots have it
-        /// inside.
+        /// A mesh from a Gmsh file (.msh, version 2.2 or 4.1, text or binary), converted to a Given mesh. Snapshots contain the
+        /// mesh.
         ///
-        /// Physical groups keep their names: those of surfaces are parts, those of curves are sides, those of points are sets.
-        /// One without a name is called `surface2`, `line3` or `point4` by its number.
+        /// Physical groups keep their names: surfaces become parts, curves become sides, points become sets. A group without a
+        /// name is called `surface2`, `line3` or `point4`, by its number.
         Import {
             /// Name of the mesh.
             id: String => name,
-            /// The file, beside the scene or in a folder below it.
+            /// The file, in the folder of the scene or below.
             file: String,
-            /// Whether quadrilaterals of eight nodes are integrated in 2 x 2 points. Default: false.
+            /// Whether 8-node quadrilaterals use reduced integration (2 x 2 points). Default: false.
             #[serde(default, skip_serializing_if = "std::ops::Not::not")]
             reduced: bool,
-            /// Factor on all coordinates, from the file's unit of length to the scene's. Default: 1.
+            /// Factor applied to all coordinates, from the file's unit of length to the scene's. Default: 1.
             #[serde(default = "unit")]
             scale: f64,
         },
@@ -241,7 +240,7 @@ described! {
 }
 
 impl Nodes {
-    /// Its id.
+    /// The id.
     pub fn id(&self) -> &str {
         match self {
             Nodes::Node { id, .. }
@@ -270,19 +269,19 @@ described! {
     #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
     #[serde(deny_unknown_fields, default)]
     pub struct Sides {
-        /// The side between two corners; straight where none is given.
+        /// The side from the first to the second corner; straight if omitted.
         pub bottom: Option<Side>,
-        /// The side between two corners; straight where none is given.
+        /// The side from the second to the third corner; straight if omitted.
         pub right: Option<Side>,
-        /// The side between two corners; straight where none is given.
+        /// The side from the third to the fourth corner; straight if omitted.
         pub top: Option<Side>,
-        /// The side between two corners; straight where none is given.
+        /// The side from the fourth to the first corner; straight if omitted.
         pub left: Option<Side>,
     }
 }
 
 impl Sides {
-    /// In the order of the walk around the block: bottom, right, top, left.
+    /// In walking order around the block: bottom, right, top, left.
     pub fn around(&self) -> [Option<&Side>; 4] {
         [
             self.bottom.as_ref(),
@@ -298,14 +297,13 @@ described! {
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
     pub enum Side {
-        /// The circular arc about a center that is equally far from both corners, the shorter way round.
+        /// The shorter circular arc between both corners, about a center at equal distance from them.
         Arc {
             /// Center of the circle.
             center: Point,
         },
-        /// The curve of a chain that stands above the block in the scene, or of an earlier block's edge, walked either
-        /// way; its ends are the two corners. Only the curve is taken, with the chain's own spacing (a graded edge is
-        /// graded already); no nodes are shared.
+        /// The curve of a chain, or of a block's edge, defined earlier in the scene, in either direction; its ends are the two
+        /// corners. Only the curve and its spacing are copied (so a graded edge is graded already); no nodes are shared.
         Along {
             /// Id of the chain, or name of the edge.
             chain: String,
@@ -314,15 +312,15 @@ described! {
 }
 
 described! {
-    /// Where a block is put: first turned, then shifted.
+    /// Position of a block: rotation, then translation.
     #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
     #[serde(deny_unknown_fields, default)]
     pub struct Place {
-        /// Degrees, anticlockwise. Default: 0.
+        /// Rotation in degrees, anticlockwise. Default: 0.
         pub turn: f64,
-        /// The point about which it turns. Default: (0, 0).
+        /// Center of the rotation. Default: (0, 0).
         pub about: Point,
-        /// Default: (0, 0).
+        /// Translation. Default: (0, 0).
         pub shift: Point,
     }
 }
@@ -333,7 +331,7 @@ described! {
     #[serde(deny_unknown_fields)]
     #[allow(non_snake_case)]
     pub enum Material {
-        /// A beam's section stiffnesses.
+        /// Section stiffnesses of a beam.
         Section {
             /// Name of the material.
             id: String => name,
@@ -345,24 +343,24 @@ described! {
             #[serde(default)]
             GA: Option<f64>,
         },
-        /// An elastic continuum in the plane.
+        /// A plane elastic continuum.
         Elastic {
             /// Name of the material.
             id: String => name,
-            /// Young's modulus, force by area.
+            /// Young's modulus, force per area.
             E: f64,
             /// Poisson's ratio, 0 <= nu < 0.5.
             nu: f64,
-            /// Default: svk.
+            /// Stress-strain law. Default: svk.
             #[serde(default)]
             law: Law,
-            /// Default: strain.
+            /// Assumption about the out-of-plane direction. Default: strain.
             #[serde(default)]
             plane: Plane,
-            /// Thickness across the plane, of the undeformed body; none in axisymmetry. Default: 1.
+            /// Undeformed thickness across the plane; not used in axisymmetry. Default: 1.
             #[serde(default = "unit")]
             thickness: f64,
-            /// Default: total.
+            /// Reference configuration of strains and stresses. Default: total.
             #[serde(default)]
             update: Update,
         },
@@ -374,7 +372,7 @@ fn unit() -> f64 {
 }
 
 impl Material {
-    /// Its id.
+    /// The id.
     pub fn id(&self) -> &str {
         match self {
             Material::Section { id, .. } | Material::Elastic { id, .. } => id,
@@ -397,49 +395,50 @@ described! {
             /// Id of the material.
             material: String,
         },
-        /// A continuum on a block, or on a mesh of several.
+        /// A continuum on a block or on a mesh.
         Solid {
             /// Name of the body.
             id: String => name,
-            /// Id of the block or mesh, or `ID.part` of a given one.
+            /// Id of the block or mesh, or `ID.part` of a given mesh.
             mesh: String,
             /// Id of the material.
             material: String,
-            /// Parts of another material; where they overlap, the last one holds. Default: none.
+            /// Regions with another material; where they overlap, the last one wins. Default: none.
             #[serde(default)]
             regions: Vec<Region>,
         },
-        /// A linear body, given by its matrix about the undeformed state: two degrees of freedom a node, x and y, in the order
-        /// of `nodes`. Either `stiffness` (f = K u) or `compliance` (u = W f, W may be singular) is named, row by row;
-        /// neither need be symmetric.
+        /// A linear body given by its matrix about the undeformed state: two degrees of freedom per node, x and y, in the order
+        /// of `nodes`. Give either `stiffness` (f = K u) or `compliance` (u = W f, W may be singular), row by row. The matrix
+        /// need not be symmetric.
         Matrix {
             /// Name of the body.
             id: String => name,
-            /// Names of nodes, each once.
+            /// Names of the nodes, each once.
             nodes: Vec<String>,
-            /// K, force by length. Default: none.
+            /// K, force per length. Default: none.
             #[serde(default)]
             stiffness: Vec<Vec<f64>>,
-            /// W, length by force. Default: none.
+            /// W, length per force. Default: none.
             #[serde(default)]
             compliance: Vec<Vec<f64>>,
-            /// Displacement of the body under no force at load factor 1, times the load factor: u = free λ + W f. Default: zero.
+            /// Displacement of the body without forces at load factor 1; it is multiplied by the load factor: u = free λ + W f.
+            /// Default: zero.
             #[serde(default)]
             free: Vec<f64>,
         },
-        /// Elastic bars, hinged at both ends, that turn as far as they like: N = EA (l - L) / L.
+        /// Elastic bars, hinged at both ends, with arbitrarily large rotations: N = EA (l - L) / L.
         Truss {
             /// Name of the body.
             id: String => name,
-            /// Pairs of nodes, a bar between each.
+            /// Pairs of nodes; each pair is a bar.
             bars: Vec<(String, String)>,
-            /// Axial stiffness of every bar, a force; in axisymmetry of all bars around together.
+            /// Axial stiffness of every bar, force; in axisymmetry for the whole circumference.
             EA: f64,
-            /// Displacements are small: each bar keeps its direction. Default: false.
+            /// Small displacements: each bar keeps its direction. Default: false.
             #[serde(default, skip_serializing_if = "std::ops::Not::not")]
             small: bool,
         },
-        /// Linear bars, their directions fixed: small displacements. In axisymmetry stiffnesses are of the whole circumference.
+        /// Linear bars with fixed directions (small displacements). In axisymmetry, stiffnesses refer to the whole circumference.
         Springs {
             /// Name of the body.
             id: String => name,
@@ -450,23 +449,23 @@ described! {
 }
 
 described! {
-    /// A linear bar between two nodes, or from one node to the ground. It resists motion (of one node against the other)
-    /// along its angle alone, both ways and from the start: there is no dead band.
+    /// A linear bar between two nodes, or from one node to the ground. It resists relative motion along its angle only, in
+    /// tension and compression, without a dead band.
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
     pub struct Bar {
-        /// One node or two.
+        /// One or two nodes.
         pub nodes: Vec<String>,
-        /// Degrees from +x, anticlockwise. Default: along the line between the two undeformed nodes.
+        /// Angle in degrees from +x, anticlockwise. Default: along the line between the two undeformed nodes.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub angle: Option<f64> => given,
-        /// Force by length.
+        /// Stiffness, force per length.
         pub stiffness: f64,
     }
 }
 
 described! {
-    /// A part of a solid with a material of its own: the elements whose middle lies in an upright rectangle.
+    /// A part of a solid with a different material: the elements whose midpoint lies in an axis-parallel rectangle.
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
     pub struct Region {
@@ -480,7 +479,7 @@ described! {
 }
 
 impl BodySpec {
-    /// Its id.
+    /// The id.
     pub fn id(&self) -> &str {
         match self {
             BodySpec::Beam { id, .. }
@@ -495,9 +494,8 @@ impl BodySpec {
 described! {
     /// A master surface: the interface elements along a chain of nodes.
     ///
-    /// Whoever walks along the chain has the outward side on the right (the body on the left, as along the boundary of
-    /// a body whose nodes run anticlockwise). Nodes that belong to no body are restrained: the surface is rigid and
-    /// adds no unknowns.
+    /// The outward side is on the right when walking along the chain (the body is on the left, as on the boundary of a body
+    /// walked anticlockwise). Nodes that belong to no body are fixed: the surface is rigid and adds no unknowns.
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
     pub struct SurfaceSpec {
@@ -505,21 +503,20 @@ described! {
         pub id: String => name,
         /// Id of the chain, or name of the edge.
         pub along: String,
-        /// Walk the chain the other way, so that the outward side changes. Default: false.
+        /// Walk the chain in the opposite direction, which swaps the outward side. Default: false.
         #[serde(default)]
         pub reverse: bool,
-        /// Goes on straight past both ends, for ever. For a straight, rigid surface. Default: false.
+        /// Extend the surface straight beyond both ends; requires a straight, rigid surface. Default: false.
         #[serde(default)]
         pub endless: bool,
-        /// One smooth curve through all nodes of the chain, so that the normal does not jump between its elements: from node
-        /// to node a cubic, whose slope at a node is that of the parabola through it and its two neighbours. A sharp corner is
-        /// rounded, too: where there is a real one, make two surfaces. Default: false, where each element is a curve of its
-        /// own.
+        /// Use one smooth curve through all nodes of the chain, so that the normal does not jump between elements: a cubic from
+        /// node to node, whose slope at a node is that of the parabola through the node and its two neighbours. Sharp corners are
+        /// rounded too; where a corner is real, define two surfaces. Default: false, each element is a separate curve.
         #[serde(default, skip_serializing_if = "std::ops::Not::not")]
         pub smooth: bool,
-        /// Cut at convex corners of more than 30 degrees into surfaces `ID.1`, `ID.2`, ..., of which a slave node of a solid touches
-        /// only those that its own side faces. A node that goes past a corner at a small depth is nearer to the other side for a
-        /// moment, and would be pressed out there. Default: false.
+        /// Cut the surface at convex corners of more than 30 degrees into surfaces `ID.1`, `ID.2`, ...; a slave node of a solid
+        /// then touches only those that its own side faces. Without cuts, a node that passes a corner with a small penetration is
+        /// briefly closer to the other side and would be pushed out there. Default: false.
         #[serde(default, skip_serializing_if = "std::ops::Not::not")]
         pub cut: bool,
     }
@@ -530,10 +527,10 @@ described! {
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
     pub struct SlaveSpec {
-        /// Names of nodes; `ID.all` stands for every node of a chain, and a block's `ID.left` for those of its edge, less
-        /// those that cannot move over surfaces that cannot move either. The corner of two edges counts once.
+        /// Names of nodes. `ID.all` means every node of a chain, and an edge such as `ID.left` of a block all its nodes, except
+        /// nodes that cannot move if the surface cannot move either. A corner of two edges counts once.
         pub nodes: Vec<String>,
-        /// Surfaces among which each node finds its own element.
+        /// Surfaces that each node may touch.
         pub on: Vec<String>,
         /// The mode of the first minor iteration. Default: free.
         #[serde(default)]
@@ -541,30 +538,30 @@ described! {
         /// Friction of these nodes. Default: the scene's.
         #[serde(default)]
         pub friction: Option<FrictionSpec>,
-        /// What holds where these nodes touch. Default: Hard.
+        /// Contact law of these nodes. Default: Hard.
         #[serde(default, skip_serializing_if = "ContactLaw::is_hard")]
         pub law: ContactLaw,
-        /// Stick stiffness K_t, a shear stress by length: a node that sticks gives way along the surface by F_t / (K_t A), with its
-        /// tributary area A (elastic slip). Default: none, it sticks rigidly.
+        /// Stick stiffness K_t, shear stress per length: a stuck node yields along the surface by F_t / (K_t A) with its
+        /// tributary area A (elastic slip). Default: none, sticking is rigid.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub stick: Option<f64>,
-        /// Tributary area of each of these nodes, undeformed. Default: none, it is that of the sides of its body.
+        /// Undeformed tributary area of each of these nodes. Default: none, it is computed from the sides of the body.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub area: Option<f64>,
-        /// What these nodes bring from iterations before the scene's first. Default: nothing.
+        /// Values from iterations before the scene's first one. Default: nothing.
         #[serde(default)]
         pub state: InitialState,
     }
 }
 
 described! {
-    /// Restrained degrees of freedom of nodes.
+    /// Restrained degrees of freedom of a node.
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
     pub struct SupportSpec {
         /// Name of a node; `ID.all` for a whole chain.
         pub node: String,
-        /// What is restrained.
+        /// The restrained degrees of freedom.
         pub fix: Vec<Component>,
     }
 }
@@ -574,25 +571,25 @@ described! {
     #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
     #[serde(deny_unknown_fields)]
     pub struct History {
-        /// Corners of the path, the first of which is where the scene starts unloaded, usually 0.
+        /// Corners of the path. The first one, usually 0, is the unloaded state.
         pub path: Vec<f64>,
-        /// Size of an increment of the load factor; the last one of each leg is shorter where it must be.
+        /// Increment of the load factor; the last increment of a leg may be shorter.
         pub increment: f64,
-        /// Sizes of the increments on each leg of the path, one a leg. Setting `increment` changes them in proportion. Default:
-        /// `increment` on all.
+        /// Increment on each leg of the path, one value per leg. Setting `increment` scales all of them. Default: `increment` on
+        /// all.
         #[serde(default, skip_serializing_if = "Vec::is_empty")]
         pub increments: Vec<f64>,
-        /// Size below which an increment that fails is not cut any more (`strategy: ladder` halves it). Default: a 64th of
-        /// the leg's increment.
+        /// Size below which a failing increment is no longer cut (`strategy: ladder` halves it). Default: 1/64 of the leg's
+        /// increment.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub least: Option<f64> => given,
-        /// What an increment does that jumps to another branch of equilibrium (`strategy: ladder`). Default: cut.
+        /// What to do with an increment that jumps to another equilibrium branch (`strategy: ladder`). Default: cut.
         #[serde(default, skip_serializing_if = "Jumps::is_default")]
         pub jumps: Jumps,
-        /// What drives the history from one increment to the next. Default: load.
+        /// What controls the history from one increment to the next. Default: load.
         #[serde(default, skip_serializing_if = "Control::is_default")]
         pub control: Control,
-        /// How the path of equilibrium is followed, with `control: arc`. Default: along all displacements.
+        /// Parameters of arc-length control, with `control: arc`. Default: along all displacements.
         #[serde(default, skip_serializing_if = "ArcSpec::is_default")]
         pub arc: ArcSpec,
     }
@@ -614,12 +611,12 @@ impl Default for History {
 }
 
 impl History {
-    /// Size of the increments on a leg of the path.
+    /// Increment size on a leg of the path.
     pub fn on_leg(&self, leg: usize) -> f64 {
         on_leg(&self.increments, self.increment, leg)
     }
 
-    /// Size below which no increment is cut.
+    /// Size below which an increment is no longer cut.
     pub fn least(&self) -> f64 {
         let smallest = self.increments.iter().copied().reduce(f64::min);
         least(self.least, smallest.unwrap_or(self.increment))

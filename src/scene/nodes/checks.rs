@@ -1,4 +1,4 @@
-//! Nodes that cannot be laid out, refused before any is made: unusable or doubled ids, and too many nodes.
+//! Checks before any node is generated: invalid or duplicate ids, and too many nodes.
 
 use super::super::blocks::Grid;
 use super::super::limits;
@@ -6,7 +6,7 @@ use crate::format::error::{Fault, at};
 use crate::format::spec::{Nodes, Spec};
 use std::collections::HashMap;
 
-/// Ids of nodes: usable, and none twice.
+/// Checks the ids of nodes: valid and unique.
 pub(super) fn check_ids(spec: &Spec) -> Result<(), Fault> {
     if spec.nodes.is_empty() {
         return Err(Fault::new(at!["nodes"], "the scene has no nodes"));
@@ -25,14 +25,14 @@ pub(super) fn check_ids(spec: &Spec) -> Result<(), Fault> {
             named.is_some_and(|other| !matches!(other, Nodes::Node { .. }))
         };
         if let Some(chain) = dots.find(is_chain) {
-            let message = format!("the id {id:?} would be a name of a node of {chain:?}");
+            let message = format!("the id {id:?} would also be the name of a node of {chain:?}");
             return Err(Fault::new(here, message));
         }
     }
     once("nodes", spec.nodes.iter().map(Nodes::id))
 }
 
-/// Refuses unusable ids and second ones of the entries of a list.
+/// Rejects invalid and duplicate ids in a list.
 pub(crate) fn unique<'a>(list: &str, ids: impl Iterator<Item = &'a str>) -> Result<(), Fault> {
     let ids: Vec<&str> = ids.collect();
     for (k, id) in ids.iter().enumerate() {
@@ -41,7 +41,7 @@ pub(crate) fn unique<'a>(list: &str, ids: impl Iterator<Item = &'a str>) -> Resu
     once(list, ids.into_iter())
 }
 
-/// Refuses duplicate ids in a list.
+/// Rejects duplicate ids in a list.
 fn once<'a>(list: &str, ids: impl Iterator<Item = &'a str>) -> Result<(), Fault> {
     let mut seen = HashMap::new();
     for (k, id) in ids.enumerate() {
@@ -49,14 +49,14 @@ fn once<'a>(list: &str, ids: impl Iterator<Item = &'a str>) -> Result<(), Fault>
         if let Some(first) = seen.insert(id, k) {
             return Err(Fault::new(
                 here,
-                format!("the id {id:?} is taken already by {list}[{first}]"),
+                format!("the id {id:?} is already used by {list}[{first}]"),
             ));
         }
     }
     Ok(())
 }
 
-/// Refuses too many nodes before any is made.
+/// Rejects too many nodes before any is generated.
 pub(super) fn check_total(spec: &Spec) -> Result<(), Fault> {
     let mut total = 0.0;
     for (k, nodes) in spec.nodes.iter().enumerate() {
@@ -87,11 +87,11 @@ pub(super) fn check_total(spec: &Spec) -> Result<(), Fault> {
             Nodes::Mesh { .. } | Nodes::Chain { .. } | Nodes::Import { .. } => 0.0,
         };
         let why = if total > limits::NODES as f64 {
-            format!("at most {} can be had", limits::NODES)
+            format!("at most {} are allowed", limits::NODES)
         } else {
             match limits::memory(total * limits::NODE_BYTES, spec.settings.memory) {
                 Ok(()) => continue,
-                Err(why) => format!("they take {why}"),
+                Err(why) => format!("they need {why}"),
             }
         };
         let refine = spec.refine;

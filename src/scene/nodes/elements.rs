@@ -1,4 +1,4 @@
-//! Elements of a given mesh: walked anticlockwise, and refused where they are folded, stand twice, or do not fit their neighbours.
+//! Elements of a given mesh: puts them in anticlockwise order, and rejects folded, duplicate and mismatching ones.
 
 use super::super::geometry::Folds;
 use crate::format::error::{Fault, Path};
@@ -12,11 +12,11 @@ fn corners(kind: ElementKind) -> usize {
     kind.faces().len()
 }
 
-/// The element of these nodes, turned where it runs clockwise: meshers number the elements of a surface that faces away
-/// from the reader that way round. `path` is where it stands, `folds` what tells folded ones of its kind.
+/// The element of these nodes, reversed if it is clockwise: meshers number the elements of a surface that way if it faces away
+/// from the viewer. `path` is its location, and `folds` the check for folded elements of its kind.
 ///
 /// # Errors
-/// If it has the wrong number of nodes, one of them twice, or is folded.
+/// If it has the wrong number of nodes, a repeated node, or is folded.
 pub(super) fn sound(
     path: impl Fn() -> Path,
     nodes: &[Node],
@@ -34,12 +34,12 @@ pub(super) fn sound(
         return Err(Fault::new(path(), message));
     }
     if let Some(k) = (1..own.len()).find(|&k| own[..k].contains(&own[k])) {
-        let message = format!("node {} stands twice in the element", nodes[own[k]].name);
+        let message = format!("node {} occurs twice in the element", nodes[own[k]].name);
         return Err(Fault::new(path().then(k), message));
     }
     let count = corners(kind);
     if area(nodes, &own[..count]) < 0.0 {
-        // From its first corner the other way round, so that the middle of its last side comes first.
+        // Reversed from its first corner, so that the midside node of its last side comes first.
         own[1..count].reverse();
         #[cfg(mutants)]
         if stickslip_core::mutants::is_active("middle-nodes-not-turned") {
@@ -60,13 +60,13 @@ pub(super) fn sound(
     Ok((kind, own))
 }
 
-/// Names of a few nodes in a row.
+/// Names of some nodes, joined.
 pub(super) fn named(nodes: &[Node], some: &[usize]) -> String {
     let names: Vec<&str> = some.iter().map(|&n| nodes[n].name.as_str()).collect();
     names.join(", ")
 }
 
-/// Twice the area of a polygon, positive where it runs anticlockwise.
+/// Twice the area of a polygon; positive if anticlockwise.
 fn area(nodes: &[Node], around: &[usize]) -> f64 {
     let origin = around.first().map_or([0.0; 2], |&n| nodes[n].at);
     let from = |n: usize| [nodes[n].at[0] - origin[0], nodes[n].at[1] - origin[1]];
@@ -79,7 +79,7 @@ fn area(nodes: &[Node], around: &[usize]) -> f64 {
         .sum()
 }
 
-/// Refuses two elements with the same corners.
+/// Rejects two elements with the same corners.
 pub(super) fn check_doubled(
     here: &Path,
     nodes: &[Node],
@@ -104,8 +104,8 @@ pub(super) fn check_doubled(
     Err(Fault::new(here.clone(), message))
 }
 
-/// Refuses a side that is one of an element with a node in its middle and of one without: they would gape or overlap between
-/// the ends. `path` is where an element stands.
+/// Rejects a side shared by an element with a midside node and one without: they would gape or overlap between the ends. `path`
+/// locates an element.
 pub(super) fn check_orders(
     path: impl Fn(usize) -> Path,
     nodes: &[Node],
@@ -134,7 +134,7 @@ pub(super) fn check_orders(
     };
     let (linear, quadratic) = (pair[0].2, pair[1].2);
     let message = format!(
-        "the side between {} is one of a {} and of a {}: the one has a node in its middle, the other none; mesh both with elements of one order",
+        "the side between {} is shared by a {} and a {}, but only one of them has a midside node there; mesh both with elements of the same order",
         named(nodes, &pair[0].0),
         elements[quadratic].0.word(),
         elements[linear].0.word()

@@ -1,4 +1,4 @@
-//! Meshes that are given node by node: labels become numbers, and parts, sets and sides get their names.
+//! Meshes given node by node: converts labels to numbers, and names parts, sets and sides.
 
 use super::super::curves::point;
 use super::super::geometry::Folds;
@@ -13,7 +13,7 @@ use std::collections::HashMap;
 use stickslip_core::model::Node;
 
 impl Names {
-    /// Enters a mesh that is given node by node: the whole of it, then its parts, sets and sides.
+    /// Adds a mesh given node by node: the whole mesh, then its parts, sets and sides.
     pub(super) fn given(&mut self, at: usize, nodes: &Nodes) -> Result<(), Fault> {
         let Nodes::Given {
             id,
@@ -70,7 +70,7 @@ impl Names {
         Ok(())
     }
 
-    /// Makes the nodes in the order of their labels, and gives these.
+    /// Adds the nodes in the order of their labels, which are returned.
     fn labelled(
         &mut self,
         here: &Path,
@@ -84,7 +84,7 @@ impl Names {
             let (label, x, y) = listed[k];
             let path = || here.then(k);
             if labels.last() == Some(&label) {
-                let message = format!("the label {label} is that of another node already");
+                let message = format!("the label {label} is already used by another node");
                 return Err(Fault::new(path().then(0), message));
             }
             if !(x.is_finite() && y.is_finite()) || x.abs().max(y.abs()) > limits::MAGNITUDE {
@@ -99,7 +99,7 @@ impl Names {
         Ok(labels)
     }
 
-    /// The elements of all lists, and for each part which of them it has.
+    /// The elements of all lists, and the indices of the elements of each part.
     #[allow(clippy::type_complexity)]
     fn elements_of<'s>(
         &self,
@@ -133,7 +133,7 @@ impl Names {
     }
 }
 
-/// Where the k-th element of all lists stands.
+/// Location of the k-th element of all lists.
 fn place(here: &Path, lists: &[Cells], mut k: usize) -> Path {
     for (list, cells) in lists.iter().enumerate() {
         if k < cells.nodes.len() {
@@ -152,14 +152,14 @@ pub(super) fn nodes_of(elements: &[Element]) -> Vec<usize> {
     nodes
 }
 
-/// The labels of a mesh, ascending: the k-th is that of node number `first + k`.
+/// The labels of a mesh, ascending: label k belongs to node number `first + k`.
 struct Labels {
     labels: Vec<usize>,
     first: usize,
 }
 
 impl Labels {
-    /// The numbers of nodes by their labels, which stand at `path`.
+    /// Converts labels, located at `path`, to node numbers.
     fn numbers(&self, path: impl Fn() -> Path, labels: &[usize]) -> Result<Vec<usize>, Fault> {
         let number = |(k, label): (usize, &usize)| match self.labels.binary_search(label) {
             Ok(place) => Ok(self.first + place),
@@ -183,7 +183,7 @@ impl Labels {
     }
 }
 
-/// Refuses names of parts, sets and sides that cannot stand behind the mesh's id, or that mean two things.
+/// Rejects names of parts, sets and sides that are invalid after the mesh's id or ambiguous.
 fn check_names(
     here: &Path,
     elements: &[Cells],
@@ -200,11 +200,11 @@ fn check_names(
     let mut check = |path: Path, name, what: &'static str| {
         usable(&path, name)?;
         match seen.insert(name, what) {
-            // Several lists may be of one part.
+            // Several lists may belong to the same part.
             Some("part") if what == "part" => Ok(()),
             Some(other) => {
                 let message = format!(
-                    "the mesh has a {other} called {} already; parts, sets and sides need a name each",
+                    "the mesh already has a {other} called {}; names of parts, sets and sides must be unique",
                     quoted(name)
                 );
                 Err(Fault::new(path, message))
@@ -237,26 +237,26 @@ fn check_names(
         .map_err(|fault| Fault::new(here.clone(), fault.message))
 }
 
-/// Refuses a name that could not be told from a label, or be cut from what follows it.
+/// Rejects a name that looks like a label or cannot be separated from the text after it.
 fn usable(path: &Path, name: &str) -> Result<(), Fault> {
     let wrong = if name.is_empty() {
         "is empty"
     } else if name.chars().count() > limits::NAME {
         "is longer than 64 characters"
     } else if name.trim() != name {
-        "begins or ends with a blank"
+        "starts or ends with a space"
     } else if name
         .chars()
         .any(|c| matches!(c, '.' | '@' | '"' | '\\') || c.is_control())
     {
-        "has a point, an @, a quote or a backslash in it"
+        "contains a point, an @, a quote or a backslash"
     } else if name.chars().all(|c| c.is_ascii_digit()) {
-        "is a number, which is the label of a node"
+        "is a number, and would be the label of a node"
     } else if limits::TAKEN.contains(&name) {
-        "means something else behind the id of a mesh"
+        "is a reserved word after the id of a mesh"
     } else {
         return Ok(());
     };
-    let message = format!("the name {} {wrong}; take another", quoted(name));
+    let message = format!("the name {} {wrong}; use another name", quoted(name));
     Err(Fault::new(path.clone(), message))
 }

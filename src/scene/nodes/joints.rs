@@ -1,4 +1,4 @@
-//! Meshes of several blocks: which edges are joined, and which nodes become one there.
+//! Meshes of several blocks: joins edges and merges their nodes.
 
 use super::super::geometry::distance;
 use super::{Entry, EntryKind, Names};
@@ -7,8 +7,8 @@ use crate::format::spec::Nodes;
 use std::collections::HashSet;
 
 impl Names {
-    /// Enters a mesh of several blocks, and tells which nodes its joints make one: pairs of those that stay and those
-    /// that go.
+    /// Adds a mesh of several blocks, and returns the node pairs that its joints merge: the node that stays and the one that is
+    /// removed.
     pub(super) fn mesh_of_blocks(
         &mut self,
         at: usize,
@@ -27,7 +27,7 @@ impl Names {
         let here = at!["nodes", at];
         if !(0.0..=0.1).contains(tolerance) {
             let message = format!(
-                "the tolerance is {tolerance:?}; it must be 0 to 0.1, in lengths of the edge"
+                "the tolerance is {tolerance:?}; it must be 0 to 0.1 (relative to the edge's length)"
             );
             return Err(Fault::new(here.then("tolerance"), message));
         }
@@ -72,13 +72,12 @@ impl Names {
             return Ok(edge);
         }
         Err(fault(format!(
-            "{name:?} is no edge of a block of this mesh, which is what can be joined, as \"{}.right\"",
+            "{name:?} is not an edge of a block of this mesh, e.g. \"{}.right\"",
             parts.first().map_or("block", |&k| &self.entries[k].id)
         )))
     }
 
-    /// The nodes that become one where two edges are joined. Both are walked with their block on the left, so that one
-    /// runs against the other.
+    /// The nodes merged by joining two edges. Both are walked with their block on the left, so they run in opposite directions.
     fn joint(
         &self,
         here: &Path,
@@ -89,7 +88,7 @@ impl Names {
         let per = |edge: &Entry| edge.kind.per_element().unwrap_or(2);
         if per(a) != per(b) {
             let message = format!(
-                "{:?} has {} nodes a side and {:?} has {}; blocks that are joined need kinds of elements with as many",
+                "{:?} has {} nodes per side and {:?} has {}; joined blocks need elements with the same number",
                 a.id,
                 per(a),
                 b.id,
@@ -100,7 +99,7 @@ impl Names {
         let elements = |edge: &Entry| edge.nodes.len() / (per(edge) - 1);
         if a.nodes.len() != b.nodes.len() {
             let message = format!(
-                "{:?} has {} elements and {:?} has {}; edges that are joined need as many",
+                "{:?} has {} elements and {:?} has {}; joined edges need the same number",
                 a.id,
                 elements(a),
                 b.id,
@@ -139,7 +138,7 @@ impl Names {
         Err(Fault::new(here.clone(), message))
     }
 
-    /// Makes one node of those that are twins, the first of them, and numbers the rest anew.
+    /// Merges twin nodes into the first of them, and renumbers the others.
     pub(super) fn merge(&mut self, twins: &[(usize, usize)]) {
         if twins.is_empty() {
             return;
@@ -163,7 +162,7 @@ impl Names {
                 number[n] = kept.len();
                 kept.push(node);
             } else {
-                // The first of its twins was numbered before.
+                // The first of its twins is already numbered.
                 number[n] = number[first];
             }
         }

@@ -1,4 +1,4 @@
-//! Nodes and chains as the scene lists them, laid out and entered under their names.
+//! Creates the nodes and chains of the scene and adds them under their names.
 
 use super::super::blocks::{EDGES, Shape, block};
 use super::super::curves::{
@@ -79,7 +79,7 @@ impl Names {
             Nodes::Given { .. } => return self.given(at, nodes),
             Nodes::Import { file, .. } => {
                 let message = format!(
-                    "the file {file:?} has not been read; a scene with an Import is opened as a file"
+                    "the file {file:?} has not been read; scenes with an Import must be opened from a file"
                 );
                 return Err(Fault::new(here.then("file"), message));
             }
@@ -131,14 +131,14 @@ impl Names {
             let total = before + shared.len() + found.len();
             limits::memory(total as f64 * limits::NAMED_BYTES, memory).map_err(|why| {
                 fault(format!(
-                    "with this, all chains have {total} nodes together, which take {why}"
+                    "with this item, all chains have {total} nodes in total, which need {why}"
                 ))
             })?;
             if found.len() > 1 && shared.last().is_some() && shared.last() == found.first() {
                 shared.pop();
             } else if shared.last().is_some() && shared.last() == found.first() {
                 return Err(fault(format!(
-                    "{name:?} stands twice in a row; a chain must go on to another node"
+                    "{name:?} is repeated; a chain must continue to another node"
                 )));
             }
             shared.extend(found);
@@ -148,7 +148,7 @@ impl Names {
         Ok(())
     }
 
-    /// Points along a chain that exists already, and nodes per element.
+    /// Points along an existing chain, and its nodes per element.
     fn curve(&self, id: &str) -> Result<(Vec<Point>, usize), String> {
         let chain = self.chain(id)?;
         self.check_one_chain(id)?;

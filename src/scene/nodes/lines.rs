@@ -1,4 +1,4 @@
-//! The lines of sides of a given mesh, for whoever looks for one by its shape.
+//! The lines of sides of a given mesh, for finding one by its shape.
 
 use super::super::geometry::distance;
 use super::given::nodes_of;
@@ -7,20 +7,20 @@ use super::{Entry, EntryKind, Names};
 /// A line of sides.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Line {
-    /// Its name, as a scene names it.
+    /// Name in the scene.
     pub name: String,
-    /// The name of the first part of the mesh that has all of its nodes; `None` for a line of no body.
+    /// Name of the first part of the mesh that contains all its nodes; `None` for a line on no body.
     pub part: Option<String>,
-    /// Where its nodes are, in walking order.
+    /// Positions of its nodes, in walking order.
     pub at: Vec<[f64; 2]>,
     /// Whether it has sides between two elements.
     pub is_inside: bool,
-    /// What it is, on a line of text.
+    /// One-line description.
     pub words: String,
 }
 
 impl Names {
-    /// What is to be known of each given mesh, on a line of text: nodes that no element has, and that `refine` passes it by.
+    /// One-line notes about each given mesh: nodes on no element, and that `refine` has no effect on it.
     pub fn notes(&self, refine: usize) -> Vec<String> {
         let meshes = self
             .entries
@@ -28,8 +28,12 @@ impl Names {
             .filter(|entry| entry.kind == EntryKind::Given);
         let note = |mesh: &Entry| {
             let idle = mesh.nodes.len() - nodes_of(&mesh.elements).len();
-            let idle = (idle > 0)
-                .then(|| format!("mesh {:?}: {idle} of its nodes are on no element", mesh.id));
+            let idle = (idle > 0).then(|| {
+                format!(
+                    "mesh {:?}: {idle} of its nodes belong to no element",
+                    mesh.id
+                )
+            });
             let coarse = (refine > 1)
                 .then(|| format!("mesh {:?}: refine does not divide its elements", mesh.id));
             idle.into_iter().chain(coarse)
@@ -37,7 +41,7 @@ impl Names {
         meshes.flat_map(note).collect()
     }
 
-    /// The lines of sides of the given mesh with an id, in the order of the scene.
+    /// The lines of sides of the given mesh with an id, in scene order.
     pub fn lines(&self, id: &str) -> Vec<Line> {
         let Some(mesh) = self.index.get(id).map(|&k| &self.entries[k]) else {
             return Vec::new();

@@ -1,4 +1,4 @@
-//! Nodes, chains and meshes by their names, and what to say where there is none of that name.
+//! Finds nodes, chains and meshes by name, and writes the messages for unknown names.
 
 use super::given::nodes_of;
 use super::{Entry, EntryKind, Mesh, Names};
@@ -6,16 +6,16 @@ use crate::format::error::{did_you_mean, quoted, some_of};
 use crate::shown::first_of;
 
 impl Names {
-    /// The number of a node by any of its names.
+    /// Number of a node by any of its names.
     ///
     /// # Errors
-    /// A message that tells which names there are.
+    /// A message that lists the existing names.
     pub fn node(&self, name: &str) -> Result<usize, String> {
         let (entry, selector) = self.split(name)?;
         let count = entry.nodes.len();
         let index = match selector {
             Selector::Whole if entry.kind == EntryKind::Single => 0,
-            // A point of a mesh that has a name.
+            // A named point of a mesh.
             Selector::Whole if entry.kind == EntryKind::Set && count == 1 => 0,
             Selector::Whole | Selector::All => return Err(entry.many(name, count)),
             Selector::Index(index) => index,
@@ -23,8 +23,8 @@ impl Names {
         Ok(entry.nodes[index])
     }
 
-    /// The numbers of the nodes that a name stands for: all of a chain for `ID.all`; of a block's edge, and of parts, sets and
-    /// sides of a given mesh, for their names alone; else one.
+    /// Numbers of the nodes that a name refers to: all nodes of a chain for `ID.all`; all nodes of a block's edge, or of a part,
+    /// set or line of a given mesh, for its name alone; otherwise one node.
     ///
     /// # Errors
     /// As [`Names::node`].
@@ -55,20 +55,20 @@ impl Names {
                         .iter()
                         .filter(|e| e.at == entry.at && matches!(e.kind, EntryKind::Sides(_)));
                     Err(format!(
-                        "{} is {}; a chain is needed, as sides of a given mesh are (sides: {})",
+                        "{} is {}; it must be a chain, as sides of a given mesh are (sides: {})",
                         quoted(id),
                         entry.kind.called(),
                         some_of(sides.map(|e| e.id.as_str()))
                     ))
                 }
                 EntryKind::Single => Err(format!(
-                    "{id:?} is a single node; a chain is needed (Line, Arc, Through or Chain, or an edge of a Block)"
+                    "{id:?} is a single node; it must be a chain (Line, Arc, Through or Chain, or an edge of a Block)"
                 )),
                 EntryKind::Block(_) => Err(format!(
                     "{id:?} is a block; name one of its edges, \"{id}.bottom\", \"{id}.right\", \"{id}.top\" or \"{id}.left\""
                 )),
                 EntryKind::Mesh => Err(format!(
-                    "{id:?} is a mesh; name an edge of one of its blocks, as \"{}.bottom\", or make a Chain of several",
+                    "{id:?} is a mesh; name an edge of one of its blocks, e.g. \"{}.bottom\", or define a Chain over several",
                     self.entries[k]
                         .parts
                         .first()
@@ -90,10 +90,10 @@ impl Names {
         ))
     }
 
-    /// The mesh with an id, of one block or of several.
+    /// The mesh with an id, of one or several blocks.
     ///
     /// # Errors
-    /// A message that tells which meshes there are.
+    /// A message that lists the existing meshes.
     pub(crate) fn mesh(&self, id: &str) -> Result<Mesh, String> {
         let meshes = || {
             let is_mesh = |e: &&Entry| {
@@ -123,13 +123,13 @@ impl Names {
             }
             EntryKind::Given | EntryKind::Part => {
                 return Err(format!(
-                    "{} has no elements, of which a solid is made",
+                    "{} has no elements, which a solid needs",
                     quoted(id)
                 ));
             }
             _ => {
                 return Err(format!(
-                    "{id:?} is no block; a solid needs the mesh of one (blocks: {})",
+                    "{id:?} is not a block; a solid needs a mesh (blocks: {})",
                     some_of(meshes())
                 ));
             }
@@ -150,20 +150,20 @@ impl Names {
         Ok(made)
     }
 
-    /// Refuses sides of a given mesh that are no single open chain of elements of one kind.
+    /// Rejects sides of a given mesh unless they form a single open chain of elements of one kind.
     pub(super) fn check_one_chain(&self, name: &str) -> Result<(), String> {
         let found = self.index.get(name).map(|&k| &self.entries[k]);
         let Some(entry) = found.filter(|entry| entry.kind == EntryKind::Sides(None)) else {
             return Ok(());
         };
         Err(format!(
-            "{} is {}; one chain that is open is needed",
+            "{} is {}; it must be one open chain",
             quoted(name),
             entry.line.words(&self.nodes)
         ))
     }
 
-    /// Position of the block with an id among the entries.
+    /// Index of the block with an id among the entries.
     pub(super) fn block(&self, id: &str) -> Result<usize, String> {
         let blocks = || {
             let is_block = |e: &&Entry| matches!(e.kind, EntryKind::Block(_));
@@ -184,7 +184,7 @@ impl Names {
 
     fn split(&self, name: &str) -> Result<(&Entry, Selector), String> {
         if self.entry_of(name).is_none() {
-            // Problems written by earlier versions call beam.5 beam-5.
+            // Problems written by earlier versions use beam-5 for beam.5.
             let other = |from: char, to: &str| {
                 let at = name.rfind(from)?;
                 let other = format!("{}{to}{}", &name[..at], &name[at + 1..]);
@@ -222,13 +222,13 @@ impl Names {
         Ok((entry, found?))
     }
 
-    /// The entry that a name begins with, an edge before its block, and the rest of the name.
+    /// The entry that a name starts with (an edge takes precedence over its block), and the rest of the name.
     fn entry_of<'n>(&self, name: &'n str) -> Option<(&Entry, &'n str)> {
         let cut_from = |start: usize| {
             let rest = name.get(start..).unwrap_or_default();
             rest.find(['.', '@']).map_or(name.len(), |k| start + k)
         };
-        // A single node's id may have dots.
+        // A single node's id may contain dots.
         if let Some(&k) = self.index.get(name) {
             return Some((&self.entries[k], ""));
         }
@@ -323,7 +323,7 @@ impl EntryKind {
         }
     }
 
-    /// The same, after "is".
+    /// Description, after "is".
     fn called(self) -> &'static str {
         match self {
             EntryKind::Single => "a single node",
@@ -339,21 +339,21 @@ impl EntryKind {
 }
 
 impl Entry {
-    /// Place of the node of a given mesh that has a label.
+    /// Index of the node of a given mesh with a label.
     fn labelled(&self, label: usize) -> Result<usize, String> {
         self.labels.binary_search(&label).map_err(|place| {
             let near = place.saturating_sub(1)..self.labels.len().min(place + 1);
             let near = self.labels[near].iter();
             let near: Vec<String> = near.map(|l| format!("{}.{l}", self.id)).collect();
             format!(
-                "no node of the mesh {:?} has the label {label}; next to it are {}",
+                "mesh {:?} has no node with the label {label}; its neighbours are {}",
                 self.id,
                 near.join(" and ")
             )
         })
     }
 
-    /// What to say where one node is wanted and this, called `name`, has many.
+    /// Error for `name` if one node is needed but this has several.
     fn many(&self, name: &str, count: usize) -> String {
         let id = &self.id;
         let (what, examples) = match self.kind {
@@ -381,7 +381,7 @@ impl Entry {
     }
 }
 
-/// What a name picks of an entry.
+/// The part of an entry that a name selects.
 enum Selector {
     Whole,
     All,
@@ -395,7 +395,7 @@ fn at_fraction(name: &str, fraction: &str, count: usize) -> Result<usize, String
         Ok(value) if (0.0..=1.0).contains(&value) => value * last,
         _ => {
             return Err(format!(
-                "no node called {}: what follows @ is a number from 0 to 1",
+                "no node called {}: @ must be followed by a number from 0 to 1",
                 quoted(name)
             ));
         }

@@ -1,8 +1,8 @@
-//! Nodes and their names: chains laid out, aliases resolved.
+//! Nodes and their names: generates chains and resolves aliases.
 //!
-//! `checks` refuses what cannot be laid out before any is made; `layout` makes nodes and chains, `joints` meshes of
-//! several blocks, `given` meshes that are given node by node, of whose parts `elements` and `sides` make sure; `lookup` finds
-//! nodes by their names, `lines` tells what the sides of a mesh are.
+//! `checks` rejects invalid input before any node is generated; `layout` creates nodes and chains, `joints` meshes of several
+//! blocks, `given` meshes given node by node, which `elements` and `sides` check; `lookup` finds nodes by name, and `lines`
+//! describes the sides of a mesh.
 
 pub(crate) mod checks;
 mod elements;
@@ -24,7 +24,7 @@ use stickslip_core::model::{ElementKind, Node};
 use sides::Line as Sides;
 use std::collections::HashMap;
 
-/// All nodes of a scene, and every name by which they can be called.
+/// All nodes of a scene, with all their names.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Names {
     pub(crate) nodes: Vec<Node>,
@@ -32,26 +32,26 @@ pub struct Names {
     index: HashMap<String, usize>,
 }
 
-/// What one entry of the scene's `nodes` made.
+/// The result of one entry of the scene's `nodes`.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Entry {
     id: String,
     /// Node numbers in order.
     pub nodes: Vec<usize>,
     pub kind: EntryKind,
-    /// Position in the scene's `nodes`.
+    /// Index in the scene's `nodes`.
     pub at: usize,
-    /// Of a mesh of several blocks, their entries.
+    /// The entries of the blocks, for a mesh of several blocks.
     parts: Vec<usize>,
-    /// Of a given mesh, the labels of its nodes, ascending; others are called by their place from 1.
+    /// The node labels of a given mesh, ascending; nodes of other entries are numbered from 1.
     labels: Vec<usize>,
-    /// Of a given mesh and its parts.
+    /// The elements of a given mesh or of its parts.
     elements: Vec<Element>,
-    /// Of sides of a given mesh.
+    /// The sides, for sides of a given mesh.
     line: Sides,
 }
 
-/// What a solid is made on.
+/// The nodes and elements of a solid.
 pub(crate) struct Mesh {
     /// Distinct nodes.
     pub nodes: Vec<usize>,
@@ -59,26 +59,26 @@ pub(crate) struct Mesh {
     pub elements: Vec<(ElementKind, Vec<usize>)>,
 }
 
-/// What an entry's nodes form.
+/// Kind of an entry.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum EntryKind {
     /// A single node.
     Single,
-    /// A chain of elements of that many nodes.
+    /// A chain with this number of nodes per element.
     Chain(usize),
-    /// A chain of elements of that many nodes along an edge of a block.
+    /// A chain along an edge of a block, with this number of nodes per element.
     Edge(usize),
     /// A mesh on one block.
     Block(Grid),
     /// A mesh of several blocks.
     Mesh,
-    /// A mesh that is given node by node.
+    /// A mesh given node by node.
     Given,
-    /// Some elements of such a mesh.
+    /// A part of such a mesh.
     Part,
-    /// Some nodes of such a mesh.
+    /// A node set of such a mesh.
     Set,
-    /// Sides of such a mesh, and how many nodes each has where they are one chain.
+    /// Sides of such a mesh, with their nodes per side if they form one chain.
     Sides(Option<usize>),
 }
 
@@ -99,7 +99,7 @@ impl EntryKind {
 }
 
 impl Names {
-    /// Single nodes, each by its own name.
+    /// Names for single nodes, each under its own name.
     pub(crate) fn single(nodes: &[Node]) -> Names {
         let entry =
             |(k, node): (usize, &Node)| Entry::new(k, &node.name, vec![k], EntryKind::Single);
@@ -126,7 +126,7 @@ impl Entry {
         }
     }
 
-    /// Node numbers of each element of a chain in order, chain by chain: sides of a given mesh may be several.
+    /// Node numbers of each element of a chain in order, chain by chain: sides of a given mesh may form several chains.
     pub fn pieces(&self) -> Vec<Vec<Vec<usize>>> {
         match self.kind {
             EntryKind::Sides(_) => self.line.pieces.clone(),
@@ -139,7 +139,7 @@ impl Entry {
         self.line.inside
     }
 
-    /// All numbers of nodes in it, to be changed.
+    /// Mutable access to all node numbers.
     fn numbers_mut(&mut self) -> impl Iterator<Item = &mut usize> {
         let of_elements = self.elements.iter_mut().flat_map(|(_, nodes)| nodes);
         let of_line = self.line.numbers_mut();
@@ -161,8 +161,8 @@ impl Entry {
 }
 
 impl Names {
-    /// Lays out all nodes of a scene. Meshes of several blocks, and then chains over existing nodes, come last, so that
-    /// they may name what stands below them.
+    /// Generates all nodes of a scene. Meshes of several blocks, and then chains over existing nodes, come last, so that they may
+    /// refer to later entries of the scene.
     pub(crate) fn of(spec: &Spec) -> Result<Names, Fault> {
         limits::count(&at!["refine"], spec.refine, 1..=limits::NODES, "refine")?;
         check_ids(spec)?;
@@ -196,7 +196,7 @@ impl Names {
         &self.entries
     }
 
-    /// Position in the scene's `nodes` of what has an id.
+    /// Index in the scene's `nodes` of the entry with an id.
     pub(crate) fn place(&self, id: &str) -> Option<usize> {
         self.index.get(id).map(|&k| self.entries[k].at)
     }

@@ -1,4 +1,4 @@
-//! Sides of a given mesh: put in walking order with the body on the left, piece by piece.
+//! Sides of a given mesh: sorts them into walking order with the body on the left, piece by piece.
 
 use super::elements::{Element, named};
 use crate::format::error::{Fault, Path};
@@ -9,21 +9,21 @@ use stickslip_core::model::Node;
 /// Sides in walking order.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Line {
-    /// What hangs together, each as its sides, start to end.
+    /// Connected pieces, each as its sides from start to end.
     pub pieces: Vec<Vec<Vec<usize>>>,
-    /// Whether one of its sides lies between two elements, so that it has no outward side.
+    /// Whether a side lies between two elements, so that there is no outward side.
     pub inside: bool,
 }
 
 impl Line {
-    /// Its nodes in walking order, each once.
+    /// The nodes in walking order, each once.
     pub fn nodes(&self) -> Vec<usize> {
         let mut seen = HashSet::new();
         let sides = self.pieces.iter().flatten().flatten().copied();
         sides.filter(|n| seen.insert(*n)).collect()
     }
 
-    /// Number of nodes of its sides, if it is one open piece of sides that have as many each: what a chain is.
+    /// Number of nodes per side, if this is one open piece with equal sides, that is, a chain.
     pub fn per_element(&self) -> Option<usize> {
         let [piece] = &self.pieces[..] else {
             return None;
@@ -33,7 +33,7 @@ impl Line {
         (even && first.first() != last.last()).then_some(first.len())
     }
 
-    /// What its pieces are, for a message.
+    /// Description of the pieces, for a message.
     pub fn words(&self, nodes: &[Node]) -> String {
         const MOST: usize = 4;
         let piece = |piece: &Vec<Vec<usize>>| {
@@ -53,16 +53,16 @@ impl Line {
         format!("{count} ({shown})")
     }
 
-    /// All numbers of nodes in it, to be changed.
+    /// Mutable access to all node numbers.
     pub fn numbers_mut(&mut self) -> impl Iterator<Item = &mut usize> {
         self.pieces.iter_mut().flatten().flatten()
     }
 }
 
-/// The faces of elements between nodes that sides name, by start and end.
+/// The faces of elements at these sides, by start and end node.
 pub(super) struct Faces {
     middles: HashMap<(usize, usize), Option<usize>>,
-    /// Nodes of sides that are on elements.
+    /// Nodes of sides that belong to elements.
     on_elements: HashSet<usize>,
 }
 
@@ -95,7 +95,8 @@ impl Faces {
     }
 }
 
-/// Sides in walking order: with the element on the left; where they belong to none, as the first of a piece is given.
+/// Sorts sides into walking order, with the element on the left. Sides without an element follow the direction of the first one
+/// of a piece.
 pub(super) fn line(
     here: &Path,
     nodes: &[Node],
@@ -114,19 +115,19 @@ pub(super) fn line(
             [start, end] | [start, _, end] => (start, end),
             _ => {
                 return Err(fault(format!(
-                    "the side has {} nodes; it has 2 or 3",
+                    "the side has {} nodes; it must have 2 or 3",
                     side.len()
                 )));
             }
         };
         if (1..side.len()).any(|j| side[..j].contains(&side[j])) {
-            return Err(fault("a node stands twice in the side".to_owned()));
+            return Err(fault("a node occurs twice in the side".to_owned()));
         }
         let found = |from, to| faces.middles.get(&(from, to)).copied();
         let middle = match (found(start, end), found(end, start)) {
             (None, None) if [start, end].iter().all(|n| faces.on_elements.contains(n)) => {
                 let message = format!(
-                    "the side {} is no side of an element",
+                    "the side {} does not belong to an element",
                     named(nodes, &[start, end])
                 );
                 return Err(fault(message));
@@ -148,7 +149,7 @@ pub(super) fn line(
         };
         if middle != (side.len() == 3).then(|| side[1]) {
             return Err(fault(format!(
-                "the side {} has {} in the middle, and the element there {}",
+                "the side {} has {} in the middle, but the element has {}",
                 named(nodes, &[start, end]),
                 side.get(1)
                     .filter(|_| side.len() == 3)
@@ -160,7 +161,7 @@ pub(super) fn line(
     align(&mut made, &free);
     let mut walked = HashSet::new();
     if let Some(k) = made.iter().position(|side| !walked.insert(ends(side))) {
-        let message = format!("the side {} stands there twice", named(nodes, &made[k]));
+        let message = format!("the side {} is listed twice", named(nodes, &made[k]));
         return Err(Fault::new(here.then(k), message));
     }
     Ok(Line {
@@ -173,7 +174,7 @@ fn ends(side: &[usize]) -> (usize, usize) {
     (side[0], side[side.len() - 1])
 }
 
-/// Turns sides that belong to no element so that those that meet at a node run on, as the first of them does.
+/// Reverses sides without an element so that connected ones run in the direction of the first one.
 fn align(sides: &mut [Vec<usize>], free: &[usize]) {
     let mut at: HashMap<usize, Vec<usize>> = HashMap::new();
     for &k in free {
@@ -188,7 +189,7 @@ fn align(sides: &mut [Vec<usize>], free: &[usize]) {
         while let Some(k) = open.pop() {
             let (start, end) = ends(&sides[k]);
             for (node, is_end) in [(start, false), (end, true)] {
-                // Where more than two meet, none goes on.
+                // Walks stop where more than two sides meet.
                 let [a, b] = at[&node][..] else { continue };
                 let other = if a == k { b } else { a };
                 if !done.insert(other) {
@@ -204,7 +205,7 @@ fn align(sides: &mut [Vec<usize>], free: &[usize]) {
     }
 }
 
-/// Sides put one after the other: a piece begins where no one side comes before, and a closed one at the first that is left.
+/// Sorts sides into pieces: a piece starts where no single side precedes, and a closed one at the first remaining side.
 fn pieces(sides: &[Vec<usize>]) -> Vec<Vec<Vec<usize>>> {
     let mut starting: HashMap<usize, Vec<usize>> = HashMap::new();
     let mut ending: HashMap<usize, Vec<usize>> = HashMap::new();
@@ -218,7 +219,7 @@ fn pieces(sides: &[Vec<usize>]) -> Vec<Vec<Vec<usize>>> {
             Some(&[k]) => Some(k),
             _ => None,
         };
-    // A side goes on only where one ends and one starts.
+    // A walk continues only where exactly one side ends and one starts.
     let goes_on = |node: usize| one(&ending, node).and_then(|_| one(&starting, node));
     let begins = |k: &usize| goes_on(ends(&sides[*k]).0).is_none();
     let mut taken = vec![false; sides.len()];

@@ -1,4 +1,4 @@
-//! Unknowns that no contact sees, eliminated.
+//! Static condensation: eliminates the unknowns that no contact involves.
 //!
 //! ```text
 //! M v = H r + f,  u = Hᵀ v:              W = Hᵀ M⁻¹ H,  and  Hᵀ M⁻¹ f
@@ -9,19 +9,19 @@ use std::sync::Arc;
 use stickslip_exchange::problem::Matrix;
 use stickslip_linalg::{Factors, Pattern, SolveError};
 
-/// Norm of the inverse (of the matrix scaled to entries of about 1) from which on it counts as singular.
+/// Norm of the inverse (of the matrix scaled to entries of about 1) above which it counts as singular.
 const SINGULAR: f64 = 1e12;
 
-/// Why a matrix cannot be eliminated; it reads on after the matrix's name.
+/// Why a matrix cannot be eliminated; the text continues a sentence that starts with the matrix's name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 pub enum NotEliminated {
-    /// Something moves freely, or the matrix is broken.
+    /// The body moves freely, or the matrix is invalid.
     #[error(
-        "is singular, so that the problem cannot be condensed: something moves that nothing holds"
+        "is singular, so the problem cannot be condensed: the body is not sufficiently supported"
     )]
     Singular,
-    /// No memory for its factors.
-    #[error("takes more memory to factor than there is")]
+    /// Not enough memory for the factors.
+    #[error("needs more memory to factor than is available")]
     Memory,
 }
 
@@ -34,10 +34,10 @@ impl From<SolveError> for NotEliminated {
     }
 }
 
-/// W, row by row, and Hᵀ M⁻¹ f. W of a symmetric M is symmetric to the last bit.
+/// W, row by row, and Hᵀ M⁻¹ f. For a symmetric M, W is exactly symmetric.
 ///
 /// # Errors
-/// If M is singular, or there is no memory.
+/// If M is singular, or memory is insufficient.
 pub fn condensed(
     m: &Matrix,
     h: &Matrix,
@@ -53,7 +53,7 @@ pub fn condensed(
     solver.solve(f, &mut x)?;
     let q = onto(&x);
     let mut right = vec![0.0; m.rows];
-    // Column by column, and so the transpose.
+    // Column by column, which is the transpose.
     let mut w = Vec::with_capacity(columns.len());
     for column in &columns {
         column.iter().for_each(|&(i, v)| right[i] += v);
@@ -64,7 +64,7 @@ pub fn condensed(
     Ok((turned(w, solver.symmetric), q))
 }
 
-/// S, row by row, over the unknowns `kept`, and the load on them.
+/// The Schur complement S over the unknowns `kept`, row by row, and the condensed load.
 ///
 /// # Errors
 /// As [`condensed`].
@@ -153,7 +153,7 @@ fn by_column(matrix: &Matrix) -> Vec<Vec<(usize, f64)>> {
     columns
 }
 
-/// The transpose; of what should be symmetric the mean of both.
+/// The transpose; for a matrix that should be symmetric, the mean of both.
 fn turned(columns: Vec<Vec<f64>>, symmetric: bool) -> Vec<Vec<f64>> {
     let entry = |i: usize, j: usize| match symmetric {
         true => 0.5 * (columns[i][j] + columns[j][i]),
@@ -165,7 +165,7 @@ fn turned(columns: Vec<Vec<f64>>, symmetric: bool) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// Whether a matrix equals its transpose, to the last bit.
+/// Whether a matrix is exactly symmetric.
 fn is_symmetric(matrix: &Matrix) -> bool {
     let sorted = |turn: bool| {
         let entries = matrix.entries.iter();
@@ -178,7 +178,7 @@ fn is_symmetric(matrix: &Matrix) -> bool {
     sorted(false) == sorted(true)
 }
 
-/// A matrix ready to be solved with.
+/// A factored matrix.
 struct Inverse {
     factors: Factors,
     symmetric: bool,
@@ -217,7 +217,7 @@ impl Inverse {
 mod tests {
     use super::*;
 
-    /// A chain of five springs of stiffness 1 between six nodes along a line, its first node held by a spring of stiffness
+    /// A chain of five springs of stiffness 1 between six nodes along a line, with the first node on a spring of stiffness
     /// `ground`.
     fn chain(ground: f64) -> Matrix {
         let mut rows = vec![vec![0.0; 6]; 6];
@@ -243,7 +243,7 @@ mod tests {
             entries: vec![(5, 0, 1.0), (2, 1, -1.0)],
         };
         let (w, q) = condensed(&chain(0.5), &h, &[0.0, 0.0, 0.0, 0.0, 0.0, 3.0]).unwrap();
-        // The end is at 1/0.5 + 5, the middle at 1/0.5 + 2.
+        // The compliance is 1/0.5 + 5 at the end and 1/0.5 + 2 in the middle.
         let wanted = [[7.0, -4.0], [-4.0, 4.0]];
         for (row, wanted) in w.iter().zip(wanted) {
             for (value, wanted) in row.iter().zip(wanted) {
@@ -258,7 +258,7 @@ mod tests {
     }
 
     #[test]
-    fn a_chain_that_nothing_holds_has_no_compliance_but_a_stiffness() {
+    fn an_unsupported_chain_has_a_stiffness_but_no_compliance() {
         let h = Matrix {
             rows: 6,
             columns: 1,

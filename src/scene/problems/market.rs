@@ -1,4 +1,4 @@
-//! Interface problems in files of the Matrix Market, each of which holds one matrix:
+//! Interface problems in Matrix Market files, each of which contains one matrix:
 //!
 //! ```text
 //! NAME_W.mtx   or NAME.mtx: W, a compliance     u = q + W (f + r)
@@ -8,8 +8,8 @@
 //! NAME_f.mtx   loads on the contacts            2 m numbers; where it is missing there are none
 //! ```
 //!
-//! The components are those of [`super::siconos`]. Who opens such a problem names the matrix; the others lie beside it. Of a
-//! stiffness q may be missing where f is there.
+//! The components are those of [`super::siconos`]. The user names the matrix file; the others are next to it. For a stiffness, q
+//! may be missing if f is given.
 
 use super::fits;
 use super::siconos::{contacts, settings};
@@ -19,13 +19,13 @@ use std::path::{Path, PathBuf};
 use stickslip_exchange::matrix_market;
 use stickslip_platform::input;
 
-/// Files that make a problem, besides the matrix.
+/// Files of a problem besides the matrix.
 const PARTS: [&str; 3] = ["q", "mu", "f"];
 
-/// The names of a problem's files.
+/// The file names of a problem.
 struct Names {
     folder: PathBuf,
-    /// What comes before `_W.mtx`.
+    /// The part before `_W.mtx`.
     stem: String,
     stiffness: bool,
 }
@@ -37,7 +37,7 @@ impl Names {
         if let Some(part) = PARTS.iter().find(wrong) {
             let matrix = stem.trim_end_matches(&format!("_{part}"));
             return Err(format!(
-                "this is {part} of a problem; name its matrix: {matrix}_W.mtx, a compliance, or {matrix}_K.mtx, a stiffness"
+                "this is {part} of a problem; name its matrix instead: {matrix}_W.mtx, a compliance, or {matrix}_K.mtx, a stiffness"
             ));
         }
         let plain = stem.strip_suffix("_W").or_else(|| stem.strip_suffix("_K"));
@@ -53,10 +53,10 @@ impl Names {
     }
 }
 
-/// The problem of a matrix that has been read, with the files beside it.
+/// The problem of a matrix that has been read, with the files next to it.
 ///
 /// # Errors
-/// What is wrong with it or with one of them, or which is missing.
+/// If one of the files has errors or is missing.
 pub fn read(file: &str, text: &str, memory: Option<f64>) -> Result<Problem, SceneError> {
     let whole = |why: String| SceneError::whole(file, why);
     let names = Names::of(Path::new(file)).map_err(whole)?;
@@ -64,7 +64,7 @@ pub fn read(file: &str, text: &str, memory: Option<f64>) -> Result<Problem, Scen
     let size = matrix.rows;
     if size == 0 || size != matrix.columns || !size.is_multiple_of(2) {
         return Err(whole(format!(
-            "the matrix has {} rows and {} columns; it must be square, with two rows a contact, along its normal and its tangent",
+            "the matrix has {} rows and {} columns; it must be square, with two rows per contact, normal and tangential",
             matrix.rows, matrix.columns
         )));
     }
@@ -73,7 +73,7 @@ pub fn read(file: &str, text: &str, memory: Option<f64>) -> Result<Problem, Scen
     let missing = |part: &str| {
         let path = names.part(part);
         whole(format!(
-            "there is no {} beside it, a column of {part}",
+            "{}, a column of {part}, is missing next to it",
             path.file_name().unwrap_or_default().to_string_lossy()
         ))
     };
@@ -91,7 +91,7 @@ pub fn read(file: &str, text: &str, memory: Option<f64>) -> Result<Problem, Scen
     let rows = matrix.dense();
     Ok(Problem {
         title: super::title(file),
-        about: "An interface problem from files of the Matrix Market.".to_owned(),
+        about: "An interface problem from Matrix Market files.".to_owned(),
         contacts: contacts(&mu, &f.unwrap_or_default()),
         matrix: match names.stiffness {
             true => Matrix::Stiffness(rows),
@@ -104,7 +104,7 @@ pub fn read(file: &str, text: &str, memory: Option<f64>) -> Result<Problem, Scen
     })
 }
 
-/// The numbers of a file beside the matrix; none where there is no such file.
+/// The numbers in a file next to the matrix; `None` if it does not exist.
 fn column(names: &Names, part: &str, size: usize) -> Result<Option<Vec<f64>>, SceneError> {
     let path = names.part(part);
     if !path.exists() {
@@ -130,22 +130,22 @@ fn column(names: &Names, part: &str, size: usize) -> Result<Option<Vec<f64>>, Sc
     Ok(Some(numbers))
 }
 
-/// The files that a problem is written to whose matrix, a compliance, is to be named so: the matrix, q and mu.
+/// The files for writing a problem whose compliance matrix has this name: the matrix, q and mu.
 ///
 /// # Errors
-/// If the name is that of a stiffness or of another part of a problem.
+/// If the name is that of a stiffness or of another file of a problem.
 pub fn parts(file: &Path) -> Result<[PathBuf; 3], String> {
     let names = Names::of(file)?;
     if names.stiffness {
         return Err(format!(
-            "a compliance is written, and {} would be read as a stiffness; end the name with _W.mtx",
+            "the matrix is a compliance, but {} would be read as a stiffness; end the name with _W.mtx",
             file.display()
         ));
     }
     Ok([file.to_owned(), names.part("q"), names.part("mu")])
 }
 
-/// The texts of these files.
+/// The contents of these files.
 pub fn texts(problem: &super::siconos::Friction2d, title: &str) -> [String; 3] {
     let local = problem.local();
     let of_w = "W of u = q + W r; rows along n and t of each contact in turn";
@@ -162,7 +162,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_name_of_the_matrix_tells_what_it_is_and_where_the_others_are() {
+    fn the_matrix_name_determines_its_kind_and_the_other_files() {
         let of = |name: &str| Names::of(Path::new(name)).map(|n| (n.part("q"), n.stiffness));
         assert_eq!(of("a/b_W.mtx"), Ok((PathBuf::from("a/b_q.mtx"), false)));
         assert_eq!(of("b_K.mtx"), Ok((PathBuf::from("b_q.mtx"), true)));

@@ -1,11 +1,11 @@
-//! Interface problems that other programs have written, as scenes.
+//! Reads interface problems of other programs as scenes.
 //!
-//! - [`siconos`]: friction problems condensed to their contacts, of Siconos (text) and fclib (HDF5), and what becomes of
-//!   global ones; [`market`]: those of files of the Matrix Market.
-//! - [`stored`]: a stiffness that CalculiX has stored, with contacts named by their nodes.
-//! - `opened`: which of these a file is. [`condense`]: unknowns that no contact sees, eliminated.
+//! - [`siconos`]: friction problems of Siconos (text) and fclib (HDF5), condensed to their contacts, including global ones;
+//!   [`market`]: problems in Matrix Market files.
+//! - [`stored`]: a stiffness stored by CalculiX, with contacts named by their nodes.
+//! - `opened`: selects the format of a file. [`condense`]: static condensation of unknowns that no contact involves.
 //!
-//! How their files are read and written is for [`stickslip_exchange`]; what the numbers mean is said here.
+//! [`stickslip_exchange`] reads and writes the files; this module interprets their numbers.
 
 pub mod condense;
 pub mod market;
@@ -18,21 +18,21 @@ use crate::format::{SceneError, error, read};
 use std::path::Path;
 use stickslip_platform::input;
 
-/// Refuses a matrix of so many contacts that takes more memory than there is.
+/// Rejects a matrix of this many contacts if it does not fit into memory.
 fn fits(contacts: usize, memory: Option<f64>) -> Result<(), String> {
     let entries = 4.0 * (contacts as f64).powi(2);
     limits::memory(entries * limits::ENTRY_BYTES, memory)
-        .map_err(|why| format!("the problem has {contacts} contacts; its matrix takes {why}"))
+        .map_err(|why| format!("the problem has {contacts} contacts; its matrix needs {why}"))
 }
 
-/// The text of a file that another one names.
+/// The text of a file named in another one.
 fn text(path: &Path) -> Result<String, SceneError> {
     let file = path.display().to_string();
-    let large = "no interface problem has more";
+    let large = "no interface problem is larger";
     input::text(path, read::FILE_BYTES as u64, large).map_err(|why| read::not_read(&file, &why))
 }
 
-/// The title of a file that has none: its name.
+/// Title for a file without one: its name.
 fn title(file: &str) -> String {
     let name = Path::new(file).file_name();
     let name = name.map_or_else(|| file.into(), |name| name.to_string_lossy());

@@ -1,4 +1,4 @@
-//! Interface problems in files of other programs, by the name of the file or by its text.
+//! Recognises interface problems of other programs by file name or text.
 
 use super::siconos::{self, Friction2d};
 use super::title;
@@ -8,10 +8,10 @@ use std::path::Path;
 use stickslip_exchange::fclib;
 use stickslip_platform::input;
 
-/// A file that is no text: its problem, if it is one.
+/// The problem in a binary file; `None` if the file is not one.
 ///
 /// # Errors
-/// If it is one, and unsound.
+/// If it is one, but invalid.
 pub(crate) fn from_file(
     name: &str,
     overrides: &[(String, String)],
@@ -21,23 +21,23 @@ pub(crate) fn from_file(
         return None;
     }
     let problem = || {
-        let large = "no interface problem has more";
+        let large = "no interface problem is larger";
         let bytes = input::bytes(Path::new(name), read::FILE_BYTES as u64, large)
             .map_err(|why| SceneError::whole(name, why.to_string()))?;
         let problem = fclib::read(bytes).map_err(|broken| read::of_file(name, broken))?;
         let problem = Friction2d::condensed(problem, memory(overrides))
             .map_err(|why| SceneError::whole(name, why))?;
         let mut problem = problem.problem(&title(name));
-        problem.about = "A friction problem from a file of fclib: u = W r + q.".to_owned();
+        problem.about = "A friction problem from an fclib file: u = W r + q.".to_owned();
         Ok(problem)
     };
     Some(problem())
 }
 
-/// A problem in Siconos' form.
+/// A problem in Siconos' format.
 ///
 /// # Errors
-/// If it is unsound.
+/// If it is invalid.
 pub(crate) fn siconos(name: &str, text: &str, memory: Option<f64>) -> Result<Problem, SceneError> {
     match siconos::read_within(text, memory) {
         Ok(problem) => Ok(problem.problem(&title(name))),
@@ -48,7 +48,7 @@ pub(crate) fn siconos(name: &str, text: &str, memory: Option<f64>) -> Result<Pro
     }
 }
 
-/// What `settings.memory` is set to from outside.
+/// The value of `settings.memory` set from outside.
 pub(crate) fn memory(overrides: &[(String, String)]) -> Option<f64> {
     let set = overrides
         .iter()

@@ -1,11 +1,11 @@
-//! Friction problems condensed to their contacts, in the plane, as Siconos and fclib pose them:
+//! Plane friction problems condensed to their contacts, as in Siconos and fclib:
 //!
 //! ```text
 //! u = W r + q,     0 <= u_n ⊥ r_n >= 0,     |r_t| <= mu r_n, against u_t     (n, t of each contact in turn)
 //! ```
 //!
-//! [`stickslip_exchange::siconos`] has the form of the text. The scene that comes of such a problem has all contacts at gap 0
-//! and free, and takes the unloaded motion q, and so u and r, in one increment.
+//! [`stickslip_exchange::siconos`] reads and writes the text. In the resulting scene all contacts start free with gap 0, and the
+//! free velocity q, and hence u and r, is applied in one increment.
 
 use crate::format::condensed::{Contact, Matrix, Problem};
 use crate::limits;
@@ -14,7 +14,7 @@ use stickslip_exchange::problem::{self, Local};
 use stickslip_exchange::siconos;
 pub use stickslip_exchange::siconos::Storage;
 
-/// A friction problem in the plane.
+/// A plane friction problem.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Friction2d {
     /// W, row by row: 2 m rows and columns.
@@ -25,31 +25,31 @@ pub struct Friction2d {
     pub mu: Vec<f64>,
 }
 
-/// What is wrong with a file.
+/// An error in a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Broken {
-    /// Line, from 1; that of the last word where the file ends too early, and 1 where nothing in it is to blame.
+    /// Line, from 1; that of the last word if the file ends too early, and 1 if no line is at fault.
     pub line: usize,
     /// Column, from 1.
     pub column: usize,
-    /// What is wrong, and what would be right.
+    /// What is wrong and what is expected.
     pub message: String,
 }
 
-/// Whether a text could be such a file: it begins with a number, as no scene does.
+/// Whether a text could be such a file: it starts with a number, as no scene does.
 pub fn is_one(text: &str) -> bool {
     text.trim_start().starts_with(|c: char| c.is_ascii_digit())
 }
 
-/// Reads such a file; a global problem is condensed.
+/// Reads such a file and condenses a global problem.
 ///
 /// # Errors
-/// What is wrong, and in which line.
+/// The error and its line.
 pub fn read(text: &str) -> Result<Friction2d, Broken> {
     read_within(text, None)
 }
 
-/// Reads such a file, which may take so much memory (GB; none: what is free).
+/// Reads such a file with a memory limit (GB; `None`: the free memory).
 ///
 /// # Errors
 /// As [`read`].
@@ -62,7 +62,7 @@ pub fn read_within(text: &str, memory: Option<f64>) -> Result<Friction2d, Broken
             message,
         }
     };
-    // Before anything of that size is read.
+    // Checked before anything of that size is read.
     let (contacts, place) =
         siconos::contacts(text).map_err(|wrong| broken(wrong.at, wrong.message))?;
     super::fits(contacts, memory).map_err(|why| broken(Some(place), why))?;
@@ -71,10 +71,10 @@ pub fn read_within(text: &str, memory: Option<f64>) -> Result<Friction2d, Broken
 }
 
 impl Friction2d {
-    /// A problem of any form, condensed to its contacts; it may take so much memory (GB; none: what is free).
+    /// Condenses a problem of any form to its contacts, with a memory limit (GB; `None`: the free memory).
     ///
     /// # Errors
-    /// Why it cannot be.
+    /// Why it cannot be condensed.
     pub fn condensed(problem: problem::Problem, memory: Option<f64>) -> Result<Self, String> {
         let contacts = match &problem {
             problem::Problem::Local(local) | problem::Problem::Mixed(local, _) => local.mu.len(),
@@ -117,7 +117,7 @@ impl Friction2d {
         }
     }
 
-    /// Refuses numbers that no scene has.
+    /// Rejects numbers that a scene cannot have.
     fn sound(&self) -> Result<(), String> {
         let of = |what: &str, value: f64| match value.abs() <= limits::MAGNITUDE {
             true => Ok(()),
@@ -139,7 +139,7 @@ impl Friction2d {
         Ok(())
     }
 
-    /// The form in which files have it.
+    /// The problem in file format.
     pub fn local(&self) -> Local {
         Local {
             w: problem::Matrix::from_rows(&self.w),
@@ -148,11 +148,11 @@ impl Friction2d {
         }
     }
 
-    /// The scene's form of it.
+    /// The problem in the format of the scene.
     pub fn problem(&self, title: &str) -> Problem {
         Problem {
             title: title.to_owned(),
-            about: "A friction problem in the form of Siconos: u = W r + q.".to_owned(),
+            about: "A friction problem in Siconos' format: u = W r + q.".to_owned(),
             contacts: contacts(&self.mu, &[]),
             matrix: Matrix::Compliance(self.w.clone()),
             free: self.q.clone(),
@@ -162,13 +162,13 @@ impl Friction2d {
         }
     }
 
-    /// The file, as text.
+    /// The text of the file.
     pub fn write(&self, storage: Storage) -> String {
         siconos::write(&self.local(), storage)
     }
 }
 
-/// Contacts with these coefficients of friction, and these loads or none.
+/// Contacts with these coefficients of friction, and with these loads, if any.
 pub(super) fn contacts(mu: &[f64], loads: &[f64]) -> Vec<Contact> {
     let contact = |(k, &mu): (usize, &f64)| Contact {
         id: format!("c{}", k + 1),
@@ -191,7 +191,7 @@ fn friction(mu: f64) -> Friction {
     }
 }
 
-/// W is sparse as a rule, and condensing it has nothing to take out.
+/// W is usually sparse, and condensation has nothing to eliminate.
 pub(super) fn settings() -> Settings {
     Settings {
         solver: Solver::Augmented,

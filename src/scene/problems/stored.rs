@@ -1,13 +1,13 @@
-//! A stiffness that CalculiX has stored, condensed to the nodes that may touch ([`crate::format::stored`]).
+//! Condenses a stiffness stored by CalculiX to the nodes that may touch ([`crate::format::stored`]).
 //!
-//! Let u be the unknowns that are free, p those that are moved, H the normals and tangents of the contacts:
+//! Let u be the free unknowns, p the prescribed ones, and H the normals and tangents of the contacts:
 //!
 //! ```text
 //! K_uu u = f − K_up p + H r,    and so    W = Hᵀ K_uu⁻¹ H,    free = Hᵀ (K_uu⁻¹ (f − K_up p) + p)
 //! ```
 //!
-//! Where K_uu is singular, since the contacts alone hold the body, its stiffness at the contacts takes the place of W. That
-//! needs both components of each contact to be free.
+//! If K_uu is singular, because only the contacts support the body, its stiffness at the contacts is used instead of W. That
+//! requires both components of each contact to be free.
 
 use super::condense::{NotEliminated, condensed, reduced};
 use super::fits;
@@ -22,10 +22,10 @@ use stickslip_exchange::calculix::stiffness::{self, Unknown};
 use stickslip_exchange::problem;
 use stickslip_platform::input;
 
-/// Reads such a file and those that it names, and condenses what they say.
+/// Reads such a file and the files it names, and condenses the stiffness.
 ///
 /// # Errors
-/// What is wrong with any of them.
+/// If any of the files has errors.
 pub fn read(file: &str, text: &str, memory: Option<f64>) -> Result<Problem, SceneError> {
     let spec: Stored = read::value(file, text, "stored stiffness")?;
     let place = |fault: Fault| placed(file, text, &[], fault);
@@ -53,29 +53,29 @@ pub fn read(file: &str, text: &str, memory: Option<f64>) -> Result<Problem, Scen
         .map_err(place)
 }
 
-/// What is known of an unknown: that it is free, and its number among those, or where it is moved to.
+/// State of an unknown: free, with its number among the free ones, or prescribed, with its value.
 #[derive(Clone, Copy)]
 enum Known {
     Free(usize),
     Moved(f64),
 }
 
-/// The problem, without its stiffness.
+/// The problem without its stiffness.
 struct Posed<'s> {
     spec: &'s Stored,
-    /// For each unknown.
+    /// State of each unknown.
     known: Vec<Known>,
-    /// Number of free ones.
+    /// Number of free unknowns.
     free: usize,
-    /// Loads on the free ones.
+    /// Loads on the free unknowns.
     load: Vec<f64>,
     contacts: Vec<Point<'s>>,
 }
 
-/// A contact: its node, the unknowns along x and y, and what it touches.
+/// A contact: its node, the unknowns along x and y, and its surface.
 struct Point<'s> {
     node: u64,
-    /// Place in the file.
+    /// Path in the file.
     at: Path,
     unknowns: [Option<usize>; 2],
     /// Unit normal.
@@ -97,7 +97,7 @@ impl<'s> Posed<'s> {
                     let unknown = unknowns[direction].ok_or_else(|| {
                         let axis = ["x", "y"][direction];
                         let why =
-                            format!("node {node} is restrained along {axis}, and cannot be moved");
+                            format!("node {node} is restrained along {axis} and cannot be moved");
                         Fault::new(here.clone(), why)
                     })?;
                     if known[unknown].replace(value).is_some() {
@@ -123,7 +123,7 @@ impl<'s> Posed<'s> {
                 let unknowns = numbers.of(node, &at!["loads", k, "nodes", i])?;
                 for (direction, value) in [pulled.x, pulled.y].into_iter().enumerate() {
                     finite(&at!["loads", k, ["x", "y"][direction]], value)?;
-                    // A support carries what pulls at it.
+                    // Loads on restrained components go into the support.
                     if let Some(Known::Free(place)) = unknowns[direction].map(|u| known[u]) {
                         load[place] += value;
                     }
@@ -156,7 +156,7 @@ impl<'s> Posed<'s> {
             }
         }
         if inner.entries.is_empty() {
-            return Err(Fault::new(Path::default(), "no unknown is left free"));
+            return Err(Fault::new(Path::default(), "no unknown is free"));
         }
         match condensed(&inner, &self.frames(), &self.load) {
             Ok((w, free)) => {
@@ -169,21 +169,22 @@ impl<'s> Posed<'s> {
         }
     }
 
-    /// The stiffness at the contacts, in their frames, of a body that nothing else holds.
+    /// The stiffness at the contacts, in their frames, of a body without other supports.
     fn floating(&self, inner: &problem::Matrix) -> Result<Problem, Fault> {
         let mut kept = Vec::with_capacity(2 * self.contacts.len());
         for point in &self.contacts {
             for unknown in point.unknowns {
                 let Some(Known::Free(place)) = unknown.map(|u| self.known[u]) else {
-                    let why = "the stiffness is singular: nothing but the contacts holds the body, and a component of this node \
-                               is restrained or moved, so that no stiffness of the contacts says what the file says";
+                    let why = "the stiffness is singular: only the contacts support the body, but a component of this \
+                               node is restrained or moved, so the problem cannot be written as a stiffness at the \
+                               contacts";
                     return Err(Fault::new(point.at.clone(), why));
                 };
                 kept.push(place);
             }
         }
         let (s, load) = reduced(inner, &self.load, &kept).map_err(|why| {
-            let why = format!("the stiffness without that of the contacts' nodes {why}");
+            let why = format!("the stiffness without that of the contact nodes {why}");
             Fault::new(at!["stiffness"], why)
         })?;
         // Rows and columns from (x, y) to (n, t): n = (c, s), t = (−s, c).
@@ -233,7 +234,7 @@ impl<'s> Posed<'s> {
         }
     }
 
-    /// How far the contacts are moved that are.
+    /// Prescribed displacements of the contacts.
     fn moved(&self) -> Vec<f64> {
         let of = |point: &Point<'_>| {
             let mut pair = [0.0; 2];
@@ -276,14 +277,14 @@ impl<'s> Posed<'s> {
 }
 
 impl Point<'_> {
-    /// Normal and tangential components of a unit along x (0) or y (1).
+    /// Normal and tangential components of a unit vector along x (0) or y (1).
     fn components(&self, direction: usize) -> [f64; 2] {
         let [c, s] = self.normal;
         [[c, -s], [s, c]][direction]
     }
 }
 
-/// The contacts, each node once.
+/// The contacts; each node may occur once.
 fn points<'s>(spec: &'s Stored, numbers: &Numbers) -> Result<Vec<Point<'s>>, Fault> {
     let mut points: Vec<Point<'s>> = Vec::new();
     let mut known = HashMap::new();
@@ -291,8 +292,7 @@ fn points<'s>(spec: &'s Stored, numbers: &Numbers) -> Result<Vec<Point<'s>>, Fau
         let (x, y) = touching.normal;
         let length = x.hypot(y);
         if !(length > 0.0 && length.is_finite()) {
-            let why =
-                format!("the normal is ({x:?}, {y:?}); it must have a length and a direction");
+            let why = format!("the normal is ({x:?}, {y:?}); it must be finite and not zero");
             return Err(Fault::new(at!["contacts", k, "normal"], why));
         }
         finite(&at!["contacts", k, "gap"], touching.gap)?;
@@ -302,7 +302,7 @@ fn points<'s>(spec: &'s Stored, numbers: &Numbers) -> Result<Vec<Point<'s>>, Fau
             if known.insert(node, ()).is_some() {
                 return Err(Fault::new(
                     here,
-                    format!("node {node} is a contact already"),
+                    format!("node {node} is already a contact"),
                 ));
             }
             points.push(Point {
@@ -317,7 +317,7 @@ fn points<'s>(spec: &'s Stored, numbers: &Numbers) -> Result<Vec<Point<'s>>, Fau
     match points.is_empty() {
         true => Err(Fault::new(
             at!["contacts"],
-            "no node may touch; name one at least",
+            "no contacts; name at least one node that may touch",
         )),
         false => Ok(points),
     }
@@ -327,7 +327,7 @@ fn finite(path: &Path, value: f64) -> Result<(), Fault> {
     crate::limits::finite(path, value, "the value")
 }
 
-/// Where the components of each node stand among the unknowns.
+/// Indices of each node's components among the unknowns.
 struct Numbers(HashMap<u64, [Option<usize>; 2]>);
 
 impl Numbers {
@@ -337,7 +337,7 @@ impl Numbers {
             let of_node = numbers.entry(unknown.node).or_default();
             if of_node[unknown.direction].replace(place).is_some() {
                 let (node, direction) = (unknown.node, unknown.direction + 1);
-                let why = format!("the file .dof has {node}.{direction} twice");
+                let why = format!("the .dof file lists {node}.{direction} twice");
                 return Err(Fault::new(at!["unknowns"], why));
             }
         }
@@ -347,7 +347,7 @@ impl Numbers {
     fn of(&self, node: u64, here: &Path) -> Result<[Option<usize>; 2], Fault> {
         self.0.get(&node).copied().ok_or_else(|| {
             let why = format!(
-                "node {node} is not in the file .dof: the deck has no such node, or restrains both of its components"
+                "node {node} is not in the .dof file: it does not exist in the deck, or both of its components are restrained"
             );
             Fault::new(here.clone(), why)
         })

@@ -1,7 +1,8 @@
 //! Local deflection of elements under point forces, for the judge: computed by quadrature from positions and forces only.
 //!
-//! The step sgn(η − ξ) and its integral are projected onto Legendre polynomials with a Gauss rule on both sides of ξ; c_ij is the inner
-//! product of the two remainders. The closed forms of [`super::Pair`] are not used, so this is an independent check of them.
+//! The step sgn(η − ξ) and its integral are projected onto Legendre polynomials by a Gauss rule on each side of ξ; c_ij is the
+//! inner product of the two remainders. The closed forms of [`super::Pair`] are not used, so this is an independent check of
+//! them.
 
 use crate::contact::element::{Element, Places};
 use crate::contact::facing::{MOST, faced};
@@ -143,14 +144,14 @@ impl JudgedGives {
         sums
     }
 
-    /// Local deflection of the surface under a slave node, as a vector (length) along the outward normal of the element's line. `None`
-    /// where it is zero.
+    /// Local deflection of the surface under a slave node, as a vector (length) along the outward normal of the element's axis.
+    /// `None` if it is zero.
     pub fn way(&self, slave: usize) -> Option<[f64; 2]> {
         let press = self.presses.iter().find(|press| press.slave == slave)?;
         (press.given != 0.0).then(|| press.line.normal.map(|n| n * press.given))
     }
 
-    /// F_n of a slave node along the rotated n. `None` where its element has no local flexibility.
+    /// F_n of a slave node along the rotated n. `None` if its element has no local flexibility.
     pub fn normal_force(&self, slave: usize) -> Option<f64> {
         let press = self.presses.iter().find(|press| press.slave == slave)?;
         Some(press.bends * (1.0 + press.tilt * press.tilt).sqrt())
@@ -202,7 +203,7 @@ impl Line {
     }
 }
 
-/// c_ij of two points of an element (length by force), and ∂c_ij/∂ξ_i.
+/// c_ij of two points of an element (length per force), and ∂c_ij/∂ξ_i.
 fn pair(rule: &[(f64, f64)], give: &PointGive, one: &Projected, two: &Projected) -> (f64, f64) {
     let (xi, other, degree) = (one.xi, two.xi, one.degree);
     let [low, high] = if xi < other { [xi, other] } else { [other, xi] };
@@ -304,8 +305,8 @@ fn legendre(k: usize, x: f64) -> f64 {
     now
 }
 
-/// Adds the force of a slave node to `contact` at the node, and its reaction at the nodes of the master element: at the foot, plus the
-/// moment of the gap where `lever` is set.
+/// Adds the force of a slave node to `contact` at the node, and its reaction at the nodes of the master element: at the closest
+/// point, plus the moment of the gap if `lever` is set.
 pub fn hand_on(
     seen: &Loaded<'_>,
     slave: usize,

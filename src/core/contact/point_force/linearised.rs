@@ -1,15 +1,16 @@
 //! Linearisation of a contact on an element with local flexibility: gap and forces with all derivatives.
 //!
-//! With D_i, L_i, X_i, k and m of [`crate::contact::geometric_tangent`], T_i = (τ·D_i + g L_i)/√m the motion of the node relative to the
-//! displaced foot, F = F_n cos α, and sums over the forces F_j on the element,
+//! With D_i, L_i, X_i, k and m of [`crate::contact::geometric_tangent`], T_i = (τ·D_i + g L_i)/√m the motion of the node relative
+//! to the displaced projection, F = F_n cos α, and sums over the forces F_j on the element,
 //!
 //! ```text
 //! gap:     g + Σ c_j F_j = 0,                   tan α = (√m/(m − g k)) Σ ∂c_j/∂ξ F_j
 //! force:   f_i = A n·D_i + B T_i,               A = F_n cos α − F_t sin α,   B = F_n sin α + F_t cos α
 //! ```
 //!
-//! Without friction the forces are the derivative of F g + ½ c F² with respect to the displacements: the force F (n + t tan α) on the node,
-//! its reaction on the element, and the moment of its lever g on the element. T_i also contains the moment of friction at that foot.
+//! Without friction the forces are the derivative of F g + ½ c F² with respect to the displacements: the force F (n + t tan α) on
+//! the node, its reaction on the element, and the moment of its lever g on the element. T_i also contains the moment of friction
+//! at that point.
 
 use super::dual::{DOFS, Dual, dot};
 use super::pair::Pair;
@@ -69,9 +70,9 @@ pub struct Linearised {
     pub gap: f64,
     /// Σ c_j F_j (length).
     pub given: f64,
-    /// c (length by force).
+    /// c (length per force).
     pub compliance: f64,
-    /// ∂gap/∂F_n (length by force).
+    /// ∂gap/∂F_n (length per force).
     pub give: f64,
     /// F = F_n cos α.
     pub force: f64,

@@ -3,12 +3,12 @@
 use crate::fem::lagrange::MAX_NODES;
 use crate::model::PointGive;
 
-/// c_ij of two points of an element, with its derivatives (length by force).
+/// c_ij of two points of an element, with its derivatives (length per force).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Pair {
     /// c_ij.
     pub give: f64,
-    /// ∂c_ij/∂ξ_i; half of dc/dξ where both points coincide.
+    /// ∂c_ij/∂ξ_i; half of dc/dξ if both points coincide.
     pub slope: f64,
     /// ∂²c_ij/∂ξ_i².
     pub bend: f64,

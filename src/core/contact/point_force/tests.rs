@@ -12,7 +12,7 @@ const GIVE: PointGive = PointGive {
 };
 
 #[test]
-fn the_closed_forms_are_what_quadrature_of_the_projections_leaves() {
+fn closed_forms_agree_with_quadrature() {
     for degree in 1..MAX_NODES {
         for xi in [-1.0, -0.8, -0.1, 0.0, 0.37, 0.9, 1.0] {
             for other in [-1.0, -0.3, 0.37, 0.9, 1.0] {
@@ -69,7 +69,7 @@ fn shear_alone_has_the_short_forms() {
 }
 
 #[test]
-fn nothing_is_left_out_at_the_ends_and_something_positive_between() {
+fn the_compliance_is_zero_at_the_ends_and_positive_between() {
     for degree in 1..MAX_NODES {
         for xi in [-1.0, 1.0] {
             let end = Pair::new(&GIVE, degree, xi, xi);

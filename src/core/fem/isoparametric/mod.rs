@@ -1,26 +1,25 @@
 //! The isoparametric continuum element, with finite rotations and strains: one formulation for every kind of
 //! [`super::kinds`].
 //!
-//! Degrees of freedom are x, y of node 1, of node 2, … With H = ∂u/∂X, F = I + H and the rule of the kind,
+//! The degrees of freedom are x, y of node 1, of node 2, … With H = ∂u/∂X, F = I + H and the rule of the kind,
 //!
 //! ```text
 //! E = ½ (H + Hᵀ + Hᵀ H),      f_i = ∫ F S ∇N_i dV,
 //! K_ij = ∫ B_iᵀ (dS/dE) B_j dV + I ∫ ∇N_i · S ∇N_j dV,      B_i = ∂E/∂u_i.
 //! ```
 //!
-//! In axisymmetry (`HOOP`; x is the radius X) a ring strains as it grows: F33 = 1 + h with h = u_x/X, E33 = h + h²/2. It adds
-//! P33 N_i/X to the force along x, with P33 = F33 S33, and dV = 2π X dA: forces are those of the whole circumference.
+//! In axisymmetry (`HOOP`; x is the radius X) there is a hoop strain: F33 = 1 + h with h = u_x/X, E33 = h + h²/2. It adds P33
+//! N_i/X to the force along x, with P33 = F33 S33, and dV = 2π X dA: forces refer to the whole circumference.
 //!
-//! The same formulas serve both stress updates; they differ in what they are referred to.
+//! The same formulas serve both stress updates, which differ in their reference configuration:
 //!
-//! - **Total Lagrangian**: to the undeformed shape. A Gauss point remembers nothing.
-//! - **Updated Lagrangian**, as in the paper: to the shape at the last accepted increment. There the point keeps its
-//!   Cauchy stress σ_n (and how much it has thickened, in plane stress); in the increment f = ∂x/∂x_n,
-//!   ε = ½ (fᵀ f − I), S = σ_n + c : ε with the moduli of the small-strain law, and on acceptance
-//!   σ = f S fᵀ / det f. Rigid motions strain nothing here either, but the path is followed by chords: the answer
-//!   depends on the size of the increments.
+//! - **Total Lagrangian**: the undeformed shape. A Gauss point has no history.
+//! - **Updated Lagrangian**, as in the paper: the shape at the last accepted increment. The history of a Gauss point is its
+//!   Cauchy stress σ_n (and in plane stress its thickness stretch). Within the increment f = ∂x/∂x_n, ε = ½ (fᵀ f − I), S = σ_n +
+//!   c : ε with the moduli of the small-strain law, and on acceptance σ = f S fᵀ / det f. Rigid motions cause no strain here
+//!   either, but the path is approximated by chords: the result depends on the increment size.
 //!
-//! Either way force and tangent are a pure function of (shape, [`Past`], displacements now), and the tangent is exact.
+//! In both cases force and tangent are pure functions of (shape, [`Past`], current displacements), and the tangent is exact.
 
 use crate::fem::element::{self, Past};
 use crate::fem::kinds::Parent;
@@ -34,33 +33,32 @@ mod ring;
 #[cfg(test)]
 mod tests;
 
-/// Numbers that a Gauss point remembers under the updated-Lagrangian update: σ11, σ22, σ12, and, in plane stress, the thickness
-/// as a multiple of the first one, less one; in axisymmetry σ33. All zero before the first increment.
+/// Number of history variables of a Gauss point with the updated Lagrangian formulation: σ11, σ22, σ12, and the thickness stretch
+/// minus one in plane stress, or σ33 in axisymmetry. All are zero before the first increment.
 pub const MEMORY: usize = 4;
 
 /// An element has no area at a point where det ∂X/∂ξ is below this fraction of the square of the largest ∂X/∂ξ.
 const FLAT: f64 = 1e-9;
 
-/// An element of N nodes and P points, of a plane body or (`HOOP`) of a body of revolution: its undeformed shape and what it
-/// is made of.
+/// An element with N nodes and P points, of a plane body or (`HOOP`) a body of revolution: its undeformed shape and its material.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Element<const N: usize, const P: usize, const HOOP: bool> {
     at: [[f64; 2]; N],
     rule: &'static [Parent<N>; P],
     material: Material,
     update: Update,
-    /// Gradients and areas of the Gauss points in the undeformed shape.
+    /// Gradients and areas at the Gauss points in the undeformed shape.
     points: Box<[Gradients<N>; P]>,
 }
 
-/// ∇N_i at a Gauss point in a shape, and the area that belongs to it.
+/// ∇N_i at a Gauss point in a given shape, and the point's area.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Gradients<const N: usize> {
     grad: [[f64; 2]; N],
     area: f64,
 }
 
-/// State of a Gauss point, to look at.
+/// State of a Gauss point, for output.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointState {
     /// Position in the undeformed shape.
@@ -69,12 +67,12 @@ pub struct PointState {
     pub gradient: Matrix2<f64>,
     /// Cauchy stress σ11, σ22, σ12.
     pub cauchy: Vector3<f64>,
-    /// σ33. In plane strain under the updated update, of which nothing is remembered, ν (σ11 + σ22), which is right but for
-    /// squares of the strain.
+    /// σ33. In plane strain with the updated formulation, which does not store it, ν (σ11 + σ22); the error is of second order in
+    /// the strain.
     pub across: f64,
 }
 
-/// The gradients of a Gauss point in a shape.
+/// The gradients at a Gauss point in a given shape.
 fn gradients<const N: usize>(parent: &Parent<N>, at: &[[f64; 2]; N]) -> Gradients<N> {
     let mut j = [[0.0; 2]; 2];
     for (x, d) in at.iter().zip(&parent.d) {
@@ -114,7 +112,7 @@ fn slope<const N: usize>(grad: &[[f64; 2]; N], u: &[[f64; 2]; N]) -> [[f64; 2]; 
     h
 }
 
-/// H at a point of the parent element. `None` where the undeformed element has no area.
+/// H at a point of the parent element. `None` if the undeformed element has no area.
 pub(super) fn slope_at<const N: usize>(
     parent: &Parent<N>,
     at: &[[f64; 2]; N],
@@ -144,20 +142,20 @@ fn plus_identity(h: &[[f64; 2]; 2]) -> Matrix2<f64> {
     Matrix2::new(1.0 + h[0][0], h[0][1], h[1][0], 1.0 + h[1][1])
 }
 
-/// What the formulas are referred to, and the displacements from there.
+/// The reference configuration of the formulas, and the displacements from it.
 struct Reference<const N: usize> {
     at: [[f64; 2]; N],
     u: [[f64; 2]; N],
 }
 
-/// A Gauss point's part of the integrals.
+/// The contribution of a Gauss point to the integrals.
 struct Point<const N: usize> {
     grad: [[f64; 2]; N],
     h: [[f64; 2]; 2],
-    /// Volume in the reference.
+    /// Reference volume.
     volume: f64,
     response: Response,
-    /// What goes on around the axis; `None` in the plane.
+    /// The hoop direction; `None` in the plane.
     ring: Option<Ring<N>>,
 }
 
@@ -204,7 +202,7 @@ impl<const N: usize, const P: usize, const HOOP: bool> Element<N, P, HOOP> {
         reference
     }
 
-    /// Gauss point p; none where the material has no answer, or the reference shape is folded.
+    /// Gauss point p; `None` if the material has no response, or the reference shape is folded.
     fn point(&self, reference: &Reference<N>, past: &Past<'_>, p: usize) -> Option<Point<N>> {
         let Gradients { grad, area } = match self.update {
             Update::Total | Update::Small => self.points[p],
@@ -218,7 +216,7 @@ impl<const N: usize, const P: usize, const HOOP: bool> Element<N, P, HOOP> {
         let strain = strain(&h);
         let (thickness, response) = match self.update {
             Update::Total | Update::Small => {
-                // C does not know whether an element is turned inside out; J does.
+                // C is the same for an inverted element; only J shows the inversion.
                 if self.material.law == Law::NeoHookean && plus_identity(&h).determinant() <= 0.0 {
                     return None;
                 }
@@ -280,7 +278,7 @@ impl<const N: usize, const P: usize, const HOOP: bool> Element<N, P, HOOP> {
         })
     }
 
-    /// State of Gauss point p; none where the material has no answer.
+    /// State of Gauss point p; `None` if the material has no response.
     pub fn point_state(&self, past: &Past<'_>, u: &[f64], p: usize) -> Option<PointState> {
         let mut at = [0.0; 2];
         for (n, x) in self.rule[p].n.iter().zip(&self.at) {
@@ -302,7 +300,7 @@ impl<const N: usize, const P: usize, const HOOP: bool> Element<N, P, HOOP> {
         })
     }
 
-    /// Stress in the plane and across it by strains that are linear in the displacements.
+    /// In-plane and out-of-plane stress for strains that are linear in the displacements.
     fn linear_stress(
         &self,
         h: &[[f64; 2]; 2],
@@ -344,7 +342,7 @@ impl<const N: usize, const P: usize, const HOOP: bool> element::Element for Elem
         let reference = self.reference(past, u);
         let mut terms = [Terms::default(); P];
         let mut rings = [const { None::<RingTerms<N>> }; P];
-        // ∇N of all nodes, one direction after the other: numbers side by side are what a processor is fast at.
+        // ∇N of all nodes, one direction after the other, because contiguous numbers vectorise.
         let mut grad = [[[0.0; N]; 2]; P];
         for p in 0..P {
             let Some(point) = self.point(&reference, past, p) else {
@@ -359,7 +357,7 @@ impl<const N: usize, const P: usize, const HOOP: bool> element::Element for Elem
             }
         }
         for i in 0..N {
-            // K_ij by the components of i and of j.
+            // K_ij, by the components of i and of j.
             let mut sums = [[[0.0; N]; 2]; 2];
             for (p, (terms, grad)) in terms.iter().zip(&grad).enumerate() {
                 let [x, y] = [grad[0][i], grad[1][i]];
@@ -413,7 +411,7 @@ impl<const N: usize, const P: usize, const HOOP: bool> element::Element for Elem
                 &past.history[MEMORY * p..MEMORY * (p + 1)],
                 &mut history[MEMORY * p..MEMORY * (p + 1)],
             );
-            // Where there is no answer the increment cannot have been accepted.
+            // Without a response the increment cannot have been accepted.
             let Some(point) = self.point(&reference, past, p) else {
                 continue;
             };
@@ -440,7 +438,7 @@ impl<const N: usize, const P: usize, const HOOP: bool> element::Element for Elem
     }
 }
 
-/// How many numbers an element of so many points remembers from increment to increment.
+/// Number of history variables of an element with this number of points.
 pub fn history_len(update: Update, points: usize) -> usize {
     match update {
         Update::Total | Update::Small => 0,
@@ -448,7 +446,7 @@ pub fn history_len(update: Update, points: usize) -> usize {
     }
 }
 
-/// P = F S, and its derivative by H, times the volume of a Gauss point.
+/// P = F S and its derivative with respect to H, times the volume of a Gauss point.
 #[derive(Clone, Copy, Default)]
 struct Terms {
     stress: [[f64; 2]; 2],
@@ -457,7 +455,7 @@ struct Terms {
 }
 
 impl Terms {
-    /// Adds Σ_JL N_i,J ∂P_aJ/∂H_cL N_j,L to [a][c][j], where N_i,J are x and y.
+    /// Adds Σ_JL N_i,J ∂P_aJ/∂H_cL N_j,L to [a][c][j], where x and y are N_i,J.
     fn add_rows<const N: usize>(
         &self,
         [x, y]: [f64; 2],
@@ -509,7 +507,7 @@ impl<const N: usize> Point<N> {
         };
         for l in 0..2 {
             for c in 0..2 {
-                // ∂E/∂H_cL has F_cL in its component L and, as shear, the other one of F; and D times it.
+                // ∂E/∂H_cL contains F_cL in its component L and the other entry of F as shear; multiply by D.
                 let [own, shear] = [f[c][l], f[c][1 - l]];
                 let answer = [0, 1, 2].map(|k| v * (d[(k, l)] * own + d[(k, 2)] * shear));
                 for (a, (f, moduli)) in f.iter().zip(&mut terms.moduli).enumerate() {
@@ -523,13 +521,13 @@ impl<const N: usize> Point<N> {
         terms
     }
 
-    /// What its ring adds; none in the plane.
+    /// The contribution of the hoop direction; `None` in the plane.
     fn ring_terms(&self) -> Option<RingTerms<N>> {
         let terms = |ring: &Ring<N>| ring.terms(self.volume, self.deformation());
         self.ring.as_ref().map(terms)
     }
 
-    /// Stretch across the plane.
+    /// Out-of-plane stretch.
     fn stretch(&self) -> f64 {
         match &self.ring {
             Some(ring) => 1.0 + ring.h,

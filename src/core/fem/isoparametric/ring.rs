@@ -1,26 +1,27 @@
-//! What axisymmetry adds to a Gauss point: the ring that it is part of.
+//! The hoop direction of a Gauss point in axisymmetry.
 //!
-//! With b_i = N_i / X, h = Σ b_i u_xi and F33 = 1 + h, P33 = F33 S33 adds b_i P33 to the force along x. Its derivatives by H and h,
+//! With b_i = N_i / X, h = Σ b_i u_xi and F33 = 1 + h, P33 = F33 S33 adds b_i P33 to the force along x. Its derivatives with
+//! respect to H and h,
 //!
 //! ```text
 //! ∂P_aJ/∂h = F_aK (∂S_KJ/∂E33) F33 = ∂P33/∂H_aJ,      ∂P33/∂h = S33 + F33² ∂S33/∂E33,
 //! ```
 //!
-//! add to the tangent, which stays symmetric.
+//! are added to the tangent, which remains symmetric.
 
 use crate::fem::kinds::Parent;
 use crate::fem::material::Hoop;
 
-/// The ring of a Gauss point.
+/// The hoop direction of a Gauss point.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ring<const N: usize> {
     /// b_i.
     pub share: [f64; N],
-    /// X in the reference.
+    /// Reference radius X.
     pub radius: f64,
     /// h.
     pub h: f64,
-    /// Stress around the axis, once it is known.
+    /// Hoop stress, once it is known.
     pub hoop: Hoop,
 }
 
@@ -36,7 +37,8 @@ pub(super) struct RingTerms<const N: usize> {
 }
 
 impl<const N: usize> Ring<N> {
-    /// The ring of a point of the parent element, whose nodes are `at` in the reference and move by `u`.
+    /// The hoop direction at a point of the parent element, whose nodes have the reference positions `at` and the displacements
+    /// `u`.
     pub fn new(parent: &Parent<N>, at: &[[f64; 2]; N], u: &[[f64; 2]; N]) -> Self {
         let radius: f64 = parent.n.iter().zip(at).map(|(n, x)| n * x[0]).sum();
         let share = parent.n.map(|n| n / radius);
@@ -51,7 +53,7 @@ impl<const N: usize> Ring<N> {
 }
 
 impl<const N: usize> Ring<N> {
-    /// What it adds, where the point has this volume and F in the plane.
+    /// Its contribution for a point with this volume and in-plane F.
     pub fn terms(&self, volume: f64, deformation: [[f64; 2]; 2]) -> RingTerms<N> {
         let (v, hoop, f33) = (volume, &self.hoop, 1.0 + self.h);
         let [xx, yy, xy] = [0, 1, 2].map(|k| v * f33 * hoop.coupling[k]);
@@ -65,7 +67,7 @@ impl<const N: usize> Ring<N> {
 }
 
 impl<const N: usize> RingTerms<N> {
-    /// Adds to K_ij, at [a][c][j], what the hoop strain gives.
+    /// Adds the contribution of the hoop strain to K_ij, at [a][c][j].
     pub fn add_rows(&self, i: usize, grad: &[[f64; N]; 2], sums: &mut [[[f64; N]; 2]; 2]) {
         let [x, y] = [grad[0][i], grad[1][i]];
         let own = self.share[i];

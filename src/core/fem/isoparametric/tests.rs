@@ -1,5 +1,5 @@
-//! What must hold for the isoparametric formulation, on one 8-node quadrilateral; what holds for every kind is in
-//! [`crate::fem::tests`].
+//! Properties of the isoparametric formulation, tested with one 8-node quadrilateral; [`crate::fem::tests`] tests the properties
+//! of all kinds.
 
 use super::*;
 use crate::fem::element::Element as _;
@@ -23,7 +23,7 @@ fn elastic(law: Law, plane: Plane, update: Update) -> Elastic {
     }
 }
 
-/// Every choice that there is.
+/// All combinations of options.
 fn kinds() -> Vec<Elastic> {
     let mut kinds = Vec::new();
     for plane in [Plane::Strain, Plane::Stress] {
@@ -34,7 +34,7 @@ fn kinds() -> Vec<Elastic> {
     kinds
 }
 
-/// A distorted quadrilateral with bent sides.
+/// A distorted quadrilateral with curved sides.
 const AT: [[f64; 2]; NODES] = [
     [0.0, 0.0],
     [2.0, -0.2],
@@ -54,7 +54,7 @@ fn noise(k: usize, size: f64) -> f64 {
     size * ((k * 7 % 11) as f64 / 11.0 - 0.5)
 }
 
-/// A past that is no rest: displacements, stresses and thickness of some size.
+/// A deformed last increment: displacements, stresses and thickness of moderate size.
 fn past() -> (Vec<f64>, Vec<f64>) {
     let u = (0..DOFS).map(|k| noise(k + 3, 0.2)).collect();
     let history = (0..MEMORY * POINTS)
@@ -84,7 +84,7 @@ fn rigid(angle: f64) -> Vec<f64> {
 }
 
 #[test]
-fn a_rigid_motion_strains_nothing_and_turns_the_stress_that_is_there() {
+fn a_rigid_motion_causes_no_strain_and_rotates_the_stress() {
     let (rest, none) = ([0.0; DOFS], [0.0; MEMORY * POINTS]);
     for kind in kinds() {
         for angle in [0.3_f64, 2.5, -7.0] {
@@ -118,7 +118,7 @@ fn kind_scale(history: &[f64]) -> f64 {
 }
 
 #[test]
-fn one_small_updated_step_is_the_total_one() {
+fn a_small_updated_step_equals_a_total_one() {
     let (rest, none) = ([0.0; DOFS], [0.0; MEMORY * POINTS]);
     let past = Past {
         u: &rest,
@@ -128,7 +128,7 @@ fn one_small_updated_step_is_the_total_one() {
     for plane in [Plane::Strain, Plane::Stress] {
         let [total, updated] = [Update::Total, Update::Updated]
             .map(|update| evaluate(&element(&elastic(Law::Svk, plane, update)), &past, &u).0);
-        // From rest both are referred to the undeformed shape.
+        // Before the first increment, both use the undeformed shape as reference.
         for (a, b) in total.iter().zip(&updated) {
             assert!((a - b).abs() < 1e-13 * 100.0);
         }
@@ -137,7 +137,7 @@ fn one_small_updated_step_is_the_total_one() {
 
 #[test]
 fn cauchy_stress_is_in_balance_with_the_force() {
-    // Virtual power of a uniform velocity gradient: Σ f_i · v_i = ∫ σ : grad v dv, for one homogeneous state.
+    // Virtual power of a uniform velocity gradient: Σ f_i · v_i = ∫ σ : grad v dv, for a homogeneous state.
     let (rest, none) = ([0.0; DOFS], [0.0; MEMORY * POINTS]);
     let past = Past {
         u: &rest,
@@ -184,7 +184,7 @@ fn cauchy_stress_is_in_balance_with_the_force() {
 }
 
 #[test]
-fn an_element_turned_inside_out_is_refused_by_the_law_that_cannot_bear_it() {
+fn an_inverted_element_has_no_response_where_the_law_excludes_inversion() {
     let past = Past {
         u: &[0.0; DOFS],
         history: &[],

@@ -1,8 +1,8 @@
-//! The kinds of continuum elements, one file each: places of the nodes in the parent element, shape functions, and the rule
-//! by which it is integrated. What is done with them is the same for all: [`super::isoparametric`].
+//! The kinds of continuum elements, one file each: positions of the nodes in the parent element, shape functions, and integration
+//! rule. [`super::isoparametric`] uses them all in the same way.
 //!
-//! Triangles have the parent ξ, η >= 0, ξ + η <= 1, quadrilaterals the square −1 <= ξ, η <= 1. Corners come first,
-//! anticlockwise, then the middles of the sides that start at them, then the middle.
+//! The parent triangle is ξ, η >= 0, ξ + η <= 1, the parent square −1 <= ξ, η <= 1. Nodes are ordered: the corners,
+//! anticlockwise; then the midside nodes, starting on the side after the first corner; then the centre.
 
 pub mod quad4;
 pub mod quad8;
@@ -10,15 +10,15 @@ pub mod quad9;
 pub mod triangle3;
 pub mod triangle6;
 
-/// Values of N shape functions at a point of the parent element, and their derivatives by ξ and η.
+/// Values of N shape functions at a point of the parent element, and their derivatives with respect to ξ and η.
 pub type Shape<const N: usize> = ([f64; N], [[f64; 2]; N]);
 
-/// What a kind with N nodes has at a point of its rule.
+/// Data of a kind with N nodes at an integration point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Parent<const N: usize> {
     /// ξ and η.
     pub at: [f64; 2],
-    /// The shape functions there.
+    /// The shape functions.
     pub n: [f64; N],
     /// ∂N/∂ξ, ∂N/∂η.
     pub d: [[f64; 2]; N],
@@ -26,7 +26,7 @@ pub struct Parent<const N: usize> {
     pub weight: f64,
 }
 
-/// The shape functions at the points of a rule, points with their weights.
+/// The shape functions at points with weights.
 fn parents<const N: usize, const P: usize>(
     rule: [([f64; 2], f64); P],
     shape: fn(f64, f64) -> Shape<N>,

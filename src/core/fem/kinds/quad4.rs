@@ -1,19 +1,19 @@
-//! The 4-node quadrilateral: displacements are bilinear; 2 × 2 Gauss points.
+//! 4-node quadrilateral: bilinear displacements; 2 × 2 Gauss points.
 //!
-//! It is stiff in bending, and locks where the material hardly compresses.
+//! Stiff in bending, and locks with nearly incompressible materials.
 
 use super::{Parent, Shape, parents};
 use crate::fem::quadrature::square;
 use std::sync::LazyLock;
 
-/// Places of the nodes in the parent square.
+/// Positions of the nodes in the parent square.
 pub const PLACES: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
 
 /// Shape functions at the nodes.
 pub static NODES: LazyLock<[Parent<4>; 4]> =
     LazyLock::new(|| parents(PLACES.map(|at| (at, 0.0)), shape));
 
-/// Its rule.
+/// Integration rule.
 pub static RULE: LazyLock<[Parent<4>; 4]> = LazyLock::new(|| parents(square(2), shape));
 
 /// N_i = ¼ (1 + ξ_i ξ) (1 + η_i η).

@@ -1,14 +1,14 @@
-//! The 8-node quadrilateral of the serendipity family: quadratic along each side; 3 × 3 Gauss points, or 2 × 2.
+//! 8-node serendipity quadrilateral: quadratic along each side; 3 × 3 or 2 × 2 Gauss points.
 //!
-//! With 2 × 2 points (reduced integration) it is softer and does not lock where the material hardly compresses; it has one
-//! motion that strains no point (hourglass), which two elements side by side cannot share. Nodes are the corners
-//! anticlockwise, then the middles of the sides 1-2, 2-3, 3-4, 4-1.
+//! With 2 × 2 points (reduced integration) it is softer and does not lock with nearly incompressible materials. It then has one
+//! hourglass mode, which strains no point but cannot propagate to a neighbouring element. Nodes are the corners anticlockwise,
+//! then the midside nodes of the sides 1-2, 2-3, 3-4, 4-1.
 
 use super::{Parent, Shape, parents};
 use crate::fem::quadrature::square;
 use std::sync::LazyLock;
 
-/// Places of the nodes in the parent square.
+/// Positions of the nodes in the parent square.
 pub const PLACES: [[f64; 2]; 8] = [
     [-1.0, -1.0],
     [1.0, -1.0],
@@ -24,13 +24,13 @@ pub const PLACES: [[f64; 2]; 8] = [
 pub static NODES: LazyLock<[Parent<8>; 8]> =
     LazyLock::new(|| parents(PLACES.map(|at| (at, 0.0)), shape));
 
-/// Its full rule.
+/// Full integration rule.
 pub static RULE: LazyLock<[Parent<8>; 9]> = LazyLock::new(|| parents(square(3), shape));
 
-/// Its reduced rule.
+/// Reduced integration rule.
 pub static REDUCED: LazyLock<[Parent<8>; 4]> = LazyLock::new(|| parents(square(2), shape));
 
-/// The shape functions and their derivatives by ξ and η.
+/// The shape functions and their derivatives with respect to ξ and η.
 pub fn shape(xi: f64, eta: f64) -> Shape<8> {
     let (mut n, mut d) = ([0.0; 8], [[0.0; 2]; 8]);
     for (i, [a, b]) in PLACES.into_iter().enumerate() {

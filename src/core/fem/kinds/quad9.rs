@@ -1,10 +1,10 @@
-//! The 9-node quadrilateral of Lagrange: displacements are biquadratic; 3 × 3 Gauss points.
+//! 9-node Lagrange quadrilateral: biquadratic displacements; 3 × 3 Gauss points.
 
 use super::{Parent, Shape, parents};
 use crate::fem::quadrature::square;
 use std::sync::LazyLock;
 
-/// Places of the nodes in the parent square: corners, middles of the sides, the middle.
+/// Positions of the nodes in the parent square: corners, midside nodes, centre.
 pub const PLACES: [[f64; 2]; 9] = [
     [-1.0, -1.0],
     [1.0, -1.0],
@@ -21,7 +21,7 @@ pub const PLACES: [[f64; 2]; 9] = [
 pub static NODES: LazyLock<[Parent<9>; 9]> =
     LazyLock::new(|| parents(PLACES.map(|at| (at, 0.0)), shape));
 
-/// Its rule.
+/// Integration rule.
 pub static RULE: LazyLock<[Parent<9>; 9]> = LazyLock::new(|| parents(square(3), shape));
 
 /// Products of two parabolas: N_i = L(ξ; ξ_i) L(η; η_i).

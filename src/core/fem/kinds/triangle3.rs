@@ -1,19 +1,19 @@
-//! The 3-node triangle: displacements are linear, strains constant; one point.
+//! 3-node triangle: linear displacements, constant strain; one integration point.
 //!
-//! It is stiff in bending, and locks where the material hardly compresses.
+//! Stiff in bending, and locks with nearly incompressible materials.
 
 use super::{Parent, Shape, parents};
 use crate::fem::quadrature::TRIANGLE_1;
 use std::sync::LazyLock;
 
-/// Places of the nodes in the parent triangle.
+/// Positions of the nodes in the parent triangle.
 pub const PLACES: [[f64; 2]; 3] = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]];
 
 /// Shape functions at the nodes.
 pub static NODES: LazyLock<[Parent<3>; 3]> =
     LazyLock::new(|| parents(PLACES.map(|at| (at, 0.0)), shape));
 
-/// Its rule, exact for the stiffness.
+/// Integration rule, exact for the stiffness.
 pub static RULE: LazyLock<[Parent<3>; 1]> = LazyLock::new(|| parents(TRIANGLE_1, shape));
 
 /// N = 1 − ξ − η, ξ, η.

@@ -1,10 +1,10 @@
-//! The 6-node triangle: displacements are quadratic; three points inside.
+//! 6-node triangle: quadratic displacements; three interior integration points.
 
 use super::{Parent, Shape, parents};
 use crate::fem::quadrature::TRIANGLE_3;
 use std::sync::LazyLock;
 
-/// Places of the nodes in the parent triangle.
+/// Positions of the nodes in the parent triangle.
 pub const PLACES: [[f64; 2]; 6] = [
     [0.0, 0.0],
     [1.0, 0.0],
@@ -18,7 +18,7 @@ pub const PLACES: [[f64; 2]; 6] = [
 pub static NODES: LazyLock<[Parent<6>; 6]> =
     LazyLock::new(|| parents(PLACES.map(|at| (at, 0.0)), shape));
 
-/// Its rule, exact for the stiffness where the sides are straight: nine strains for the nine ways to deform.
+/// Integration rule, exact for the stiffness with straight sides: nine strains for the nine deformation modes.
 pub static RULE: LazyLock<[Parent<6>; 3]> = LazyLock::new(|| parents(TRIANGLE_3, shape));
 
 /// With L = (1 − ξ − η, ξ, η): N = L (2 L − 1) at a corner, 4 L_a L_b between the corners a and b.

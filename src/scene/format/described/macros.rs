@@ -1,6 +1,6 @@
-//! `described!`: a type of the scene file, its walk and its part of the reference, from one definition.
+//! `described!`: defines a type of the scene file together with its walk and its entry in the reference.
 
-/// Whether an attribute says that a field, or every field, may be left out.
+/// Whether an attribute allows a field, or every field, to be omitted.
 macro_rules! has_default {
     (serde($($inside:tt)*)) => { $crate::format::described::macros::has_default!(@in $($inside)*) };
     (@in default $($rest:tt)*) => { true };
@@ -9,7 +9,7 @@ macro_rules! has_default {
     ($($other:tt)*) => { false };
 }
 
-/// Visits a field, as its mark asks.
+/// Visits a field according to its mark.
 macro_rules! walk_field {
     ($field:ident, $place:ident, $visit:ident) => {
         $crate::format::described::Described::walk(
@@ -35,7 +35,7 @@ macro_rules! walk_field {
     };
 }
 
-/// The field's text, where its mark says that it is the name.
+/// The field's text, if it is marked as the name.
 macro_rules! name_field {
     ($field:ident, name) => {
         Some($field.as_str())
@@ -46,7 +46,7 @@ macro_rules! name_field {
     }};
 }
 
-/// Variants of an enum have fields in braces, or none.
+/// Enum variants have fields in braces or none.
 macro_rules! described {
     ($(#[$($meta:tt)*])* $vis:vis struct $name:ident {
         $($(#[$($part_meta:tt)*])* $part_vis:vis $part:ident : $type:ty $(=> $mark:ident)?),* $(,)?
@@ -203,7 +203,7 @@ macro_rules! described {
     };
 }
 
-/// The shortest text of a variant: its name alone where it has no fields.
+/// The shortest text of a variant: only its name if it has no fields.
 macro_rules! blank_variant {
     ($form:ident) => {
         stringify!($form).to_owned()

@@ -1,13 +1,13 @@
-//! The types of the scene file, described once: a field that is written in [`spec`](super::spec) can be listed, set by
-//! its path, and stands in the manual's scene reference.
+//! Describes each type of the scene file once: a field declared in [`spec`](super::spec) can be listed, set by its path, and
+//! appears in the manual's scene reference.
 //!
-//! - `described!` defines a struct, or an enum whose variants have fields. After a field's type may stand
-//!   `=> name` (lists call their entries by it; no value to set), `=> skip` (no value to set), `=> given` (an optional
-//!   value that can be set where there is one).
-//! - `fields!` describes a struct that is defined elsewhere with [`documented!`](stickslip_core::model::documented), all of whose
-//!   fields may be left out. It names them all: one that is forgotten does not compile.
-//! - `words!` describes enums of plain words that are defined elsewhere. The words are those that serde reads, so
-//!   that none can be forgotten.
+//! - `described!` defines a struct, or an enum whose variants have fields. A field's type may be followed by `=> name`
+//!   (identifies the entry in lists; cannot be set), `=> skip` (cannot be set), or `=> given` (an optional value that can be set
+//!   only where the scene gives it).
+//! - `fields!` describes a struct that is defined elsewhere with [`documented!`](stickslip_core::model::documented) and whose
+//!   fields are all optional. It lists every field; omitting one is a compile error.
+//! - `words!` describes enums of unit variants that are defined elsewhere. The words are those that serde reads, so none can be
+//!   missing.
 
 pub(crate) mod macros;
 mod model;
@@ -19,18 +19,18 @@ use stickslip_core::model::documented::{Lines, text};
 pub use types::{Field, Form, Type};
 pub(crate) use types::{OWN_DEFAULTS, blank_form, known, link, read_blank};
 
-/// A place that a walk has come to: the way there, which is made a name or a path of only where somebody asks.
+/// The current location of a walk, as a linked list of steps. It is converted to a name or a path only on demand.
 #[derive(Clone, Copy)]
 pub(crate) struct ScalarPlace<'a> {
-    /// Where the last step was taken from; nothing at the scene itself.
+    /// Parent and last step; `None` for the scene itself.
     last: Option<(&'a ScalarPlace<'a>, PlaceStep<'a>)>,
 }
 
-/// A step from one place to the next.
+/// A step from one location to the next.
 #[derive(Clone, Copy)]
 enum PlaceStep<'a> {
     Field(&'a str),
-    /// An entry of a list by its name, which not all have, and by its position from 0.
+    /// A list entry: its name, if it has one, and its index from 0.
     Entry(Option<&'a str>, usize),
 }
 
@@ -44,12 +44,12 @@ impl<'a> ScalarPlace<'a> {
         self.then(PlaceStep::Field(key))
     }
 
-    /// An entry of a list: by its name if it has one, else by its position from 0.
+    /// A list entry, addressed by its name if it has one, else by its index from 0.
     fn entry(&'a self, called: Option<&'a str>, index: usize) -> ScalarPlace<'a> {
         self.then(PlaceStep::Entry(called, index))
     }
 
-    /// A part of a tuple, which has a name only here.
+    /// A part of a tuple, which is named only here.
     fn part(&'a self, name: &'a str, index: usize) -> ScalarPlace<'a> {
         self.entry(Some(name), index)
     }
@@ -60,7 +60,7 @@ impl<'a> ScalarPlace<'a> {
         }
     }
 
-    /// As a person types it.
+    /// The path as typed by a user.
     pub(crate) fn name(&self) -> String {
         let mut name = String::new();
         self.write(&mut name);
@@ -83,12 +83,12 @@ impl<'a> ScalarPlace<'a> {
         }
     }
 
-    /// Whether a person who types this means it.
+    /// Whether `name` as typed by a user addresses this location.
     pub(crate) fn is(&self, name: &str) -> bool {
         self.rest(name).is_some_and(str::is_empty)
     }
 
-    /// What follows in a text after the name of this place; `None` where it does not begin with that.
+    /// The rest of a text after the name of this location; `None` if it does not start with that name.
     fn rest<'n>(&self, name: &'n str) -> Option<&'n str> {
         let Some((above, step)) = self.last else {
             return Some(name);
@@ -109,7 +109,7 @@ impl<'a> ScalarPlace<'a> {
         }
     }
 
-    /// As the file has it.
+    /// The path in the file.
     pub(crate) fn at(&self) -> Path {
         let Some((above, step)) = self.last else {
             return Path::default();
@@ -159,7 +159,7 @@ impl Scalar<'_> {
         }
     }
 
-    /// The words that it can be; none where it is no word.
+    /// The allowed words; empty for other kinds.
     pub(crate) fn words(&self) -> &'static [&'static str] {
         match self {
             Scalar::Choice(choice) => choice.names(),
@@ -176,7 +176,7 @@ impl Scalar<'_> {
         })
     }
 
-    /// Takes what a text says, if it says anything of the kind.
+    /// Sets the value from a text, if the text is valid for it.
     fn take(&mut self, text: &str) -> Option<()> {
         let number = || text.parse::<f64>().ok().filter(|x| x.is_finite());
         match self {
@@ -197,44 +197,44 @@ fn one_of(words: &[&str]) -> String {
     format!("one of {}", words.join(", "))
 }
 
-/// One of a few words.
+/// A fixed set of words.
 pub(crate) trait Choice {
     fn names(&self) -> &'static [&'static str];
     fn name(&self) -> &'static str;
-    /// Takes the choice of that name, if there is one.
+    /// Sets the choice with that name, if there is one.
     fn choose(&mut self, name: &str) -> bool;
 }
 
-/// What a walk does at every scalar.
+/// Callback for every scalar of a walk.
 pub(crate) type Visit<'v> = dyn FnMut(&ScalarPlace<'_>, Scalar<'_>) + 'v;
 
-/// What can stand in a scene file.
+/// A type that can occur in a scene file.
 pub(crate) trait Described: Sized {
-    /// Visits every scalar in it, in the order of the file.
+    /// Visits every scalar, in file order.
     fn walk(&mut self, place: &ScalarPlace<'_>, visit: &mut Visit<'_>);
-    /// Visits an optional one where there is one.
+    /// Visits an optional value if it is present.
     fn walk_optional(this: &mut Option<Self>, place: &ScalarPlace<'_>, visit: &mut Visit<'_>) {
         if let Some(given) = this {
             given.walk(place, visit);
         }
     }
-    /// What lists call it by.
+    /// Name that identifies it in lists.
     fn called(&self) -> Option<&str> {
         None
     }
-    /// What may be written, in words.
+    /// Description of the accepted values.
     fn kind() -> String;
-    /// The shortest text that can be read as one.
+    /// The shortest text that can be read as a value.
     fn blank() -> String;
-    /// The value, as the reference shows a default.
+    /// The value, formatted as a default in the reference.
     fn shown(&self) -> String;
-    /// Adds the types that stand in it to the reference, each once.
+    /// Adds the types it uses to the reference, each once.
     fn types(_into: &mut Vec<Type>) -> Result<(), String> {
         Ok(())
     }
 }
 
-/// A field as the reference shows it; `value` is its default where it is `optional`.
+/// A field as the reference shows it; `value` is its default if it is `optional`.
 pub(crate) fn field_of<T: Described>(
     name: &'static str,
     docs: Lines,
@@ -249,12 +249,12 @@ pub(crate) fn field_of<T: Described>(
     }
 }
 
-/// Adds the types that stand in a field.
+/// Adds the types used by a field.
 fn types_of<T: Described>(_: &T, into: &mut Vec<Type>) -> Result<(), String> {
     T::types(into)
 }
 
-/// Scalars that are visited as they are: type, scalar, what may be written, the shortest text, how it is shown.
+/// Scalars: type, variant, accepted values, shortest text, and format.
 macro_rules! scalars {
     ($($type:ty, $scalar:ident, $kind:literal, $blank:literal, $shown:literal;)*) => {
         $(impl Described for $type {
@@ -285,7 +285,7 @@ impl Described for f64 {
     fn walk(&mut self, place: &ScalarPlace<'_>, visit: &mut Visit<'_>) {
         visit(place, Scalar::Number(self));
     }
-    /// An optional number can be set where there is none.
+    /// An optional number can be set even if it is absent.
     fn walk_optional(this: &mut Option<Self>, place: &ScalarPlace<'_>, visit: &mut Visit<'_>) {
         visit(place, Scalar::Optional(this));
     }
@@ -340,7 +340,7 @@ impl<T: Described> Described for Vec<T> {
     }
 }
 
-/// Pairs: their parts are tuple elements in the file and have names on the command line.
+/// Pairs: tuple elements in the file that have names on the command line.
 macro_rules! pairs {
     ($($part:ty, $first:literal, $second:literal, $kind:literal;)*) => {
         $(impl Described for ($part, $part) {
@@ -367,7 +367,7 @@ pairs! {
     String, "a", "b", "two texts (a, b)";
 }
 
-/// A node of a given mesh: its label, x and y, none of which is set by a path.
+/// A node of a given mesh (label, x and y); none of its parts can be set by a path.
 impl Described for (usize, f64, f64) {
     fn walk(&mut self, _place: &ScalarPlace<'_>, _visit: &mut Visit<'_>) {}
     fn kind() -> String {

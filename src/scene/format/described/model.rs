@@ -1,5 +1,5 @@
-//! What the scene file shares with the solver: types that are defined with
-//! [`documented!`](stickslip_core::model::documented) and listed here.
+//! Types that the scene file shares with the solver: defined with [`documented!`](stickslip_core::model::documented) and listed
+//! here.
 
 use super::types::{Form, OWN_DEFAULTS, Type, known, lines_of, link, of_words, read_blank};
 use super::words::{of_word, word, words};

@@ -1,4 +1,4 @@
-//! What the scene reference says of a type: its forms, their fields, what may be written and what is the default.
+//! Entries of the scene reference: the forms of a type, their fields, accepted values and defaults.
 
 use crate::format::notation::options;
 use serde::de::DeserializeOwned;
@@ -7,44 +7,44 @@ use stickslip_core::model::documented::{Docs, Lines, text};
 /// A type of the scene file, as the reference shows it.
 #[derive(Debug, Clone)]
 pub struct Type {
-    /// Its name, as the file has it.
+    /// Name in the file.
     pub name: &'static str,
     /// Its doc comment.
     pub docs: String,
-    /// One without a name for a struct; for an enum one for each variant.
+    /// A single form without a name for a struct; one per variant for an enum.
     pub forms: Vec<Form>,
 }
 
 /// A struct, a variant with its fields, or a word.
 #[derive(Debug, Clone)]
 pub struct Form {
-    /// The variant's or the word's name, as the file has it.
+    /// Name of the variant or word in the file.
     pub name: Option<&'static str>,
-    /// Its doc comment; empty for a struct.
+    /// Doc comment; empty for a struct.
     pub docs: String,
-    /// Its fields, in the order of the file; empty for a word.
+    /// Fields in file order; empty for a word.
     pub fields: Vec<Field>,
 }
 
 /// A field of a form.
 #[derive(Debug, Clone)]
 pub struct Field {
-    /// Its name, as the file has it.
+    /// Name in the file.
     pub name: &'static str,
-    /// Its doc comment.
+    /// Doc comment.
     pub docs: String,
-    /// What may be written.
+    /// Accepted values.
     pub kind: String,
-    /// What it is where it is left out, as serde reads it; `None` for a field that must be there.
+    /// Default as serde reads it; `None` for a required field.
     pub default: Option<String>,
 }
 
-/// Whether the reference has the type already.
+/// Whether the reference already contains the type.
 pub(crate) fn known(types: &[Type], name: &str) -> bool {
     types.iter().any(|known| known.name == name)
 }
 
-/// `head(field: …, …)` of the fields that must be there.
+/// `head(field: …, …)` with the required fields.
 pub(crate) fn blank_form(head: &str, fields: &[(&str, bool, String)]) -> String {
     let required = fields.iter().filter(|(_, optional, _)| !optional);
     let written: Vec<String> = required
@@ -53,17 +53,17 @@ pub(crate) fn blank_form(head: &str, fields: &[(&str, bool, String)]) -> String 
     format!("{head}({})", written.join(", "))
 }
 
-/// The value of the shortest text: what serde makes of the fields that are left out.
+/// The value of the shortest text, with all optional fields at their defaults.
 pub(crate) fn read_blank<T: DeserializeOwned>(text: &str) -> Result<T, String> {
     options()
         .from_str(text)
         .map_err(|error| format!("{text}: {error}"))
 }
 
-/// How the reference shows a default that is made of the defaults of its fields.
+/// Shown for a default that consists of the defaults of its fields.
 pub(crate) const OWN_DEFAULTS: &str = "all its defaults";
 
-/// A type's name, leading to where the reference describes it.
+/// A type name, linked to its section of the reference.
 pub(crate) fn link(name: &str) -> String {
     format!("[{name}](#{})", name.to_lowercase())
 }
@@ -74,7 +74,7 @@ pub(super) fn lines_of(docs: &Docs, part: &str) -> Lines {
     found.map_or(&[], |(_, lines)| lines)
 }
 
-/// An enum of plain words: serde lists them in the order of the variants.
+/// An enum of unit variants; serde lists them in declaration order.
 pub(super) fn of_words(docs: &Docs, words: &[&'static str]) -> Type {
     let forms = words.iter().zip(docs.parts).map(|(word, (_, lines))| Form {
         name: Some(word),
@@ -94,7 +94,7 @@ mod tests {
     use stickslip_core::model::{Friction, InitialState, Settings};
 
     #[test]
-    fn what_may_be_left_out_of_a_settings_table_is_its_default() {
+    fn omitted_fields_have_their_defaults() {
         assert_eq!(read_blank::<Settings>("()").unwrap(), Settings::default());
         assert_eq!(read_blank::<Friction>("()").unwrap(), Friction::default());
         assert_eq!(

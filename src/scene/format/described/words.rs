@@ -1,17 +1,17 @@
-//! The words of an enum without fields, as serde reads and writes them.
+//! The words of an enum of unit variants, as serde reads and writes them.
 
 use crate::format::notation::line;
 use serde::de::value::Error as Unread;
 use serde::de::{DeserializeOwned, Deserializer, Error, IntoDeserializer, Visitor};
 use serde::{Serialize, forward_to_deserialize_any};
 
-/// The words that serde reads for an enum without fields.
+/// The words that serde reads for an enum of unit variants.
 pub(super) fn words<T: DeserializeOwned>() -> &'static [&'static str] {
     struct Ask<'a>(&'a mut &'static [&'static str]);
     impl<'de> Deserializer<'de> for Ask<'_> {
         type Error = Unread;
         fn deserialize_any<V: Visitor<'de>>(self, _: V) -> Result<V::Value, Unread> {
-            Err(Unread::custom("only an enum is asked for"))
+            Err(Unread::custom("expected an enum"))
         }
         fn deserialize_enum<V: Visitor<'de>>(
             self,
@@ -28,19 +28,19 @@ pub(super) fn words<T: DeserializeOwned>() -> &'static [&'static str] {
         }
     }
     let mut found: &'static [&'static str] = &[];
-    // It always ends with an error: there is no value, only the question for one.
+    // Deserialization always fails here: it only captures the list of variants.
     let _ = T::deserialize(Ask(&mut found));
     found
 }
 
-/// The word that serde writes for a value of an enum without fields.
+/// The word that serde writes for a value of an enum of unit variants.
 pub(super) fn word<T: Serialize + DeserializeOwned>(value: &T) -> &'static str {
     let written = line(value).unwrap_or_default();
     let found = words::<T>().iter().find(|word| **word == written);
     found.copied().unwrap_or_default()
 }
 
-/// The value of a word, if it is one of the enum's.
+/// The enum value for a word, if there is one.
 pub(super) fn of_word<T: DeserializeOwned>(word: &str) -> Option<T> {
     let word: serde::de::value::StrDeserializer<'_, Unread> = word.into_deserializer();
     T::deserialize(word).ok()
