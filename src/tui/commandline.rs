@@ -88,7 +88,7 @@ impl CommandLine {
         }
     }
 
-    /// Whether the completion ends in a folder or a `PATH=`, which the next Tab continues without a blank.
+    /// Whether the completed word is a path, which takes no blank: Tab then completes inside a folder.
     fn goes_on(&self) -> bool {
         let mut words = self.text().split_whitespace();
         words.next().is_some_and(action::takes_path) && words.next().is_some()

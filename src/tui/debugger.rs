@@ -427,7 +427,9 @@ impl Debugger {
             ChartOf::Settings(over) => over,
         };
         let Some(session) = &self.session else {
-            return self.app.complain("no scene to measure; open one with :open");
+            return self
+                .app
+                .complain("no scene to measure; open one with :open");
         };
         let measuring = Measuring::start(session.scene(), over);
         self.app.measuring = Some(measuring.progress());

@@ -1,7 +1,8 @@
 //! The layout of the screen.
 //!
 //! - Small (80x24): the table, and below it one pane at a time, which Tab changes.
-//! - Medium (120x40): the table across the top; below it on the left the decision and one more pane (the last one chosen), on the right the shape.
+//! - Medium (120x40): the table across the top; below it on the left the decision and one more pane (the last one chosen), on the
+//!   right the shape.
 //! - Large (200x60): two columns above the timeline.
 //!
 //! The status is always at the top, the message and the footer at the bottom; below 80x24 there is one pane at a time. The length

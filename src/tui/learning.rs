@@ -39,7 +39,9 @@ impl App {
                 .answer(word, selected, cursor, frame)
                 .map(|()| String::new()),
             (None, None) => {
-                return self.complain("there is no question; press p to hide decisions until you predict them");
+                return self.complain(
+                    "there is no question; press p to hide decisions until you predict them",
+                );
             }
         };
         match told {
@@ -61,7 +63,8 @@ impl App {
             .as_ref()
             .is_some_and(|tutor| tutor.step().is_some())
         {
-            return self.complain("prediction mode is off in lessons, which ask their own questions");
+            return self
+                .complain("prediction mode is off in lessons, which ask their own questions");
         }
         let toggled = match self.guess {
             Some(_) => Whose::Off,
@@ -76,7 +79,9 @@ impl App {
             (Whose::Off, None) => self.complain("prediction mode is off"),
             (whose, _) => {
                 self.guess = Some(Guess::new(whose, view.cursor));
-                self.say("decisions are hidden until you predict them: step, then press a and f, s or x");
+                self.say(
+                    "decisions are hidden until you predict them: step, then press a and f, s or x",
+                );
             }
         }
     }

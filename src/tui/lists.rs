@@ -119,9 +119,7 @@ impl App {
         match found.and_then(|found| found.starts(number)) {
             Some(starts) => return self.submit(Command::Assume(starts), view),
             None if found.is_none() => {
-                self.complain(
-                    "consistent states are not known here yet; run :census",
-                );
+                self.complain("consistent states are not known here yet; run :census");
             }
             None => self.complain(format!("there is no consistent state {}", number + 1)),
         }

@@ -62,8 +62,7 @@ impl Loading {
             let lesson = Lesson::open(&name).map_err(NotLoaded::from);
             Loaded::Lesson(lesson.map(|lesson| {
                 if let Some(runs) = &lesson.runs {
-                    // Journals are cleaned up in the background, not while keys wait; errors are shown where a journal is
-                    // requested.
+                    // Measured in the background, so that keys need not wait for it; an error is shown where the result is used.
                     let _ = runs.measure();
                 }
                 let session = Session::new(lesson.scene.clone());

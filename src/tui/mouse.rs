@@ -131,7 +131,7 @@ impl App {
                 };
                 return None;
             }
-            // The history of a running solve is not scrolled.
+            // The timeline cannot be scrolled while the solver runs.
             (Pane::Timeline, _) if view.running || self.ahead.is_any() => return None,
             (Pane::Timeline, true) => Step::Left,
             (Pane::Timeline, false) => Step::Right,

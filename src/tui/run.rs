@@ -90,7 +90,7 @@ pub fn run_lesson(lesson: Lesson) -> Result<(), Error> {
     let mut debugger = configured(Config::open()?, None);
     debugger.in_the_world();
     if let Some(runs) = lesson.runs.clone() {
-        // Journals are cleaned up in the background, not while keys wait; errors are shown where a journal is requested.
+        // Measured in the background, so that keys need not wait for it; an error is shown where the result is used.
         std::thread::spawn(move || runs.measure().is_ok());
     }
     debugger.teach(lesson);

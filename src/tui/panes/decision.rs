@@ -41,9 +41,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     };
     let inner = paint::frame(buffer, area, &title, app.focus == Pane::Decision, theme);
     if view.model.finished.is_some() {
-        let words = view
-            .words(slave)
-            .unwrap_or("No decision at the start.");
+        let words = view.words(slave).unwrap_or("No decision at the start.");
         let lines = paint::wrapped(words, inner.width.into(), theme.text);
         return paint::lines(buffer, inner, &lines);
     }
@@ -63,11 +61,15 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     };
     let words = match (hidden, &app.lesson) {
         (false, _) => words(record, slave, view),
-        (true, Some(_)) => "The table above has the numbers. Which mode does Table 2 choose?".into(),
+        (true, Some(_)) => {
+            "The table above has the numbers. Which mode does Table 2 choose?".into()
+        }
         (true, None) if view.guest.is_some() => {
             "Which mode does the solver choose next? Predict it: press a, then f, s or x.".into()
         }
-        (true, None) => "Which mode does Table 2 choose? Predict it: press a, then f, s or x.".into(),
+        (true, None) => {
+            "Which mode does Table 2 choose? Predict it: press a, then f, s or x.".into()
+        }
     };
 
     // The essential lines come first; blank lines are added if there is room.
@@ -630,10 +632,7 @@ fn words(record: Option<&ContactRecord>, slave: usize, view: &View) -> String {
     }
     let next = view.mode(slave);
     let Some(record) = record else {
-        return format!(
-            "No decision yet; the node starts {}.",
-            names::mode(next)
-        );
+        return format!("No decision yet; the node starts {}.", names::mode(next));
     };
     let decision = &record.decision;
     let mut text = match theirs(record, slave, view) {
@@ -649,7 +648,10 @@ fn words(record: Option<&ContactRecord>, slave: usize, view: &View) -> String {
         };
     }
     if view.t_max_moves(slave) {
-        text += &format!(" T_max has not settled: {} was used.", long(record.t_max_used));
+        text += &format!(
+            " T_max has not settled: {} was used.",
+            long(record.t_max_used)
+        );
     }
     if record.carried.contains(&true) {
         text += " A support carries part of the force.";
@@ -664,9 +666,7 @@ fn words(record: Option<&ContactRecord>, slave: usize, view: &View) -> String {
         Forced::Held(mode) if record.forced != Forced::Held(mode) => {
             text += &format!(" Held {} from here on.", names::mode(mode));
         }
-        Forced::Held(_) if decision.rule != Rule::Held => {
-            text += " Held; Table 2 agrees."
-        }
+        Forced::Held(_) if decision.rule != Rule::Held => text += " Held; Table 2 agrees.",
         _ => {}
     }
     text

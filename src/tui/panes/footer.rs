@@ -141,10 +141,7 @@ fn keys(app: &App, view: Option<&View>, places: &Places) -> Vec<Line<'static>> {
             let may = |may: bool, word, not| if may { word } else { not };
             let once = may(offers.is_none_or(|offers| offers.force), "once", "(once)");
             let hold = may(offers.is_none_or(|offers| offers.hold), "hold", "(hold)");
-            listed(
-                &[("f s x", once), ("F S X", hold), ("Esc", "cancel")],
-                app,
-            )
+            listed(&[("f s x", once), ("F S X", hold), ("Esc", "cancel")], app)
         }
         Overlay::Solver(reader) => match reader.search.typed() {
             Some(_) => listed(&[("Enter", "find"), ("Esc", "back")], app),

@@ -42,11 +42,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App) {
     }
     paint::lines(buffer, inner, &lines);
     if shown.len() < all {
-        let again = if more {
-            ""
-        } else {
-            "; Backspace: to the top"
-        };
+        let again = if more { "" } else { "; Backspace: to the top" };
         let place = format!(
             " lines {} to {} of {all}{again} ",
             shown.start + 1,

@@ -366,7 +366,7 @@ fn forces(canvas: &mut Canvas, window: &Window, app: &App, view: &View) -> f64 {
     largest
 }
 
-/// The diagnosis, if the shown state is the last one.
+/// The diagnosis, if the solve fails in the shown state.
 fn found<'a>(view: &View<'a>) -> Option<&'a Examination> {
     view.examination().flatten().filter(|found| found.fails)
 }

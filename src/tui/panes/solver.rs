@@ -194,7 +194,9 @@ fn said((first, lines): (usize, Vec<stickslip_debugger::recorded::log::Said>)) -
     match (first, lines.is_empty()) {
         (0, true) => rows.push(faint("No messages yet.".into())),
         (0, false) => {}
-        (gone, _) => rows.push(faint(format!("The first {gone} lines are no longer stored."))),
+        (gone, _) => rows.push(faint(format!(
+            "The first {gone} lines are no longer stored."
+        ))),
     }
     rows.extend(lines.into_iter().map(|said| Row {
         text: format!("{:<HOW$} {}", said.how.word(), said.text),

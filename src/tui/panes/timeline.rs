@@ -88,7 +88,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
             let (letter, style) = cell(strip, slave, finished, app);
             buffer.set_string(column.x, nodes + row as u16, letter, reversed(style));
         }
-        // Finished runs have no detected cycles, whose brackets would use this row.
+        // Only attached solvers differ from their rules, and they have no cycle brackets in this row.
         if (0..count).any(|slave| strip.differs(slave)) {
             buffer.set_string(column.x, below + 1, "≠", theme.warning);
         }
@@ -182,7 +182,7 @@ fn headings(buffer: &mut Buffer, inner: Rect, shown: &[Column], view: &View, sty
     columns::headings(buffer, inner, shown, style, |at| {
         let now = view.strips[at].position;
         let mut name = view.model.increment_name(now.increment);
-        // In a finished run the step is named where it starts, before the increment.
+        // In a finished run the step is named only at its first increment and in the leftmost column.
         let leftmost = shown.first().is_some_and(|first| first.at == at);
         if let Some((_, number)) = name.split_once('.').filter(|(_, n)| *n != "1" && !leftmost) {
             name = number.to_owned();
