@@ -64,7 +64,7 @@ impl SolverArgs {
                     std::io::ErrorKind::AlreadyExists => {
                         "the file already exists (use --force)".into()
                     }
-                    _ => format!("cannot write the file: {error}"),
+                    _ => format!("the file cannot be written: {error}"),
                 };
                 Error::Usage(format!("{}: {how}", path.display()))
             })?;

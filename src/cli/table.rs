@@ -11,8 +11,7 @@
 //! - `history.jumps: dynamic`: three columns for the damped motion of a jump: `let_go`, the load factor of the last equilibrium,
 //!   `steps`, and `dissipated`, the work of the viscosity.
 //! - `--stability`: `stability` of the accepted state ([`stickslip_core::linear::stability`]): `stable`, `unstable(N)` with N
-//!   negative eigenvalues,
-//!   `divergence` or `not known`.
+//!   negative eigenvalues, `divergence` or `not known`.
 //! - Solids: `worst_stretch`, the smallest principal stretch at their integration points ([`stickslip_core::fem::deformation`]).
 //!
 //! `--trace` has one row per slave node and minor iteration, and none for a minor iteration that could not be solved:
