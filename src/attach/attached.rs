@@ -1,6 +1,6 @@
 //! An attached solver: a child process that implements the core's solver trait.
 //!
-//! The solver stores its states. This module stores the tree of all states that it has reached: for each one a node with its
+//! The solver stores its states. This module stores the tree of all states that it has reached: each is a node with its
 //! predecessor, the interventions there, and the token to restore it, if the solver gave one. Going to a state restores the nearest
 //! predecessor that is available (the start always is, by restarting the solver) and repeats the iterations from there, which must
 //! give the same modes.

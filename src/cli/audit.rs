@@ -83,8 +83,8 @@ fn one(course: &Course, interrupt: &Interrupt) -> Result<Exit, Error> {
     let model = &course.scene.model;
     say(&table(name, model, &audit))?;
     if let Some((position, load, failure)) = failed {
-        let told = report::failure(model, stepper.state(), position, load, &failure);
-        tell(&format!("{name}: history ends early: {told}"));
+        let text = report::failure(model, stepper.state(), position, load, &failure);
+        tell(&format!("{name}: history ends early: {text}"));
     }
     Ok(match audit.broken().next() {
         Some(_) => Exit::Unconverged,

@@ -78,8 +78,8 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         let text = precision_table::open(file).map_err(|e| Error::Usage(e.to_string()))?;
         let charts = precision_table::read(&name, &text, args.cost, args.target);
         let charts = charts.map_err(|error| {
-            let told = mistaken(&name, &text, FileKind::ChartTable);
-            Error::Usage(told.map_or(error.to_string(), |told| format!("{name}: {told}")))
+            let text = mistaken(&name, &text, FileKind::ChartTable);
+            Error::Usage(text.map_or(error.to_string(), |text| format!("{name}: {text}")))
         })?;
         let outputs = Outputs::open(&args.sweep.out)?;
         report(charts).write(outputs, args.sweep.out.quiet)?;

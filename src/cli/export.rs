@@ -304,7 +304,7 @@ fn drive(
     })
 }
 
-/// The failure of the last minor iteration in words; printed as well if `told`.
+/// The failure of the last minor iteration in words; printed as well if requested.
 fn failed(scene: &Scene, stepper: &Stepper, failure: &Failure, told: bool) -> String {
     let words = report::describe_failure(&scene.model, failure);
     if told {

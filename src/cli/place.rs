@@ -133,14 +133,14 @@ pub fn tell_missed(scene: &Scene, solver: &dyn Solver, at: At, missed: Missed) -
     let (event, name) = (solver.event(), &scene.name);
     match missed {
         Missed::Failed(failure) => {
-            let told = report::failure(
+            let text = report::failure(
                 &scene.model,
                 solver.state(),
                 event.position,
                 event.load_factor,
                 &failure,
             );
-            tell(&format!("{name}: {at} not reached: {told}"));
+            tell(&format!("{name}: {at} not reached: {text}"));
             Exit::Unconverged
         }
         Missed::Lost(lost) => {

@@ -36,12 +36,12 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         kept = Some(journal);
     }
     let solved: u64 = record.entries.iter().map(|(_, entry)| entry.solved).sum();
-    let told = format!(
+    let text = format!(
         "{}: {} entries, {solved} minor iterations",
         path.display(),
         record.entries.len()
     );
-    tell(&format!("replaying {told}"));
+    tell(&format!("replaying {text}"));
     let session = session_of(&record, &args.solver)?;
     let mut session = match record.replay_in(session, &mut |_, _| {}) {
         Err(error @ JournalError::Differs { .. }) => {
@@ -57,10 +57,10 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     };
     journal.cut(record.whole_bytes)?;
     session.keep(journal);
-    let told = format!(
+    let text = format!(
         "resumed after {} entries{reservations}",
         record.entries.len()
     );
-    front::resume(session, &told)?;
+    front::resume(session, &text)?;
     Ok(Exit::Good)
 }

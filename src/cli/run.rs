@@ -290,7 +290,7 @@ impl<'a> Run<'a> {
         let end = drive(solver, until, |solver| match tally.see(solver, outputs) {
             Ok(Sent::Well) => match tally.endless(solver) {
                 None => ControlFlow::Continue(()),
-                Some(told) => ControlFlow::Break(Ok(Closed::Endless(told))),
+                Some(text) => ControlFlow::Break(Ok(Closed::Endless(text))),
             },
             Ok(Sent::Closed) => ControlFlow::Break(Ok(Closed::Pipe)),
             Err(error) => ControlFlow::Break(Err(error)),
@@ -353,8 +353,8 @@ impl<'a> Run<'a> {
             RunEnd::Finished | RunEnd::Spent => self.tell_branches(),
             // A reader that closes the pipe has all the data it wants.
             RunEnd::Stopped(Closed::Pipe) => Exit::Good,
-            RunEnd::Stopped(Closed::Endless(told)) => {
-                tell(&format!("{name}: {told}"));
+            RunEnd::Stopped(Closed::Endless(text)) => {
+                tell(&format!("{name}: {text}"));
                 Exit::Unconverged
             }
             RunEnd::Interrupted => {
@@ -364,7 +364,7 @@ impl<'a> Run<'a> {
             }
             RunEnd::Failed(failure) => {
                 let (event, state) = (self.solver.event(), self.solver.state());
-                let told = report::failure(
+                let text = report::failure(
                     &self.tally.scene.model,
                     state,
                     event.position,
@@ -372,7 +372,7 @@ impl<'a> Run<'a> {
                     failure,
                 );
                 self.tell_marks();
-                tell(&format!("{name}: {told}"));
+                tell(&format!("{name}: {text}"));
                 if self.solver.stepper().is_none() {
                     // Only an attached solver knows the cause.
                     tell("  `stickslip attach` opens it in the debugger; d shows the cause");
@@ -572,8 +572,8 @@ impl Tally<'_> {
             if let (true, Some(row)) = (bonds, table.last_mut()) {
                 let contact = &contacts[slave];
                 let by_area = contact.pressure(found.f_n, found.f_t);
-                let told = by_area.map_or(["-".into(), "-".into()], |both| both.map(six));
-                row.extend(told);
+                let text = by_area.map_or(["-".into(), "-".into()], |both| both.map(six));
+                row.extend(text);
                 row.push(bond::name(contact).to_owned());
             }
         }
@@ -593,8 +593,8 @@ impl Tally<'_> {
         self.notes += 1;
         if self.notes <= MOST_WARNINGS && !self.quiet {
             self.progress.clear();
-            let told = report::outcome(&self.scene.model, event);
-            tell(&format!("note: {told}"));
+            let text = report::outcome(&self.scene.model, event);
+            tell(&format!("note: {text}"));
         }
     }
 

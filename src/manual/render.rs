@@ -398,13 +398,13 @@ mod tests {
 
     #[test]
     fn paragraphs_and_lists_are_wrapped_within_their_margins() {
-        let text = "one two three `four five` six seven eight\n\n- a long item of a list that goes on\n  here\n1. next";
+        let text = "one two three `four five` six seven eight\n\n- a long item of a list that continues\n  here\n1. next";
         let expected = [
             "one two three four",
             "five six seven eight",
             "",
             "- a long item of a",
-            "  list that goes on",
+            "  list that continues",
             "  here",
             "1. next",
         ];

@@ -25,7 +25,7 @@ pub struct Answers {
     pub kind: Vec<u16>,
     /// The queried modes, and whether the terminal supports them (DECRQM).
     pub modes: Vec<(u16, bool)>,
-    /// The cursor's column after each of [`TEXTS`], from 1, as far as answered.
+    /// The cursor's column after each of [`TEXTS`], from 1; shorter if answers are missing.
     pub columns: Vec<u16>,
 }
 
