@@ -7,7 +7,7 @@ use stickslip_debugger::teach::Lesson;
 
 /// Fails: this build has no debugger.
 pub fn ready() -> Result<(), Error> {
-    let told = "this build has no debugger; install it with cargo install stickslip --features tui";
+    let told = "this build has no debugger; cargo install stickslip --features tui";
     Err(Error::Usage(told.to_owned()))
 }
 

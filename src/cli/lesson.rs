@@ -71,7 +71,7 @@ fn check(lesson: Lesson) -> Result<String, Error> {
     let answers = play(&lesson)?;
     let (steps, questions) = (lesson.steps.len(), answers.len());
     let mut text = format!(
-        "{}: valid; {steps} steps, {questions} questions\n",
+        "{}: sound; {steps} steps, {questions} questions\n",
         lesson.name
     );
     for answered in &answers {

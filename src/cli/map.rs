@@ -134,7 +134,7 @@ fn write(args: &Args, population: &Population, k: usize) -> Result<Exit, Error> 
     put(args.output.as_deref(), &text, args.sweep.out.force)
 }
 
-/// Runs scenes over settings.
+/// Runs scenes with many settings.
 fn scenes(args: &Args) -> Result<Exit, Error> {
     let study = study(args)?;
     let interrupt = Interrupt::listen();

@@ -62,7 +62,7 @@ impl SolverArgs {
             kept.map_err(|error| {
                 let how = match error.kind() {
                     std::io::ErrorKind::AlreadyExists => {
-                        "the file already exists (use --force)".into()
+                        "the file exists already (use --force)".into()
                     }
                     _ => format!("the file cannot be written: {error}"),
                 };

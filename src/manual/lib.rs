@@ -68,7 +68,7 @@ pages! {
     glossary "glossary" "pages/glossary.md" "Terms of this program and the paper, and what other codes call them";
     studies "studies" "pages/studies.md" "Many runs of a scene; the paper's figures";
     maps_and_charts "maps-and-charts" "pages/maps-and-charts.md" "Maps of convergence; random problems; error over cost";
-    cluster "cluster" "pages/cluster.md" "More than one machine: shards, logs, merging; HyperQueue, Slurm, parallel";
+    cluster "cluster" "pages/cluster.md" "Several machines: shards, logs, merging; HyperQueue, Slurm, parallel";
     theory "theory" "pages/theory.md" "The method, its symbols, and differences from the paper";
     verification "verification" "pages/verification.md" "Acceptance criteria, accuracy, and how they are tested";
     benchmarks "benchmarks" "pages/benchmarks.md" "Scenes with published reference values, and the deviations from them";

@@ -12,7 +12,7 @@ use tempfile::NamedTempFile;
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
     /// The file exists.
-    #[error("{}: the file already exists", .0.display())]
+    #[error("{}: the file exists already", .0.display())]
     Exists(PathBuf),
     /// Writing failed.
     #[error("{}: the file cannot be written: {source}", path.display())]

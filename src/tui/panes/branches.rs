@@ -149,10 +149,10 @@ fn comparison(
             common,
             format!("at load {}", number::plain(common[0].load_factor)),
         ),
-        None => (&found.tips, "at their last states".into()),
+        None => (&found.tips, "at the last states".into()),
     };
     let verdict = match (&found.common, found.sameness) {
-        (None, _) => "the branches share no iteration after the fork",
+        (None, _) => "no common iteration after the fork",
         (_, Some(Sameness::Same)) => "same state",
         (_, Some(Sameness::Different)) => "different states",
         (_, None) => "one state is not stored; go there first",
@@ -163,10 +163,7 @@ fn comparison(
     };
     let mut lines = vec![
         Line::default(),
-        Line::styled(
-            format!(" Compared with the current branch, {place}: {verdict}"),
-            theme.strong,
-        ),
+        Line::styled(format!(" Compared {place}: {verdict}"), theme.strong),
         Line::from(vec![
             Span::raw(" ".repeat(NAME + 2)),
             head(&sides[0]),

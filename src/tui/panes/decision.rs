@@ -61,9 +61,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     };
     let words = match (hidden, &app.lesson) {
         (false, _) => words(record, slave, view),
-        (true, Some(_)) => {
-            "The table above has the numbers. Which mode does Table 2 choose?".into()
-        }
+        (true, Some(_)) => "The numbers are in the table above. What does Table 2 choose?".into(),
         (true, None) if view.guest.is_some() => {
             "Which mode does the solver choose next? Predict it: press a, then f, s or x.".into()
         }

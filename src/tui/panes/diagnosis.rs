@@ -136,8 +136,8 @@ fn answers(found: &Examination, width: usize, app: &App, view: &View) -> Vec<Lin
     if left > 0 {
         let all = (0..problem.nodes.len()).filter(|&place| differs(census, place));
         let text = match all.count() > listed.len() {
-            true => format!(" and {left} more nodes"),
-            false => format!(" and {left} more nodes, the same in all states"),
+            true => format!(" and {left} more"),
+            false => format!(" and {left} more, the same in all states"),
         };
         lines.push(Line::styled(text, theme.faint));
     }
@@ -149,7 +149,7 @@ fn answers(found: &Examination, width: usize, app: &App, view: &View) -> Vec<Lin
         String::new()
     };
     let text = format!(
-        "{more} Up and Down select, Enter starts from this state (:start-from {})",
+        "{more} Up and Down select, Enter starts from it (:start-from {})",
         at + 1
     );
     lines.push(Line::styled(format!(" {}", text.trim_start()), theme.faint));

@@ -183,7 +183,7 @@ fn place(app: &App, view: &View, apart: &str, attempt: bool) -> Line<'static> {
 
 /// The initial state, with its start gaps.
 fn start(view: &View) -> String {
-    let text = "▸ at the start, no iteration yet";
+    let text = "▸ at the start; nothing is solved yet";
     match view.start_gaps {
         "" => text.into(),
         gaps => format!("{text}; start gaps: {gaps}"),

@@ -22,7 +22,7 @@ use unicode_width::UnicodeWidthStr;
 pub const FRAME: u16 = 5;
 /// Legend of a finished run's letters.
 const LETTERS: &str =
-    " C closed  · open  M on another face  1-9 tenths of a face  lower case: held fixed ";
+    " C closed  · open  M other face  1-9 tenths of a face  lower case: held fixed ";
 /// Minimum and maximum width of the names.
 const NAME: Range<usize> = 9..14;
 
