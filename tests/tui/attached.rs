@@ -171,7 +171,7 @@ fn an_end_that_is_judged_wrong_is_no_other_valid_state() {
 #[test]
 fn who_is_attached_and_how_it_goes_back_stand_at_the_top() {
     for (goes_back, words) in [
-        (GoesBack::Again, "attached, goes back by restarting"),
+        (GoesBack::Again, "attached, goes back by restart"),
         (
             GoesBack::ToIncrements,
             "attached, goes back to increments, then replays",

@@ -62,7 +62,7 @@ fn guest(app: &App, view: &View, guest: &Guest, width: usize) -> Line<'static> {
             "attached, goes back to increments, then replays",
             theme.faint,
         ),
-        (.., GoesBack::Again) => ("attached, goes back by restarting", theme.faint),
+        (.., GoesBack::Again) => ("attached, goes back by restart", theme.faint),
     };
     let key = by_name("log")
         .ok()
