@@ -4,9 +4,9 @@
 //! only those above it:
 //!
 //! - `stickslip-linalg`: linear systems. `stickslip-core`: the solver, without files, terminal or threads.
-//! - `stickslip-exchange`: files of other programs as plain data.
+//! - `stickslip-exchange`: file formats of other programs as plain data.
 //! - `stickslip-platform`: what differs between operating systems.
-//! - [`scene`]: the scene file ([`format`](mod@format)), and the [`model::Model`] that it becomes.
+//! - [`scene`]: the scene file ([`format`](mod@format)), and the [`model::Model`] that is built from it.
 //! - [`study`]: many runs of a scene: sweeps, convergence maps, work-precision charts.
 //! - [`manual`]: the pages that `help` shows.
 //! - `stickslip-debugger`: the debugger without a terminal ([`session`]), with its history, explanations, actions and lessons.

@@ -1,9 +1,9 @@
-//! An attached solver: a child process behind the seam of all solvers.
+//! An attached solver: a child process that implements the core's solver trait.
 //!
-//! The solver keeps what it goes on from itself. Here stands the tree of all states that it has had: a place for each, with the
-//! place that it came from, what was changed there, and the token by which it can be gone back to, where the solver gave one. To
-//! go to a place is to restore the nearest state before it that can be had (the start, by starting the solver anew, always can), and
-//! to do again what led from there; what is done again must come to the same modes.
+//! The solver stores its states. This module stores the tree of all states that it has reached: each is a node with its
+//! predecessor, the interventions there, and the token to restore it, if the solver gave one. Going to a state restores the nearest
+//! predecessor that is available (the start always is, by restarting the solver) and repeats the iterations from there, which must
+//! give the same modes.
 
 use super::link::{Link, Start, name};
 use super::meeting::{self, Met, meet};
@@ -26,7 +26,7 @@ use stickslip_exchange::attach::message::{self, Ended, Hello, Id, Restore};
 use stickslip_exchange::attach::{Answer, Request};
 use stickslip_scene::Scene;
 
-/// A solver that is a program of its own.
+/// A solver in a child process.
 pub struct Attached {
     start: Start,
     model: Arc<Model>,
@@ -38,22 +38,22 @@ pub struct Attached {
     log: Log,
     asks: Arc<AtomicUsize>,
     places: Places<Kept>,
-    /// The place at which the running solver is, with nothing changed there; `None` where that is not known.
+    /// The tree node that the running solver is at, without interventions since; `None` if it is not known.
     at: Option<u64>,
-    /// The present state, and the iteration that led to it.
+    /// The current state, and the iteration that produced it.
     now: Led,
-    /// Iterations that were done again to come to the present place.
+    /// Iterations repeated to reach the current node.
     again: usize,
-    /// Whether it was started anew for that.
+    /// Whether the solver was restarted for that.
     anew: bool,
 }
 
-/// What is kept of a state that the solver has had: how to find it again, and how to know it.
+/// A state that the solver has reached: how to restore it, and how to verify a repeated iteration.
 #[derive(Default)]
 struct Kept {
-    /// By which the solver goes back to it.
+    /// Token to restore it.
     token: Option<serde_json::Value>,
-    /// Where the iteration was that led here, what ended with it, and the modes that it found; none at the start.
+    /// Position, outcome and modes of the iteration that produced it; `None` at the start.
     led: Option<(Position, Ended, Vec<Mode>)>,
 }
 
@@ -66,7 +66,7 @@ impl Kept {
         }
     }
 
-    /// Whether an increment begins here.
+    /// Whether an increment starts here.
     fn begins(&self) -> bool {
         self.led
             .as_ref()
@@ -75,10 +75,10 @@ impl Kept {
 }
 
 impl Attached {
-    /// Starts a solver, and asks who it is and what it solves. The scene is what all else knows of it.
+    /// Starts a solver, and reads its greeting and its scene.
     ///
     /// # Errors
-    /// The fault by which it ends.
+    /// The [`Fault`] that ended it.
     pub fn attach(start: Start, log: Log) -> Result<(Scene, Attached), Fault> {
         let asks = Arc::new(AtomicUsize::new(0));
         let Met {
@@ -108,22 +108,22 @@ impl Attached {
         Ok((scene, attached))
     }
 
-    /// What it said of itself.
+    /// Its greeting.
     pub fn hello(&self) -> &Hello {
         &self.hello
     }
 
-    /// What it said besides.
+    /// The log of its messages and output.
     pub fn log(&self) -> &Log {
         &self.log
     }
 
-    /// How it was started.
+    /// Its command and time limits.
     pub fn start(&self) -> &Start {
         &self.start
     }
 
-    /// Asks the solver. A fault is its end.
+    /// Sends a request. A fault ends the solver.
     fn ask(&mut self, request: &Request) -> Result<Answer, Fault> {
         let Some(link) = &mut self.link else {
             return Err(Fault::Died {
@@ -138,12 +138,12 @@ impl Attached {
         answer
     }
 
-    /// Asks for something that is answered by `ok`.
+    /// Sends a request whose answer is `ok`.
     fn order(&mut self, request: &Request) -> Result<(), Fault> {
         match self.ask(request)? {
             Answer::Ok => Ok(()),
             Answer::Refused { reason } => {
-                // Part of what was to be changed may be.
+                // A part of the interventions may have been applied.
                 self.at = None;
                 Err(Fault::Refused {
                     asked: name(request),
@@ -154,7 +154,7 @@ impl Attached {
         }
     }
 
-    /// Another answer than one that would be right.
+    /// The fault for an answer of the wrong type.
     fn other(&mut self, request: &Request, answer: Answer, expected: &'static str) -> Fault {
         match answer {
             Answer::Refused { .. } => {}
@@ -170,7 +170,7 @@ impl Attached {
         self.places.iter_mut().for_each(|kept| kept.token = None);
     }
 
-    /// Brings the solver to the place of the present state.
+    /// Brings the solver to the current state.
     fn go(&mut self) -> Result<(), Fault> {
         let target = self.place()?;
         if self.link.is_some() && self.at == Some(target) {
@@ -184,7 +184,7 @@ impl Attached {
                 .is_some_and(|kept| kept.token.is_some());
             self.link.is_some() && (here || token)
         };
-        // What is done again, the last first, and from where.
+        // Nodes to repeat, the last one first, and the node to start from.
         let again: Vec<u64> = self
             .places
             .back(target)
@@ -199,7 +199,7 @@ impl Attached {
         };
         if self.at != Some(from) || self.link.is_none() {
             match self.take_up(from) {
-                // It has forgotten that one; there is another before it, at last the start.
+                // The solver has dropped this state; try an earlier one, at last the start.
                 Err(Fault::Refused { .. }) if self.forget(from) => return self.go(),
                 other => other?,
             }
@@ -212,7 +212,7 @@ impl Attached {
         Ok(())
     }
 
-    /// Goes to a place that can be had without doing anything again.
+    /// Goes to a node without repeating iterations: restores it, or restarts the solver.
     fn take_up(&mut self, place: u64) -> Result<(), Fault> {
         let token = self.places.get(place).and_then(|kept| kept.token.clone());
         match token {
@@ -233,18 +233,18 @@ impl Attached {
         Ok(())
     }
 
-    /// Gives up a token; whether there was one.
+    /// Drops a token; returns whether there was one.
     fn forget(&mut self, place: u64) -> bool {
         let kept = self.places.get_mut(place);
         let token = kept.and_then(|kept| kept.token.take());
         if token.is_some() {
             self.log
-                .noted("restore is refused; what led there is done again");
+                .noted("restore was refused; its iterations are repeated");
         }
         token.is_some()
     }
 
-    /// Does again what led to a place, from the one before it.
+    /// Repeats the iteration that leads to a node, from its predecessor.
     fn do_again(&mut self, place: u64) -> Result<(), Fault> {
         let asked = match self.places.from(place) {
             Some((_, asked)) => asked.to_vec(),
@@ -258,7 +258,7 @@ impl Attached {
         self.save(place)
     }
 
-    /// Whether an iteration that was done again led to where it did the first time.
+    /// Checks that a repeated iteration gives the same result.
     fn same(&self, place: u64, now: &Kept) -> Result<(), Fault> {
         let then = self.places.get(place).ok_or(Fault::Unknown)?;
         match differs(then, now, &self.model) {
@@ -270,7 +270,7 @@ impl Attached {
         }
     }
 
-    /// Tells the solver what was changed.
+    /// Sends interventions to the solver.
     fn change(&mut self, asked: &[Intervention]) -> Result<(), Fault> {
         let requests = asked
             .iter()
@@ -281,9 +281,9 @@ impl Attached {
         Ok(())
     }
 
-    /// One iteration of the solver where it is.
+    /// Makes one iteration from the solver's current state.
     fn step_there(&mut self) -> Result<message::State, Fault> {
-        // Until it is known where it led to.
+        // Unknown until the answer is evaluated.
         self.at = None;
         match self.ask(&Request::Step)? {
             Answer::State(told) => Ok(*told),
@@ -291,7 +291,7 @@ impl Attached {
         }
     }
 
-    /// Keeps the state of a place, where the solver offers that there.
+    /// Saves the solver's state, if it offers that here.
     fn save(&mut self, place: u64) -> Result<(), Fault> {
         let kept = self.places.get(place).ok_or(Fault::Unknown)?;
         let wanted = match self.hello.abilities.restore {
@@ -309,16 +309,16 @@ impl Attached {
                 }
                 Ok(())
             }
-            // It may have no room for more; the way from an earlier one is longer.
+            // The solver may be out of space; an earlier state can still be restored.
             Answer::Refused { reason } => {
-                self.log.noted(&format!("save is refused: {reason}"));
+                self.log.noted(&format!("save was refused: {reason}"));
                 Ok(())
             }
             other => Err(self.other(&Request::Save, other, "saved")),
         }
     }
 
-    /// The place of the present state.
+    /// The tree node of the current state.
     fn place(&self) -> Result<u64, Fault> {
         let known = |place: &u64| self.places.get(*place).is_some();
         self.now.state.place().filter(known).ok_or(Fault::Unknown)
@@ -332,7 +332,7 @@ impl Attached {
         }
     }
 
-    /// One iteration from the present state.
+    /// Makes one iteration from the current state.
     fn iterate(&mut self) -> Result<(), Fault> {
         self.go()?;
         let (from, asked) = (self.place()?, self.now.state.asked().to_vec());
@@ -349,7 +349,7 @@ impl Attached {
         };
         led.state_at(place);
         self.at = Some(place);
-        // A failing save is a failing solver, but this iteration is done.
+        // If saving fails the solver is unusable, but this iteration is valid.
         if let Err(fault) = self.save(place) {
             self.log.noted(&fault.to_string());
         }
@@ -357,12 +357,12 @@ impl Attached {
         Ok(())
     }
 
-    /// Asks for the frozen interface problem of the present state.
+    /// Requests the frozen interface problem of the current state.
     fn ask_problem(&mut self) -> Result<Posed, Fault> {
         self.go()?;
         let asked = self.now.state.asked().to_vec();
         if !asked.is_empty() {
-            // What was changed belongs to the problem, but not to this place.
+            // The interventions are part of the problem, so the solver is no longer at this node.
             self.change(&asked)?;
             self.at = None;
         }
@@ -440,27 +440,27 @@ impl Solver for Attached {
         let anew = std::mem::take(&mut self.anew);
         let s = if again == 1 { "" } else { "s" };
         let told = match (anew, again) {
-            (true, 0) => Some("the solver was started anew".to_owned()),
+            (true, 0) => Some("the solver was restarted".to_owned()),
             (true, _) => Some(format!(
-                "the solver was started anew, and did {again} iteration{s} again"
+                "the solver was restarted and repeated {again} iteration{s}"
             )),
             (false, 0) => None,
-            (false, _) => Some(format!("the solver did {again} iteration{s} again")),
+            (false, _) => Some(format!("the solver repeated {again} iteration{s}")),
         };
         let parts: Vec<String> = told.into_iter().chain(lost).collect();
         (!parts.is_empty()).then(|| parts.join("; "))
     }
 }
 
-/// What a solver tells otherwise than when it was started first.
+/// The first difference to the greeting and scene of the first start.
 fn another(told: &message::Scene, hello: &Hello, met: &Met) -> Option<&'static str> {
     let scene = &met.scene;
     let parts = [
         (hello.abilities == met.hello.abilities, "list of abilities"),
-        (hello.decides == met.hello.decides, "way to decide"),
+        (hello.decides == met.hello.decides, "decision rule"),
         (
             hello.parameters == met.hello.parameters,
-            "list of parameters, or other values of them",
+            "set of parameters",
         ),
         (told.contacts == scene.contacts, "list of contacts"),
         (told.nodes == scene.nodes, "list of nodes"),
@@ -469,22 +469,22 @@ fn another(told: &message::Scene, hello: &Hello, met: &Met) -> Option<&'static s
     parts.iter().find(|(same, _)| !same).map(|(_, what)| *what)
 }
 
-/// How an iteration that was done again differs from the first time; `None` where place and modes are the same.
+/// The difference between a repeated iteration and the original; `None` if position, modes and outcome are the same.
 fn differs(then: &Kept, now: &Kept, model: &Model) -> Option<String> {
     let ((was, ended, modes), (is, ends, now)) = then.led.as_ref().zip(now.led.as_ref())?;
     if was != is {
         let (is, was) = (names::position(*is), names::position(*was));
-        return Some(format!("it is {is}, and was {was}"));
+        return Some(format!("position {is} instead of {was}"));
     }
     let other = modes.iter().zip(now).position(|(then, now)| then != now);
     if let Some(k) = other {
         let word = |told| names::mode(told);
         return Some(format!(
-            "{} goes on {}, and went on {}",
+            "the next mode of {} is {} instead of {}",
             names::slave(model, k),
             word(now[k]),
             word(modes[k])
         ));
     }
-    (ended != ends || modes.len() != now.len()).then(|| "it ends otherwise".to_owned())
+    (ended != ends || modes.len() != now.len()).then(|| "the outcome differs".to_owned())
 }

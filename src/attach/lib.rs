@@ -1,10 +1,10 @@
-//! Solvers that others made, stepped by this debugger: child processes that speak the protocol of
-//! [`stickslip_exchange::attach`], as solvers of ours ([`Solver`](stickslip_core::step::Solver)).
+//! External solvers, stepped by the debugger: child processes that speak the protocol of [`stickslip_exchange::attach`], used
+//! through the trait [`Solver`](stickslip_core::step::Solver).
 //!
 //! - [`link`]: the child process; [`meeting`]: its start.
-//! - [`attached`]: the solver, with the tree of the states that it has had.
-//! - `wire`: states and events of our solver as messages; [`serve`]: our own solver on the other side.
-//! - [`check`]: whether a solver does what it says it does.
+//! - [`attached`]: the solver, with the tree of its states.
+//! - [`serve`]: stickslip's own solver as an attachable program; `wire`: its states and events as messages.
+//! - [`check`]: tests what a solver offers.
 
 #![forbid(unsafe_code)]
 
@@ -18,5 +18,5 @@ mod wire;
 pub use attached::Attached;
 pub use link::Start;
 
-/// The Python side of the protocol, as one file.
+/// The Python module of the protocol.
 pub const PYTHON: &str = include_str!("stickslip_attach.py");

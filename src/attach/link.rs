@@ -1,8 +1,8 @@
-//! A solver as a child process: it is started, asked, interrupted and ended.
+//! A solver as a child process: start, requests, interrupts and end.
 //!
-//! Its standard output is read on a thread of its own, line by line and bounded; its standard error on another, into the log.
-//! It runs in a process group of its own, so that a Ctrl-C in the terminal is this program's to pass on: first as a message, then
-//! as a signal, then for good.
+//! A thread reads its standard output line by line, with a bounded queue; another thread copies its standard error to the log. The
+//! process has a separate process group, so that a Ctrl-C in the terminal reaches only this program, which passes it on: first as a
+//! message, then as a signal, then by ending the process.
 
 use rustix::io::ioctl_fionbio;
 use rustix::process::{Pid, Signal, WaitId, WaitIdOptions, kill_process_group, waitid};
@@ -20,32 +20,32 @@ use stickslip_exchange::attach::conversation::STARTED;
 use stickslip_exchange::attach::{Answer, Line, Lines, MOST_BYTES, Request, Side};
 use stickslip_scene::shown;
 
-/// How often who waits looks whether it is to be interrupted.
+/// Polling interval for interrupts.
 const LOOK: Duration = Duration::from_millis(10);
-/// How long a solver has to end after `bye`.
+/// Time for a solver to end after `bye`.
 const FAREWELL: Duration = Duration::from_millis(500);
-/// Lines that may wait to be read; each can be as long as any.
+/// Maximum number of unread lines in the queue; each has the maximum length.
 const WAITING: usize = 2;
-/// Characters that are shown of a line that cannot be read.
+/// Characters shown of an unreadable line.
 const SHOWN: usize = 80;
-/// Most characters of a name in what is told.
+/// Maximum length of a name in messages.
 const NAME: usize = 60;
-/// Most bytes of a line of standard error.
+/// Maximum bytes per line of standard error.
 const ERROR_BYTES: u64 = 8192;
 
-/// How a solver is started, and how long it may take.
+/// The command of a solver, and its time limits.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Start {
     /// The program and its arguments.
     pub command: Vec<String>,
-    /// How long it may take from its start to its first answers.
+    /// Time limit from the start to the first answers.
     pub start: Duration,
-    /// How long any other answer may take.
+    /// Time limit for other answers.
     pub answer: Duration,
 }
 
 impl Start {
-    /// This command, with a minute to start, and ten for every answer.
+    /// A command with default time limits: one minute to start, ten minutes per answer.
     pub fn new(command: Vec<String>) -> Start {
         Start {
             command,
@@ -54,7 +54,7 @@ impl Start {
         }
     }
 
-    /// The command as one would type it.
+    /// The command as typed.
     pub fn typed(&self) -> String {
         self.command.join(" ")
     }
@@ -71,8 +71,8 @@ pub struct Link {
 }
 
 impl Link {
-    /// Starts a solver. `stop` is looked at while it is waited for: once asked to stop, a solver that offers it gets a message;
-    /// asked twice, any gets a signal; and asked a third time, it is ended for good.
+    /// Starts a solver. `stop` counts the user's requests to stop while waiting: after the first, a solver that supports it gets a
+    /// message; after the second, any solver gets a signal; after the third, the process is killed.
     ///
     /// # Errors
     /// [`Fault::NotStarted`].
@@ -82,7 +82,7 @@ impl Link {
             why,
         };
         let [program, arguments @ ..] = start.command.as_slice() else {
-            return Err(not_started("no command is named after --".into()));
+            return Err(not_started("no command after --".into()));
         };
         let mut command = Command::new(program);
         command
@@ -105,7 +105,7 @@ impl Link {
         }
         let input = child.stdin.take();
         if let Some(input) = &input {
-            // A solver that does not read must not hold this program.
+            // Writing must not block if the solver does not read.
             ioctl_fionbio(input, true).map_err(|error| not_started(error.to_string()))?;
         }
         Ok(Link {
@@ -118,23 +118,23 @@ impl Link {
         })
     }
 
-    /// Whether the solver looks at its input while it works, so that it can be asked to end a request.
+    /// Sets whether the solver reads its input during a request, so that it can be interrupted.
     pub fn set_interrupts(&mut self, interrupts: bool) {
         self.interrupts = interrupts;
     }
 
-    /// What counts from now on how often the user has asked to stop.
+    /// Installs the counter of the user's requests to stop.
     pub fn heed(&mut self, asks: Arc<AtomicUsize>) {
         self.stop = asks;
     }
 
-    /// Asks, and waits for the answer.
+    /// Sends a request, and waits for the answer.
     ///
     /// # Errors
-    /// The fault by which the solver ends; it is of no use any more then.
+    /// The fault that ended the solver; it cannot be used afterwards.
     pub fn ask(&mut self, request: &Request, within: Duration) -> Result<Answer, Fault> {
         let mut waiting = Waiting::new(request, within);
-        // What came since the last answer.
+        // Lines that arrived since the last answer.
         while let Ok(line) = self.output.try_recv() {
             self.besides(line, &waiting)?;
             self.wait_on(&mut waiting)?;
@@ -150,12 +150,12 @@ impl Link {
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => return Err(self.died("", &waiting)),
             }
-            // Who goes on talking is not listened to for ever.
+            // A solver that keeps sending messages must not delay the time limit.
             self.wait_on(&mut waiting)?;
         }
     }
 
-    /// What a line answers; `None` for a message, which is no answer.
+    /// The answer in a line; `None` for a message.
     fn heard(
         &mut self,
         line: io::Result<Line>,
@@ -175,7 +175,7 @@ impl Link {
         }
     }
 
-    /// A line that came where no answer is due.
+    /// Handles a line outside a request.
     fn besides(&mut self, line: io::Result<Line>, waiting: &Waiting) -> Result<(), Fault> {
         match self.heard(line, waiting)? {
             None => Ok(()),
@@ -186,7 +186,7 @@ impl Link {
         }
     }
 
-    /// What a line says.
+    /// Decodes a line.
     fn read(&mut self, line: Line, waiting: &Waiting) -> Result<Answer, Fault> {
         let text = match line {
             Line::Text(text) => text,
@@ -204,8 +204,8 @@ impl Link {
             }
             Line::NoText(line) => {
                 self.log
-                    .exchanged(Side::Noted, &format!("no UTF-8: {line}"));
-                let why = "it is not UTF-8".into();
+                    .exchanged(Side::Noted, &format!("not UTF-8: {line}"));
+                let why = "not UTF-8".into();
                 return Err(Fault::Junk { why, line });
             }
         };
@@ -217,9 +217,9 @@ impl Link {
                 Some((_, column)) if letters.starts_with('{') => {
                     format!("column {column}: {broken}")
                 }
-                _ => "it is no JSON object".to_owned(),
+                _ => "not a JSON object".to_owned(),
             };
-            // What is wrong in a long line stands around the column.
+            // In a long line the error is near the column.
             let from = broken.at.map_or(0, |(_, column)| column.saturating_sub(40));
             let asked = waiting.asked.clone();
             match letters.starts_with('{') {
@@ -236,8 +236,8 @@ impl Link {
         })
     }
 
-    /// Sends a request as fast as it is taken. A solver that is still talking is listened to meanwhile, or both would wait for
-    /// each other.
+    /// Sends a request in as many parts as the pipe accepts. Output of the solver is read meanwhile, since otherwise both sides
+    /// could block.
     fn send(&mut self, request: &Request, waiting: &mut Waiting) -> Result<(), Fault> {
         let line = request.line();
         self.log.exchanged(Side::Asked, &line);
@@ -265,7 +265,7 @@ impl Link {
         Ok(())
     }
 
-    /// It takes nothing more. It may have said why.
+    /// The fault for a closed standard input; the solver may have sent the reason.
     fn gone(&mut self, waiting: &Waiting) -> Fault {
         let until = Instant::now() + FAREWELL;
         while Instant::now() < until {
@@ -279,17 +279,17 @@ impl Link {
                 Err(RecvTimeoutError::Disconnected) => break,
             }
         }
-        self.died("it closed its standard input", waiting)
+        self.died("standard input closed", waiting)
     }
 
-    /// No answer has come yet.
+    /// Checks interrupts, time limit and process state while waiting for an answer.
     fn wait_on(&mut self, waiting: &mut Waiting) -> Result<(), Fault> {
         let asked = || waiting.asked.clone();
         let asks = self.stop.load(Ordering::Relaxed);
         if asks > waiting.heeded {
             match asks {
                 1 if self.interrupts && !waiting.partly => self.interrupt(),
-                // It is waited for: the iteration at hand is the last one then.
+                // The solver cannot be interrupted, so this waits for the current iteration.
                 1 => {}
                 2 => self.signal(Signal::INT),
                 _ => return Err(Fault::Stopped { asked: asked() }),
@@ -307,10 +307,10 @@ impl Link {
         if now < waiting.look {
             return Ok(());
         }
-        // Its output may be held open by something that it has started.
+        // The output may be kept open by a child of the solver.
         waiting.look = now + FAREWELL;
         match (self.end(), waiting.gone) {
-            (Some(_), true) => Err(self.died("what it started lives on", waiting)),
+            (Some(_), true) => Err(self.died("a child process keeps its output open", waiting)),
             (end, _) => {
                 waiting.gone = end.is_some();
                 Ok(())
@@ -318,17 +318,17 @@ impl Link {
         }
     }
 
-    /// Asks it to end the request at hand.
+    /// Asks the solver to end the current request.
     pub(super) fn interrupt(&mut self) {
         let line = Request::Interrupt.line();
         self.log.exchanged(Side::Asked, &line);
         if let Some(input) = &mut self.input {
-            // So short a line goes whole or not at all; who does not read has to be signalled.
+            // A line this short is written in one piece or not at all; a solver that does not read gets a signal next.
             let _ = input.write(line.as_bytes());
         }
     }
 
-    /// How the process ended; `None` where it runs. It stays known to the system, so that its group's number is still its own.
+    /// How the process ended; `None` while it runs. The process is not reaped, so that the number of its group is not reused.
     fn end(&self) -> Option<String> {
         let pid = i32::try_from(self.child.id())
             .ok()
@@ -340,16 +340,16 @@ impl Link {
                     |status| match (status.exit_status(), status.terminating_signal()) {
                         (Some(code), _) => format!("exit status {code}"),
                         (None, Some(signal)) => format!("killed by signal {signal}"),
-                        (None, None) => "it ended".into(),
+                        (None, None) => "ended".into(),
                     },
                 )
             }
-            // There is no such process any more.
-            Err(_) => Some("it ended".into()),
+            // The process no longer exists.
+            Err(_) => Some("ended".into()),
         }
     }
 
-    /// Whether it ends within a time.
+    /// Whether the process ends within a time.
     fn ends_within(&self, time: Duration) -> bool {
         let until = Instant::now() + time;
         loop {
@@ -363,14 +363,14 @@ impl Link {
         }
     }
 
-    /// It is gone, or closed its output.
+    /// The fault for a process that ended or closed its output.
     fn died(&mut self, why: &str, waiting: &Waiting) -> Fault {
         self.ends_within(FAREWELL);
-        // What it printed last comes over another pipe.
+        // Standard error is a separate pipe; its last lines may arrive later.
         thread::sleep(2 * LOOK);
         let how = self
             .end()
-            .unwrap_or_else(|| "it closed its standard output".into());
+            .unwrap_or_else(|| "standard output closed".into());
         let last = self.log.last_printed();
         let parts = [
             Some(how),
@@ -384,17 +384,17 @@ impl Link {
 
     fn signal(&self, signal: Signal) {
         if let Some(group) = i32::try_from(self.child.id()).ok().and_then(Pid::from_raw) {
-            // It may have ended in the meantime.
+            // The process may have ended in the meantime.
             let _ = kill_process_group(group, signal);
         }
     }
 
-    /// Closes its input, with a word of farewell or without; whether it ended.
+    /// Closes the input, after a `bye` if `farewell`; returns whether the process ended.
     pub(super) fn leave(&mut self, farewell: bool) -> bool {
         if let Some(mut input) = self.input.take().filter(|_| farewell) {
             let line = Request::Bye.line();
             self.log.exchanged(Side::Asked, &line);
-            // Who does not read sees the end of its input.
+            // A solver that does not read sees the end of its input.
             let _ = input.write(line.as_bytes());
         }
         self.ends_within(FAREWELL)
@@ -402,30 +402,30 @@ impl Link {
 }
 
 impl Drop for Link {
-    /// It is told to end, then made to.
+    /// Asks the solver to end, then kills its process group.
     fn drop(&mut self) {
         if self.input.is_some() {
             self.leave(true);
         }
-        // What it started itself goes with it.
+        // Also kills processes that the solver started.
         self.signal(Signal::KILL);
         let _ = self.child.wait();
     }
 }
 
-/// What an answer is waited for by.
+/// State of a wait for an answer.
 struct Waiting {
-    /// What was asked.
+    /// The request, in words.
     asked: String,
     within: Duration,
-    /// The option by which it would have longer.
+    /// The option that extends the time limit.
     longer: &'static str,
     until: Instant,
-    /// How often it was asked to stop, as far as that was passed on.
+    /// Number of requests to stop that were passed on.
     heeded: usize,
-    /// Whether a part of the request is sent.
+    /// Whether only a part of the request has been sent.
     partly: bool,
-    /// When it is looked next whether it lives, and whether it had ended by then.
+    /// Time of the next check of the process, and whether it had ended at the last one.
     look: Instant,
     gone: bool,
 }
@@ -449,7 +449,7 @@ impl Waiting {
     }
 }
 
-/// What is asked, in a word or two.
+/// A request in a few words.
 pub(super) fn name(request: &Request) -> String {
     match request {
         Request::Hello { .. } => "hello".into(),

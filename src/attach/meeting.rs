@@ -1,4 +1,4 @@
-//! How a solver is met: it is started, and asked who it is and what it solves.
+//! The start of a solver: reads its greeting and its scene.
 
 use super::link::{Link, Start, name};
 use std::sync::Arc;
@@ -12,22 +12,22 @@ use stickslip_exchange::attach::message::{self, Hello, ParameterKind, Restore, S
 use stickslip_exchange::attach::{Answer, PROTOCOL, Request};
 use stickslip_scene::shown;
 
-/// A solver at its start.
+/// A started solver.
 pub struct Met {
     /// The child process.
     pub link: Link,
-    /// Who it is.
+    /// Its greeting.
     pub hello: Hello,
-    /// What it solves.
+    /// Its scene.
     pub scene: Scene,
-    /// What it offers.
+    /// Its capabilities.
     pub offers: Offers,
 }
 
-/// Starts a solver, and asks who it is and what it solves.
+/// Starts a solver, and reads its greeting and its scene.
 ///
 /// # Errors
-/// The fault by which it ends.
+/// The fault that ended it.
 pub fn meet(start: &Start, log: &Log, asks: &Arc<AtomicUsize>) -> Result<Met, Fault> {
     let mut link = Link::start(start, log, asks.clone())?;
     let request = Request::Hello {
@@ -56,7 +56,7 @@ pub fn meet(start: &Start, log: &Log, asks: &Arc<AtomicUsize>) -> Result<Met, Fa
     })
 }
 
-/// Another answer than the one that would be right.
+/// The fault for an answer of the wrong type.
 pub fn other(request: &Request, answer: Answer, expected: &'static str) -> Fault {
     match answer {
         Answer::Refused { reason } => Fault::Refused {
@@ -71,13 +71,13 @@ pub fn other(request: &Request, answer: Answer, expected: &'static str) -> Fault
     }
 }
 
-/// What a solver offers, in the words of the debugger.
+/// The capabilities of a solver, in the debugger's terms.
 fn offers(hello: &Hello) -> Result<Offers, Fault> {
     let mut parameters: Vec<Parameter> = Vec::with_capacity(hello.parameters.len());
     for told in &hello.parameters {
         let parameter = parameter(told)?;
         if parameters.iter().any(|known| known.name == parameter.name) {
-            return unfit(told, "there are two of this name");
+            return unfit(told, "duplicate name");
         }
         parameters.push(parameter);
     }
@@ -106,7 +106,7 @@ fn offers(hello: &Hello) -> Result<Offers, Fault> {
 fn unfit<T>(told: &message::Parameter, why: &str) -> Result<T, Fault> {
     Err(Fault::Unfit {
         message: "hello",
-        why: format!("the parameter {:?}: {why}", told.name),
+        why: format!("parameter {:?}: {why}", told.name),
     })
 }
 
@@ -116,7 +116,7 @@ fn parameter(told: &message::Parameter) -> Result<Parameter, Fault> {
             .name
             .contains(|c: char| c.is_whitespace() || shown::is_order(c))
     {
-        return unfit(told, "a name is one word");
+        return unfit(told, "the name must be one word");
     }
     let numbers = |whole: bool| Range::Numbers {
         least: told.least.unwrap_or(f64::NEG_INFINITY),
@@ -129,7 +129,7 @@ fn parameter(told: &message::Parameter) -> Result<Parameter, Fault> {
             serde_json::Value::Bool(flag) => Value::Flag(*flag),
             serde_json::Value::String(text) => Value::Text(text.clone()),
             serde_json::Value::Number(number) => Value::Number(number.as_f64().unwrap_or(f64::NAN)),
-            _ => return unfit(told, "its value is a number, a flag or a text"),
+            _ => return unfit(told, "the value must be a number, a flag or a text"),
         },
         range: match told.kind {
             ParameterKind::Number => numbers(false),
@@ -142,6 +142,6 @@ fn parameter(told: &message::Parameter) -> Result<Parameter, Fault> {
     };
     match parameter.check(&parameter.value) {
         Ok(()) => Ok(parameter),
-        Err(why) => unfit(told, &format!("its own value is none that it takes: {why}")),
+        Err(why) => unfit(told, &format!("its current value is invalid: {why}")),
     }
 }

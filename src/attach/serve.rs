@@ -1,6 +1,6 @@
-//! Our own solver on the other side of the protocol: `stickslip serve SCENE`.
+//! `stickslip serve SCENE`: stickslip's own solver as an attachable program.
 //!
-//! A debugger that attaches to it sees what it would see of the scene itself, to the last bit.
+//! A debugger attached to it shows bit-identical results to those of the scene itself.
 
 use super::wire;
 use serde_json::Value;
@@ -20,7 +20,7 @@ use stickslip_scene::Scene;
 use stickslip_scene::format::paths;
 use stickslip_scene::solver::solver;
 
-/// Answers what comes in, line by line, until it ends.
+/// Answers requests line by line until the input ends.
 ///
 /// # Errors
 /// If the streams cannot be read or written.
@@ -30,14 +30,14 @@ pub fn serve(scene: &Scene, from: impl BufRead, mut to: impl Write) -> io::Resul
     loop {
         let request = match lines.next_line()? {
             Line::Text(text) => Request::read(&text).map_err(|broken| broken.to_string()),
-            Line::NoText(_) => Err("it is not UTF-8".to_owned()),
+            Line::NoText(_) => Err("not UTF-8".to_owned()),
             Line::TooLong(_) | Line::Torn(_) | Line::End => return Ok(()),
         };
         let answer = match request {
             Ok(Request::Bye) => return Ok(()),
             Ok(Request::Interrupt) => continue,
             Ok(request) => server.answer(&request),
-            Err(why) => refused(format!("this is no request: {why}")),
+            Err(why) => refused(format!("invalid request: {why}")),
         };
         to.write_all(answer.line().as_bytes())?;
         to.flush()?;
@@ -98,7 +98,7 @@ impl<'a> Server<'a> {
                         self.stepper.restore(state);
                         Answer::Ok
                     }
-                    None => refused(format!("no state was saved as {token}")),
+                    None => refused(format!("no saved state {token}")),
                 }
             }
             Request::Problem => self.problem(),
@@ -125,7 +125,7 @@ impl<'a> Server<'a> {
 
     fn step(&mut self) -> Answer {
         if self.stepper.step().is_none() {
-            return refused("the history is done");
+            return refused("the history is complete");
         }
         let mut monitors = Vec::new();
         let event = self.stepper.event();
@@ -144,7 +144,7 @@ impl<'a> Server<'a> {
     fn on_contact(&mut self, id: &Id, what: impl FnOnce(usize) -> Intervention) -> Answer {
         match wire::contact(id, self.stepper.model()) {
             Some(slave) => self.intervene(&what(slave)),
-            None => refused(format!("there is no contact {id}")),
+            None => refused(format!("no contact {id}")),
         }
     }
 
@@ -155,28 +155,28 @@ impl<'a> Server<'a> {
         }
     }
 
-    /// What a parameter's new value means.
+    /// The intervention for a parameter's new value.
     fn setting(&self, name: &str, value: &Value) -> Result<Intervention, String> {
         let controls = &self.stepper.state().controls;
         let now = controls.friction.first().copied().unwrap_or_default();
         match name {
             INCREMENT | FRICTION | COHESION => match value.is_number() {
                 true => Ok(orders::set(name, value, now)),
-                false => Err(format!("{name} takes a number, and {value} is none")),
+                false => Err(format!("{name} must be a number, not {value}")),
             },
             path if path.starts_with("settings.") => {
                 let mut spec = self.scene.spec.clone();
                 spec.settings = controls.settings;
                 let word = match (value, value.as_f64()) {
                     (Value::String(text), _) => text.clone(),
-                    // A whole number reads as one.
+                    // Formats a whole number without a decimal point.
                     (_, Some(number)) => number.to_string(),
                     (other, None) => other.to_string(),
                 };
                 paths::set(&mut spec, path, &word).map_err(|why| why.to_string())?;
                 Ok(Intervention::Settings(spec.settings))
             }
-            _ => Err(format!("there is no parameter {name}")),
+            _ => Err(format!("no parameter {name}")),
         }
     }
 
@@ -211,7 +211,7 @@ impl<'a> Server<'a> {
     }
 }
 
-/// What can be changed during a run.
+/// The parameters that can be changed during a run.
 fn parameters(scene: &Scene) -> Vec<Parameter> {
     let friction = scene.spec.friction.of_node(None);
     let number = |name: &str, value: f64, about: &str| Parameter {
@@ -227,7 +227,7 @@ fn parameters(scene: &Scene) -> Vec<Parameter> {
         number(
             INCREMENT,
             scene.model.on_leg(0),
-            "Increment of the load factor; the present one starts again",
+            "Increment of the load factor; a change restarts the current increment",
         ),
         number(
             FRICTION,

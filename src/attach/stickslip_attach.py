@@ -1,27 +1,27 @@
 """Attach a solver to stickslip, the debugger for contact iterations.
 
-A solver is a class with two to five methods: `scene` and `step`, and, where it can, `force`, `restore` and `problem`.
-What is not written is not offered::
+A solver is a class with two to five methods: `scene` and `step`, and optionally `force`, `restore` and `problem`.
+Only implemented methods are offered to the debugger::
 
     from stickslip_attach import Solver, attach
 
     class Mine(Solver):
         name, version = "Mine", "1.0"
 
-        def scene(self):                  # what there is: nodes, surfaces, contacts
+        def scene(self):                  # nodes, surfaces, contacts
             ...
 
-        def step(self):                   # one iteration: what was found at each contact
+        def step(self):                   # one iteration: the values at each contact
             ...
 
     attach(Mine)
 
 `stickslip attach -- python mine.py` then steps it. Messages are dictionaries with the keys that the manual's page
-`protocol` gives them (`stickslip help protocol`); arrays of numpy may stand where lists do. Infinity is sent as null, and a
-message with NaN in it is refused, with the place where it stands. Standard output carries messages and nothing else:
-what the solver prints, from Python, C or Fortran, goes to standard error.
+`protocol` describes (`stickslip help protocol`); numpy arrays can be used instead of lists. Infinity is sent as null; a
+message with NaN is refused, and the refusal names its position. Standard output carries only messages: everything that the
+solver prints, from Python, C or Fortran, goes to standard error.
 
-Python 3.9 or newer; only its standard library. A part of stickslip, MIT or Apache-2.0.
+Requires Python 3.9 or newer and only its standard library. Part of stickslip, MIT or Apache-2.0.
 """
 
 import copy
@@ -44,20 +44,20 @@ PROTOCOL = 1
 MOST_BYTES = 64 << 20
 MODES = ("free", "sliding", "fixed")
 ENDS = ("iteration", "equilibrium", "increment", "cut", "failure", "done")
-# The ability that a request needs, named as the method that gives it.
+# The ability that a request needs, by the name of the method that provides it.
 NEEDS = {"force": "force", "release": "force", "save": "restore", "restore": "restore", "problem": "problem"}
 
 
 class Refused(Exception):
-    """Raise it where a request cannot be granted: the debugger shows its text, and asks on."""
+    """Raise this to refuse a request: the debugger shows the text and continues."""
 
 
 @dataclass(frozen=True)
 class Parameter:
-    """What the user may change during a run: the attribute of the solver that has this name.
+    """An attribute of the solver that the user may change during a run.
 
-    A value is checked, then assigned; a property with a setter is the place for what follows from it. Three names have
-    a meaning: `increment` (its size; the present increment starts again), `friction` (mu of all contacts), `cohesion`.
+    A value is checked, then assigned; use a property with a setter to react to it. Three names have a predefined meaning:
+    `increment` (its size; the current increment restarts), `friction` (mu of all contacts), `cohesion`.
     """
 
     name: str
@@ -68,7 +68,7 @@ class Parameter:
     choices: tuple[str, ...] = ()
 
     def checked(self, value: Any) -> Any:
-        """The value as its kind has it; refused if it is of another kind or out of range."""
+        """The value converted to its kind; refused if it has another kind or is out of range."""
         number = isinstance(value, (int, float)) and not isinstance(value, bool)
         wanted, fits = {
             "number": ("a number", number),
@@ -78,29 +78,29 @@ class Parameter:
             "text": ("a text", isinstance(value, str)),
         }[self.kind]
         if not fits:
-            raise Refused(f"{self.name} is {wanted}, not {value!r}")
+            raise Refused(f"{self.name} must be {wanted}, not {value!r}")
         if number and self.least is not None and value < self.least:
-            raise Refused(f"{self.name} is at least {self.least}, not {value}")
+            raise Refused(f"{self.name} must be at least {self.least}, not {value}")
         if number and self.most is not None and value > self.most:
-            raise Refused(f"{self.name} is at most {self.most}, not {value}")
+            raise Refused(f"{self.name} must be at most {self.most}, not {value}")
         return {"number": float, "integer": int}.get(self.kind, lambda as_it_is: as_it_is)(value)
 
 
 class Solver:
-    """What stickslip steps. Write `scene` and `step`, and those of the others that your solver can do."""
+    """Base class of attached solvers. Implement `scene` and `step`, and the other methods that your solver supports."""
 
     name: ClassVar[str] = "solver"
     version: ClassVar[str] = ""
-    #: "table2" or "newton", if it chooses its modes so and the debugger is to check each choice.
+    #: "table2" or "newton" if the solver chooses its modes by these rules and the debugger should check each choice.
     decides: ClassVar[Optional[str]] = None
-    #: What the user may change.
+    #: Parameters that the user may change.
     parameters: ClassVar[tuple[Parameter, ...]] = ()
-    #: Where `restore` can go back to: "any" state, or the start and those in which an "increment" has just ended.
+    #: The states that can be restored: "any", or the start and those at the end of an "increment".
     restores: ClassVar[str] = "any"
-    #: Whether `step` looks at `interrupted`.
+    #: Whether `step` checks `interrupted`.
     interrupts: ClassVar[bool] = False
-    #: The modes that the user holds, by contact. `force` is called for each of them before every step; a solver need
-    #: look here only to tell whether its modes have settled.
+    #: The modes that the user holds, by contact. `force` is called for each of them before every step; a solver needs
+    #: this only to determine whether its modes have settled.
     held: dict[Id, str]
 
     def __new__(cls, *_: Any, **__: Any) -> "Solver":
@@ -109,51 +109,51 @@ class Solver:
         return solver
 
     def scene(self) -> Message:
-        """What is solved: `title`, `nodes`, `lines`, `surfaces`, `contacts`. Called once."""
+        """Return the scene: `title`, `nodes`, `lines`, `surfaces`, `contacts`. Called once."""
         raise NotImplementedError("a solver needs a method `scene`")
 
     def step(self) -> Message:
-        """Make one iteration, and say what it found: `ended`, `contacts`, `residual`, `load`, `displacements`.
+        """Make one iteration, and return its result: `ended`, `contacts`, `residual`, `load`, `displacements`.
 
         `contacts` is a list of dictionaries in the order of the scene, or a dictionary of columns: `mode` (of this
-        solve), `next`, `gap`, `f_n`, `f_t`, `limit`, `slip`. `id` may be left out, and `at` too, which is then counted
-        by what `ended`. After "done" there is another step only if something was forced or set since.
+        solve), `next`, `gap`, `f_n`, `f_t`, `limit`, `slip`. `id` and `at` are optional; without `at`, the position is
+        counted from `ended`. After "done", `step` is called again only after a mode was forced or a parameter set.
         """
         raise NotImplementedError("a solver needs a method `step`")
 
     def force(self, contact: Id, mode: str) -> None:
-        """Let the next iteration be made with this mode at this contact; all others follow the solver's own rules."""
+        """Use this mode at this contact in the next iteration; all others follow the solver's own rules."""
 
     def restore(self, saved: Any) -> None:
-        """Go back to where `save` gave this; all that follows has the same bits. `vars(self).update(saved)` may do."""
+        """Restore the state that `save` returned; the next iterations must be bit-identical. `vars(self).update(saved)` may do."""
 
     def problem(self) -> Message:
-        """The interface problem that the next iteration would solve: `matrix`, `q`, `mu`; `kind`, if it is no compliance."""
+        """Return the interface problem of the next iteration: `matrix`, `q`, `mu`; `kind`, if it is not a compliance."""
         raise NotImplementedError
 
     def save(self) -> Any:
-        """What `restore` needs, of which a deep copy is kept: all attributes, unless you leave out what never changes."""
+        """Return what `restore` needs; a deep copy is stored. The default is all attributes; leave out what never changes."""
         return vars(self)
 
     def interrupted(self) -> bool:
-        """Whether the user wants this step to end soon; a long one may look now and then, and raise `Refused`."""
+        """Whether the user asks this step to end; a long step may check this regularly, and raise `Refused`."""
         return _line is not None and _line.interrupted.is_set()
 
     def message(self, text: str, level: str = "info") -> None:
-        """Tell the user something; `level` is "info", "warning" or "error"."""
+        """Show the user a message; `level` is "info", "warning" or "error"."""
         if _line is not None:
             _line.say(_text({"type": "message", "level": level, "text": text}))
 
 
 def attach(make: Callable[[], Solver]) -> None:
-    """Make the solver, and answer the debugger until it leaves.
+    """Create the solver, and answer the debugger until it disconnects.
 
-    `make` is the class, or a function without arguments. It is called when standard output is guarded: a package that
-    prints while it is imported is best imported in there.
+    `make` is the class, or a function without arguments. It is called after standard output is redirected: import packages
+    that print during their import inside it.
     """
     global _line
     if os.isatty(0):
-        print("This speaks with a debugger: stickslip attach -- COMMAND", file=sys.stderr)
+        print("This program is started by the debugger: stickslip attach -- COMMAND", file=sys.stderr)
     _line = _Line()
     try:
         session = _Session(make())
@@ -171,7 +171,7 @@ def attach(make: Callable[[], Solver]) -> None:
 
 
 class _Line:
-    """Both ends of the line to the debugger, out of reach of everything else in this process."""
+    """The connection to the debugger, on private copies of standard input and output."""
 
     def __init__(self) -> None:
         self.interrupted = threading.Event()
@@ -187,7 +187,7 @@ class _Line:
         sys.stdout = sys.stderr
 
     def listen(self) -> None:
-        """Take lines as they come, so that an interrupt is heard while a step is made; to the end, or until a bye."""
+        """Read lines in the background, so that an interrupt arrives during a step; until the end of the input, or a bye."""
         rest, bye = b"", False
         while not bye and (part := os.read(self.source, 1 << 16)):
             *lines, rest = (rest + part).split(b"\n")
@@ -197,13 +197,13 @@ class _Line:
                 if ask.get("type") == "interrupt":
                     self.interrupted.set()
                 elif not bye:
-                    self.interrupted.clear()  # What came before this request was not meant for it.
+                    self.interrupted.clear()  # Earlier interrupts do not apply to this request.
                     self.requests.put(ask)
         self.interrupted.set()
         self.requests.put(None)
 
     def stop(self, *_: Any) -> None:
-        """A signal ends the request at hand. One that comes while nothing is done is late, and is passed over."""
+        """A signal ends the current request. A signal between requests is ignored."""
         if self.busy:
             self.busy = False
             raise KeyboardInterrupt
@@ -220,13 +220,13 @@ _line: Optional[_Line] = None
 
 @dataclass
 class _Course:
-    """What is known of a run besides what the solver keeps."""
+    """The state of a run outside the solver."""
 
     chosen: dict[Id, str]  # By the solver, for the next iteration.
     held: dict[Id, str]
     at: dict[str, int] = field(default_factory=lambda: {"increment": 1, "attempt": 1, "major": 1, "minor": 0})
     ended: Optional[str] = None  # With the last iteration.
-    over: bool = False  # Done, and nothing was forced or set since.
+    over: bool = False  # Done, without interventions since.
     once: dict[Id, str] = field(default_factory=dict)  # Forced for the next iteration.
 
     def next_place(self) -> dict[str, int]:
@@ -241,7 +241,7 @@ class _Course:
 
 
 class _Session:
-    """Answers requests, and keeps what was forced, saved and counted."""
+    """Answers requests, and stores forced modes, saved states and the position."""
 
     def __init__(self, solver: Solver) -> None:
         self.solver = solver
@@ -256,11 +256,11 @@ class _Session:
             "release": self.release, "set": self.set, "restore": self.restore, "problem": self.problem}
 
     def answer(self, ask: Message) -> bytes:
-        """The one answer to a request, whatever happens in the solver."""
+        """The answer to a request; exceptions of the solver become refusals."""
         try:
             kind = str(ask.get("type"))
             if kind not in self.requests:
-                raise Refused(f"there is no request {kind}")
+                raise Refused(f"no request {kind}")
             if kind in NEEDS and not self.offers(NEEDS[kind]):
                 raise Refused(f"{self.solver.name} does not offer {NEEDS[kind]}")
             return _text(self.carried_out(self.requests[kind], ask))
@@ -273,7 +273,7 @@ class _Session:
             return _text({"type": "refused", "reason": _told(error)})
 
     def carried_out(self, request: Callable[[Message], Message], ask: Message) -> Message:
-        """What a request gives; a signal may break it off."""
+        """The result of a request, which a signal may interrupt."""
         assert _line is not None
         _line.busy = True
         try:
@@ -286,7 +286,7 @@ class _Session:
 
     def hello(self, ask: Message) -> Message:
         if ask.get("protocol") != PROTOCOL:
-            raise Refused(f"version {PROTOCOL} of the protocol is spoken here, not {ask.get('protocol')}")
+            raise Refused(f"this solver supports protocol version {PROTOCOL}, not {ask.get('protocol')}")
         solver, forces = self.solver, self.offers("force")
         abilities = {"force": forces, "hold": forces, "problem": self.offers("problem"), "interrupt": solver.interrupts,
                      "restore": solver.restores if self.offers("restore") else "none"}
@@ -297,16 +297,16 @@ class _Session:
     def step(self, ask: Message) -> Message:
         ids, course = self.ids, self.course
         if course.over:
-            raise Refused("the history is over")
+            raise Refused("the history is complete")
         for contact, mode in course.held.items():
             self.solver.force(contact, mode)
         state = {"type": "state", "at": course.next_place(), **self.solver.step()}
         state["at"] = {"attempt": 1, "major": 1, "minor": 1, **state["at"]}
         rows = state["contacts"] = _rows(state.get("contacts", []))
         if state.get("ended") not in ENDS:
-            raise Refused(f"a state has ended one of {', '.join(ENDS)}, not {state.get('ended')!r}")
+            raise Refused(f"`ended` must be one of {', '.join(ENDS)}, not {state.get('ended')!r}")
         if len(rows) != len(ids) and (rows or state["ended"] != "failure"):
-            raise Refused(f"a state of {len(ids)} contacts has {len(rows)}")
+            raise Refused(f"the state has {len(rows)} contacts instead of {len(ids)}")
         for contact, row in zip(ids, rows):
             row.setdefault("id", contact)
             course.chosen[contact] = row["next"]
@@ -321,7 +321,7 @@ class _Session:
     def force(self, ask: Message) -> Message:
         contact, mode = self.contact(ask), ask.get("mode")
         if mode not in MODES:
-            raise Refused(f"a mode is one of {', '.join(MODES)}, not {mode!r}")
+            raise Refused(f"the mode must be one of {', '.join(MODES)}, not {mode!r}")
         self.solver.force(contact, mode)
         self.forget(contact)
         (self.course.held if ask.get("hold") else self.course.once)[contact] = mode
@@ -342,14 +342,14 @@ class _Session:
     def contact(self, ask: Message) -> Id:
         contact: Id = ask.get("contact", "")
         if contact not in self.ids:
-            raise Refused(f"there is no contact {contact!r}")
+            raise Refused(f"no contact {contact!r}")
         return contact
 
     def set(self, ask: Message) -> Message:
         name = ask.get("name")
         known = {each.name: each for each in self.solver.parameters}
         if name not in known:
-            raise Refused(f"there is no parameter {name!r}" + (f", only {', '.join(known)}" if known else ""))
+            raise Refused(f"no parameter {name!r}" + (f", only {', '.join(known)}" if known else ""))
         setattr(self.solver, name, known[name].checked(ask.get("value")))
         if name == "increment" and self.course.ended not in (None, "increment", "done"):
             self.course.ended = "cut"
@@ -358,7 +358,7 @@ class _Session:
 
     def save(self, ask: Message) -> Message:
         if self.solver.restores == "increment" and self.course.ended not in (None, "increment", "done"):
-            raise Refused("only a state in which an increment has just ended can be saved")
+            raise Refused("only states at the end of an increment can be saved")
         values = {each.name: getattr(self.solver, each.name) for each in self.solver.parameters}
         self.kept.append(copy.deepcopy((self.solver.save(), values, self.course)))
         return {"type": "saved", "token": len(self.kept) - 1}
@@ -366,11 +366,11 @@ class _Session:
     def restore(self, ask: Message) -> Message:
         token: Any = ask.get("token")
         if token not in range(len(self.kept)):
-            raise Refused(f"nothing was saved as {token!r}")
+            raise Refused(f"no saved state {token!r}")
         saved, values, self.course = copy.deepcopy(self.kept[token])
         for name, value in values.items():
             setattr(self.solver, name, value)
-        self.solver.restore(saved)  # After the values: a setter may do more than the state that it was saved in.
+        self.solver.restore(saved)  # After the parameters: their setters may change the state.
         self.solver.held = self.course.held
         return {"type": "ok"}
 
@@ -379,7 +379,7 @@ class _Session:
 
 
 def _request(line: bytes) -> Message:
-    """What a line asks; one that is no request is refused when its turn comes."""
+    """The request in a line; an invalid one is refused in its turn."""
     try:
         ask = json.loads(line)
     except ValueError:
@@ -392,45 +392,45 @@ def _told(error: Exception) -> str:
 
 
 def _rows(contacts: Any) -> list[Message]:
-    """Contacts as dictionaries, where they may be columns."""
+    """Contacts as dictionaries; they may be given as columns."""
     if not isinstance(contacts, dict):
         return [dict(row) for row in contacts]
     columns = {name: column if isinstance(column, list) else _plain(column) for name, column in contacts.items()}
     if len(set(map(len, columns.values()))) > 1:
-        raise Refused("the columns of contacts are not equally long: " + ", ".join(f"{n} {len(c)}" for n, c in columns.items()))
+        raise Refused("the columns of contacts have different lengths: " + ", ".join(f"{n} {len(c)}" for n, c in columns.items()))
     return [dict(zip(columns, values)) for values in zip(*columns.values())]
 
 
 def _text(message: Message) -> bytes:
-    """The line; floats as they read back to the same bits."""
+    """The line of a message; floats read back to the same bits."""
     try:
         text = json.dumps(message, allow_nan=False, default=_plain)
     except ValueError:
         text = json.dumps(_finite(message), allow_nan=False)
     if len(text) >= MOST_BYTES:
-        raise Refused(f"the {message['type']} takes {len(text)} bytes, and a line has at most {MOST_BYTES}")
+        raise Refused(f"the {message['type']} has {len(text)} bytes; the limit is {MOST_BYTES}")
     return text.encode() + b"\n"
 
 
 def _plain(value: Any) -> Any:
-    """What numpy and others have as lists and numbers of Python."""
+    """Converts numpy arrays and similar types to Python lists and numbers."""
     if hasattr(value, "tolist"):
         return value.tolist()
     if hasattr(value, "item"):
         return value.item()
     if hasattr(value, "__iter__"):
         return list(value)
-    raise Refused(f"{value!r} is neither number, text, list nor dictionary")
+    raise Refused(f"{value!r} is not a number, text, list or dictionary")
 
 
 def _finite(value: Any, *place: Any) -> Any:
-    """The same with null for infinities; NaN is refused with its place."""
+    """The value with null for infinities; NaN is refused with its position."""
     if isinstance(value, float):
         if value != value:
             where = "".join(f"[{key}]" if isinstance(key, int) else f".{key}" for key in place)
             raise Refused(f"{where.lstrip('.')} is not a number (NaN)")
         return float(value) if value - value == 0.0 else None
-    # Most of a message is finite numbers, for which a call each would be slow.
+    # Most values are finite numbers, which are handled inline for speed.
     if isinstance(value, dict):
         return {key: each if each.__class__ is float and each - each == 0.0 else _finite(each, *place, key)
                 for key, each in value.items()}

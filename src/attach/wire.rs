@@ -1,6 +1,6 @@
-//! What our own solver says to a debugger: from models, states and events of the core to messages of the protocol.
+//! Converts models, states and events of the core to messages of the protocol.
 //!
-//! Nothing is rounded on the way, so that a trace that is made on the other side has the same bits.
+//! Nothing is rounded, so that a trace made from the messages has the same bits.
 
 use stickslip_core::contact::record::{self, ContactRecord};
 use stickslip_core::linear::norms::Norms;
@@ -18,7 +18,7 @@ pub fn id(contact: usize) -> Id {
     Id::Number(i64::try_from(contact + 1).unwrap_or(i64::MAX))
 }
 
-/// The contact of a number.
+/// The contact with a number.
 pub fn contact(id: &Id, model: &Model) -> Option<usize> {
     let Id::Number(number) = id else {
         return None;
@@ -27,8 +27,8 @@ pub fn contact(id: &Id, model: &Model) -> Option<usize> {
     (contact < model.contacts.len()).then_some(contact)
 }
 
-/// A scene. Of a surface whose elements have more than two nodes the chain of all nodes is told, and of one in several pieces
-/// the first.
+/// The scene message. Surfaces with elements of more than two nodes are sent as the chain of all their nodes; of a surface in
+/// several pieces only the first is sent.
 pub fn scene(model: &Model) -> Scene {
     let lines = model.bodies.iter().flat_map(|body| body.kind.lines());
     Scene {
@@ -110,7 +110,7 @@ fn monitor(monitor: &stickslip_core::model::Monitor) -> Monitor {
     }
 }
 
-/// What a minor iteration did; `monitors` where it ended an increment.
+/// The state message for a minor iteration, with `monitors` if it ended an increment.
 pub fn state(model: &Model, state: &State, event: &Event, monitors: &[f64]) -> message::State {
     let (ended, after, size) = ended(event);
     let found = event.nodes.iter().enumerate();
@@ -131,7 +131,7 @@ pub fn state(model: &Model, state: &State, event: &Event, monitors: &[f64]) -> m
     }
 }
 
-/// Displacements of all nodes: where they are, less where they were.
+/// Displacements of all nodes.
 fn displacements(model: &Model, state: &State) -> Vec<[f64; 2]> {
     let moved = |node: usize| {
         let dof = |axis: usize| match model.dofs.count.get(node) {
@@ -217,7 +217,7 @@ fn of_record(k: usize, record: &ContactRecord) -> Found {
     }
 }
 
-/// What has no surface has no place on one.
+/// Finite coordinates; a contact without a surface has none.
 fn place(at: [f64; 2]) -> Option<[f64; 2]> {
     at.iter().all(|x| x.is_finite()).then_some(at)
 }

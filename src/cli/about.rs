@@ -1,4 +1,4 @@
-//! `stickslip --version --verbose`: what somebody who helps wants to know: the build, the machine, the terminal, the folders.
+//! `stickslip --version --verbose`: build, machine, terminal and folders, for bug reports.
 
 use super::base::{Error, Exit, say};
 use rustix::fs::Access;
@@ -63,14 +63,14 @@ fn target() -> String {
     let libc = match (cfg!(target_env = "musl"), cfg!(target_env = "gnu")) {
         (true, _) => "musl",
         (_, true) => "glibc",
-        _ => "another libc",
+        _ => "other libc",
     };
     let linked = match cfg!(target_feature = "crt-static") {
-        true => ", in the program itself",
+        true => ", statically linked",
         false => "",
     };
     let kind = match cfg!(debug_assertions) {
-        true => "; a development build",
+        true => "; debug build",
         false => "",
     };
     format!(
@@ -80,7 +80,7 @@ fn target() -> String {
     )
 }
 
-/// The kernel, and the C library of the system.
+/// The kernel, and the system's C library.
 fn system() -> String {
     let kernel = rustix::system::uname();
     let word = |text: &std::ffi::CStr| text.to_string_lossy().into_owned();
@@ -95,13 +95,13 @@ fn system() -> String {
         "{} {}, {}",
         word(kernel.sysname()),
         word(kernel.release()),
-        libc.unwrap_or_else(|| "no glibc that getconf knows".into())
+        libc.unwrap_or_else(|| "no glibc reported by getconf".into())
     )
 }
 
 fn threads() -> String {
     match std::thread::available_parallelism() {
-        Ok(threads) => format!("{threads} at most, unless --jobs says otherwise"),
+        Ok(threads) => format!("at most {threads}, unless --jobs sets another number"),
         Err(why) => format!("unknown ({why})"),
     }
 }
@@ -113,12 +113,16 @@ fn streams() -> String {
         ("output", stdout().is_terminal()),
         ("error", stderr().is_terminal()),
     ];
-    let told =
-        all.map(|(name, is)| format!("{name}: {}", if is { "a terminal" } else { "no terminal" }));
+    let told = all.map(|(name, is)| {
+        format!(
+            "{name}: {}",
+            if is { "a terminal" } else { "not a terminal" }
+        )
+    });
     told.join(", ")
 }
 
-/// What the environment says of the terminal.
+/// The environment variables that describe the terminal.
 fn terminal() -> String {
     let size = match terminal::size() {
         Some((columns, rows)) => format!("{columns}x{rows}, "),
@@ -144,18 +148,18 @@ fn variables(names: &[&str]) -> String {
     });
     let told: Vec<String> = told.collect();
     match told.is_empty() {
-        true => format!("none of {} is set", names.join(", ")),
+        true => format!("none of these is set: {}", names.join(", ")),
         false => told.join(" "),
     }
 }
 
-/// What the terminal itself says.
+/// The terminal's answers to queries.
 fn asked() -> String {
     match terminal::ask() {
-        Ok(None) => "nothing, since standard input or output is no terminal".into(),
+        Ok(None) => "not asked: standard input or output is not a terminal".into(),
         Ok(Some(answers)) if answers == Answers::default() => "the terminal does not answer".into(),
         Ok(Some(answers)) => told(&answers),
-        Err(why) => format!("the terminal cannot be asked: {why}"),
+        Err(why) => format!("terminal query failed: {why}"),
     }
 }
 
@@ -163,23 +167,24 @@ fn told(answers: &Answers) -> String {
     let known = |known: Option<bool>| match known {
         Some(true) => "yes",
         Some(false) => "no",
-        None => "it does not say",
+        None => "not reported",
     };
     let clipboard = match answers.clipboard() {
         true => "yes",
-        false => "it does not say",
+        false => "not reported",
     };
     let widths = match answers.other_widths() {
-        None => "it does not say".into(),
-        Some(other) if other.is_empty() => "as here".into(),
+        None => "not reported".into(),
+        Some(other) if other.is_empty() => "as expected".into(),
         Some(other) => {
-            let told = |(what, there, here)| format!("{what} take {there} columns and not {here}");
+            let told =
+                |(what, there, here)| format!("{what} take {there} columns instead of {here}");
             other.into_iter().map(told).collect::<Vec<_>>().join(", ")
         }
     };
     let kind = answers.kind.iter().map(u16::to_string);
     format!(
-        "mouse (SGR): {}; clipboard (OSC 52): {clipboard}; drawn in one go: {}; widths: {widths}; it is {}",
+        "mouse (SGR): {}; clipboard (OSC 52): {clipboard}; synchronized updates: {}; widths: {widths}; type: {}",
         known(answers.mouse()),
         known(answers.in_one_go()),
         kind.collect::<Vec<_>>().join(";")
@@ -193,19 +198,19 @@ fn here() -> String {
     }
 }
 
-/// A folder, and whether files can be made in it.
+/// A folder, with its write permission and free space.
 fn folder(folder: Option<PathBuf>) -> String {
     let Some(folder) = folder else {
-        return "none: the system names no home directory".into();
+        return "none: no home directory".into();
     };
-    // What is not there is made when it is needed, in the nearest folder above that is there.
+    // A missing folder is created when needed, in the nearest existing ancestor.
     let there = folder.ancestors().find(|above| above.exists());
     let may = there.is_some_and(writable);
     let rights = match (folder.exists(), may) {
-        (true, true) => "can be written",
-        (true, false) => "cannot be written",
-        (false, true) => "is not there yet, and can be made",
-        (false, false) => "is not there, and cannot be made",
+        (true, true) => "writable",
+        (true, false) => "not writable",
+        (false, true) => "does not exist yet, can be created",
+        (false, false) => "does not exist, cannot be created",
     };
     let free = there.and_then(|there| rustix::fs::statvfs(there).ok());
     let free = free.map_or(String::new(), |disk| {

@@ -1,4 +1,4 @@
-//! `stickslip attach`: a solver that another program is, stepped in the debugger; tried; or what an author needs to write one.
+//! `stickslip attach`: steps an external solver in the debugger, checks its protocol, or prints the Python module for writing one.
 
 use super::base::{Error, Exit, say, tell};
 use super::debugger::{DEBUGGER, needs_terminal};
@@ -13,19 +13,19 @@ use stickslip_debugger::session::Session;
 pub struct Args {
     #[command(flatten)]
     solver: SolverArgs,
-    /// Tries whether the solver does what it says it does, and says what to mend
+    /// Checks that the solver does what it offers, and reports how to fix it
     #[arg(long, requires = "command")]
     check: bool,
-    /// Prints the Python side of the protocol, a module of one file
+    /// Prints the Python module of the protocol (a single file)
     #[arg(long, conflicts_with = "command")]
     python: bool,
-    /// Keeps the journal of the session in a new file [default: in the user's directory for states]
+    /// Writes the session's journal to a new file [default: in the user's state directory]
     #[arg(long, value_name = "FILE", conflicts_with = "no_journal")]
     journal: Option<PathBuf>,
-    /// Keeps no journal; what is done cannot be resumed then
+    /// Writes no journal; the session cannot be resumed
     #[arg(long)]
     no_journal: bool,
-    /// Overwrites a kept exchange that exists
+    /// Overwrites an existing --exchange file
     #[arg(long)]
     force: bool,
 }
@@ -37,7 +37,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     }
     if !args.solver.is_named() {
         return Err(Error::Usage(
-            "no solver is named: stickslip attach -- COMMAND…; `stickslip help protocol` tells what it must speak".into(),
+            "no solver given; use stickslip attach -- COMMAND… (`stickslip help protocol` describes the protocol)".into(),
         ));
     }
     if args.check {
@@ -65,7 +65,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     Ok(Exit::Good)
 }
 
-/// Tries a solver, and prints what was found.
+/// Checks a solver, and prints the report.
 fn checked(args: &Args) -> Result<Exit, Error> {
     let log = args.solver.log(args.force)?;
     let report = check::check(&args.solver.start(), &log);

@@ -1,4 +1,4 @@
-//! `stickslip audit`: the worst violation of every law over whole histories.
+//! `stickslip audit`: the largest violation of each law over entire histories.
 
 use super::base::{Error, Exit, SetArgs, say, tell};
 use super::course::Course;
@@ -43,7 +43,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     Ok(exit)
 }
 
-/// A file that says which format it has is a snapshot, any other a scene.
+/// Opens a snapshot, or otherwise a scene; a snapshot file names its format.
 fn open(input: &str, args: &Args) -> Result<Course, Error> {
     let path = Path::new(input);
     let kind = FileKind::of_file(path);
@@ -52,7 +52,7 @@ fn open(input: &str, args: &Args) -> Result<Course, Error> {
     }
     if !args.set.set.is_empty() {
         return Err(Error::Usage(format!(
-            "{input}: a snapshot is audited as it was recorded; --set is for scenes"
+            "{input}: snapshots are audited as recorded; --set is for scenes only"
         )));
     }
     Course::of_snapshot(input, Snapshot::read(path)?)
@@ -83,8 +83,8 @@ fn one(course: &Course, interrupt: &Interrupt) -> Result<Exit, Error> {
     let model = &course.scene.model;
     say(&table(name, model, &audit))?;
     if let Some((position, load, failure)) = failed {
-        let told = report::failure(model, stepper.state(), position, load, &failure);
-        tell(&format!("{name}: the history ends early: {told}"));
+        let text = report::failure(model, stepper.state(), position, load, &failure);
+        tell(&format!("{name}: history ends early: {text}"));
     }
     Ok(match audit.broken().next() {
         Some(_) => Exit::Unconverged,
@@ -92,7 +92,7 @@ fn one(course: &Course, interrupt: &Interrupt) -> Result<Exit, Error> {
     })
 }
 
-/// What was found, as text.
+/// The report as text.
 fn table(name: &str, model: &Model, audit: &Audit) -> String {
     let Audit {
         increments, marked, ..
@@ -155,7 +155,7 @@ fn table(name: &str, model: &Model, audit: &Audit) -> String {
     }
     if let Some(inside) = &audit.inside {
         text += &format!(
-            "  also: increment {} (load {}): {}, a node of a master, is inside {} by {:.3e}; contact of slave nodes does not see it\n",
+            "  also: increment {} (load {}): master node {} penetrates {} by {:.3e}; contact tests only slave nodes\n",
             inside.increment,
             inside.load_factor,
             model.nodes[inside.node].name,

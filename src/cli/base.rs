@@ -1,4 +1,4 @@
-//! What all subcommands need: exit codes, errors, the scene that is named, and how the user is told.
+//! Shared by all subcommands: exit codes, errors, scene arguments and output.
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -10,22 +10,22 @@ use stickslip_scene::format::SceneError;
 use stickslip_scene::shown;
 use stickslip_scene::{Scene, builtin};
 
-/// How the program ends.
+/// Exit codes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Exit {
     /// Converged, equal, or sound.
     Good = 0,
-    /// Snapshots differ, or benchmarks do not hold.
+    /// Snapshots differ, or benchmarks fail.
     Differ = 1,
     /// Bad input or usage.
     Bad = 2,
-    /// The solve did not converge, or nothing that was tried helps.
+    /// The solve did not converge, or no remedy helps.
     Unconverged = 3,
-    /// Cells of a sweep are missing: what was printed does them.
+    /// Cells of a sweep are missing; a command that computes them was printed.
     Incomplete = 4,
-    /// The machine failed, and not the input: another try may go well.
+    /// A system error; another attempt may succeed.
     Again = 75,
-    /// Stopped from outside by Ctrl-C; a reader that closes the pipe stops nothing that he wants.
+    /// Interrupted by Ctrl-C. (A reader that closes the pipe is no interruption.)
     Interrupted = 130,
 }
 
@@ -35,7 +35,7 @@ impl From<Exit> for ExitCode {
     }
 }
 
-/// Why a subcommand could not do its work; all of these but one are bad input or usage.
+/// Why a subcommand failed; all variants except `Again` are bad input or usage.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     #[error(transparent)]
@@ -48,7 +48,7 @@ pub enum Error {
     Journal(#[from] JournalError),
     #[error("{0}")]
     Usage(String),
-    /// A file that another run has, or that the system did not let be written.
+    /// A file is in use by another run, or a system error prevented writing it.
     #[error("{0}")]
     Again(String),
     #[error("standard output: {0}")]
@@ -57,12 +57,12 @@ pub enum Error {
 
 fn how_to_overwrite(error: &FileError) -> &'static str {
     match error {
-        FileError::Exists(_) => " (--force does it)",
+        FileError::Exists(_) => " (use --force)",
         FileError::Failed { .. } => "",
     }
 }
 
-/// A scene, and what is changed in it.
+/// A scene, and changes to it.
 #[derive(Debug, clap::Args)]
 pub struct SceneArgs {
     /// A scene file, or the name of a built-in scene
@@ -72,7 +72,7 @@ pub struct SceneArgs {
 }
 
 impl SceneArgs {
-    /// Opens it.
+    /// Opens the scene.
     pub fn open(&self) -> Result<Scene, SceneError> {
         Scene::open(&self.scene, &self.set.set)
     }
@@ -81,18 +81,18 @@ impl SceneArgs {
 /// Changes to a scene.
 #[derive(Debug, clap::Args)]
 pub struct SetArgs {
-    /// Changes a value of the scene, by a path as `check --paths` lists it; may be repeated
+    /// Changes a value of the scene, by a path that `check --paths` lists; may be repeated
     #[arg(long, value_name = "PATH=VALUE", value_parser = assignment)]
     pub set: Vec<(String, String)>,
 }
 
-/// A value on the command line that will not do: what it must be.
+/// An invalid value on the command line, with the expected form.
 #[derive(Debug, thiserror::Error)]
 #[error("{0}")]
 pub struct NoValue(String);
 
 impl NoValue {
-    /// With what it must be.
+    /// An error that states the expected form.
     pub fn new(must_be: impl Into<String>) -> NoValue {
         NoValue(must_be.into())
     }
@@ -101,7 +101,9 @@ impl NoValue {
 fn assignment(text: &str) -> Result<(String, String), NoValue> {
     match text.split_once('=') {
         Some((path, value)) => Ok((path.to_owned(), value.to_owned())),
-        None => Err(NoValue::new("it must be PATH=VALUE, as friction.angle=20")),
+        None => Err(NoValue::new(
+            "expected PATH=VALUE, such as friction.angle=20",
+        )),
     }
 }
 
@@ -114,25 +116,25 @@ pub fn quoted(word: &str) -> String {
     }
 }
 
-/// A message to the user. Unlike `eprintln`, it survives a standard error that nobody reads.
+/// Prints a message to standard error. Unlike `eprintln`, it does not panic if standard error is closed.
 pub fn tell(message: &str) {
     let _ = writeln!(io::stderr(), "{}", shown::text(message));
 }
 
-/// What became of data for standard output.
+/// Result of writing to standard output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sent {
     Well,
-    /// Nobody reads on, which is no fault.
+    /// The reader has closed the pipe, which is no error.
     Closed,
 }
 
-/// Data to standard output, harmless to a terminal.
+/// Writes data to standard output, with control characters replaced.
 pub fn say(text: &str) -> Result<Sent, Error> {
     print(&shown::text(text))
 }
 
-/// Data to standard output as it is.
+/// Writes data to standard output unchanged.
 pub fn print(text: &str) -> Result<Sent, Error> {
     let mut out = io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
@@ -142,7 +144,7 @@ pub fn print(text: &str) -> Result<Sent, Error> {
     }
 }
 
-/// Writes a text to a file, and says so; to standard output without one, and for `-`.
+/// Writes a text to a file and reports that; without a file, or for `-`, writes to standard output.
 pub fn put(output: Option<&Path>, text: &str, force: bool) -> Result<Exit, Error> {
     match output.filter(|path| path.as_os_str() != "-") {
         Some(path) => {
@@ -154,7 +156,7 @@ pub fn put(output: Option<&Path>, text: &str, force: bool) -> Result<Exit, Error
     Ok(Exit::Good)
 }
 
-/// Refuses files that two options name.
+/// Rejects options that name the same file.
 pub fn distinct(named: &[(&str, Option<&str>)]) -> Result<(), Error> {
     let given = || named.iter().filter_map(|(_, name)| *name);
     let twice = given().find(|name| given().filter(|other| other == name).count() > 1);
@@ -162,16 +164,16 @@ pub fn distinct(named: &[(&str, Option<&str>)]) -> Result<(), Error> {
     let options: Vec<&str> = named.iter().map(|(option, _)| *option).collect();
     let (last, first) = options.split_last().unwrap_or((&"", &[]));
     Err(Error::Usage(format!(
-        "{name}: only one of {} and {last} can go there",
+        "{name}: only one of {} and {last} can write to this file",
         first.join(", ")
     )))
 }
 
-/// What to say of a file that is missing, where a built-in scene has its name. `None` where none has.
+/// The message for a missing file that has the name of a built-in scene; `None` for other names.
 pub fn scene_instead(file: &Path) -> Option<String> {
     let name = file.to_str().filter(|_| !file.exists())?;
     builtin::find(name)?;
     Some(format!(
-        "{name}: this is a built-in scene, and no file; `stickslip {name}` opens it, `stickslip run {name}` solves it"
+        "{name}: a built-in scene, not a file; `stickslip {name}` opens it, `stickslip run {name}` solves it"
     ))
 }

@@ -1,4 +1,4 @@
-//! `stickslip study benchmarks`: scenes whose answers are known from elsewhere ([`stickslip_study::benchmarks`]).
+//! `stickslip study benchmarks`: scenes with published reference values ([`stickslip_study::benchmarks`]).
 
 use super::base::{Error, Exit, tell};
 use super::interrupt::Interrupt;
@@ -8,11 +8,11 @@ use stickslip_scene::shown::aligned;
 use stickslip_study::Watch;
 use stickslip_study::benchmarks::{Benchmark, Benchmarks, Compared, Standing, table};
 
-/// Runs a list, and tells how near each value came.
+/// Runs a list of benchmarks, and reports the deviation of each value.
 pub fn main(list: &Benchmarks, out: &OutputArgs) -> Result<Exit, Error> {
     if out.draws() {
         let name = &list.name;
-        let told = format!("{name}: a list of benchmarks has a table, and no figure to draw");
+        let told = format!("{name}: benchmarks have no figure; use --csv for the table");
         return Err(Error::Usage(told));
     }
     let interrupt = Interrupt::listen();
@@ -30,7 +30,7 @@ pub fn main(list: &Benchmarks, out: &OutputArgs) -> Result<Exit, Error> {
     let all = compared.len();
     let count = |is: fn(&Standing) -> bool| compared.iter().filter(|c| is(&c.standing)).count();
     let good = count(|standing| *standing == Standing::Good);
-    tell(&format!("{}: {good} of {all} hold", list.name));
+    tell(&format!("{}: {good} of {all} pass", list.name));
     Ok(match count(|standing| *standing == Standing::NotRun) {
         0 if good == all => Exit::Good,
         0 => Exit::Differ,

@@ -1,4 +1,4 @@
-//! `stickslip chart`: what settings cost, and how far from the truth they are.
+//! `stickslip chart`: error over cost for different settings.
 
 use super::base::{Error, Exit, NoValue, SetArgs};
 use super::interrupt::Interrupt;
@@ -16,43 +16,43 @@ use stickslip_study::{Vary, precision_figure};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-Scenes 01 to 05 and osc-inclined-cantilever have charts of their own (problems/charts): meshes, increments,
-element orders, settings. Any other scene is run with meshes, increments and both kinds of T_max.
+Scenes 01 to 05 and osc-inclined-cantilever have predefined charts (problems/charts): meshes, increments,
+element orders, settings. Other scenes are run with several meshes, increments and both kinds of T_max.
 
-Runs that fail are results, and stand on a rail at the top of the picture: the exit code is 0 if the chart was
-done, 2 for bad input or usage, 4 if runs are missing to --merge, 75 if a log is busy or cannot be written,
-and 130 if it was interrupted; files have what was done.")]
+Runs that fail are results, drawn in a row at the top of the picture. The exit code is 0 if the chart is
+complete, 2 for bad input or usage, 4 if runs are missing to --merge, 75 if a log is busy or cannot be written,
+and 130 if interrupted; files then contain the finished runs.")]
 pub struct Args {
-    /// Scenes: files, or built-in names
+    /// Scene files, or names of built-in scenes
     #[arg(
         value_name = "SCENE",
         required_unless_present = "from",
         conflicts_with = "from"
     )]
     scenes: Vec<String>,
-    /// Draws the table of a chart that was made before (--csv), and runs nothing
+    /// Draws the table of an earlier chart (--csv) without running anything
     #[arg(long, value_name = "FILE", conflicts_with_all = ["log", "merge"])]
     from: Option<PathBuf>,
-    /// Runs with each of the values, instead of the scene's own chart; may be repeated for the product of all
+    /// Runs with each of the values, instead of the scene's predefined chart; may be repeated for the product of all
     #[arg(long, value_name = "PATH=A,B,C", value_parser = Vary::parse)]
     over: Vec<Vary>,
     #[command(flatten)]
     set: SetArgs,
-    /// Measures errors by this monitor, whatever it is: a displacement, a contact force; may be repeated
-    /// [default: the chart's own, else all displacements]
+    /// Measures errors by this monitor (a displacement or contact force); may be repeated [default: the chart's monitors, or all
+    /// displacements]
     #[arg(long, value_name = "MONITOR", conflicts_with = "from")]
     by: Vec<String>,
-    /// Names the cheapest run whose error is at most this
+    /// Marks the cheapest run whose error is at most this
     #[arg(long, value_name = "ERROR", value_parser = target)]
     target: Option<f64>,
-    /// What is drawn as cost: time, factorizations or minors
+    /// The horizontal axis: time, factorizations or minors
     #[arg(long, value_name = "WHAT", default_value = "time", value_parser = cost)]
     cost: Cost,
-    /// What is the truth: a table (CSV with the columns load and monitors), or finest: the finest run of the set
-    /// [default: the program's own table where it has one, else finest]
+    /// The reference: a table (CSV with the columns load and monitors), or finest: the finest run of the chart [default: the
+    /// built-in table if there is one, else finest]
     #[arg(long, value_name = "FILE|finest")]
     reference: Option<String>,
-    /// Runs everything so often, and takes the median of the times
+    /// Repeats every run this many times, and takes the median of the times
     #[arg(long, value_name = "N", default_value_t = 3)]
     repeats: usize,
     #[command(flatten)]
@@ -64,12 +64,12 @@ fn target(text: &str) -> Result<f64, NoValue> {
         .parse::<f64>()
         .ok()
         .filter(|t| *t > 0.0 && t.is_finite());
-    target.ok_or_else(|| NoValue::new("it must be a number above 0, as 1e-3"))
+    target.ok_or_else(|| NoValue::new("expected a positive number, such as 1e-3"))
 }
 
 fn cost(text: &str) -> Result<Cost, NoValue> {
     let all = Cost::NAMES.join(", ");
-    Cost::of_word(text).ok_or_else(|| NoValue::new(format!("it must be one of {all}")))
+    Cost::of_word(text).ok_or_else(|| NoValue::new(format!("expected one of {all}")))
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
@@ -78,8 +78,8 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         let text = precision_table::open(file).map_err(|e| Error::Usage(e.to_string()))?;
         let charts = precision_table::read(&name, &text, args.cost, args.target);
         let charts = charts.map_err(|error| {
-            let told = mistaken(&name, &text, FileKind::ChartTable);
-            Error::Usage(told.map_or(error.to_string(), |told| format!("{name}: {told}")))
+            let text = mistaken(&name, &text, FileKind::ChartTable);
+            Error::Usage(text.map_or(error.to_string(), |text| format!("{name}: {text}")))
         })?;
         let outputs = Outputs::open(&args.sweep.out)?;
         report(charts).write(outputs, args.sweep.out.quiet)?;
@@ -87,7 +87,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     }
     if let Some(shard) = args.sweep.part().filter(|_| args.sweep.out.writes()) {
         return Err(Error::Usage(format!(
-            "--shard {shard} runs a part of the cells, and a chart compares all; --merge makes table and picture of all logs"
+            "--shard {shard} runs only part of the cells, but a chart compares all; use --log, then --merge"
         )));
     }
     let interrupt = Interrupt::listen();
@@ -148,7 +148,7 @@ fn lines(chart: &Precision) -> Vec<String> {
     for point in &chart.points {
         let end = match (&point.failed, point.reference, point.unsettled) {
             (Some(why), ..) => format!("✗ {why}"),
-            (None, true, _) => "the reference".to_owned(),
+            (None, true, _) => "reference".to_owned(),
             (None, false, 0) => String::new(),
             (None, false, n) => format!("{n} increments unsettled"),
         };
@@ -177,7 +177,7 @@ fn lines(chart: &Precision) -> Vec<String> {
     }
     let mut lines = vec![chart.title.clone()];
     lines.extend(aligned(&table, 3));
-    lines.push("* beaten by no other run in cost and error   + as near as is wanted".to_owned());
+    lines.push("* on the Pareto front of cost and error   + within the target error".to_owned());
     if chart.points.iter().any(Point::is_round_off) {
         lines.push(format!(
             "= round-off: errors below {ROUND_OFF:.1e} are equal"

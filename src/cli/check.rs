@@ -1,4 +1,4 @@
-//! `stickslip check`: is the scene sound, and what does it cost.
+//! `stickslip check`: validates a scene and estimates its cost.
 
 use super::base::{Error, Exit, SceneArgs, say, tell};
 use stickslip_scene::Scene;
@@ -11,7 +11,7 @@ use stickslip_scene::precision;
 pub struct Args {
     #[command(flatten)]
     scene: SceneArgs,
-    /// Lists every value that --set can change: path, value, what it may be (separated by tabs)
+    /// Lists every value that --set can change: path, value and range (separated by tabs)
     #[arg(long)]
     paths: bool,
 }

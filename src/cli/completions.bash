@@ -1,4 +1,4 @@
-# bash breaks words at = and :, and the program does not: they are put together again as they stand in the line.
+# Bash splits words at = and :, but stickslip does not, so the parts are joined as they are in the line.
 _stickslip() {
     local line=${COMP_LINE:0:COMP_POINT} words=() word blank k
     for ((k = 0; k <= COMP_CWORD; k++)); do
@@ -15,7 +15,7 @@ _stickslip() {
             words+=("$word")
         fi
     done
-    # Of a word that bash breaks, it wants what comes after the last break.
+    # For a word that bash splits, it expects only the part after the last split.
     local present=${words[${#words[@]} - 1]} breaks=${COMP_WORDBREAKS//[!=:]/} before=""
     if [[ -n $breaks ]]; then
         before=${present%"${present##*[$breaks]}"}
@@ -29,7 +29,7 @@ _stickslip() {
         COMPREPLY+=("$word")
     done < <(STICKSLIP_COMPLETE=bash _CLAP_IFS=$'\n' _CLAP_COMPLETE_INDEX=$((${#words[@]} - 1)) \
         "$1" -- "${words[@]}" 2>/dev/null)
-    # A path of a setting wants its value, and a folder what is in it.
+    # A path of a setting is followed by its value, a folder by its content.
     if [[ ${#COMPREPLY[@]} -eq 1 && ${COMPREPLY[0]} == *[=/] ]]; then
         compopt -o nospace 2>/dev/null
     fi

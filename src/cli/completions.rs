@@ -1,7 +1,7 @@
-//! `stickslip completions SHELL`: the script by which a shell completes command lines.
+//! `stickslip completions SHELL`: the completion script for a shell.
 //!
-//! The script asks the program itself, with the line so far and [`ASKED`] in the environment, so that it knows whatever the
-//! program knows: scenes, studies, lessons, pages, and the paths and values of the scene that stands in the line.
+//! The script runs the program with the current line and the variable [`ASKED`] in the environment. It can therefore complete
+//! scenes, studies, lessons, manual pages, and the paths and values of the scene in the line.
 
 use super::base::{Error, Exit, put};
 use clap::{ValueEnum, ValueHint};
@@ -21,10 +21,10 @@ use stickslip_scene::format::read;
 use stickslip_study::precision::Cost;
 use stickslip_study::{benchmarks, builtin as studies};
 
-/// The variable of the environment by which a shell asks, and says which one it is.
+/// The environment variable that requests completions; its value names the shell.
 const ASKED: &str = "STICKSLIP_COMPLETE";
 
-/// The script of bash. The library's own takes `PATH=VALUE` for three words.
+/// The script for bash. Clap's own script splits `PATH=VALUE` into three words.
 const BASH: &str = include_str!("completions.bash");
 
 /// A shell.
@@ -39,18 +39,18 @@ enum Shell {
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-The script goes where the shell looks for it, or is read where the shell starts (`stickslip help install`):
+Save the script where the shell looks for completions, or load it at start-up (`stickslip help install`):
 
   stickslip completions bash > ~/.local/share/bash-completion/completions/stickslip
   source <(stickslip completions bash)")]
 pub struct Args {
-    /// Which shell: bash, zsh, fish, elvish or powershell
+    /// The shell: bash, zsh, fish, elvish or powershell
     #[arg(hide_possible_values = true)]
     shell: Shell,
-    /// Writes the script here, instead of to standard output
+    /// Writes the script to this file instead of to standard output
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Overwrites a file that exists
+    /// Overwrites an existing file
     #[arg(long, requires = "output")]
     force: bool,
 }
@@ -75,20 +75,20 @@ fn script(shell: Shell) -> Result<String, Error> {
     Ok(String::from_utf8_lossy(&script).into_owned())
 }
 
-/// Answers a shell that asks how a line could go on, and ends the program then; else returns.
+/// If a shell requests completions, prints them and exits; otherwise returns.
 pub fn answer(program: fn() -> clap::Command) {
     CompleteEnv::with_factory(|| completed(program()))
         .var(ASKED)
         .complete();
 }
 
-/// Whether it is said what the values of an argument can be.
+/// Whether the completions of an argument are defined.
 #[cfg(test)]
 pub fn knows(arg: &clap::Arg) -> bool {
     kind(arg).is_some()
 }
 
-/// The command line with what each of its values could be.
+/// The command line with a completer for each value.
 fn completed(program: clap::Command) -> clap::Command {
     let with = |arg: clap::Arg| match kind(&arg) {
         Some(Kind::Words(words)) => arg.add(ArgValueCompleter::new(words)),
@@ -101,20 +101,20 @@ fn completed(program: clap::Command) -> clap::Command {
         .mut_subcommands(|own| own.mut_args(with))
 }
 
-/// What a word that is being typed could go on as.
+/// The completions of a partial word.
 type Words = fn(&OsStr) -> Vec<CompletionCandidate>;
 
-/// What the values of an argument can be.
+/// Kinds of argument values.
 #[derive(Clone, Copy)]
 enum Kind {
     Words(Words),
     Files,
     Folders,
-    /// Numbers, names that only the user knows, and what clap itself has a list of.
+    /// Numbers, names that only the user knows, and values that clap itself lists.
     Free,
 }
 
-/// What an argument can be, by the name of its value in the help.
+/// The kind of an argument's value, from its name in the help.
 fn kind(arg: &clap::Arg) -> Option<Kind> {
     let id = arg.get_id().as_str();
     let name = match arg.get_value_names() {
@@ -143,7 +143,7 @@ fn kind(arg: &clap::Arg) -> Option<Kind> {
     })
 }
 
-/// Values of which nothing is known beforehand.
+/// Values without completions.
 const FREE: &[&str] = &[
     "A..B",
     "CELLS",
@@ -163,7 +163,7 @@ const FREE: &[&str] = &[
     "WORD",
 ];
 
-/// A name that can be typed, and what it is.
+/// A name, and its description.
 type Named = (&'static str, String);
 
 fn scenes() -> Vec<Named> {
@@ -186,12 +186,12 @@ fn lessons() -> Vec<Named> {
         .collect()
 }
 
-/// What `show` prints.
+/// Arguments of `show`.
 fn shown() -> Vec<Named> {
     [with_studies(), lessons()].concat()
 }
 
-/// What `help` explains.
+/// Arguments of `help`.
 fn topics() -> Vec<Named> {
     let pages = manual::PAGES.iter();
     let pages = pages.map(|page| (page.topic, page.about.to_owned()));
@@ -199,7 +199,7 @@ fn topics() -> Vec<Named> {
     pages.chain(names).collect()
 }
 
-/// The names that begin so.
+/// The names that start with the typed text.
 fn of(begun: &OsStr, all: Vec<Named>) -> Vec<CompletionCandidate> {
     let begun = begun.to_string_lossy();
     let found = all
@@ -217,14 +217,14 @@ fn plain(begun: &OsStr, words: impl IntoIterator<Item = &'static str>) -> Vec<Co
     of(begun, named.collect())
 }
 
-/// The names that begin so, and the files.
+/// The names that start with the typed text, and files.
 fn with_files(begun: &OsStr, all: Vec<Named>) -> Vec<CompletionCandidate> {
     let mut found = of(begun, all);
     found.extend(PathCompleter::file().complete(begun));
     found
 }
 
-/// `PATH=` while the path is typed, `PATH=VALUE` then; of several values, separated by commas, the last.
+/// Completes `PATH=`, then `PATH=VALUE`; in a comma-separated list, the last value.
 fn settings(begun: &OsStr) -> Vec<CompletionCandidate> {
     let words: Vec<OsString> = std::env::args_os().collect();
     let listed = of_scene(&words).unwrap_or_else(of_any);
@@ -245,13 +245,13 @@ fn settings(begun: &OsStr) -> Vec<CompletionCandidate> {
     found.into_iter().map(CompletionCandidate::new).collect()
 }
 
-/// A path that can be set, and the words that its value can be.
+/// A path that can be set, and its possible values if they are words.
 struct Settable {
     path: String,
     words: &'static [&'static str],
 }
 
-/// What can be set in the scene that is among these words; none if there is none, or it cannot be read.
+/// The paths of the scene among these words; `None` if there is no scene, or it is not readable.
 fn of_scene(words: &[OsString]) -> Option<Vec<Settable>> {
     let listed = words.iter().skip(1).find_map(|word| {
         let name = word.to_str()?;
@@ -269,7 +269,7 @@ fn of_scene(words: &[OsString]) -> Option<Vec<Settable>> {
     Some(listed.into_iter().map(settable).collect())
 }
 
-/// What can be set in any scene.
+/// The paths that all scenes have.
 fn of_any() -> Vec<Settable> {
     let listed = paths::of_settings().into_iter();
     listed
@@ -282,7 +282,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_scene_in_the_line_says_what_can_be_set() {
+    fn paths_come_from_the_scene_in_the_line() {
         let line = |words: &[&str]| words.iter().map(OsString::from).collect::<Vec<_>>();
         let own = of_scene(&line(&["stickslip", "--", "run", "osc-snap", "--set"])).unwrap();
         assert!(own.iter().any(|own| own.path == "friction.angle"));

@@ -1,7 +1,7 @@
-//! `stickslip core SCENE`: solves up to the first true cycle of minor iterations, shrinks it to the fewest nodes that still
-//! cycle, and writes these as a scene of their own.
+//! `stickslip core SCENE`: solves up to the first true cycle of minor iterations, reduces it to the fewest nodes that still cycle,
+//! and writes these as a separate scene.
 //!
-//! Exit code 0 says that there is such a scene, 3 that there is none, and the message why: the scene converges, fails
+//! Exit code 0: the scene was written. Exit code 3: there is none, and the message gives the reason: the scene converges, fails
 //! otherwise, or its core cannot be written as a matrix.
 
 use super::base::{Error, Exit, SceneArgs, put, tell};
@@ -24,10 +24,10 @@ use stickslip_scene::solver::solver;
 pub struct Args {
     #[command(flatten)]
     scene: SceneArgs,
-    /// Where to; - is standard output
+    /// Output file; - is standard output
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
-    /// Overwrites a file that exists
+    /// Overwrites an existing file
     #[arg(long)]
     force: bool,
 }
@@ -35,7 +35,7 @@ pub struct Args {
 pub fn main(args: &Args) -> Result<Exit, Error> {
     let scene = args.scene.open()?;
     if args.output.as_os_str() != "-" {
-        // Before the solve, so that nobody waits for a result that then has no place to go; it leaves nothing behind.
+        // Checked before the solve, so that the result of a long solve can be written; leaves no file behind.
         drop(Output::create(&args.output, args.force)?);
     }
     let text = match text(&scene) {
@@ -48,18 +48,18 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     put(Some(&args.output), &text, args.force)
 }
 
-/// Why there is no core to write.
+/// Why there is no core.
 #[derive(Debug, thiserror::Error)]
 enum NoCore {
-    #[error("it converges, so there is no cycle to write{0}")]
+    #[error("the scene converges, so there is no cycle{0}")]
     Converges(&'static str),
-    #[error("it fails, but in no cycle of minor iterations: {0}")]
+    #[error("the scene fails, but not in a cycle of minor iterations: {0}")]
     OtherFailure(String),
     #[error(
-        "the bodies cannot be condensed to the interface there, so there is no small problem to write"
+        "the bodies cannot be condensed to the interface in the cycle, so there is no core to write"
     )]
     NotCondensed,
-    #[error("no core was found: too many nodes take part in the cycle, or it hangs on round-off")]
+    #[error("no core found: too many nodes take part in the cycle, or it depends on round-off")]
     NotFound,
     #[error(transparent)]
     NoExport(#[from] NoExport),
@@ -68,7 +68,7 @@ enum NoCore {
 /// The core's file, or why there is none.
 fn text(scene: &Scene) -> Result<String, NoCore> {
     let mut model = scene.model.clone();
-    // A cycle is what is looked for, and not to be got out of.
+    // The solve must stop at the cycle instead of escaping it.
     model.settings.at_cycle = AtCycle::Stop;
     if model.settings.strategy == Strategy::Ladder {
         model.settings.strategy = Strategy::Table2;
@@ -78,7 +78,7 @@ fn text(scene: &Scene) -> Result<String, NoCore> {
     let end = stepper.drive(Until::end(), |_| ControlFlow::<Infallible>::Continue(()));
     let RunEnd::Failed(failure) = end else {
         let hint = if passes {
-            "; settings.at_minor_limit: accept passes over cycles, and stop would not"
+            "; settings.at_minor_limit: accept skips cycles (try stop)"
         } else {
             ""
         };
@@ -89,7 +89,7 @@ fn text(scene: &Scene) -> Result<String, NoCore> {
         return Err(NoCore::OtherFailure(told));
     };
     if scene.model.settings.at_cycle != AtCycle::Stop {
-        tell("settings.at_cycle was put aside; with it the scene may get past this cycle");
+        tell("note: settings.at_cycle was ignored; with it the scene may escape this cycle");
     }
     let (at, load) = (stepper.event().position, stepper.state().target);
     let problem = stepper

@@ -1,4 +1,4 @@
-//! A course of steps to be gone again: a scene to its end, or a snapshot as far as it went, with what was done to it.
+//! A sequence of steps to repeat: a scene to its end, or a snapshot's history with its interventions.
 
 use super::base::Error;
 use super::interrupt::Interrupt;
@@ -8,21 +8,21 @@ use stickslip_core::step::stepper::Stepper;
 use stickslip_debugger::record::snapshot::{Applied, Snapshot, SnapshotError};
 use stickslip_scene::Scene;
 
-/// A scene, and of a snapshot what was done to it, and how far.
+/// A scene, with the interventions and the number of steps of a snapshot.
 pub struct Course {
     /// The scene.
     pub scene: Scene,
-    /// What was done to it, in order of the steps.
+    /// Interventions, in order of the steps.
     pub applied: Vec<Applied>,
-    /// Minor iterations of a snapshot; `None` goes to the end of the history, or to its first failure.
+    /// Minor iterations of a snapshot; `None` continues to the end of the history, or to the first failure.
     pub steps: Option<u64>,
 }
 
-/// How a course ended; an error stops it as [`RunEnd::Stopped`].
+/// How a course ended; an error ends it with [`RunEnd::Stopped`].
 pub type CourseEnd = RunEnd<Error>;
 
 impl Course {
-    /// All of a scene.
+    /// The whole history of a scene.
     pub fn of_scene(scene: Scene) -> Course {
         Course {
             scene,
@@ -31,10 +31,10 @@ impl Course {
         }
     }
 
-    /// What a snapshot went through; `name` is what messages call its scene.
+    /// The history of a snapshot; `name` is the scene's name in messages.
     ///
     /// # Errors
-    /// If its scene is unsound.
+    /// If the scene is invalid, or belongs to an attached solver.
     pub fn of_snapshot(name: &str, snapshot: Snapshot) -> Result<Course, Error> {
         if snapshot.scene.attached.is_some() {
             let name = snapshot.name;
@@ -47,10 +47,10 @@ impl Course {
         })
     }
 
-    /// Goes it with a stepper that stands at the start; `see` looks after every minor iteration.
+    /// Runs the course with a stepper at the start; calls `see` after every minor iteration.
     ///
     /// # Errors
-    /// If what was done before the first minor iteration cannot be done.
+    /// If an intervention before the first minor iteration is not possible.
     pub fn go(
         &self,
         stepper: &mut Stepper,
@@ -70,7 +70,7 @@ impl Course {
         intervene(stepper, 0)?;
         let came = || interrupt.came();
         let until = Until::end().interrupted_by(&came);
-        // A snapshot goes on from a failure, as its user did.
+        // A snapshot continues after a failure if its user did.
         let until = match self.steps {
             Some(steps) => until.minors(steps).past_failures(),
             None => until,

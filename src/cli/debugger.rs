@@ -11,12 +11,12 @@ use stickslip_debugger::session::Session;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// A scene file, or the name of a built-in scene; without one, the debugger offers the built-in ones. The .cel of a
-    /// finished CalculiX run opens that run, read-only, and so does the exchange that `attach --exchange` kept
+    /// A scene file, or the name of a built-in scene; without one, the debugger lists the built-in ones. The .cel file of a
+    /// finished CalculiX run, or an exchange written by `attach --exchange`, opens that run read-only
     scene: Option<String>,
     #[command(flatten)]
     set: SetArgs,
-    /// Keeps the journal of the session in a new file [default: in the user's directory for states]
+    /// Writes the session's journal to a new file [default: in the user's state directory]
     #[arg(
         long,
         value_name = "FILE",
@@ -24,13 +24,13 @@ pub struct Args {
         requires = "scene"
     )]
     journal: Option<PathBuf>,
-    /// Keeps no journal; what is done cannot be resumed then
+    /// Writes no journal; the session cannot be resumed
     #[arg(long)]
     no_journal: bool,
 }
 
 impl Args {
-    /// An option that does not go with what is read-only.
+    /// An option that cannot be combined with a read-only run.
     fn changed(&self) -> Option<&'static str> {
         match (self.set.set.is_empty(), &self.journal) {
             (false, _) => Some("--set"),
@@ -42,7 +42,7 @@ impl Args {
 
 pub fn main(args: Args) -> Result<Exit, Error> {
     if args.scene.is_none() && !args.set.set.is_empty() {
-        return Err(Error::Usage("--set needs a scene to change".into()));
+        return Err(Error::Usage("--set needs a scene".into()));
     }
     if let Some(told) = args.scene.as_deref().and_then(groups::unknown) {
         return Err(Error::Usage(told));
@@ -71,7 +71,9 @@ pub fn main(args: Args) -> Result<Exit, Error> {
 fn view(recording: Recording, name: &str, args: &Args) -> Result<Exit, Error> {
     let kind = recording.kind();
     if let Some(asked) = args.changed() {
-        return Err(Error::Usage(format!("{asked} cannot be used: {kind}")));
+        return Err(Error::Usage(format!(
+            "{asked} cannot be used with this input: {kind}"
+        )));
     }
     needs_terminal(DEBUGGER, &format!("story {name}` prints it as text"))?;
     let words = recording.greeting();
@@ -79,15 +81,15 @@ fn view(recording: Recording, name: &str, args: &Args) -> Result<Exit, Error> {
     Ok(Exit::Good)
 }
 
-/// What needs a terminal, mostly.
+/// The name of the debugger in messages.
 pub const DEBUGGER: &str = "the debugger";
 
-/// Refuses what needs a terminal where there is none; `instead` names the subcommand that does without.
+/// Fails if there is no terminal; `instead` names a subcommand that needs none.
 pub fn needs_terminal(what: &str, instead: &str) -> Result<(), Error> {
     match std::io::stdin().is_terminal() && std::io::stdout().is_terminal() {
         true => Ok(()),
         false => Err(Error::Usage(format!(
-            "{what} needs a terminal, and standard input or output is none; `stickslip {instead}"
+            "{what} needs a terminal, but stdin or stdout is not one; `stickslip {instead}"
         ))),
     }
 }

@@ -7,10 +7,10 @@ use stickslip_debugger::record::snapshot::Snapshot;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// A snapshot
+    /// The first snapshot
     #[arg(value_name = "A")]
     left: PathBuf,
-    /// Another
+    /// The second snapshot
     #[arg(value_name = "B")]
     right: PathBuf,
 }

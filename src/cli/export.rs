@@ -1,4 +1,4 @@
-//! `stickslip export INPUT -o FILE`: pictures and other files of what is there, the kind by the extension
+//! `stickslip export INPUT -o FILE`: converts a scene, snapshot, journal or mesh; the extension selects the format
 //! ([`stickslip_debugger::record::export`]).
 
 use super::base::{Error, Exit, SetArgs, tell};
@@ -30,35 +30,35 @@ use stickslip_study::pen;
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 .svg, .png: the deformed shape of a scene or a snapshot with modes, forces and gaps, and the timeline.
-.ron: the scene as it was opened; of a mesh of Gmsh a scene around it, to be edited; with --frozen the interface problem
-that is solved next, as a scene of its own.
-.dat, .mtx, .h5: that interface problem for other solvers: in the form of Siconos, as matrices of the Matrix Market
+.ron: the scene as opened; for a Gmsh mesh, a scene that imports it, to be edited; with --frozen, the interface
+problem that is solved next, as a separate scene.
+.dat, .mtx, .h5: the same interface problem for other solvers: for Siconos, as Matrix Market files
 (NAME_W.mtx, NAME_q.mtx, NAME_mu.mtx), for fclib.
-.vtu: the state for ParaView; stickslip run --vtu writes them all.
+.vtu: the state for ParaView (stickslip run --vtu writes all states).
 .cast: a journal as a film for asciinema.
 
-A scene is taken at its end, or where it fails. Exit codes: 0 the file was written, though the scene may have failed;
-2 bad input or usage; 3 --at is not reached, or no file can say what is asked for.")]
+A scene is exported at its end, or where it fails. Exit codes: 0 the file was written, even if the scene failed;
+2 bad input or usage; 3 --at is not reached, or the state cannot be written in this format.")]
 pub struct Args {
     /// A scene file, the name of a built-in scene, a snapshot, a journal or a mesh
     #[arg(value_name = "SCENE|SNAPSHOT|JOURNAL|MESH")]
     input: String,
     #[command(flatten)]
     set: SetArgs,
-    /// Where to; its extension says what is made
+    /// Output file; its extension selects the format
     #[arg(short, long, value_name = "FILE")]
     output: PathBuf,
-    /// After which minor iteration; without MINOR at the end of the major, without MAJOR at the end of the increment
-    /// [default: at the end of the history, or where it fails]
+    /// The minor iteration after which to export; without MINOR the end of the major, without MAJOR the end of the increment
+    /// [default: the end of the history, or the failure]
     #[arg(long, value_name = "INC[.MAJOR[.MINOR]]")]
     at: Option<At>,
-    /// Freezes the interface problem, and writes that as a scene of its own
+    /// Exports the frozen interface problem as a separate scene
     #[arg(long)]
     frozen: bool,
-    /// Overwrites a file that exists
+    /// Overwrites an existing file
     #[arg(long)]
     force: bool,
-    /// Goes on with the journal of an attached solver
+    /// Replays the journal of an attached solver
     #[command(flatten)]
     solver: SolverArgs,
 }
@@ -69,7 +69,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     let kind = export::kind(&args.output).map_err(|e| usage(e.to_string()))?;
     if args.frozen && !kind.may_be_frozen {
         let told = format!(
-            "a .{} file is of no frozen problem; .ron, .dat, .mtx and .h5 are",
+            "--frozen cannot be used with .{}; use .ron, .dat, .mtx or .h5",
             kind.extension
         );
         return Err(usage(told));
@@ -80,7 +80,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         "h5" => fclib::ready().map_err(|e| usage(e.to_string()))?,
         _ => {}
     }
-    // Before the solve, so that nobody waits for a result that then has no place to go; it leaves nothing behind.
+    // Checked before the solve, so that the result of a long solve can be written; leaves no file behind.
     let names = kind.files(&args.output).map_err(usage)?;
     for name in &names {
         drop(Output::create(name, args.force)?);
@@ -101,23 +101,23 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     Ok(Exit::Good)
 }
 
-/// What the input is, where it is a file of ours; else a scene.
+/// The kind of the input: journal, snapshot, or otherwise a scene.
 fn input_kind(input: &str) -> FileKind {
     let found = FileKind::of_file(Path::new(input));
     let ours = found.filter(|kind| matches!(kind, FileKind::Journal | FileKind::Snapshot));
     ours.unwrap_or(FileKind::Scene)
 }
 
-/// A scene around a mesh.
+/// A scene that imports a mesh.
 fn around_mesh(args: &Args, kind: &Kind) -> Result<Vec<u8>, Error> {
     let file = &args.input;
     let usage = |why: &str| Error::Usage(format!("{file}: {why}"));
     if kind.extension != "ron" || args.frozen {
         return Err(usage(
-            "this is a mesh; a scene is written around it, with -o FILE.ron",
+            "a mesh can only be exported as a scene that imports it: -o FILE.ron",
         ));
     }
-    scene_only(args, "a mesh has no values to set")?;
+    scene_only(args, "a mesh has no states or values")?;
     let folder = |path: &Path| {
         let folder = path.parent().filter(|folder| *folder != Path::new(""));
         folder.unwrap_or(Path::new(".")).canonicalize().ok()
@@ -128,7 +128,7 @@ fn around_mesh(args: &Args, kind: &Kind) -> Result<Vec<u8>, Error> {
         below.and_then(|((mesh, scene), name)| Some(mesh.strip_prefix(scene).ok()?.join(name)));
     let Some(below) = below else {
         return Err(usage(
-            "a scene imports a mesh that lies beside it or below; write the scene there, by -o",
+            "the scene must be written to the mesh's folder or a folder above it; change -o",
         ));
     };
     let scene = args.output.to_string_lossy();
@@ -140,17 +140,17 @@ fn around_mesh(args: &Args, kind: &Kind) -> Result<Vec<u8>, Error> {
 fn film(args: &Args) -> Result<Vec<u8>, Error> {
     if input_kind(&args.input) != FileKind::Journal {
         return Err(Error::Usage(format!(
-            "{}: a .cast is made of a journal, which the debugger keeps (:journal tells where); this is none",
+            "{}: not a journal; .cast files are made from a journal of the debugger (:journal shows its path)",
             args.input
         )));
     }
-    scene_only(args, "a journal is shown as it was kept")?;
+    scene_only(args, "a journal is replayed as recorded")?;
     let record = Record::read(Path::new(&args.input))?;
     let session = session_of(&record, &args.solver)?;
     Ok(front::film(&record, session)?.into_bytes())
 }
 
-/// Refuses what only concerns scenes.
+/// Rejects options that only apply to scenes.
 fn scene_only(args: &Args, why: &str) -> Result<(), Error> {
     let given = match (args.set.set.is_empty(), args.at) {
         (true, None) => return Ok(()),
@@ -158,7 +158,7 @@ fn scene_only(args: &Args, why: &str) -> Result<(), Error> {
         (true, Some(_)) => "--at",
     };
     Err(Error::Usage(format!(
-        "{}: {why}; {given} is for scenes",
+        "{}: {why}; {given} is for scenes only",
         args.input
     )))
 }
@@ -166,7 +166,7 @@ fn scene_only(args: &Args, why: &str) -> Result<(), Error> {
 fn open(args: &Args) -> Result<Course, Error> {
     match input_kind(&args.input) {
         FileKind::Snapshot => {
-            scene_only(args, "a snapshot is taken as it was recorded")?;
+            scene_only(args, "a snapshot is exported as recorded")?;
             let snapshot = Snapshot::read(Path::new(&args.input))?;
             let name = snapshot.name.clone();
             Course::of_snapshot(&name, snapshot)
@@ -174,15 +174,15 @@ fn open(args: &Args) -> Result<Course, Error> {
         FileKind::Journal => {
             let name = &args.input;
             Err(Error::Usage(format!(
-                "{name}: this is a journal, and a .cast is made of one; `w` in the debugger (`stickslip resume {name}`) \
-                 writes a snapshot of what it shows"
+                "{name}: a journal can only be exported as .cast; `w` in the debugger (`stickslip resume {name}`) \
+                 writes a snapshot of the shown state"
             )))
         }
         _ => Ok(Course::of_scene(Scene::open(&args.input, &args.set.set)?)),
     }
 }
 
-/// What was seen on the way.
+/// Records of the run so far.
 struct Seen {
     strips: Vec<Strip>,
     last_major: State,
@@ -201,7 +201,7 @@ impl Seen {
         let (state, event) = (stepper.state(), stepper.event());
         let strip = Strip::of(stepper.model(), state, Some(event), self.strips.last(), 0.0);
         self.strips.push(strip);
-        // A timeline shows the last ones, and says how many there were only if that is little.
+        // A timeline shows only the last steps; their total is needed only if it is small.
         if self.strips.len() > 64 * COLUMNS {
             self.strips.drain(..32 * COLUMNS);
         }
@@ -217,7 +217,7 @@ enum Ended {
     Not(Exit),
 }
 
-/// What is in the files of a state, or with which code to end where there is nothing.
+/// The files' contents, or the exit code if there are none.
 fn state(
     args: &Args,
     kind: &Kind,
@@ -227,7 +227,7 @@ fn state(
     let scene = &course.scene;
     let mut stepper = solver(Arc::new(scene.model.clone()));
     let mut seen = Seen::at_start(&stepper);
-    // The scene's own file needs no solve.
+    // The scene file itself needs no solve.
     let solves = kind.extension != "ron" || args.frozen;
     let ended = match solves {
         true => drive(&course, args.at, &mut stepper, &mut seen, interrupt)?,
@@ -271,7 +271,7 @@ fn origin(course: &Course, at: Position, state: &State) -> Origin {
     origin
 }
 
-/// Goes where the state is that is wanted.
+/// Runs to the requested state.
 fn drive(
     course: &Course,
     at: Option<At>,
@@ -304,15 +304,13 @@ fn drive(
     })
 }
 
-/// The failure of the last minor iteration in words; told, too, where it was not asked for.
+/// The failure of the last minor iteration in words; printed as well if requested.
 fn failed(scene: &Scene, stepper: &Stepper, failure: &Failure, told: bool) -> String {
     let words = report::describe_failure(&scene.model, failure);
     if told {
         let at = names::position(stepper.event().position);
         let name = &scene.name;
-        tell(&format!(
-            "{name}: {at}: {words}; this is the state that is exported"
-        ));
+        tell(&format!("{name}: {at}: {words}; exporting this state"));
     }
     words
 }

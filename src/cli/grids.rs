@@ -1,4 +1,4 @@
-//! `stickslip run --vtu DIR`: a file for ParaView after each increment, major or minor iteration, and a collection of them.
+//! `stickslip run --vtu DIR`: a ParaView file after each increment, major or minor iteration, and a collection of them.
 
 use super::base::Error;
 use std::path::{Path, PathBuf};
@@ -9,14 +9,14 @@ use stickslip_debugger::record::export::grid::grid;
 use stickslip_exchange::vtu;
 use stickslip_platform::files::{self, FileError, Output};
 
-/// After what a file is written.
+/// When a file is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 pub enum Each {
-    /// Converged increments
+    /// After each accepted increment
     Increment,
-    /// Major iterations, and increments
+    /// After each major iteration and increment
     Major,
-    /// Minor iterations: displacements are those of the last major one, modes and forces their own
+    /// After each minor iteration, with its modes and forces and the displacements of the last major iteration
     Minor,
 }
 
@@ -33,10 +33,10 @@ impl Each {
     }
 }
 
-/// Files for ParaView in the making.
+/// ParaView files of a run.
 pub struct Grids {
     folder: PathBuf,
-    /// What all names begin with.
+    /// Prefix of all file names.
     stem: String,
     each: Each,
     overwrite: bool,
@@ -46,10 +46,10 @@ pub struct Grids {
 }
 
 impl Grids {
-    /// Makes the folder, and sees that the collection can be written there.
+    /// Creates the folder, and checks that the collection can be written there.
     ///
     /// # Errors
-    /// If it cannot, or if it is there already and may not be overwritten.
+    /// If the folder cannot be created, or the collection exists and must not be overwritten.
     pub fn open(folder: &Path, scene: &str, each: Each, overwrite: bool) -> Result<Grids, Error> {
         std::fs::create_dir_all(folder).map_err(|source| FileError::Failed {
             path: folder.to_owned(),
@@ -68,7 +68,7 @@ impl Grids {
         })
     }
 
-    /// Writes the state at the start.
+    /// Writes the initial state.
     ///
     /// # Errors
     /// If it cannot be written.
@@ -77,7 +77,7 @@ impl Grids {
         self.write(stepper, state, None, state.start.load_factor)
     }
 
-    /// Writes the state after a minor iteration, if that is wanted.
+    /// Writes the state after a minor iteration, if `each` includes it.
     ///
     /// # Errors
     /// If it cannot be written.
@@ -104,7 +104,7 @@ impl Grids {
         Ok(())
     }
 
-    /// Writes the collection. Its time is the load factor where that rises from file to file, and else the number of the file.
+    /// Writes the collection. Its time is the load factor if that increases from file to file, otherwise the file number.
     ///
     /// # Errors
     /// If it cannot be written.
@@ -120,7 +120,7 @@ impl Grids {
         let time = if rises { "load factor" } else { "number" };
         let path = self.folder.join(format!("{}.pvd", self.stem));
         Ok(format!(
-            "wrote {}: {} files, their time is the {time}",
+            "wrote {}: {} files, with the {time} as time",
             path.display(),
             files.len()
         ))

@@ -1,4 +1,4 @@
-//! `stickslip --help`: the subcommands in groups, and which one was meant by a word that is none.
+//! Groups the subcommands in `stickslip --help`, and suggests corrections for mistyped ones.
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use std::ffi::OsString;
@@ -7,7 +7,7 @@ use stickslip_scene::builtin;
 use stickslip_scene::format::error::did_you_mean;
 use stickslip_scene::shown::wrap;
 
-/// What the subcommands are for, in the order of the work.
+/// The groups in the order of a typical workflow.
 const GROUPS: [(&str, &[&str]); 8] = [
     ("Solve", &["run", "check", "audit"]),
     ("Debug", &["remedies", "core", "resume", "story"]),
@@ -19,7 +19,7 @@ const GROUPS: [(&str, &[&str]); 8] = [
     ("Install", &["completions", "man"]),
 ];
 
-/// The subcommands of all groups.
+/// All subcommands.
 pub fn names() -> impl Iterator<Item = &'static str> {
     GROUPS.iter().flat_map(|(_, names)| names.iter().copied())
 }
@@ -27,7 +27,7 @@ pub fn names() -> impl Iterator<Item = &'static str> {
 /// Width of the text of `--help`.
 const WIDTH: usize = 100;
 
-/// The command line with a help that lists its subcommands in groups.
+/// The command line with subcommands grouped in the help.
 pub fn grouped(command: clap::Command) -> clap::Command {
     let width = command
         .get_subcommands()
@@ -56,11 +56,11 @@ pub fn grouped(command: clap::Command) -> clap::Command {
     ))
 }
 
-/// Options of earlier revisions, and what replaces them.
+/// Removed options, and their replacements.
 const REMOVED: [(&str, &str); 2] = [("--aggregate", ROWS), ("--failing", ROWS)];
-const ROWS: &str = "no longer exists; --shard K/N --csv FILE writes all rows of a shard, and DuckDB or Polars sums them up (`help cluster`)";
+const ROWS: &str = "no longer exists; write all rows with --shard K/N --csv FILE, and aggregate them with DuckDB or Polars (`help cluster`)";
 
-/// What to say where the first word of a command line is no subcommand, and what follows makes sense for no scene.
+/// A better message if the first word is neither a subcommand nor a scene, so that clap misread the rest of the line.
 pub fn mistyped(error: &clap::Error, first: Option<OsString>) -> Option<String> {
     let kinds = [
         ErrorKind::UnknownArgument,
@@ -80,7 +80,7 @@ pub fn mistyped(error: &clap::Error, first: Option<OsString>) -> Option<String> 
     unknown(first?.to_str()?)
 }
 
-/// The message about a word that should be a subcommand or a scene, and is neither; none where it is one.
+/// The message for a word that is neither a subcommand nor a scene; `None` if it is one.
 pub fn unknown(word: &str) -> Option<String> {
     let is_known = word.starts_with('-')
         || names().any(|name| name == word)
@@ -95,7 +95,7 @@ pub fn unknown(word: &str) -> Option<String> {
     };
     let word = stickslip_scene::format::error::quoted(word);
     Some(format!(
-        "{word} is no subcommand, no file and no built-in scene{near} (`stickslip --help`, `stickslip list`)"
+        "{word} is not a subcommand, a file or a built-in scene{near} (see `stickslip --help`, `stickslip list`)"
     ))
 }
 
@@ -104,7 +104,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_slip_is_told_from_a_scene() {
+    fn mistyped_subcommands_and_scenes_get_a_suggestion() {
         assert!(unknown("rnu").unwrap().contains("did you mean \"run\"?"));
         assert!(
             unknown("osc-snpa")

@@ -1,4 +1,4 @@
-//! `stickslip help [TOPIC]`: the manual's pages, searched or shown, and the help of subcommands.
+//! `stickslip help [TOPIC]`: shows and searches the manual's pages, and shows the help of subcommands.
 
 use super::base::{Error, Exit, print, say};
 use std::ffi::OsString;
@@ -10,14 +10,14 @@ use stickslip_platform::terminal;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// A page of the manual, or a subcommand; without one, the pages are listed
+    /// A page of the manual, or a subcommand; without one, lists the pages
     topic: Option<String>,
-    /// Lists the lines of the manual that hold this, with their topics and headings
+    /// Lists the lines of the manual that contain this text, with their topics and headings
     #[arg(long, value_name = "WORD", conflicts_with = "topic")]
     search: Option<String>,
 }
 
-/// Shows what is asked for; `program` is the whole command line.
+/// Shows the requested page; `program` is the whole command line.
 pub fn main(args: &Args, program: clap::Command) -> Result<Exit, Error> {
     match (&args.topic, &args.search) {
         (None, Some(word)) => search(word),
@@ -36,7 +36,7 @@ fn contents() -> Result<Exit, Error> {
     Ok(Exit::Good)
 }
 
-/// What `SUBCOMMAND --help` says.
+/// The text of `SUBCOMMAND --help`.
 fn subcommand(name: &str, program: clap::Command) -> Result<Exit, Error> {
     if let Err(help) = program.try_get_matches_from(["stickslip", name, "--help"]) {
         say(&help.render().to_string())?;
@@ -49,7 +49,7 @@ fn search(word: &str) -> Result<Exit, Error> {
     if hits.is_empty() {
         let word = stickslip_scene::shown::cut(word, 40);
         return Err(Error::Usage(format!(
-            "no page of the manual holds '{word}'"
+            "no page of the manual contains '{word}'"
         )));
     }
     let mut text = String::new();
@@ -66,7 +66,7 @@ fn search(word: &str) -> Result<Exit, Error> {
     Ok(Exit::Good)
 }
 
-/// All subcommands of the program with their arguments and options, as the manual shows them.
+/// All subcommands with their arguments and options, for the manual.
 pub fn commands(mut program: clap::Command) -> String {
     program.build();
     let mut text = String::new();
@@ -96,7 +96,7 @@ pub fn commands(mut program: clap::Command) -> String {
     text.trim_end().to_owned() + "\n"
 }
 
-/// An argument as one types it.
+/// An argument as it is typed.
 fn written(argument: &clap::Arg) -> String {
     let takes = argument.get_action().takes_values();
     let values = argument.get_value_names().unwrap_or_default();
@@ -113,7 +113,7 @@ fn written(argument: &clap::Arg) -> String {
         .to_owned()
 }
 
-/// A page: through a pager on a terminal, else as plain text.
+/// Shows a page, through a pager on a terminal, otherwise as plain text.
 fn show(page: &Page) -> Result<Exit, Error> {
     let terminal = std::io::stdout().is_terminal();
     let width = match terminal {
@@ -132,14 +132,14 @@ fn show(page: &Page) -> Result<Exit, Error> {
     if terminal && paged(&text) {
         return Ok(Exit::Good);
     }
-    // Not through `say`, which would show the styles instead of obeying them: the pages are our own.
+    // Not through `say`, which would replace the styles; the pages are trusted.
     print(&text)?;
     Ok(Exit::Good)
 }
 
-/// Shows a text with the user's pager; whether there was one that did.
+/// Shows a text with the user's pager; returns false if none could be started.
 fn paged(text: &str) -> bool {
-    // Ctrl-C is the pager's while it has the terminal.
+    // The pager handles Ctrl-C while it runs.
     let kept = signal_hook::flag::register(signal_hook::consts::SIGINT, Arc::default());
     let mut command = Command::new("/bin/sh");
     let pager = std::env::var_os("PAGER").filter(|pager| !pager.is_empty());
@@ -153,7 +153,7 @@ fn paged(text: &str) -> bool {
     }
     let shown = command.spawn().and_then(|mut child| {
         if let Some(mut pipe) = child.stdin.take() {
-            // A pager that is left before the end of the page closes the pipe.
+            // A pager that is left early closes the pipe.
             let _ = pipe.write_all(text.as_bytes());
         }
         child.wait()
@@ -161,6 +161,6 @@ fn paged(text: &str) -> bool {
     if let Ok(kept) = kept {
         signal_hook::low_level::unregister(kept);
     }
-    // 126 and 127 are the shell's words for a program that cannot be run.
+    // The shell's exit codes 126 and 127 mean that the pager cannot be run.
     shown.is_ok_and(|status| !matches!(status.code(), Some(126 | 127)))
 }

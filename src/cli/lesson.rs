@@ -1,4 +1,4 @@
-//! `stickslip lesson [NAME|FILE]`: lists the guided lessons, begins one, or checks one without a terminal.
+//! `stickslip lesson [NAME|FILE]`: lists the guided lessons, starts one, or checks one without a terminal.
 
 use super::base::{Error, Exit, say};
 use super::debugger::needs_terminal;
@@ -13,9 +13,9 @@ use unicode_width::UnicodeWidthStr;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// A lesson file, or a built-in lesson by its name or number; without one, they are listed
+    /// A lesson file, or a built-in lesson by name or number; without one, lists them
     lesson: Option<String>,
-    /// Plays the lesson through with the right keys and answers, and lists the questions, answers, replies and hints
+    /// Plays the lesson with the right keys and answers, and prints its questions, answers, replies and hints
     #[arg(long, requires = "lesson")]
     check: bool,
 }
@@ -37,7 +37,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     Ok(Exit::Good)
 }
 
-/// The built-in lessons, one a line, with what was done of them before.
+/// The built-in lessons, one per line, with the user's progress.
 fn list() -> Result<String, Error> {
     let progress = match progress::place() {
         Some(file) => Progress::read(&file).map_err(|why| Error::Usage(why.to_string()))?,
@@ -57,7 +57,7 @@ fn list() -> Result<String, Error> {
     let column = lessons.iter().map(|lesson| done(lesson).width()).max();
     let line = |lesson: &Lesson| {
         let mut line = shown::padded(&lesson.name, width) + "  ";
-        // Who has done nothing yet sees no empty column.
+        // Without any progress there is no column for it.
         if let Some(column @ 1..) = column {
             line += &(shown::padded(&done(lesson), column) + "  ");
         }

@@ -1,4 +1,4 @@
-//! `stickslip man`: manual pages for `man`, one of the program and one of each subcommand.
+//! `stickslip man`: pages for man, one for the program and one for each subcommand.
 
 use super::base::{Error, Exit, say, tell};
 use clap_mangen::Man;
@@ -7,16 +7,16 @@ use stickslip_platform::files;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Writes all pages into this folder, which is made where it is not there: stickslip.1, stickslip-run.1, ...
-    /// [default: the page of the program itself, to standard output]
+    /// Writes all pages to this folder, which is created if necessary: stickslip.1, stickslip-run.1, ... [default: the program's
+    /// page, to standard output]
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// Overwrites files that exist
+    /// Overwrites existing files
     #[arg(long, requires = "output")]
     force: bool,
 }
 
-/// Writes the pages of the whole command line.
+/// Writes the pages.
 pub fn main(args: &Args, mut program: clap::Command) -> Result<Exit, Error> {
     program.build();
     let Some(folder) = &args.output else {
@@ -32,7 +32,7 @@ pub fn main(args: &Args, mut program: clap::Command) -> Result<Exit, Error> {
     }
     files::write_all(&pages, args.force)?;
     tell(&format!(
-        "wrote {} pages to {}; `man -M` reads them where the folder is called man1",
+        "wrote {} pages to {}; `man -M` reads them if the folder is named man1",
         pages.len(),
         folder.display()
     ));

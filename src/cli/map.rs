@@ -1,4 +1,4 @@
-//! `stickslip map`: where the iterations converge and where they do not.
+//! `stickslip map`: where the iterations converge.
 
 use super::base::{Error, Exit, NoValue, SetArgs, put};
 use super::interrupt::Interrupt;
@@ -19,43 +19,43 @@ use stickslip_study::{Plan, Study, Vary, verdict_figure};
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-A value of --over may be a range, 0.01..0.1/4 (evenly spaced) or 0.01..0.1/4log (even ratios), or a multiple
-of what the scene has, 2x. Where nothing is varied, scenes are tried with all strategies.
+Values of --over may be a range, 0.01..0.1/4 (evenly spaced) or 0.01..0.1/4log (even ratios), or a multiple
+of the scene's value, 2x. Without --over and --strategies, scenes are run with all strategies.
 
-Cells that fail are results: the exit code is 0 if the map was done, 2 for bad input or usage, 4 if cells are
-missing to --merge, 75 if a log is busy or cannot be written, and 130 if it was interrupted; files are whole
-then and have what was done.")]
+Cells that fail are results. The exit code is 0 if the map is complete, 2 for bad input or usage, 4 if cells are
+missing to --merge, 75 if a log is busy or cannot be written, and 130 if interrupted; files then contain
+the finished cells.")]
 pub struct Args {
-    /// Scenes: files, or built-in names; all: every built-in one
+    /// Scene files, or names of built-in scenes; all: every built-in scene
     #[arg(value_name = "SCENE", required_unless_present_any = ["random", "write"], conflicts_with_all = ["random", "write"])]
     scenes: Vec<String>,
-    /// Tries that many random interface problems, each of which has a number of answers that is known
+    /// Runs this many random interface problems, whose numbers of solutions are known
     #[arg(long, value_name = "N", value_parser = count)]
     random: Option<usize>,
-    /// With --random: a row for each kind of problem, strategy and verdict, not one for each problem
+    /// With --random: one row per kind of problem, strategy and verdict, instead of one per problem
     #[arg(long, requires = "random")]
     totals: bool,
     /// Seed of the random problems
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     seed: u64,
-    /// Numbers of nodes of the random problems: K, or A..B [default: 1..4]
+    /// Node counts of the random problems: K, or A..B [default: 1..4]
     #[arg(long, value_name = "A..B", value_parser = range)]
     nodes: Option<RangeInclusive<usize>>,
-    /// Writes the random problem of that number as a scene file, and runs nothing
+    /// Writes random problem number K as a scene file, and runs nothing
     #[arg(long, value_name = "K")]
     write: Option<usize>,
-    /// Where --write writes to; - is standard output [default: -]
+    /// Output file of --write; - is standard output [default: -]
     #[arg(long, short, value_name = "FILE", requires = "write")]
     output: Option<PathBuf>,
     /// Runs with each of the values; may be repeated for the product of all
     #[arg(long, value_name = "PATH=A,B,C", value_parser = Vary::parse)]
     over: Vec<Vary>,
-    /// Runs with each of the strategies; all: every one that there is
+    /// Runs with each of the strategies; all: every strategy
     #[arg(long, value_name = "A,B,C", value_delimiter = ',')]
     strategies: Vec<String>,
     #[command(flatten)]
     set: SetArgs,
-    /// Ends that differ from the reference by more than this part of the largest value are wrong branches
+    /// A final state that differs from the reference by more than this fraction of the largest value is on a wrong branch
     #[arg(long, value_name = "PART", default_value_t = map::TOLERANCE)]
     tolerance: f64,
     #[command(flatten)]
@@ -68,12 +68,12 @@ fn range(text: &str) -> Result<RangeInclusive<usize>, NoValue> {
         Some((low, high)) => number(low).zip(number(high.trim_start_matches('='))),
         None => number(text).map(|k| (k, k)),
     };
-    // A census of more takes long: 4 to that power.
+    // A census of more nodes takes long: 4 states per node.
     const MOST: usize = 6;
     match ends {
         Some((low, high)) if (1..=high).contains(&low) && high <= MOST => Ok(low..=high),
         _ => Err(NoValue::new(format!(
-            "it must be a number or A..B, within 1 to {MOST}"
+            "expected K or A..B, within 1 to {MOST}"
         ))),
     }
 }
@@ -83,7 +83,7 @@ fn count(text: &str) -> Result<usize, NoValue> {
     let count = count.filter(|n| (1..=MOST_CASES).contains(n));
     let wrong = || {
         NoValue::new(format!(
-            "it must be a whole number from 1 to {MOST_CASES}; of more, run several seeds"
+            "expected a whole number from 1 to {MOST_CASES}; for more, run several seeds"
         ))
     };
     count.map(|n| n as usize).ok_or_else(wrong)
@@ -134,7 +134,7 @@ fn write(args: &Args, population: &Population, k: usize) -> Result<Exit, Error> 
     put(args.output.as_deref(), &text, args.sweep.out.force)
 }
 
-/// Runs scenes over settings.
+/// Runs scenes with many settings.
 fn scenes(args: &Args) -> Result<Exit, Error> {
     let study = study(args)?;
     let interrupt = Interrupt::listen();
@@ -150,7 +150,7 @@ fn scenes(args: &Args) -> Result<Exit, Error> {
     })
 }
 
-/// What is to be run.
+/// The study to run.
 fn study(args: &Args) -> Result<Study, Error> {
     let every = || builtin::list().iter().map(|scene| scene.name.to_owned());
     let mut scenes: Vec<String> = Vec::new();
@@ -164,7 +164,7 @@ fn study(args: &Args) -> Result<Study, Error> {
     for over in &args.over {
         if vary.iter().any(|other| other.path == over.path) {
             let path = &over.path;
-            return Err(Error::Usage(format!("--over {path}: it is varied twice")));
+            return Err(Error::Usage(format!("--over {path}: given twice")));
         }
         vary.push(over.clone());
     }
@@ -177,7 +177,7 @@ fn study(args: &Args) -> Result<Study, Error> {
     })
 }
 
-/// The strategies that are asked for; all, where nothing is varied.
+/// The requested strategies; all of them if nothing is varied.
 fn strategies(args: &Args) -> Result<Vec<Vary>, Error> {
     let values = match args.strategies.as_slice() {
         [] if !args.over.is_empty() => return Ok(Vec::new()),
@@ -204,23 +204,23 @@ fn map_lines(map: &Map) -> Vec<String> {
             let mut row = vec![name.clone()];
             let label = |k: &usize| map.cells[*k].as_ref().map_or("?".to_owned(), Cell::label);
             row.extend(cells.iter().map(label));
-            // Scenes with settings of their own may have fewer.
+            // Scenes with individual settings may have fewer columns.
             row.resize(panel.columns.len() + 1, String::new());
             table.push(row);
         }
         lines.extend(aligned(&table, panel.columns.len() + 1));
     }
     lines.push(
-        "\n✓C converged   ≠W wrong branch   ↺ cycle and its period   ↗D diverged   ∅N said to have no answer\n\
-         ✗ failed: m minor limit, M major limit, s singular, j jammed, n found nothing and could not try all"
+        "\n✓C converged   ≠W wrong branch   ↺ cycle and its period   ↗D diverged   ∅N reported unsolvable\n\
+         ✗ failed: m minor limit, M major limit, s singular, j jammed, n search incomplete"
             .to_owned(),
     );
     lines.extend(map.origin());
     lines
 }
 
-/// What random problems are tried with: each combination of what is varied, named by its values; where nothing is, all
-/// strategies, those that know both with T_max lagged and in the matrix.
+/// The settings for random problems: each combination of the varied values, named by them; if nothing is varied, all strategies,
+/// with lagged and consistent T_max if they support both.
 fn variants(args: &Args) -> Result<Vec<Variant>, Error> {
     let mut vary = match (args.strategies.is_empty(), args.over.is_empty()) {
         (true, true) => return Ok(every_variant(&args.set.set)),
@@ -270,7 +270,7 @@ fn every_variant(set: &[(String, String)]) -> Vec<Variant> {
     all
 }
 
-/// Whether T_max may lag or stand in the matrix: other strategies need it there, or choose.
+/// Whether a strategy supports both lagged and consistent T_max.
 fn lags(strategy: Strategy) -> bool {
     strategy != Strategy::Ladder
         && method(strategy).bound(BoundUpdate::Lagged) == BoundUpdate::Lagged
@@ -284,11 +284,11 @@ fn survey_lines(survey: &Survey) -> Vec<String> {
     let besides = match unseen {
         0 => String::new(),
         n => format!(
-            " (on {n} of these a strategy found one: of a continuum, which a census does not see)"
+            " (for {n} of these a strategy found one of a continuum, which a census cannot find)"
         ),
     };
     lines.push(format!(
-        "answers by census: one in {}, several in {}, none in {}{besides}",
+        "solutions by census: one in {}, several in {}, none in {}{besides}",
         count(&|j| j.answers == 1),
         count(&|j| j.answers > 1),
         count(&|j| j.answers == 0),
@@ -323,8 +323,8 @@ fn survey_lines(survey: &Survey) -> Vec<String> {
     lines.extend(aligned(&table, 1));
     let tally = survey.tally(0, |_| true);
     lines.push(format!(
-        "left: per 1,000 of the {} problems that have an answer (none?: said to have none; wrong: ended in no Coulomb \
-         state, off by more than {TOLERANCE:e}); right of the bar: numbers of the {} that have none",
+        "left: per 1,000 of the {} problems with a solution (none?: reported unsolvable; wrong: final state violates Coulomb's \
+         law by more than {TOLERANCE:e}); right of the bar: counts of the {} problems without one",
         tally.solvable, tally.unsolvable
     ));
     lines

@@ -1,7 +1,7 @@
-//! The command line: one file per subcommand; `base` is what all of them need.
+//! The command line, with one file per subcommand; `base` is shared by all.
 //!
-//! Standard output carries data only; messages go to standard error, and progress there only if it is a terminal.
-//! Exit codes are those of `base::Exit`.
+//! Standard output carries only data; messages go to standard error, and progress too if it is a terminal. Exit codes are those of
+//! `base::Exit`.
 
 mod about;
 mod attach;
@@ -66,7 +66,7 @@ The manual: `stickslip help TOPIC`; `stickslip help` lists the topics.
 
 Exit codes: 0 converged, equal or sound; 1 snapshots differ; 2 bad input or usage;
 3 the solve did not converge, or no remedy helps; 4 cells of a sweep are missing;
-75 the machine failed, and another try may go well; 130 interrupted.")]
+75 a system error, another attempt may succeed; 130 interrupted.")]
 struct Cli {
     #[command(subcommand)]
     command: Option<Command>,
@@ -75,7 +75,7 @@ struct Cli {
     /// Prints the version
     #[arg(short = 'V', long)]
     version: bool,
-    /// With --version: what the build, the machine, the terminal and the folders are, for a report
+    /// With --version: describes build, machine, terminal and folders, for bug reports
     #[arg(long, requires = "version")]
     verbose: bool,
 }
@@ -84,51 +84,51 @@ struct Cli {
 enum Command {
     /// Solves a scene without stopping
     Run(run::Args),
-    /// Tells whether a scene is sound, and what it costs
+    /// Validates a scene and estimates its cost
     Check(check::Args),
     /// Lists the built-in scenes
     List,
-    /// Solves up to a place and writes a snapshot of it
+    /// Solves up to a position and writes a snapshot of it
     Record(record::Args),
-    /// Computes snapshots again and compares
+    /// Recomputes snapshots and compares
     Replay(replay::Args),
     /// Compares two snapshots, node by node
     Diff(diff::Args),
-    /// Goes on with a session of the debugger where it was, from its journal
+    /// Continues a session of the debugger from its journal
     Resume(resume::Args),
-    /// Prints a session's journal, or a finished CalculiX run, as text
+    /// Prints a journal or a finished CalculiX run as text
     Story(story::Args),
-    /// Judges every accepted increment by positions and forces alone: the worst violation of each law
+    /// Checks every accepted increment from positions and forces alone, and prints the largest violation of each law
     Audit(audit::Args),
-    /// Tries what gets a scene past its first failure, and compares
+    /// Tries every remedy at a scene's first failure, and compares them
     Remedies(remedies::Args),
-    /// Writes the fewest nodes that still cycle as a scene of their own
+    /// Writes the fewest nodes that still cycle as a separate scene
     Core(core::Args),
-    /// Makes a picture or another file of a scene, a snapshot or a journal, by the file's extension
+    /// Converts a scene, a snapshot or a journal to a picture or another file, by extension
     Export(export::Args),
     /// Solves a scene with many settings and compares
     Study(study::Args),
-    /// Shows where the iterations converge and where they do not
+    /// Shows where the iterations converge
     Map(map::Args),
-    /// Charts what settings cost against how near they come to the truth
+    /// Charts error over cost for different settings
     Chart(chart::Args),
-    /// Steps a solver that another program is
+    /// Steps an external solver
     Attach(attach::Args),
-    /// Answers a debugger that attaches to our own solver
+    /// Serves stickslip's own solver to a debugger that attaches to it
     Serve(serve::Args),
-    /// Guided lessons: lists them, begins one, checks one
+    /// Lists guided lessons, starts one, or checks one
     Lesson(lesson::Args),
-    /// Prints the file of a built-in scene, study or lesson, to start from, or a finished CalculiX run
+    /// Prints the file of a built-in scene, study or lesson, or a finished CalculiX run as text
     Show(show::Args),
-    /// Prints the script by which a shell completes command lines
+    /// Prints a shell's completion script
     Completions(completions::Args),
-    /// Writes manual pages for man
+    /// Writes pages for man
     Man(man::Args),
     /// Shows a page of the manual, or the help of a subcommand
     Help(help::Args),
 }
 
-/// Runs the program with the arguments of the process.
+/// Runs the program.
 pub fn main() -> ExitCode {
     completions::answer(program);
     let cli = match parsed() {
@@ -138,8 +138,8 @@ pub fn main() -> ExitCode {
                 tell(&told);
                 return Exit::Bad.into();
             }
-            // Help is an error for clap, too; where it cannot be printed there is nobody to tell.
-            // What was typed is shown as it was; there are no colours to leave out.
+            // Clap reports help as an error, too; a failure to print it is ignored.
+            // The typed text is shown unchanged; the message has no colours.
             let told = error.render().ansi().to_string();
             match error.use_stderr() {
                 true => tell(told.trim_end_matches('\n')),
@@ -165,7 +165,7 @@ pub fn main() -> ExitCode {
                 | Command::Help(_)
         )
     ) {
-        // These have nothing to put away.
+        // These never write files over existing ones.
         interrupt::end_at_once();
     }
     let ended = match &cli.command {
@@ -214,15 +214,15 @@ fn parsed() -> Result<Cli, clap::Error> {
     Cli::from_arg_matches(&program().try_get_matches()?)
 }
 
-/// All subcommands with their arguments and options, as the manual shows them.
+/// All subcommands with their arguments and options, for the manual.
 pub fn commands() -> String {
     help::commands(Cli::command())
 }
 
-/// Whether these words can follow the program's name, without doing what they say.
+/// Checks a command line without running it; `words` follow the program's name.
 ///
 /// # Errors
-/// What is wrong with them.
+/// The message of the parser.
 pub fn is_command_line(words: &[&str]) -> Result<(), String> {
     let program = std::iter::once("stickslip");
     match Cli::try_parse_from(program.chain(words.iter().copied())) {
@@ -236,7 +236,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_subcommand_stands_in_one_group() {
+    fn every_subcommand_is_in_one_group() {
         let command = Cli::command();
         let mut own: Vec<_> = command.get_subcommands().map(|c| c.get_name()).collect();
         let mut grouped: Vec<_> = groups::names().collect();
@@ -246,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn every_argument_is_completed_or_known_to_be_free() {
+    fn every_argument_has_completions_or_is_free() {
         let program = program();
         for command in std::iter::once(&program).chain(program.get_subcommands()) {
             for arg in command.get_arguments() {

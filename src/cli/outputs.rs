@@ -1,4 +1,4 @@
-//! What all sweeps share: where their tables and pictures go, their progress, and tables for people.
+//! Output of sweeps: tables, pictures, progress, and tables for people.
 
 use super::base::{Error, distinct};
 use super::sink::Sink;
@@ -11,22 +11,22 @@ use stickslip_study::drawn::PlotError;
 use stickslip_study::pen;
 use stickslip_study::sheet::Sheet;
 
-/// What a sweep writes, and how it runs.
+/// Output options of a sweep.
 #[derive(Debug, clap::Args)]
 pub struct OutputArgs {
-    /// Writes the results as a table; - is standard output
+    /// Writes the results as a table (CSV); - is standard output
     #[arg(long, value_name = "FILE|-")]
     csv: Option<String>,
-    /// Draws the figure
+    /// Draws the figure as SVG
     #[arg(long, value_name = "FILE")]
     svg: Option<PathBuf>,
-    /// Draws the figure as a bitmap
+    /// Draws the figure as PNG
     #[arg(long, value_name = "FILE")]
     png: Option<PathBuf>,
-    /// Runs at the same time [default: one per core]
+    /// Number of parallel runs [default: one per core]
     #[arg(long, value_name = "N")]
     jobs: Option<NonZeroUsize>,
-    /// Overwrites files that exist
+    /// Overwrites existing files
     #[arg(long)]
     pub force: bool,
     /// Prints nothing but warnings and errors
@@ -35,23 +35,23 @@ pub struct OutputArgs {
 }
 
 impl OutputArgs {
-    /// Whether a picture is wanted.
+    /// Whether a picture is requested.
     pub fn draws(&self) -> bool {
         self.svg.is_some() || self.png.is_some()
     }
 
-    /// Whether any file or table is wanted.
+    /// Whether a table or a picture is requested.
     pub fn writes(&self) -> bool {
         self.csv.is_some() || self.draws()
     }
 
-    /// Runs at the same time.
+    /// Number of parallel runs.
     pub fn jobs(&self) -> NonZeroUsize {
         let cores = || std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
         self.jobs.unwrap_or_else(cores)
     }
 
-    /// A bar on a terminal that says how far all runs together are, in units of that name.
+    /// A progress bar on a terminal for the whole sweep; `unit` names what is counted.
     pub fn progress(&self, length: u64, unit: &str) -> ProgressBar {
         let target = match !self.quiet && io::stderr().is_terminal() {
             true => ProgressDrawTarget::stderr(),
@@ -66,7 +66,7 @@ impl OutputArgs {
     }
 }
 
-/// Files in the making: opened before anything runs, so that nobody waits for a result that then has no place to go.
+/// Output files, opened before the sweep runs, so that its results can be written.
 pub struct Outputs {
     csv: Option<Sink>,
     svg: Option<Output>,
@@ -74,11 +74,11 @@ pub struct Outputs {
 }
 
 impl Outputs {
-    /// Opens all that is wanted.
+    /// Opens all requested files.
     ///
     /// # Errors
-    /// If one exists already and may not be overwritten, cannot be written, or is named twice; if a picture is wanted of a
-    /// build that draws none.
+    /// If a file exists and must not be overwritten, cannot be written, or is named twice; or if a picture is requested and this
+    /// build cannot draw.
     pub fn open(args: &OutputArgs) -> Result<Outputs, Error> {
         if args.draws() {
             pen::ready().map_err(undrawn)?;
@@ -100,11 +100,11 @@ impl Outputs {
         })
     }
 
-    /// Writes all requested outputs or none. Pictures are drawn only here. Standard output cannot be taken back, so it is
-    /// written after everything else is drawn. A reader that closes the pipe is no error.
+    /// Writes all requested outputs or none. Pictures are drawn here. Standard output is written last, since it cannot be undone. A
+    /// reader that closes the pipe is no error.
     ///
     /// # Errors
-    /// If it cannot be written or drawn.
+    /// If an output cannot be written or drawn.
     pub fn write(
         self,
         table: &str,
@@ -128,7 +128,7 @@ impl Outputs {
         Ok(finish_all(files)?)
     }
 
-    /// Writes the table, where that is wanted.
+    /// Writes the table, if requested.
     ///
     /// # Errors
     /// If it cannot be written.

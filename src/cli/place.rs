@@ -1,4 +1,4 @@
-//! Places in a run, as `--at` names them.
+//! Positions in a run, as given to `--at`.
 
 use super::base::{Exit, NoValue, tell};
 use super::interrupt::Interrupt;
@@ -11,7 +11,7 @@ use stickslip_core::step::solver::{Lost, Solver};
 use stickslip_debugger::explain::{names, report};
 use stickslip_scene::Scene;
 
-/// A place in a run.
+/// A position in a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct At {
     increment: u32,
@@ -23,7 +23,7 @@ impl FromStr for At {
     type Err = NoValue;
 
     fn from_str(text: &str) -> Result<At, NoValue> {
-        let wrong = "a place is INC, INC.MAJOR or INC.MAJOR.MINOR, whole numbers from 1 on";
+        let wrong = "expected INC, INC.MAJOR or INC.MAJOR.MINOR, with whole numbers from 1";
         let mut numbers = Vec::new();
         for part in text.split('.') {
             match part.parse::<u32>() {
@@ -53,7 +53,7 @@ impl fmt::Display for At {
 }
 
 impl At {
-    /// Whether the place is the end of this minor iteration.
+    /// Whether this minor iteration ends at the position.
     fn is(&self, event: &Event) -> bool {
         let at = event.position;
         let here = at.increment == self.increment && self.major.is_none_or(|m| m == at.major);
@@ -64,7 +64,7 @@ impl At {
         }
     }
 
-    /// Whether no later minor iteration can be the place.
+    /// Whether this minor iteration is later than the position, so that it cannot be reached.
     fn is_past(&self, event: &Event) -> bool {
         let at = event.position;
         at.increment == self.increment
@@ -88,17 +88,17 @@ fn ends_major(outcome: &Outcome) -> bool {
     )
 }
 
-/// Why a place was not reached.
+/// Why a position was not reached.
 pub enum Missed {
     Failed(Failure),
     Interrupted,
-    /// The solver cannot go on.
+    /// The solver was lost.
     Lost(Lost),
-    /// There is no such place in this run.
+    /// The run has no such position.
     Absent,
 }
 
-/// Steps to a place, with a look at each minor iteration; the number of them that it took.
+/// Steps to a position, and calls `see` after each minor iteration; returns their number.
 pub fn seek<T: Solver + ?Sized>(
     solver: &mut T,
     at: At,
@@ -133,18 +133,18 @@ pub fn tell_missed(scene: &Scene, solver: &dyn Solver, at: At, missed: Missed) -
     let (event, name) = (solver.event(), &scene.name);
     match missed {
         Missed::Failed(failure) => {
-            let told = report::failure(
+            let text = report::failure(
                 &scene.model,
                 solver.state(),
                 event.position,
                 event.load_factor,
                 &failure,
             );
-            tell(&format!("{name}: {at} is not reached: {told}"));
+            tell(&format!("{name}: {at} not reached: {text}"));
             Exit::Unconverged
         }
         Missed::Lost(lost) => {
-            tell(&format!("{name}: {at} is not reached: {lost}"));
+            tell(&format!("{name}: {at} not reached: {lost}"));
             Exit::Unconverged
         }
         Missed::Interrupted => {
@@ -154,7 +154,7 @@ pub fn tell_missed(scene: &Scene, solver: &dyn Solver, at: At, missed: Missed) -
         }
         Missed::Absent => {
             let reached = report::outcome(&scene.model, event);
-            tell(&format!("{name}: there is no {at}: {reached}"));
+            tell(&format!("{name}: no position {at}: {reached}"));
             Exit::Bad
         }
     }
@@ -165,7 +165,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn places_read_as_they_print() {
+    fn positions_parse_as_they_print() {
         for text in ["7", "12.2", "12.2.3"] {
             assert_eq!(text.parse::<At>().unwrap().to_string(), text);
         }

@@ -1,4 +1,4 @@
-//! The progress of `stickslip run` on a terminal.
+//! The progress line of `stickslip run` on a terminal.
 
 use std::io::{self, IsTerminal, Write};
 use std::time::{Duration, Instant};
@@ -16,7 +16,7 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// `None` before the first line, with `quiet`, and where standard error is no terminal.
+    /// Shows nothing with `quiet`, or if standard error is not a terminal.
     pub fn new(quiet: bool) -> Self {
         Progress {
             wanted: !quiet && io::stderr().is_terminal(),

@@ -1,4 +1,4 @@
-//! `stickslip record`: solves up to a place, and writes a snapshot of it.
+//! `stickslip record`: solves up to a position, and writes a snapshot of it.
 
 use super::base::{Error, Exit, say, tell};
 use super::interrupt::Interrupt;
@@ -13,13 +13,13 @@ use stickslip_scene::Scene;
 pub struct Args {
     #[command(flatten)]
     subject: SubjectArgs,
-    /// After which minor iteration; without MINOR at the end of the major, without MAJOR at the end of the increment
+    /// The minor iteration to record; without MINOR the end of the major, without MAJOR the end of the increment
     #[arg(long, value_name = "INC[.MAJOR[.MINOR]]")]
     at: At,
-    /// Where to; - is standard output [default: the scene's name and the place, in the working directory]
+    /// Output file; - is standard output [default: the scene's name and the position, in the working directory]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Overwrites a file that exists
+    /// Overwrites an existing file
     #[arg(long)]
     force: bool,
 }

@@ -1,5 +1,5 @@
-//! `stickslip remedies SCENE`: solves up to the first increment that fails, tries every remedy there, and prints what each
-//! costs and leaves.
+//! `stickslip remedies SCENE`: solves up to the first increment that fails, tries every remedy there, and prints their cost and
+//! result.
 
 use super::base::{Error, Exit, SceneArgs, quoted, say, tell};
 use std::convert::Infallible;
@@ -15,13 +15,13 @@ use stickslip_scene::solver::solver;
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-Exit codes: 0 some remedy gets the scene past the failure, or nothing fails; 3 none does.")]
+Exit codes: 0 a remedy gets the scene past the failure, or nothing fails; 3 no remedy does.")]
 pub struct Args {
     #[command(flatten)]
     scene: SceneArgs,
 }
 
-/// The command line that tries the remedies of a scene with its original options.
+/// The command that tries the remedies of a scene, with its options.
 pub fn command(scene: &Scene) -> String {
     let set = scene.overrides();
     let set = set.map(|(path, value)| format!(" --set {}", quoted(&format!("{path}={value}"))));
@@ -38,7 +38,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     let mut stepper = solver(Arc::new(scene.model.clone()));
     let end = stepper.drive(Until::end(), |_| ControlFlow::<Infallible>::Continue(()));
     let RunEnd::Failed(failure) = end else {
-        tell("it converges; there is nothing to remedy");
+        tell("the scene converges; nothing to remedy");
         return Ok(Exit::Good);
     };
     let state = stepper.state().clone();

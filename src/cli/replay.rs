@@ -1,4 +1,4 @@
-//! `stickslip replay`: computes snapshots again, and compares.
+//! `stickslip replay`: recomputes snapshots, and compares.
 
 use super::base::{Error, Exit, say, scene_instead, tell};
 use super::solver::SolverArgs;
@@ -19,7 +19,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     let mut exit = Exit::Good;
     for file in &args.files {
         let this = one(file, &args.solver)?;
-        // What cannot be read is worse than what differs.
+        // An unreadable file is worse than one that differs.
         if this as u8 > exit as u8 {
             exit = this;
         }
@@ -63,7 +63,7 @@ fn one(file: &Path, solver: &SolverArgs) -> Result<Exit, Error> {
         return Ok(Exit::Good);
     }
     say(&format!(
-        "{shown}: differs (left: recorded, right: computed again)\n{differences}"
+        "{shown}: differs (left: recorded, right: recomputed)\n{differences}"
     ))?;
     Ok(Exit::Differ)
 }

@@ -1,4 +1,4 @@
-//! `stickslip resume [JOURNAL]`: replays a journal to its end, and goes on with the debugger.
+//! `stickslip resume [JOURNAL]`: replays a journal, and continues in the debugger.
 
 use super::base::{Error, Exit, tell};
 use super::debugger::{DEBUGGER, needs_terminal};
@@ -9,9 +9,9 @@ use stickslip_debugger::record::journal::{self, Journal, JournalError, Record};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// A journal [default: the one that was written last]
+    /// A journal [default: the most recent one]
     journal: Option<PathBuf>,
-    /// Only proves that the journal leads to the same bits again, without the debugger
+    /// Only verifies that the replay is bit-identical, without opening the debugger
     #[arg(long)]
     check: bool,
     #[command(flatten)]
@@ -30,18 +30,18 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     let mut record = Record::read(&path)?;
     let mut kept = None;
     if !args.check {
-        // Nobody else may go on with it while it is replayed; what came in the meantime is replayed, too.
+        // Locks the journal during the replay; it may have grown before the lock, so it is read again.
         let journal = Journal::open(&path)?;
         record = Record::read(&path)?;
         kept = Some(journal);
     }
     let solved: u64 = record.entries.iter().map(|(_, entry)| entry.solved).sum();
-    let told = format!(
+    let text = format!(
         "{}: {} entries, {solved} minor iterations",
         path.display(),
         record.entries.len()
     );
-    tell(&format!("replaying {told}"));
+    tell(&format!("replaying {text}"));
     let session = session_of(&record, &args.solver)?;
     let mut session = match record.replay_in(session, &mut |_, _| {}) {
         Err(error @ JournalError::Differs { .. }) => {
@@ -52,15 +52,15 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     };
     let reservations = record.reservations();
     let Some(mut journal) = kept else {
-        tell(&format!("equal to the last bit{reservations}"));
+        tell(&format!("replay is bit-identical{reservations}"));
         return Ok(Exit::Good);
     };
     journal.cut(record.whole_bytes)?;
     session.keep(journal);
-    let told = format!(
+    let text = format!(
         "resumed after {} entries{reservations}",
         record.entries.len()
     );
-    front::resume(session, &told)?;
+    front::resume(session, &text)?;
     Ok(Exit::Good)
 }

@@ -36,11 +36,11 @@ use stickslip_scene::shown;
 use stickslip_scene::shown::{aligned, first_of};
 use stickslip_scene::solver::solver;
 
-/// Warnings that are printed one by one; the rest is counted.
+/// Warnings that are printed individually; others are only counted.
 const MOST_WARNINGS: u32 = 10;
-/// Slave nodes whose modes and forces are told at the end.
+/// Maximum number of slave nodes in the final table.
 const MOST_SLAVES: usize = 40;
-/// Stretches of equal stability that are told at the end.
+/// Maximum number of load ranges or loads listed in a message about stability.
 const MOST_STRETCHES: usize = 8;
 
 #[derive(Debug, clap::Args)]
@@ -53,13 +53,13 @@ pub struct Args {
     /// Writes a row per slave node and minor iteration; - is standard output
     #[arg(long, value_name = "FILE|-")]
     trace: Option<String>,
-    /// Writes the state at the end, or where the solve failed
+    /// Writes the state at the end, or at the failure
     #[arg(long, value_name = "FILE")]
     snapshot: Option<PathBuf>,
-    /// Writes files for ParaView into a folder, and a collection of them (.pvd)
+    /// Writes ParaView files, and a collection of them (.pvd), to a folder
     #[arg(long, value_name = "DIR")]
     vtu: Option<PathBuf>,
-    /// After what --vtu writes a file
+    /// When --vtu writes a file
     #[arg(
         long,
         value_name = "WHAT",
@@ -68,13 +68,13 @@ pub struct Args {
         requires = "vtu"
     )]
     each: Each,
-    /// Most iterations of an attached solver in an increment
+    /// Maximum iterations per increment (attached solvers)
     #[arg(long, value_name = "ITERATIONS", default_value_t = 1000)]
     most: u64,
-    /// Tells whether each accepted state is stable: a column of --csv, and a line at the end
+    /// Tests the stability of each accepted state: a column of --csv, and a summary at the end
     #[arg(long)]
     stability: bool,
-    /// Overwrites files that exist
+    /// Overwrites existing files
     #[arg(long)]
     force: bool,
     /// Prints nothing but warnings and errors
@@ -87,13 +87,13 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     let Subject { scene, mut solver } = args.subject.open(args.force)?;
     if args.vtu.is_some() && args.subject.solver.is_named() {
         return Err(Error::Usage(
-            "--vtu writes what our own elements know; of an attached solver nothing but its contacts is known".into(),
+            "--vtu cannot be used with an attached solver, which reports only its contacts".into(),
         ));
     }
     let asks = Arc::new(AtomicUsize::new(0));
     interrupt.count(&asks);
     solver.heed(asks);
-    // Before the solve, so that nobody waits for a result that then has no place to go.
+    // Opened before the solve, so that its results can be written.
     let mut outputs = Outputs::open(args, &scene)?;
     if !args.quiet {
         for warning in gaps::warnings(&scene.model) {
@@ -113,7 +113,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     Ok(run.tell(&end, args, &interrupt))
 }
 
-/// What a run writes.
+/// The output files of a run.
 struct Outputs {
     csv: Option<Sink>,
     trace: Option<Sink>,
@@ -149,7 +149,7 @@ impl Outputs {
         Ok(self.after(first_closed(csv, trace)))
     }
 
-    /// What to do after lines were sent: where nobody reads on and nothing else is written there is nothing to solve for.
+    /// `Closed` only if all readers are gone and no other output is requested, so that the solve can stop.
     fn after(&self, sent: Sent) -> Sent {
         let wanted = self.csv.is_some()
             || self.trace.is_some()
@@ -158,7 +158,7 @@ impl Outputs {
         if wanted { Sent::Well } else { sent }
     }
 
-    /// Ends the tables and the files for ParaView, of which it tells; what is left is the snapshot to be written.
+    /// Finishes the tables and ParaView files. Returns the open snapshot, and a message about the ParaView files.
     fn close(self) -> Result<(Option<Output>, Option<String>), Error> {
         self.csv.map(Sink::finish).transpose()?;
         self.trace.map(Sink::finish).transpose()?;
@@ -167,7 +167,7 @@ impl Outputs {
     }
 }
 
-/// Sends lines to a table that is wanted. Whose reader has closed the pipe is wanted no more.
+/// Sends lines to a requested table; a table whose reader has closed the pipe is dropped.
 fn send(sink: &mut Option<Sink>, lines: impl FnOnce() -> String) -> Result<Sent, Error> {
     let sent = sink.as_mut().map_or(Ok(Sent::Well), |s| s.send(&lines()))?;
     if sent == Sent::Closed {
@@ -188,53 +188,53 @@ fn write_snapshot(mut output: Output, run: &Run) -> Result<(), Error> {
     Ok(output.finish()?)
 }
 
-/// A run, as far as it has come.
+/// The state of a run.
 struct Run<'a> {
     solver: Box<dyn Solver>,
     tally: Tally<'a>,
 }
 
-/// What is counted and told of a run.
+/// Counters and warnings of a run.
 struct Tally<'a> {
     scene: &'a Scene,
     progress: Progress,
-    /// Minor iterations in all, and in the present increment.
+    /// Minor iterations in total, and in the current increment.
     steps: u64,
     minors: u64,
     /// Accepted increments, and their major iterations.
     accepted: u64,
     majors: u64,
-    /// Increments that were accepted in spite of something.
+    /// Increments accepted with a warning.
     doubtful: u32,
-    /// Load factors of the accepted increments that jumped and of those that lost stability.
+    /// Load factors of accepted increments that jumped, and of those that lost stability.
     jumps: Vec<f64>,
     losses: Vec<f64>,
-    /// How often the strategy changed or the increment was cut.
+    /// Number of strategy changes and step-size reductions.
     notes: u32,
-    /// Norms of the accepted increment whose forces are known the least.
+    /// Norms of the accepted increment with the largest round-off in its forces.
     noisiest: Norms,
-    /// Largest relative error of an accepted increment that is within round-off.
+    /// Largest relative error of an accepted increment that is within its limit.
     reached: f64,
     quiet: bool,
-    /// Stability of the accepted states, where it is asked for.
+    /// Stability of the accepted states, if requested.
     stability: Option<Stretches>,
-    /// Most iterations of an attached solver in an increment, and what its modes do.
+    /// Maximum iterations per increment of an attached solver, and the detection of repeating modes.
     most: Option<(u64, Watch)>,
-    /// Monitors, and what was found at the slave nodes, after the last accepted increment.
+    /// Monitors and slave-node values after the last accepted increment.
     monitors: Vec<f64>,
     slaves: Vec<ContactRecord>,
-    /// Present where `touch: auto` has a choice.
+    /// Present if `touch: auto` has a choice.
     touch: Option<TouchWatch>,
 }
 
-/// How a run ended; it is stopped where nobody reads on, and lost where an attached solver cannot go on.
+/// How a run ended: stopped by `Closed`, or lost if an attached solver fails.
 type Ended = Result<RunEnd<Closed>, Lost>;
 
-/// Why a run was stopped from here.
+/// Why the run was stopped here.
 enum Closed {
-    /// Nobody reads on.
+    /// All readers have closed their pipes.
     Pipe,
-    /// An attached solver does not come to an end; what its modes did last, in words.
+    /// An attached solver exceeded its maximum iterations; describes its last modes.
     Endless(String),
 }
 
@@ -290,7 +290,7 @@ impl<'a> Run<'a> {
         let end = drive(solver, until, |solver| match tally.see(solver, outputs) {
             Ok(Sent::Well) => match tally.endless(solver) {
                 None => ControlFlow::Continue(()),
-                Some(told) => ControlFlow::Break(Ok(Closed::Endless(told))),
+                Some(text) => ControlFlow::Break(Ok(Closed::Endless(text))),
             },
             Ok(Sent::Closed) => ControlFlow::Break(Ok(Closed::Pipe)),
             Err(error) => ControlFlow::Break(Err(error)),
@@ -307,11 +307,11 @@ impl<'a> Run<'a> {
         }))
     }
 
-    /// Tells how the run ended.
+    /// Prints how the run ended.
     fn tell(&mut self, end: &Ended, args: &Args, interrupt: &Interrupt) -> Exit {
         if self.tally.doubtful > MOST_WARNINGS {
             tell(&format!(
-                "warning: {} increments in all were accepted like this",
+                "warning: {} increments in total were accepted with warnings",
                 self.tally.doubtful
             ));
         }
@@ -326,7 +326,7 @@ impl<'a> Run<'a> {
         }
         if self.tally.notes > MOST_WARNINGS && !args.quiet {
             tell(&format!(
-                "note: {} times in all the strategy went on like this",
+                "note: {} such notes in total; the rest is not shown",
                 self.tally.notes
             ));
         }
@@ -351,10 +351,10 @@ impl<'a> Run<'a> {
         };
         match end {
             RunEnd::Finished | RunEnd::Spent => self.tell_branches(),
-            // Who closes the pipe has what he wanted.
+            // A reader that closes the pipe has all the data it wants.
             RunEnd::Stopped(Closed::Pipe) => Exit::Good,
-            RunEnd::Stopped(Closed::Endless(told)) => {
-                tell(&format!("{name}: {told}"));
+            RunEnd::Stopped(Closed::Endless(text)) => {
+                tell(&format!("{name}: {text}"));
                 Exit::Unconverged
             }
             RunEnd::Interrupted => {
@@ -364,7 +364,7 @@ impl<'a> Run<'a> {
             }
             RunEnd::Failed(failure) => {
                 let (event, state) = (self.solver.event(), self.solver.state());
-                let told = report::failure(
+                let text = report::failure(
                     &self.tally.scene.model,
                     state,
                     event.position,
@@ -372,9 +372,9 @@ impl<'a> Run<'a> {
                     failure,
                 );
                 self.tell_marks();
-                tell(&format!("{name}: {told}"));
+                tell(&format!("{name}: {text}"));
                 if self.solver.stepper().is_none() {
-                    // Why, an attached solver alone knows.
+                    // Only an attached solver knows the cause.
                     tell("  `stickslip attach` opens it in the debugger; d shows the cause");
                     return Exit::Unconverged;
                 }
@@ -406,13 +406,13 @@ impl<'a> Run<'a> {
         if !jumps.is_empty() {
             let at = loads(jumps);
             tell(&format!(
-                "{name}: jumped to another branch of equilibrium at load {at}"
+                "{name}: jumped to another equilibrium branch at load {at}"
             ));
         }
         if !losses.is_empty() {
             let at = loads(losses);
             tell(&format!(
-                "{name}: equilibrium lost its stability at load {at}; what follows is no answer that a structure stays in (--stability shows each state, page jumps)"
+                "{name}: equilibrium becomes unstable at load {at}; a structure does not stay in the states after it (--stability checks each state; page jumps)"
             ));
         }
     }
@@ -425,7 +425,7 @@ impl<'a> Run<'a> {
         if event.is_cut_short(model) {
             let (arc, load) = (four(event.arc.unwrap_or(f64::NAN)), event.load_factor);
             tell(&format!(
-                "{name}: the path is not completed: it came to the bound on its length, {arc}, at load {}, and not to load {}; page limit-points",
+                "{name}: path incomplete: its maximum length {arc} was reached at load {} instead of load {}; page limit-points",
                 four(load),
                 model.path.last().unwrap_or(&f64::NAN)
             ));
@@ -441,7 +441,7 @@ impl<'a> Run<'a> {
 
     fn tell_summary(&self, monitors: bool) {
         tell(&format!(
-            "{}: {} increments accepted, up to load {}; {} major iterations for them, {} minor ones in all",
+            "{}: {} increments accepted, up to load {}; {} major and {} minor iterations",
             self.tally.scene.name,
             self.tally.accepted,
             self.solver.state().start.load_factor,
@@ -469,7 +469,7 @@ impl<'a> Run<'a> {
 }
 
 impl Tally<'_> {
-    /// Writes and tells what a minor iteration did.
+    /// Records and reports a minor iteration.
     fn see(&mut self, solver: &mut dyn Solver, outputs: &mut Outputs) -> Result<Sent, Error> {
         if let Some((grids, stepper)) = outputs.grids.as_mut().zip(solver.stepper()) {
             grids.see(stepper)?;
@@ -485,7 +485,7 @@ impl Tally<'_> {
             table::trace_rows(&self.scene.model, friction, event)
         })?;
         match event.outcome {
-            // That it failed is told, whether anybody reads the trace or not.
+            // The failure is reported even if no reader is left.
             Outcome::Failed(_) => return Ok(Sent::Well),
             Outcome::Climbed { .. }
             | Outcome::Cut { .. }
@@ -507,7 +507,7 @@ impl Tally<'_> {
         Ok(outputs.after(sent))
     }
 
-    /// Whether an attached solver has made as many iterations in this increment as it may; what its modes did last.
+    /// If an attached solver has exceeded its maximum iterations in this increment, a message that describes its last modes.
     fn endless(&mut self, solver: &dyn Solver) -> Option<String> {
         let (most, watch) = self.most.as_mut()?;
         let (event, state) = (solver.event(), solver.state());
@@ -519,8 +519,8 @@ impl Tally<'_> {
             .now()
             .map(|now| rounds::words(solver.model(), &now, false));
         Some(format!(
-            "stopped after {most} iterations without an increment (--most): {}",
-            rounds.unwrap_or_else(|| "the modes are at rest".into())
+            "stopped after {most} iterations in one increment (--most): {}",
+            rounds.unwrap_or_else(|| "the modes no longer change".into())
         ))
     }
 
@@ -548,7 +548,7 @@ impl Tally<'_> {
         Ok(sent)
     }
 
-    /// Tells modes and forces of the last accepted increment, for a scene that asks for no numbers itself.
+    /// Prints modes and forces of the last accepted increment, for scenes without monitors.
     fn tell_slaves(&self) {
         if self.slaves.is_empty() {
             return;
@@ -572,8 +572,8 @@ impl Tally<'_> {
             if let (true, Some(row)) = (bonds, table.last_mut()) {
                 let contact = &contacts[slave];
                 let by_area = contact.pressure(found.f_n, found.f_t);
-                let told = by_area.map_or(["-".into(), "-".into()], |both| both.map(six));
-                row.extend(told);
+                let text = by_area.map_or(["-".into(), "-".into()], |both| both.map(six));
+                row.extend(text);
                 row.push(bond::name(contact).to_owned());
             }
         }
@@ -583,22 +583,22 @@ impl Tally<'_> {
         if self.slaves.len() > MOST_SLAVES {
             let more = self.slaves.len() - MOST_SLAVES;
             tell(&format!(
-                "  and {more} slave nodes more; --trace writes all"
+                "  and {more} more slave nodes; --trace writes all"
             ));
         }
     }
 
-    /// Tells how the strategy went on where it could not go on as it was.
+    /// Reports a recovery of the strategy.
     fn note(&mut self, event: &Event) {
         self.notes += 1;
         if self.notes <= MOST_WARNINGS && !self.quiet {
             self.progress.clear();
-            let told = report::outcome(&self.scene.model, event);
-            tell(&format!("note: {told}"));
+            let text = report::outcome(&self.scene.model, event);
+            tell(&format!("note: {text}"));
         }
     }
 
-    /// Tells what the last increment was accepted in spite of.
+    /// Reports what the last increment was accepted in spite of.
     fn warn(&mut self, event: &Event) {
         let Outcome::Increment {
             after,
@@ -636,7 +636,7 @@ impl Tally<'_> {
     }
 }
 
-/// Stretches of a history whose accepted states are equally stable, each with the load that it begins at.
+/// Load ranges of equal stability, each with its initial load.
 #[derive(Default)]
 struct Stretches(Vec<(f64, Stability)>);
 
@@ -647,7 +647,7 @@ impl Stretches {
         }
     }
 
-    /// One line for all; `None` where nothing was accepted.
+    /// A one-line summary; `None` if no increment was accepted.
     fn told(&self) -> Option<String> {
         if self.0.is_empty() {
             return None;
@@ -657,7 +657,7 @@ impl Stretches {
         let first: Vec<String> = self.0.iter().take(MOST_STRETCHES).map(stretch).collect();
         let more = match self.0.len().saturating_sub(MOST_STRETCHES) {
             0 => String::new(),
-            more => format!(", and {more} changes more; --csv has all"),
+            more => format!(", and {more} more changes; --csv lists all"),
         };
         Some(format!("stability: {}{more}", first.join(", ")))
     }

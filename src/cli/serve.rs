@@ -1,4 +1,4 @@
-//! `stickslip serve`: our own solver, to be attached to over standard input and output.
+//! `stickslip serve`: makes stickslip's own solver attachable, over standard input and output.
 
 use super::base::{Error, Exit, SceneArgs};
 use std::io;
@@ -13,7 +13,7 @@ pub struct Args {
 pub fn main(args: &Args) -> Result<Exit, Error> {
     let scene = args.scene.open()?;
     match serve(&scene, io::stdin().lock(), io::stdout().lock()) {
-        // Who attaches may leave.
+        // The debugger may close the connection.
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Error::Output(error)),
         _ => Ok(Exit::Good),
     }

@@ -1,5 +1,4 @@
-//! `stickslip show NAME`: the file of a built-in scene, study, lesson or chart, to start from; or what a finished CalculiX run
-//! did, as text.
+//! `stickslip show NAME`: prints the file of a built-in scene, study, lesson or chart, or a finished CalculiX run as text.
 
 use super::base::{Error, Exit, put};
 use std::path::PathBuf;
@@ -11,15 +10,15 @@ use stickslip_study::{benchmarks, builtin as studies, chart_file};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// Name of a built-in scene, study or lesson; or the .cel of a finished CalculiX run, or a kept exchange
+    /// Name of a built-in scene, study or lesson, the .cel file of a finished CalculiX run, or a recorded exchange
     name: String,
-    /// The work-precision chart of that scene
+    /// Prints the work-precision chart of that scene
     #[arg(long)]
     chart: bool,
-    /// Writes the file here
+    /// Writes to this file
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Overwrites a file that exists
+    /// Overwrites an existing file
     #[arg(long, requires = "output")]
     force: bool,
 }
@@ -27,7 +26,10 @@ pub struct Args {
 pub fn main(args: &Args) -> Result<Exit, Error> {
     let text = match Recording::open(&args.name).map_err(Error::Usage)? {
         Some(recording) if args.chart => {
-            let message = format!("--chart cannot be used: {}", recording.kind());
+            let message = format!(
+                "--chart cannot be used with this input: {}",
+                recording.kind()
+            );
             return Err(Error::Usage(message));
         }
         Some(mut recording) => recording.text(&args.name),
@@ -61,7 +63,7 @@ fn find(name: &str, chart: bool) -> Result<&'static str, String> {
         };
         let name = stickslip_scene::shown::cut(name, 60);
         format!(
-            "no built-in {what} is called '{name}'{near} (`stickslip list`, `stickslip lesson`)"
+            "no built-in {what} named '{name}'{near} (see `stickslip list`, `stickslip lesson`)"
         )
     })
 }

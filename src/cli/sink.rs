@@ -1,4 +1,4 @@
-//! Where a table goes: to a file, or to standard output.
+//! Destination of a table: a file or standard output.
 
 use super::base::{Error, Sent, say};
 use std::io::{self, Write};
@@ -6,7 +6,7 @@ use std::path::Path;
 use stickslip_platform::files::Output;
 use stickslip_scene::shown;
 
-/// A table's way out.
+/// An open table.
 pub enum Sink {
     /// Standard output, line by line.
     Standard,
@@ -23,7 +23,7 @@ impl Sink {
         Ok(Sink::File(Box::new(output)))
     }
 
-    /// Sends whole lines.
+    /// Writes whole lines.
     pub fn send(&mut self, lines: &str) -> Result<Sent, Error> {
         match self {
             Sink::Standard => say(lines),
@@ -35,7 +35,7 @@ impl Sink {
         }
     }
 
-    /// The output file before it gets its name; `None` for standard output.
+    /// The unfinished output file; `None` for standard output.
     pub fn into_file(self) -> Option<Output> {
         match self {
             Sink::Standard => None,
@@ -43,7 +43,7 @@ impl Sink {
         }
     }
 
-    /// Ends the table: a file gets its name.
+    /// Finishes the table: a file gets its name.
     pub fn finish(self) -> Result<(), Error> {
         match self {
             Sink::Standard => Ok(()),

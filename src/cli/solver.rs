@@ -1,4 +1,4 @@
-//! What is solved, and by whom: a scene by our own solver, or what a solver solves that is attached.
+//! The subject of a run: a scene for stickslip's own solver, or an attached solver.
 
 use super::base::{Error, SetArgs};
 use std::path::PathBuf;
@@ -12,40 +12,40 @@ use stickslip_debugger::session::Session;
 use stickslip_scene::Scene;
 use stickslip_scene::solver::solver;
 
-/// A solver that is attached, and how long it may take.
+/// An attached solver and its time limits.
 #[derive(Debug, clap::Args)]
 pub struct SolverArgs {
-    /// A solver that speaks the protocol of the manual's page `protocol`, and its arguments
+    /// A solver that speaks the protocol (`stickslip help protocol`), and its arguments
     #[arg(last = true, value_name = "COMMAND")]
     pub command: Vec<String>,
-    /// How long the solver may take for an answer
+    /// Time limit for an answer of the solver
     #[arg(long, value_name = "SECONDS", default_value_t = 600.0, value_parser = seconds)]
     pub timeout: f64,
-    /// How long it may take to start
+    /// Time limit for the start of the solver
     #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = seconds)]
     pub start_timeout: f64,
-    /// Keeps all that is said between the two in a new file, which can be opened later without the solver
+    /// Records all messages between debugger and solver in a new file, which can be opened later without the solver
     #[arg(long, value_name = "FILE", requires = "command")]
     pub exchange: Option<PathBuf>,
 }
 
 fn seconds(text: &str) -> Result<f64, super::base::NoValue> {
     match text.parse::<f64>() {
-        // A year is for ever.
+        // A year means no limit.
         Ok(seconds) if seconds > 0.0 && seconds <= 3.2e7 => Ok(seconds),
         _ => Err(super::base::NoValue::new(
-            "it must be a positive number of seconds",
+            "expected a positive number of seconds",
         )),
     }
 }
 
 impl SolverArgs {
-    /// Whether a solver is named.
+    /// Whether a solver is given.
     pub fn is_named(&self) -> bool {
         !self.command.is_empty()
     }
 
-    /// How it is started.
+    /// The command and its time limits.
     pub fn start(&self) -> Start {
         Start {
             start: Duration::from_secs_f64(self.start_timeout),
@@ -62,9 +62,9 @@ impl SolverArgs {
             kept.map_err(|error| {
                 let how = match error.kind() {
                     std::io::ErrorKind::AlreadyExists => {
-                        "the file exists already, and nothing is overwritten unasked (--force does it)".into()
+                        "the file exists already (use --force)".into()
                     }
-                    _ => format!("it cannot be written: {error}"),
+                    _ => format!("the file cannot be written: {error}"),
                 };
                 Error::Usage(format!("{}: {how}", path.display()))
             })?;
@@ -81,7 +81,7 @@ impl SolverArgs {
     }
 }
 
-/// A scene and what is changed in it, or a solver that is attached.
+/// A scene with changes, or an attached solver.
 #[derive(Debug, clap::Args)]
 pub struct SubjectArgs {
     /// A scene file, or the name of a built-in scene
@@ -93,11 +93,9 @@ pub struct SubjectArgs {
     pub solver: SolverArgs,
 }
 
-/// What is solved, and by whom.
+/// What is solved, and by which solver.
 pub struct Subject {
-    /// What is solved.
     pub scene: Scene,
-    /// By whom.
     pub solver: Box<dyn Solver>,
 }
 
@@ -107,7 +105,7 @@ impl SubjectArgs {
         if self.solver.is_named() {
             if let Some((path, _)) = self.set.set.first() {
                 return Err(Error::Usage(format!(
-                    "--set {path}: a scene's values are set; what a solver offers is set in the debugger, or by its own arguments"
+                    "--set {path}: only for scenes; set a solver's parameters by its arguments or in the debugger (:set)"
                 )));
             }
             let (scene, attached, _) = self.solver.attach(overwrite)?;
@@ -122,7 +120,7 @@ impl SubjectArgs {
     }
 }
 
-/// A session at the start of what a journal is of.
+/// A new session for a journal, at its start.
 pub fn session_of(record: &Record, solver: &SolverArgs) -> Result<Session, Error> {
     let (file, header) = (&record.file, &record.header);
     let wrong = |why: String| Err(Error::Usage(format!("{file}: {why}")));
@@ -132,13 +130,13 @@ pub fn session_of(record: &Record, solver: &SolverArgs) -> Result<Session, Error
             let (scene, attached, log) = solver.attach(false)?;
             match scene.spec == header.scene {
                 true => Ok(Session::attached(scene, Box::new(attached), log)),
-                false => wrong("the solver's scene is not that of the journal".into()),
+                false => wrong("the solver's scene differs from the journal's".into()),
             }
         }
         (false, Some(_)) => wrong(format!(
-            "it is of the attached solver {}, which goes on with it: JOURNAL -- COMMAND",
+            "the journal needs the attached solver {}; add -- COMMAND",
             header.name
         )),
-        (true, None) => wrong("it is of a scene, which our own solver solves".into()),
+        (true, None) => wrong("the journal needs no attached solver; omit -- COMMAND".into()),
     }
 }

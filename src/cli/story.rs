@@ -1,5 +1,4 @@
-//! `stickslip story JOURNAL`: what a session did and saw, as text; or what a finished CalculiX run did, or
-//! an attached solver whose exchange was kept.
+//! `stickslip story JOURNAL`: prints a journal as text, or a finished run of CalculiX or of an attached solver.
 
 use super::base::{Error, Exit, say};
 use std::path::PathBuf;
@@ -9,7 +8,7 @@ use stickslip_debugger::recorded::recording::Recording;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// A journal, the .cel of a finished CalculiX run, or the kept exchange of an attached solver
+    /// A journal, the .cel file of a finished CalculiX run, or the recorded exchange of an attached solver
     journal: PathBuf,
 }
 

@@ -1,4 +1,4 @@
-//! `stickslip study`: a scene with many settings, as a table and as a figure.
+//! `stickslip study`: runs a scene with many settings, and makes a table and a figure.
 
 use super::base::{Error, Exit, SetArgs};
 use super::benchmarks;
@@ -16,19 +16,19 @@ const MONITORS: usize = 2;
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 A study file is RON, (title: \"...\", scene: \"...\", vary: [(\"history.increment\", [0.01, 0.02])],
-set: [...], x: \"u_x\", y: \"load\", about: \"...\"). Built in are fig-08-increment, fig-09-majors,
+set: [...], x: \"u_x\", y: \"load\", about: \"...\"). Built-in studies: fig-08-increment, fig-09-majors,
 fig-10-minors, fig-11-roles (the paper's), geometry-01, geometry-02, limit-point-02, residual-methods,
 t-max-friction and t-max-osc.
 
-benchmarks is a list of scenes whose answers are known from elsewhere; a file of such a list is RON,
+benchmarks is a list of scenes with published reference values. A benchmark file is RON,
 (title: \"...\", benchmarks: [(scene: \"...\", what: \"...\", of: \"MONITOR\", source: \"...\", value: 1.0,
-within: 0.01)]). Exit code 1 where one does not hold.
+within: 0.01)]). Exit code 1 if one fails.
 
-Runs that fail are results: the exit code is 0 if the study was done, 2 for bad input or usage, 4 if runs
-are missing to --merge, 75 if a log is busy or cannot be written, and 130 if it was interrupted; files are
-whole then and have what was done.")]
+Runs that fail are results. The exit code is 0 if the study is complete, 2 for bad input or usage, 4 if runs
+are missing to --merge, 75 if a log is busy or cannot be written, and 130 if interrupted; files then
+contain the finished runs.")]
 pub struct Args {
-    /// A scene or a study: a file, or a built-in name
+    /// A study or a scene: a file, or a built-in name
     #[arg(value_name = "SCENE|STUDY")]
     study: String,
     /// Runs with each of the values; may be repeated for the product of all
@@ -70,7 +70,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     })
 }
 
-/// Benchmarks are run as they stand: what is changed has no value elsewhere.
+/// Rejects changes to benchmarks: reference values exist only for the original scenes.
 fn refuse_changes(args: &Args) -> Result<(), Error> {
     let given = [
         ("--vary", !args.vary.is_empty()),
@@ -82,7 +82,7 @@ fn refuse_changes(args: &Args) -> Result<(), Error> {
     match given.iter().find(|(_, given)| *given) {
         None => Ok(()),
         Some((option, _)) => Err(Error::Usage(format!(
-            "{}: benchmarks are run as they stand; {option} is for studies and scenes",
+            "{}: benchmarks cannot be changed; {option} is for studies and scenes only",
             args.study
         ))),
     }
@@ -93,7 +93,7 @@ fn plan(args: &Args) -> Result<Plan, Error> {
     for (k, vary) in args.vary.iter().enumerate() {
         if args.vary[..k].iter().any(|other| other.path == vary.path) {
             let path = &vary.path;
-            return Err(Error::Usage(format!("--vary {path}: it is varied twice")));
+            return Err(Error::Usage(format!("--vary {path}: given twice")));
         }
         study.vary(vary.clone());
     }
@@ -107,7 +107,7 @@ fn plan(args: &Args) -> Result<Plan, Error> {
     Ok(Plan::new(study)?)
 }
 
-/// What each run came to.
+/// One line per run.
 fn lines(plan: &Plan, runs: &[Run]) -> Vec<String> {
     let mut lines = vec![plan.title.clone()];
     if !plan.study.about.is_empty() {
@@ -153,7 +153,7 @@ fn end(run: &Run) -> String {
     }
 }
 
-/// How many runs did not end well.
+/// Counts the runs that failed, were accepted unsettled, or jumped.
 fn warnings(plan: &Plan, runs: &[Run]) -> Vec<String> {
     let (name, all) = (&plan.study.name, runs.len());
     type Is = fn(&Run) -> bool;
@@ -161,7 +161,7 @@ fn warnings(plan: &Plan, runs: &[Run]) -> Vec<String> {
         (|run| run.failed().is_some(), "failed"),
         (
             |run| run.unsettled() > 0,
-            "have increments that were accepted unsettled",
+            "have increments accepted unsettled",
         ),
         (|run| run.jumped() > 0, "jumped to another branch"),
     ];

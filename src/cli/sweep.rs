@@ -1,4 +1,4 @@
-//! What all sweeps share: `--shard`, `--log`, `--merge`, running, and writing what came of it.
+//! Shared by all sweeps: `--shard`, `--log`, `--merge`, running, and reporting.
 
 use super::base::{Error, Exit, quoted, tell};
 use super::interrupt::Interrupt;
@@ -12,16 +12,16 @@ use stickslip_study::shard::{NoShard, Shard, ranges};
 use stickslip_study::sheet::Sheet;
 use stickslip_study::sweep::{Keeping, Missing, RunError, Store, Sweep};
 
-/// Which part of a sweep is run, where its results are, and what is written.
+/// Which part of a sweep is run, and where its results are stored and written.
 #[derive(Debug, clap::Args)]
 pub struct SweepArgs {
-    /// Runs only the cells of shard K of N: writes their rows (--csv), or stores them (--log); page cluster
+    /// Runs only the cells of shard K of N, and writes their rows (--csv) or stores them (--log); page cluster
     #[arg(long, value_name = "K/N", value_parser = shard)]
     shard: Option<Shard>,
     /// Stores each result in this file as it arrives, and continues from the results in it
     #[arg(long, value_name = "FILE", alias = "resume")]
     log: Option<PathBuf>,
-    /// Runs nothing, and puts the logs of all shards together, in any order
+    /// Runs nothing, and combines the logs of all shards, in any order
     #[arg(long, value_name = "LOG", num_args = 1.., conflicts_with_all = ["log", "shard"])]
     merge: Vec<PathBuf>,
     #[command(flatten)]
@@ -32,10 +32,10 @@ fn shard(text: &str) -> Result<Shard, NoShard> {
     text.parse()
 }
 
-/// What came of a sweep.
+/// The results of a sweep.
 pub struct Report<'a> {
     pub table: String,
-    /// Drawn only if a picture is wanted.
+    /// Drawn only if a picture is requested.
     pub picture: Box<dyn FnOnce() -> Result<Sheet, PlotError> + 'a>,
     /// Summary for the user, left out with `--quiet`.
     pub lines: Vec<String>,
@@ -43,7 +43,7 @@ pub struct Report<'a> {
 }
 
 impl Report<'_> {
-    /// Writes all files, and prints the rest.
+    /// Writes all files, and prints the summary.
     pub fn write(self, outputs: Outputs, quiet: bool) -> Result<(), Error> {
         outputs.write(&self.table, self.picture)?;
         let lines = self.lines.iter().filter(|_| !quiet);
@@ -58,7 +58,7 @@ impl SweepArgs {
         self.log.is_some() || !self.merge.is_empty()
     }
 
-    /// The shard that is run, if it is not the whole.
+    /// The shard to run, if it is not the whole sweep.
     pub fn part(&self) -> Option<Shard> {
         self.shard.filter(|shard| shard.of().get() > 1)
     }
@@ -68,13 +68,11 @@ impl SweepArgs {
         let wrong = |why: &str| Err(Error::Usage(format!("--shard {shard} {why}")));
         if self.part().is_some() && self.out.draws() {
             return wrong(
-                "runs a part of the cells, which is no picture; --merge draws it from all logs",
+                "runs only part of the cells; draw the picture with --merge from all logs",
             );
         }
         if self.shard.is_some() && self.log.is_none() && !self.out.writes() {
-            return wrong(
-                "needs a file for its results: --csv FILE for rows, --log FILE for --merge",
-            );
+            return wrong("needs an output file: --csv FILE for rows, --log FILE for --merge");
         }
         Ok(match self.merge.is_empty() {
             true => Keeping::Log(self.log.clone(), shard),
@@ -82,7 +80,7 @@ impl SweepArgs {
         })
     }
 
-    /// Runs a sweep, or puts it together, and writes the report that is made of its results.
+    /// Runs or merges a sweep, and writes the report on its results.
     pub fn run<'a, T: Outcome>(
         &self,
         sweep: &Sweep<'_, T>,
@@ -90,7 +88,7 @@ impl SweepArgs {
         report: impl FnOnce(Vec<Option<T>>) -> Result<Report<'a>, Error>,
     ) -> Result<Exit, Error> {
         let keeping = self.keeping()?;
-        // Before the runs, so that nobody waits for a result that then has no place to go.
+        // Opened before the runs, so that their results can be written.
         let outputs = Outputs::open(&self.out)?;
         let store = Store::open(&keeping, sweep).map_err(|e| failed(e.into()))?;
         let (cells, [unit, step]) = (&sweep.cells, sweep.units);
@@ -116,7 +114,7 @@ impl SweepArgs {
             let done = count_done(&results);
             if done < all {
                 tell(&format!(
-                    "interrupted; {done} of {all} {unit} of shard {shard} are done; run the same command to continue"
+                    "interrupted after {done} of {all} {unit} of shard {shard}; repeat the command to continue"
                 ));
                 return Ok(Exit::Interrupted);
             }
@@ -125,7 +123,7 @@ impl SweepArgs {
             }
             if !self.out.quiet {
                 tell(&format!(
-                    "shard {shard}: {all} {unit}, {there} of which were there"
+                    "shard {shard}: {all} {unit}, {there} of them from the log"
                 ));
             }
             return Ok(Exit::Good);
@@ -133,14 +131,14 @@ impl SweepArgs {
         let (all, done) = (results.len(), count_done(&results));
         let report = match report(results) {
             Err(_) if interrupt.came() => {
-                tell("interrupted before there was anything to compare");
+                tell("interrupted before any result");
                 return Ok(Exit::Interrupted);
             }
             report => report?,
         };
         report.write(outputs, self.out.quiet)?;
         if done < all {
-            tell(&format!("interrupted; {done} of {all} {unit} were done"));
+            tell(&format!("interrupted after {done} of {all} {unit}"));
             return Ok(Exit::Interrupted);
         }
         Ok(Exit::Good)
@@ -152,19 +150,19 @@ fn count_done<T: Outcome>(results: &[Option<T>]) -> usize {
     done.filter(|result| result.is_over()).count()
 }
 
-/// The bits of results depend on the machine, which tables and pictures name: other kinds of machines are named here.
+/// Reports other machines that computed results, since last digits can differ between machines and tables name only this one.
 fn tell_machines<T: Outcome>(store: &Store<T>) {
     let here = origin::processor();
     let others: Vec<&str> = store.machines().filter(|other| *other != here).collect();
     if !others.is_empty() {
         tell(&format!(
-            "computed on {}, put together on {here}, which tables and pictures name; last bits may be other ones there",
+            "computed on {}, merged on {here}, which tables and pictures name; last digits may differ",
             others.join("; ")
         ));
     }
 }
 
-/// An error of a sweep. Errors that another try may avoid are distinguished from those that remain.
+/// Classifies an error of a sweep: `Again` if another attempt may succeed.
 pub fn failed(error: RunError) -> Error {
     match error {
         RunError::Log(LogError::Busy(_) | LogError::File { .. }) | RunError::Threads(_) => {
@@ -174,7 +172,7 @@ pub fn failed(error: RunError) -> Error {
     }
 }
 
-/// Ranges of numbers, and commands, that a message has at most.
+/// Maximum number of ranges and commands in a message.
 const MOST: usize = 8;
 
 fn tell_missing(missing: &Missing, all: usize, unit: &str) {
@@ -185,7 +183,7 @@ fn tell_missing(missing: &Missing, all: usize, unit: &str) {
     ));
     let given: Vec<String> = std::env::args().skip(1).collect();
     let sweep = words(&given);
-    tell("This does them; merge again then, with its logs too:");
+    tell("To compute them, run this; then merge again with the new logs:");
     for (shard, file) in missing.shards.iter().take(MOST) {
         let (number, of) = (shard.number(), shard.of());
         let file = file.as_ref().map(|file| file.display().to_string());
@@ -203,13 +201,13 @@ fn tell_missing(missing: &Missing, all: usize, unit: &str) {
         let numbers = missing.shards.iter().skip(MOST);
         let numbers: Vec<usize> = numbers.map(|(s, _)| s.number() as usize).collect();
         tell(&format!(
-            "  likewise shards {}",
+            "  and the same for shards {}",
             ranges(&numbers, usize::MAX)
         ));
     }
 }
 
-/// The words of a command line that say what is swept: without where results come from and go to.
+/// The words of a command line that define the sweep, without options for storage and output.
 fn words(given: &[String]) -> String {
     const WITH_VALUE: [&str; 7] = [
         "--csv", "--svg", "--png", "--jobs", "--log", "--resume", "--shard",
@@ -239,7 +237,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_sweep_is_typed_again_without_what_it_makes() {
+    fn the_words_of_a_sweep_leave_out_storage_and_output() {
         let given = "map a.ron --over x=1,2 --merge b.log c.log --csv - -q --over y=1 --jobs=3 --set z=it's";
         let given: Vec<String> = given.split(' ').map(str::to_owned).collect();
         assert_eq!(

@@ -1,25 +1,32 @@
 //! Rows of `--csv` and `--trace`.
 //!
-//! Floats have as many digits as they need to read back to the same bits; those that are no numbers are `NaN`, `inf`
-//! and `-inf`.
+//! Floats have as many digits as needed to read back the same bits; non-finite values are `NaN`, `inf` and `-inf`.
 //!
-//! `--csv`: one row per converged increment; `majors` counts its major iterations, `minors` all of its minor ones, `jumped`
-//! is 1 where the increment leaves its branch of stable equilibrium (it ends on another branch or in an unstable state),
-//! else 0. `history.jumps: dynamic` adds three columns for the damped motion of a jump: `let_go`, the load factor of the
-//! last equilibrium, `steps`, and `dissipated`, the work of its viscosity. `--stability` adds a last column with the
-//! stability of the accepted state ([`stickslip_core::linear::stability`]): `stable`, `unstable(N)` with N negative eigenvalues,
-//! `divergence` or `not known`. Scenes with solids have `worst_stretch` as the very last column, the smallest principal
-//! stretch at their integration points ([`stickslip_core::fem::deformation`]). With `history.control: arc` the last
+//! `--csv` has one row per converged increment:
 //!
-//! `--trace`: one row per slave node and minor iteration. `residual` is the relative norm of the residual: at the
-//! start of the major iteration, about which the minor ones are linearised; on the rows that end a major iteration, at
-//! its end. `t_max` is that of the row's own F_n, `margin` the distance of the deciding inequality from switching
-//! (infinite where none was tested). `contact` is 1; a node that is held where two sides meet has a second row, and both have
-//! what their side gives (F_n, F_t and T_max in its own frame), of all splits the one of least norm. With `history.control:
-//! arc` one more column comes last, `arc`, the way along the path at the start of the increment, and where it is accepted
-//! at its end; with `history.jumps: dynamic` it is `drag`, c / Δt of the damped motion that the row is part of, 0
-//! outside. Where the scene names a law, a stick stiffness or a pressure to report, `pressure` and `shear` come last: F_n / A and
-//! F_t / A of the row, with the undeformed tributary area A, and `NaN` without one. A minor iteration that could not be solved has no rows.
+//! - `majors` counts its major iterations, `minors` all its minor iterations.
+//! - `jumped` is 1 if the increment leaves its branch of stable equilibrium (it ends on another branch or in an unstable state),
+//!   else 0.
+//! - `history.control: arc`: the last monitor is `arc`, the arc length along the equilibrium path.
+//! - `history.jumps: dynamic`: three columns for the damped motion of a jump: `let_go`, the load factor of the last equilibrium,
+//!   `steps`, and `dissipated`, the work of the viscosity.
+//! - `--stability`: `stability` of the accepted state ([`stickslip_core::linear::stability`]): `stable`, `unstable(N)` with N
+//!   negative eigenvalues, `divergence` or `not known`.
+//! - Solids: `worst_stretch`, the smallest principal stretch at their integration points ([`stickslip_core::fem::deformation`]).
+//!
+//! `--trace` has one row per slave node and minor iteration, and none for a minor iteration that could not be solved:
+//!
+//! - `residual` is the relative norm of the residual at the start of the major iteration, about which the minor iterations are
+//!   linearised; in rows that end a major iteration, at its end.
+//! - `t_max` belongs to the row's F_n; `margin` is the distance of the deciding inequality from switching (infinite if none was
+//!   tested).
+//! - `contact` is 1. A node held in a corner has a second row; each row has the values of its side (F_n, F_t and T_max in its
+//!   frame), from the split of least norm.
+//! - `history.control: arc`: `arc`, the arc length at the start of the increment; in rows that accept the increment, at its end.
+//! - `history.jumps: dynamic`: `drag`, c / Δt of the damped motion that contains the row, otherwise 0.
+//! - Scenes with a contact law, a stick stiffness or a pressure monitor: `pressure` and `shear`, F_n / A and F_t / A with the
+//!   undeformed tributary area A;
+//!   `NaN` without one.
 
 use std::fmt::Write;
 use stickslip_core::contact::record::ContactRecord;
@@ -52,7 +59,7 @@ pub fn csv_header(model: &Model, stability: bool) -> String {
     line
 }
 
-/// Writes the row of the increment just accepted; `u` is its displacement vector.
+/// The row of an accepted increment; `u` is its displacement vector.
 pub fn csv_row(
     model: &Model,
     event: &Event,
@@ -104,7 +111,7 @@ pub fn csv_row(
     line
 }
 
-/// Whether a scene may go on in damped motions, and has columns for them.
+/// Whether a scene allows damped motions, and has columns for them.
 fn moves(model: &Model) -> bool {
     model.jumps == Jumps::Dynamic
 }
@@ -143,7 +150,7 @@ fn has_pressures(model: &Model) -> bool {
         || model.monitors.iter().any(watched)
 }
 
-/// The rows of a minor iteration; `friction` is that in force, by slave.
+/// The rows of a minor iteration; `friction` is the current friction by slave node.
 pub fn trace_rows(model: &Model, friction: &[Friction], event: &Event) -> String {
     let (at, residual) = (event.position, residual(event));
     let mut lines = String::new();

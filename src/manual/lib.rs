@@ -1,7 +1,7 @@
-//! The manual: Markdown pages, one a topic. `stickslip help TOPIC` and `:help TOPIC` show them, and rustdoc does here.
+//! The manual: one Markdown page per topic, shown by `stickslip help TOPIC` and `:help TOPIC`, and included in rustdoc here.
 //!
-//! What a page says of the program is made by the program (`tests/files/manual.rs`; `README=write` renews it), or the page
-//! names the command or the test that it comes from.
+//! Screens, tables and numbers of the program on a page are generated (`tests/files/manual.rs`; `README=write` updates them); for
+//! others the page names the command or test that they come from.
 
 #![forbid(unsafe_code)]
 
@@ -15,15 +15,15 @@ use stickslip_scene::format::error::did_you_mean;
 /// A page of the manual.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Page {
-    /// What `help` calls it.
+    /// Its name in `help`.
     pub topic: &'static str,
-    /// What it is about, in a line.
+    /// One line on its subject.
     pub about: &'static str,
     file: EmbeddedFile,
 }
 
 impl Page {
-    /// Markdown.
+    /// The Markdown text.
     pub fn text(&self) -> &'static str {
         self.file.text
     }
@@ -32,13 +32,13 @@ impl Page {
 macro_rules! pages {
     ($($module:ident $topic:literal $file:literal $about:literal;)*) => {
         $(
-            // Brackets on a page are arguments that may be left out, and no links.
+            // Brackets on a page mark optional arguments, not links.
             #[allow(rustdoc::broken_intra_doc_links)]
             #[doc = include_str!($file)]
             pub mod $module {}
         )*
 
-        /// All pages, in the order in which one may read them.
+        /// All pages, in reading order.
         pub const PAGES: &[Page] = &[
             $(Page { topic: $topic, about: $about, file: embedded!($topic, $file) }),*
         ];
@@ -46,52 +46,52 @@ macro_rules! pages {
 }
 
 pages! {
-    tour "tour" "pages/tour.md" "Five minutes with problem 01, and the case that cycles";
-    diagnosing "diagnosing" "pages/diagnosing.md" "From \"it does not converge\" to why, and to what helps";
+    tour "tour" "pages/tour.md" "Five minutes with problem 01, and a case that cycles";
+    diagnosing "diagnosing" "pages/diagnosing.md" "From \"it does not converge\" to the cause and a remedy";
     lessons "lessons" "pages/lessons.md" "Guided lessons, and how to write one";
     teaching "teaching" "pages/teaching.md" "A course of six sessions, for lecturers";
     scenes "scenes" "pages/scenes.md" "The scene file: every type and field with its default";
-    settings "settings" "pages/settings.md" "The choices of the method, and its limits";
-    strategies "strategies" "pages/strategies.md" "How the next modes are chosen; the ladder; jumps";
-    decks "decks" "pages/decks.md" "Decks of CalculiX and Abaqus: what is read, and as what";
-    past_runs "past-runs" "pages/past-runs.md" "A finished CalculiX run: its cycles, and the contacts that chatter";
-    attaching "attaching" "pages/attaching.md" "Another program's solver, stepped in this debugger";
-    protocol "protocol" "pages/protocol.md" "What an attached solver and the debugger say to each other";
-    adapters "adapters" "pages/adapters.md" "Attaching a solver with Python: an example, and three that are there";
-    corners "corners" "pages/corners.md" "Where two sides of a surface meet";
-    limit_points "limit-points" "pages/limit-points.md" "Where a load can go no further, and what comes after";
-    jumps "jumps" "pages/jumps.md" "Stability; what comes past a limit point";
-    interfaces "interfaces" "pages/interfaces.md" "Interface problems of other programs, and for other solvers";
+    settings "settings" "pages/settings.md" "Options and limits of the method";
+    strategies "strategies" "pages/strategies.md" "Strategies for the next modes; the ladder; jumps";
+    decks "decks" "pages/decks.md" "CalculiX and Abaqus decks: what is read, and how it is interpreted";
+    past_runs "past-runs" "pages/past-runs.md" "A finished CalculiX run: its cycles, and contacts that chatter";
+    attaching "attaching" "pages/attaching.md" "Stepping another program's solver in this debugger";
+    protocol "protocol" "pages/protocol.md" "The messages between an attached solver and the debugger";
+    adapters "adapters" "pages/adapters.md" "Attaching a solver with Python: an example and three adapters";
+    corners "corners" "pages/corners.md" "Corners, where two sides of a surface meet";
+    limit_points "limit-points" "pages/limit-points.md" "Limit loads, and the states past them";
+    jumps "jumps" "pages/jumps.md" "Stability, and jumps past a limit point";
+    interfaces "interfaces" "pages/interfaces.md" "Interface problems from other programs and for other solvers";
     paraview "paraview" "pages/paraview.md" "Results in ParaView, of each increment, major or minor iteration";
     command_line "command-line" "pages/command-line.md" "Subcommands, files, exit codes";
     keys "keys" "pages/keys.md" "Keys and actions of the debugger; branches, breakpoints, journals";
     glossary "glossary" "pages/glossary.md" "Terms of this program and the paper, and what other codes call them";
     studies "studies" "pages/studies.md" "Many runs of a scene; the paper's figures";
-    maps_and_charts "maps-and-charts" "pages/maps-and-charts.md" "Where it converges; random problems; error over cost";
-    cluster "cluster" "pages/cluster.md" "Past one machine: shards, logs, merging; HyperQueue, Slurm, parallel";
-    theory "theory" "pages/theory.md" "The method, its symbols, and where the program departs from the paper";
-    verification "verification" "pages/verification.md" "What is accepted, how good it is, and how that is tested";
-    benchmarks "benchmarks" "pages/benchmarks.md" "Scenes whose answers are known from elsewhere, and how near ours are";
-    speed "speed" "pages/speed.md" "What runs cost, and how that grows";
+    maps_and_charts "maps-and-charts" "pages/maps-and-charts.md" "Maps of convergence; random problems; error over cost";
+    cluster "cluster" "pages/cluster.md" "Several machines: shards, logs, merging; HyperQueue, Slurm, parallel";
+    theory "theory" "pages/theory.md" "The method, its symbols, and differences from the paper";
+    verification "verification" "pages/verification.md" "Acceptance criteria, accuracy, and how they are tested";
+    benchmarks "benchmarks" "pages/benchmarks.md" "Scenes with published reference values, and the deviations from them";
+    speed "speed" "pages/speed.md" "Cost of runs, and how it scales";
     install "install" "pages/install.md" "Installing, features, completions, pages for man, older clusters";
-    architecture "architecture" "pages/architecture.md" "How the source is built";
-    contributing "contributing" "pages/contributing.md" "How to change it: tests, fuzzing, rules";
-    changes "changes" "pages/changes.md" "What became different";
+    architecture "architecture" "pages/architecture.md" "Structure of the source code";
+    contributing "contributing" "pages/contributing.md" "Contributing: tests, fuzzing, rules";
+    changes "changes" "pages/changes.md" "Changes between versions";
 }
 
-/// A topic that no page has.
+/// An unknown topic.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("the manual has no page '{topic}'{near}; `help` lists them")]
+#[error("the manual has no page '{topic}'{near}; `help` lists all")]
 pub struct NoPage {
     topic: String,
-    /// What may have been meant.
+    /// A similar topic, as part of the message.
     near: String,
 }
 
 /// The page of a topic.
 ///
 /// # Errors
-/// That there is none, with the nearest one.
+/// If there is none; the message suggests a similar one.
 pub fn page(topic: &str) -> Result<&'static Page, NoPage> {
     let found = PAGES.iter().find(|page| page.topic == topic);
     found.ok_or_else(|| NoPage {
@@ -100,25 +100,25 @@ pub fn page(topic: &str) -> Result<&'static Page, NoPage> {
     })
 }
 
-/// The topics, one a line with what they are about.
+/// The topics with their subjects, one per line.
 pub fn contents() -> String {
     let width = PAGES.iter().map(|page| page.topic.len()).max().unwrap_or(0);
     let line = |page: &Page| format!("  {:<width$}  {}\n", page.topic, page.about);
     PAGES.iter().map(line).collect()
 }
 
-/// A line of a page that holds a word that was searched for.
+/// A line that matches a search.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Hit {
     /// The page.
     pub topic: &'static str,
-    /// The heading under which it stands; that of the page at its top.
+    /// The heading above it; at the top of a page, the page's title.
     pub heading: String,
-    /// The line, without its styles.
+    /// The line without styles.
     pub line: String,
 }
 
-/// All lines that hold a text, whatever the case of its letters, as they are shown 80 columns wide.
+/// All lines that contain a text, ignoring case, as shown in 80 columns.
 pub fn search(text: &str) -> Vec<Hit> {
     let text = text.to_lowercase();
     let mut hits = Vec::new();
@@ -151,7 +151,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_wrong_topic_is_answered_with_the_nearest() {
+    fn an_unknown_topic_suggests_a_similar_one() {
         assert!(
             page("strategis")
                 .is_err_and(|e| e.to_string().contains("did you mean \"strategies\"?"))
@@ -161,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_found_stands_under_its_heading() {
+    fn hits_name_their_heading() {
         let hits = search("T_MAX USED");
         assert!(
             hits.iter()

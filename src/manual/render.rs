@@ -1,31 +1,30 @@
-//! The Markdown of the pages as lines for a terminal: the parts of Markdown that the pages use, and no others.
-//!
-//! Headings, paragraphs, lists, tables, fenced code, HTML comments (dropped); within a line code, strong text and links.
+//! Renders the manual's pages for a terminal, supporting only the Markdown that they use: headings, paragraphs, lists, tables,
+//! fenced code and HTML comments (dropped); within a line, code, strong text and links.
 
 use unicode_width::UnicodeWidthStr;
 
-/// Columns that a page is made for.
+/// Columns for which the pages are written.
 pub const WIDTH: usize = 80;
-/// How far code stands in, where there is room.
+/// Indentation of code, if there is room.
 const INDENT: usize = 4;
 
-/// How a piece of a line is written.
+/// The style of a piece of text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Style {
-    /// As text.
+    /// Ordinary text.
     Plain,
     /// A heading.
     Heading,
-    /// Emphasised.
+    /// Strong text.
     Strong,
-    /// What is typed, or stands in a file.
+    /// Code.
     Code,
 }
 
 /// A line of a page.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Line {
-    /// Pieces of text, each in its style.
+    /// Pieces of text with their styles.
     pub pieces: Vec<(Style, String)>,
 }
 
@@ -36,12 +35,12 @@ impl Line {
         }
     }
 
-    /// Without its styles.
+    /// The text without styles.
     pub fn text(&self) -> String {
         self.pieces.iter().map(|(_, text)| text.as_str()).collect()
     }
 
-    /// For where there are no styles: a heading is underlined by a line below it.
+    /// The text for output without styles: a heading is underlined by a second line.
     pub fn plain(&self) -> String {
         let text = self.text();
         let text = text.trim_end();
@@ -62,7 +61,7 @@ impl Line {
         self.pieces.iter().all(|(_, text)| text.trim().is_empty())
     }
 
-    /// With what makes a terminal write it bold and underlined.
+    /// The text with escape sequences for bold and underline.
     pub fn ansi(&self) -> String {
         let piece = |(style, text): &(Style, String)| match style {
             Style::Plain => text.clone(),
@@ -73,7 +72,7 @@ impl Line {
     }
 }
 
-/// A page in lines of at most `width` columns; only code may be wider.
+/// Renders a page in lines of at most `width` columns; only code may be wider.
 pub fn render(markdown: &str, width: usize) -> Vec<Line> {
     let mut page = Vec::new();
     let mut lines = markdown.lines().peekable();
@@ -117,7 +116,7 @@ pub fn render(markdown: &str, width: usize) -> Vec<Line> {
     page
 }
 
-/// An empty line, unless there is one already or nothing before it.
+/// Adds an empty line, unless there is one already or the page is empty.
 fn gap(page: &mut Vec<Line>) {
     if page.last().is_some_and(|last| !last.is_blank()) {
         page.push(Line::default());
@@ -136,7 +135,7 @@ fn heading(line: &str) -> Option<Line> {
     })
 }
 
-/// Code as it stands, indented where it fits.
+/// Code unchanged, indented if it fits.
 fn block(code: &[&str], width: usize) -> Vec<Line> {
     let widest = code.iter().map(|line| line.width()).max().unwrap_or(0);
     let indent = INDENT.min(width.saturating_sub(widest));
@@ -147,7 +146,7 @@ fn block(code: &[&str], width: usize) -> Vec<Line> {
     code.iter().map(line).collect()
 }
 
-/// What stands before the text of a list's item, and the text; a plain paragraph has nothing before it.
+/// The marker of a list item and its text; a plain paragraph has an empty marker.
 fn item(line: &str) -> (String, &str) {
     let text = line.trim_start();
     let indent = line.len() - text.len();
@@ -161,7 +160,7 @@ fn item(line: &str) -> (String, &str) {
     (lead, text[mark..].trim_start())
 }
 
-/// Whether a line belongs to the paragraph above it.
+/// Whether a line continues the paragraph above it.
 fn goes_on(line: &str) -> bool {
     let text = line.trim();
     let begins = ["|", "```", "#", "<!--"];
@@ -170,7 +169,7 @@ fn goes_on(line: &str) -> bool {
         && item(line).0.trim().is_empty()
 }
 
-/// A paragraph between its margins, its first line led by `lead`.
+/// A wrapped paragraph whose first line starts with `lead`.
 fn paragraph(lead: &str, text: &str, width: usize) -> Vec<Line> {
     let margin = lead.width();
     let wrapped = wrap(&inline(text), width.saturating_sub(margin).max(20));
@@ -187,7 +186,7 @@ fn paragraph(lead: &str, text: &str, width: usize) -> Vec<Line> {
     wrapped.into_iter().enumerate().map(line).collect()
 }
 
-/// A text's pieces: code, strong text, and the words of links.
+/// Splits a text into code, strong text, link texts and plain text.
 fn inline(text: &str) -> Vec<(Style, String)> {
     let mut pieces = Vec::new();
     let mut plain = String::new();
@@ -227,17 +226,17 @@ fn inline(text: &str) -> Vec<(Style, String)> {
     pieces
 }
 
-/// What stands between two signs at the beginning of a text, and what comes after them.
+/// The text between two delimiters at the start of a text, and the rest.
 fn between<'a>(text: &'a str, open: &str, close: &str) -> Option<(&'a str, &'a str)> {
     let (inner, after) = text.strip_prefix(open)?.split_once(close)?;
     (!inner.is_empty() && !inner.starts_with(' ')).then_some((inner, after))
 }
 
-/// Pieces in lines of a width, broken at blanks; a word that is longer stands alone.
+/// Wraps pieces to a width at blanks; a longer word gets a separate line.
 fn wrap(pieces: &[(Style, String)], width: usize) -> Vec<Line> {
     let mut lines = vec![Line::default()];
     let mut used = 0;
-    // A word is what stands between blanks, whatever its styles.
+    // A word is everything between two blanks, in any styles.
     let mut word: Vec<(Style, String)> = Vec::new();
     let mut end = |word: &mut Vec<(Style, String)>, lines: &mut Vec<Line>| {
         let wide: usize = word.iter().map(|(_, text)| text.width()).sum();
@@ -272,7 +271,7 @@ fn wrap(pieces: &[(Style, String)], width: usize) -> Vec<Line> {
     lines
 }
 
-/// Writes on, in one piece where the style stays.
+/// Appends a text, to the last piece if that has the same style.
 fn push(line: &mut Line, style: Style, text: &str) {
     match line.pieces.last_mut() {
         Some((last, written)) if *last == style => written.push_str(text),
@@ -280,7 +279,7 @@ fn push(line: &mut Line, style: Style, text: &str) {
     }
 }
 
-/// A table in columns; what does not fit into its column goes on below.
+/// A table in columns; cells that are too long wrap.
 fn table(rows: &[&str], width: usize) -> Vec<Line> {
     const APART: usize = 2;
     let is_rule = |row: &&&str| row.chars().all(|c| matches!(c, '|' | '-' | ':' | ' '));
@@ -349,7 +348,7 @@ fn table(rows: &[&str], width: usize) -> Vec<Line> {
     lines
 }
 
-/// The cells of a row; a bar after a backslash is a bar.
+/// The cells of a row; `\|` is a literal bar.
 fn split(row: &str) -> Vec<Vec<(Style, String)>> {
     let row = row.replace("\\|", "\u{0}");
     let row = row.trim_matches('|');
@@ -370,7 +369,7 @@ fn longest_word(cell: &[(Style, String)]) -> usize {
         .unwrap_or(0)
 }
 
-/// Widths of columns that fit: each gets what it wants where all do, else the widest ones give way first.
+/// Column widths that fit: the wanted ones if possible, otherwise the widest columns shrink first.
 fn share(wanted: &[usize], least: &[usize], room: usize) -> Vec<usize> {
     let mut widths = wanted.to_vec();
     while widths.iter().sum::<usize>() > room {
@@ -399,13 +398,13 @@ mod tests {
 
     #[test]
     fn paragraphs_and_lists_are_wrapped_within_their_margins() {
-        let text = "one two three `four five` six seven eight\n\n- a long item of a list that goes on\n  here\n1. next";
+        let text = "one two three `four five` six seven eight\n\n- a long item of a list that continues\n  here\n1. next";
         let expected = [
             "one two three four",
             "five six seven eight",
             "",
             "- a long item of a",
-            "  list that goes on",
+            "  list that continues",
             "  here",
             "1. next",
         ];
@@ -423,7 +422,7 @@ mod tests {
     }
 
     #[test]
-    fn tables_stay_aligned_and_their_cells_go_on_below() {
+    fn tables_stay_aligned_and_long_cells_wrap() {
         let text = "| a | b |\n|---|---|\n| `x\\|y` | one two three |\n| long | z |";
         let expected = [
             "a     b",

@@ -1,51 +1,51 @@
-//! Looking for a text in a page of lines: `/`, what is typed, and on to the next place.
+//! Searches a page of lines: `/`, the search text, and moving between matches.
 
-/// What is looked for.
+/// A search.
 #[derive(Debug, Clone, Default)]
 pub struct Search {
-    /// What is being typed.
+    /// The text that is being typed.
     typed: Option<String>,
-    /// What was looked for last, in small letters.
+    /// The last search text, in lower case.
     sought: String,
-    /// Whether it was not found.
+    /// Whether there was no match.
     missed: bool,
 }
 
-/// What a key of the search leads to.
+/// Where to move after a key of the search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Go {
-    /// Nowhere: the text is still being typed, or was left.
+    /// Stays: the text is still being typed, or the search was cancelled.
     Nowhere,
-    /// To the first place from here on.
+    /// To the first match from the current line on.
     Here,
-    /// To the next place.
+    /// To the next match.
     Next,
-    /// To the place before.
+    /// To the previous match.
     Back,
 }
 
 impl Search {
-    /// What is being typed.
+    /// The text that is being typed.
     pub fn typed(&self) -> Option<&str> {
         self.typed.as_deref()
     }
 
-    /// What was looked for last, in small letters; empty if nothing was.
+    /// The last search text, in lower case; empty if there is none.
     pub fn sought(&self) -> &str {
         &self.sought
     }
 
-    /// What the title of the page says of it.
+    /// The prompt or the result for the page's title.
     pub fn title(&self) -> Option<String> {
         match &self.typed {
             Some(typed) => Some(format!("/{typed}_")),
             None => self
                 .missed
-                .then(|| format!("nothing holds '{}'", self.sought)),
+                .then(|| format!("no match for '{}'", self.sought)),
         }
     }
 
-    /// What a key does to it; `None` if the key is none of its own.
+    /// Handles a key; `None` if the search does not use it.
     pub fn key(&mut self, name: &str) -> Option<Go> {
         self.missed = false;
         let Some(typed) = &mut self.typed else {
@@ -61,7 +61,7 @@ impl Search {
         };
         match name {
             "Esc" => self.typed = None,
-            // Enter alone goes on with what was looked for before.
+            // Enter alone repeats the last search.
             "Enter" if typed.is_empty() => {
                 self.typed = None;
                 return Some(Go::Next);
@@ -82,12 +82,12 @@ impl Search {
         Some(Go::Nowhere)
     }
 
-    /// Whether a line holds what is looked for.
+    /// Whether a line contains the search text.
     pub fn holds(&self, line: &str) -> bool {
         !self.sought.is_empty() && line.to_lowercase().contains(&self.sought)
     }
 
-    /// The line to go to from line `from`, round from the page's end.
+    /// The matching line to go to from line `from`, wrapping around at the end of the page.
     pub fn find(&mut self, go: Go, from: usize, lines: &[String]) -> Option<usize> {
         let count = lines.len();
         if count == 0 || go == Go::Nowhere || self.sought.is_empty() {
@@ -138,8 +138,8 @@ mod tests {
         press("/", &mut at);
         press("z", &mut at);
         let told = press("Enter", &mut at);
-        assert_eq!((at, told.as_deref()), (1, Some("nothing holds 'z'")));
-        // It is not said any longer than until the next key.
+        assert_eq!((at, told.as_deref()), (1, Some("no match for 'z'")));
+        // The result is shown until the next key.
         assert_eq!(press("j", &mut at), None);
         assert_eq!(search.title(), None);
     }

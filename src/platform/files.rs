@@ -1,4 +1,4 @@
-//! The one way in which files are written: whole or not at all, and never over another one unasked.
+//! Writes files completely or not at all, and overwrites existing ones only on request.
 
 use crate::system;
 use std::ffi::OsStr;
@@ -8,23 +8,23 @@ use std::path::{Path, PathBuf};
 use std::sync::{LazyLock, Mutex, PoisonError};
 use tempfile::NamedTempFile;
 
-/// Why a file could not be written.
+/// Why a file was not written.
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
-    /// There is a file of that name.
-    #[error("{}: the file exists already, and nothing is overwritten unasked", .0.display())]
+    /// The file exists.
+    #[error("{}: the file exists already", .0.display())]
     Exists(PathBuf),
-    /// It cannot be written.
-    #[error("{}: it cannot be written: {source}", path.display())]
+    /// Writing failed.
+    #[error("{}: the file cannot be written: {source}", path.display())]
     Failed {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The error from the system.
         source: io::Error,
     },
 }
 
-/// A file in the making. It appears under its name when it is finished, and leaves nothing behind when it is not.
+/// An unfinished file. It gets its name in [`finish`](Output::finish), and is removed if dropped before.
 pub struct Output {
     target: PathBuf,
     overwrite: bool,
@@ -32,17 +32,17 @@ pub struct Output {
 }
 
 enum To {
-    /// A file beside the target that takes its name in the end.
+    /// A temporary file in the target's folder, renamed at the end.
     Beside(BufWriter<NamedTempFile>),
-    /// A device or a pipe, which cannot be replaced.
+    /// A device or a pipe, written directly.
     Straight(BufWriter<File>),
 }
 
 impl Output {
-    /// Starts a file.
+    /// Creates a file.
     ///
     /// # Errors
-    /// If it exists and `overwrite` is not set, or if there is no writing there.
+    /// If it exists and `overwrite` is not set, or if its folder is not writable.
     pub fn create(path: &Path, overwrite: bool) -> Result<Output, FileError> {
         let failed = |source| FileError::Failed {
             path: path.to_owned(),
@@ -61,13 +61,13 @@ impl Output {
             });
         }
         if found.as_ref().is_some_and(|found| found.is_dir()) {
-            return Err(failed(io::Error::other("it is a directory")));
+            return Err(failed(io::Error::other("is a directory")));
         }
-        // A dangling link has no metadata, and is still not ours to replace.
+        // A dangling link has no metadata, but must not be replaced without `overwrite` either.
         if (found.is_some() || path.is_symlink()) && !overwrite {
             return Err(FileError::Exists(path.to_owned()));
         }
-        // Where the name is a link, what it points to is replaced or made, and not the link.
+        // A link is followed: its target is replaced or created, and the link stays.
         let target = followed(path).map_err(failed)?;
         let to = beside(&target).map_err(failed)?;
         Ok(Output {
@@ -77,15 +77,15 @@ impl Output {
         })
     }
 
-    /// Gives the file its name.
+    /// Finishes the file and gives it its name.
     ///
     /// # Errors
-    /// If it cannot be written to the end, or if a file of that name has appeared in the meantime.
+    /// If it cannot be written completely, or if a file of that name has appeared in the meantime.
     pub fn finish(self) -> Result<(), FileError> {
         self.ready()?.place()
     }
 
-    /// Syncs the file to the disk, so that only its name is missing; a device or a pipe is complete then.
+    /// Syncs the file to disk, so that only its name is missing; a device or a pipe is complete then.
     fn ready(self) -> Result<Ready, FileError> {
         let Output {
             target,
@@ -114,15 +114,15 @@ impl Output {
         })
     }
 
-    /// Adds to its end.
+    /// Appends bytes.
     ///
     /// # Errors
-    /// If it cannot be written.
+    /// If they cannot be written.
     pub fn append(&mut self, bytes: &[u8]) -> Result<(), FileError> {
         self.write_all(bytes).map_err(|source| self.failed(source))
     }
 
-    /// An error of writing to it, with its name.
+    /// A write error with the file's name.
     pub fn failed(&self, source: io::Error) -> FileError {
         FileError::Failed {
             path: self.target.clone(),
@@ -131,14 +131,14 @@ impl Output {
     }
 }
 
-/// A device or a pipe, to be written to as it is; a pipe that nobody reads is not waited for.
+/// Opens a device or a pipe for writing; fails at once for a pipe without a reader.
 fn straight(path: &Path) -> io::Result<File> {
     let open = system::set_nonblocking(File::options().write(true)).open(path);
     let open = open.map_err(|error| match system::is_unread_pipe(&error) {
-        true => io::Error::other("it is a pipe that nobody reads"),
+        true => io::Error::other("is a pipe without a reader"),
         false => error,
     })?;
-    // The reader may be slow.
+    // Blocking writes, since the reader may be slow.
     system::set_blocking(&open)?;
     Ok(open)
 }
@@ -159,7 +159,7 @@ impl Ready {
         }
     }
 
-    /// A copy (hard link if possible) of the file that has the name now; `None` if there is none.
+    /// A copy (a hard link if possible) of the file that currently has the name; `None` if there is none.
     fn former(&self) -> Result<Option<NamedTempFile>, FileError> {
         if self.file.is_none() || !self.overwrite || !self.target.is_file() {
             return Ok(None);
@@ -237,24 +237,24 @@ pub fn write_all(files: &[(PathBuf, impl AsRef<[u8]>)], overwrite: bool) -> Resu
     finish_all(outputs)
 }
 
-/// Refuses what exists and is no regular file: whoever must not wait cannot write there.
+/// Rejects paths that exist and are not regular files, whose writes could block.
 ///
 /// # Errors
-/// That it is none.
+/// If it is not a regular file.
 pub fn regular(path: &Path) -> Result<(), FileError> {
     let found = std::fs::metadata(path).ok();
     match found.and_then(|found| system::special_kind(found.file_type())) {
         None => Ok(()),
         Some(kind) => Err(FileError::Failed {
             path: path.to_owned(),
-            source: io::Error::other(format!("it is {kind}")),
+            source: io::Error::other(format!("is {kind}")),
         }),
     }
 }
 
-/// What a name stands for in the end: links are followed, whether there is anything at their end or not.
+/// The path behind all symbolic links, which need not exist.
 fn followed(path: &Path) -> io::Result<PathBuf> {
-    /// As many as systems follow.
+    /// The limit of common systems.
     const MOST_LINKS: usize = 40;
     let mut target = path.to_owned();
     for _ in 0..MOST_LINKS {
@@ -266,17 +266,17 @@ fn followed(path: &Path) -> io::Result<PathBuf> {
     Err(io::Error::other("too many symbolic links"))
 }
 
-/// How temporary files are called: this, the number of the process that writes, and something random.
+/// Prefix of temporary files, followed by the process number and a random part.
 const PREFIX: &str = ".stickslip-";
 const SUFFIX: &str = ".tmp";
-/// Held where temporary files are made, locked and swept, so that no thread takes another's new one for abandoned.
+/// Locked while temporary files are created, locked and swept, so that no thread removes a file that another one just created.
 static MAKING: Mutex<()> = Mutex::new(());
 
-/// A nameless file in the target's directory, so that it can take the target's name in one step.
+/// A temporary file in the target's folder, so that it can be renamed to the target in one step.
 fn beside(target: &Path) -> io::Result<NamedTempFile> {
     let directory = folder(target);
     if target.file_name().is_none() {
-        return Err(io::Error::other("it is no name of a file"));
+        return Err(io::Error::other("not a file name"));
     }
     let _making = MAKING.lock().unwrap_or_else(PoisonError::into_inner);
     sweep(directory);
@@ -286,7 +286,7 @@ fn beside(target: &Path) -> io::Result<NamedTempFile> {
         builder.permissions(usual);
     }
     let made = builder.tempfile_in(directory)?;
-    // Where a file system knows no locks, the process's number has to do.
+    // On file systems without locks, only the process number marks the file as in use.
     let _ = made.as_file().try_lock();
     Ok(made)
 }
@@ -305,8 +305,8 @@ fn builder() -> tempfile::Builder<'static, 'static> {
     builder
 }
 
-/// Removes what killed runs have left in a directory: temporary files of processes that are no more, and that nobody holds.
-/// What cannot be removed is left: it is not ours.
+/// Removes the temporary files that killed runs have left in a folder: those of processes that have ended and that nobody has
+/// locked. Errors are ignored, since such files may belong to other users.
 fn sweep(directory: &Path) {
     let Ok(entries) = std::fs::read_dir(directory) else {
         return;
@@ -324,7 +324,7 @@ fn sweep(directory: &Path) {
     }
 }
 
-/// The number of the process that a temporary file of ours was made by.
+/// The process number in the name of a temporary file.
 fn writer(name: &OsStr) -> Option<i32> {
     let name = name.to_str()?.strip_prefix(PREFIX)?.strip_suffix(SUFFIX)?;
     let (number, random) = name.split_once('-')?;
@@ -332,8 +332,8 @@ fn writer(name: &OsStr) -> Option<i32> {
     number.parse().ok().filter(|_| is_random)
 }
 
-/// Whether there is no such process any more. Our own number may have been another's before: whether a file with it is held
-/// tells.
+/// Whether a process has ended. This process's own number may have been used by an earlier one, so its files count as abandoned
+/// unless they are locked.
 fn is_gone(process: i32) -> bool {
     process as u32 == std::process::id() || !system::is_running(process)
 }
@@ -354,7 +354,7 @@ impl Write for Output {
     }
 }
 
-/// What the name of a file begins with that is called after a scene: letters, digits, `-`, `_` and `.` of the scene's own.
+/// A file name stem for a scene: its letters, digits, `-`, `_` and `.`.
 pub fn stem(scene: &str) -> String {
     const MOST: usize = 64;
     let stem = Path::new(scene).file_stem().unwrap_or_default();
@@ -369,7 +369,7 @@ pub fn stem(scene: &str) -> String {
         .collect()
 }
 
-/// Writes a whole text, or other bytes.
+/// Writes a whole file.
 ///
 /// # Errors
 /// As [`Output::create`] and [`Output::finish`].
@@ -436,7 +436,7 @@ mod tests {
     }
 
     #[test]
-    fn a_dangling_link_is_made_good_where_that_is_asked_for_and_stays_a_link() {
+    fn a_dangling_link_gets_its_target_on_request_and_stays_a_link() {
         use std::os::unix::fs::symlink;
         let directory = tempfile::tempdir().unwrap();
         let at = |name: &str| directory.path().join(name);
@@ -459,7 +459,7 @@ mod tests {
     }
 
     #[test]
-    fn what_killed_runs_have_left_is_swept_up_and_nothing_else() {
+    fn only_files_of_killed_runs_are_swept() {
         let directory = tempfile::tempdir().unwrap();
         let mut dead = std::process::Command::new("true").spawn().unwrap();
         dead.wait().unwrap();
@@ -489,7 +489,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pipe_that_nobody_reads_is_not_waited_for() {
+    fn a_pipe_without_a_reader_fails_at_once() {
         let directory = tempfile::tempdir().unwrap();
         let pipe = directory.path().join("pipe");
         let mode = rustix::fs::Mode::RUSR | rustix::fs::Mode::WUSR;
@@ -498,7 +498,7 @@ mod tests {
             write(&pipe, "a", false)
                 .unwrap_err()
                 .to_string()
-                .contains("nobody reads")
+                .contains("without a reader")
         );
         assert!(regular(&pipe).is_err() && regular(directory.path()).is_err());
         let reading = pipe.clone();
@@ -510,7 +510,7 @@ mod tests {
     }
 
     #[test]
-    fn what_exists_is_replaced_only_when_asked() {
+    fn existing_files_are_replaced_only_on_request() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("a.csv");
         write(&path, "first", false).unwrap();

@@ -1,37 +1,36 @@
-//! The one way in which files are read: regular ones only, without ever waiting for somebody to write, and never more of
-//! one than a stated size.
+//! Reads files: only regular ones, without blocking, and up to a maximum size.
 
 use crate::system;
 use std::fs::{File, Metadata, OpenOptions};
 use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
 
-/// Most bytes of a table: a chart's, or a reference's.
+/// Maximum size of a table of a chart or a reference.
 pub const TABLE_BYTES: u64 = 64 << 20;
-/// Most bytes of a snapshot or a journal; the largest scenes need a tenth of it.
+/// Maximum size of a snapshot or a journal; the largest scenes need a tenth of it.
 pub const RECORD_BYTES: u64 = 256 << 20;
 
-/// Why a file is not read.
+/// Why a file was not read.
 #[derive(Debug, thiserror::Error)]
 pub enum Unreadable {
-    /// The system cannot read it.
+    /// The system reports an error.
     #[error("the file cannot be read: {0}")]
     Failed(#[from] io::Error),
-    /// What it is instead of a file.
-    #[error("it is {0}, and only a regular file is read")]
+    /// Not a regular file, but this.
+    #[error("the file is {0}; only regular files are read")]
     NoFile(&'static str),
-    /// It is larger than what is read.
+    /// The file is too large.
     #[error("the file has more than {} MiB; {what}", most >> 20)]
     TooLarge {
-        /// Most bytes that are read.
+        /// Maximum number of bytes.
         most: u64,
-        /// What to do instead, as a part of the message.
+        /// The end of the message: a reason, or what to do instead.
         what: &'static str,
     },
     /// It is not text.
-    #[error("the file is not text in UTF-8")]
+    #[error("the file is not UTF-8 text")]
     NoText {
-        /// Line of the first byte that is not text, from 1.
+        /// Line of the first invalid byte, from 1.
         line: usize,
         /// Its column, from 1.
         column: usize,
@@ -39,7 +38,7 @@ pub enum Unreadable {
 }
 
 impl Unreadable {
-    /// The message about a file: its name, the place in it where there is one, and why.
+    /// The message: the file's name, the line and column if known, and the error.
     pub fn of(&self, file: &str) -> String {
         match self {
             Unreadable::NoText { line, column } => format!("{file}:{line}:{column}: {self}"),
@@ -48,10 +47,10 @@ impl Unreadable {
     }
 }
 
-/// The bytes of a file that has no more than so many of them; `what` tells why no sound one has.
+/// The bytes of a file with at most `most` of them; `what` ends the message for a larger file.
 ///
 /// # Errors
-/// If it is no regular file, cannot be read, or is larger.
+/// If it is not a regular file, cannot be read, or is larger.
 pub fn bytes(path: &Path, most: u64, what: &'static str) -> Result<Vec<u8>, Unreadable> {
     let file = open(path, OpenOptions::new().read(true))?;
     let mut bytes = Vec::new();
@@ -62,15 +61,15 @@ pub fn bytes(path: &Path, most: u64, what: &'static str) -> Result<Vec<u8>, Unre
     }
 }
 
-/// The path of a file that another one names, which lies beside it or in a folder below: what somebody sends can name no other
-/// file of the machine, be it by a link.
+/// The path of a file named in another file. It must be in the same folder or below it, so that a scene from someone else cannot
+/// refer to other files of the machine, directly or through a link.
 ///
 /// # Errors
-/// A message that says why it is none.
+/// A message with the reason.
 pub fn beside(own: &Path, named: &str) -> Result<PathBuf, String> {
     let parts = || Path::new(named).components();
     if named.is_empty() || !parts().all(|part| matches!(part, Component::Normal(_))) {
-        return Err("the file must lie beside this one or in a folder below, named without .. and without a / at its start".to_owned());
+        return Err("the file must lie beside this one or in a folder below, with a relative path without ..".to_owned());
     }
     let folder = own.parent().unwrap_or(Path::new(""));
     let path = folder.join(named);
@@ -83,14 +82,14 @@ pub fn beside(own: &Path, named: &str) -> Result<PathBuf, String> {
     };
     match real.starts_with(here.canonicalize().map_err(told)?) {
         true => Ok(path),
-        false => Err("the file is a link to one outside of the folder of this one".to_owned()),
+        false => Err("the file is a link to a file outside this folder".to_owned()),
     }
 }
 
-/// The first bytes of a file, so many at most.
+/// The first bytes of a file, at most `most`.
 ///
 /// # Errors
-/// If it is no regular file, or cannot be read.
+/// If it is not a regular file, or cannot be read.
 pub fn start(path: &Path, most: u64) -> Result<Vec<u8>, Unreadable> {
     let file = open(path, OpenOptions::new().read(true))?;
     let mut bytes = Vec::new();
@@ -98,7 +97,7 @@ pub fn start(path: &Path, most: u64) -> Result<Vec<u8>, Unreadable> {
     Ok(bytes)
 }
 
-/// The text of a file, without the mark with which some editors begin one.
+/// The text of a file, without a byte-order mark.
 ///
 /// # Errors
 /// As [`bytes`], and if it is not UTF-8.
@@ -106,10 +105,10 @@ pub fn text(path: &Path, most: u64, what: &'static str) -> Result<String, Unread
     utf8(bytes(path, most, what)?)
 }
 
-/// The text that some bytes are, without the mark with which some editors begin one.
+/// Decodes UTF-8, without a byte-order mark.
 ///
 /// # Errors
-/// If they are not UTF-8.
+/// If it is not UTF-8.
 pub fn utf8(bytes: Vec<u8>) -> Result<String, Unreadable> {
     let mut text = String::from_utf8(bytes).map_err(|e| {
         let good = &e.as_bytes()[..e.utf8_error().valid_up_to()];
@@ -125,15 +124,15 @@ pub fn utf8(bytes: Vec<u8>) -> Result<String, Unreadable> {
     Ok(text)
 }
 
-/// The mark.
+/// The byte-order mark, which some editors write at the start of a file.
 pub const MARK: char = '\u{feff}';
 
-/// Opens a regular file as the options say, without waiting.
+/// Opens a regular file without blocking.
 ///
 /// # Errors
-/// If it is something else, or cannot be opened.
+/// If it is not a regular file, or cannot be opened.
 pub fn open(path: &Path, options: &mut OpenOptions) -> Result<File, Unreadable> {
-    // To open some devices does something, so that is asked first; and what it is can have changed until it is open.
+    // Checked before opening, since opening some devices has side effects, and afterwards, since the file may have been replaced.
     match std::fs::metadata(path) {
         Ok(found) => regular(&found)?,
         Err(error) if error.kind() == io::ErrorKind::NotFound => {}
@@ -157,7 +156,7 @@ mod tests {
     use rustix::fs::{CWD, Mode, mkfifoat};
 
     #[test]
-    fn what_is_no_file_is_refused_without_waiting() {
+    fn special_files_are_rejected_without_blocking() {
         let directory = tempfile::tempdir().unwrap();
         let pipe = directory.path().join("pipe");
         mkfifoat(CWD, &pipe, Mode::RUSR | Mode::WUSR).unwrap();
@@ -177,7 +176,7 @@ mod tests {
     }
 
     #[test]
-    fn a_named_file_lies_beside_or_below() {
+    fn a_named_file_is_in_the_folder_or_below() {
         let directory = tempfile::tempdir().unwrap();
         let folder = directory.path().join("own");
         std::fs::create_dir_all(folder.join("deep")).unwrap();

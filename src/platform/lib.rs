@@ -1,9 +1,9 @@
-//! Everything that differs between operating systems.
+//! Operating-system services, and their differences between systems.
 //!
-//! - [`input`]: the one way in which files are read: regular ones only, never waiting, never more than a stated size.
-//! - [`files`]: the one way in which files are written: whole or not at all, and never over another one unasked.
+//! - [`input`]: reads regular files up to a maximum size, without blocking.
+//! - [`files`]: writes files completely or not at all, and overwrites only on request.
 //! - [`system`]: locks, private files, clocks and folders.
-//! - [`terminal`]: what the terminal is, and what it says when it is asked.
+//! - [`terminal`]: the terminal's size and its answers to queries.
 
 #![forbid(unsafe_code)]
 

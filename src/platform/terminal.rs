@@ -1,7 +1,7 @@
-//! The terminal that the program runs in: its size, and what it answers when it is asked.
+//! Size and capabilities of the terminal.
 //!
-//! The questions are those of ECMA-48 and of DEC's terminals: CSI 6 n (where is the cursor?), CSI ? mode $ p (do you know that
-//! mode?), CSI c (what are you?). Every terminal answers the last one, and so it ends the wait for the others.
+//! The queries are those of ECMA-48 and of DEC terminals: CSI 6 n (cursor position), CSI ? mode $ p (is this mode supported?) and
+//! CSI c (terminal type). Every terminal answers the last one, which ends the wait for the others.
 
 use rustix::event::{PollFd, PollFlags, Timespec, poll};
 use rustix::termios::{self, OptionalActions, Termios};
@@ -9,34 +9,34 @@ use std::io::{self, IsTerminal, Stdin, Write, stdin, stdout};
 use std::time::{Duration, Instant};
 use unicode_width::UnicodeWidthStr;
 
-/// How long an answer may take, over a slow line, too.
+/// Time limit for an answer, also over a slow line.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// Columns and rows of the terminal that standard output is; `None` where it is none, or does not tell.
+/// Columns and rows of the terminal on standard output; `None` if it is not a terminal, or its size is not known.
 pub fn size() -> Option<(u16, u16)> {
     let size = termios::tcgetwinsize(stdout()).ok()?;
     (size.ws_col > 0 && size.ws_row > 0).then_some((size.ws_col, size.ws_row))
 }
 
-/// What a terminal answered.
+/// The answers of a terminal.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Answers {
-    /// What it says it is (DA1), as numbers; empty where it did not answer in time.
+    /// The terminal type (DA1) as numbers; empty if it did not answer in time.
     pub kind: Vec<u16>,
-    /// Modes that it was asked for, and whether it knows them (DECRQM).
+    /// The queried modes, and whether the terminal supports them (DECRQM).
     pub modes: Vec<(u16, bool)>,
-    /// Columns of its cursor after each text of [`TEXTS`], from 1, as far as it told.
+    /// The cursor's column after each of [`TEXTS`], from 1; shorter if answers are missing.
     pub columns: Vec<u16>,
 }
 
-/// The mouse's places with numbers of any size.
+/// Mode: mouse positions without a size limit (SGR).
 const MOUSE: u16 = 1006;
-/// A screen that is shown in one go.
+/// Mode: synchronized updates.
 const IN_ONE_GO: u16 = 2026;
-/// The attribute of DA1 that says: the clipboard can be written (OSC 52).
+/// Attribute in DA1: the clipboard can be written (OSC 52).
 const CLIPBOARD: u16 = 52;
 
-/// Texts of which terminals disagree how wide they are: what the debugger draws with, and letters of the far east.
+/// Texts whose width differs between terminals: the debugger's glyphs, and East Asian characters.
 pub const TEXTS: [(&str, &str); 5] = [
     ("lines", "┏━│"),
     ("braille", "⠿⣀"),
@@ -46,29 +46,29 @@ pub const TEXTS: [(&str, &str); 5] = [
 ];
 
 impl Answers {
-    /// Whether it knows a mode; `None` where it did not say.
+    /// Whether it supports a mode; `None` if it did not answer.
     fn knows(&self, mode: u16) -> Option<bool> {
         let found = self.modes.iter().find(|(own, _)| *own == mode);
         found.map(|(_, knows)| *knows)
     }
 
-    /// Whether it reports the mouse as the debugger asks for it.
+    /// Whether it supports the debugger's mouse reports.
     pub fn mouse(&self) -> Option<bool> {
         self.knows(MOUSE)
     }
 
-    /// Whether it shows a screen in one go.
+    /// Whether it supports synchronized updates.
     pub fn in_one_go(&self) -> Option<bool> {
         self.knows(IN_ONE_GO)
     }
 
-    /// Whether it says that a program may write the clipboard; many that let it do so do not say it.
+    /// Whether it reports that programs can write the clipboard; many terminals allow it without reporting it.
     pub fn clipboard(&self) -> bool {
         self.kind.contains(&CLIPBOARD)
     }
 
-    /// The texts whose width is another there than here: what they are, columns there, columns here. `None` where it did
-    /// not tell all of them.
+    /// The texts whose width in the terminal differs from the expected one: name, actual and expected columns. `None` if an answer
+    /// is missing.
     pub fn other_widths(&self) -> Option<Vec<(&'static str, usize, usize)>> {
         if self.columns.len() != TEXTS.len() {
             return None;
@@ -83,12 +83,12 @@ impl Answers {
     }
 }
 
-/// Asks the terminal; `None` where standard input or output is none.
+/// Queries the terminal; `None` if standard input or output is not a terminal.
 ///
-/// What is asked stands on the present line for a moment, which is empty then.
+/// The queries use the current line, which is empty afterwards.
 ///
 /// # Errors
-/// If the terminal cannot be set to hand its answers on, or goes away.
+/// If the terminal cannot be set to raw mode, or is closed.
 pub fn ask() -> io::Result<Option<Answers>> {
     if !stdin().is_terminal() || !stdout().is_terminal() {
         return Ok(None);
@@ -121,7 +121,7 @@ pub fn ask() -> io::Result<Option<Answers>> {
 fn questions() -> String {
     let widths = TEXTS.iter().map(|(_, text)| format!("\r{text}\x1b[6n"));
     let modes = [MOUSE, IN_ONE_GO].map(|mode| format!("\x1b[?{mode}$p"));
-    // The blank line hides what a terminal shows of questions that it does not know.
+    // Erases what a terminal prints of unknown queries.
     format!(
         "{}\r\x1b[K{}\r\x1b[K\x1b[c",
         widths.collect::<String>(),
@@ -130,7 +130,7 @@ fn questions() -> String {
 }
 
 impl Answers {
-    /// What was answered so far, and whether the last answer is there. Keys that were pressed meanwhile are passed over.
+    /// The answers so far, and whether the last one has arrived. Key presses in between are ignored.
     fn read(told: &[u8]) -> (Answers, bool) {
         let mut answers = Answers::default();
         let text = String::from_utf8_lossy(told);
@@ -144,7 +144,7 @@ impl Answers {
             let numbers: Vec<u16> = numbers.filter_map(|n| n.parse().ok()).collect();
             match (&end[..1], asked, numbers.as_slice()) {
                 ("R", false, [_, column]) => answers.columns.push(*column),
-                // 0: it does not know the mode; else whether it is set, for now or for ever.
+                // 0: not supported; other values: set or reset, possibly permanently.
                 ("y", true, [mode, state]) => answers.modes.push((*mode, *state != 0)),
                 ("c", true, kind) => {
                     answers.kind = kind.to_vec();
@@ -157,7 +157,7 @@ impl Answers {
     }
 }
 
-/// The terminal without echo and line editing, for as long as this lives.
+/// The terminal in raw mode, until this is dropped.
 struct Raw {
     of: Stdin,
     before: Termios,
@@ -176,7 +176,7 @@ impl Raw {
 
 impl Drop for Raw {
     fn drop(&mut self) {
-        // An answer that came too late must not reach the shell.
+        // A late answer must not reach the shell.
         let _ = termios::tcsetattr(&self.of, OptionalActions::Flush, &self.before);
     }
 }
@@ -186,7 +186,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn answers_are_told_from_keys_and_from_what_is_cut_off() {
+    fn answers_are_separated_from_keys_and_incomplete_input() {
         let whole = b"\x1b[5;4Rx\x1b[5;3R\x1b[5;7R\x1b[5;3R\x1b[5;3R\x1b[A\x1b[?1006;2$y\x1b[?2026;0$y\x1b[?62;52;c";
         let (answers, all) = Answers::read(whole);
         assert!(all);

@@ -1,4 +1,4 @@
-//! Unix: Linux, macOS and their relatives.
+//! Unix systems such as Linux and macOS.
 
 use rustix::fs::OFlags;
 use rustix::io::Errno;
@@ -9,13 +9,13 @@ use std::io;
 use std::os::unix::fs::{FileTypeExt, MetadataExt, OpenOptionsExt, PermissionsExt};
 use std::time::Duration;
 
-/// Makes opening return at once, even for a pipe that nobody reads or writes.
+/// Opens without blocking, even a pipe without a reader or writer.
 pub fn set_nonblocking(options: &mut OpenOptions) -> &mut OpenOptions {
     let flags = OFlags::NONBLOCK | OFlags::NOCTTY;
     options.custom_flags(flags.bits() as i32)
 }
 
-/// Makes writing wait again, after opening without.
+/// Makes reads and writes block again after a non-blocking open.
 ///
 /// # Errors
 /// From the system.
@@ -24,7 +24,7 @@ pub fn set_blocking(file: &File) -> io::Result<()> {
     Ok(rustix::fs::fcntl_setfl(file, flags - OFlags::NONBLOCK)?)
 }
 
-/// Whether opening failed because nobody reads the pipe.
+/// Whether opening failed because a pipe has no reader.
 pub fn is_unread_pipe(error: &io::Error) -> bool {
     Errno::from_io_error(error) == Some(Errno::NXIO)
 }
@@ -34,12 +34,12 @@ pub fn set_private(options: &mut OpenOptions) -> &mut OpenOptions {
     options.mode(0o600)
 }
 
-/// The usual permissions of new files, for files that would be private by default.
+/// The default permissions of new files, for temporary files that are private otherwise.
 pub fn usual_permissions() -> Option<Permissions> {
     Some(PermissionsExt::from_mode(0o666))
 }
 
-/// The kind of a file that is not a regular one, as part of a message.
+/// The kind of a special file, as part of a message; `None` for a regular file.
 pub fn special_kind(found: FileType) -> Option<&'static str> {
     let kinds = [
         (found.is_dir(), "a directory"),
@@ -49,17 +49,17 @@ pub fn special_kind(found: FileType) -> Option<&'static str> {
             found.is_char_device() || found.is_block_device(),
             "a device",
         ),
-        (!found.is_file(), "no file"),
+        (!found.is_file(), "not a file"),
     ];
     kinds.into_iter().find(|(is, _)| *is).map(|(_, kind)| kind)
 }
 
-/// Whether two files are one.
+/// Whether two files are the same.
 pub fn is_same_file(one: &Metadata, other: &Metadata) -> bool {
     (one.dev(), one.ino()) == (other.dev(), other.ino())
 }
 
-/// Whether a process with this number exists.
+/// Whether a process with this number is running.
 pub fn is_running(process: i32) -> bool {
     Pid::from_raw(process).is_none_or(|pid| test_kill_process(pid) != Err(Errno::SRCH))
 }

@@ -1,15 +1,15 @@
-//! Systems without files or processes, such as a browser: files are regular, private and never locked, and clocks stand still.
+//! Systems without files or processes, such as browsers: files are regular, private and never locked, and clocks do not advance.
 
 use std::fs::{File, FileType, Metadata, OpenOptions, Permissions};
 use std::io;
 use std::time::Duration;
 
-/// Opening never waits here.
+/// Does nothing: opening never blocks.
 pub fn set_nonblocking(options: &mut OpenOptions) -> &mut OpenOptions {
     options
 }
 
-/// Nothing to undo.
+/// Does nothing.
 ///
 /// # Errors
 /// Never.
@@ -17,41 +17,41 @@ pub fn set_blocking(_: &File) -> io::Result<()> {
     Ok(())
 }
 
-/// There are no pipes.
+/// False: there are no pipes.
 pub fn is_unread_pipe(_: &io::Error) -> bool {
     false
 }
 
-/// Nobody else can read a file.
+/// Does nothing: files are private.
 pub fn set_private(options: &mut OpenOptions) -> &mut OpenOptions {
     options
 }
 
-/// The default of the system.
+/// `None`: the system's default.
 pub fn usual_permissions() -> Option<Permissions> {
     None
 }
 
-/// The kind of a file that is not a regular one, as part of a message.
+/// The kind of a special file, as part of a message; `None` for a regular file.
 pub fn special_kind(found: FileType) -> Option<&'static str> {
     match (found.is_dir(), found.is_file()) {
         (true, _) => Some("a directory"),
-        (_, false) => Some("no file"),
+        (_, false) => Some("not a file"),
         _ => None,
     }
 }
 
-/// Not known: two files count as one.
+/// True, since it cannot be determined.
 pub fn is_same_file(_: &Metadata, _: &Metadata) -> bool {
     true
 }
 
-/// Not known: every process counts as running.
+/// True, since it cannot be determined.
 pub fn is_running(_: i32) -> bool {
     true
 }
 
-/// Not known.
+/// Zero, since it cannot be measured.
 pub fn thread_time() -> Duration {
     Duration::ZERO
 }

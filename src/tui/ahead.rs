@@ -1,34 +1,33 @@
-//! What is typed ahead of the solver: a key that asks something of a session that is at work waits for its turn, and so does
-//! whatever is typed after it, so that keys typed at once lead where the same keys lead one after the other.
+//! The type-ahead queue: while the session is busy, a key that needs it is queued, and so is everything typed after it, in order.
 //!
-//! What only looks around is done at once, as long as nothing waits before it. Ctrl-C, Ctrl-Z and Ctrl-L never wait.
+//! Keys that only change the view are handled at once if the queue is empty. Ctrl-C, Ctrl-Z and Ctrl-L are never queued.
 
 use crate::keys;
 use crossterm::event::KeyEvent;
 use std::collections::VecDeque;
 
-/// Most that waits; more comes only from a key that is held down.
+/// Maximum length of the queue; only a key that is held down exceeds it.
 const MOST: usize = 1024;
-/// Most of it that is named.
+/// Maximum number of queued inputs that [`Ahead::note`] names.
 const NAMED: usize = 3;
 
-/// Something that was typed and is not done yet.
+/// Queued input.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Typed {
     /// A key.
     Key(KeyEvent),
-    /// A line that was typed to its end.
+    /// A complete line.
     Line(String),
-    /// A text that was pasted.
+    /// Pasted text.
     Paste(String),
 }
 
-/// What is waited for.
+/// What the queue waits for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Awaited {
     /// The end of a run.
     Run,
-    /// A file that is being read.
+    /// A file to be loaded.
     Reading,
     /// The diagnosis of the shown state.
     Finding,
@@ -39,12 +38,12 @@ pub enum Awaited {
 stickslip_core::words! {
     Awaited, until:
     Run "until the run stops; Ctrl-C interrupts it",
-    Reading "until the file is read; Ctrl-C gives it up",
-    Finding "until the diagnosis is found; Ctrl-C forgets it",
-    Trying "until the remedies are tried; Ctrl-C stops that",
+    Reading "until the file is loaded; Ctrl-C cancels",
+    Finding "until the diagnosis is ready; Ctrl-C cancels",
+    Trying "until all remedies are tried; Ctrl-C stops them",
 }
 
-/// What waits, oldest first.
+/// The queue, oldest input first.
 #[derive(Debug, Clone, Default)]
 pub struct Ahead {
     queue: VecDeque<Typed>,
@@ -53,17 +52,17 @@ pub struct Ahead {
 }
 
 impl Ahead {
-    /// Whether anything waits.
+    /// Whether the queue has any input.
     pub fn is_any(&self) -> bool {
         !self.queue.is_empty()
     }
 
-    /// Forgets all of it.
+    /// Empties the queue.
     pub fn forget(&mut self) {
         *self = Ahead::default();
     }
 
-    /// Lets something wait, behind what waits already.
+    /// Appends an input to the queue.
     pub(super) fn push(&mut self, typed: Typed, awaited: Option<Awaited>) {
         self.awaited = awaited.or(self.awaited);
         self.full = self.queue.len() >= MOST;
@@ -72,31 +71,31 @@ impl Ahead {
         }
     }
 
-    /// Takes the first out, and the rest behind it.
+    /// Takes the whole queue: the first input and the rest.
     pub(super) fn take_first(&mut self) -> Option<(Typed, VecDeque<Typed>)> {
         let first = self.queue.pop_front()?;
         Some((first, std::mem::take(&mut self.queue)))
     }
 
-    /// Puts the rest behind what waits again.
+    /// Appends inputs to the queue again.
     pub(super) fn put_back(&mut self, rest: VecDeque<Typed>) {
         self.queue.extend(rest);
         self.full &= self.queue.len() >= MOST;
     }
 
-    /// What waits and for what, in a line; `None` if nothing does.
+    /// One line that names the queued inputs and what they wait for; `None` if the queue is empty.
     pub fn note(&self) -> Option<String> {
         let count = self.queue.len();
         let until = self.awaited.unwrap_or(Awaited::Run).until();
         if self.full {
             return Some(format!(
-                "{count} keys wait {until}; no more are taken before"
+                "{count} keys wait {until}; further keys are ignored"
             ));
         }
         let name = |typed: &Typed| match typed {
             Typed::Key(key) => keys::name(key).unwrap_or_default(),
             Typed::Line(line) => format!(":{line}"),
-            Typed::Paste(_) => "what was pasted".into(),
+            Typed::Paste(_) => "pasted text".into(),
         };
         let all = count <= NAMED + 1;
         let named = if all { count } else { NAMED };
@@ -140,7 +139,7 @@ mod tests {
             ahead
                 .note()
                 .unwrap()
-                .ends_with("; no more are taken before")
+                .ends_with("; further keys are ignored")
         );
         ahead.forget();
         assert_eq!(ahead.note(), None);

@@ -1,5 +1,5 @@
-//! What the terminal alone knows, and what a key does to it. No drawing and no session here: a key changes the
-//! app and yields at most one [`Effect`], which the event loop carries out.
+//! The state of the terminal front end and how keys change it, without drawing and without the session: a key changes the [`App`]
+//! and returns at most one [`Effect`] for the event loop to carry out.
 
 use crate::ahead::{Ahead, Typed};
 use crate::camera::Camera;
@@ -24,10 +24,10 @@ use stickslip_debugger::record::command::Command;
 use stickslip_debugger::teach::{Guess, Tutor};
 use stickslip_scene::shown;
 
-/// Nodes that a page key goes past.
+/// Rows that PageUp and PageDown move by.
 pub(super) const PAGE: isize = 10;
 
-/// What a key asks of the world outside the app.
+/// A request to the event loop.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Effect {
     /// A command for the session.
@@ -36,26 +36,26 @@ pub enum Effect {
     Interrupt,
     /// Load a scene, by file or built-in name.
     Open(String),
-    /// Begin a lesson, by file or built-in name.
+    /// Start a lesson, by file or built-in name.
     Lesson(String),
     /// Show a work-precision chart.
     Chart(ChartOf),
     /// Copy a text to the terminal's clipboard.
     Copy(String),
-    /// Heed the mouse from now on, or leave it to the terminal.
+    /// Turn mouse support on or off.
     Mouse(bool),
-    /// Go back to the shell for a while.
+    /// Suspend the program.
     Suspend,
-    /// Draw the whole screen anew.
+    /// Redraw the whole screen.
     Redraw,
-    /// Leave.
+    /// Quit.
     Quit,
 }
 
-/// What lies over the panes or waits for keys before they do.
+/// A page or prompt over the panes, which receives keys before they do.
 #[derive(Debug, Clone)]
 pub enum Overlay {
-    /// Nothing lies over the panes.
+    /// No overlay.
     None,
     /// The list of actions, or of keys.
     Help(Help),
@@ -65,138 +65,138 @@ pub enum Overlay {
     Chooser(Chooser),
     /// A work-precision chart.
     Chart(Box<ChartPage>),
-    /// What an attached solver says, or lets be set.
+    /// The log or the parameters of an attached solver.
     Solver(solver::Reader),
     /// A line being typed.
     Line(CommandLine),
-    /// A letter for the mode of the selected node.
+    /// Waits for the mode of the selected node.
     Mode,
-    /// A letter or digit that answers a question.
+    /// Waits for a letter or digit that answers a question.
     Answer,
 }
 
-/// How the message line speaks.
+/// The kind of a message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Tone {
-    /// Said in passing.
+    /// Information.
     Plain,
-    /// Something was refused.
+    /// An error.
     Error,
 }
 
-/// The last thing that was said to the user.
+/// The last message.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Message {
-    /// What is said.
+    /// The text, on one line.
     pub text: String,
-    /// How.
+    /// Its kind.
     pub tone: Tone,
 }
 
-/// What comes on the screen once a file is read.
+/// What a file that is being loaded will show.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Opens {
-    /// Another scene, with a lesson or without.
+    /// Another scene, with or without a lesson.
     Scene,
     /// A page over the panes.
     Page,
 }
 
-/// What of a lesson's words was read.
+/// How far the current lesson page has been read.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Reading {
-    /// The page that this is about ([`Tutor::edition`]).
+    /// The lesson page ([`Tutor::edition`]).
     pub edition: (usize, u32),
-    /// The first line that is shown, from 0.
+    /// The first visible line, from 0.
     pub top: usize,
-    /// Lines from the first one on that were shown.
+    /// Lines shown so far, counted from the first.
     pub seen: usize,
 }
 
-/// Everything on the screen that is not in the session.
+/// All state of the screen that is not in the session.
 #[derive(Debug, Clone)]
 pub struct App {
     /// Colours and weights.
     pub theme: Theme,
-    /// Which key does what.
+    /// The key bindings.
     pub keymap: Keymap,
-    /// The colours that were chosen, which the environment may overrule.
+    /// The chosen colours, which the environment can override.
     pub colours: Colours,
-    /// Whether the mouse is heeded.
+    /// Whether mouse support is on.
     pub mouse: bool,
-    /// The screen as it was drawn last.
+    /// The area of the last draw.
     pub area: Rect,
-    /// What lies over the panes.
+    /// The page or prompt over the panes.
     pub overlay: Overlay,
     /// Pane with the focus.
     pub focus: Pane,
-    /// Pane under the table where the screen is small.
+    /// The pane below the table on a small screen.
     pub page: Pane,
-    /// Whether the focused pane has the whole screen.
+    /// Whether the focused pane fills the screen.
     pub zoomed: bool,
     /// Selected slave node, by slave number.
     pub selected: usize,
-    /// Count typed before a motion.
+    /// The count typed before a motion.
     pub count: Option<u32>,
     /// What was said last.
     pub message: Message,
-    /// What an attached solver said of itself, or how it was lost, until the next key.
+    /// A message about the attached solver or its loss, shown until the next key.
     pub notice: Option<String>,
-    /// What of its log was heard.
+    /// How much of the attached solver's log has been counted.
     pub heard: Heard,
-    /// What the shape shows, and how large.
+    /// Pan and zoom of the shape.
     pub camera: Camera,
-    /// How the table sorts, whether the other way round, and which nodes it shows.
+    /// Sort key of the table.
     pub sort: Sort,
-    /// Whether nodes are sorted backward.
+    /// Whether the sort order is reversed.
     pub backward: bool,
     /// Which nodes the table shows.
     pub filter: Filter,
     /// Monitor of the load-displacement curve.
     pub monitor: usize,
-    /// Selected consistent state, branch (by its row in the tree) and remedy; first line of the diagnosis.
+    /// The selected consistent state in the diagnosis, from 0.
     pub answer: usize,
-    /// The selected branch, from 0.
+    /// The selected row of the branch tree, from 0.
     pub branch: usize,
     /// The selected remedy, from 0.
     pub remedy: usize,
-    /// The first line of the diagnosis that is shown, from 0.
+    /// The first visible line of the diagnosis, from 0.
     pub scroll: usize,
-    /// Which of the panes that take turns is shown where there is room for one.
+    /// Which of the panes that share one place is shown.
     pub chart: Pane,
-    /// What there is to choose from.
+    /// The scenes, lessons and files in the chooser.
     pub offers: Vec<Offer>,
-    /// What is known of what is selected there.
+    /// The preview of the chooser's selection.
     pub preview: Option<Preview>,
-    /// The lesson that is being taken.
+    /// The current lesson.
     pub lesson: Option<Tutor>,
-    /// What of its words was read.
+    /// How far its current page has been read.
     pub reading: Reading,
-    /// Free mode, outside lessons.
+    /// Prediction mode, outside lessons.
     pub guess: Option<Guess>,
-    /// Increments done of a chart that is being measured, and all of them.
+    /// Increments done and in total of the chart that is being measured.
     pub measuring: Option<(u64, u64)>,
-    /// What a file that is being read is shown as.
+    /// What the file that is being loaded will show.
     pub loading: Option<Opens>,
-    /// What is typed and not done yet.
+    /// The type-ahead queue.
     pub ahead: Ahead,
     /// Whether the journal was lost.
     pub unkept: bool,
-    /// Turns of the spinner.
+    /// Counter that animates the spinner.
     pub tick: usize,
-    /// The last motion, for Enter.
+    /// The last motion, which Enter repeats.
     pub(super) last: Option<Command>,
-    /// Lines typed at `:`, oldest first.
+    /// Lines entered at `:`, oldest first.
     pub(super) history: Vec<String>,
-    /// What `/` looked for last.
+    /// The last text that `/` searched for.
     pub(super) sought: String,
 }
 
-/// Largest count that digits can make.
+/// Largest count that can be typed.
 const MOST: u32 = 1_000_000;
 
 impl App {
-    /// A fresh screen. Without a scene the chooser comes first.
+    /// A new screen; without a scene it shows the chooser first.
     pub fn new(theme: Theme, offers: Vec<Offer>) -> Self {
         App {
             theme,
@@ -242,12 +242,12 @@ impl App {
         }
     }
 
-    /// Says something.
+    /// Shows a message.
     pub fn say(&mut self, text: impl Into<String>) {
         self.tell(text.into(), Tone::Plain);
     }
 
-    /// Says what went wrong.
+    /// Shows an error.
     pub fn complain(&mut self, text: impl fmt::Display) {
         self.tell(text.to_string(), Tone::Error);
     }
@@ -257,7 +257,7 @@ impl App {
         self.message = Message { text, tone };
     }
 
-    /// Shows a scene that was just opened.
+    /// Resets the screen for a scene that was just opened.
     pub fn opened(&mut self) {
         self.overlay = Overlay::None;
         self.selected = 0;
@@ -271,17 +271,17 @@ impl App {
         self.guess = None;
     }
 
-    /// Whether nothing lies over the panes but the list of scenes, so that what is read or measured can be shown.
+    /// Whether a page that finishes loading may be shown: no overlay is open except the chooser.
     pub fn is_open_to_pages(&self) -> bool {
         matches!(self.overlay, Overlay::None | Overlay::Chooser(_))
     }
 
-    /// Offers scenes and lessons.
+    /// Opens the chooser.
     pub fn choose(&mut self) {
         self.overlay = Overlay::Chooser(Chooser::default());
     }
 
-    /// The user's part in the arrangement of the screen.
+    /// The user's choices that determine the layout.
     pub fn choice(&self, view: Option<&View>, lesson: u16) -> Choice {
         let model = view.map(|view| view.model);
         Choice {
@@ -295,7 +295,7 @@ impl App {
         }
     }
 
-    /// What a key does; one that must wait does it later ([`App::resume`]).
+    /// Handles a key, or queues it for [`App::resume`].
     pub fn key(&mut self, key: &KeyEvent, view: Option<&View>) -> Option<Effect> {
         let awaited = self.awaits_all();
         match keys::name(key)?.as_str() {
@@ -310,7 +310,7 @@ impl App {
         }
     }
 
-    /// Does what a key means now. What was said before is over then.
+    /// Handles a key now; this clears the previous message.
     pub(super) fn take_key(&mut self, key: &KeyEvent, view: Option<&View>) -> Option<Effect> {
         let name = keys::name(key)?;
         self.note_reading(view);
@@ -334,7 +334,7 @@ impl App {
         }
     }
 
-    /// Text pasted from the terminal goes into a line that is being typed, and nowhere else: keys do things.
+    /// Text pasted from the terminal goes only into an open input line, since elsewhere keys are commands.
     pub fn paste(&mut self, text: &str) {
         match self.ahead.is_any() {
             true => self.ahead.push(Typed::Paste(text.into()), None),
@@ -350,7 +350,7 @@ impl App {
         }
     }
 
-    /// What actions need to know to read their arguments.
+    /// The context in which actions parse their arguments.
     pub(super) fn context<'a>(
         &'a self,
         view: Option<&View<'a>>,
@@ -362,7 +362,7 @@ impl App {
         }
     }
 
-    /// Other colours, unless the environment wants none.
+    /// Changes the colours, unless the environment asks for none.
     fn colour(&mut self, colours: Option<Colours>) {
         let overruled = theme::wants_no_colour();
         if let Some(colours) = colours {
@@ -370,7 +370,7 @@ impl App {
             self.theme = Theme::chosen(colours);
         }
         match overruled && self.colours != Colours::None {
-            true => self.complain("NO_COLOR is set in the environment, and wins: no colours"),
+            true => self.complain("no colours: the environment sets NO_COLOR"),
             false => self.say(format!("colours: {}", self.colours.word())),
         }
     }
@@ -381,7 +381,7 @@ impl App {
         own.map(|offer| offer.name.clone()).collect()
     }
 
-    /// Ctrl-C: closes what is open and stops a run; never the program.
+    /// Handles Ctrl-C: closes overlays and stops a run, but never quits the program.
     fn interrupt(&mut self, view: Option<&View>) -> Option<Effect> {
         self.close(view);
         let waited = self.ahead.is_any();
@@ -395,13 +395,13 @@ impl App {
             return Some(Effect::Interrupt);
         }
         self.say(match waited {
-            true => "what was typed ahead is forgotten",
+            true => "queued keys discarded",
             false => "nothing is running; q quits",
         });
         None
     }
 
-    /// Closes overlays; without a scene the chooser is what is left.
+    /// Closes overlays; without a scene this leaves the chooser.
     pub(super) fn close(&mut self, view: Option<&View>) {
         self.count = None;
         match view {
@@ -426,7 +426,7 @@ impl App {
         }
         let count = self.count.take();
         let Some(entry) = self.keymap.by_key(name) else {
-            self.complain(format!("{name} does nothing here; ? lists the keys"));
+            self.complain(format!("{name} is not bound here; ? lists the keys"));
             return None;
         };
         let rest = count
@@ -440,7 +440,7 @@ impl App {
         self.attempt(action, count, view)
     }
 
-    /// Carries out an action, or says why it cannot be.
+    /// Carries out an action, or shows why it is not possible.
     pub(super) fn attempt(
         &mut self,
         action: Result<Action, Misread>,
@@ -464,7 +464,7 @@ impl App {
                 let effect = self.ui(ui, count, view);
                 if let (true, Some(tutor), Some(view)) = (wanted, &mut self.lesson, view) {
                     tutor.settled(view.cursor, view.frame());
-                    // What the lesson waited for is no error any more.
+                    // The lesson asked for this action, so its failure is no error of the user.
                     if self.message.tone == Tone::Error {
                         self.say("");
                     }
@@ -505,7 +505,7 @@ impl App {
             Ui::Repeat if self.focus == Pane::Diagnosis => return self.take_answer(view),
             Ui::Repeat => match self.last.clone() {
                 Some(command) => return self.attempt(Ok(Action::Session(command)), None, view),
-                None => self.complain("there is no motion to repeat yet; s is one minor iteration"),
+                None => self.complain("no motion to repeat yet; press s for one minor iteration"),
             },
             Ui::Move(step) => return self.step(step, count.unwrap_or(1) as isize, view),
             Ui::Select(slave) => self.selected = slave,
@@ -549,8 +549,8 @@ impl App {
             Ui::Mouse(on) => {
                 self.mouse = on.unwrap_or(!self.mouse);
                 self.say(match self.mouse {
-                    true => "the mouse selects and scrolls; :mouse off leaves it to the terminal",
-                    false => "the mouse is the terminal's; :mouse on takes it back",
+                    true => "mouse on: click selects, wheel scrolls; :mouse off turns it off",
+                    false => "mouse off; :mouse on turns it on",
                 });
                 return Some(Effect::Mouse(self.mouse));
             }
@@ -564,13 +564,13 @@ impl App {
     }
 }
 
-/// What comes after one of several, round and round.
+/// The element after `one`, cyclically.
 fn next<T: Copy + PartialEq>(all: &[T], one: T) -> T {
     let at = all.iter().position(|other| *other == one);
     all[at.map_or(0, |at| (at + 1) % all.len())]
 }
 
-/// The digit that a key is.
+/// The digit that a key types.
 fn digit(name: &str) -> Option<u32> {
     let mut letters = name.chars();
     match (letters.next(), letters.next()) {

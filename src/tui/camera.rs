@@ -1,22 +1,22 @@
-//! The camera of the shape.
+//! Pan and zoom of the shape.
 
-/// How the shape is looked at.
+/// Pan and zoom.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Camera {
-    /// 1 shows all of it.
+    /// Magnification; 1 shows the whole shape.
     pub zoom: f64,
-    /// Shift of the middle, as a fraction of what is seen at zoom 1.
+    /// Offset of the centre, as a fraction of the extent at zoom 1.
     pub pan: [f64; 2],
 }
 
 impl Camera {
-    /// All of the shape.
+    /// Shows the whole shape.
     pub const ALL: Camera = Camera {
         zoom: 1.0,
         pan: [0.0; 2],
     };
 
-    /// Nearer or farther by a factor.
+    /// Zooms by a factor.
     pub fn zoomed(self, factor: f64) -> Camera {
         Camera {
             zoom: (self.zoom * factor).clamp(0.05, 1e4),
@@ -24,7 +24,7 @@ impl Camera {
         }
     }
 
-    /// Moved by steps of what is seen.
+    /// Pans by fractions of the visible extent.
     pub fn panned(self, x: f64, y: f64) -> Camera {
         let step = 0.1 / self.zoom;
         Camera {

@@ -1,23 +1,23 @@
-//! A grid of braille dots: two across and four down in every cell, so that a dot is about square.
+//! A grid of braille dots, two across and four down in each cell, so that dots are about square.
 //!
-//! The library's own canvas knows colours only; this one carries whole styles, so that what is faint stays faint
-//! without colour too. The last to draw in a cell gives it its style.
+//! The canvas of ratatui supports only colours; this one stores full styles, so that dim lines stay dim without colour. The last
+//! drawing operation in a cell sets its style.
 
 use ratatui::{buffer::Buffer, layout::Rect, style::Style};
 use stickslip_debugger::explain::outline::{clip, mix};
 
-/// Dots in a rectangle of cells. The dot (0, 0) is the upper left one.
+/// Dots in a rectangle of cells. Dot (0, 0) is at the top left.
 #[derive(Debug, Clone)]
 pub struct Canvas {
     area: Rect,
     cells: Vec<(u8, Style)>,
 }
 
-/// A place on the canvas in dots, not necessarily inside it.
+/// A position in dots, which may lie outside the canvas.
 pub type Dot = [f64; 2];
 
 impl Canvas {
-    /// An empty canvas over these cells.
+    /// An empty canvas over an area.
     pub fn new(area: Rect) -> Self {
         Canvas {
             area,
@@ -30,7 +30,7 @@ impl Canvas {
         [self.area.width as f64 * 2.0, self.area.height as f64 * 4.0]
     }
 
-    /// A straight line; what lies outside is cut off.
+    /// Draws a straight line, clipped to the canvas.
     pub fn line(&mut self, from: Dot, to: Dot, style: Style) {
         let Some((from, to)) = clip(from, to, [0.0; 2], self.size()) else {
             return;
@@ -46,14 +46,14 @@ impl Canvas {
         }
     }
 
-    /// A chain of straight lines.
+    /// Draws a polyline.
     pub fn polyline(&mut self, points: &[Dot], style: Style) {
         for pair in points.windows(2) {
             self.line(pair[0], pair[1], style);
         }
     }
 
-    /// One dot.
+    /// Draws one dot.
     pub fn dot(&mut self, at: Dot, style: Style) {
         let [width, height] = self.size();
         if !(0.0..width).contains(&at[0]) || !(0.0..height).contains(&at[1]) {
@@ -65,12 +65,12 @@ impl Canvas {
         cell.1 = style;
     }
 
-    /// The cells that it covers.
+    /// The cells of the canvas.
     pub fn area(&self) -> Rect {
         self.area
     }
 
-    /// The cell that holds a place, if it is on the canvas.
+    /// The cell at a position; `None` outside the canvas.
     pub fn cell(&self, at: Dot) -> Option<(u16, u16)> {
         let [width, height] = self.size();
         let inside = (0.0..width).contains(&at[0]) && (0.0..height).contains(&at[1]);
@@ -82,7 +82,7 @@ impl Canvas {
         })
     }
 
-    /// Puts the dots on the screen; cells without dots stay as they are.
+    /// Writes the dots into the buffer; cells without dots are unchanged.
     pub fn render(&self, buffer: &mut Buffer) {
         for (index, (bits, style)) in self
             .cells
@@ -100,7 +100,7 @@ impl Canvas {
     }
 }
 
-/// Unicode's numbering of the braille dots, by row and column.
+/// Bits of the braille dots in Unicode, by row and column.
 const BITS: [[u8; 2]; 4] = [[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]];
 
 #[cfg(test)]
@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_outside_or_no_number_draws_nothing() {
+    fn points_outside_or_nan_draw_nothing() {
         let blank = ["    ", "    "];
         assert_eq!(drawn(&[([-5.0, -5.0], [-1.0, 20.0])]), blank);
         assert_eq!(drawn(&[([f64::NAN, 0.0], [1.0, 1.0])]), blank);

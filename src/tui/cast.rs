@@ -1,7 +1,7 @@
-//! A journal as a film: the debugger's screens after each entry, in the form of asciicast v2.
+//! Converts a journal to a film in the asciicast v2 format, with one screen after each entry.
 //!
-//! The times are made up, so that the same journal gives the same bytes: a screen stays as long as it takes to read what
-//! is said on it. What was done is a marker at which a player can stop. Only the rows that change are written.
+//! The times are computed from the length of the text, so that a journal always gives the same file. Each entry is also a marker at
+//! which a player can stop. Only changed rows are written.
 
 use crate::app::App;
 use crate::screen;
@@ -17,19 +17,19 @@ use stickslip_debugger::record::story;
 use stickslip_debugger::session::Session;
 use stickslip_scene::shown;
 
-/// Columns and rows of the film.
+/// Columns and rows.
 pub const SIZE: (u16, u16) = (120, 36);
-/// Seconds that a screen stays, and for each letter of what is said on it; at most so many in all.
+/// Seconds per screen: a base, an amount per character of the message, and a maximum.
 const STAY: f64 = 1.5;
 const LETTER: f64 = 0.04;
 const LONGEST: f64 = 6.0;
-/// Seconds that the first screen stays.
+/// Seconds that the first screen is shown.
 const FIRST: f64 = 2.5;
 
-/// The film of a journal, which is replayed for it in a session at its start.
+/// Replays a journal in `session`, which must be at its start, and returns the film.
 ///
 /// # Errors
-/// If the journal's scene is unsound, or it does not lead to the same states again.
+/// If the journal's scene is invalid, or the replay does not reach the same states.
 pub fn film(record: &Record, session: Session) -> Result<String, JournalError> {
     let model = record.scene()?.model;
     let mut film = Film::new(&record.header.name);
@@ -64,7 +64,7 @@ impl Film {
         }
     }
 
-    /// The screen after an entry, or before the first.
+    /// Adds the screen after an entry, or before the first.
     fn show(&mut self, session: &Session, model: &Model, entry: Option<&Entry>) {
         let view = View::of(session);
         match entry {
@@ -89,7 +89,7 @@ impl Film {
         };
     }
 
-    /// The last screen stays, and the cursor comes back.
+    /// Holds the last screen and shows the cursor again.
     fn end(&mut self, _: &Session) {
         let below = format!("\u{1b}[0m\u{1b}[{};1H\u{1b}[?25h", SIZE.1);
         self.output(&below);
@@ -112,7 +112,7 @@ impl Film {
     }
 }
 
-/// What a terminal must be told so that its rows become others.
+/// The escape sequences that turn the rows of one buffer into those of another.
 fn rows(before: &Buffer, now: &Buffer) -> String {
     let mut text = String::new();
     let area = now.area;
@@ -130,7 +130,7 @@ fn rows(before: &Buffer, now: &Buffer) -> String {
         let mut style = String::new();
         let mut hidden = 0;
         for cell in &row {
-            // The cell behind a wide letter is covered by it.
+            // The second cell of a wide character is covered by it.
             if hidden > 0 {
                 hidden -= 1;
                 continue;
@@ -148,7 +148,7 @@ fn rows(before: &Buffer, now: &Buffer) -> String {
     text
 }
 
-/// The order that sets a cell's colours and weights, and nothing else.
+/// The escape sequence (SGR) that sets exactly a cell's colours and weights.
 fn sgr(cell: &Cell) -> String {
     let mut codes = vec!["0".to_owned()];
     let weights = [
@@ -167,7 +167,7 @@ fn sgr(cell: &Cell) -> String {
     format!("\u{1b}[{}m", codes.join(";"))
 }
 
-/// A colour's code; `base` is 30 for letters and 40 for what is behind them.
+/// The SGR code of a colour; `base` is 30 for the foreground and 40 for the background.
 fn colour(colour: Color, base: u8) -> Option<String> {
     let dark = |k: u8| Some((base + k).to_string());
     let light = |k: u8| Some((base + 60 + k).to_string());
@@ -194,7 +194,7 @@ fn colour(colour: Color, base: u8) -> Option<String> {
     }
 }
 
-/// A text as JSON has it.
+/// A text as a JSON string.
 fn quoted(text: &str) -> String {
     let mut quoted = String::from('"');
     for c in text.chars() {
@@ -217,7 +217,7 @@ mod tests {
     use ratatui::style::Style;
 
     #[test]
-    fn only_rows_that_change_are_written_and_styles_end_with_their_row() {
+    fn only_changed_rows_are_written_and_styles_are_reset() {
         let area = Rect::new(0, 0, 4, 3);
         let before = Buffer::empty(area);
         let mut now = before.clone();

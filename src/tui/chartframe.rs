@@ -1,4 +1,4 @@
-//! The frame of a chart: an axis with labels on the left, a row of labels below, and the field between them.
+//! The frame of a chart: a vertical axis with labels on the left, a row of labels below, and the plot area between them.
 
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Rect;
@@ -6,17 +6,17 @@ use ratatui::style::Style;
 use ratatui::text::Line;
 use ratatui::widgets::Widget;
 
-/// Where the parts of a chart are.
+/// The layout of a chart.
 #[derive(Debug, Clone, Copy)]
 pub struct ChartFrame {
-    /// What is drawn in.
+    /// The plot area.
     pub field: Rect,
-    /// Columns left of it, for labels and the axis.
+    /// Columns to its left for labels and axis.
     labels: u16,
 }
 
 impl ChartFrame {
-    /// A frame that fills an area but for a column on the right, with so many columns for labels and the axis.
+    /// A frame that fills an area except for one column on the right; `labels` columns hold the labels and the axis.
     pub fn within(area: Rect, labels: u16) -> ChartFrame {
         let field = Rect {
             x: area.x + labels,
@@ -27,19 +27,19 @@ impl ChartFrame {
         ChartFrame { field, labels }
     }
 
-    /// A frame around a field.
+    /// A frame around a plot area.
     pub fn around(field: Rect, labels: u16) -> ChartFrame {
         ChartFrame { field, labels }
     }
 
-    /// The line of the vertical axis.
+    /// Draws the vertical axis.
     pub fn axis(&self, buffer: &mut Buffer, style: Style) {
         for row in 0..self.field.height {
             self.left(buffer, row, "", '│', style);
         }
     }
 
-    /// A label at the axis, in a row of the field.
+    /// Draws a label at the axis, in a row of the plot area.
     pub fn tick(&self, buffer: &mut Buffer, row: u16, label: &str, style: Style) {
         self.left(buffer, row, label, '┤', style);
     }
@@ -55,13 +55,13 @@ impl ChartFrame {
         Line::styled(format!("{label:>width$} {end}"), style).render(place, buffer);
     }
 
-    /// A label in the row below the field, from a column of the screen on, as far as the field goes and a column more.
+    /// Writes a label into the row below the plot area from a screen column on, cut off one column past the plot area.
     pub fn below(&self, buffer: &mut Buffer, column: u16, label: &str, style: Style) {
         let room = usize::from((self.field.right() + 1).saturating_sub(column));
         buffer.set_stringn(column, self.field.bottom(), label, room, style);
     }
 
-    /// The cell at a column of the field and a height from its top, in rows; none outside.
+    /// The cell at a column of the plot area and a height in rows from its top; `None` outside.
     pub fn cell<'a>(
         &self,
         buffer: &'a mut Buffer,
@@ -77,7 +77,7 @@ impl ChartFrame {
         }
     }
 
-    /// Puts a glyph there.
+    /// Writes a glyph at that cell.
     pub fn mark(&self, buffer: &mut Buffer, at: (usize, f64), glyph: &str, style: Style) {
         if let Some(cell) = self.cell(buffer, at.0, at.1) {
             cell.set_symbol(glyph).set_style(style);

@@ -1,4 +1,4 @@
-//! What the work-precision page shows, and what keys do to it.
+//! The state of the work-precision page, and its keys.
 
 use std::path::Path;
 use stickslip_study::csv::TableError;
@@ -6,48 +6,48 @@ use stickslip_study::measuring::NotMeasured;
 use stickslip_study::precision::{Cost, Precision};
 use stickslip_study::precision_table;
 
-/// Why there is no page.
+/// Why a chart cannot be shown.
 #[derive(Debug, thiserror::Error)]
 pub enum NoPage {
-    /// The table is unsound.
+    /// The table is invalid.
     #[error(transparent)]
     Table(#[from] TableError),
-    /// The chart could not be measured.
+    /// The measurement failed.
     #[error(transparent)]
     NotMeasured(#[from] Box<NotMeasured>),
     /// There is nothing to draw.
-    #[error("stopped before there was anything to compare")]
+    #[error("stopped before any run was finished")]
     Empty,
 }
 
-/// What the page shows.
+/// The work-precision page.
 #[derive(Debug, Clone)]
 pub struct ChartPage {
-    /// What messages call the table.
+    /// Name of the table in messages.
     name: String,
     text: String,
-    /// At least one.
+    /// Never empty.
     pub(super) charts: Vec<Precision>,
-    /// Which of the charts, and which of its runs.
+    /// The shown chart and the selected run.
     pub(super) chart: usize,
     pub(super) run: usize,
     pub(super) cost: Cost,
 }
 
 impl ChartPage {
-    /// Opens a table.
+    /// Opens a table of runs.
     ///
     /// # Errors
-    /// If it cannot be read.
+    /// If the file cannot be read.
     pub fn open(file: &str) -> Result<ChartPage, NoPage> {
         let text = precision_table::open(Path::new(file))?;
         ChartPage::of_table(file, text)
     }
 
-    /// The page of a chart that was just measured.
+    /// A page with a chart that was just measured.
     ///
     /// # Errors
-    /// If there is nothing in it to be shown.
+    /// If the chart has no runs.
     pub fn of_chart(chart: Precision) -> Result<ChartPage, NoPage> {
         if chart.points.is_empty() {
             return Err(NoPage::Empty);
@@ -67,7 +67,7 @@ impl ChartPage {
         })
     }
 
-    /// A key of its own; false where it is none.
+    /// Handles a key; returns false if the page does not use it.
     pub fn key(&mut self, name: &str) -> bool {
         let (charts, runs) = (self.charts.len(), self.shown().points.len());
         match name {
@@ -82,19 +82,19 @@ impl ChartPage {
         true
     }
 
-    /// The chart that is shown.
+    /// The shown chart.
     pub(super) fn shown(&self) -> &Precision {
         &self.charts[self.chart]
     }
 
-    /// Another kind of cost; the front is another then.
+    /// Switches to the next kind of cost, which changes the Pareto front.
     fn turn_cost(&mut self) {
         self.cost = match self.cost {
             Cost::Time => Cost::Factorizations,
             Cost::Factorizations => Cost::Minors,
             Cost::Minors => Cost::Time,
         };
-        // It could be read before.
+        // The same table was parsed before.
         if let Ok(charts) = precision_table::read(&self.name, &self.text, self.cost, None) {
             self.charts = charts;
         }

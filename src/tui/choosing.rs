@@ -1,4 +1,4 @@
-//! What the chooser offers, in groups, and which of it a typed text leaves.
+//! The entries of the chooser, in groups, and the filter that a typed text applies.
 
 use crate::view::View;
 use std::path::Path;
@@ -14,22 +14,22 @@ use stickslip_scene::embedded::EmbeddedFile;
 use stickslip_scene::format::SceneError;
 use stickslip_scene::{Scene, builtin};
 
-/// Most files of a folder that are offered, and most entries that are looked at.
+/// Maximum number of files listed from a folder, and of folder entries examined.
 const MOST: usize = 200;
 const LOOKED_AT: usize = 5000;
 
-/// The groups, in their order.
+/// Groups in display order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Group {
-    /// The paper's problems, and closed forms that its theory is held against.
+    /// The paper's problems and closed-form solutions that verify its theory.
     Paper,
-    /// Scenes whose iterations oscillate, jump, or have no answer.
+    /// Scenes whose iterations cycle, jump, or have no solution.
     Oscillations,
     /// Guided lessons.
     Lessons,
-    /// Scenes whose answers are known from elsewhere.
+    /// Scenes with published reference solutions.
     Benchmarks,
-    /// Scenes in the folder in which the program was started.
+    /// Scenes in the working directory.
     Files,
 }
 
@@ -42,21 +42,21 @@ stickslip_core::words! {
     Files "Your files in this folder",
 }
 
-/// Something that the chooser offers.
+/// An entry of the chooser.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Offer {
-    /// Where it stands.
+    /// Its group.
     pub group: Group,
-    /// The name by which it is opened.
+    /// The name that opens it.
     pub name: String,
-    /// Its title; empty where it is not read yet.
+    /// Its title; empty if it has not been read yet.
     pub title: String,
-    /// The user's progress, if it is a lesson.
+    /// The user's progress, for a lesson.
     pub reached: Option<Reached>,
 }
 
 impl Offer {
-    /// Whether it is a scene that the program carries.
+    /// Whether it is a built-in scene.
     pub fn is_scene(&self) -> bool {
         matches!(
             self.group,
@@ -65,17 +65,17 @@ impl Offer {
     }
 }
 
-/// The list of what can be opened, while it is shown.
+/// The open chooser.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Chooser {
-    /// What is selected of what is left, from 0.
+    /// Index of the selection among the filtered entries.
     pub at: usize,
-    /// What was typed.
+    /// The filter text.
     pub typed: String,
 }
 
 impl Chooser {
-    /// The offers that have every typed word in their name, title or group, whatever the case of its letters.
+    /// The entries whose name, title or group contains every typed word, ignoring case.
     pub fn left<'a>(&self, offers: &'a [Offer]) -> Vec<&'a Offer> {
         let typed = self.typed.to_lowercase();
         let has = |offer: &&Offer| {
@@ -86,12 +86,12 @@ impl Chooser {
         offers.iter().filter(has).collect()
     }
 
-    /// The selected one.
+    /// The selected entry.
     pub fn selected<'a>(&self, offers: &'a [Offer]) -> Option<&'a Offer> {
         self.left(offers).get(self.at).copied()
     }
 
-    /// Types a text behind what was typed, or with none takes the last letter away.
+    /// Appends to the filter text; an empty text deletes the last letter.
     pub fn type_text(&mut self, text: &str) {
         match text {
             "" => drop(self.typed.pop()),
@@ -101,32 +101,32 @@ impl Chooser {
     }
 }
 
-/// What is known of the selected offer, for its preview.
+/// The preview of the selected entry.
 #[derive(Debug, Clone)]
 pub struct Preview {
-    /// Whose it is.
+    /// Name of the entry.
     pub name: String,
-    /// What it is, or why it cannot be opened.
+    /// The preview, or why the entry cannot be opened.
     pub what: Result<Glance, String>,
 }
 
-/// A first look at a scene, alone or of a lesson.
+/// Content of a preview: a scene, or a lesson with its scene.
 #[derive(Debug, Clone)]
 pub struct Glance {
     /// Whether it is a lesson.
     pub is_lesson: bool,
-    /// Its title.
+    /// The scene's title.
     pub title: String,
-    /// What it is about.
+    /// Its description.
     pub about: String,
     /// The scene's model.
     pub model: Arc<Model>,
-    /// Its start.
+    /// Its initial frame.
     pub frame: Frame,
 }
 
 impl Preview {
-    /// Looks at an offer. A file can be a scene or a lesson.
+    /// Loads the preview of an entry. A file can be a scene or a lesson.
     pub fn of(offer: &Offer) -> Preview {
         let name = offer.name.clone();
         let what = match offer.group {
@@ -140,7 +140,7 @@ impl Preview {
 }
 
 impl Preview {
-    /// What the shape shows of it, where it can be opened.
+    /// The view that draws the preview's shape; `None` if the entry cannot be opened.
     pub fn view(&self) -> Option<View<'_>> {
         let glance = self.what.as_ref().ok()?;
         Some(View {
@@ -161,18 +161,18 @@ impl Preview {
     }
 }
 
-/// An offer that is looked at, on a thread of its own.
+/// Loads previews on a background thread.
 #[derive(Debug, Default)]
 pub struct Looking(Option<(String, Receiver<Preview>)>);
 
 impl Looking {
-    /// Whether something is looked at.
+    /// Whether a preview is loading.
     pub fn is_busy(&self) -> bool {
         self.0.is_some()
     }
 
-    /// What was found of the selected offer, once it is there; begins to look at it where it is not known yet. Nobody looks
-    /// for a closed chooser.
+    /// Returns the preview of the selected entry once it is loaded, and starts loading it if necessary. A closed chooser needs
+    /// none.
     pub fn follow(
         &mut self,
         chooser: Option<&Chooser>,
@@ -193,7 +193,7 @@ impl Looking {
             self.0 = Some((offer.name.clone(), seen));
             let offer = offer.clone();
             thread::spawn(move || {
-                // Nobody may want it any more.
+                // The receiver may be gone.
                 let _ = told.send(Preview::of(&offer));
             });
         }
@@ -231,7 +231,7 @@ fn glance(model: Model, title: String, about: String, is_lesson: bool) -> Glance
     }
 }
 
-/// What the program itself has, and the files of the folder in which it runs.
+/// The built-in entries, and the files of the working directory.
 pub fn offers(progress: &Progress) -> Vec<Offer> {
     let scene = |scene: &EmbeddedFile| Offer {
         group: match scene.name.split('-').next() {
@@ -252,13 +252,13 @@ pub fn offers(progress: &Progress) -> Vec<Offer> {
     let scenes = builtin::list().iter().map(scene);
     let lessons = teach::list().iter().map(lesson);
     let mut all: Vec<Offer> = scenes.chain(lessons).collect();
-    // Groups stand together, each in its own order.
+    // The sort is stable: entries keep their order within each group.
     all.sort_by_key(|offer| offer.group as usize);
     all.extend(files(Path::new(".")));
     all
 }
 
-/// Scene files of a folder, by name.
+/// Scene files of a folder, sorted by name.
 pub fn files(folder: &Path) -> Vec<Offer> {
     let Ok(entries) = std::fs::read_dir(folder) else {
         return Vec::new();
@@ -288,7 +288,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn typed_words_leave_what_has_them_all() {
+    fn the_filter_keeps_entries_with_all_typed_words() {
         let offers = offers(&Progress::default());
         let left = |typed: &str| -> Vec<String> {
             let chooser = Chooser {
@@ -307,7 +307,7 @@ mod tests {
     }
 
     #[test]
-    fn every_offer_of_the_program_has_a_picture() {
+    fn every_built_in_entry_has_a_picture() {
         let offers = offers(&Progress::default());
         for offer in offers.iter().filter(|offer| offer.group != Group::Files) {
             let preview = Preview::of(offer);

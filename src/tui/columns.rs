@@ -1,21 +1,21 @@
-//! Columns of iterations, one beside the other, with rules between them: what all timelines draw with.
+//! Columns of iterations with rules between them, shared by all timelines.
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 use std::ops::Range;
 
-/// A visible iteration and where it stands.
+/// A visible iteration and its screen column.
 #[derive(Debug, Clone, Copy)]
 pub struct Column {
-    /// Its number, from 0.
+    /// Index of the iteration.
     pub at: usize,
-    /// Its place on the screen.
+    /// Screen column.
     pub x: u16,
 }
 
-/// The iterations around the cursor that fit into the room from `left` on: the cursor in the middle where both sides are long.
-/// A rule before an iteration takes a column more.
+/// The iterations around the cursor that fit between `left` and the right edge, with the cursor in the middle if there are enough
+/// on both sides. A rule before an iteration takes one more column.
 pub fn around(
     count: usize,
     cursor: usize,
@@ -48,7 +48,7 @@ pub fn around(
     columns
 }
 
-/// The rows that are visible of so many, where there is room for `rows`: the selected one in the middle.
+/// The range of `count` rows that is visible in `rows` rows, with the selected row in the middle if possible.
 pub fn rows_shown(rows: usize, selected: usize, count: usize) -> Range<usize> {
     let top = selected
         .saturating_sub(rows / 2)
@@ -56,8 +56,8 @@ pub fn rows_shown(rows: usize, selected: usize, count: usize) -> Range<usize> {
     top..(top + rows).min(count)
 }
 
-/// Headings in two rows over the columns where something begins, where they do not run into each other. An iteration is
-/// told by a key for each row, which changes where the row needs a new heading, and the heading.
+/// Headings in two rows above the columns, left out where they would overlap. `heading` gives, for each of the two rows, a key and
+/// a text; a new heading starts where the key changes.
 pub fn headings<K: PartialEq>(
     buffer: &mut Buffer,
     inner: Rect,
@@ -81,7 +81,7 @@ pub fn headings<K: PartialEq>(
     }
 }
 
-/// A bracket under the columns of a cycle, from one to another, and what it is called on its right, where there is room.
+/// Draws a bracket under the columns of a cycle, with its label on the right if it fits.
 pub fn bracket(
     buffer: &mut Buffer,
     right: u16,

@@ -1,4 +1,4 @@
-//! A line being typed at the bottom of the screen: `:` commands, and the answers to `i` and `/`.
+//! The input line at the bottom of the screen: `:` commands, and the answers to `i` and `/`.
 
 use crate::paint;
 use crate::theme::Theme;
@@ -11,33 +11,33 @@ use stickslip_scene::shown;
 use tui_input::{Input, InputRequest, backend::crossterm::EventHandler};
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
-/// What the line is for.
+/// What is being typed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Purpose {
-    /// Any action by name.
+    /// Any action, by name.
     Command,
-    /// The size of the increment.
+    /// The increment.
     Increment,
-    /// The name of a node, or a part of it.
+    /// A node's name, or part of it.
     Node,
     /// A number that answers a lesson's question.
     Answer,
 }
 
-/// A line being typed.
+/// An input line.
 #[derive(Debug, Clone)]
 pub struct CommandLine {
-    /// What the line is for.
+    /// What is being typed.
     pub purpose: Purpose,
     input: Input,
-    /// Completions of what was typed, and which of them is shown.
+    /// Completions of the line, and the index of the one shown.
     completions: Option<(Vec<String>, usize)>,
-    /// How far back in the history the line comes from; 0 is a new line.
+    /// Position in the history, counted from its end; 0 is a new line.
     back: usize,
 }
 
 impl CommandLine {
-    /// An open line.
+    /// A line with an initial text.
     pub fn new(purpose: Purpose, text: &str) -> Self {
         CommandLine {
             purpose,
@@ -47,18 +47,18 @@ impl CommandLine {
         }
     }
 
-    /// What stands in it.
+    /// The text.
     pub fn text(&self) -> &str {
         self.input.value()
     }
 
-    /// A key that edits.
+    /// Handles an editing key.
     pub fn edit(&mut self, key: &KeyEvent) {
         self.completions = None;
         self.input.handle_event(&Event::Key(*key));
     }
 
-    /// Types a text; line ends and whatever else is no letter become blanks.
+    /// Inserts a text; line ends and control characters become blanks.
     pub fn insert(&mut self, text: &str) {
         self.completions = None;
         for letter in text.trim_end().chars() {
@@ -67,7 +67,7 @@ impl CommandLine {
         }
     }
 
-    /// Completes what was typed; again and again for the next one (or the one before).
+    /// Completes the text; repeated calls step through the completions by `by`.
     pub fn complete(&mut self, by: isize, context: &Context) {
         let (candidates, at) = match self.completions.take() {
             Some((candidates, at)) => {
@@ -80,7 +80,7 @@ impl CommandLine {
             return;
         };
         self.input = Input::new(text.clone());
-        // A single completion is done with: the next Tab completes the next word.
+        // A single completion is final: the next Tab completes the next word.
         match candidates.len() {
             1 if self.purpose == Purpose::Command && !self.goes_on() => self.insert_blank(),
             1 => {}
@@ -88,7 +88,7 @@ impl CommandLine {
         }
     }
 
-    /// Whether what was completed is a path, after which no word comes: a folder goes on with what is in it.
+    /// Whether the completed word is a path, which takes no blank: Tab then completes inside a folder.
     fn goes_on(&self) -> bool {
         let mut words = self.text().split_whitespace();
         words.next().is_some_and(action::takes_path) && words.next().is_some()
@@ -109,7 +109,7 @@ impl CommandLine {
         }
     }
 
-    /// Brings back an older line (or, with −1, a newer one).
+    /// Recalls an older line from the history (a newer one with −1).
     pub fn recall(&mut self, by: isize, history: &[String]) {
         if self.purpose != Purpose::Command {
             return;
@@ -123,7 +123,7 @@ impl CommandLine {
         self.input = Input::new(text.into());
     }
 
-    /// The line as it is shown after a prompt, its cursor a reversed cell, in as many rows as it needs.
+    /// The line after a prompt, with the cursor as a reversed cell, in as many rows as it needs.
     pub fn lines(&self, prompt: &str, width: usize, theme: &Theme) -> Vec<Line<'static>> {
         let cursor = theme.text.add_modifier(Modifier::REVERSED);
         let at = self.input.cursor();
@@ -148,7 +148,7 @@ impl CommandLine {
         rows.into_iter().map(Line::from).collect()
     }
 
-    /// What the footer says while the line is open: the completions, or what the action takes.
+    /// The footer while the line is open: the completions, or the arguments of the action.
     pub fn hint(&self, context: &Context, width: usize, theme: &Theme) -> Vec<Line<'static>> {
         if let Some((candidates, at)) = &self.completions {
             let words = candidates
@@ -159,16 +159,16 @@ impl CommandLine {
         let name = self.text().split_whitespace().next();
         let hint = match (self.purpose, name.map(|name| context.entry(name))) {
             (Purpose::Increment, _) => {
-                "Enter: this increment starts again with it   Esc: leave it".into()
+                "Enter: restart this increment with it   Esc: cancel".into()
             }
-            (Purpose::Answer, _) => "a number; Enter answers   Esc: look again first".into(),
+            (Purpose::Answer, _) => "Enter: answer with this number   Esc: back to the panes".into(),
             (Purpose::Node, _) => {
-                "a name or a part of it; Enter goes to the next, Enter alone to the next of before"
+                "a node's name or part of it; Enter finds the next match, Enter alone repeats the search"
                     .into()
             }
             (Purpose::Command, Some(Ok(entry))) if entry.offered(context).is_err() => {
                 let why = entry.offered(context).err().unwrap_or_default();
-                format!("{} {}   not here: {why}", entry.name, entry.arguments)
+                format!("{} {}   not available: {why}", entry.name, entry.arguments)
             }
             (Purpose::Command, Some(Ok(entry)))
                 if entry.name == "set" && context.offers.is_some() =>
@@ -181,7 +181,7 @@ impl CommandLine {
             }
             (Purpose::Command, Some(Err(_))) => choices(self.text(), context),
             (Purpose::Command, None) => {
-                "an action's name; Tab completes, Up recalls, Esc leaves".into()
+                "name of an action; Tab completes, Up recalls, Esc cancels".into()
             }
         };
         let lines = paint::wrap(&hint, width.saturating_sub(2)).into_iter();
@@ -189,7 +189,7 @@ impl CommandLine {
         lines.map(line).collect()
     }
 
-    /// What there is to say of the parameter that is being set, or of all of them.
+    /// Describes the parameter that is being set, or lists all parameters.
     fn parameter(&self, entry: &Entry, context: &Context) -> String {
         let rest = self.text().trim_start().split_once(char::is_whitespace);
         match rest.and_then(|(_, rest)| action::parameter(rest, context)) {
@@ -208,7 +208,7 @@ impl CommandLine {
                     .flat_map(|offers| &offers.parameters);
                 let names: Vec<&str> = names.map(|known| known.name.as_str()).collect();
                 format!(
-                    "{} NAME VALUE   of: {}   (:parameters tells more)",
+                    "{} NAME VALUE   names: {}   (details: :parameters)",
                     entry.name,
                     names.join(", ")
                 )
@@ -216,9 +216,9 @@ impl CommandLine {
         }
     }
 
-    /// What of a completion is shown: the word that it completes, of a path the last part.
+    /// The displayed part of a completion: the completed word, or the last component of a path.
     fn told<'a>(&self, candidate: &'a str, context: &Context) -> Cow<'a, str> {
-        // Colour alone would not tell what is not offered.
+        // Parentheses mark actions that are not available, since colour alone must not.
         let grey = |name: &str| {
             context
                 .entry(name)
@@ -251,10 +251,10 @@ impl CommandLine {
     }
 }
 
-/// Most rows that completions take.
+/// Maximum rows of completions.
 const COMPLETIONS: usize = 6;
 
-/// Completions beside each other, in several rows where one has no room for them; the one that is shown is among them.
+/// Completions in a row, or in several rows if they do not fit; the rows shown include the current one.
 fn completions<'a>(
     words: impl Iterator<Item = Cow<'a, str>>,
     at: usize,
@@ -288,7 +288,7 @@ fn completions<'a>(
     shown.map(Line::from).collect()
 }
 
-/// The present keys of an action, where it has any.
+/// The current keys of an action in brackets; empty if it has none.
 fn keys(entry: &'static Entry, context: &Context) -> String {
     let keys = match context.keymap {
         Some(keymap) => keymap.keys(entry).collect::<Vec<_>>().join(" "),
@@ -300,10 +300,10 @@ fn keys(entry: &'static Entry, context: &Context) -> String {
     }
 }
 
-/// The actions that a beginning could mean.
+/// The actions that start with the typed text.
 fn choices(text: &str, context: &Context) -> String {
     match action::complete(text.trim_start(), context) {
-        found if found.is_empty() => "no action is called so; Esc and ? list them".into(),
+        found if found.is_empty() => "no such action; Esc, then ? lists all".into(),
         found => {
             let grey = |name: &String| {
                 context
@@ -329,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn tab_completes_and_goes_round() {
+    fn tab_cycles_through_completions() {
         let context = Context::default();
         let mut line = typed("ste");
         line.complete(1, &context);
@@ -372,7 +372,7 @@ mod tests {
     }
 
     #[test]
-    fn any_width_shows_all_that_is_typed_and_the_cursor_behind_it() {
+    fn any_width_shows_the_whole_line_and_the_cursor() {
         let line = typed("set settings.at_minor_limit accept");
         for width in 0..60 {
             let rows = line.lines(":", width, &Theme::mono());

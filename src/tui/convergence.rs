@@ -1,4 +1,4 @@
-//! A chart of how iterations converge: two numbers of each on a log scale, with the limits that they must get under.
+//! A chart of convergence: two quantities per iteration on a log scale, with their limits.
 
 use crate::canvas::Canvas;
 use crate::chartframe::ChartFrame;
@@ -6,9 +6,9 @@ use crate::theme::Theme;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
-/// Width of the labels at the axis, the axis included.
+/// Width of the axis with its labels.
 pub const LABELS: u16 = 7;
-/// Most columns between two iterations.
+/// Maximum number of columns between two iterations.
 const SPREAD: usize = 14;
 
 /// An iteration.
@@ -16,13 +16,13 @@ const SPREAD: usize = 14;
 pub struct Point {
     /// Its number.
     pub number: u32,
-    /// The number that counts, ●, and its limit.
+    /// The main quantity, ●.
     pub main: f64,
-    /// What it must get under.
+    /// Its limit.
     pub limit: f64,
-    /// The other number, ○.
+    /// The other quantity, ○.
     pub other: f64,
-    /// What that must get under, if it has a limit of its own.
+    /// Its limit, if it has a separate one.
     pub other_limit: Option<f64>,
 }
 
@@ -34,7 +34,7 @@ impl Point {
     }
 }
 
-/// The vertical axis: decades from the top down, and under them a row for what is exactly zero, if anything is.
+/// The vertical axis: decades from the top down, then a row for exact zeros if there are any.
 struct Scale {
     top: f64,
     bottom: f64,
@@ -68,7 +68,7 @@ impl Scale {
         }
     }
 
-    /// Height of a value in rows from the top; what is not finite is at the top.
+    /// Height of a value in rows from the top; NaN and infinity are drawn at the top.
     fn height(&self, value: f64) -> f64 {
         match value {
             v if v <= 0.0 => f64::from(self.rows) + 0.5,
@@ -81,12 +81,12 @@ impl Scale {
     }
 }
 
-/// Whether a chart has room in an area.
+/// Whether an area is large enough for a chart.
 pub fn fits(area: Rect) -> bool {
     area.height >= 4 && area.width > LABELS + 4
 }
 
-/// Draws the last iterations, as many as there is room for.
+/// Draws the last iterations that fit.
 pub fn draw(buffer: &mut Buffer, area: Rect, points: &[Point], theme: &Theme) {
     let frame = ChartFrame::within(area, LABELS);
     let field = frame.field;
@@ -96,7 +96,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, points: &[Point], theme: &Theme) {
     let spread = (field.width as usize / shown.len().max(6)).clamp(2, SPREAD);
     let column = |index: usize| index * spread + spread / 2;
 
-    // What is drawn stands on faint ground.
+    // Lines and marks are drawn over the dim background.
     let ground = Rect {
         height: field.height,
         ..area
@@ -125,7 +125,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, points: &[Point], theme: &Theme) {
         let good = point.main <= point.limit;
         let style = if good { theme.good } else { theme.strong };
         frame.mark(buffer, at(point.main), "●", style);
-        // The number of an iteration under its column, where it fits.
+        // The iteration's number under its column, if it fits.
         let text = point.number.to_string();
         let middle = field.x as usize + column(index);
         let start = middle.saturating_sub(text.len() / 2);
@@ -136,7 +136,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, points: &[Point], theme: &Theme) {
     }
 }
 
-/// Decades at the axis.
+/// Labels of the decades.
 fn axis(buffer: &mut Buffer, frame: ChartFrame, scale: &Scale, theme: &Theme) {
     let decades = (scale.top - scale.bottom) as usize;
     let every = decades
@@ -154,7 +154,7 @@ fn axis(buffer: &mut Buffer, frame: ChartFrame, scale: &Scale, theme: &Theme) {
     }
 }
 
-/// The limit, as far as one iteration reaches.
+/// The limit across the width of one iteration.
 fn limit(
     buffer: &mut Buffer,
     frame: ChartFrame,
@@ -188,7 +188,7 @@ mod tests {
     }
 
     #[test]
-    fn zero_has_a_row_of_its_own_under_the_decades() {
+    fn zero_has_a_separate_row_below_the_decades() {
         let one = Point {
             other: 0.0,
             ..point(1.0)
@@ -201,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn odd_numbers_have_a_place() {
+    fn nan_and_infinity_are_drawn() {
         for value in [f64::NAN, f64::INFINITY, 0.0, 1e-320] {
             let odd = Point {
                 limit: 0.0,

@@ -1,4 +1,4 @@
-//! What `Y` copies: what is selected in the pane with the focus, as text for the terminal's clipboard.
+//! `Y`: copies the selection of the focused pane to the terminal's clipboard, as text.
 
 use crate::app::{App, Effect};
 use crate::layout::Pane;
@@ -11,16 +11,16 @@ use stickslip_debugger::history::verdicts::{self, summaries};
 use stickslip_debugger::history::watches::{Watch, WatchQuantity};
 use stickslip_scene::shown;
 
-/// Most bytes that are copied: terminals take no more than about this in one order.
+/// Maximum length in bytes: terminals reject longer clipboard sequences.
 const MOST: usize = 50_000;
-/// Most characters of it that the message shows.
+/// Maximum number of characters that the message shows.
 const SHOWN: usize = 60;
 
-/// A text, and what to call it.
+/// A name for the message, and the copied text.
 type Called = (String, String);
 
 impl App {
-    /// Copies something, and says what.
+    /// Copies something and shows what was copied.
     pub(super) fn copy(&mut self, what: Option<Copied>, view: Option<&View>) -> Option<Effect> {
         let copied = match (what, view) {
             (Some(Copied::Keys), _) => Ok(("the keys".into(), self.keymap.text())),
@@ -33,7 +33,7 @@ impl App {
         match copied {
             Ok((_, text)) if text.len() > MOST => {
                 self.complain(format!(
-                    "that is {} bytes, and terminals take no more than {MOST} at once",
+                    "selection too large: {} bytes; terminals accept at most {MOST}",
                     text.len()
                 ));
                 None
@@ -52,14 +52,14 @@ impl App {
 
     fn last_line(&self) -> Result<Called, String> {
         let line = self.history.last().cloned();
-        let line = line.ok_or("no command was typed yet; : types one")?;
+        let line = line.ok_or("no command in the history yet; press : to type one")?;
         Ok(("the command".into(), line))
     }
 
-    /// What is selected in the pane with the focus.
+    /// The selection of the focused pane.
     fn selected_text(&self, view: &View) -> Result<Called, String> {
         if screen::is_hidden(self.focus, self, view) {
-            return Err("that is hidden until you have said what follows".into());
+            return Err("hidden until you predict what follows".into());
         }
         match self.focus {
             Pane::Nodes | Pane::Shape | Pane::Lesson => self.row(view),
@@ -71,7 +71,7 @@ impl App {
                 let all = view.tree.map(summaries).unwrap_or_default();
                 let order = verdicts::order(&all);
                 let row = order.get(self.branch).or(order.first());
-                let (number, _) = row.ok_or("there is no branch")?;
+                let (number, _) = row.ok_or("no branch to copy")?;
                 Ok(("a command".into(), format!("branch b{}", number + 1)))
             }
             Pane::Remedies => {
@@ -80,20 +80,20 @@ impl App {
                 let at = self.remedy.min(trials.len().saturating_sub(1));
                 let trial = trials
                     .get(at)
-                    .ok_or("no remedy is tried yet; r tries them all")?;
+                    .ok_or("no remedy tried yet; press r to try all")?;
                 let mut cells = vec![trial.label.clone()];
                 cells.extend(remedies::row(trial));
                 Ok(("the remedy".into(), cells.join("\t")))
             }
             Pane::Diagnosis => {
                 let found = view.examination().flatten();
-                let found = found.ok_or("nothing is found out yet; d looks")?;
+                let found = found.ok_or("no diagnosis yet; press d")?;
                 Ok(("the diagnosis".into(), found.lines.join("\n")))
             }
         }
     }
 
-    /// The selected slave node and all of its numbers, parted by tabs.
+    /// The selected slave node and all its numbers, separated by tabs.
     fn row(&self, view: &View) -> Result<Called, String> {
         let count = view.model.contacts.len();
         let slave = self.selected.min(count.saturating_sub(1));
@@ -121,15 +121,15 @@ impl App {
             return Err("this scene has no slave nodes".into());
         }
         if quantity == WatchQuantity::Margin && self.hides(view, slave) {
-            return Err("that is hidden until you have said what follows".into());
+            return Err("hidden until you predict what follows".into());
         }
         let watch = Watch::new(view.model, quantity, slave);
         let value = watch.value(view.frame());
-        let value = value.ok_or_else(|| format!("nothing is solved for {} here", watch.name))?;
+        let value = value.ok_or_else(|| format!("{} has no value here", watch.name))?;
         Ok((watch.name, format!("{value:e}")))
     }
 
-    /// The load and the shown monitor's value at the last accepted increment.
+    /// The load and the shown monitor at the last accepted increment.
     fn monitored(&self, view: &View) -> Result<Called, String> {
         let monitor = view.model.monitors.get(self.monitor);
         let monitor = monitor.ok_or("this scene has no monitors")?;
@@ -137,7 +137,7 @@ impl App {
         let frame = frames.iter().rev().find(|frame| frame.monitors.is_some());
         let value = frame.and_then(|frame| frame.monitors.as_ref()?.get(self.monitor).copied());
         let (Some(frame), Some(value)) = (frame, value) else {
-            return Err("no increment is done yet".into());
+            return Err("no increment accepted yet".into());
         };
         let load = frame.state.start.load_factor;
         Ok((

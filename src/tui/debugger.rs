@@ -1,4 +1,4 @@
-//! The debugger without its terminal: an app, a session, and what waits for the solver. Keys in, screens out.
+//! The debugger without its terminal: an [`App`], a session, and the queue of keys that wait for the solver. Keys in, screens out.
 
 use crate::app::{App, Effect, Opens, Overlay, Reading};
 use crate::chartpage::{ChartPage, NoPage};
@@ -26,58 +26,58 @@ use stickslip_debugger::teach::{Lesson, Tutor};
 use stickslip_scene::shown;
 use stickslip_study::measuring::Measuring;
 
-/// How long a step may take for the next key to wait for it, so that quick steps neither flicker nor pile up.
+/// Steps shorter than this delay the next key instead of queueing it, so that the screen does not flicker.
 const QUICK: Duration = Duration::from_millis(30);
 
-/// What there is to choose from, with what was done of the lessons.
+/// The entries of the chooser, with the progress in the lessons.
 pub fn offers() -> Vec<Offer> {
     let progress = progress::place().and_then(|file| Progress::read(&file).ok());
     choosing::offers(&progress.unwrap_or_default())
 }
 
-/// What only the event loop can do.
+/// A request that only the event loop can carry out.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Outside {
-    /// Leave.
+    /// Quit.
     Quit,
-    /// Go back to the shell for a while.
+    /// Suspend the program.
     Suspend,
-    /// Draw the whole screen anew.
+    /// Redraw the whole screen.
     Redraw,
     /// Copy a text to the terminal's clipboard.
     Copy(String),
-    /// Heed the mouse, or leave it to the terminal.
+    /// Turn mouse support on or off.
     Mouse(bool),
 }
 
-/// The debugger without its terminal: keys in, screens out.
+/// The debugger without its terminal.
 pub struct Debugger {
-    /// What the terminal alone knows.
+    /// The state of the terminal front end.
     pub app: App,
-    /// The session; `None` before a scene is chosen.
+    /// The session; `None` until a scene is opened.
     pub session: Option<Session>,
-    /// What keys that had to wait ask of the event loop.
+    /// Requests to the event loop from queued keys.
     pub(super) outside: VecDeque<Outside>,
-    /// When the solver began with what it is at.
+    /// Start time of the current computation.
     begun: Instant,
-    /// Frames of the session when the screen was last drawn.
+    /// Number of frames in the session at the last draw.
     frames: usize,
-    /// Whether scenes that are opened here get a journal.
+    /// Whether scenes opened here get a journal.
     pub(super) keeps: bool,
-    /// A chart that is being measured.
+    /// The chart that is being measured.
     measuring: Option<Measuring>,
-    /// A file that is being read.
+    /// The file that is being loaded.
     pub(super) loading: Option<Loading>,
-    /// An offer that is looked at.
+    /// The preview that is being loaded.
     pub(super) looking: Looking,
-    /// How far the user came in the lessons, kept.
+    /// Stores the progress in lessons.
     progress: Keeper,
-    /// Whether offers are listed anew, with what is in the folder, when they are shown.
+    /// Whether the chooser's entries are listed again, with the files of the folder, each time it opens.
     lists: bool,
 }
 
 impl Debugger {
-    /// A debugger on a session, or one that offers scenes.
+    /// A debugger for a session, or one that opens the chooser.
     pub fn new(theme: Theme, offers: Vec<Offer>, session: Option<Session>) -> Self {
         let mut app = App::new(theme, offers);
         match &session {
@@ -99,13 +99,13 @@ impl Debugger {
         }
     }
 
-    /// From here on progress in lessons is kept, and offers are what is there.
+    /// From now on stores the progress in lessons, and lists the files of the folder in the chooser.
     pub(super) fn in_the_world(&mut self) {
         self.progress = Keeper::new(progress::place());
         self.lists = true;
     }
 
-    /// Keeps progress in lessons in this file.
+    /// Stores the progress in lessons in this file.
     pub fn keep_progress_in(&mut self, file: PathBuf) {
         self.progress = Keeper::new(Some(file));
     }
@@ -121,7 +121,7 @@ impl Debugger {
         }
     }
 
-    /// Looks at the offer that is selected. Returns whether there is anything new to draw.
+    /// Follows the preview of the selected entry. Returns whether there is anything new to draw.
     fn preview(&mut self) -> bool {
         let chooser = match &self.app.overlay {
             Overlay::Chooser(chooser) => Some(chooser),
@@ -134,32 +134,32 @@ impl Debugger {
         any
     }
 
-    /// Says in a line where the journal is, or that there is none any more, to whoever started the program.
+    /// Prints one line on exit: where the journal is, or why there is none.
     pub(super) fn part(&self) {
         let Some(session) = &self.session else { return };
         let told = match (session.journal(), session.lost_journal()) {
             (Some(path), _) => {
                 let path = path.display();
-                format!("journal: {path} (`stickslip resume {path}` goes on with it)")
+                format!("journal: {path} (`stickslip resume {path}` continues it)")
             }
             (None, Some(why)) => format!("no journal: {why}"),
             (None, None) => return,
         };
-        // There may be nobody any more.
+        // Standard error may be closed.
         let _ = writeln!(io::stderr(), "{}", shown::line(&told));
     }
 
-    /// What the panes show.
+    /// The data that the panes draw.
     pub fn view(&self) -> Option<View<'_>> {
         self.session.as_ref().map(View::of)
     }
 
-    /// Whether the solver is at work.
+    /// Whether the solver is running.
     pub fn is_busy(&self) -> bool {
         self.session.as_ref().is_some_and(Session::is_running)
     }
 
-    /// Takes in what came from the terminal.
+    /// Handles an event from the terminal.
     pub fn event(&mut self, event: &Event) -> Option<Outside> {
         match event {
             Event::Key(key) => {
@@ -182,7 +182,7 @@ impl Debugger {
         }
     }
 
-    /// Takes in a key.
+    /// Handles a key.
     pub fn key(&mut self, key: &KeyEvent) -> Option<Outside> {
         let view = self.session.as_ref().map(View::of);
         let chose = matches!(self.app.overlay, Overlay::Chooser(_));
@@ -194,7 +194,7 @@ impl Debugger {
         self.carry_out(effect?)
     }
 
-    /// Does what a key asks of the world outside the app, as far as that is not the event loop's.
+    /// Carries out an effect, unless only the event loop can.
     fn carry_out(&mut self, effect: Effect) -> Option<Outside> {
         match effect {
             Effect::Quit => return Some(Outside::Quit),
@@ -211,7 +211,7 @@ impl Debugger {
         None
     }
 
-    /// Does what waited, as far as it need not wait any longer. Returns whether there was anything.
+    /// Handles queued input that need not wait any longer. Returns whether there was any.
     fn resume(&mut self) -> bool {
         let mut any = false;
         while !self.is_busy() {
@@ -232,10 +232,10 @@ impl Debugger {
     fn load(&mut self, loading: Loading, opens: Opens, name: &str) {
         self.loading = Some(loading);
         self.app.loading = Some(opens);
-        self.app.say(format!("reading {name}; Ctrl-C gives it up"));
+        self.app.say(format!("loading {name}; Ctrl-C cancels"));
     }
 
-    /// Shows what was read, once nothing lies over the panes but the list of scenes. Returns whether there was anything.
+    /// Shows a loaded file, once no overlay but the chooser is open. Returns whether anything changed.
     fn follow_loading(&mut self) -> bool {
         if !self.app.is_open_to_pages() {
             return false;
@@ -257,7 +257,7 @@ impl Debugger {
         true
     }
 
-    /// Types keys by their names, parted by blanks, and waits for the solver after each. For tests and pictures.
+    /// Types keys, named as in the key table and separated by blanks, and waits for the solver after each. For tests and pictures.
     pub fn type_keys(&mut self, names: &str) {
         for key in names.split_whitespace().filter_map(keys::press) {
             self.key(&key);
@@ -265,7 +265,7 @@ impl Debugger {
         }
     }
 
-    /// Types a text, letter by letter.
+    /// Types a text letter by letter.
     pub fn type_text(&mut self, text: &str) {
         for letter in text.chars() {
             if let Some(key) = keys::press(&letter.to_string()) {
@@ -274,7 +274,7 @@ impl Debugger {
         }
     }
 
-    /// Waits until the solver has nothing left to do, and nothing waits for it.
+    /// Waits until the solver is idle and the queue is empty.
     pub fn settle(&mut self) {
         loop {
             let moved = self.advance();
@@ -285,7 +285,7 @@ impl Debugger {
                 continue;
             }
             let open = self.app.is_open_to_pages();
-            // Under another page these would wait for ever.
+            // Behind another page these would never finish.
             if open && (self.loading.is_some() || self.measuring.is_some()) {
                 std::thread::sleep(Duration::from_millis(1));
                 continue;
@@ -312,7 +312,7 @@ impl Debugger {
             return;
         };
         self.begun = Instant::now();
-        // The page itself says that it is being looked for.
+        // The page itself shows that the analysis is running.
         let shown = match command {
             Command::Census(_) => self.app.focus == Pane::Diagnosis,
             Command::Remedies => self.app.focus == Pane::Remedies,
@@ -330,8 +330,8 @@ impl Debugger {
         }
     }
 
-    /// Says what a job led to. A solver that was lost is told until a key is pressed, and what was typed ahead of it is forgotten:
-    /// it would start it anew.
+    /// Shows the result of a job. The loss of an attached solver is shown until the next key, and queued input is discarded, since
+    /// it would restart the solver.
     fn ended(&mut self, reply: Reply) {
         let lost = self
             .session
@@ -349,7 +349,7 @@ impl Debugger {
         self.tell(reply);
     }
 
-    /// Hears what an attached solver says. Returns whether there was anything.
+    /// Takes notice of new lines in an attached solver's log. Returns whether there were any.
     fn hear(&mut self) -> bool {
         let Some(log) = self.session.as_ref().and_then(Session::log) else {
             return false;
@@ -363,20 +363,20 @@ impl Debugger {
         any
     }
 
-    /// Says what a command led to, unless the status at the top says the same.
+    /// Shows the reply to a command, unless the status at the top already shows it.
     fn tell(&mut self, Reply(text): Reply) {
         let known = self.session.as_ref().and_then(|session| {
             match (session.is_running(), &session.frame().event) {
-                // What the solver does again is told above.
+                // The status line shows which iterations the solver repeats.
                 (true, _) => Some(text.clone()),
                 (false, Some(event)) => Some(report::outcome(session.model(), event)),
                 (false, None) => None,
             }
         });
-        // Neither must this line tell what is still to be predicted.
+        // The message must not reveal what the user still has to predict.
         let view = self.session.as_ref().map(View::of);
         let hidden = view.is_some_and(|view| !view.running && self.app.hides_any(&view));
-        // What the outcome says is above already.
+        // The status line already shows the outcome.
         let new = match &known {
             Some(known) => text.strip_prefix(known.as_str()).unwrap_or(&text),
             None => &text,
@@ -398,7 +398,7 @@ impl Debugger {
         self.app.say(said);
     }
 
-    /// Where to find the explanation of a failure; empty if there is no failure.
+    /// Which keys explain a failure; empty if there is no failure.
     fn next_step(&self) -> String {
         let idle = self
             .session
@@ -427,13 +427,15 @@ impl Debugger {
             ChartOf::Settings(over) => over,
         };
         let Some(session) = &self.session else {
-            return self.app.complain("there is no scene to measure; :open one");
+            return self
+                .app
+                .complain("no scene to measure; open one with :open");
         };
         let measuring = Measuring::start(session.scene(), over);
         self.app.measuring = Some(measuring.progress());
         self.measuring = Some(measuring);
         self.app
-            .say("measuring beside all else, and shown when it is done; Ctrl-C stops it");
+            .say("measuring in the background; the chart opens when it is ready (Ctrl-C stops it)");
     }
 
     fn show_chart(&mut self, page: Result<ChartPage, NoPage>) {
@@ -443,8 +445,7 @@ impl Debugger {
         }
     }
 
-    /// Follows a chart that is being measured, and shows it once nothing else lies over the panes. Returns whether there is
-    /// something new to draw.
+    /// Follows a chart that is being measured, and shows it once no overlay is open. Returns whether there is anything new to draw.
     fn follow_chart(&mut self) -> bool {
         let Some(measuring) = &self.measuring else {
             return false;
@@ -467,13 +468,13 @@ impl Debugger {
     fn interrupt(&mut self) {
         self.app.loading = None;
         if self.loading.take().is_some() {
-            return self.app.say("not read");
+            return self.app.say("loading cancelled");
         }
         if let Some(measuring) = &self.measuring {
             measuring.interrupt();
         }
         if let Some(tutor) = &mut self.app.lesson {
-            // What the lesson wanted is not done.
+            // The action that the lesson asked for was not completed.
             tutor.failed();
         }
         if let Some(session) = &self.session {
@@ -488,20 +489,20 @@ impl Debugger {
 
     fn open(&mut self, mut session: Session) {
         let resumed = session.journal().is_some();
-        // A journal that was opened goes on itself.
+        // A resumed journal continues on its own.
         if self.keeps && !resumed && session.offers().past.is_none() {
             session.keep_at_default_place();
         }
         (self.measuring, self.app.measuring) = (None, None);
         self.app.opened();
         match resumed {
-            true => self.app.say("resumed from its journal, which goes on"),
+            true => self.app.say("resumed from its journal, which continues"),
             false => greet(&mut self.app, &session),
         }
         self.session = Some(session);
     }
 
-    /// Begins a lesson at the start of its scene.
+    /// Starts a lesson at the start of its scene.
     pub fn teach(&mut self, lesson: Lesson) {
         let session = Session::new(lesson.scene.clone());
         self.take_lesson(lesson, session);
@@ -517,12 +518,12 @@ impl Debugger {
         self.app.say("");
     }
 
-    /// Whether the solver has done more than was gathered the last time.
+    /// Whether the solver has results that have not been collected.
     pub fn is_behind(&self) -> bool {
         self.session.as_ref().is_some_and(Session::is_behind)
     }
 
-    /// Gathers what the solver did and does what waited for that. Returns whether there is something new to draw.
+    /// Collects results of the solver and handles the input that waited for them. Returns whether there is anything new to draw.
     pub fn advance(&mut self) -> bool {
         let gathered = self.gather();
         let resumed = self.resume();
@@ -563,14 +564,14 @@ impl Debugger {
         let failed = panicked.is_some();
         if let Some(message) = panicked {
             self.app.complain(format!(
-                "the solver broke down, please report this: {message}"
+                "internal error in the solver, please report it: {message}"
             ));
         }
         measured || heard || seen || said || grown || failed || was_busy != busy
     }
 
-    /// Asks for what the panes would tell of the shown iteration and the selected node. Returns whether anything new is
-    /// asked.
+    /// Requests background analyses that the panes need for the shown iteration and the selected node. Returns whether any was
+    /// requested.
     fn look(&mut self) -> bool {
         let Some(session) = &mut self.session else {
             return false;
@@ -580,7 +581,7 @@ impl Debugger {
         session.background().is_busy() != before
     }
 
-    /// Waits a moment for what just began, so that keys typed fast are not told to wait.
+    /// Waits briefly for quick steps, so that fast typing is not queued.
     pub(super) fn breathe(&mut self) {
         let entered = Instant::now();
         let quick = |debugger: &Debugger| {
@@ -594,17 +595,17 @@ impl Debugger {
     }
 }
 
-/// What is said when a scene opens: what is doubtful about its start, or else which key goes on.
+/// The first message after opening a scene: warnings about its start, or the first key to press.
 fn greet(app: &mut App, session: &Session) {
     if session.model().finished.is_some() {
         (app.page, app.chart) = (Pane::Timeline, Pane::Timeline);
         return app.say(GREETING);
     }
     match session.doubts() {
-        [] => app.say("s is one minor iteration; ? lists the keys"),
+        [] => app.say("Press s for one minor iteration, ? for all keys"),
         [doubt] => app.complain(doubt),
         [doubt, others @ ..] => app.complain(format!(
-            "{doubt} (and {} more: stickslip check {} tells all)",
+            "{doubt} (and {} more: `stickslip check {}` lists all)",
             others.len(),
             session.scene_name()
         )),

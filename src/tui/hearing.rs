@@ -1,22 +1,22 @@
-//! What an attached solver says while one looks at something else: its warnings and errors are counted, and shown once.
+//! Counts the warnings and errors in an attached solver's log, and announces the last new one once.
 
 use stickslip_debugger::recorded::log::How;
 use stickslip_debugger::recorded::log::Log;
 use stickslip_exchange::attach::message::Level;
 
-/// What of a solver's log was heard.
+/// How much of a solver's log has been counted.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Heard {
-    /// Lines.
+    /// Lines counted so far.
     lines: usize,
-    /// Warnings among its messages.
+    /// Number of warnings.
     pub warnings: usize,
-    /// Errors among its messages.
+    /// Number of errors.
     pub errors: usize,
 }
 
 impl Heard {
-    /// Hears what is new. Returns whether there is anything, and the last warning or error of it with a word before it.
+    /// Counts the new lines. Returns whether there are any, and the last warning or error among them, with its level.
     pub fn hear(&mut self, log: &Log) -> (bool, Option<String>) {
         let count = log.count();
         if count == self.lines {
@@ -29,13 +29,13 @@ impl Heard {
                 How::Told(Level::Error) => self.errors += 1,
                 _ => continue,
             }
-            told = Some(format!("{} of the solver: {}", said.how.word(), said.text));
+            told = Some(format!("solver {}: {}", said.how.word(), said.text));
         }
         self.lines = count;
         (true, told)
     }
 
-    /// How many warnings and errors there were, in words; empty where there were none.
+    /// The number of warnings and errors in words; empty if there are none.
     pub fn counted(&self) -> String {
         let of = |count: usize, what: &str| match count {
             0 => None,

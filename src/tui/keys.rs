@@ -1,9 +1,9 @@
-//! Terminal keys as the names that the table of actions uses.
+//! Names of terminal keys, as in the table of actions.
 
 use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
 
-/// The table's name of a key press: `s`, `S`, `F10`, `Shift-F11`, `Ctrl-c`, `PageDown`. `None` for key releases and
-/// for keys that the table never names.
+/// The table's name of a key press: `s`, `S`, `F10`, `Shift-F11`, `Ctrl-c`, `PageDown`. `None` for key releases and keys without a
+/// name in the table.
 pub fn name(key: &KeyEvent) -> Option<String> {
     if key.kind == KeyEventKind::Release || key.modifiers.contains(KeyModifiers::ALT) {
         return None;
@@ -15,7 +15,7 @@ pub fn name(key: &KeyEvent) -> Option<String> {
         KeyCode::Char(letter) if control => format!("Ctrl-{}", letter.to_lowercase()),
         KeyCode::Char(letter) => letter.into(),
         KeyCode::F(number) if shift => format!("Shift-F{number}"),
-        // Many terminals send Shift-F11 as F23: twelve keys further.
+        // Many terminals send Shift-F11 as F23, which is F11 plus 12.
         KeyCode::F(number @ 13..=24) => format!("Shift-F{}", number - 12),
         KeyCode::F(number) => format!("F{number}"),
         KeyCode::Tab if shift => "Shift-Tab".into(),
@@ -25,7 +25,7 @@ pub fn name(key: &KeyEvent) -> Option<String> {
     Some(name)
 }
 
-/// Names of the keys that take no letter.
+/// Names of the keys that type no letter.
 fn plain(code: KeyCode) -> Option<&'static str> {
     Some(match code {
         KeyCode::Enter => "Enter",
@@ -45,7 +45,7 @@ fn plain(code: KeyCode) -> Option<&'static str> {
     })
 }
 
-/// The keys that one report means: Esc and a letter that come together look like a letter with Alt, and nothing has such keys.
+/// Splits one report into key presses: Esc followed by a letter arrives as Alt and the letter, which no action uses.
 pub fn apart(key: &KeyEvent) -> impl Iterator<Item = KeyEvent> {
     let together = key.modifiers.contains(KeyModifiers::ALT);
     let escape = together && key.kind != KeyEventKind::Release;
@@ -59,7 +59,7 @@ pub fn apart(key: &KeyEvent) -> impl Iterator<Item = KeyEvent> {
         .chain([alone])
 }
 
-/// The key press of a name: the way back, for tests and scripts that speak in names.
+/// The key press of a name, the inverse of [`name`]; for tests and scripts.
 pub fn press(name: &str) -> Option<KeyEvent> {
     let (modifiers, rest) = match name {
         _ if name.starts_with("Ctrl-") => (KeyModifiers::CONTROL, &name[5..]),
@@ -118,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn releases_and_far_function_keys() {
+    fn releases_and_function_keys_beyond_f12() {
         let mut key = KeyEvent::new(KeyCode::F(23), KeyModifiers::NONE);
         assert_eq!(name(&key).as_deref(), Some("Shift-F11"));
         key.kind = KeyEventKind::Release;
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn escape_and_a_letter_that_come_together_are_two_keys() {
+    fn escape_and_a_letter_in_one_report_are_two_keys() {
         let names = |key: KeyEvent| apart(&key).filter_map(|key| name(&key)).collect::<Vec<_>>();
         let with = |modifiers| KeyEvent::new(KeyCode::Char('c'), modifiers);
         assert_eq!(names(with(KeyModifiers::ALT)), ["Esc", "c"]);

@@ -1,40 +1,44 @@
-//! Where everything stands on the screen.
+//! The layout of the screen.
 //!
-//! Three arrangements. Small (80x24): the table, and under it one more pane, which Tab changes. Medium (120x40):
-//! the table across, the decision over one more pane (whichever Tab or its key came to last) on the left, the shape
-//! on the right. Large (200x60): two columns over the timeline. Whatever the size, the status is on top and message and footer
-//! are at the bottom; below 80x24 there is one pane at a time. What is said has no part in it, so that no row jumps while one
+//! - Small (80x24): the table, and below it one pane at a time, which Tab changes.
+//! - Medium (120x40): the table across the top; below it on the left the decision and one more pane (the last one chosen), on the
+//!   right the shape.
+//! - Large (200x60): two columns above the timeline.
+//!
+//! The status is always at the top, the message and the footer at the bottom; below 80x24 there is one pane at a time. The length
+//! of a message does not change the layout, so that rows stay in place while stepping: a long outcome or message is drawn over the
+//! panes' edges.
 //! steps: a long outcome or message is written over the panes' edges.
 
 use ratatui::layout::{Constraint, Layout, Rect};
 
-/// A part of the screen that can have the focus.
+/// A pane; all but [`Pane::Lesson`] can have the focus.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Pane {
     /// The table of slave nodes.
     Nodes,
     /// The decision on the selected node.
     Decision,
-    /// The residual over the major iterations.
+    /// The residual by major iteration.
     Residual,
     /// The bodies and surfaces.
     Shape,
-    /// The load factor over a monitor.
+    /// The load-displacement curve of a monitor.
     Curve,
     /// Slave nodes by minor iterations.
     Timeline,
-    /// Why the minor iterations cycle, and what gets out.
+    /// The cause of a cycle, and the consistent states.
     Diagnosis,
     /// The branches of the history.
     Branches,
-    /// What was tried, and what it costs.
+    /// The remedies that were tried, with their cost.
     Remedies,
-    /// Never has the focus, and is only there while a lesson is taken.
+    /// The current lesson; never has the focus.
     Lesson,
 }
 
 impl Pane {
-    /// All that Tab goes through, in its order.
+    /// The panes in Tab order.
     pub const ALL: [Pane; 9] = [
         Pane::Nodes,
         Pane::Decision,
@@ -47,79 +51,79 @@ impl Pane {
         Pane::Remedies,
     ];
 
-    /// Whether it takes turns with others where there is room for one of them.
+    /// Whether the pane shares one place with others on medium screens.
     pub fn takes_turns(self) -> bool {
         !matches!(self, Pane::Nodes | Pane::Decision | Pane::Shape)
     }
 
-    /// The pane so many places further on.
+    /// The pane `places` steps further in Tab order.
     pub fn turn(self, places: usize) -> Pane {
         Pane::ALL[(self as usize + places) % Pane::ALL.len()]
     }
 }
 
-/// What of the user's choices decides the arrangement.
+/// The user's choices that determine the layout.
 #[derive(Debug, Clone, Copy)]
 pub struct Choice {
     /// The pane with the focus.
     pub focus: Pane,
-    /// The pane under the table on a small screen.
+    /// The pane below the table on a small screen.
     pub page: Pane,
-    /// Which of the panes that take turns is shown, where there is room for one.
+    /// Which of the panes that share one place is shown.
     pub chart: Pane,
-    /// Whether the pane with the focus has the screen for itself.
+    /// Whether the focused pane fills the screen.
     pub zoomed: bool,
-    /// Number of slave nodes, hence of the table's rows.
+    /// Number of slave nodes, which is the number of table rows.
     pub slaves: usize,
-    /// Whether the scene has a shape to draw; else the timeline takes its place.
+    /// Whether the scene has a shape to draw; otherwise the timeline replaces it.
     pub has_shape: bool,
-    /// Rows that a lesson wants at the screen's width; 0 without a lesson.
+    /// Rows that the lesson needs at the screen's width; 0 without a lesson.
     pub lesson: u16,
 }
 
-/// Where everything stands.
+/// The areas of a screen.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Places {
-    /// The line at the top.
+    /// The lines at the top.
     pub status: Rect,
-    /// The panes that are shown, and where.
+    /// The visible panes and their areas.
     pub panes: Vec<(Pane, Rect)>,
-    /// The line for messages and prompts.
+    /// The message and prompt line.
     pub message: Rect,
-    /// The keys at the bottom.
+    /// The key hints.
     pub footer: Rect,
-    /// Whether not all panes are on the screen, so that Tab turns pages.
+    /// Whether some panes are not visible, so that Tab turns pages.
     pub paged: bool,
 }
 
-/// Rows of the table that are no nodes: two of border, one of headings.
+/// Rows of the table besides nodes: two for the border, one for the headings.
 const TABLE_FRAME: u16 = 3;
-/// Fewest rows in which the decision shows everything, border included, and its numbers on lines of their own.
+/// Minimum height of the complete decision, with border and one line per inequality.
 const DECISION: u16 = 12;
 const TALL_DECISION: u16 = 17;
-/// Width of a lesson that has a column of its own.
+/// Width of a lesson in a separate column.
 const LESSON: u16 = 62;
-/// Width from which on most outcomes fit into a line.
+/// Width at which most outcomes fit into one line.
 const WIDE: u16 = 110;
-/// Height from which on there is room for an outcome of two lines.
+/// Minimum height for outcomes of two lines.
 const ROOMY: u16 = 30;
-/// Fewest rows of a lesson, border included.
+/// Minimum height of a lesson, with border.
 const LEAST_LESSON: u16 = 4;
-/// Fewest rows of a page between the table and a lesson.
+/// Minimum height of a page between the table and a lesson.
 const PAGE: u16 = 5;
-/// Rows of the timeline that are no nodes, border included, and most nodes that it shows on a large screen.
+/// Rows of the timeline besides nodes, with border, and the maximum number of nodes that it shows on a large screen.
 const TIMELINE_FRAME: u16 = 7;
 const LONGEST_TIMELINE: usize = 6;
-/// Rows of a large screen's body from which on the timeline has a place of its own.
+/// Minimum height of a large screen's body for a separate timeline.
 const ROOM_FOR_TIMELINE: u16 = 50;
 
-/// Arranges the screen.
+/// Computes the layout.
 pub fn places(area: Rect, choice: &Choice) -> Places {
     let status = match area.height {
         0..=5 => 1.min(area.height),
         6..=15 => 2,
         16..=23 => 3,
-        // A narrow screen needs two lines for most outcomes, and a high one has them.
+        // Most outcomes need two lines on a narrow screen, which a high screen has room for.
         _ if area.width < WIDE || area.height >= ROOMY => 4,
         _ => 3,
     };
@@ -156,7 +160,7 @@ pub fn places(area: Rect, choice: &Choice) -> Places {
     }
 }
 
-/// Rows for the table: as many as it has nodes, but no more than given.
+/// Rows for the table: enough for all nodes, but at most `most`.
 fn table(choice: &Choice, most: u16) -> u16 {
     (choice.slaves.min(usize::from(u16::MAX - TABLE_FRAME)) as u16)
         .max(1)
@@ -174,8 +178,8 @@ fn small(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
     vec![(Pane::Nodes, upper), (choice.page, lower)]
 }
 
-/// The screen with a lesson: on a large one it has a column of its own, on a medium one the place of the chart, on a small
-/// one as many rows as it needs at the bottom, and on a tiny one the place of the table.
+/// The layout with a lesson: a separate column on a large screen, the place of the chart on a medium one, the rows at the bottom on
+/// a small one, and the place of the table on a tiny one.
 fn with_lesson(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
     if body.width >= 110 + LESSON && body.height >= 30 {
         let columns = [Constraint::Min(0), Constraint::Length(LESSON)];
@@ -188,7 +192,7 @@ fn with_lesson(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
         let mut panes = medium(body, choice);
         let chart = panes.remove(2);
         panes.push((Pane::Lesson, chart.1));
-        // A chart that is wanted takes the place of the shape.
+        // A chart with the focus replaces the shape.
         if choice.focus == choice.chart {
             panes[2].0 = choice.chart;
         }
@@ -219,7 +223,7 @@ fn with_lesson(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
     panes
 }
 
-/// The pane with the focus, and the lesson beside it or under it, since it says what to do there.
+/// The focused pane with the lesson next to it or below it, since the lesson says what to do there.
 fn zoomed_with_lesson(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
     if body.width >= 110 + LESSON {
         let columns = [Constraint::Min(0), Constraint::Length(LESSON)];
@@ -235,7 +239,7 @@ fn zoomed_with_lesson(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
     vec![(choice.focus, upper), (Pane::Lesson, lower)]
 }
 
-/// Table over timeline, and decision and chart next to each other below.
+/// The table above the timeline, then the decision next to the chart.
 fn shapeless(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
     let nodes = table(choice, body.height / 3);
     let timeline = table(choice, body.height - nodes - DECISION) + TIMELINE_FRAME - TABLE_FRAME;
@@ -368,7 +372,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_overlaps_and_nothing_leaves_the_screen() {
+    fn panes_neither_overlap_nor_leave_the_screen() {
         for (width, height) in [(1, 1), (3, 2), (40, 10), (80, 24), (120, 40), (250, 80)] {
             let places = at(width, height, 7);
             let whole = Rect::new(0, 0, width, height);

@@ -1,4 +1,4 @@
-//! Lessons and free mode: what may be done, what is hidden, and what is answered.
+//! Lessons and prediction mode: what is allowed, what is hidden, and how answers are handled.
 
 use crate::app::App;
 use crate::view::View;
@@ -8,13 +8,13 @@ use stickslip_debugger::teach::refusal::NotNow;
 use stickslip_debugger::teach::{Guess, Tutor};
 
 impl App {
-    /// On with the lesson.
+    /// Continues the lesson.
     pub(super) fn go_on(&mut self, view: Option<&View>) {
         if self.turn_page(view) {
             return self.say("");
         }
         let (Some(tutor), Some(view)) = (&mut self.lesson, view) else {
-            return self.complain("no lesson is being taken; L begins one");
+            return self.complain("no lesson is open; press L to start one");
         };
         match tutor.on(view.cursor, view.frame()) {
             Ok(()) => self.say(""),
@@ -22,7 +22,7 @@ impl App {
         }
     }
 
-    /// Answers the lesson's question, or predicts.
+    /// Answers the lesson's question, or checks a prediction.
     pub(super) fn answer(&mut self, word: &str, view: Option<&View>) {
         let Some(view) = view else {
             return self.complain("open a scene first");
@@ -39,7 +39,9 @@ impl App {
                 .answer(word, selected, cursor, frame)
                 .map(|()| String::new()),
             (None, None) => {
-                return self.complain("nothing is asked; p hides decisions until you predict them");
+                return self.complain(
+                    "there is no question; press p to hide decisions until you predict them",
+                );
             }
         };
         match told {
@@ -48,7 +50,7 @@ impl App {
         }
     }
 
-    /// Switches free mode.
+    /// Switches prediction mode.
     pub(super) fn predict(&mut self, whose: Option<Whose>, view: Option<&View>) {
         let Some(view) = view else {
             return self.complain("open a scene first");
@@ -61,7 +63,8 @@ impl App {
             .as_ref()
             .is_some_and(|tutor| tutor.step().is_some())
         {
-            return self.complain("the lesson asks by itself");
+            return self
+                .complain("prediction mode is off in lessons, which ask their own questions");
         }
         let toggled = match self.guess {
             Some(_) => Whose::Off,
@@ -73,15 +76,17 @@ impl App {
                 self.guess = None;
                 self.say(told);
             }
-            (Whose::Off, None) => self.complain("decisions are not hidden"),
+            (Whose::Off, None) => self.complain("prediction mode is off"),
             (whose, _) => {
                 self.guess = Some(Guess::new(whose, view.cursor));
-                self.say("decisions hide until you predict them: step, then a and f, s or x");
+                self.say(
+                    "decisions are hidden until you predict them: step, then press a and f, s or x",
+                );
             }
         }
     }
 
-    /// Whether the lesson, or free mode, lets an action be done; true where the lesson wants it.
+    /// Whether the lesson or prediction mode allows an action; `true` if the lesson asks for it.
     pub(super) fn permits(&mut self, action: &Action, view: Option<&View>) -> Result<bool, NotNow> {
         let Some(view) = view else { return Ok(false) };
         let goes_on = |tutor: &Tutor| tutor.wants(action);
@@ -98,13 +103,13 @@ impl App {
         }
     }
 
-    /// Free mode, of the lesson or outside.
+    /// Prediction mode, in a lesson or outside.
     pub fn guessing(&self) -> Option<&Guess> {
         let lesson = self.lesson.as_ref().and_then(Tutor::guess);
         lesson.or(self.guess.as_ref())
     }
 
-    /// Whether to hide any decision of the shown frame, or the judge's verdict on it.
+    /// Whether to hide a decision of the shown frame, or the judge's verdict.
     pub fn hides_any(&self, view: &View) -> bool {
         let frame = view.frame();
         let lesson = |tutor: &Tutor| tutor.hides() || tutor.hides_verdict();
@@ -120,7 +125,7 @@ impl App {
         self.lesson.as_ref().is_some_and(Tutor::hides_verdict)
     }
 
-    /// Whether the decision on this slave node must not be seen yet.
+    /// Whether to hide the decision on this slave node.
     pub fn hides(&self, view: &View, slave: usize) -> bool {
         view.record(slave).is_some()
             && (self.lesson.as_ref().is_some_and(Tutor::hides)

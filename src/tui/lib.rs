@@ -1,10 +1,9 @@
-//! The terminal front end: what the session holds, drawn; what the keys mean, from one table.
+//! The terminal front end: draws a session and turns keys into commands.
 //!
-//! Two halves that meet only in plain data. Drawing is a pure function: [`screen::draw`] makes a screen from a
-//! [`View`] (what the session shows) and an [`App`] (what the terminal alone knows: focus, selection, prompts),
-//! one file a pane ([`panes`]). Input is another: [`App::key`] turns a key, by way of the table in
-//! [`stickslip_debugger::action`], into a changed app and at most one [`Effect`] on the world. Only [`run`](mod@run)
-//! and [`terminal`] touch the world: the real terminal, signals, and the session.
+//! The two halves share only plain data. Drawing is a pure function: [`screen::draw`] draws a [`View`] (the session's data) and an
+//! [`App`] (focus, selection, prompts), with one file per pane ([`panes`]). Input: [`App::key`] looks a key up in the table of
+//! [`stickslip_debugger::action`], changes the app and returns at most one [`Effect`]. Only [`run`](mod@run) and [`terminal`]
+//! access the terminal, signals and the session.
 
 #![forbid(unsafe_code)]
 

@@ -1,4 +1,4 @@
-//! Panes and what is selected in them: the focus, steps inside a pane, and what is taken from a list.
+//! Focus and selection: moving between panes and inside them, and acting on the selected entry.
 
 use crate::app::{App, Effect, PAGE};
 use crate::layout::Pane;
@@ -14,7 +14,7 @@ impl App {
         self.look_at(self.focus.turn(places));
     }
 
-    /// Gives a pane the focus, and a place on the screen.
+    /// Focuses a pane and makes it visible.
     pub(super) fn look_at(&mut self, pane: Pane) {
         self.focus = pane;
         if pane != Pane::Nodes {
@@ -25,7 +25,7 @@ impl App {
         }
     }
 
-    /// Shows a monitor's curve, or the next one's.
+    /// Shows the curve of a monitor, or of the next one.
     pub(super) fn watch(&mut self, monitor: Option<usize>, view: Option<&View>) {
         let monitors = view.map_or(&[][..], |view| &view.model.monitors);
         let next = (self.monitor + 1) % monitors.len().max(1);
@@ -36,14 +36,13 @@ impl App {
         }
     }
 
-    /// Gives a pane the whole screen, or takes it back.
+    /// Zooms a pane, or ends the zoom.
     pub(super) fn show(&mut self, pane: Pane) {
         self.zoomed = !(self.zoomed && self.focus == pane);
         self.look_at(pane);
     }
 
-    /// Shows a page of its own key; one that has nothing to show yet asks for it. A page that is asked for stays open when it
-    /// is asked for again.
+    /// Opens a page, and runs its analysis if there is no result yet. Requesting an open page again keeps it open.
     pub(super) fn page(&mut self, page: Page, view: Option<&View>) -> Option<Effect> {
         match page {
             Page::Timeline => self.show(Pane::Timeline),
@@ -79,18 +78,18 @@ impl App {
                 return self.submit(Command::Remedies, Some(view));
             }
             (Some(false), Pane::Diagnosis) if again => {
-                self.say("it is being found out; Esc closes this page");
+                self.say("diagnosis running; Esc closes this page");
             }
             (Some(false), _) if again => {
-                self.say("they are being tried; Ctrl-C stops that, Esc closes this page");
+                self.say("trying remedies; Ctrl-C stops, Esc closes this page");
             }
-            (Some(true), _) if again => self.say("this is all of it; Esc closes this page"),
+            (Some(true), _) if again => self.say("the result is complete; Esc closes this page"),
             _ => {}
         }
         None
     }
 
-    /// Enter in the diagnosis: starts from the selected state, or looks for it where nobody has.
+    /// Enter in the diagnosis: starts from the selected state, or runs the analysis if there is no result yet.
     pub(super) fn take_answer(&mut self, view: Option<&View>) -> Option<Effect> {
         match view.and_then(View::examination) {
             None => self.ask_page(Pane::Diagnosis, view),
@@ -98,7 +97,7 @@ impl App {
         }
     }
 
-    /// Enter in the remedies: takes the selected one, or tries them where nobody has.
+    /// Enter in the remedies: applies the selected one, or tries all if there is no result yet.
     pub(super) fn take_remedy(&mut self, view: Option<&View>) -> Option<Effect> {
         match view.is_some_and(View::has_tried) {
             false => self.ask_page(Pane::Remedies, view),
@@ -106,7 +105,7 @@ impl App {
         }
     }
 
-    /// Goes to the tip of the selected branch.
+    /// Goes to the last state of the selected branch.
     pub(super) fn go_to_branch(&mut self, view: Option<&View>) -> Option<Effect> {
         let all = summaries(view?.tree?);
         let (branch, _) = *verdicts::order(&all).get(self.branch)?;
@@ -114,26 +113,24 @@ impl App {
         self.submit(Command::Branch(to), view)
     }
 
-    /// Starts from a consistent state of the census.
+    /// Starts from a consistent state found by the census.
     pub(super) fn start_from(&mut self, number: usize, view: Option<&View>) -> Option<Effect> {
         let found = view?.examination().flatten();
         match found.and_then(|found| found.starts(number)) {
             Some(starts) => return self.submit(Command::Assume(starts), view),
             None if found.is_none() => {
-                self.complain(
-                    "which states are consistent is not known here yet; :census finds out",
-                );
+                self.complain("consistent states are not known here yet; run :census");
             }
             None => self.complain(format!("there is no consistent state {}", number + 1)),
         }
         None
     }
 
-    /// Takes a remedy of the list, where it was tried.
+    /// Applies a remedy of the list, if it was tried from the current state.
     pub(super) fn apply(&mut self, number: usize, view: Option<&View>) -> Option<Effect> {
         let (background, here) = (view?.background?, (view?.tree?.current(), view?.cursor));
         let Some(tried) = background.tried().filter(|tried| !tried.trials.is_empty()) else {
-            self.complain("no remedy is tried yet; r tries them all");
+            self.complain("no remedy tried yet; press r to try all");
             return None;
         };
         let Some(trial) = tried.trials.get(number) else {
@@ -143,9 +140,9 @@ impl App {
         if background.is_trying() || tried.place != here {
             let (branch, step) = tried.place;
             self.complain(match background.is_trying() {
-                true => "remedies are still being tried; Ctrl-C stops that".into(),
+                true => "remedies are still being tried; Ctrl-C stops them".into(),
                 false => format!(
-                    "these were tried from step {step} of b{}; go there, or r tries them from here",
+                    "these remedies were tried from step {step} of b{}; go there, or press r to try them here",
                     branch + 1
                 ),
             });
@@ -154,7 +151,7 @@ impl App {
         if let How::Restart(_) = &trial.how {
             let option = trial.how.typed();
             self.complain(format!(
-                "{} changes the scene: start again with {option}",
+                "{} changes the scene: restart with {option}",
                 trial.label
             ));
             return None;
@@ -164,7 +161,7 @@ impl App {
         self.submit(Command::Follow { label, steps }, view)
     }
 
-    /// Finds a text in the list with the focus: a branch, a remedy, or else a slave node. No text is the one of before.
+    /// Finds a text in the focused list: a branch, a remedy, or otherwise a slave node. An empty text repeats the last search.
     pub(super) fn seek(&mut self, text: String, view: Option<&View>) -> Option<Effect> {
         if !text.is_empty() {
             self.sought = text;
@@ -196,7 +193,7 @@ impl App {
             .find(|&row| names[row].to_lowercase().contains(&text));
         match found {
             Some(row) => *at = row,
-            None => self.complain(format!("nothing in this list holds '{}'", self.sought)),
+            None => self.complain(format!("no entry of this list contains '{}'", self.sought)),
         }
         None
     }
@@ -254,7 +251,7 @@ impl App {
     }
 }
 
-/// Where a step in a list of so many entries leads.
+/// The index after a step in a list with indices up to `last`.
 fn moved(at: usize, step: Step, count: isize, last: usize) -> usize {
     let by = match step {
         Step::Up => -count,
@@ -268,7 +265,7 @@ fn moved(at: usize, step: Step, count: isize, last: usize) -> usize {
     at.saturating_add_signed(by).min(last)
 }
 
-/// Where a step along the timeline leads; `None` if it is no such step.
+/// The target of a step along the timeline; `None` for other steps.
 fn along(step: Step, count: isize, view: &View) -> Option<usize> {
     let last = view.frames.len().saturating_sub(1);
     let by = match step {

@@ -1,5 +1,4 @@
-//! What is read for the debugger, on a thread of its own: a file can be large and its disk slow, and keys are answered all the
-//! while.
+//! Loads files on a background thread, so that keys are handled while a large file or a slow disk is read.
 
 use crate::chartpage::{ChartPage, NoPage};
 use std::path::Path;
@@ -10,40 +9,40 @@ use stickslip_debugger::session::Session;
 use stickslip_debugger::teach::Lesson;
 use stickslip_scene::format::SceneError;
 
-/// Why a scene or a lesson cannot be had.
+/// Why a scene or a lesson cannot be loaded.
 #[derive(Debug, thiserror::Error)]
 pub enum NotLoaded {
-    /// The lesson is unsound.
+    /// The lesson is invalid.
     #[error(transparent)]
     Lesson(#[from] SceneError),
-    /// The journal is not one, is in use, or leads elsewhere.
+    /// The journal is invalid or in use, or its replay differs.
     #[error(transparent)]
     Journal(#[from] JournalError),
-    /// The scene is unsound, or the finished run is damaged.
+    /// The scene is invalid, or the finished run is damaged.
     #[error("{0}")]
     Session(String),
-    /// The thread that read has ended without an answer.
-    #[error("reading it broke down")]
+    /// The loading thread panicked.
+    #[error("internal error while loading the file")]
     BrokeDown,
 }
 
-/// What was read, or why it cannot be had.
+/// A loaded file, or why it cannot be loaded.
 pub enum Loaded {
-    /// A scene, opened.
+    /// A session on a scene.
     Scene(Result<Box<Session>, NotLoaded>),
-    /// A lesson with its scene, opened.
+    /// A lesson and a session on its scene.
     Lesson(Result<Box<(Lesson, Session)>, NotLoaded>),
-    /// A chart, read or measured.
+    /// A chart, loaded or measured.
     Chart(Result<Box<ChartPage>, NoPage>),
 }
 
-/// Something on its way; who drops it does not want it any more.
+/// A file that is being loaded; dropping this cancels it.
 pub struct Loading {
     result: Receiver<Loaded>,
 }
 
 impl Loading {
-    /// A session on a scene, by file or built-in name; on the scene of a journal, where that has led.
+    /// Opens a session on a scene (a file or a built-in name), or resumes a journal at its end.
     pub fn scene(name: &str) -> Loading {
         let name = name.to_owned();
         Loading::of(move || {
@@ -56,14 +55,14 @@ impl Loading {
         })
     }
 
-    /// A lesson, by file or built-in name, and a session on its scene.
+    /// Loads a lesson, by file or built-in name, and a session on its scene.
     pub fn lesson(name: &str) -> Loading {
         let name = name.to_owned();
         Loading::of(move || {
             let lesson = Lesson::open(&name).map_err(NotLoaded::from);
             Loaded::Lesson(lesson.map(|lesson| {
                 if let Some(runs) = &lesson.runs {
-                    // Not while keys wait; what is wrong with it is told where it is asked for.
+                    // Measured in the background, so that keys need not wait for it; an error is shown where the result is used.
                     let _ = runs.measure();
                 }
                 let session = Session::new(lesson.scene.clone());
@@ -72,7 +71,7 @@ impl Loading {
         })
     }
 
-    /// The table of a chart.
+    /// Loads the table of a chart.
     pub fn chart(file: &str) -> Loading {
         let file = file.to_owned();
         Loading::of(move || Loaded::Chart(ChartPage::open(&file).map(Box::new)))
@@ -81,13 +80,13 @@ impl Loading {
     fn of(read: impl FnOnce() -> Loaded + Send + 'static) -> Loading {
         let (told, result) = channel();
         thread::spawn(move || {
-            // Nobody may want it any more.
+            // The receiver may be gone.
             let _ = told.send(read());
         });
         Loading { result }
     }
 
-    /// What was read, once it is there.
+    /// The result, once it is available.
     pub fn result(&self) -> Option<Loaded> {
         match self.result.try_recv() {
             Ok(loaded) => Some(loaded),
@@ -97,9 +96,9 @@ impl Loading {
     }
 }
 
-/// The session of a journal, done again to its end, which goes on with it.
+/// Replays a journal to its end; the session continues the journal.
 fn resumed(file: &Path) -> Result<Session, JournalError> {
-    // Nobody else may go on with it in the meantime.
+    // The lock keeps other processes from continuing the journal during the replay.
     let mut journal = Journal::open(file)?;
     let record = Record::read(file)?;
     let mut session = record.replay()?;

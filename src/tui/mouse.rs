@@ -1,4 +1,4 @@
-//! The mouse: a click selects what it is on, the wheel scrolls what it is over. Nothing can be done with it alone.
+//! Mouse input: a click selects, the wheel scrolls. Every mouse action has a key.
 
 use crate::ahead::Typed;
 use crate::app::{App, Effect, Overlay};
@@ -11,11 +11,11 @@ use ratatui::layout::{Position, Rect};
 use stickslip_debugger::action::{Action, Step, Ui};
 use stickslip_debugger::record::command::Command;
 
-/// Lines that a turn of the wheel scrolls a page of text.
+/// Lines per turn of the wheel in a page of text.
 const LINES: usize = 3;
 
 impl App {
-    /// What the mouse does on the screen as it was drawn last.
+    /// Handles a mouse event on the last drawn screen.
     pub fn mouse(&mut self, event: &MouseEvent, view: Option<&View>) -> Option<Effect> {
         let at = Position::new(event.column, event.row);
         match event.kind {
@@ -26,7 +26,7 @@ impl App {
         }
     }
 
-    /// The pane at a place of the screen, if nothing lies over it.
+    /// The pane at a position, unless an overlay is open.
     fn pane_at(&self, at: Position, view: &View) -> Option<(Pane, Rect)> {
         if !matches!(self.overlay, Overlay::None) {
             return None;
@@ -40,7 +40,7 @@ impl App {
         let (pane, area) = self.pane_at(at, view)?;
         self.say("");
         let hidden = screen::is_hidden(pane, self, view);
-        // Where things stand before the focus moves, which can move them.
+        // The layout before the focus changes, which can change the layout.
         let row = match pane {
             Pane::Branches if !hidden => branches::row_at(area, self, view, at),
             Pane::Remedies => remedies::row_at(area, self, view, at),
@@ -131,7 +131,7 @@ impl App {
                 };
                 return None;
             }
-            // Along a history that is being made there is nowhere to go.
+            // The timeline cannot be scrolled while the solver runs.
             (Pane::Timeline, _) if view.running || self.ahead.is_any() => return None,
             (Pane::Timeline, true) => Step::Left,
             (Pane::Timeline, false) => Step::Right,
@@ -139,7 +139,7 @@ impl App {
             (_, true) => Step::Up,
             (_, false) => Step::Down,
         };
-        // As a key would in that pane, which need not have the focus.
+        // Acts like a key in the pane under the mouse, which need not have the focus.
         let focus = std::mem::replace(&mut self.focus, pane);
         let effect = self.attempt(Ok(Action::Ui(Ui::Move(step))), None, Some(view));
         self.focus = focus;

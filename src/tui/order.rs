@@ -1,4 +1,4 @@
-//! Which slave nodes the table shows, and in which order.
+//! Sort order and filter of the slave-node table.
 
 use crate::app::App;
 use crate::view::View;
@@ -7,7 +7,7 @@ use stickslip_core::model::Mode;
 use stickslip_debugger::action::{Filter, Sort};
 
 impl App {
-    /// The slave nodes that the table shows, in its order. The selected one is always among them.
+    /// The slave nodes of the table, in order. The selected one is always included.
     pub fn order(&self, view: &View) -> Vec<usize> {
         let count = view.model.contacts.len();
         let selected = self.selected.min(count.saturating_sub(1));
@@ -28,7 +28,7 @@ impl App {
             Sort::Margin => margin(slave, view),
             Sort::Gap => gap(slave, view),
         };
-        // Nodes that have no such number are last whichever way the others are sorted.
+        // Nodes without a value come last in either direction.
         let mut keyed: Vec<(Option<f64>, usize)> =
             order.drain(..).map(|slave| (key(slave), slave)).collect();
         keyed.sort_by(|(a, _), (b, _)| match (a, b) {
@@ -41,15 +41,14 @@ impl App {
     }
 }
 
-/// The surface that a node is on, or the first that it may touch.
+/// The surface that a node touches, or the first one that it can touch.
 fn surface(slave: usize, view: &View) -> Option<usize> {
     let spot = view.frame().state.nodes.get(slave)?.spot;
     let first = || view.model.contacts[slave].surfaces.first().copied();
     spot.map(|spot| spot.surface).or_else(first)
 }
 
-/// How close a node is to switching: the least of its margins, forces over the scene's force and lengths over its
-/// length.
+/// The smallest margin of a node: forces relative to the scene's force, lengths relative to its length.
 fn margin(slave: usize, view: &View) -> Option<f64> {
     let (event, record) = (view.event()?, view.record(slave)?);
     let tests = record.decision.tests.iter().flatten();

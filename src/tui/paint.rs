@@ -1,4 +1,4 @@
-//! The brush: what all panes draw with.
+//! Drawing helpers shared by all panes.
 
 use crate::theme::Theme;
 use ratatui::buffer::Buffer;
@@ -10,7 +10,7 @@ use stickslip_scene::shown;
 pub use stickslip_scene::shown::wrap;
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
-/// A pane's border and title; returns what is inside. The focus is a thick border, colour or not.
+/// Draws a pane's border and title, and returns the area inside. A focused pane has a thick border, with or without colour.
 pub fn frame(buffer: &mut Buffer, area: Rect, title: &str, focused: bool, theme: &Theme) -> Rect {
     let (kind, border, title_style) = match focused {
         true => (BorderType::Thick, theme.focus, theme.focus),
@@ -26,14 +26,14 @@ pub fn frame(buffer: &mut Buffer, area: Rect, title: &str, focused: bool, theme:
     inner
 }
 
-/// Writes lines one under the other as far as they fit.
+/// Writes lines from top to bottom; lines that do not fit are dropped.
 pub fn lines(buffer: &mut Buffer, area: Rect, lines: &[Line]) {
     for (row, line) in area.rows().zip(lines) {
         line.render(row, buffer);
     }
 }
 
-/// A text that fits; what is cut off at the end shows as `…`.
+/// A text cut to a width, with `…` in place of the rest.
 pub fn cut(text: &str, width: usize) -> String {
     let text = shown::line(text);
     if text.width() <= width {
@@ -53,7 +53,7 @@ pub fn cut(text: &str, width: usize) -> String {
     }
 }
 
-/// Writes lines over what stands there already.
+/// Writes lines over existing content.
 pub fn over(buffer: &mut Buffer, area: Rect, lines: &[Line], theme: &Theme) {
     for (row, line) in area.rows().zip(lines) {
         Clear.render(row, buffer);
@@ -62,7 +62,7 @@ pub fn over(buffer: &mut Buffer, area: Rect, lines: &[Line], theme: &Theme) {
     }
 }
 
-/// A wrapped text as lines of this width, each with a blank on either side.
+/// Wraps a text into lines of this width, with a blank on either side.
 pub fn wrapped(text: &str, width: usize, style: Style) -> Vec<Line<'static>> {
     let lines = wrap(text, width.saturating_sub(2)).into_iter();
     lines

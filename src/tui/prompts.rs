@@ -1,4 +1,4 @@
-//! What waits for keys before the panes do: questions, lists, and a line that is typed.
+//! Prompts and pages that receive keys before the panes: questions, lists and the input line.
 
 use crate::ahead::Typed;
 use crate::app::{App, Effect, Overlay, PAGE};
@@ -37,7 +37,7 @@ impl App {
         }
     }
 
-    /// Opens what an answer is typed into.
+    /// Opens the prompt for an answer.
     pub(super) fn ask_answer(&mut self, view: Option<&View>) {
         if let Err(why) = self.must_read(view) {
             return self.complain(why);
@@ -50,7 +50,7 @@ impl App {
             }
             Some(AnswerKind::Mode | AnswerKind::Choice) => self.overlay = Overlay::Answer,
             None if open => self.overlay = Overlay::Answer,
-            // What there is to say about it, the answering says.
+            // Answering shows the error.
             None => self.answer("free", view),
         }
     }
@@ -81,7 +81,7 @@ impl App {
             None if name == "Esc" => None,
             None => {
                 self.complain(format!(
-                    "{name} is no mode: f free, s sliding, x fixed; a capital holds it"
+                    "invalid mode '{name}'; expected f (free), s (sliding) or x (fixed); a capital holds the mode"
                 ));
                 None
             }
@@ -148,7 +148,7 @@ impl App {
             "q" if fresh => self.overlay = Overlay::None,
             "Esc" if !fresh => *chooser = Chooser::default(),
             "Esc" if view.is_some() => self.overlay = Overlay::None,
-            "Esc" => self.say("no scene is open to go back to; q quits"),
+            "Esc" => self.say("no scene is open; press q to quit"),
             ":" if fresh => {
                 self.overlay = Overlay::Line(CommandLine::new(Purpose::Command, "open "))
             }
@@ -187,7 +187,7 @@ impl App {
         None
     }
 
-    /// Carries out the line that was typed.
+    /// Carries out the line.
     pub(super) fn enter(&mut self, view: Option<&View>) -> Option<Effect> {
         let Overlay::Line(line) = &self.overlay else {
             return None;
@@ -207,13 +207,13 @@ impl App {
         self.take_line(&line, view)
     }
 
-    /// Keeps a line, to be recalled.
+    /// Stores a line in the history.
     pub(super) fn remember(&mut self, line: &str) {
         self.history.retain(|old| old != line);
         self.history.push(line.into());
     }
 
-    /// Does what a line means now, or lets it wait.
+    /// Carries out a line, or queues it.
     pub(super) fn take_line(&mut self, line: &str, view: Option<&View>) -> Option<Effect> {
         self.say("");
         let scenes = self.scenes();
@@ -225,17 +225,17 @@ impl App {
         self.attempt(action, None, view)
     }
 
-    /// What the prompt in the message line asks; `None` if nothing is asked.
+    /// The prompt of the message line; `None` if there is no question.
     pub fn question(&self, view: Option<&View>) -> Option<String> {
         let view = view?;
         match &self.overlay {
             Overlay::Mode => {
                 let held = match view.guest.map(|guest| guest.offers) {
-                    Some(offers) if !offers.hold => "the solver cannot hold it",
+                    Some(offers) if !offers.hold => "this solver cannot hold it",
                     Some(offers) if !offers.force => {
-                        "capitals: the solver can only hold it, until M releases"
+                        "capital letters only: this solver can only hold it, until M releases it"
                     }
-                    _ => "a capital holds it until M releases",
+                    _ => "capital letter: hold until M releases it",
                 };
                 Some(format!(
                     "mode of {}:  f free   s sliding   x fixed   ({held})",
@@ -251,7 +251,7 @@ impl App {
         }
     }
 
-    /// What the prompt of an answer says.
+    /// The prompt for an answer or a prediction.
     pub(super) fn asked(&self, view: &View) -> String {
         match self.lesson.as_ref().and_then(Tutor::question) {
             Some(question) if question.kind == AnswerKind::Choice => {
@@ -266,7 +266,7 @@ impl App {
     }
 }
 
-/// Where a list stands after a key that moves in lists.
+/// The position in a list after a scroll key.
 fn scrolled(at: usize, name: &str, last: usize) -> usize {
     let to = match name {
         "Up" | "k" => at.saturating_sub(1),

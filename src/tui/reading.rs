@@ -1,5 +1,4 @@
-//! Reading a lesson on a screen that is too small for its words: they are turned page by page, and the lesson does not go on
-//! before all of them were shown.
+//! Paging through lesson text that does not fit on the screen; the lesson continues only after all of it has been shown.
 
 use crate::app::{App, Overlay};
 use crate::layout::Pane;
@@ -8,17 +7,17 @@ use crate::screen;
 use crate::view::View;
 use stickslip_debugger::teach::refusal::NotNow;
 
-/// What of a lesson's page is to be seen.
+/// The visible part of a lesson page.
 struct Shown {
-    /// The first line, and the one after the last.
+    /// The first visible line, and the one after the last.
     from: usize,
     to: usize,
-    /// All lines.
+    /// Number of lines.
     all: usize,
 }
 
 impl App {
-    /// Notes what of the lesson stands on the screen, before a key does anything.
+    /// Records which lines are visible, before a key is handled.
     pub(super) fn note_reading(&mut self, view: Option<&View>) {
         let (Some(shown), Some(tutor)) = (self.lesson_shown(view), &self.lesson) else {
             return;
@@ -26,20 +25,20 @@ impl App {
         let (now, then) = (tutor.edition(), self.reading.edition);
         let before = match now.0 == then.0 {
             true if now.1 == then.1 => self.reading.seen,
-            // What stands before an answer was read before the answer was given.
+            // Text above an answer has been read.
             true => self.reading.seen.min(shown.from),
             false => 0,
         };
         self.reading.edition = tutor.edition();
         self.reading.top = shown.from;
-        // A line that was jumped over was not read.
+        // Lines that were skipped have not been read.
         self.reading.seen = match shown.from <= before {
             true => before.max(shown.to),
             false => before,
         };
     }
 
-    /// Whether the lesson says more than was shown until now.
+    /// Whether the lesson has text that has not been shown.
     pub(super) fn is_unread(&self, view: Option<&View>) -> bool {
         let (Some(shown), Some(tutor)) = (self.lesson_shown(view), &self.lesson) else {
             return false;
@@ -49,7 +48,7 @@ impl App {
         seen < shown.all
     }
 
-    /// Shows the next part of what the lesson says; false if all of it was shown.
+    /// Shows the next part of the text; returns false if all of it has been shown.
     pub(super) fn turn_page(&mut self, view: Option<&View>) -> bool {
         self.note_reading(view);
         if !self.is_unread(view) {
@@ -59,7 +58,7 @@ impl App {
             return false;
         };
         if shown.to == 0 {
-            // Where there is one pane at a time, the lesson stands in the place of the table.
+            // On a tiny screen the lesson replaces the table.
             self.zoomed = false;
             self.look_at(Pane::Nodes);
         } else {
@@ -69,15 +68,15 @@ impl App {
         true
     }
 
-    /// Shows what the lesson says from its beginning on.
+    /// Shows the lesson text from the top.
     pub(super) fn reread(&mut self) {
         match &self.lesson {
             Some(_) => self.reading.top = 0,
-            None => self.complain("no lesson is being taken; L begins one"),
+            None => self.complain("no lesson is open; press L to start one"),
         }
     }
 
-    /// Refuses what would go on with the lesson before it was read.
+    /// Rejects actions that continue the lesson until its text has been shown.
     pub(super) fn must_read(&self, view: Option<&View>) -> Result<(), NotNow> {
         match self.is_unread(view) {
             true => Err(NotNow::Unread),
@@ -85,7 +84,7 @@ impl App {
         }
     }
 
-    /// What of the lesson stands on a screen whose size is known.
+    /// The visible part of the lesson, if the screen size is known.
     fn lesson_shown(&self, view: Option<&View>) -> Option<Shown> {
         let tutor = self.lesson.as_ref()?;
         let covered = matches!(

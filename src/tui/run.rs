@@ -1,4 +1,4 @@
-//! The event loop, and how one gets into it: with a scene, a session that goes on, a lesson, or nothing yet.
+//! The event loop, and the entry points: a scene, a session, a lesson, or the chooser.
 
 use crate::app::App;
 use crate::debugger::{Debugger, Outside, offers};
@@ -16,7 +16,7 @@ use stickslip_debugger::teach::Lesson;
 use stickslip_scene::Scene;
 use stickslip_scene::format::SceneError;
 
-/// Why the debugger could not start, or had to end.
+/// Why the debugger could not start, or stopped.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// Standard input or output is not a terminal.
@@ -25,7 +25,7 @@ pub enum Error {
     /// The scene could not be loaded.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// The scene is unsound, or the finished run is damaged.
+    /// The scene is invalid, or the finished run is damaged.
     #[error("{0}")]
     Session(String),
     /// The journal cannot be written.
@@ -36,8 +36,8 @@ pub enum Error {
     Terminal(#[from] io::Error),
 }
 
-/// Runs the debugger on a scene (a file or a built-in one), with settings of the scene overridden; without a scene it
-/// offers the built-in ones. A signal that ends the process ends it here, with the terminal restored.
+/// Runs the debugger on a scene (a file or a built-in name) with overridden values, or with the chooser. On a terminating signal it
+/// returns with the terminal restored.
 ///
 /// # Errors
 /// If there is no terminal, the scene cannot be loaded, or the terminal fails.
@@ -57,7 +57,7 @@ pub fn run(
     go(session, *journal != Keep::Nowhere, None)
 }
 
-/// Goes on with a session, and says something first.
+/// Continues a session, and shows a message first.
 ///
 /// # Errors
 /// If there is no terminal, or it fails.
@@ -65,7 +65,7 @@ pub fn resume(session: Session, told: &str) -> Result<(), Error> {
     go(Some(session), true, Some(told))
 }
 
-/// The debugger on a session; `keeps` journals of further scenes, too.
+/// Runs the debugger on a session; `keeps` also writes journals of scenes opened later.
 fn go(session: Option<Session>, keeps: bool, told: Option<&str>) -> Result<(), Error> {
     if !io::stdin().is_terminal() || !io::stdout().is_terminal() {
         return Err(Error::NoTerminal);
@@ -79,7 +79,7 @@ fn go(session: Option<Session>, keeps: bool, told: Option<&str>) -> Result<(), E
     run_on(debugger)
 }
 
-/// Runs a lesson in the debugger. What happens in it is not recorded: it can be taken again.
+/// Runs a lesson. Lessons are not recorded, since they can be repeated.
 ///
 /// # Errors
 /// If there is no terminal, or it fails.
@@ -90,14 +90,14 @@ pub fn run_lesson(lesson: Lesson) -> Result<(), Error> {
     let mut debugger = configured(Config::open()?, None);
     debugger.in_the_world();
     if let Some(runs) = lesson.runs.clone() {
-        // Not while keys wait; what is wrong with it is told where it is asked for.
+        // Measured in the background, so that keys need not wait for it; an error is shown where the result is used.
         std::thread::spawn(move || runs.measure().is_ok());
     }
     debugger.teach(lesson);
     run_on(debugger)
 }
 
-/// A debugger as the user has set it.
+/// A debugger with the user's configuration.
 fn configured(config: Config, session: Option<Session>) -> Debugger {
     let mut debugger = Debugger::new(Theme::chosen(config.colours), offers(), session);
     let app = &mut debugger.app;
@@ -109,14 +109,14 @@ fn run_on(mut debugger: Debugger) -> Result<(), Error> {
     let signals = Signals::listen()?;
     let ended = Terminal::enter().and_then(|mut terminal| {
         terminal.heed_mouse(debugger.app.mouse)?;
-        // The terminal is given back before anything else is said.
+        // The terminal is restored before anything is printed.
         events(&mut debugger, &mut terminal, &signals)
     });
     debugger.part();
     leave(ended, &signals)
 }
 
-/// Ends as the signal wants that asked for it, or as the terminal that went away; else says what failed.
+/// Ends the process as its signal would, exits quietly if the terminal is gone, and otherwise returns the error.
 fn leave(ended: io::Result<()>, signals: &Signals) -> Result<(), Error> {
     if let Some(signal) = signals.end() {
         terminal::obey(signal)?;
@@ -127,8 +127,8 @@ fn leave(ended: io::Result<()>, signals: &Signals) -> Result<(), Error> {
     ended.map_err(Error::from)
 }
 
-/// The screen after some keys, as plain text: the program's own picture of itself. Keys are named as in the table and
-/// parted by blanks; the solver is waited for after each.
+/// The screen after some keys, as plain text. Keys are named as in the key table and separated by blanks; each one waits for the
+/// solver.
 ///
 /// # Errors
 /// If the scene cannot be loaded.
@@ -140,10 +140,10 @@ pub fn screen(scene: &str, keys: &str, width: u16, height: u16) -> Result<String
     Ok(debugger.text(width, height))
 }
 
-/// How long to wait for a key: while the solver is at work the screen follows it.
+/// Longest wait for a key: the screen follows a running solver.
 const IDLE: Duration = Duration::from_millis(100);
 const BUSY: Duration = Duration::from_millis(40);
-/// With a timeout of zero, crossterm's reader does not look at its input. Below 1 ms it does not sleep.
+/// With a timeout of zero, crossterm does not read its input. Below 1 ms it does not sleep.
 const LEAST_WAIT: Duration = Duration::from_micros(200);
 
 fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -> io::Result<()> {
@@ -157,7 +157,7 @@ fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -
                 return Ok(());
             }
         }
-        // Keys are looked at between any two slices of a fast run, and the screen follows it at its own pace.
+        // Keys are read between slices of a run, and the screen is redrawn at a fixed rate.
         let behind = debugger.is_behind();
         if changed && (!behind || drawn.elapsed() >= BUSY) {
             changed = false;
@@ -198,7 +198,7 @@ fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -
     Ok(())
 }
 
-/// The next event within `wait`, if any. Input that is already there is always found.
+/// The next event within `wait`, if any. Pending input is always found.
 fn next_event(wait: Duration) -> io::Result<Option<Event>> {
     match event::poll(wait.max(LEAST_WAIT))? {
         true => event::read().map(Some),
@@ -219,7 +219,7 @@ fn obey(
             terminal.suspend()?;
             if !continued(signals) {
                 app.complain(
-                    "no shell with job control started this program, so it cannot be suspended",
+                    "cannot suspend: the program was not started by a shell with job control",
                 );
             }
         }
@@ -239,7 +239,7 @@ fn stop(terminal: &mut Terminal, signals: &Signals) -> io::Result<()> {
 
 /// Whether the process was stopped and continued since the last call.
 fn continued(signals: &Signals) -> bool {
-    // The SIGTSTP sent to the process group arrives here, too.
+    // A SIGTSTP sent to the process group arrives here, too.
     signals.stop();
     signals.resumed()
 }

@@ -1,4 +1,4 @@
-//! The whole screen from the app and the view: who draws where.
+//! Draws the whole screen.
 
 use crate::app::{App, Overlay};
 use crate::choosing::Preview;
@@ -30,13 +30,13 @@ use ratatui::widgets::Widget;
 use stickslip_debugger::session::Session;
 use stickslip_scene::shown;
 
-/// What a page over the panes covers.
+/// The area that a page over the panes covers.
 pub fn body(places: &Places, view: Option<&View>) -> Rect {
     let areas = places.panes.iter().map(|pane| pane.1);
     let body = areas.reduce(Rect::union).unwrap_or_default();
     match view {
         Some(_) => body,
-        // The line that names the program is all that there is of a status.
+        // Without a scene the status is only the program's name.
         None => Rect {
             y: places.status.y + 1,
             height: body.bottom().saturating_sub(places.status.y + 1),
@@ -45,7 +45,7 @@ pub fn body(places: &Places, view: Option<&View>) -> Rect {
     }
 }
 
-/// Draws everything. Without a view (no scene yet) there is only the chooser.
+/// Draws everything; without a view (no scene yet), only the chooser.
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: Option<&View>) {
     buffer.set_style(area, app.theme.ground);
     let places = places(app, view, area);
@@ -78,13 +78,13 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: Option<&View>) {
     harmless(buffer, area);
 }
 
-/// Where everything stands on a screen of this size.
+/// The layout for a screen of this size.
 pub fn places(app: &App, view: Option<&View>, area: Rect) -> Places {
     let rows = view.map_or(0, |_| lesson::rows(app, area.width));
     layout::places(area, &app.choice(view, rows))
 }
 
-/// Takes from the cells what a terminal would obey, and what was not shown as something else before.
+/// Removes control characters from the cells, which a terminal would obey.
 fn harmless(buffer: &mut Buffer, area: Rect) {
     for at in area.intersection(buffer.area).positions() {
         let cell = &mut buffer[at];
@@ -99,7 +99,7 @@ fn harmless(buffer: &mut Buffer, area: Rect) {
     }
 }
 
-/// Whether a pane must not be seen yet, since it tells what comes next.
+/// Whether a pane is hidden because it shows what the user still has to predict.
 pub fn is_hidden(pane: Pane, app: &App, view: &View) -> bool {
     let tells = [
         Pane::Timeline,
@@ -113,7 +113,7 @@ pub fn is_hidden(pane: Pane, app: &App, view: &View) -> bool {
 fn draw_pane(pane: Pane, buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     if is_hidden(pane, app, view) {
         let inner = paint::frame(buffer, area, "Hidden", app.focus == pane, &app.theme);
-        let text = " until you have said what follows";
+        let text = " until you predict what follows";
         Line::styled(text, app.theme.faint).render(inner, buffer);
         return;
     }
@@ -131,7 +131,7 @@ fn draw_pane(pane: Pane, buffer: &mut Buffer, area: Rect, app: &App, view: &View
     }
 }
 
-/// The program's own screen as plain text, one line a row, no blanks at the ends.
+/// The screen of a session as plain text, one line per row, without trailing blanks.
 pub fn picture(session: &Session, width: u16, height: u16) -> String {
     text(
         &App::new(Theme::mono(), Vec::new()),
@@ -141,7 +141,7 @@ pub fn picture(session: &Session, width: u16, height: u16) -> String {
     )
 }
 
-/// Any screen as plain text.
+/// A screen as plain text.
 pub fn text(app: &App, view: Option<&View>, width: u16, height: u16) -> String {
     let area = Rect::new(0, 0, width, height);
     let mut buffer = Buffer::empty(area);

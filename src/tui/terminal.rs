@@ -1,9 +1,9 @@
-//! Takes over the real terminal, and restores it in every case.
+//! Takes over the terminal, and restores it in every case.
 //!
-//! The terminal is restored when [`Terminal`] is dropped (at the end or on an error), by the panic hook (before the message
-//! is printed, so that it is readable), and before the process obeys SIGTERM, SIGINT or SIGHUP. Ctrl-Z and SIGTSTP restore
-//! it, stop the process as the shell expects, and take it over again with a full redraw when the process continues. Taking
-//! over and restoring exclude each other, so a signal in between cannot leave either half done.
+//! The terminal is restored when [`Terminal`] is dropped (at the end or on an error), by the panic hook (before the message is
+//! printed, so that it is readable), and before the process obeys SIGTERM, SIGINT or SIGHUP. Ctrl-Z and SIGTSTP restore it, stop
+//! the process as the shell expects, and take it over again with a full redraw when the process continues. A lock serialises taking
+//! over and restoring, so a signal in between cannot leave either incomplete.
 
 use crate::app::App;
 use crate::screen;
@@ -33,12 +33,12 @@ use std::time::Duration;
 
 /// Whether the program has taken over the terminal.
 static OWNERSHIP: Ownership = Ownership(Mutex::new(false));
-/// Whether the mouse is to be heeded whenever the terminal is ours.
+/// Whether mouse support is on while the program has the terminal.
 static MOUSE: AtomicBool = AtomicBool::new(false);
-/// What a panic on another thread had to say; the screen is not its to write on.
+/// The message of a panic on another thread, which must not write to the screen.
 static PANIC: Mutex<Option<String>> = Mutex::new(None);
 
-/// Has clicks and the wheel reported, with places of any size. The library's own order wants every motion, too.
+/// Enables reports of clicks and the wheel, with positions of any size. Crossterm's own command also enables motion reports.
 struct HeedMouse;
 
 impl crossterm::Command for HeedMouse {
@@ -47,7 +47,7 @@ impl crossterm::Command for HeedMouse {
     }
 }
 
-/// Has nothing of the mouse reported.
+/// Disables mouse reports.
 struct LeaveMouse;
 
 impl crossterm::Command for LeaveMouse {
@@ -56,10 +56,10 @@ impl crossterm::Command for LeaveMouse {
     }
 }
 
-/// The terminal, taken over for as long as this lives.
+/// The terminal, taken over until this is dropped.
 #[derive(Debug)]
 pub struct Terminal {
-    /// Never dropped: it would show the cursor once more, and panic where it cannot say that there is no terminal to show it on.
+    /// Never dropped: dropping shows the cursor once more, and panics if the terminal is gone and the error cannot be printed.
     screen: ManuallyDrop<ratatui::Terminal<CrosstermBackend<Stdout>>>,
 }
 
@@ -79,12 +79,12 @@ impl Terminal {
         }
     }
 
-    /// Draws what changed of the debugger's screen; returns its size.
+    /// Draws the changes of the debugger's screen; returns the screen size.
     pub fn draw(&mut self, app: &App, view: Option<&View>) -> io::Result<Rect> {
         self.show(|buffer, area| screen::draw(buffer, area, app, view))
     }
 
-    /// Draws what changed of any screen, in one go where the terminal can do that; returns its size.
+    /// Draws the changes of a screen, in a synchronized update if the terminal supports it; returns the screen size.
     pub fn show(&mut self, screen: impl FnOnce(&mut Buffer, Rect)) -> io::Result<Rect> {
         queue!(stdout(), BeginSynchronizedUpdate)?;
         let drawn = self.screen.draw(|frame| {
@@ -96,7 +96,7 @@ impl Terminal {
         drawn
     }
 
-    /// Has clicks and the wheel reported, or leaves the mouse to the terminal.
+    /// Turns mouse reports on or off.
     pub fn heed_mouse(&mut self, on: bool) -> io::Result<()> {
         MOUSE.store(on, Ordering::SeqCst);
         match on {
@@ -105,15 +105,14 @@ impl Terminal {
         }
     }
 
-    /// Copies a text to the clipboard, where the terminal lets a program do that (OSC 52).
+    /// Copies a text to the clipboard, if the terminal allows it (OSC 52).
     pub fn copy(&mut self, text: &str) -> io::Result<()> {
         execute!(stdout(), CopyToClipboard::to_clipboard_from(text))
     }
 
-    /// Forgets what is on the screen, so that the next draw is a full one.
+    /// Discards the stored screen content, so that the next draw is a full one.
     ///
-    /// Not with the library's `clear`: that one asks the terminal where the cursor is, and fails where no answer comes
-    /// within two seconds.
+    /// ratatui's `clear` is not used: it asks the terminal for the cursor position, and fails without an answer within two seconds.
     pub fn forget(&mut self) -> io::Result<()> {
         let size = self.screen.size()?;
         self.screen.resize(size.into())
@@ -150,7 +149,7 @@ impl Terminal {
         worked
     }
 
-    /// Takes the terminal again after somebody else may have changed its settings.
+    /// Takes the terminal over again after another process may have changed its settings.
     pub fn retake(&mut self) -> io::Result<()> {
         self.released(|| Ok(()))
     }
@@ -170,7 +169,7 @@ impl Ownership {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Takes over the terminal by `enter`, unless already done. If `enter` fails half way, `leave` undoes it.
+    /// Takes over the terminal with `enter`, unless already done. If `enter` fails half way, `leave` undoes it.
     fn take(&self, enter: impl FnOnce() -> io::Result<()>, leave: impl FnOnce()) -> io::Result<()> {
         let mut taken = self.lock();
         if *taken {
@@ -184,7 +183,7 @@ impl Ownership {
         entered
     }
 
-    /// Restores the terminal by `leave`, if it was taken over. It cannot be taken over again before the guard is dropped.
+    /// Restores the terminal with `leave`, if it was taken over. It cannot be taken over again before the guard is dropped.
     fn give_back(&self, leave: impl FnOnce()) -> MutexGuard<'_, bool> {
         let mut taken = self.lock();
         if std::mem::take(&mut *taken) {
@@ -212,8 +211,8 @@ fn enter() -> io::Result<()> {
     }
 }
 
-/// Makes a read return empty when there is no input. The terminal library reads on after half an escape sequence and after
-/// an unknown one, and would block the screen until the next key. Leaving raw mode restores the old setting.
+/// Makes reads return immediately when there is no input. Crossterm reads on after an incomplete or unknown escape sequence, and
+/// would block the screen until the next key. Leaving raw mode restores the old setting.
 fn read_without_waiting() -> io::Result<()> {
     let mut settings = tcgetattr(stdin())?;
     settings.special_codes[SpecialCodeIndex::VMIN] = 0;
@@ -235,13 +234,13 @@ fn leave() {
     let _ = disable_raw_mode();
 }
 
-/// Whether the terminal went away under the program: there is none any more where there was one.
+/// Whether the terminal has been closed while the program runs.
 pub fn is_gone() -> bool {
     !stdout().is_terminal()
 }
 
-/// Makes a panic readable: on this thread the terminal is given back first; on another one (the solver's) the
-/// message is kept for [`panic_elsewhere`], since this thread goes on drawing.
+/// Makes a panic readable: on this thread the terminal is restored first; on another thread (the solver's) the message is stored
+/// for [`panic_elsewhere`], since this thread keeps drawing.
 fn hook_panics() {
     static ONCE: Once = Once::new();
     let ours = thread::current().id();
@@ -258,7 +257,7 @@ fn hook_panics() {
     });
 }
 
-/// What a panic on another thread said, once.
+/// Takes the message of a panic on another thread.
 pub fn panic_elsewhere() -> Option<String> {
     PANIC.lock().unwrap_or_else(PoisonError::into_inner).take()
 }
@@ -266,7 +265,7 @@ pub fn panic_elsewhere() -> Option<String> {
 /// Signals, as flags for the event loop.
 #[derive(Debug)]
 pub struct Signals {
-    /// Number of the signal that asks for the end, or 0.
+    /// The terminating signal, or 0.
     end: Arc<AtomicUsize>,
     watch: Handle,
     stop: Arc<AtomicBool>,
@@ -274,11 +273,11 @@ pub struct Signals {
     registered: [SigId; 2],
 }
 
-/// How long the event loop has to end by itself once a signal asks for it.
+/// Time for the event loop to end after a terminating signal.
 const PATIENCE: Duration = Duration::from_millis(300);
 
 impl Signals {
-    /// Listens from now on.
+    /// Installs the signal handlers.
     pub fn listen() -> io::Result<Self> {
         let (end, stop, resumed) = (Arc::default(), Arc::default(), Arc::default());
         let watch = watch(&end)?;
@@ -295,7 +294,7 @@ impl Signals {
         })
     }
 
-    /// The signal that asks for the end, if one came.
+    /// The terminating signal, if one arrived.
     pub fn end(&self) -> Option<i32> {
         match self.end.load(Ordering::SeqCst) {
             0 => None,
@@ -303,12 +302,12 @@ impl Signals {
         }
     }
 
-    /// Whether somebody asked the process to stop, once.
+    /// Whether a request to stop arrived since the last call.
     pub fn stop(&self) -> bool {
         self.stop.swap(false, Ordering::SeqCst)
     }
 
-    /// Whether the process was stopped and goes on, once.
+    /// Whether the process was continued since the last call.
     pub fn resumed(&self) -> bool {
         self.resumed.swap(false, Ordering::SeqCst)
     }
@@ -323,8 +322,8 @@ impl Drop for Signals {
     }
 }
 
-/// Waits on a separate thread for the signals that end the process. The event loop gets a moment to end by itself; it may
-/// be blocked in a write to a terminal that is gone.
+/// Waits on a separate thread for terminating signals. The event loop gets time to end by itself; it may be blocked in a write to a
+/// closed terminal.
 fn watch(end: &Arc<AtomicUsize>) -> io::Result<Handle> {
     let mut signals = signal_hook::iterator::Signals::new([SIGTERM, SIGINT, SIGHUP])?;
     let handle = signals.handle();
@@ -340,7 +339,7 @@ fn watch(end: &Arc<AtomicUsize>) -> io::Result<Handle> {
     Ok(handle)
 }
 
-/// Ends the process as the signal would have without us, so that whoever sent it sees that.
+/// Ends the process as the default action of the signal would, so that the parent sees it.
 pub fn obey(signal: i32) -> io::Result<()> {
     low_level::emulate_default_handler(signal)
 }
@@ -351,7 +350,7 @@ mod tests {
     use std::sync::mpsc::{RecvTimeoutError, channel};
 
     #[test]
-    fn a_terminal_that_is_just_being_taken_is_given_back_after_that() {
+    fn restoring_waits_until_the_terminal_is_taken_over() {
         static OWNED: Ownership = Ownership(Mutex::new(false));
         let (entering, entered) = (channel(), channel::<()>());
         let (told, left) = channel();
@@ -365,7 +364,7 @@ mod tests {
         });
         entering.1.recv().unwrap();
         let giver = thread::spawn(move || drop(OWNED.give_back(|| told.send(()).unwrap())));
-        // A signal arrives while the screen is being entered: leaving must wait until it is complete.
+        // A signal arrives while the terminal is being taken over: restoring must wait until that is complete.
         let early = left.recv_timeout(Duration::from_millis(50));
         assert_eq!(early, Err(RecvTimeoutError::Timeout));
         entered.0.send(()).unwrap();
@@ -376,7 +375,7 @@ mod tests {
     }
 
     #[test]
-    fn what_failed_half_way_is_undone_and_a_terminal_that_is_not_ours_is_left_alone() {
+    fn a_failed_takeover_is_undone_and_a_foreign_terminal_is_left_alone() {
         let owned = Ownership(Mutex::new(false));
         let mut undone = 0;
         let failed = owned.take(|| Err(io::ErrorKind::Other.into()), || undone += 1);
@@ -389,7 +388,7 @@ mod tests {
     }
 
     #[test]
-    fn nobody_takes_the_terminal_while_the_process_ends() {
+    fn the_terminal_cannot_be_taken_while_the_process_ends() {
         static OWNED: Ownership = Ownership(Mutex::new(true));
         let ending = OWNED.give_back(|| ());
         let (told, taken) = channel();

@@ -1,36 +1,35 @@
-//! Colours and weights. Colour never carries meaning alone: letters, words and glyphs come first.
+//! Colours and text styles. Letters, words and glyphs carry the meaning; colour only repeats it.
 //!
-//! Only the terminal's own colours are used, and few of them, so that light and dark terminals and a lecture hall's
-//! projector all keep the contrast that their owner chose; what stands back is dim, not grey, since some palettes
-//! hide their grey in the background. Cyan, yellow and magenta tell the modes apart for
-//! colour-blind eyes too; red and green are left to failure and success.
+//! Only a few of the terminal's own colours are used, so that text stays legible on light and dark terminals and projectors.
+//! Secondary text is dim, not grey, since some palettes hide grey in the background. Cyan, yellow and magenta, which colour-blind
+//! people can distinguish, mark the modes; red and green mean failure and success.
 
 use ratatui::style::{Color, Modifier, Style};
 use stickslip_core::model::Mode;
 use stickslip_debugger::action::Colours;
 
-/// The styles that the panes draw with.
+/// The styles of the screen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Theme {
-    /// What lies under all of it.
+    /// The background.
     pub ground: Style,
     /// Ordinary text.
     pub text: Style,
     /// Headings and pane titles.
     pub heading: Style,
-    /// Borders, captions, what stands back.
+    /// Borders, captions, secondary text.
     pub faint: Style,
     /// Border and title of the pane with the focus.
     pub focus: Style,
-    /// What changed, and what a reader must not miss.
+    /// Changes, and everything that must be noticed.
     pub strong: Style,
     /// The selected row or node.
     pub selected: Style,
     /// Keys in the footer and on the help page.
     pub key: Style,
-    /// What went well.
+    /// Success.
     pub good: Style,
-    /// What failed.
+    /// Failure.
     pub bad: Style,
     /// Ties, limits, interventions.
     pub warning: Style,
@@ -40,7 +39,7 @@ pub struct Theme {
 }
 
 impl Theme {
-    /// With these colours.
+    /// The theme for a choice of colours.
     pub fn of(colours: Colours) -> Self {
         match colours {
             Colours::Dark => Theme::colour(),
@@ -50,7 +49,7 @@ impl Theme {
         }
     }
 
-    /// For light grounds, on which yellow and cyan are hardly seen.
+    /// For light backgrounds, on which yellow and cyan are hard to see.
     fn light() -> Self {
         let colour = |colour| Style::new().fg(colour);
         Theme {
@@ -62,7 +61,7 @@ impl Theme {
         }
     }
 
-    /// Bright on black, whatever the terminal's ground is, and nothing dim.
+    /// Bright on black, whatever the terminal's background, without dim text.
     fn high_contrast() -> Self {
         let colour = |colour| Style::new().fg(colour).add_modifier(Modifier::BOLD);
         Theme {
@@ -78,7 +77,7 @@ impl Theme {
         }
     }
 
-    /// With the terminal's own colours, for dark grounds.
+    /// The terminal's own colours, for dark backgrounds.
     pub fn colour() -> Self {
         let colour = |colour| Style::new().fg(colour);
         let mono = Theme::mono();
@@ -93,7 +92,7 @@ impl Theme {
         }
     }
 
-    /// Without colour: bold, dim, underlined and reversed only.
+    /// No colours: only bold, dim, underlined and reversed.
     pub fn mono() -> Self {
         let plain = Style::new();
         let bold = plain.add_modifier(Modifier::BOLD);
@@ -115,7 +114,7 @@ impl Theme {
         }
     }
 
-    /// With these colours, unless the user's environment wants none.
+    /// The theme for a choice of colours, unless the environment asks for none.
     pub fn chosen(colours: Colours) -> Self {
         match wants_no_colour() {
             true => Theme::mono(),
@@ -123,7 +122,7 @@ impl Theme {
         }
     }
 
-    /// How a mode is written.
+    /// Style of a mode.
     pub fn mode(&self, mode: Mode) -> Style {
         match mode {
             Mode::Free => self.free,
@@ -132,19 +131,19 @@ impl Theme {
         }
     }
 
-    /// The cell of Table 2 that fired.
+    /// Style of the cell of Table 2 that fired.
     pub fn lit(&self, mode: Mode) -> Style {
         self.mode(mode)
             .add_modifier(Modifier::REVERSED | Modifier::BOLD)
     }
 }
 
-/// Whether the user's environment wants no colours: <https://no-color.org>.
+/// Whether the environment asks for no colours: <https://no-color.org>.
 pub fn wants_no_colour() -> bool {
     std::env::var_os("NO_COLOR").is_some_and(|value| !value.is_empty())
 }
 
-/// A mode in a letter, the one that `m` takes.
+/// A mode as a letter, as the key `m` expects it.
 pub fn letter(mode: Mode) -> &'static str {
     match mode {
         Mode::Free => "f",

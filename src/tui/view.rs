@@ -1,4 +1,4 @@
-//! What the panes show: a borrowed, read-only look at a session.
+//! The data that the panes draw: a read-only view of a session.
 
 use stickslip_core::contact::record::{ContactRecord, Forced};
 use stickslip_core::linear::norms::Norms;
@@ -20,52 +20,52 @@ use stickslip_debugger::teach;
 use stickslip_scene::Scene;
 use stickslip_scene::number;
 
-/// Everything that drawing needs to know about the session. Plain data, so that tests can make one by hand.
+/// All session data needed for drawing. Plain data, so that tests can construct it.
 #[derive(Debug, Clone)]
 pub struct View<'a> {
     /// File or built-in name of the scene.
     pub name: &'a str,
-    /// The scene as read, for the names that it gives its nodes; tests by hand have none.
+    /// The scene, which names its nodes; `None` in hand-made tests.
     pub scene: Option<&'a Scene>,
     /// The scene's model.
     pub model: &'a Model,
     /// The history, oldest first; never empty.
     pub frames: &'a [Frame],
-    /// The compact records of the same points; empty in tests by hand.
+    /// Compact records of the same steps; empty in hand-made tests.
     pub strips: &'a [Strip],
-    /// The whole history, and what was found out beside it; tests by hand have neither.
+    /// The whole history with its branches; `None` in hand-made tests.
     pub tree: Option<&'a Tree>,
-    /// What is found out beside the session; `None` in drawings of it alone.
+    /// Results of the background analyses; `None` in drawings of a session alone.
     pub background: Option<&'a Background>,
-    /// The start gaps in words; empty where there are none.
+    /// The start gaps in words; empty if there are none.
     pub start_gaps: &'a str,
-    /// The solver, where it is an attached one.
+    /// The attached solver, if there is one.
     pub guest: Option<Guest<'a>>,
-    /// Which of them is shown.
+    /// Index of the shown frame.
     pub cursor: usize,
-    /// Whether the solver is at work.
+    /// Whether the solver is running.
     pub running: bool,
-    /// Norms by major iteration of the shown increment attempt.
+    /// Norms by major iteration in the shown increment attempt.
     pub residuals: Vec<(u32, Norms)>,
-    /// The branch, if there are several, and the watches with their values, in a line; empty where there is neither.
+    /// The branch, if there are several, and the watches with their values, on one line; may be empty.
     pub aside: String,
 }
 
 /// An attached solver.
 #[derive(Debug, Clone, Copy)]
 pub struct Guest<'a> {
-    /// What it offers.
+    /// Its capabilities.
     pub offers: &'a Offers,
-    /// What it says besides.
+    /// Its log.
     pub log: &'a Log,
-    /// Whether it is gone; the next step starts it anew.
+    /// Whether it was lost; the next step restarts it.
     pub lost: bool,
-    /// What it does again in the running job, before it goes on.
+    /// The iterations that it repeats in the running job, in words.
     pub again: &'a str,
 }
 
 impl<'a> View<'a> {
-    /// The look of a session now.
+    /// The view of a session.
     pub fn of(session: &'a Session) -> Self {
         let mut view = View {
             name: session.scene_name(),
@@ -96,13 +96,13 @@ impl<'a> View<'a> {
         view
     }
 
-    /// What is found out about the problem that is solved next from here; an inner `None` while that is at work.
+    /// The diagnosis of the problem that is solved next from here; the inner `None` while it is being computed.
     pub fn examination(&self) -> Option<Option<&'a Examination>> {
         self.background?
             .examination((self.tree?.current(), self.cursor))
     }
 
-    /// Whether any remedies were tried, or are being tried.
+    /// Whether remedies were tried, or are being tried.
     pub fn has_tried(&self) -> bool {
         self.background.is_some_and(|b| b.tried().is_some())
     }
@@ -112,26 +112,27 @@ impl<'a> View<'a> {
         self.background.is_some_and(Background::is_trying)
     }
 
-    /// Whether the remedies that were tried last, or are being tried, start from here; not those that were stopped.
+    /// Whether the last remedies start from here; false if their trial was stopped.
     pub fn tries_here(&self) -> bool {
         let here = self.tree.map(|tree| (tree.current(), self.cursor));
         let tried = self.background.and_then(Background::tried);
         tried.is_some_and(|tried| Some(tried.place) == here && !tried.stopped)
     }
 
-    /// What pushed a slave node in the shown minor iteration; an inner `None` if that cannot be told.
+    /// The contributions of other nodes to a slave node's change in the shown minor iteration; the inner `None` if they are not
+    /// known.
     pub fn pushes(&self, slave: usize) -> Option<Option<&'a [Push]>> {
         self.background?
             .pushes((self.tree?.current(), self.cursor), slave)
     }
 
-    /// The frame that is shown.
+    /// The shown frame.
     pub fn frame(&self) -> &'a Frame {
         &self.frames[self.cursor]
     }
 
-    /// The minor iteration that led to the shown frame; `None` at the start, and if the increment starts again,
-    /// since what was found before that is not about this state.
+    /// The minor iteration that produced the shown frame; `None` at the start, and if the increment restarts, since earlier values
+    /// do not describe this state.
     pub fn event(&self) -> Option<&'a Event> {
         let (event, next) = (self.frame().event.as_deref()?, self.frame().state.next);
         let again =
@@ -139,29 +140,29 @@ impl<'a> View<'a> {
         (!again || self.model.finished.is_some()).then_some(event)
     }
 
-    /// What the user changed in the shown frame, if it is due to that.
+    /// The user's intervention that produced the shown frame, if any.
     pub fn intervention(&self) -> Option<&'a Intervention> {
         self.frame().intervention.as_ref()
     }
 
-    /// Where the solver is: the minor iteration that is shown, or else the one to come.
+    /// The position of the shown minor iteration, or otherwise of the next one.
     pub fn position(&self) -> Position {
         self.event()
             .map_or(self.frame().state.next, |event| event.position)
     }
 
-    /// What that minor iteration found at a slave node.
+    /// The values of a slave node in that minor iteration.
     pub fn record(&self, slave: usize) -> Option<&'a ContactRecord> {
         self.event()?.nodes.get(slave)
     }
 
-    /// The solver's own words for a contact in the shown iteration.
+    /// The solver's description of a contact in the shown iteration.
     pub fn words(&self, slave: usize) -> Option<&'a str> {
         let words = self.event()?.words.contacts.get(slave)?;
         Some(words.as_str()).filter(|words| !words.trim().is_empty())
     }
 
-    /// Which of the shown numbers are round-off; none at the start.
+    /// Which of the shown values are round-off; none at the start.
     pub fn round_off(&self) -> RoundOff {
         self.event().map_or(RoundOff::default(), |event| {
             RoundOff::of(self.model, &event.before)
@@ -176,18 +177,18 @@ impl<'a> View<'a> {
         }
     }
 
-    /// The mode that a slave node takes next: Table 2's, or the user's.
+    /// The next mode of a slave node, from Table 2 or the user.
     pub fn mode(&self, slave: usize) -> Mode {
         self.frame().state.nodes[slave].mode
     }
 
-    /// The mode that it had in the shown minor iteration; at the start the one that it starts with.
+    /// The mode of a slave node in the shown minor iteration; at the start, its initial mode.
     pub fn mode_before(&self, slave: usize) -> Mode {
         self.record(slave)
             .map_or(self.mode(slave), |record| record.decision.before)
     }
 
-    /// How the user stands behind its next mode, or else behind the one that it had in the shown minor iteration.
+    /// Whether the user forced or holds the next mode of a slave node, or otherwise the shown one.
     pub fn forced(&self, slave: usize) -> Forced {
         match (self.frame().state.nodes[slave].forced, self.record(slave)) {
             (Forced::No, Some(record)) if self.intervention().is_none() => record.forced,
@@ -195,7 +196,7 @@ impl<'a> View<'a> {
         }
     }
 
-    /// Whether a sliding node's T_max still moves by more than the tolerance, so that it is solved for again.
+    /// Whether a sliding node's T_max changes by more than the tolerance, so that another iteration is needed.
     pub fn t_max_moves(&self, slave: usize) -> bool {
         let (Some(event), Some(record)) = (self.event(), self.record(slave)) else {
             return false;
@@ -212,12 +213,12 @@ impl<'a> View<'a> {
         slides && !settled && (record.t_max - record.t_max_used).abs() > least
     }
 
-    /// Whether a number is one that an attached solver does not tell.
+    /// Whether an attached solver does not report a value.
     pub fn is_untold(&self, value: f64) -> bool {
         self.guest.is_some() && value.is_nan()
     }
 
-    /// A number as a cell of a table ([`number::cell`]); a dash where an attached solver does not tell it.
+    /// A value as a table cell ([`number::cell`]); a dash if an attached solver does not report it.
     pub fn cell(&self, value: f64, width: usize) -> String {
         match self.is_untold(value) || (self.guest.is_some() && value == f64::INFINITY) {
             true => format!(
@@ -229,7 +230,7 @@ impl<'a> View<'a> {
         }
     }
 
-    /// The same with ten digits ([`number::long`]).
+    /// A value with ten digits ([`number::long`]), or a dash.
     pub fn long(&self, value: f64) -> String {
         match self.is_untold(value) || (self.guest.is_some() && value == f64::INFINITY) {
             true => number::UNTOLD.into(),
@@ -237,19 +238,19 @@ impl<'a> View<'a> {
         }
     }
 
-    /// Whether an attached solver decided otherwise on a node than the rules that it names want on the same numbers.
+    /// Whether an attached solver's decision on a node differs from its rules for the same values.
     pub fn differs(&self, slave: usize) -> bool {
         let record = self.record(slave).filter(|_| self.guest.is_some());
         record.is_some_and(|record| record.differs())
     }
 
-    /// Where a node is: its place in the reference shape, displaced.
+    /// Current position of a node: reference position plus displacement.
     pub fn place(&self, node: usize) -> [f64; 2] {
         self.model.place(&self.frame().state.u, node)
     }
 }
 
-/// What actions need to know to read their arguments.
+/// The context in which actions parse their arguments.
 pub fn context<'a>(view: Option<&View<'a>>, selected: usize, scenes: &'a [String]) -> Context<'a> {
     let (model, scene) = (
         view.map(|view| view.model),

@@ -1,4 +1,4 @@
-//! Who waits, and for what: keys and lines that ask something of a session that is at work are put off, and done in their turn.
+//! Decides which keys and lines are queued while the session is busy, and handles the queue.
 
 use crate::ahead::{Awaited, Typed};
 use crate::app::{App, Effect, Opens, Overlay};
@@ -8,7 +8,7 @@ use crate::view::View;
 use stickslip_debugger::action::{Action, Page, Step, Ui};
 
 impl App {
-    /// What any key waits for, whatever it means: a page that is about to come is the one that it is meant for.
+    /// What every key waits for, whatever its action: a page that is about to open is meant to receive it.
     pub(super) fn awaits_all(&self) -> Option<Awaited> {
         let replaced = match (self.loading, &self.overlay) {
             (Some(Opens::Page), _) => true,
@@ -18,7 +18,7 @@ impl App {
         replaced.then_some(Awaited::Reading)
     }
 
-    /// What an action waits for at this moment; `None` if it can be done at once.
+    /// What an action waits for now; `None` if it can be carried out at once.
     pub(super) fn awaits(&self, action: &Action, view: Option<&View>) -> Option<Awaited> {
         if self.loading.is_some() && !action.outlives_the_scene() {
             return Some(Awaited::Reading);
@@ -30,7 +30,7 @@ impl App {
         let chooses = matches!(action, Action::Ui(Ui::Move(_) | Ui::Repeat));
         let remedies = match action {
             Action::Ui(Ui::Apply(_)) => true,
-            // Those that are being tried from here are shown at once.
+            // Trials that start from the shown state are visible at once.
             Action::Ui(Ui::Page(Page::Remedies)) => !view.tries_here(),
             _ => chooses && self.focus == Pane::Remedies,
         };
@@ -43,13 +43,13 @@ impl App {
         (finding && diagnosis).then_some(Awaited::Finding)
     }
 
-    /// Whether an action goes along the timeline, which is the session's to do.
+    /// Whether an action moves along the timeline, which the session does.
     fn goes_along(&self, action: &Action) -> bool {
         let along = !matches!(action, Action::Ui(Ui::Move(Step::Up | Step::Down)));
         self.focus == Pane::Timeline && matches!(action, Action::Ui(Ui::Move(_))) && along
     }
 
-    /// Lets a key wait that has a meaning, behind its count.
+    /// Queues a bound key after its count.
     pub(super) fn put_off_key(&mut self, name: &str, count: Option<u32>, awaited: Awaited) {
         let digits = count.map_or(String::new(), |count| count.to_string());
         let names = digits.chars().map(String::from).chain([name.to_owned()]);
@@ -58,7 +58,7 @@ impl App {
         }
     }
 
-    /// Does the first of what waits. `None` if nothing waits, or if it still must.
+    /// Handles the first queued input. `None` if the queue is empty or still has to wait.
     pub fn resume(&mut self, view: Option<&View>) -> Option<Option<Effect>> {
         if self.awaits_all().is_some() {
             return None;

@@ -85,37 +85,37 @@ const WRONGS: &[(&str, &str, &str)] = &[
         "states",
         "it has 1 displacements, and the scene 4 nodes",
     ),
-    ("random", "determinism", "started again, iteration"),
-    (
-        "restores-another",
-        "restore",
-        "gone back to the state after iteration",
-    ),
+    ("random", "determinism", "after a restart, iteration"),
+    ("restores-another", "restore", "after restoring iteration"),
     (
         "refuses-restore",
         "restore",
-        "is refused: I would rather not",
+        "was refused: I would rather not",
     ),
     (
         "refuses-save",
         "restore",
-        "save after iteration 0 is refused",
+        "save after iteration 0 was refused",
     ),
     ("dies-in-restore", "restore", "exit status 9"),
     ("deaf-to-force", "force", "is forced"),
     ("second-not-forced", "force", "contact 7 is forced"),
     ("refuses-force", "force", "I would rather not"),
     ("holds-once", "hold", "is held"),
-    ("refuses-release", "hold", "release of contact a is refused"),
+    (
+        "refuses-release",
+        "hold",
+        "release of contact a was refused",
+    ),
     (
         "refuses-set",
         "parameters",
-        "gain refuses the value that it has",
+        "gain refuses its current value",
     ),
     (
         "takes-all",
         "parameters",
-        "gain takes -1.0, which is none of its values",
+        "gain accepts the invalid value -1.0",
     ),
     ("problem-short", "problem", "4 rows of 4 numbers"),
     (
@@ -128,7 +128,7 @@ const WRONGS: &[(&str, &str, &str)] = &[
         "problem",
         "matrix[0][1]: invalid type: null",
     ),
-    ("deaf-to-bye", "bye", "it does not end"),
+    ("deaf-to-bye", "bye", "does not end"),
 ];
 
 fn each_wrong_is_found_by_its_check() {
@@ -154,7 +154,7 @@ fn each_wrong_is_found_by_its_check() {
         for (how, what, told) in [
             ("upside-down", "laws", "compression is positive"),
             ("flat", "problem", "gap = W f + q"),
-            ("deaf", "increment", "`load` is the factor"),
+            ("deaf", "increment", "`load` must be the load factor"),
         ] {
             scope.spawn(move || {
                 let report = check(

@@ -57,22 +57,22 @@ const FAULTS: &[(&str, bool, &str)] = &[
     (
         "text",
         false,
-        r#"that is no message (it is no JSON object): "Iteration 3: residual 1.0e-3"; what it prints belongs on standard error"#,
+        r#"that is no message (not a JSON object): "Iteration 3: residual 1.0e-3"; what it prints belongs on standard error"#,
     ),
     (
         "text-then-answer",
         false,
-        "that is no message (it is no JSON object)",
+        "that is no message (not a JSON object)",
     ),
-    ("binary", false, "that is no message (it is not UTF-8)"),
+    ("binary", false, "that is no message (not UTF-8)"),
     (
         "ansi",
         false,
-        r#"(it is no JSON object): "\u{1b}[2J\u{1b}]0;owned\u{7}\u{9b}31m""#,
+        r#"(not a JSON object): "\u{1b}[2J\u{1b}]0;owned\u{7}\u{9b}31m""#,
     ),
     ("blank", false, "that is no message (an empty line)"),
-    ("number", false, r#"(it is no JSON object): "42""#),
-    ("array", false, "(it is no JSON object)"),
+    ("number", false, r#"(not a JSON object): "42""#),
+    ("array", false, "(not a JSON object)"),
     (
         "nan",
         false,
@@ -172,12 +172,12 @@ const FAULTS: &[(&str, bool, &str)] = &[
     (
         "closes",
         false,
-        "the solver ended (it closed its standard output); step is not answered",
+        "the solver ended (standard output closed); step is not answered",
     ),
     (
         "leaves-a-child",
         false,
-        "the solver ended (exit status 5; what it started lives on); step is not answered",
+        "the solver ended (exit status 5; a child process keeps its output open); step is not answered",
     ),
 ];
 
@@ -208,7 +208,7 @@ const AFTER: &[(&str, [&str; 2])] = &[
     (
         "junk-between",
         [
-            r#"(it is no JSON object): "done.""#,
+            r#"(not a JSON object): "done.""#,
             "what it prints belongs on standard error",
         ],
     ),
@@ -315,13 +315,16 @@ const BAD_STARTS: &[(&str, &str)] = &[
     ("hello-without-question", "hello"),
     (
         "parameter-twice",
-        r#"the solver's hello is unsound: the parameter "gain": there are two of this name"#,
+        r#"the solver's hello is unsound: parameter "gain": duplicate name"#,
     ),
     (
         "parameter-unsound",
-        "its own value is none that it takes: gain takes a number from 0 on, and -1 is none",
+        "its current value is invalid: gain takes a number from 0 on, and -1 is none",
     ),
-    ("parameter-null", "its value is a number, a flag or a text"),
+    (
+        "parameter-null",
+        "the value must be a number, a flag or a text",
+    ),
     (
         "same-id",
         "the solver's scene is unsound: contacts[1].id: a is already used",
@@ -435,7 +438,7 @@ fn a_solver_that_died_once_is_started_anew_and_comes_to_the_same() {
     assert!(said.contains("the solver ended (exit status 1)"), "{said}");
     let said = does(&mut session, minor());
     assert!(
-        said.starts_with("the solver was started anew, and did 2 iterations again; "),
+        said.starts_with("the solver was restarted and repeated 2 iterations; "),
         "{said}"
     );
     assert_eq!(session.frames().len(), 4);
@@ -473,7 +476,7 @@ fn one_that_is_another_when_started_again_is_not_believed() {
         ),
         (
             "other-parameters",
-            "started again, the solver tells another list of parameters, or other values of them",
+            "started again, the solver tells another set of parameters",
         ),
     ] {
         let rude = Rude::new(how);
@@ -517,7 +520,7 @@ fn what_is_refused_is_told_and_the_solver_goes_on() {
                 );
                 assert!(
                     log.iter()
-                        .any(|said| said.text == "save is refused: I would rather not")
+                        .any(|said| said.text == "save was refused: I would rather not")
                 );
             }
         }
@@ -551,7 +554,7 @@ fn a_restore_that_is_refused_is_done_again_from_before() {
     };
     does(&mut session, force);
     let said = does(&mut session, minor());
-    assert!(said.contains("2 iterations again"), "{said}");
+    assert!(said.contains("repeated 2 iterations"), "{said}");
     assert_eq!(
         session.frame().event.as_ref().unwrap().nodes[0]
             .decision

@@ -95,10 +95,10 @@ def faults(solver: Attached) -> Driven:
     said = 0
     for fault, reason in (
         ("nan", "contacts[0].gap is not a number (NaN)"), ("raises", "ZeroDivisionError: division by zero"),
-        ("object", "<class 'object'> is neither number, text, list nor dictionary"), ("short", "a state of 1 contacts has 0"),
-        ("ragged", "the columns of contacts are not equally long: mode 1, next 2"),
-        ("long", "the state takes 734005"),
-        ("end", "a state has ended one of iteration, equilibrium, increment, cut, failure, done, not 'finished'"),
+        ("object", "<class 'object'> is not a number, text, list or dictionary"), ("short", "the state has 0 contacts instead of 1"),
+        ("ragged", "the columns of contacts have different lengths: mode 1, next 2"),
+        ("long", "the state has 734005"),
+        ("end", "`ended` must be one of iteration, equilibrium, increment, cut, failure, done, not 'finished'"),
     ):
         solver.ask("set", name="fault", value=fault)
         must(fault, solver.refusal("step")[: len(reason)], reason)
@@ -114,15 +114,15 @@ def faults(solver: Attached) -> Driven:
         if not solver.seconds < 5:
             raise Failed(f"{fault}: it went on for {solver.seconds:.1f} s")
     for name, value, reason in (
-        ("count", 5, "count is at most 4, not 5"), ("count", 2.5, "count is a whole number, not 2.5"),
-        ("count", None, "count is a whole number, not None"), ("flag", 1, "flag is true or false, not 1"),
-        ("size", 1, "there is no parameter 'size', only count, flag, fault"),
+        ("count", 5, "count must be at most 4, not 5"), ("count", 2.5, "count must be a whole number, not 2.5"),
+        ("count", None, "count must be a whole number, not None"), ("flag", 1, "flag must be true or false, not 1"),
+        ("size", 1, "no parameter 'size', only count, flag, fault"),
     ):
         must(f"{name} = {value}", solver.refusal("set", name=name, value=value), reason)
     for kind, reason in (("force", "faults does not offer force"), ("save", "faults does not offer restore"),
-                         ("problem", "faults does not offer problem"), ("dance", "there is no request dance")):
+                         ("problem", "faults does not offer problem"), ("dance", "no request dance")):
         must(kind, solver.refusal(kind, contact="a.1", mode="free"), reason)
-    must("another version", solver.refusal("hello", protocol=2), "version 1 of the protocol is spoken here, not 2")
+    must("another version", solver.refusal("hello", protocol=2), "this solver supports protocol version 1, not 2")
     solver.ask("set", name="fault", value="none")
     for _ in range(200):  # A signal that comes late, at any time, takes no answer away and adds none.
         solver.send({"type": "step"})
@@ -156,7 +156,7 @@ def springs(solver: Attached) -> Driven:
     must("modes with b forced", " ".join(map(letters, out)), "FS")
     must("its end", out[-1]["ended"], "done")
     near("F_t by F_n", out[-1]["contacts"][1]["f_t"] / out[-1]["contacts"][1]["f_n"], 0.5, 1e-12)
-    must("a step after the end", solver.refusal("step"), "the history is over")
+    must("a step after the end", solver.refusal("step"), "the history is complete")
 
     solver.ask("restore", token=start)
     solver.ask("force", contact=0, mode="free", hold=True)

@@ -41,11 +41,11 @@ fn a_benchmark_that_does_not_hold_is_told_and_the_exit_code_says_so() {
     fs::write(directory.path().join("off.ron"), list("-0.31", "along")).unwrap();
     let good = ran(directory.path(), &["good.ron"]);
     assert_eq!(code(&good), 0, "{}", err(&good));
-    assert!(err(&good).contains("good.ron: 1 of 1 hold"));
+    assert!(err(&good).contains("good.ron: 1 of 1 pass"));
     let off = ran(directory.path(), &["off.ron"]);
     assert_eq!(code(&off), 1);
     assert!(err(&off).contains("  off\n"), "{}", err(&off));
-    assert!(err(&off).contains("off.ron: 0 of 1 hold"));
+    assert!(err(&off).contains("off.ron: 0 of 1 pass"));
 }
 
 #[test]

@@ -273,7 +273,7 @@ fn wrong_usage_is_refused_with_2() {
     std::fs::write(directory.path().join("bad.csv"), "load,u_x\n1,x\n").unwrap();
     for (arguments, part) in [
         (vec![], "required"),
-        (vec![CIRCLE, "--target", "0"], "above 0"),
+        (vec![CIRCLE, "--target", "0"], "a positive number"),
         (vec![CIRCLE, "--cost", "money"], "one of time"),
         (vec![CIRCLE, "--over", "nonsense=1"], "no value"),
         (

@@ -58,7 +58,7 @@ fn a_picture_says_which_state_it_is_of_whether_the_scene_converges_or_fails() {
     );
     let output = exported(here, &[OSC, "-o", "failed.svg"]);
     assert_eq!(code(&output), 0, "{}", err(&output));
-    assert!(err(&output).contains("this is the state that is exported"));
+    assert!(err(&output).contains("exporting this state"));
     let svg = texts(&read(here, "failed.svg"));
     assert!(
         svg.contains("increment 1, major 1, minor 2, load 0.05: the last state reached, the increment failed: the modes 2-cycle"),
@@ -132,8 +132,11 @@ fn nothing_is_overwritten_unasked_and_an_unknown_extension_lists_the_known_ones(
         }
     }
     for (arguments, told) in [
-        (&[OSC, "-o", "a.svg", "--frozen"][..], "no frozen problem"),
-        (&[OSC, "-o", "a.cast"], "made of a journal"),
+        (
+            &[OSC, "-o", "a.svg", "--frozen"][..],
+            "--frozen cannot be used with .svg",
+        ),
+        (&[OSC, "-o", "a.cast"], "made from a journal"),
         (&["no-such-scene", "-o", "a.svg"], "no such file"),
     ] {
         let output = exported(here, arguments);

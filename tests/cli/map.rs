@@ -114,7 +114,7 @@ fn what_table_2_makes_of_random_problems_is_counted_honestly() {
     };
     assert_eq!(table.iter().filter(missed).count(), 0);
     let told = err(&output);
-    assert!(told.contains("answers by census: one in"), "{told}");
+    assert!(told.contains("solutions by census: one in"), "{told}");
     let svg = read(directory.path(), "a.svg");
     assert!(svg.trim_end().ends_with("</svg>") && svg.contains("lagged") && svg.contains("seed 1"));
 }
@@ -257,7 +257,7 @@ fn ctrl_c_ends_a_map_with_130_and_a_whole_table_of_what_is_done() {
     }
     let output = interrupted(child);
     assert!(
-        err(&output).contains("interrupted; 2 of 4 cells were done"),
+        err(&output).contains("interrupted after 2 of 4 cells"),
         "{}",
         err(&output)
     );

@@ -408,11 +408,7 @@ fn record_names_its_file_and_tells_a_place_that_is_not_reached() {
     assert_eq!(names(directory.path()), [file]);
     let output = ran_in(directory.path(), &["record", OSC, "--at", "2"]);
     assert_eq!(code(&output), 3);
-    assert!(
-        err(&output).contains("2 is not reached"),
-        "{}",
-        err(&output)
-    );
+    assert!(err(&output).contains("2 not reached"), "{}", err(&output));
     assert_eq!(names(directory.path()), [file]);
     let output = ran(&["record", OSC, "--at", "1.1.1", "-o", "-"]);
     assert!(out(&output).starts_with("(\n    format: 1,"));

@@ -265,7 +265,7 @@ fn a_part_is_no_table_and_a_shard_is_k_of_n() {
         (&["--shard", "4/3", "--log", "a"], "K/N"),
         (
             &["--shard", "1/3", "--log", "a", "--svg", "a.svg"],
-            "--merge draws it",
+            "with --merge",
         ),
         (&["--log", "a", "--merge", "b"], "cannot be used"),
         (&["--resume", "a", "--merge", "b"], "cannot be used"),
@@ -345,7 +345,7 @@ fn sigterm_stops_a_shard_with_130_and_the_same_command_goes_on() {
         assert_eq!(code(&output), 130, "{words}: {}", err(&output));
         let told = err(&output);
         assert!(
-            told.contains("of shard 1/2 are done; run the same command to continue"),
+            told.contains("of shard 1/2; repeat the command to continue"),
             "{told}"
         );
         let before = bytes(here, "a.log");

@@ -490,7 +490,7 @@ fn ctrl_c_ends_a_study_with_130_and_whole_files_of_what_is_done() {
     }
     std::thread::sleep(std::time::Duration::from_secs(2));
     let output = interrupted(child);
-    assert!(err(&output).contains("interrupted; 1 of 3 runs were done"));
+    assert!(err(&output).contains("interrupted after 1 of 3 runs"));
     assert_eq!(names(directory.path()), ["a.csv", "a.svg"]);
     let table = rows(&std::fs::read_to_string(directory.path().join("a.csv")).unwrap());
     assert_eq!(table[5][..3], ["0.5", "converged", "5"]);

@@ -370,8 +370,8 @@ fn the_command_writes_a_core_whole_once_and_says_where_there_is_none() {
     );
     // Nothing is written where there is no cycle of minors.
     for (scene, told) in [
-        ("02-two-cantilevers-smooth", "it converges"),
-        ("osc-p5-slow", "no cycle of minor iterations"),
+        ("02-two-cantilevers-smooth", "the scene converges"),
+        ("osc-p5-slow", "not in a cycle of minor iterations"),
     ] {
         let (code, out, err) = ran(&["core", scene, "-o", "none.ron"]);
         assert_eq!((code, out.as_str()), (3, ""), "{err}");

@@ -378,7 +378,7 @@ fn resume_and_story_on_the_command_line_end_as_they_should() {
     ends(
         &run(state, &["resume", "--check", name]),
         0,
-        "equal to the last bit",
+        "replay is bit-identical",
     );
     let told = run(state, &["story", name]);
     ends(&told, 0, "");

@@ -80,7 +80,7 @@ fn all_that_a_lesson_says_was_shown_before_it_goes_on() {
                 // Words that stand on the screen now are seen.
                 let screen = shown(&debugger);
                 missing.retain(|word| !screen.contains(word.as_str()));
-                let turns = screen.contains("▼ Space shows more");
+                let turns = screen.contains("▼ Space: more");
                 match turns {
                     true => debugger.type_keys("Space"),
                     false => go_on(&mut debugger),
@@ -96,7 +96,7 @@ fn all_that_a_lesson_says_was_shown_before_it_goes_on() {
 fn what_was_not_read_is_not_passed_over() {
     let mut debugger = taught("1-modes", 60, 12);
     assert!(
-        shown(&debugger).contains("▼ Space shows more"),
+        shown(&debugger).contains("▼ Space: more"),
         "{}",
         shown(&debugger)
     );

@@ -443,7 +443,7 @@ fn a_page_in_the_debugger_scrolls_searches_turns_and_is_left() {
             .contains("Manual: changes")
     );
     let missed = page(&["help theory"], "/ z z z q Enter").text(80, 24);
-    assert!(missed.contains("nothing holds 'zzzq'"), "{missed}");
+    assert!(missed.contains("no match for 'zzzq'"), "{missed}");
     for key in ["Esc", "q"] {
         let left = page(&["help theory"], key).text(80, 24);
         assert!(

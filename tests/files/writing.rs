@@ -87,7 +87,7 @@ fn a_disk_without_room_is_told_and_leaves_nothing_half_written() {
             .unwrap();
         assert_eq!(output.status.code(), Some(2), "{}", err(&output));
         assert!(
-            err(&output).contains("a: it cannot be written"),
+            err(&output).contains("a: the file cannot be written"),
             "{}",
             err(&output)
         );
@@ -100,7 +100,7 @@ fn a_disk_without_room_is_told_and_leaves_nothing_half_written() {
         );
         assert_eq!(code(&told), 2);
         assert!(
-            err(&told).contains("/dev/full: it cannot be written"),
+            err(&told).contains("/dev/full: the file cannot be written"),
             "{}",
             err(&told)
         );

@@ -171,12 +171,12 @@ fn an_end_that_is_judged_wrong_is_no_other_valid_state() {
 #[test]
 fn who_is_attached_and_how_it_goes_back_stand_at_the_top() {
     for (goes_back, words) in [
-        (GoesBack::Again, "attached; back by starting anew"),
+        (GoesBack::Again, "attached, goes back by restart"),
         (
             GoesBack::ToIncrements,
-            "attached; back to increments, from there again",
+            "attached, goes back to increments, then replays",
         ),
-        (GoesBack::ToAny, "attached; back to any state"),
+        (GoesBack::ToAny, "attached, can go back to any state"),
     ] {
         let debugger = attached(
             &three(),
@@ -242,14 +242,14 @@ fn what_is_not_offered_is_grey_everywhere_and_its_key_gives_the_reason_and_does_
     let help = debugger.text(120, 40).replace('┃', " ");
     let help: String = help.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(
-        help.contains("Not here: the solver Toy does not offer another increment."),
+        help.contains("Not available: the solver Toy does not offer another increment."),
         "{help}"
     );
     debugger.type_keys("Esc :");
     debugger.type_text("fo");
     holds(
         &debugger,
-        "not here: the solver Toy does not offer forced modes",
+        "not available: the solver Toy does not offer forced modes",
     );
     debugger.type_keys("Esc :");
     debugger.type_text("mi");
@@ -267,7 +267,7 @@ fn what_is_offered_in_part_says_which_part() {
         },
     );
     debugger.type_keys("m");
-    holds(&debugger, "the solver cannot hold it");
+    holds(&debugger, "this solver cannot hold it");
     holds(&debugger, "F S X (hold)");
     debugger.type_keys("X");
     assert!(
@@ -295,7 +295,7 @@ fn a_solver_of_our_own_has_no_log_and_no_parameters() {
         holds(&debugger, "this is our own solver");
     }
     debugger.type_keys("m");
-    holds(&debugger, "a capital holds it until M releases");
+    holds(&debugger, "capital letter: hold until M releases it");
 }
 
 #[test]
@@ -305,11 +305,11 @@ fn the_decision_shows_the_solver_s_words_and_where_table_2_differs() {
     let shown = debugger.text(120, 40);
     let joined: String = shown.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(
-        joined.contains("The solver takes free: “the augmented pressure is negative”."),
+        joined.contains("The solver chooses free: “the augmented pressure is negative”."),
         "{shown}"
     );
     assert!(
-        joined.contains("≠ Table 2 (◁), which wants fixed on the same numbers."),
+        joined.contains("≠ Table 2 (◁), which gives fixed for the same values."),
         "{shown}"
     );
     assert!(
@@ -394,7 +394,7 @@ fn a_lost_solver_is_told_until_a_key_and_the_header_says_so_until_it_steps() {
     for _ in 0..3 {
         debugger.advance();
         holds(&debugger, why);
-        holds(&debugger, "✗ lost; the next step starts it anew");
+        holds(&debugger, "✗ lost; the next step restarts it");
     }
     assert_eq!(debugger.session.as_ref().unwrap().frames().len(), 4);
     debugger.type_keys("j");
@@ -425,7 +425,7 @@ fn what_a_solver_says_has_a_page_that_follows_its_end() {
     ));
     let mut debugger = attached(&exchange(&scene(), &lines), Offers::default());
     debugger.advance();
-    holds(&debugger, "error of the solver: no convergence");
+    holds(&debugger, "solver error: no convergence");
     holds(&debugger, "1 error, 1 warning (O)");
     debugger.type_keys("j");
     assert!(
@@ -513,9 +513,9 @@ fn parameters_are_completed_set_and_listed_with_what_they_are_now() {
     );
     debugger.type_keys(": p a r a m Enter");
     for line in [
-        "penalty factor = 12.5   (a number from 0 on, began with 10)",
+        "penalty factor = 12.5   (a number from 0 on, initially 10)",
         "Stiffness of the penalty",
-        "law = penalty   (one of alm, penalty, began with alm)",
+        "law = penalty   (one of alm, penalty, initially alm)",
         "damped = false   (true or false)",
     ] {
         holds(&debugger, line);
@@ -686,7 +686,7 @@ fn a_solver_is_attached_stepped_forced_gone_back_with_and_gone_with_the_program(
     let mut session =
         Start::debugger(&["attach", "--no-journal", "--", PROGRAM, "serve", "osc-lag4"]).go();
     session.see_taken();
-    session.see("attached; back to any state");
+    session.see("attached, can go back to any state");
     session.keys("s");
     session.see("a free > fixed");
     session.keys("s");
@@ -698,7 +698,7 @@ fn a_solver_is_attached_stepped_forced_gone_back_with_and_gone_with_the_program(
     session.keys("s");
     session.see("◇ 1 forced");
     session.keys(":log\r");
-    session.see("What stickslip osc-lag4 says");
+    session.see("Log of stickslip osc-lag4");
     session.keys("\x1b");
     let program = session.child.process_id().unwrap();
     // The thread that started it is its parent.

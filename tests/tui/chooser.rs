@@ -81,7 +81,7 @@ fn escape_forgets_what_was_typed_then_goes_back_and_never_quits() {
     assert_eq!(press(&mut debugger, "Esc"), None);
     let told = debugger.text(80, 24);
     assert!(
-        told.contains("q quits") && told.contains("Choose"),
+        told.contains("press q to quit") && told.contains("Choose"),
         "{told}"
     );
     debugger.type_keys("Enter s s o");

@@ -232,10 +232,7 @@ fn what_is_selected_is_copied_and_named() {
     );
     let (nothing, told) = copied("osc-two6", "Tab", "");
     assert_eq!(nothing, None);
-    assert!(
-        told.contains("nothing is solved for margin a here"),
-        "{told}"
-    );
+    assert!(told.contains("margin a has no value here"), "{told}");
 }
 
 #[test]
@@ -260,9 +257,9 @@ fn a_text_is_found_in_the_help_and_in_lists() {
     debugger.type_keys("N");
     assert_eq!(text(&debugger), first);
     debugger.type_keys("/ z z z Enter");
-    assert!(text(&debugger).contains("nothing holds 'zzz'"));
+    assert!(text(&debugger).contains("no match for 'zzz'"));
     debugger.type_keys("j");
-    assert!(!text(&debugger).contains("nothing holds"));
+    assert!(!text(&debugger).contains("no match for"));
     // The end is the end: a key up moves at once.
     debugger.type_keys("G");
     let end = text(&debugger);
@@ -281,7 +278,7 @@ fn a_text_is_found_in_the_help_and_in_lists() {
     let second = label(&debugger);
     assert!(second.contains("increment") && second != first, "{second}");
     debugger.type_keys("/ z z Enter");
-    assert!(text(&debugger).contains("nothing in this list holds 'zz'"));
+    assert!(text(&debugger).contains("no entry of this list contains 'zz'"));
     debugger.type_keys("Esc Tab / b Enter");
     assert_eq!(debugger.app.selected, 1);
 }
@@ -302,7 +299,7 @@ fn footer_help_and_completion_show_the_present_keys() {
         "{footer}"
     );
     debugger.type_keys("s");
-    assert!(text(&debugger).contains("s does nothing here"));
+    assert!(text(&debugger).contains("s is not bound here"));
     debugger.type_keys("x");
     assert_eq!(debugger.session.as_ref().unwrap().cursor(), 1);
     debugger.type_keys("2 F2");
@@ -390,9 +387,9 @@ fn the_terminal_reports_the_mouse_only_while_it_is_wanted() {
     let rows = session.text();
     let row = rows.lines().position(|row| row.contains("* b ")).unwrap();
     session.type_and_see(&format!("\x1b[<0;8;{}M", row + 1), "Decision  b");
-    session.type_and_see(":mouse off\r", "the mouse is the terminal's");
+    session.type_and_see(":mouse off\r", "mouse off; :mouse on turns it on");
     assert_eq!(modes(&session), off);
-    session.type_and_see(":mouse on\r", "the mouse selects");
+    session.type_and_see(":mouse on\r", "mouse on: click selects");
     assert_eq!(modes(&session), on);
     session.signal("TSTP");
     session.see_restored();
@@ -460,10 +457,7 @@ fn the_user_s_files_give_keys_and_colours_and_no_color_wins() {
     let mut session = started(&mine, &[("NO_COLOR", "1")]);
     session.see(" x step");
     assert!(!black(&session));
-    session.type_and_see(
-        ":colours light\r",
-        "NO_COLOR is set in the environment, and wins",
-    );
+    session.type_and_see(":colours light\r", "the environment sets NO_COLOR");
     session.quit();
 }
 

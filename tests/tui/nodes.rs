@@ -87,7 +87,7 @@ fn a_tie_is_told_from_a_near_tie() {
         "{screen}"
     );
     assert!(
-        screen.contains("a tie, by 0 force") && screen.contains("A tie keeps the"),
+        screen.contains("tie, margin 0 force") && screen.contains("A tie keeps the"),
         "{screen}"
     );
     assert!(screen.contains(" 1-2e-10 "), "{screen}");
@@ -252,7 +252,7 @@ fn the_table_sorts_and_filters_and_the_selection_stays_on_its_node() {
     assert_eq!(listed(&app, &view), ["4", "1", "2", "3", "5"]);
     press(&mut app, &view, "> A");
     assert_eq!(listed(&app, &view), ["1", "2", "3", "4"]);
-    assert!(screen::text(&app, Some(&view), 80, 24).contains(" 2/4 active of 5 "));
+    assert!(screen::text(&app, Some(&view), 80, 24).contains(" 2/4 active, of 5 "));
     press(&mut app, &view, "A");
     assert_eq!(listed(&app, &view), ["1", "2", "3", "4"], "one surface");
     press(&mut app, &view, "A End A");

@@ -313,7 +313,7 @@ fn a_remedy_from_elsewhere_is_not_taken_here() {
     debugger.type_keys("s Enter");
     let message = &debugger.app.message.text;
     assert!(
-        message.contains("these were tried from step 5 of b1"),
+        message.contains("these remedies were tried from step 5 of b1"),
         "{message}"
     );
 }
@@ -327,7 +327,7 @@ fn branches_are_walked_and_stand_beside_each_other() {
         "{seen}"
     );
     assert!(
-        seen.contains("↺ cycle") && seen.contains("Beside the current one"),
+        seen.contains("↺ cycle") && seen.contains("Compared at"),
         "{seen}"
     );
     debugger.type_keys("Enter");
@@ -473,7 +473,7 @@ fn a_chart_that_is_being_measured_says_how_far_it_is_and_can_be_stopped() {
     let shown = debugger.text(80, 24);
     assert!(!shown.contains("chart: "), "{shown}");
     assert!(
-        shown.contains("stopped before there was anything"),
+        shown.contains("stopped before any run was finished"),
         "{shown}"
     );
 }

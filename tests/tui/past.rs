@@ -281,7 +281,7 @@ fn a_session_walks_searches_is_resized_stopped_and_leaves_no_trace() {
     session.see_no_more("2 steps, 9 increments, 13 attempts");
     session.see("Timeline  step");
     // There is no shell here that could continue it; who sends a signal can.
-    session.type_and_see(CTRL_Z, "it cannot be suspended");
+    session.type_and_see(CTRL_Z, "cannot suspend");
     session.signal("TSTP");
     session.wait("the shell's screen", Session::on_main_screen);
     let back = patiently(|| {
@@ -323,7 +323,7 @@ fn without_a_terminal_the_text_is_named_and_nothing_else_goes_with_a_run_that_is
         ),
         (
             vec![cel, "--set", "a=b"],
-            format!("--set cannot be used: {}", words::READ_ONLY),
+            format!("--set cannot be used with this input: {}", words::READ_ONLY),
         ),
         (vec![&sta], format!("`stickslip {cel}`")),
         (

@@ -31,7 +31,7 @@ fn what_the_terminal_answers_is_told() {
     session.keys(
         "\x1b[1;4R\x1b[1;3R\x1b[1;7R\x1b[1;3R\x1b[1;2R\x1b[?1006;2$y\x1b[?2026;0$y\x1b[?62;52c",
     );
-    let told = "mouse (SGR): yes; clipboard (OSC 52): yes; drawn in one go: no; widths: as here; it is 62;52";
+    let told = "mouse (SGR): yes; clipboard (OSC 52): yes; synchronized updates: no; widths: as expected; type: 62;52";
     ends_well(session, told);
 }
 
@@ -39,8 +39,8 @@ fn what_the_terminal_answers_is_told() {
 fn letters_that_the_terminal_draws_wider_are_told() {
     let mut session = asked();
     session.keys("\x1b[1;7R\x1b[1;3R\x1b[1;7R\x1b[1;3R\x1b[1;2R\x1b[?6c");
-    let told = "mouse (SGR): it does not say; clipboard (OSC 52): it does not say; drawn in one go: it does not say; \
-                widths: lines take 6 columns and not 3; it is 6";
+    let told = "mouse (SGR): not reported; clipboard (OSC 52): not reported; synchronized updates: not reported; \
+                widths: lines take 6 columns instead of 3; type: 6";
     ends_well(session, told);
 }
 

@@ -98,7 +98,7 @@ fn the_load_is_drawn_over_a_monitor() {
     let medium = screen::text(&app, Some(&view), 120, 40);
     assert!(medium.contains(" Load over ") && !medium.contains(" Residual "));
     view.cursor = 0;
-    assert!(screen::text(&app, Some(&view), 200, 60).contains("No increment is done yet."));
+    assert!(screen::text(&app, Some(&view), 200, 60).contains("No increment accepted yet."));
 }
 
 #[test]

@@ -58,10 +58,10 @@ fn a_journal_that_cannot_begin_is_told_whatever_is_done_first_and_another_can_be
         session.type_and_see(":rename later\r", "b1: later");
         session.keys("q");
         assert!(session.end().success());
-        session.see("journal: mine (`stickslip resume mine` goes on with it)");
+        session.see("journal: mine (`stickslip resume mine` continues it)");
         let told = check(&file);
         assert!(
-            told.contains("4 entries") && told.contains("equal to the last bit"),
+            told.contains("4 entries") && told.contains("replay is bit-identical"),
             "{told}"
         );
         let mode = std::fs::metadata(&file).unwrap().permissions().mode();
@@ -107,7 +107,7 @@ fn a_journal_that_outgrows_the_disk_says_so_and_keeps_what_is_whole() {
     session.keys("q");
     assert!(session.end().success());
     session.see_restored();
-    assert!(check(&file).contains("equal to the last bit\n"));
+    assert!(check(&file).contains("replay is bit-identical\n"));
 }
 
 #[test]
@@ -129,7 +129,7 @@ fn on_quitting_a_line_says_where_the_journal_is_if_there_is_one() {
     session.keys("q");
     assert!(session.end().success());
     session.see_restored();
-    session.see("goes on with it)");
+    session.see("continues it)");
     assert_eq!(session.text().matches("journal: ").count(), 1);
     let mut session = open(OSCILLATES);
     session.see_taken();
@@ -163,13 +163,13 @@ fn pipes_devices_and_folders_never_block_the_keys() {
         let told = if *command == "journal" {
             "exists already"
         } else {
-            "it is a pipe"
+            "is a pipe"
         };
         session.type_and_see(&format!(":{command} pipe\r"), told);
         session.type_and_see(&format!(":rename r{k}\r"), &format!("b1: r{k}"));
     }
     for command in ["open", "lesson", "chart", "snapshot!", "core!"] {
-        session.type_and_see(&format!(":{command} /dev/zero\r"), "it is a device");
+        session.type_and_see(&format!(":{command} /dev/zero\r"), "is a device");
         session.type_and_see(":rename x\r", "b1: x");
         session.type_and_see(":rename y\r", "b1: y");
     }

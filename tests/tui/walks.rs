@@ -273,16 +273,16 @@ fn notes_go_with_the_next_key_and_errors_with_the_next_success() {
     debugger.type_keys("Tab");
     assert_eq!(debugger.app.message.text, "");
     debugger.type_keys("x");
-    assert!(debugger.text(120, 40).contains("x does nothing here"));
+    assert!(debugger.text(120, 40).contains("x is not bound here"));
     for key in ["Tab", "z", "s", "+", "?", ":", "5"] {
         debugger.type_keys("Esc x");
         assert!(
-            debugger.text(120, 40).contains("does nothing here"),
+            debugger.text(120, 40).contains("is not bound here"),
             "{key}"
         );
         debugger.type_keys(key);
         assert!(
-            !debugger.text(120, 40).contains("does nothing here"),
+            !debugger.text(120, 40).contains("is not bound here"),
             "{key}"
         );
         debugger.type_keys("Esc");

@@ -1,4 +1,4 @@
-//! Whether states that a solver keeps are the same when it comes back to them.
+//! Checks that saved states are restored exactly.
 
 use super::report::{Outcome, fails, good, not_offered};
 use super::steps::otherwise;
@@ -8,16 +8,16 @@ use stickslip_core::model::Mode;
 use stickslip_debugger::recorded::fault::Fault;
 use stickslip_exchange::attach::message::{Ended, Restore, State};
 
-/// Iterations that are looked at after each state.
+/// Iterations compared after each restored state.
 const AFTER: usize = 2;
-const MEND: &str = "a token keeps all that the next iterations depend on: displacements, forces, modes, what is forced and held, parameters, counters, multipliers, anchors";
+const MEND: &str = "save everything that the next iterations depend on: displacements, forces, modes, what is forced and held, parameters, counters, multipliers, anchors";
 
-/// All states are kept as far as that is offered; each is gone back to, the last first, and from the start again.
+/// Saves all states that the solver offers to save, then restores each one, from the last to the first, and the first one again.
 pub fn restore(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
     let offered = trial.hello.abilities.restore;
     if offered == Restore::None {
         let took = format!(
-            "going back starts it anew ({:.0} ms), and does everything again",
+            "going back restarts the solver ({:.0} ms) and repeats all iterations",
             super::millis(trial.began)
         );
         return Ok(not_offered(took));
@@ -29,10 +29,10 @@ pub fn restore(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
             match trial.save()? {
                 Ok(token) => kept.push((place, token)),
                 Err(reason) => {
-                    let found = format!("save after iteration {place} is refused: {reason}");
+                    let found = format!("save after iteration {place} was refused: {reason}");
                     return Ok(fails(
                         found,
-                        "what hello offers is kept: \"any\" state, or the start and every one after which an \"increment\" has ended",
+                        "save the states that hello offers: \"any\" state, or the start and every state after the end of an \"increment\"",
                     ));
                 }
             }
@@ -58,11 +58,11 @@ pub fn restore(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
     }
     let (count, s) = (kept.len(), if kept.len() == 1 { "" } else { "s" });
     Ok(good(format!(
-        "{count} state{s} gone back to, and what follows is the same to the last bit"
+        "{count} state{s} restored; the following iterations are bit-identical"
     )))
 }
 
-/// What is not the same after a state was gone back to, and how to mend it.
+/// The difference after restoring a state, and how to fix it.
 fn comes_back(
     trial: &mut Trial,
     place: usize,
@@ -70,11 +70,8 @@ fn comes_back(
     states: &[State],
 ) -> Result<Option<(String, &'static str)>, Fault> {
     if let Err(reason) = trial.restore(token)? {
-        let found = format!("the token given after iteration {place} is refused: {reason}");
-        return Ok(Some((
-            found,
-            "a token that was given is good until the solver ends",
-        )));
+        let found = format!("the token from iteration {place} was refused: {reason}");
+        return Ok(Some((found, "keep tokens valid until the solver ends")));
     }
     for (then, number) in states.iter().zip(1..).skip(place).take(AFTER) {
         let now = trial.step()?;
@@ -82,20 +79,18 @@ fn comes_back(
             continue;
         }
         let how = match now {
-            None => "it is refused".to_owned(),
+            None => "the step was refused".to_owned(),
             Some(now) => {
-                otherwise(then, &now).unwrap_or_else(|| "the numbers have other bits".into())
+                otherwise(then, &now).unwrap_or_else(|| "numbers differ in the last digits".into())
             }
         };
-        let found = format!(
-            "gone back to the state after iteration {place}, iteration {number} is another: {how}"
-        );
+        let found = format!("after restoring iteration {place}, iteration {number} differs: {how}");
         return Ok(Some((found, MEND)));
     }
     Ok(None)
 }
 
-/// Whether what was forced after a state was kept is still forced when it is gone back to.
+/// Checks that restoring a state also removes modes forced after it was saved.
 fn forgets(
     trial: &mut Trial,
     place: usize,
@@ -120,13 +115,13 @@ fn forgets(
         let failed = trial.step()?.is_none_or(|state| is_last(&state));
         if trial.restore(token)?.is_err() {
             return Ok(Some(
-                "after a forced iteration its tokens are refused".into(),
+                "after a forced iteration the tokens are refused".into(),
             ));
         }
         if trial.step()?.as_ref() != Some(then) {
-            let failed = if failed { ", which failed" } else { "" };
+            let failed = if failed { " that failed" } else { "" };
             return Ok(Some(format!(
-                "after an iteration that was forced{failed}, it does not come back to what it was before"
+                "after a forced iteration{failed}, restore does not give the earlier state"
             )));
         }
     }

@@ -1,4 +1,4 @@
-//! Whether a solver does what it is told between two iterations: forced modes, holds, parameters.
+//! Checks interventions between two iterations: forced modes, holds, parameters.
 
 use super::report::{Outcome, fails, good, not_offered};
 use super::trial::{Trial, at, is_last};
@@ -10,24 +10,25 @@ use stickslip_debugger::recorded::orders::{FRICTION, INCREMENT};
 use stickslip_exchange::attach::message::{Ended, Id, Parameter, ParameterKind, State};
 use stickslip_scene::shown;
 
-/// Contacts that are forced, each in every mode.
+/// Maximum number of contacts forced, each in every mode.
 const FORCED: usize = 100;
-/// Contacts that are held.
+/// Maximum number of contacts held.
 const HELD: usize = 4;
-/// Iterations for which they are held.
+/// Iterations per held contact.
 const LONG: usize = 10;
-/// Iterations in which a parameter should show.
+/// Iterations in which a parameter should have an effect.
 const SHOWS: usize = 4;
-/// Load factors that differ by less than this part are the same.
+/// Load factors with a smaller relative difference are equal.
 const SAME: f64 = 1e-9;
 
 fn name(contact: &Id) -> String {
     shown::line(&contact.to_string()).into_owned()
 }
 
-/// Forces each contact in each mode; all at once at last.
+/// Forces each contact in each mode, and finally all at once.
 pub fn force(mut trial: Trial, _: &[State]) -> Result<Outcome, Fault> {
-    const MEND: &str = "`mode` of the next state is that of the solve, which is the forced one, whatever the rules would choose";
+    const MEND: &str =
+        "`mode` of the next state must be the forced mode, whatever the rules choose";
     if !trial.hello.abilities.force {
         return Ok(not_offered(""));
     }
@@ -40,7 +41,7 @@ pub fn force(mut trial: Trial, _: &[State]) -> Result<Outcome, Fault> {
         tried += 1;
         for mode in MODES {
             if let Err(reason) = trial.force(contact, mode, false)? {
-                // A contact without friction cannot stick, one past its surface cannot touch.
+                // A frictionless contact cannot stick, and one past the end of its surface cannot touch.
                 refused.push(format!("{} {}: {reason}", name(contact), names::mode(mode)));
                 continue;
             }
@@ -52,7 +53,7 @@ pub fn force(mut trial: Trial, _: &[State]) -> Result<Outcome, Fault> {
                     let contact = name(contact);
                     return Ok(fails(
                         format!(
-                            "contact {contact} is forced {wanted}, and the next solve has it {is}"
+                            "contact {contact} is forced {wanted}, but the next iteration solves it {is}"
                         ),
                         MEND,
                     ));
@@ -68,10 +69,10 @@ pub fn force(mut trial: Trial, _: &[State]) -> Result<Outcome, Fault> {
         let why = refused
             .first()
             .cloned()
-            .unwrap_or_else(|| "no forced iteration could be solved".into());
+            .unwrap_or_else(|| "no forced iteration was solved".into());
         return Ok(fails(
             why,
-            "hello offers force only where contacts can be forced",
+            "offer force in hello only if contacts can be forced",
         ));
     }
     trial.again()?;
@@ -87,7 +88,7 @@ pub fn force(mut trial: Trial, _: &[State]) -> Result<Outcome, Fault> {
             .find(|(contact, mode)| at(&state, contact).is_some_and(|found| found.mode != *mode));
         if let Some((contact, mode)) = other {
             let found = format!(
-                "all contacts are forced at once, and {} is not {}",
+                "with all contacts forced at once, {} is not {}",
                 name(contact),
                 names::mode(*mode)
             );
@@ -96,11 +97,11 @@ pub fn force(mut trial: Trial, _: &[State]) -> Result<Outcome, Fault> {
     }
     let count = trial.scene.contacts.len();
     let mut found = format!(
-        "{tried} of {count} contacts, one by one and all at once: the mode is that of the next solve"
+        "{tried} of {count} contacts, one by one and all at once: the next iteration has the forced mode"
     );
     if let Some(first) = refused.first() {
         found += &format!(
-            "; {} refused, the first {}",
+            "; {} refused, the first: {}",
             refused.len(),
             shown::line(first)
         );
@@ -108,7 +109,7 @@ pub fn force(mut trial: Trial, _: &[State]) -> Result<Outcome, Fault> {
     Ok(good(found))
 }
 
-/// Held modes stay, through equilibrium and to the next increment, until they are released.
+/// Checks that held modes persist through equilibrium and into the next increment, until released.
 pub fn hold(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
     if !trial.hello.abilities.hold {
         return Ok(not_offered(""));
@@ -119,7 +120,7 @@ pub fn hold(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
             .last()
             .and_then(|state| at(state, &contact))
             .map(|found| found.mode);
-        // One that it would leave.
+        // A mode that the contact would leave.
         let mode = if own == Some(Mode::Free) {
             Mode::Fixed
         } else {
@@ -146,16 +147,16 @@ pub fn hold(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
             };
             let is = at(state, &contact).map_or("", |found| names::mode(found.mode));
             let found = format!(
-                "contact {} is held {}, and solved {is} in iteration {number}{then}",
+                "contact {} is held {}, but solved {is} in iteration {number}{then}",
                 name(&contact),
                 names::mode(mode)
             );
             return Ok(fails(
                 found,
-                "a held mode is that of every solve until release, whatever ends in between",
+                "use a held mode in every iteration until it is released, even after an equilibrium or an increment",
             ));
         }
-        // After the end there is nothing to be released for.
+        // After the end no release is possible.
         if states.last().is_none_or(is_last) {
             continue;
         }
@@ -163,22 +164,25 @@ pub fn hold(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
             contact: contact.clone(),
         };
         if let Err(reason) = trial.order(&release)? {
-            let found = format!("release of contact {} is refused: {reason}", name(&contact));
-            return Ok(fails(found, "release is answered by ok"));
+            let found = format!(
+                "release of contact {} was refused: {reason}",
+                name(&contact)
+            );
+            return Ok(fails(found, "answer release with ok"));
         }
     }
     Ok(match held {
         0 => fails(
             "no contact can be held",
-            "hello offers hold only where contacts can be held",
+            "offer hold in hello only if contacts can be held",
         ),
         _ => good(format!(
-            "{held} contacts, through {longest} iterations, and released"
+            "{held} contacts held through {longest} iterations and released"
         )),
     })
 }
 
-/// Each parameter takes its own value, refuses what it cannot take, and what another value does is looked at.
+/// Checks that each parameter accepts its current value and rejects invalid ones; reports parameters without effect.
 pub fn parameters(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
     let all = trial.hello.parameters.clone();
     if all.is_empty() {
@@ -187,18 +191,15 @@ pub fn parameters(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> 
     for known in &all {
         let name = &known.name;
         if let Err(reason) = trial.set(name, known.value.clone())? {
-            let found = format!("{name} refuses the value that it has: {reason}");
-            return Ok(fails(
-                found,
-                "set with the value of hello is answered by ok",
-            ));
+            let found = format!("{name} refuses its current value: {reason}");
+            return Ok(fails(found, "answer set with ok for the value in hello"));
         }
         for wrong in wrong_values(known) {
             if trial.set(name, wrong.clone())?.is_ok() {
-                let found = format!("{name} takes {wrong}, which is none of its values");
+                let found = format!("{name} accepts the invalid value {wrong}");
                 return Ok(fails(
                     found,
-                    "what is out of range, or of another kind, is answered by refused, and changes nothing",
+                    "answer values out of range or of the wrong kind with refused, and change nothing",
                 ));
             }
         }
@@ -221,7 +222,7 @@ pub fn parameters(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> 
         }
     }
     let mut found = format!(
-        "{} of them take their own values, and refuse others",
+        "{} parameters accept their current values and refuse invalid ones",
         all.len()
     );
     if !without.is_empty() {
@@ -233,24 +234,24 @@ pub fn parameters(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> 
     Ok(good(found))
 }
 
-/// Values that a parameter cannot take.
+/// Values that a parameter cannot have.
 fn wrong_values(known: &Parameter) -> Vec<Value> {
     let mut wrong = Vec::new();
     match known.kind {
         ParameterKind::Number | ParameterKind::Integer => {
-            wrong.push(Value::from("no number"));
+            wrong.push(Value::from("not a number"));
             wrong.extend(known.least.map(|least| Value::from(least - 1.0)));
             wrong.extend(known.most.map(|most| Value::from(most + 1.0)));
         }
         ParameterKind::Flag => wrong.push(Value::from("neither")),
         ParameterKind::Choice => wrong.push(Value::from("no such choice")),
-        // A solver may read anything from a text.
+        // A text parameter may interpret any value as text.
         ParameterKind::Text => {}
     }
     wrong
 }
 
-/// A value that a parameter can take and does not have.
+/// A valid value other than the current one.
 fn another_value(known: &Parameter) -> Option<Value> {
     let in_range = |x: &f64| {
         known.least.is_none_or(|least| *x >= least) && known.most.is_none_or(|most| *x <= most)
@@ -284,7 +285,7 @@ fn another_value(known: &Parameter) -> Option<Value> {
     }
 }
 
-/// The parameter of a meaning, with its number.
+/// The value of the parameter with this name and a predefined meaning, if it is a number.
 fn meant(trial: &Trial, name: &str) -> Option<f64> {
     let known = trial
         .hello
@@ -294,26 +295,23 @@ fn meant(trial: &Trial, name: &str) -> Option<f64> {
     known?.value.as_f64()
 }
 
-/// Another increment starts the present one again.
+/// Checks that a new increment restarts the current one.
 pub fn increment(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
-    const MEND: &str = "with a new size the present increment starts again: the same increment, a further attempt, major 1, minor 1, from the last accepted state";
+    const MEND: &str = "with a new size, restart the current increment from the last accepted state: same increment, next attempt, major 1, minor 1";
     let Some(size) = meant(&trial, INCREMENT) else {
         return Ok(not_offered(""));
     };
-    // In the middle of an increment, if there is a middle.
+    // In the middle of an increment, if possible.
     let done = states
         .iter()
         .position(|state| state.ended == Ended::Iteration)
         .map_or(0, |place| place + 1);
     let before = trial.steps(done)?;
     if let Err(reason) = trial.set(INCREMENT, 0.5 * size)? {
-        return Ok(fails(
-            format!("half of its size is refused: {reason}"),
-            MEND,
-        ));
+        return Ok(fails(format!("half the size was refused: {reason}"), MEND));
     }
     let Some(now) = trial.step()? else {
-        return Ok(fails("the step after it is refused", MEND));
+        return Ok(fails("the next step was refused", MEND));
     };
     if let Some(last) = before.last() {
         let at = now.at;
@@ -322,7 +320,7 @@ pub fn increment(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
             && (at.major, at.minor) == (1, 1);
         if !again {
             let found = format!(
-                "after {}.{}.{}.{} (increment, attempt, major, minor) it goes on with {}.{}.{}.{}",
+                "after {}.{}.{}.{} (increment, attempt, major, minor) the next position is {}.{}.{}.{}",
                 last.at.increment,
                 last.at.attempt,
                 last.at.major,
@@ -340,26 +338,24 @@ pub fn increment(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
     if let (Some(load), Some(wanted), 1) = (now.load, wanted, now.at.increment)
         && (load - wanted).abs() > SAME * wanted.abs().max(size)
     {
-        let found = format!(
-            "half of its size leads to the load factor {load:?}, and {wanted:?} would be right"
-        );
+        let found = format!("half the size gives the load factor {load:?} instead of {wanted:?}");
         return Ok(fails(
             found,
-            "`load` is the factor at the end of the present increment",
+            "`load` must be the load factor at the end of the current increment",
         ));
     }
-    Ok(good("half of its size starts the increment again"))
+    Ok(good("half the size restarts the increment"))
 }
 
-/// Without friction there is no limit but the cohesion.
+/// Checks that without friction the limit is the cohesion.
 pub fn friction(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
     if meant(&trial, FRICTION).is_none() {
         return Ok(not_offered(""));
     }
     if let Err(reason) = trial.set(FRICTION, 0.0)? {
         return Ok(fails(
-            format!("mu = 0 is refused: {reason}"),
-            "friction is the coefficient of all contacts, and 0 is none",
+            format!("mu = 0 was refused: {reason}"),
+            "friction is the coefficient of all contacts; accept 0 for no friction",
         ));
     }
     let now = trial.steps(states.len())?;
@@ -373,13 +369,13 @@ pub fn friction(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
     let cohesion = trial.scene.contacts.iter().fold(0.0, |most: f64, contact| {
         most.max(contact.friction.cohesion)
     });
-    // The first solve may still have the old one.
+    // The first iteration may still use the old value.
     let (least, then) = (size(now.get(1..).unwrap_or(&[])), size(states));
     Ok(match then > 0.0 && least > cohesion.max(1e-6 * then) {
         true => fails(
-            format!("with mu = 0 the limit of a contact is {least:?}"),
-            "limit is mu f_n + cohesion with the mu that was set, from the next iteration on",
+            format!("with mu = 0 the largest limit is {least:?}"),
+            "compute limit as mu f_n + cohesion with the new mu, from the next iteration on",
         ),
-        false => good("with mu = 0 no contact has a limit but its cohesion"),
+        false => good("with mu = 0 every limit is the cohesion"),
     })
 }

@@ -1,4 +1,4 @@
-//! Requests that are wrong, that come in between, and the last one.
+//! Checks invalid requests, interrupts, and the end of the solver.
 
 use super::super::link::name;
 use super::report::{Outcome, fails, good, not_offered};
@@ -9,26 +9,26 @@ use stickslip_debugger::recorded::fault::Fault;
 use stickslip_exchange::attach::message::{Id, State};
 use stickslip_exchange::attach::{Answer, Request};
 
-/// An interrupt is no request: it has no answer of its own, before a step and during one.
+/// Checks that an interrupt, before or during a step, has no separate answer.
 pub fn interrupt(mut trial: Trial, _: &[State]) -> Result<Outcome, Fault> {
     if !trial.hello.abilities.interrupt {
         return Ok(not_offered(
-            "the first Ctrl-C waits for the current iteration; the second is a signal",
+            "the first Ctrl-C waits for the current iteration; the second sends a signal",
         ));
     }
     trial.link.interrupt();
     trial.step()?;
     trial.interrupted_step()?;
     Ok(match trial.step()? {
-        Some(_) => good("before a step and during one; the step is answered, and the next too"),
+        Some(_) => good("before and during a step; both that step and the next are answered"),
         None => fails(
-            "after an interrupt the next step is refused",
-            "an interrupt ends the request at hand soon, if there is one, and nothing else",
+            "the step after an interrupt was refused",
+            "an interrupt may only end the current request, if there is one",
         ),
     })
 }
 
-/// What does not exist is refused, and ends nothing.
+/// Checks that requests for unknown things are refused without side effects.
 pub fn wrong_requests(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
     let nobody = || Id::Text("no such contact".into());
     let wrong = [
@@ -48,38 +48,40 @@ pub fn wrong_requests(mut trial: Trial, states: &[State]) -> Result<Outcome, Fau
     ];
     for request in wrong {
         if !matches!(trial.ask(&request)?, Answer::Refused { .. }) {
-            let found = format!("{} is not refused", name(&request));
+            let found = format!("{} was not refused", name(&request));
             return Ok(fails(
                 found,
-                "what does not exist, or is not offered, is answered by refused",
+                "refuse requests for what does not exist or is not offered",
             ));
         }
     }
     Ok(match (trial.step()?.as_ref(), states.first()) {
-        (Some(now), Some(then)) if now == then => good("they are refused, and change nothing"),
+        (Some(now), Some(then)) if now == then => {
+            good("invalid requests are refused without side effects")
+        }
         _ => fails(
-            "after requests that were refused the first iteration is another",
-            "what is refused changes nothing",
+            "refused requests change the first iteration",
+            "a refused request must not change anything",
         ),
     })
 }
 
-/// It ends when it is told to.
+/// Checks that the solver ends on `bye`.
 pub fn bye(mut trial: Trial, _: &[State]) -> Result<Outcome, Fault> {
     let began = Instant::now();
     Ok(match trial.link.leave(true) {
-        true => good(format!("it ends within {:.0} ms", millis(began.elapsed()))),
-        false => fails("it does not end", "end on bye"),
+        true => good(format!("ends within {:.0} ms", millis(began.elapsed()))),
+        false => fails("does not end", "end on bye"),
     })
 }
 
-/// It ends when the debugger is gone.
+/// Checks that the solver ends when the debugger is gone.
 pub fn end_of_input(mut trial: Trial, _: &[State]) -> Result<Outcome, Fault> {
     Ok(match trial.link.leave(false) {
-        true => good("it ends, so that none is left when a debugger dies"),
+        true => good("ends when its standard input is closed"),
         false => fails(
-            "it does not end when its standard input is closed",
-            "a read that gives nothing is the end: leave the loop",
+            "does not end when its standard input is closed",
+            "treat an empty read as the end of the input, and leave the loop",
         ),
     })
 }

@@ -1,9 +1,9 @@
-//! Whether a solver does what it says it does: each ability is exercised, and what fails is told with how to mend it.
+//! `stickslip attach --check`: tests each ability that a solver offers, and reports how to fix what fails.
 //!
-//! - [`report`]: what was found; `trial`: a solver that is tried.
-//! - `steps`: what it tells as it steps, and whether it tells that twice; `back`: how it goes back.
+//! - [`report`]: the results; `trial`: a solver under test.
+//! - `steps`: states and determinism; `back`: saved states.
 //! - `changes`: forced modes, holds and parameters; `problem`: the frozen interface problem.
-//! - `manners`: requests that are wrong, that come in between, and the last.
+//! - `manners`: invalid requests, interrupts, the end.
 
 mod back;
 mod changes;
@@ -20,7 +20,7 @@ use stickslip_debugger::recorded::log::Log;
 use stickslip_exchange::attach::message::State;
 use trial::{Trial, millis};
 
-/// Tries a solver. The log records all messages, one start after the other.
+/// Checks a solver. The log records the messages of all starts.
 pub fn check(start: &Start, log: &Log) -> Report {
     let mut report = Report {
         name: start.typed(),

@@ -1,10 +1,10 @@
-//! Whether the frozen interface problem that a solver poses is the one that it solves next.
+//! Checks that the frozen interface problem is the one that the next iteration solves.
 //!
-//! The problem is asked for before an iteration; the iteration then tells gaps and forces. For a solver whose iteration is one
-//! linear solve with everything else frozen, gap = (W f + q)_n must hold after each, whatever the modes are. One that updates its
-//! geometry or its law within the iteration differs by what that changes, which goes to zero where it converges: there the
-//! problem is held to it in states that are accepted with settled modes, with forces that are in balance. Sticking nodes do
-//! not move: u = (W f + q)_t = 0 at contacts that were fixed through the whole increment.
+//! The problem is requested before an iteration, and compared with the iteration's gaps and forces. If an iteration is one linear
+//! solve with everything else frozen, gap = (W f + q)_n must hold after each one, whatever the modes are. A solver that updates
+//! geometry or law within an iteration differs by that update, which vanishes as it converges: it is only tested in accepted states
+//! with settled modes and balanced forces. Sticking nodes do not move: u = (W f + q)_t = 0 at contacts that were fixed through the
+//! whole increment.
 
 use super::super::meeting::other;
 use super::report::{Outcome, fails, good, not_offered, not_tried};
@@ -19,13 +19,13 @@ use stickslip_exchange::attach::message::{Ended, Id, State};
 use stickslip_exchange::attach::{Answer, Request};
 use stickslip_scene::shown;
 
-/// What an iteration that solves the problem as it is posed may differ by, in parts of the lengths that go into it.
+/// Tolerance for iterations that solve the problem as given, relative to the lengths in it.
 const EXACT: f64 = 1e-6;
-/// The same in a settled state of a solver that changes more than modes in an iteration.
+/// Tolerance in a settled state for solvers that also update other quantities in an iteration.
 const SETTLED: f64 = 1e-2;
-const MEND: &str = "gap = W f + q, with the total forces f at the end of the increment (compression positive), of the state that the next iteration would find";
+const MEND: &str = "W and q must give gap = W f + q for the next iteration, with the total forces f at the end of the increment (compression positive)";
 
-/// Asks for the problem before every iteration, and compares.
+/// Requests the problem before every iteration, and compares.
 pub fn problem(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
     if !trial.hello.abilities.problem {
         return Ok(not_offered(""));
@@ -38,7 +38,7 @@ pub fn problem(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
         .collect();
     let (mut asked, mut refused) = (0, None);
     let (mut worst, mut settled) = (0.0_f64, None::<f64>);
-    // Contacts that have been fixed since the increment began.
+    // Contacts that have been fixed since the start of the increment.
     let mut stuck: Vec<bool> = trial
         .scene
         .contacts
@@ -63,7 +63,7 @@ pub fn problem(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
         let compared = posed
             .as_ref()
             .and_then(|posed| apart(posed, &state, &stuck));
-        // Bodies past a limit of their load may give way against a force; a sign that is wrong gives other gaps, too.
+        // Bodies past a limit load may move against a force. A wrong sign also changes the gaps, which the comparison detects.
         let agrees = compared.is_some_and(|apart| apart <= EXACT);
         if let Some(why) = posed
             .as_ref()
@@ -72,7 +72,7 @@ pub fn problem(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
         {
             return Ok(fails(
                 why,
-                "W is that of deforming bodies: a force pushes its own node the way it points",
+                "W must be the compliance of deforming bodies: a force moves its node in its own direction",
             ));
         }
         if let Some(apart) = compared {
@@ -100,35 +100,30 @@ pub fn problem(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
     Ok(match (asked, settled) {
         (0, _) => {
             let reason = refused.unwrap_or_default();
-            not_tried(
-                "",
-                format!("it is always refused: {}", shown::line(&reason)),
-            )
+            not_tried("", format!("always refused: {}", shown::line(&reason)))
         }
         (_, _) if worst <= EXACT => good(format!(
-            "asked {}; every iteration solves it, to {worst:.0e}",
+            "requested {}; every iteration satisfies it within {worst:.0e}",
             times(asked)
         )),
         (_, Some(settled)) if settled <= SETTLED => good(format!(
-            "asked {}; settled states solve it to {settled:.0e}, iterations on the way to {worst:.0e}",
+            "requested {}; settled states satisfy it within {settled:.0e}, other iterations within {worst:.0e}",
             times(asked)
         )),
         (_, Some(settled)) => fails(
-            format!(
-                "in a settled state, gap and W f + q differ by {settled:.0e} of the lengths in it"
-            ),
+            format!("in a settled state, gap and W f + q differ by a relative {settled:.0e}"),
             MEND,
         ),
         (_, None) => {
             let why = format!(
-                "no increment was accepted with settled modes; iterations on the way solve it to {worst:.0e}"
+                "no increment was accepted with settled modes; the other iterations satisfy it within {worst:.0e}"
             );
-            not_tried(format!("asked {}", times(asked)), why)
+            not_tried(format!("requested {}", times(asked)), why)
         }
     })
 }
 
-/// What of a matrix is not that of bodies that deform.
+/// Why a matrix is not the compliance of deforming bodies.
 fn unsound(posed: &Posed, ids: &[Id]) -> Option<String> {
     let of = |k: usize| {
         let contact = &ids[posed.contacts[k / 2]];
@@ -145,7 +140,7 @@ fn unsound(posed: &Posed, ids: &[Id]) -> Option<String> {
     })
 }
 
-/// How far the lengths of a state are from W f + q, in parts of those that go into it; `None` where the state does not tell forces
+/// The largest deviation of a state's gaps from W f + q, relative to the lengths in it; `None` if the state does not report forces
 /// or gaps, or K has no inverse.
 fn apart(posed: &Posed, state: &State, stuck: &[bool]) -> Option<f64> {
     let size = posed.q.len();

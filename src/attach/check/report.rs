@@ -1,43 +1,43 @@
-//! What was tried of a solver, and what was found.
+//! The results of a check.
 
 use std::fmt::Write;
 use stickslip_debugger::recorded::fault::Fault;
 
-/// How a check ended.
+/// The verdict of a check.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Verdict {
-    /// It does.
+    /// Passed.
     Good,
-    /// It does not; how to mend it.
+    /// Failed, with how to fix it.
     Fails(String),
     /// The solver does not offer it.
     NotOffered,
-    /// It could not be tried; why.
+    /// Could not be tested, with the reason.
     NotTried(String),
 }
 
 /// A check.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Checked {
-    /// What was tried.
+    /// The ability that was tested.
     pub what: &'static str,
-    /// What was found.
+    /// The finding.
     pub found: String,
-    /// How it ended.
+    /// The verdict.
     pub verdict: Verdict,
 }
 
-/// All checks of a solver.
+/// The results for one solver.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Report {
-    /// Who it is.
+    /// Name and version of the solver.
     pub name: String,
-    /// In the order in which they were made.
+    /// The checks, in order.
     pub checks: Vec<Checked>,
 }
 
 impl Report {
-    /// How many failed.
+    /// Number of failed checks.
     pub fn failed(&self) -> usize {
         let fails = |check: &&Checked| matches!(check.verdict, Verdict::Fails(_));
         self.checks.iter().filter(fails).count()
@@ -63,7 +63,7 @@ impl Report {
         text
     }
 
-    /// Adds a check, or the fault of the solver that ended it.
+    /// Adds a check, or the fault that ended it.
     pub fn add(&mut self, what: &'static str, outcome: Result<Outcome, Fault>) {
         let (found, verdict) =
             outcome.unwrap_or_else(|fault| fails(fault.to_string(), mend(&fault)));
@@ -75,7 +75,7 @@ impl Report {
     }
 }
 
-/// What a check found, and how it ended.
+/// Finding and verdict of a check.
 pub type Outcome = (String, Verdict);
 
 pub(super) fn good(found: impl Into<String>) -> Outcome {
@@ -94,38 +94,38 @@ pub(super) fn not_tried(found: impl Into<String>, why: String) -> Outcome {
     (found.into(), Verdict::NotTried(why))
 }
 
-/// How a fault is mended.
+/// How to fix a fault.
 fn mend(fault: &Fault) -> &'static str {
     match fault {
         Fault::NotStarted { .. } => {
-            "what stands after -- is a program that can be started, and its arguments"
+            "give a program that can be started, with its arguments, after --"
         }
         Fault::Silent { .. } => {
-            "every request is answered by one line, which is flushed at once (in Python: print(line, flush=True))"
+            "answer every request with one line, and flush it at once (in Python: print(line, flush=True))"
         }
         Fault::Junk { .. } => {
-            "give standard output to the protocol alone: at the start, before any library prints, keep a copy of it, and put standard error in its place (in Python: os.dup2(2, 1))"
+            "reserve standard output for the protocol: at the start, before any library prints, duplicate it and redirect it to standard error (in Python: os.dup2(2, 1))"
         }
         Fault::Misformed { .. } => {
-            "the page `stickslip help attach` has every message; missing and infinite numbers are null"
+            "`stickslip help attach` describes every message; missing and infinite numbers are null"
         }
-        Fault::Torn(_) => "end every message with a line feed, and flush before the end",
+        Fault::Torn(_) => "end every message with a line feed, and flush before exiting",
         Fault::TooLong { .. } => {
-            "give a sparse matrix as triplets, and leave displacements out of the states"
+            "send sparse matrices as triplets, and leave displacements out of the states"
         }
         Fault::OtherAnswer { .. } | Fault::Unasked { .. } => {
-            "each request gets exactly one answer, of the type that the page `stickslip help attach` names; all else is a message"
+            "give each request exactly one answer, of the type that `stickslip help attach` names; send everything else as a message"
         }
-        Fault::Version(_) => "hello says protocol 1",
+        Fault::Version(_) => "set protocol 1 in hello",
         Fault::Refused { .. } => {
-            "what is offered in hello is done, or refused for a reason that holds there only"
+            "do what hello offers, or refuse it for a reason specific to the request"
         }
-        Fault::Unfit { .. } => "what is told later fits the scene that was told first",
+        Fault::Unfit { .. } => "make all later messages consistent with the scene",
         Fault::OtherScene { .. } | Fault::Changed { .. } => {
-            "with the same arguments it solves the same, every time that it is started"
+            "with the same arguments, solve the same problem at every start"
         }
         Fault::Died { .. } | Fault::Bye { .. } => {
-            "no request ends the solver but bye: what cannot be done is refused, what cannot be solved is a state that ended with failure"
+            "end the solver only on bye: refuse what cannot be done, and report what cannot be solved as a state that ended with failure"
         }
         Fault::Stopped { .. } | Fault::Unknown | Fault::NoScene | Fault::Past => "",
     }

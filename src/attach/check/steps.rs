@@ -1,5 +1,5 @@
-//! What a solver tells as it steps: whether it fits its scene and follows from what it told before, whether it keeps to the signs
-//! of the protocol, and whether it is the same when started again.
+//! Checks the states of a solver: that they match its scene, follow from each other, obey the protocol's signs, and are the same
+//! after a restart.
 
 use super::report::{Outcome, Report, fails, good, not_tried};
 use super::trial::{Trial, is_last, millis};
@@ -16,17 +16,17 @@ use stickslip_core::step::state::State as OurState;
 use stickslip_exchange::attach::message::{Ended, Found, Scene, State};
 use stickslip_exchange::attach::{Answer, Request};
 
-/// Iterations that a solver is stepped by, and most of them as long as no increment was accepted.
+/// Iterations per check, and the maximum if no increment has been accepted by then.
 const STEPS: usize = 24;
 const MOST_STEPS: usize = 200;
-/// Requests that are refused, by which the way there and back is measured.
+/// Refused requests for measuring the round-trip time.
 const ROUNDS: u32 = 10;
-/// Longest that a line may take to be answered that takes no work (ms).
+/// Maximum round-trip time of a request without work (ms).
 const PROMPT: f64 = 20.0;
-/// Forces against a law below this part of the largest are rounding.
+/// Violations of a law below this fraction of the largest force are round-off.
 const ROUNDED: f64 = 1e-6;
 
-/// Steps on, and looks at what is told.
+/// Steps the solver, and checks its states.
 pub fn stepping(report: &mut Report, mut trial: Trial) -> Vec<State> {
     let mut states = Vec::new();
     let mut times = Vec::new();
@@ -60,8 +60,8 @@ pub fn stepping(report: &mut Report, mut trial: Trial) -> Vec<State> {
     let goes_on = end.is_ok();
     let step = end.map(|()| match times.get(times.len() / 2) {
         None => fails(
-            "the first step is refused",
-            "a step from the start is answered by a state",
+            "the first step was refused",
+            "answer the first step with a state",
         ),
         Some(median) => good(format!(
             "{} iterations, {median:.1} ms each (median; the slowest {:.1} ms)",
@@ -80,7 +80,7 @@ pub fn stepping(report: &mut Report, mut trial: Trial) -> Vec<State> {
     states
 }
 
-/// How long a line is under way that takes no work.
+/// Checks the round-trip time of a request without work.
 fn prompt(trial: &mut Trial) -> Result<Outcome, Fault> {
     let request = Request::Set {
         name: "no such parameter".into(),
@@ -91,22 +91,22 @@ fn prompt(trial: &mut Trial) -> Result<Outcome, Fault> {
         trial.ask(&request)?;
     }
     let each = millis(began.elapsed()) / f64::from(ROUNDS);
-    let found = format!("{each:.2} ms for a request and its answer without work");
+    let found = format!("{each:.2} ms per request without work");
     Ok(match each <= PROMPT {
         true => good(found),
         false => fails(
             found,
-            "read and write whole lines without waiting in between: no polling with sleeps, and a flush after each line",
+            "read and write whole lines without delays: no polling with sleeps, and a flush after each line",
         ),
     })
 }
 
-/// Looks at states, as the debugger does.
+/// Checks states as the debugger reads them.
 fn look(report: &mut Report, scene: &Scene, name: &str, states: &[State]) {
     let sound = match stickslip_scene::Scene::told(name, scene, None) {
         Ok(sound) => sound,
         Err(why) => {
-            let mend = "`stickslip help attach` says what a scene is";
+            let mend = "`stickslip help attach` describes the scene message";
             return report.add("scene", Ok(fails(why.message, mend)));
         }
     };
@@ -118,14 +118,13 @@ fn look(report: &mut Report, scene: &Scene, name: &str, states: &[State]) {
             let own = millis(began.elapsed()) / states.len() as f64;
             let kilobytes = bytes as f64 / 1e3 / states.len() as f64;
             let found = format!(
-                "{}; {kilobytes:.1} kB each, which this program reads in {own:.2} ms",
+                "{}; {kilobytes:.1} kB each, read in {own:.2} ms",
                 told(states)
             );
             report.add("states", Ok(good(found)));
         }
         Err(why) => {
-            let mend =
-                "a state has all contacts of the scene, in its order, and one displacement a node";
+            let mend = "a state must have all contacts of the scene, in its order, and one displacement per node";
             return report.add("states", Ok(fails(why, mend)));
         }
     }
@@ -134,7 +133,7 @@ fn look(report: &mut Report, scene: &Scene, name: &str, states: &[State]) {
         .zip(2..)
         .find_map(|(pair, number)| Some((number, unfollowed(&pair[0], &pair[1])?)));
     let order = match follows {
-        None => good("each iteration follows from the one before"),
+        None => good("each iteration follows from the previous one"),
         Some((number, (why, mend))) => fails(format!("iteration {number}: {why}"), mend),
     };
     report.add("order", Ok(order));
@@ -145,7 +144,7 @@ fn line(state: &State) -> String {
     Answer::State(Box::new(state.clone())).line()
 }
 
-/// Reads all states from their lines, and makes of them what the debugger shows.
+/// Decodes all states from their lines, as the debugger does.
 fn taken_in(model: &Model, scene: &Scene, states: &[State]) -> Result<(), String> {
     let ids: Vec<_> = scene
         .contacts
@@ -163,7 +162,7 @@ fn taken_in(model: &Model, scene: &Scene, states: &[State]) -> Result<(), String
             Ok(Answer::State(told)) => *told,
             _ => {
                 return Err(format!(
-                    "state {number} does not read back as it was written"
+                    "state {number} changes when it is written and read again"
                 ));
             }
         };
@@ -175,7 +174,7 @@ fn taken_in(model: &Model, scene: &Scene, states: &[State]) -> Result<(), String
     Ok(())
 }
 
-/// Which numbers the states tell.
+/// Which values the states report.
 fn told(states: &[State]) -> String {
     let all = || states.iter().flat_map(|state| &state.contacts);
     type Number = fn(&Found) -> Option<f64>;
@@ -192,12 +191,12 @@ fn told(states: &[State]) -> String {
         .map(|(name, _)| *name)
         .collect();
     match lacks.as_slice() {
-        [] => "all numbers are told".into(),
-        lacks => format!("never told: {}", lacks.join(", ")),
+        [] => "all values are reported".into(),
+        lacks => format!("never reported: {}", lacks.join(", ")),
     }
 }
 
-/// How a state does not follow from the one before, and how to mend that.
+/// Why a state does not follow from the previous one, and how to fix that.
 fn unfollowed(before: &State, state: &State) -> Option<(String, &'static str)> {
     let (then, now) = (before.at, state.at);
     let goes_on = match before.ended {
@@ -207,7 +206,7 @@ fn unfollowed(before: &State, state: &State) -> Option<(String, &'static str)> {
         Ended::Equilibrium => same_attempt(then, now) && now.major > then.major,
         Ended::Cut => now.increment == then.increment && now.attempt > then.attempt,
         Ended::Increment => now.increment > then.increment,
-        // What follows a failure is the solver's own matter.
+        // After a failure the solver may continue anywhere.
         Ended::Failure | Ended::Done => true,
     };
     if !goes_on {
@@ -216,14 +215,14 @@ fn unfollowed(before: &State, state: &State) -> Option<(String, &'static str)> {
         let ended = format!("{:?}", before.ended).to_lowercase();
         return Some((
             format!(
-                "it is {} (increment, attempt, major, minor) after {}, which ended {ended}",
+                "position {} (increment, attempt, major, minor) after {}, which ended {ended}",
                 place(now),
                 place(then)
             ),
-            "at counts on: minors within a major, majors after equilibrium, attempts after cut, increments after increment",
+            "advance `at`: minors within a major, majors after equilibrium, attempts after cut, increments after increment",
         ));
     }
-    // Where equilibrium is sought anew, the geometry may change modes: a node has come to a corner, or past the end of a surface.
+    // In a new major iteration the geometry may change modes: a node reaches a corner, or the end of a surface.
     if before.ended != Ended::Iteration {
         return None;
     }
@@ -232,12 +231,12 @@ fn unfollowed(before: &State, state: &State) -> Option<(String, &'static str)> {
     other.map(|(then, now)| {
         (
             format!(
-                "contact {} is solved {}, and was to go on {}",
+                "contact {} is solved {}, but its previous `next` was {}",
                 shown::line(&now.id.to_string()),
                 names::mode(now.mode),
                 names::mode(then.next)
             ),
-            "`mode` is that of the solve that was made, `next` that of the one to come",
+            "`mode` is the mode of this solve, `next` the mode of the next one",
         )
     })
 }
@@ -246,10 +245,10 @@ fn same_attempt(then: Position, now: Position) -> bool {
     (then.increment, then.attempt) == (now.increment, now.attempt)
 }
 
-/// Whether accepted states whose modes have settled keep to the signs of the protocol, and to the laws of contact.
+/// Checks that accepted states with settled modes obey the protocol's signs and the contact laws.
 fn laws(states: &[State]) -> Outcome {
     let accepted = states.iter().filter(|state| is_settled(state));
-    // A state may have no forces but those of rounding: what is small, all states tell.
+    // The force scale comes from all states, since a single state may have only round-off forces.
     let all = states.iter().flat_map(|state| &state.contacts);
     let forces = all.flat_map(|found| [found.f_n, found.f_t]).flatten();
     let largest = forces.fold(0.0, |most: f64, force| most.max(force.abs()));
@@ -278,54 +277,51 @@ fn laws(states: &[State]) -> Outcome {
             format!("no increment was accepted in {} iterations", states.len()),
         ),
         _ => good(format!(
-            "in {count} accepted increments: signs, and forces within their limits{nearly}"
+            "in {count} accepted increments: signs are right, forces within their limits{nearly}"
         )),
     }
 }
 
-/// Whether a state was accepted with modes that stay.
+/// Whether a state was accepted with unchanged modes.
 pub fn is_settled(state: &State) -> bool {
     matches!(state.ended, Ended::Increment | Ended::Done)
         && state.contacts.iter().all(|found| found.mode == found.next)
 }
 
-/// How a settled contact breaks the laws, where forces below `small` are none.
+/// How a settled contact violates the laws; forces below `small` count as zero.
 fn unlawful(found: &Found, small: f64) -> Option<(String, &'static str)> {
     let (f_n, f_t) = (found.f_n.unwrap_or(0.0), found.f_t.unwrap_or(0.0));
     let limit = found.limit;
     match found.mode {
         Mode::Free if f_n.abs() > small || f_t.abs() > small => Some((
-            format!("it is free, and has forces ({f_n:?}, {f_t:?})"),
-            "a free contact has no forces",
+            format!("free, but with forces ({f_n:?}, {f_t:?})"),
+            "report zero forces for a free contact",
         )),
         Mode::Free => None,
         _ if f_n < -small => Some((
-            format!("it touches with f_n = {f_n:?}"),
+            format!("closed with f_n = {f_n:?}"),
             "compression is positive: f_n is the force on the slave node along the outward normal of the master",
         )),
         Mode::Sliding if limit.is_some_and(|limit| limit * f_t < 0.0 && f_t.abs() > small) => {
             Some((
                 format!(
-                    "it slides with f_t = {f_t:?}, and its limit is {:?}",
+                    "sliding with f_t = {f_t:?}, but its limit is {:?}",
                     limit.unwrap_or(0.0)
                 ),
-                "limit has the sign of the friction force: copysign(mu * f_n + cohesion, f_t)",
+                "give limit the sign of the friction force: copysign(mu * f_n + cohesion, f_t)",
             ))
         }
         _ if limit.is_some_and(|limit| f_t.abs() > limit.abs() + small) => Some((
-            format!(
-                "f_t = {f_t:?} is more than the limit {:?}",
-                limit.unwrap_or(0.0)
-            ),
+            format!("f_t = {f_t:?} exceeds the limit {:?}", limit.unwrap_or(0.0)),
             "in an accepted state |f_t| <= |limit| = mu f_n + cohesion",
         )),
         _ => None,
     }
 }
 
-/// The same twice.
+/// Checks that the states after a restart are the same.
 pub fn determinism(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
-    const MEND: &str = "fix seeds and thread counts; a solver that is started again and goes elsewhere cannot go back by replaying";
+    const MEND: &str = "fix seeds and thread counts; a solver that differs after a restart cannot go back by replaying";
     let mut bits = None;
     for (then, number) in states.iter().zip(1..) {
         let now = trial.step()?;
@@ -334,40 +330,40 @@ pub fn determinism(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault>
         }
         let Some(now) = now else {
             return Ok(fails(
-                format!("started again, step {number} is refused"),
+                format!("after a restart, step {number} was refused"),
                 MEND,
             ));
         };
         if let Some(how) = otherwise(then, &now) {
             return Ok(fails(
-                format!("started again, iteration {number} is another: {how}"),
+                format!("after a restart, iteration {number} differs: {how}"),
                 MEND,
             ));
         }
         bits = bits.or(Some(number));
     }
     Ok(good(match bits {
-        None => "started again, the same to the last bit".into(),
+        None => "bit-identical after a restart".into(),
         Some(number) => format!(
-            "started again, the same modes; from iteration {number} on the numbers have other bits"
+            "same modes after a restart; numbers differ in the last digits from iteration {number} on"
         ),
     }))
 }
 
-/// How one state goes another way than a second.
+/// The first difference between two states in position, outcome or modes.
 pub fn otherwise(then: &State, now: &State) -> Option<String> {
     if then.at != now.at {
-        return Some("it is another iteration (at)".into());
+        return Some("another position (`at`)".into());
     }
     if then.ended != now.ended {
-        return Some("it ended otherwise".into());
+        return Some("another outcome (`ended`)".into());
     }
     let modes = |found: &Found| (found.mode, found.next);
     let mut pairs = then.contacts.iter().zip(&now.contacts);
     let other = pairs.find(|(then, now)| modes(then) != modes(now))?.1;
     let id = other.id.to_string();
     Some(format!(
-        "contact {} is {} and goes on {}",
+        "contact {} is {}, next {}",
         shown::line(&id),
         names::mode(other.mode),
         names::mode(other.next)

@@ -1,4 +1,4 @@
-//! A solver that is tried, from its start.
+//! A solver under test.
 
 use super::super::link::{Link, Start};
 use super::super::meeting::{Met, meet, other};
@@ -12,15 +12,15 @@ use stickslip_debugger::recorded::log::Log;
 use stickslip_exchange::attach::message::{Ended, Found, Hello, Id, Scene, State};
 use stickslip_exchange::attach::{Answer, Request};
 
-/// How long a single check goes on with more of the same.
+/// Time limit for optional repetitions within one check.
 const BUDGET: Duration = Duration::from_secs(20);
 
-/// A solver at its start.
+/// A solver under test.
 pub struct Trial {
     pub link: Link,
     pub hello: Hello,
     pub scene: Scene,
-    /// How long its start took.
+    /// Duration of its start.
     pub began: Duration,
     start: Start,
     log: Log,
@@ -32,7 +32,7 @@ impl Trial {
     /// Starts the solver; the log records the messages.
     ///
     /// # Errors
-    /// The fault by which it ends.
+    /// The fault that ended it.
     pub fn begin(start: &Start, log: &Log) -> Result<Trial, Fault> {
         let began = Instant::now();
         let asks = Arc::new(AtomicUsize::new(0));
@@ -51,10 +51,10 @@ impl Trial {
         })
     }
 
-    /// Starts it again; the time that the check has goes on.
+    /// Restarts it; the time limit of the check is not reset.
     ///
     /// # Errors
-    /// The fault by which it ends.
+    /// The fault that ended it.
     pub fn again(&mut self) -> Result<(), Fault> {
         let until = self.until;
         *self = Trial::begin(&self.start, &self.log)?;
@@ -62,23 +62,23 @@ impl Trial {
         Ok(())
     }
 
-    /// Whether the check has taken its time.
+    /// Whether the time limit of the check is exceeded.
     pub fn is_late(&self) -> bool {
         Instant::now() > self.until
     }
 
-    /// Asks.
+    /// Sends a request.
     ///
     /// # Errors
-    /// The fault by which it ends.
+    /// The fault that ended the solver.
     pub fn ask(&mut self, request: &Request) -> Result<Answer, Fault> {
         self.link.ask(request, self.start.answer)
     }
 
-    /// Asks for something that is answered by ok; why it is refused, where it is.
+    /// Sends a request whose answer is ok; the inner error is the reason of a refusal.
     ///
     /// # Errors
-    /// The fault by which it ends.
+    /// The fault that ended the solver.
     pub fn order(&mut self, request: &Request) -> Result<Result<(), String>, Fault> {
         match self.ask(request)? {
             Answer::Ok => Ok(Ok(())),
@@ -87,10 +87,10 @@ impl Trial {
         }
     }
 
-    /// One iteration; `None` where it is refused.
+    /// Makes one iteration; `None` if it is refused.
     ///
     /// # Errors
-    /// The fault by which it ends.
+    /// The fault that ended the solver.
     pub fn step(&mut self) -> Result<Option<State>, Fault> {
         match self.ask(&Request::Step)? {
             Answer::State(state) => Ok(Some(*state)),
@@ -99,10 +99,10 @@ impl Trial {
         }
     }
 
-    /// So many iterations, as far as they go.
+    /// Makes up to `count` iterations.
     ///
     /// # Errors
-    /// The fault by which it ends.
+    /// The fault that ended the solver.
     pub fn steps(&mut self, count: usize) -> Result<Vec<State>, Fault> {
         let mut states = Vec::new();
         for _ in 0..count {
@@ -117,10 +117,10 @@ impl Trial {
         Ok(states)
     }
 
-    /// One iteration during which it is asked to end soon.
+    /// Makes one iteration, and sends an interrupt during it.
     ///
     /// # Errors
-    /// The fault by which it ends.
+    /// The fault that ended the solver.
     pub fn interrupted_step(&mut self) -> Result<Option<State>, Fault> {
         self.asks.store(1, Ordering::Relaxed);
         let state = self.step();
@@ -128,10 +128,10 @@ impl Trial {
         state
     }
 
-    /// Keeps the present state: its token, or why it is refused.
+    /// Saves the current state: its token, or the reason of a refusal.
     ///
     /// # Errors
-    /// The fault by which it ends.
+    /// The fault that ended the solver.
     pub fn save(&mut self) -> Result<Result<Value, String>, Fault> {
         match self.ask(&Request::Save)? {
             Answer::Saved { token } => Ok(Ok(token)),
@@ -140,19 +140,19 @@ impl Trial {
         }
     }
 
-    /// Goes to a kept state; why it is refused, where it is.
+    /// Restores a saved state; the inner error is the reason of a refusal.
     ///
     /// # Errors
-    /// The fault by which it ends.
+    /// The fault that ended the solver.
     pub fn restore(&mut self, token: &Value) -> Result<Result<(), String>, Fault> {
         let token = token.clone();
         self.order(&Request::Restore { token })
     }
 
-    /// Forces a contact; why it is refused, where it is.
+    /// Forces a contact; the inner error is the reason of a refusal.
     ///
     /// # Errors
-    /// The fault by which it ends.
+    /// The fault that ended the solver.
     pub fn force(
         &mut self,
         contact: &Id,
@@ -167,10 +167,10 @@ impl Trial {
         })
     }
 
-    /// Sets a parameter; why it is refused, where it is.
+    /// Sets a parameter; the inner error is the reason of a refusal.
     ///
     /// # Errors
-    /// The fault by which it ends.
+    /// The fault that ended the solver.
     pub fn set(
         &mut self,
         name: &str,
@@ -182,7 +182,7 @@ impl Trial {
         })
     }
 
-    /// The contacts, or so many of them from all over the scene.
+    /// At most `most` contacts, spread over the scene.
     pub fn some_contacts(&self, most: usize) -> Vec<Id> {
         let all = &self.scene.contacts;
         let count = all.len().min(most);
@@ -191,12 +191,12 @@ impl Trial {
     }
 }
 
-/// Whether nothing follows a state that would belong to it.
+/// Whether no regular state follows this one.
 pub fn is_last(state: &State) -> bool {
     matches!(state.ended, Ended::Done | Ended::Failure)
 }
 
-/// What a state says of a contact.
+/// The values of a contact in a state.
 pub fn at<'a>(state: &'a State, contact: &Id) -> Option<&'a Found> {
     state.contacts.iter().find(|found| found.id == *contact)
 }

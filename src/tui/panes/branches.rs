@@ -1,4 +1,4 @@
-//! The branches as a tree, each with its end and its cost, and the selected one beside the current one.
+//! The branch tree, with the outcome and cost of each branch, and a comparison of the selected branch with the current one.
 
 use crate::app::App;
 use crate::layout::Pane;
@@ -17,7 +17,7 @@ use stickslip_scene::number;
 use stickslip_scene::shown;
 use unicode_width::UnicodeWidthStr;
 
-/// Width of one side of the comparison.
+/// Width of one column of the comparison.
 const SIDE: usize = 32;
 const NAME: usize = 12;
 
@@ -46,21 +46,21 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         .map(|(row, &(number, depth))| line(tree, &all[number], depth, row == at, width, app))
         .collect();
     if all.len() == 1 {
-        let text = " An intervention before the tip starts another branch; nothing done is lost.";
+        let text = " An intervention in an earlier state starts a new branch; nothing is lost.";
         lines.push(Line::styled(text, theme.faint));
     }
     lines.extend(compared);
     paint::lines(buffer, inner, &lines);
 }
 
-/// The first branch that is shown, and how many are, where there is room for so many.
+/// The first visible branch and the number of visible branches, for `room` rows.
 fn shown(at: usize, count: usize, room: usize) -> (usize, usize) {
     let rows = count.min(room.max(3));
     let top = at.saturating_sub(rows / 2).min(count.saturating_sub(rows));
     (top, rows)
 }
 
-/// The row of the tree in which a place of the screen is.
+/// The row of the tree at a screen position.
 pub fn row_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usize> {
     let tree = view.tree?;
     let all = verdicts::summaries(tree);
@@ -90,7 +90,7 @@ fn line<'a>(
     let (glyph, style) = glyph(&branch.verdict, app);
     let verdict = verdicts::describe(tree, &branch.verdict);
     let cost = format!(
-        "  load {}  {} minors, {} majors",
+        "  load {}  {} minor, {} major",
         number::plain(branch.load_factor),
         branch.whole.minors,
         branch.whole.majors
@@ -124,7 +124,7 @@ fn glyph(verdict: &BranchEnd, app: &App) -> (&'static str, Style) {
     }
 }
 
-/// The selected branch beside the current one.
+/// Compares the selected branch with the current one.
 fn comparison(
     tree: &Tree,
     all: &[Summary],
@@ -138,7 +138,7 @@ fn comparison(
         return Vec::new();
     }
     if selected == current {
-        let text = " Select another branch to see it beside this one; Enter goes to it.";
+        let text = " Select another branch to compare it with this one; Enter goes to it.";
         return vec![Line::default(), Line::styled(text, theme.faint)];
     }
     let Some(found) = compare::compare(tree, selected, current) else {
@@ -149,13 +149,13 @@ fn comparison(
             common,
             format!("at load {}", number::plain(common[0].load_factor)),
         ),
-        None => (&found.tips, "at their tips".into()),
+        None => (&found.tips, "at the last states".into()),
     };
     let verdict = match (&found.common, found.sameness) {
-        (None, _) => "no place in common since they parted",
-        (_, Some(Sameness::Same)) => "the same state",
+        (None, _) => "no common iteration after the fork",
+        (_, Some(Sameness::Same)) => "same state",
         (_, Some(Sameness::Different)) => "different states",
-        (_, None) => "one is not kept; go there first",
+        (_, None) => "one state is not stored; go there first",
     };
     let head = |side: &Side| {
         let name = paint::cut(&branches::name(tree, side.branch), SIDE - 2);
@@ -163,10 +163,7 @@ fn comparison(
     };
     let mut lines = vec![
         Line::default(),
-        Line::styled(
-            format!(" Beside the current one, {place}: {verdict}"),
-            theme.strong,
-        ),
+        Line::styled(format!(" Compared {place}: {verdict}"), theme.strong),
         Line::from(vec![
             Span::raw(" ".repeat(NAME + 2)),
             head(&sides[0]),
@@ -184,7 +181,7 @@ fn comparison(
         theme.faint,
         of(&|side| {
             format!(
-                "{} minors, {} majors, {:.1} ms",
+                "{} minor, {} major, {:.1} ms",
                 side.cost.minors,
                 side.cost.majors,
                 side.cost.seconds * 1e3

@@ -1,4 +1,4 @@
-//! The list of what can be opened: scenes, lessons, files; with a look at the selected one where there is room.
+//! The chooser: scenes, lessons and files, with a preview of the selection if there is room.
 
 use crate::app::App;
 use crate::choosing::{Chooser, Glance, Offer, Preview};
@@ -8,16 +8,16 @@ use ratatui::layout::{Constraint, Layout, Rect};
 use ratatui::text::{Line, Span};
 use unicode_width::UnicodeWidthStr;
 
-/// Width from which on the preview stands beside the list, and height from which on it stands below.
+/// Minimum width for a preview next to the list, and minimum height for a preview below it.
 const BESIDE: u16 = 110;
 const BELOW: u16 = 16;
-/// Rows of a preview below, and columns of its picture.
+/// Rows of a preview below the list, and columns of its picture.
 const ROWS: u16 = 7;
 const PICTURE: u16 = 30;
-/// Most rows of words over the picture beside the list.
+/// Maximum rows of text above the picture of a preview next to the list.
 const WORDS: u16 = 12;
 
-/// Draws the list with one offer selected; returns where a picture of that is to be, if anywhere.
+/// Draws the list, and returns the area for the preview's picture, which may be empty.
 pub fn draw(buffer: &mut Buffer, area: Rect, chooser: &Chooser, app: &App) -> Rect {
     let left = chooser.left(&app.offers);
     let title = match chooser.typed.as_str() {
@@ -46,13 +46,13 @@ pub fn draw(buffer: &mut Buffer, area: Rect, chooser: &Chooser, app: &App) -> Re
         _ => (inner, None),
     };
     let (lines, at) = lines(&left, chooser.at, usize::from(list.width), app);
-    // The heading over the first offer of a group is shown with it.
+    // The heading of a group is visible with its first entry.
     let room = usize::from(list.height);
     let top = (at + 1).saturating_sub(room);
     let lines: Vec<Line> = lines.into_iter().skip(top).collect();
     match left.is_empty() {
         true => {
-            let text = " nothing has these words in its name or title; Esc forgets them";
+            let text = " no name or title contains these words; Esc clears them";
             paint::lines(buffer, list, &[Line::styled(text, app.theme.faint)]);
         }
         false => paint::lines(buffer, list, &lines),
@@ -66,7 +66,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, chooser: &Chooser, app: &App) -> Re
     }
 }
 
-/// Headings and offers, and the line of the selected one.
+/// The lines of the list, and the index of the selected one.
 fn lines<'a>(left: &[&'a Offer], at: usize, width: usize, app: &App) -> (Vec<Line<'a>>, usize) {
     let theme = &app.theme;
     let widths = left.iter().map(|offer| offer.name.width());
@@ -105,7 +105,7 @@ fn lines<'a>(left: &[&'a Offer], at: usize, width: usize, app: &App) -> (Vec<Lin
     (lines, here)
 }
 
-/// Title and words of the selected offer; returns where its picture is to be.
+/// Draws title and description of the selected entry, and returns the area for its picture.
 fn look(buffer: &mut Buffer, area: Rect, preview: &Preview, beside: bool, app: &App) -> Rect {
     let theme = &app.theme;
     let glance = match &preview.what {
@@ -136,7 +136,7 @@ fn look(buffer: &mut Buffer, area: Rect, preview: &Preview, beside: bool, app: &
     let room = usize::from(words.height);
     if lines.len() > room && room > 0 {
         lines.truncate(room);
-        // The page of the scene tells the rest.
+        // The opened scene shows the full text.
         lines[room - 1].push_span(Span::styled(" …", theme.faint));
     }
     paint::lines(buffer, words, &lines);

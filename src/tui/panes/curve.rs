@@ -1,4 +1,4 @@
-//! The load factor over a monitor, at the end of every accepted increment up to the shown frame.
+//! The load factor over a monitor at each accepted increment up to the shown frame.
 
 use crate::app::App;
 use crate::canvas::Canvas;
@@ -13,7 +13,7 @@ use ratatui::text::{Line, Span};
 use stickslip_debugger::history::frame;
 use stickslip_scene::number::{plain, short};
 
-/// Width of the labels at the axis, the axis included.
+/// Width of the axis with its labels.
 const LABELS: u16 = 9;
 
 /// Draws the curve.
@@ -38,7 +38,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     }
     let points = frame::curve(&view.frames[..=view.cursor], at);
     let Some([value, load]) = points.last() else {
-        return say(buffer, " No increment is done yet.");
+        return say(buffer, " No increment accepted yet.");
     };
     let caption = Line::from(vec![
         Span::styled(" ● ", theme.strong),
@@ -47,20 +47,20 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         Span::raw(plain(*load)),
     ]);
     paint::lines(buffer, inner, &[caption]);
-    // A row for the caption above, a row for the numbers below.
+    // One row for the caption above, one for the numbers below.
     if inner.height >= 5 && inner.width > LABELS + 8 {
         let plot = Rect {
             y: inner.y + 1,
             height: inner.height - 1,
             ..inner
         };
-        // Going back leaves the scales as they are.
+        // The scales use the whole history, so that they do not change when going back.
         let known = frame::curve(view.frames, at);
         chart(buffer, plot, &points, &known, theme);
     }
 }
 
-/// The span of one coordinate, with zero in it; never empty, and small enough to subtract.
+/// The range of one coordinate, which includes zero, is never empty and never overflows when subtracted.
 fn span(points: &[[f64; 2]], axis: usize) -> [f64; 2] {
     const MOST: f64 = 1e300;
     let values = || {
@@ -106,7 +106,7 @@ fn chart(buffer: &mut Buffer, area: Rect, points: &[[f64; 2]], known: &[[f64; 2]
     axes(buffer, frame, x, y, theme);
 }
 
-/// The two axes, each with the numbers at its ends.
+/// Draws both axes with the numbers at their ends.
 fn axes(buffer: &mut Buffer, frame: ChartFrame, x: [f64; 2], y: [f64; 2], theme: &Theme) {
     let label = |value: f64| match value {
         0.0 => "0".into(),
@@ -131,7 +131,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_span_holds_zero_and_is_never_empty() {
+    fn the_span_includes_zero_and_is_never_empty() {
         assert_eq!(span(&[[2.0, -1.0], [3.0, 0.5]], 0), [0.0, 3.0]);
         assert_eq!(span(&[[2.0, -1.0], [3.0, 0.5]], 1), [-1.0, 0.5]);
         for odd in [0.0, f64::NAN, f64::INFINITY, -1e308, 1e-320] {

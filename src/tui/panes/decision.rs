@@ -1,4 +1,4 @@
-//! The decision on the selected node: Table 2 with the cell that fired, and the inequality with its numbers.
+//! The decision on the selected node: Table 2 with the cell that fired, and the tested inequalities with their values.
 
 use crate::app::App;
 use crate::layout::Pane;
@@ -22,11 +22,11 @@ use stickslip_debugger::explain::round_off::NOTE;
 use stickslip_scene::number::{self, four, long};
 use unicode_width::UnicodeWidthStr;
 
-/// Width of the rows' headings.
+/// Width of the row headings.
 const LABEL: usize = 9;
-/// Width that the widest cell needs.
+/// Width of the widest cell.
 const CELL: usize = 15;
-/// Lines of the table without rules: headings, and a second line in all rows but the last.
+/// Lines of the table without rules: the headings, and two lines per row except for the last, which has one.
 const GRID: usize = 6;
 
 /// Draws the decision.
@@ -41,9 +41,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     };
     let inner = paint::frame(buffer, area, &title, app.focus == Pane::Decision, theme);
     if view.model.finished.is_some() {
-        let words = view
-            .words(slave)
-            .unwrap_or("Nothing is shown at the start.");
+        let words = view.words(slave).unwrap_or("No decision at the start.");
         let lines = paint::wrapped(words, inner.width.into(), theme.text);
         return paint::lines(buffer, inner, &lines);
     }
@@ -63,14 +61,16 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     };
     let words = match (hidden, &app.lesson) {
         (false, _) => words(record, slave, view),
-        (true, Some(_)) => "The numbers are in the table above. What does Table 2 say?".into(),
+        (true, Some(_)) => "The numbers are in the table above. What does Table 2 choose?".into(),
         (true, None) if view.guest.is_some() => {
-            "What does the solver do next? Predict it: a, then f, s or x.".into()
+            "Which mode does the solver choose next? Predict it: press a, then f, s or x.".into()
         }
-        (true, None) => "What does Table 2 say? Predict it: a, then f, s or x.".into(),
+        (true, None) => {
+            "Which mode does Table 2 choose? Predict it: press a, then f, s or x.".into()
+        }
     };
 
-    // What must be there comes first; air is added where there is room.
+    // The essential lines come first; blank lines are added if there is room.
     let style = if !hidden && decision.is_some_and(|d| d.changes()) {
         theme.strong
     } else {
@@ -122,7 +122,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     paint::lines(buffer, inner, &all);
 }
 
-/// Who pushed the node since the minor iteration before: a heading, and the changes that did most to what was tested.
+/// A heading, and the mode changes since the previous minor iteration that contributed most to the tested quantity.
 fn pushes(
     slave: usize,
     record: Option<&ContactRecord>,
@@ -140,10 +140,10 @@ fn pushes(
     let Some(found) = found else {
         return vec![heading(match view.guest {
             Some(guest) if pushes_told::are_told(view.model, guest.offers) => {
-                "Who pushed it: its problem gives other numbers"
+                "Who pushed it: unknown, the interface problem does not match the numbers"
             }
-            Some(_) => "Who pushed it is known to the solver alone",
-            None => "Who pushed it cannot be told here",
+            Some(_) => "Who pushed it: known only to the solver",
+            None => "Who pushed it: not available here",
         })];
     };
     let tested = tested(&record.decision);
@@ -166,14 +166,14 @@ fn pushes(
     let mut found: Vec<&Push> = found.iter().filter(|push| of(push) != 0.0).collect();
     found.sort_by(|a, b| of(b).abs().total_cmp(&of(a).abs()));
     let together: f64 = found.iter().map(|push| of(push)).sum();
-    let mut lines = vec![heading("Who pushed it since the minor iteration before")];
+    let mut lines = vec![heading("Who pushed it since the previous minor iteration")];
     for push in found.iter().take(MOST) {
         let text = format!(" {}: {symbol} = {}", deed(push, view), signed(of(push)));
         lines.push(Line::styled(text, theme.text));
     }
     if found.len() > MOST {
         let text = format!(
-            " all {} together: {symbol} = {}",
+            " sum of all {}: {symbol} = {}",
             found.len(),
             signed(together)
         );
@@ -182,7 +182,7 @@ fn pushes(
     lines
 }
 
-/// A number with its sign, four digits.
+/// A number with its sign and four digits.
 fn signed(value: f64) -> String {
     match value {
         value if value < 0.0 => number::short(value),
@@ -190,7 +190,7 @@ fn signed(value: f64) -> String {
     }
 }
 
-/// What a node did, in words.
+/// Describes a mode change.
 fn deed(push: &Push, view: &View) -> String {
     let name = view.slave(push.slave);
     match push.modes {
@@ -202,7 +202,7 @@ fn deed(push: &Push, view: &View) -> String {
     }
 }
 
-/// The number that decided: what fired, or else what was tested first.
+/// The quantity of the test that fired, or otherwise of the first test.
 fn tested(decision: &Decision) -> Tested {
     let tests = || decision.tests.iter().flatten();
     let fired = tests().find(|test| test.margin < 0.0);
@@ -211,10 +211,10 @@ fn tested(decision: &Decision) -> Tested {
         .map_or(Tested::Gap, |test| test.tested)
 }
 
-/// Lines that [`measured`] takes, pressure and shear among them.
+/// Lines of [`measured`], including pressure and shear.
 const MEASURED: usize = 15;
 
-/// All that the minor iteration found at the node, with a word on each, for the screen that has room for it.
+/// All quantities of the node in this minor iteration, with explanations; shown if there is room.
 fn measured(
     record: &ContactRecord,
     slave: usize,
@@ -233,7 +233,7 @@ fn measured(
     let pair = |[x, y]: [f64; 2]| format!(" ({}, {})", long(x), long(y));
     let place = match record.spot {
         None => " past the ends of every surface".into(),
-        // Where on it, the solver alone knows.
+        // Only the solver knows the position on the surface.
         Some(_) if view.guest.is_some() => {
             let own = view.model.contacts[slave].surfaces.first();
             let surface = own.and_then(|own| view.model.surfaces.get(*own));
@@ -256,7 +256,7 @@ fn measured(
         (
             "gap",
             signed(round_off.length(record.gap)),
-            "negative: penetration; on the geometry that this major iteration froze",
+            "negative: penetration; on this major iteration's frozen geometry",
         ),
         (
             "F_n",
@@ -271,12 +271,12 @@ fn measured(
         (
             "T_max",
             signed(round_off.force(record.t_max)),
-            "what friction can carry, with its sign: |F_n| tan φ + cohesion",
+            "signed friction limit: |F_n| tan φ + cohesion",
         ),
         (
             "T_max used",
             signed(round_off.force(record.t_max_used)),
-            "the one that this minor iteration was solved with",
+            "the value used in this minor iteration",
         ),
         (
             "|F_t|/T_max",
@@ -284,17 +284,17 @@ fn measured(
                 true => format!(" {}", number::UNTOLD),
                 false => format!(" {}", round_off.ratio(record.f_t, record.t_max)),
             },
-            "how much of the friction is used",
+            "used fraction of the friction limit",
         ),
         (
             "slip",
             signed(round_off.length(record.slip)),
-            "u_tS* − u_tS, as the settings count it",
+            "u_tS* − u_tS, measured as settings.slip says",
         ),
         (
             "drift",
             signed(round_off.length(record.drift)),
-            "along the surface, from the point where it stuck or where the increment found it",
+            "along the surface, from the point where it stuck or where the increment started",
         ),
         ("S*", place, ""),
         ("at", pair(record.foot), ""),
@@ -307,12 +307,12 @@ fn measured(
             (
                 "F_n / A",
                 signed(pressure),
-                "contact pressure, by the undeformed tributary area of the node",
+                "contact pressure on the node's undeformed tributary area",
             ),
             ("F_t / A", signed(shear), "contact shear"),
         ]
     });
-    let heading = Line::styled(" What this minor iteration found", theme.heading);
+    let heading = Line::styled(" Values of this minor iteration", theme.heading);
     let row = |(name, value, meaning): (&str, String, &'static str)| {
         Line::from(vec![
             Span::styled(format!("   {name:<13}"), theme.key),
@@ -326,7 +326,7 @@ fn measured(
         .collect()
 }
 
-/// Table 2 as lines, with the row of the mode before and, unless it is hidden, the cell that fired lit.
+/// Table 2 as lines, with the row of the previous mode highlighted and, unless hidden, the cell that fired.
 fn grid(
     decision: Option<&Decision>,
     hidden: bool,
@@ -377,7 +377,7 @@ fn grid(
                 };
                 let mark = if part == 0 { mark } else { " " };
                 let text = table[row][column][part];
-                // The last column takes what the division left over.
+                // The last column takes the remainder.
                 let cell = if column == 2 {
                     width.saturating_sub(LABEL + 6 + 2 * cell)
                 } else {
@@ -395,7 +395,7 @@ fn grid(
     lines
 }
 
-/// The cells that can fire, one a line, where there is no room for the table and the one that did is hidden.
+/// The cells that can fire, one per line, if the table does not fit and the cell that fired is hidden.
 fn choices(before: Mode, theme: &Theme) -> Vec<Line<'static>> {
     let row = MODES.iter().position(|mode| *mode == before).unwrap_or(0);
     let cell = |(column, next): (usize, &Mode)| {
@@ -410,7 +410,7 @@ fn choices(before: Mode, theme: &Theme) -> Vec<Line<'static>> {
     MODES.iter().enumerate().map(cell).collect()
 }
 
-/// The table by which was decided; `None` where that is not known.
+/// The table that was applied; `None` if it is not known.
 fn table(decision: &Decision) -> Option<[[[&'static str; 2]; 3]; 3]> {
     match (decision.rule, rules(decision)) {
         (Rule::Theirs, Some(NEWTON)) => Some(names::table(Rule::NewtonOpens)),
@@ -422,7 +422,7 @@ fn table(decision: &Decision) -> Option<[[[&'static str; 2]; 3]; 3]> {
 
 const NEWTON: &str = "Newton";
 
-/// What the rules are called that were held against an attached solver's numbers, by what they compared.
+/// Name of the rules that an attached solver's values were compared with, from the tested quantities.
 fn rules(decision: &Decision) -> Option<&'static str> {
     match decision.tests[0]?.tested {
         Tested::Pressure | Tested::Drag => Some(NEWTON),
@@ -431,7 +431,7 @@ fn rules(decision: &Decision) -> Option<&'static str> {
     }
 }
 
-/// The cell that fired, alone, where there is no room for the table; and what the rules want that the solver names.
+/// The cell that fired, if the table does not fit, and the mode that the solver's rules want if it differs.
 fn fired(decision: &Decision, differs: bool, theme: &Theme) -> Line<'static> {
     let place = |mode: Mode| MODES.iter().position(|m| *m == mode).unwrap_or(0);
     let [first, second] = names::table(decision.rule)[place(decision.before)][place(decision.next)];
@@ -465,7 +465,7 @@ fn fired(decision: &Decision, differs: bool, theme: &Theme) -> Line<'static> {
     ])
 }
 
-/// Mark and style of a cell: fired, wanted by Table 2 but overruled, in the row of the mode before, or none of these.
+/// Mark and style of a cell: fired, wanted by Table 2 but overruled, in the row of the previous mode, or other.
 fn cell_look(
     decision: Option<&Decision>,
     before: Mode,
@@ -482,13 +482,13 @@ fn cell_look(
         }
         Rule::Held | Rule::Waits => (" ", theme.text),
         _ if decision.next == next => ("◀", theme.lit(next)),
-        // An attached solver did not take it.
+        // The cell that the rules want and an attached solver did not take.
         _ if decision.wanted == next => ("◁", theme.text.add_modifier(Modifier::UNDERLINED)),
         _ => (" ", theme.text),
     }
 }
 
-/// The inequalities with their numbers: one line each where there is room, else two.
+/// The inequalities with their values, on one line each if they fit, otherwise on two.
 fn tests(decision: &Decision, view: &View, width: usize, theme: &Theme) -> Vec<Line<'static>> {
     let mut lines = Vec::new();
     for test in decision.tests.iter().flatten() {
@@ -514,7 +514,7 @@ fn tests(decision: &Decision, view: &View, width: usize, theme: &Theme) -> Vec<L
     lines
 }
 
-/// What each of two sides gives that hold the node.
+/// The forces on each of the two sides that hold a node in a corner.
 fn sides(record: &ContactRecord, slave: usize, view: &View, theme: &Theme) -> Vec<Line<'static>> {
     let friction = &view.frame().state.controls.friction[slave];
     let Some(sides) = record.sides(friction) else {
@@ -522,26 +522,26 @@ fn sides(record: &ContactRecord, slave: usize, view: &View, theme: &Theme) -> Ve
     };
     let one = |(k, side): (usize, &SideForce)| {
         let (f_n, f_t, limit) = (four(side.f_n), four(side.f_t), four(side.limit));
-        let text = format!(" side {}: F_n {f_n}, F_t {f_t} of at most {limit}", k + 1);
+        let text = format!(" side {}: F_n {f_n}, F_t {f_t}, limit {limit}", k + 1);
         Line::styled(text, theme.text)
     };
     let note = match friction.is_smooth() {
-        true => " the only split",
-        false => " least norm: with friction, other splits are as good",
+        true => " unique split",
+        false => " split of least norm; with friction it is not unique",
     };
     let mut lines: Vec<Line> = sides.iter().enumerate().map(one).collect();
     lines.push(Line::styled(note, theme.faint));
     lines
 }
 
-/// What the law of its pair did, where that is not hard contact.
+/// The state of the contact law, if it is not hard contact.
 fn bond(record: &ContactRecord, slave: usize, view: &View, theme: &Theme) -> Vec<Line<'static>> {
     let lines = bond::lines(&view.model.contacts[slave], record);
     let line = |text: String| Line::styled(format!(" {text}"), theme.text);
     lines.into_iter().map(line).collect()
 }
 
-/// An inequality as it stands, with ten digits on both sides.
+/// The inequality with ten digits on both sides.
 fn inequality(test: &Test, view: &View) -> String {
     let long = |value| view.long(value);
     let sign = match test.value.partial_cmp(&test.bound) {
@@ -567,7 +567,7 @@ fn inequality(test: &Test, view: &View) -> String {
     format!(" {name} {} {sign} {bound}", long(test.value))
 }
 
-/// How far the inequality is from switching, and its unit.
+/// The distance of the inequality from switching, with its unit.
 fn margin(test: &Test, view: &View, theme: &Theme) -> (String, Style) {
     let long = |value| view.long(value);
     let round_off = view.round_off();
@@ -583,7 +583,7 @@ fn margin(test: &Test, view: &View, theme: &Theme) -> (String, Style) {
     };
     match test.tie {
         true => (
-            format!("a tie, by {} {unit} ", long(test.margin)),
+            format!("tie, margin {} {unit} ", long(test.margin)),
             theme.warning,
         ),
         false => {
@@ -599,7 +599,7 @@ fn margin(test: &Test, view: &View, theme: &Theme) -> (String, Style) {
     }
 }
 
-/// What an attached solver says of its decision, and what the rules that it names want instead.
+/// An attached solver's explanation of its decision, and the mode that its rules want if it differs.
 fn theirs(record: &ContactRecord, slave: usize, view: &View) -> Option<String> {
     let decision = &record.decision;
     let said = view.words(slave);
@@ -609,31 +609,28 @@ fn theirs(record: &ContactRecord, slave: usize, view: &View) -> Option<String> {
     }
     let next = names::mode(decision.next);
     let own = match (said, decision.rule) {
-        (Some(words), _) => format!("The solver takes {next}: “{words}”."),
-        (None, Rule::Theirs) => format!("The solver takes {next}, and does not say why."),
+        (Some(words), _) => format!("The solver chooses {next}: “{words}”."),
+        (None, Rule::Theirs) => format!("The solver chooses {next} and gives no reason."),
         (None, _) => report::reason(decision, record.t_max != 0.0),
     };
     let rules = rules(decision).unwrap_or("its rule");
     Some(match differs {
         true => format!(
-            "{own} ≠ {rules} (◁), which wants {} on the same numbers.",
+            "{own} ≠ {rules} (◁), which gives {} for the same values.",
             names::mode(decision.wanted)
         ),
         false => own,
     })
 }
 
-/// The verdict in words.
+/// The decision in words.
 fn words(record: Option<&ContactRecord>, slave: usize, view: &View) -> String {
     if view.model.contacts.is_empty() {
         return "This scene has no slave nodes to decide on.".into();
     }
     let next = view.mode(slave);
     let Some(record) = record else {
-        return format!(
-            "Nothing is decided yet; the node starts {}.",
-            names::mode(next)
-        );
+        return format!("No decision yet; the node starts {}.", names::mode(next));
     };
     let decision = &record.decision;
     let mut text = match theirs(record, slave, view) {
@@ -645,28 +642,29 @@ fn words(record: Option<&ContactRecord>, slave: usize, view: &View) -> String {
     if !frictionless && decision.tests.iter().flatten().any(|test| test.tie) {
         text += match view.frame().state.controls.settings.ties {
             Ties::Keep => " A tie keeps the mode.",
-            Ties::Printed => " An exact tie, read as the table is printed.",
+            Ties::Printed => " An exact tie, decided by the table as printed.",
         };
     }
     if view.t_max_moves(slave) {
-        text += &format!(" T_max still moves: {} was used.", long(record.t_max_used));
+        text += &format!(
+            " T_max has not settled: {} was used.",
+            long(record.t_max_used)
+        );
     }
     if record.carried.contains(&true) {
-        text += " A support carries a part of the force.";
+        text += " A support carries part of the force.";
     }
     match view.frame().state.nodes[slave].forced {
         Forced::Once(mode) if next == mode && mode != decision.next => {
             text += &format!(
-                " You force it to {} for the next minor iteration.",
+                " Forced to {} for the next minor iteration.",
                 names::mode(mode)
             );
         }
         Forced::Held(mode) if record.forced != Forced::Held(mode) => {
-            text += &format!(" You hold it {} from here on.", names::mode(mode));
+            text += &format!(" Held {} from here on.", names::mode(mode));
         }
-        Forced::Held(_) if decision.rule != Rule::Held => {
-            text += " You hold it, and Table 2 agrees."
-        }
+        Forced::Held(_) if decision.rule != Rule::Held => text += " Held; Table 2 agrees.",
         _ => {}
     }
     text

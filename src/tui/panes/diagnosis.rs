@@ -1,5 +1,5 @@
-//! The diagnosis: why the minor iterations cycle from the shown state, or which states are consistent; the consistent
-//! ones side by side, one of them selected, to start from.
+//! The diagnosis: why the minor iterations cycle from the shown state, or which states are consistent. The consistent states are
+//! listed side by side; the selected one can be started from.
 
 use crate::app::App;
 use crate::layout::Pane;
@@ -17,7 +17,7 @@ use stickslip_scene::shown;
 /// Width of a consistent state's column: a letter and three numbers.
 const CELL: usize = 34;
 const NAME: usize = 12;
-/// Most nodes that are listed; of more, those in which the states differ come first.
+/// Maximum number of nodes listed; if there are more, nodes in which the states differ come first.
 const MOST_LISTED: usize = 8;
 
 /// Draws the diagnosis.
@@ -29,9 +29,9 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let mut title = "Diagnosis".to_string();
     let found = match view.examination() {
         None => Err(
-            " Nothing is found out yet: d (or :census) looks at the problem that is solved next from here.",
+            " No diagnosis yet. Press d (or :census) to analyse the problem that is solved next.",
         ),
-        Some(None) => Err(" Looking …"),
+        Some(None) => Err(" Analysing …"),
         Some(Some(found)) => Ok(found),
     };
     let lines = match found {
@@ -45,7 +45,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
                 title += &format!(" ({})", found.going_on);
             }
             let mut lines = words(found, width, app);
-            // The list to choose from must be on the screen; what is said before it scrolls.
+            // The list of states must be visible; the text above it scrolls.
             let room = height.saturating_sub(answers.len());
             let top = app.scroll.min(lines.len().saturating_sub(room));
             if room < lines.len() {
@@ -81,7 +81,7 @@ fn words(found: &Examination, width: usize, app: &App) -> Vec<Line<'static>> {
     lines
 }
 
-/// The consistent states side by side, as many as fit, the selected one among them.
+/// The consistent states side by side, as many as fit, including the selected one.
 fn answers(found: &Examination, width: usize, app: &App, view: &View) -> Vec<Line<'static>> {
     let theme = &app.theme;
     let (Some(census), Some(problem)) = (&found.census, &found.problem) else {
@@ -136,8 +136,8 @@ fn answers(found: &Examination, width: usize, app: &App, view: &View) -> Vec<Lin
     if left > 0 {
         let all = (0..problem.nodes.len()).filter(|&place| differs(census, place));
         let text = match all.count() > listed.len() {
-            true => format!(" and {left} more nodes"),
-            false => format!(" and {left} more nodes, which do the same in all"),
+            true => format!(" and {left} more"),
+            false => format!(" and {left} more, the same in all states"),
         };
         lines.push(Line::styled(text, theme.faint));
     }
@@ -149,14 +149,14 @@ fn answers(found: &Examination, width: usize, app: &App, view: &View) -> Vec<Lin
         String::new()
     };
     let text = format!(
-        "{more} Up and Down choose, Enter starts from it (:start-from {})",
+        "{more} Up and Down select, Enter starts from it (:start-from {})",
         at + 1
     );
     lines.push(Line::styled(format!(" {}", text.trim_start()), theme.faint));
     lines
 }
 
-/// The nodes that are listed, by place: all where there are few; else first those in which the states differ.
+/// Indices of the listed nodes: all if they fit, otherwise first those in which the states differ.
 fn listed(census: &Census, nodes: usize) -> Vec<usize> {
     let mut listed: Vec<usize> = (0..nodes).collect();
     if nodes > MOST_LISTED {

@@ -1,4 +1,4 @@
-//! The last two rows: what was said last, or what is being asked; and the keys that matter now, from the table.
+//! The last two rows: the message or prompt, and the most relevant keys of the key table.
 
 use crate::app::{App, Overlay, Tone};
 use crate::layout::{Pane, Places};
@@ -11,15 +11,15 @@ use ratatui::text::{Line, Span};
 use stickslip_debugger::action::{ACTIONS, Entry, Group};
 use unicode_width::UnicodeWidthStr;
 
-/// Actions that the footer never leaves out, however narrow the screen.
+/// Actions that the footer shows at any width.
 const ALWAYS: [&str; 3] = ["pane", "help", "quit"];
 
-/// Draws message and keys. What their rows have no room for begins further up, over the panes.
+/// Draws message and keys. A message that needs more rows starts further up, over the panes.
 pub fn draw(buffer: &mut Buffer, places: &Places, app: &App, view: Option<&View>) {
     let width = places.message.width as usize;
     let mut lines = message(app, view, places, width);
     let keys = keys(app, view, places);
-    // A screen without a row for keys has none for more of the message either.
+    // A screen without a row for keys has no second row for the message either.
     let most = match places.footer.height {
         0 => return paint::lines(buffer, places.message, &lines),
         _ => usize::from(places.footer.bottom() / 2).max(2),
@@ -68,7 +68,7 @@ fn message(app: &App, view: Option<&View>, places: &Places, width: usize) -> Vec
     lines
 }
 
-/// What was said last, and the watches.
+/// The last message, and the watches.
 fn said(app: &App, view: Option<&View>, width: usize) -> Vec<Line<'static>> {
     let theme = &app.theme;
     let aside = view.map_or("", |view| view.aside.as_str());
@@ -127,7 +127,7 @@ fn keys(app: &App, view: Option<&View>, places: &Places) -> Vec<Line<'static>> {
         ),
         Overlay::Chooser(chooser) => {
             let (back, leave) = match (chooser.typed.is_empty(), view.is_some()) {
-                (false, _) => ("forget what was typed", None),
+                (false, _) => ("clear", None),
                 (true, true) => ("back", None),
                 (true, false) => ("back", Some(("q", "quit"))),
             };
@@ -141,10 +141,7 @@ fn keys(app: &App, view: Option<&View>, places: &Places) -> Vec<Line<'static>> {
             let may = |may: bool, word, not| if may { word } else { not };
             let once = may(offers.is_none_or(|offers| offers.force), "once", "(once)");
             let hold = may(offers.is_none_or(|offers| offers.hold), "hold", "(hold)");
-            listed(
-                &[("f s x", once), ("F S X", hold), ("Esc", "leave it")],
-                app,
-            )
+            listed(&[("f s x", once), ("F S X", hold), ("Esc", "cancel")], app)
         }
         Overlay::Solver(reader) => match reader.search.typed() {
             Some(_) => listed(&[("Enter", "find"), ("Esc", "back")], app),
@@ -159,7 +156,7 @@ fn keys(app: &App, view: Option<&View>, places: &Places) -> Vec<Line<'static>> {
                 app,
             ),
         },
-        Overlay::Answer => listed(&[("Esc", "look again first")], app),
+        Overlay::Answer => listed(&[("Esc", "back to the panes")], app),
         Overlay::Line(line) => {
             let scenes = app.scenes();
             return line.hint(&app.context(view, &scenes), room, &app.theme);
@@ -175,12 +172,12 @@ fn listed(keys: &[(&str, &str)], app: &App) -> Line<'static> {
     Line::from(spans.collect::<Vec<_>>())
 }
 
-/// Whether a label is that of something that is not offered, which stands in parentheses, since colour alone tells nothing.
+/// Whether a label is in parentheses, which mark an unavailable action without relying on colour.
 fn is_grey(label: &str) -> bool {
     label.starts_with('(')
 }
 
-/// A key and what it does.
+/// A key and its label.
 fn hint(key: &str, label: &str, theme: &Theme) -> [Span<'static>; 2] {
     [
         Span::styled(
@@ -195,10 +192,10 @@ fn hint(key: &str, label: &str, theme: &Theme) -> [Span<'static>; 2] {
     ]
 }
 
-/// As many of the table's labelled actions as fit, in its order; those that must be there are counted first.
+/// The labelled actions of the table that fit, in table order; the ones in [`ALWAYS`] get space first.
 fn table_keys(app: &App, view: Option<&View>, places: &Places, room: usize) -> Line<'static> {
     let teaches = app.lesson.is_some() || app.guess.is_some();
-    // What has no key any more is left to its name.
+    // An action without a key is left out; it can still be typed by name.
     let key = |entry: &'static Entry| app.keymap.keys(entry).next().map(str::to_owned);
     let context = app.context(view, &[]);
     let labelled: Vec<(&Entry, String, String)> = ACTIONS
@@ -219,12 +216,12 @@ fn table_keys(app: &App, view: Option<&View>, places: &Places, room: usize) -> L
     fitted(&hints.collect::<Vec<_>>(), room, &app.theme)
 }
 
-/// Whether the footer never leaves an action out.
+/// Whether the footer always shows an action.
 fn is_always(entry: &Entry) -> bool {
     ALWAYS.contains(&entry.name)
 }
 
-/// As many hints as fit, in their order, each a key and a label; those that are needed are counted first.
+/// The hints that fit, in order; the required ones get space first. Each is a flag for required, a key and a label.
 fn fitted(hints: &[(bool, String, String)], room: usize, theme: &Theme) -> Line<'static> {
     let width = |key: &str, label: &str| key.width() + label.width() + 3;
     let needed = hints.iter().filter(|(needed, ..)| *needed);
@@ -245,7 +242,7 @@ fn fitted(hints: &[(bool, String, String)], room: usize, theme: &Theme) -> Line<
     Line::from(spans)
 }
 
-/// Label of an action; where Tab turns pages, it says which page this is.
+/// Label of an action; for Tab, the page number if panes are shown one at a time.
 fn label(entry: &Entry, app: &App, places: &Places) -> String {
     if entry.name == "pane" && places.paged {
         let page = Pane::ALL

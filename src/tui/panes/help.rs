@@ -1,5 +1,5 @@
-//! The `?` page: every action with its keys, and what the marks on the screen mean; and the page of the present keys, as the
-//! file has them that changes them.
+//! The help page (`?`): all actions with their keys, and the marks on the screen; and the list of current key bindings, in the
+//! format of the file that changes them.
 
 use crate::paint;
 use crate::theme::Theme;
@@ -10,55 +10,55 @@ use stickslip_debugger::action::config;
 use stickslip_debugger::action::{ACTIONS, Context, Group, Keymap};
 use stickslip_manual::search::Search;
 
-/// What the glyphs mean.
+/// The marks on the screen.
 const MARKS: &[(&str, &str)] = &[
     ("f s x", "free, sliding, fixed"),
     ("*", "the mode changes"),
     (
         "~",
-        "T_max has not settled: the next minor iteration is solved with another",
+        "T_max has not settled: the next minor iteration uses a new value",
     ),
-    ("◇ ◆", "you forced the mode once; you hold it"),
+    ("◇ ◆", "mode forced once; mode held"),
     (
         "◀ ◁",
-        "the cell of Table 2 that fired; the one that would have, had you not held the mode",
+        "the cell of Table 2 that fired; the one that fires if the mode is not held",
     ),
     (
         "margin",
-        "distance of the tested inequality from switching; negative has switched",
+        "distance of the tested inequality from switching; negative: switched",
     ),
     (
         "≠",
-        "an attached solver decides otherwise than Table 2, or Newton, on the same numbers",
+        "an attached solver's decision differs from Table 2 (or Newton) for the same values",
     ),
-    ("a tie", "closer to switching than the tolerance"),
+    ("tie", "closer to switching than the tolerance"),
 ];
 
-/// Lines that a page key goes past.
+/// Lines per page key.
 const PAGE: usize = 10;
 
-/// Which list is read.
+/// The list that is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Listing {
     /// All actions.
     Actions,
-    /// The present keys, as a file has them.
+    /// The current key bindings, in the format of their file.
     Keys,
 }
 
-/// A list that is being read.
+/// An open list.
 #[derive(Debug, Clone)]
 pub struct Help {
-    /// Which.
+    /// The list.
     pub listing: Listing,
-    /// The first line that is shown, from 0.
+    /// The first visible line, from 0.
     pub top: usize,
-    /// What is looked for in it.
+    /// The search in it.
     pub search: Search,
 }
 
 impl Help {
-    /// The top of a list.
+    /// Opens a list at its top.
     pub fn new(listing: Listing) -> Help {
         Help {
             listing,
@@ -67,11 +67,11 @@ impl Help {
         }
     }
 
-    /// What a key does in a page of this size; false if it leaves it.
+    /// Handles a key in a page of this size; returns false if it closes the page.
     pub fn key(&mut self, name: &str, size: Rect, keymap: &Keymap, context: &Context) -> bool {
         let lines = self.lines(size.width as usize, &Theme::mono(), keymap, context);
         let last = lines.len().saturating_sub(size.height as usize);
-        // A line near the end stands at the foot of the page.
+        // A match near the end is shown at the bottom of the last page.
         let top = self.top.min(last);
         if let Some(go) = self.search.key(name) {
             let texts: Vec<String> = lines.iter().map(Line::to_string).collect();
@@ -135,12 +135,12 @@ pub fn draw(
     paint::lines(buffer, inner, &lines[top..]);
 }
 
-/// Width of the columns of keys and of names.
+/// Widths of the columns of keys and names.
 const KEYS: usize = 14;
 const NAMES: usize = 23;
 
-/// The whole page. On a narrow screen the help goes on in further lines. What the solver that is open does not offer is grey, with
-/// the reason.
+/// The whole page. Help texts wrap on a narrow screen. Actions that the current solver does not support are dim and state the
+/// reason.
 pub fn page(width: usize, theme: &Theme, keymap: &Keymap, context: &Context) -> Vec<Line<'static>> {
     let finished = context.model.filter(|model| model.finished.is_some());
     let mut lines = match finished {
@@ -155,7 +155,7 @@ pub fn page(width: usize, theme: &Theme, keymap: &Keymap, context: &Context) -> 
             let (help, [key_style, style]) = match entry.offered(context) {
                 Ok(()) => (entry.help.to_owned(), [theme.key, theme.text]),
                 Err(why) => (
-                    format!("({}) Not here: {why}.", entry.help),
+                    format!("({}) Not available: {why}.", entry.help),
                     [theme.faint; 2],
                 ),
             };
@@ -191,13 +191,13 @@ pub fn page(width: usize, theme: &Theme, keymap: &Keymap, context: &Context) -> 
     lines
 }
 
-/// The present keys, and where they are changed.
+/// The current key bindings, and the file that changes them.
 fn keys(theme: &Theme, keymap: &Keymap) -> Vec<Line<'static>> {
     let file = config::folder().map(|folder| folder.join(config::KEYS));
     let file = file.map_or(config::KEYS.into(), |file| file.display().to_string());
     let state = match keymap.is_changed() {
-        true => "as this file changes them; :copy keys copies all of it",
-        false => "in the form of the file that changes them; :copy keys copies all of it",
+        true => "key bindings, with the changes in this file; :copy keys copies them",
+        false => "key bindings, in the format of this file; :copy keys copies them",
     };
     let mut lines = vec![
         Line::styled(format!(" {state}"), theme.faint),

@@ -1,4 +1,4 @@
-//! The lesson: what the tutor says, and what to do next.
+//! The lesson: the tutor's text and the next task.
 
 use crate::app::App;
 use crate::paint;
@@ -12,7 +12,7 @@ use stickslip_debugger::teach::tutor::Paragraph;
 use stickslip_scene::shown;
 use unicode_width::UnicodeWidthStr;
 
-/// Rows that the lesson wants at a width, border included; 0 without a lesson.
+/// Rows that the lesson needs at a width, with border; 0 without a lesson.
 pub fn rows(app: &App, width: u16) -> u16 {
     let inner = usize::from(width.saturating_sub(2));
     match &app.lesson {
@@ -24,7 +24,7 @@ pub fn rows(app: &App, width: u16) -> u16 {
     }
 }
 
-/// Draws the lesson. What to do next stands below it; where there is no room for all, a part is shown, and how to see more.
+/// Draws the lesson, with the next task at the bottom. If the text does not fit, a part of it is shown, with the key for more.
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App) {
     let Some(tutor) = &app.lesson else { return };
     let inner = paint::frame(buffer, area, &title(tutor), false, &app.theme);
@@ -37,16 +37,12 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App) {
     lines = lines.into_iter().skip(top).take(room).collect();
     let more = all > shown.end.max(seen);
     match more {
-        true => lines.push(Line::styled(" ▼ Space shows more", app.theme.key)),
+        true => lines.push(Line::styled(" ▼ Space: more", app.theme.key)),
         false => lines.extend(todo(tutor, width, &app.theme)),
     }
     paint::lines(buffer, inner, &lines);
     if shown.len() < all {
-        let again = if more {
-            ""
-        } else {
-            "; Backspace: from the first"
-        };
+        let again = if more { "" } else { "; Backspace: to the top" };
         let place = format!(
             " lines {} to {} of {all}{again} ",
             shown.start + 1,
@@ -59,20 +55,20 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App) {
     }
 }
 
-/// Width and rows that a pane of this size has for what the tutor says.
+/// Width and height available for the tutor's text.
 pub fn room(area: Rect, tutor: &Tutor, theme: &Theme) -> (usize, usize) {
     let width = usize::from(area.width.saturating_sub(2));
     let inner = usize::from(area.height.saturating_sub(2));
     (width, inner.saturating_sub(todo(tutor, width, theme).len()))
 }
 
-/// The first line that is shown: what was said last, and of a new page its beginning.
+/// The first visible line: the latest addition to the text, or the top of a new page.
 pub fn top(app: &App, tutor: &Tutor, width: usize, room: usize) -> usize {
     let all = said(tutor, width, &app.theme).len();
     let (now, then) = (tutor.edition(), app.reading.edition);
     let wanted = match now.0 == then.0 {
         true if now.1 == then.1 => app.reading.top,
-        // An answer is told after the question, which was read.
+        // The question above an answer has been read.
         true => all - remark(tutor, width, &app.theme).len(),
         false => 0,
     };
@@ -93,19 +89,19 @@ fn title(tutor: &Tutor) -> String {
     format!("Lesson  {}  {place}{score}", lesson.title)
 }
 
-/// What to do next, wrapped.
+/// The next task, wrapped.
 fn todo(tutor: &Tutor, width: usize, theme: &Theme) -> Vec<Line<'static>> {
     wrapped("▶ ", &tutor.todo(), width, theme.key)
 }
 
-/// All that the tutor says, wrapped. A mark stands before what answers an answer, so that no colour is needed.
+/// The tutor's text, wrapped. A mark precedes the reply to an answer, so that it does not depend on colour.
 pub fn said(tutor: &Tutor, width: usize, theme: &Theme) -> Vec<Line<'static>> {
     let page = tutor.page();
     let parts = page.iter().flat_map(|part| paragraph(part, width, theme));
     parts.collect()
 }
 
-/// What the tutor says to the last answer.
+/// The tutor's reply to the last answer.
 fn remark(tutor: &Tutor, width: usize, theme: &Theme) -> Vec<Line<'static>> {
     match tutor.page().last() {
         Some(part @ (Paragraph::Right(_) | Paragraph::Wrong(_))) => paragraph(part, width, theme),
@@ -122,7 +118,7 @@ fn paragraph(part: &Paragraph, width: usize, theme: &Theme) -> Vec<Line<'static>
     }
 }
 
-/// A paragraph whose further lines stand under the first one's words.
+/// A paragraph whose lines after the first are indented by the width of the mark.
 fn wrapped(mark: &str, text: &str, width: usize, style: Style) -> Vec<Line<'static>> {
     let indent = mark.width();
     let lines = paint::wrap(text, width.saturating_sub(2 + indent));

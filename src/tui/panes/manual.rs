@@ -1,4 +1,4 @@
-//! A page of the manual over the whole screen: scrolled, searched, and turned to the next page.
+//! A page of the manual over the whole screen, with scrolling, search and links to the neighbouring pages.
 
 use crate::paint;
 use crate::theme::Theme;
@@ -10,21 +10,21 @@ use stickslip_manual::render::{self, Line as Shown, Style};
 use stickslip_manual::search::Search;
 use stickslip_manual::{PAGES, Page};
 
-/// Lines that a page key goes past.
+/// Lines per page key.
 const PAGE: usize = 16;
 
-/// A page that is being read. Its lines are 80 columns wide on any screen, so that a place in it is the same on all.
+/// An open page. Its lines are 80 columns wide on any screen, so that line numbers do not depend on the screen.
 #[derive(Debug, Clone)]
 pub struct Reader {
     page: &'static Page,
     lines: Vec<Shown>,
-    /// The first line that is shown.
+    /// The first visible line.
     top: usize,
     search: Search,
 }
 
 impl Reader {
-    /// A reader at the top of a page.
+    /// Opens a page at its top.
     pub fn new(page: &'static Page) -> Reader {
         Reader {
             page,
@@ -34,12 +34,12 @@ impl Reader {
         }
     }
 
-    /// What is being typed to search for.
+    /// The search text that is being typed.
     pub fn typed(&self) -> Option<&str> {
         self.search.typed()
     }
 
-    /// What a key does; false if it leaves the page.
+    /// Handles a key; returns false if it closes the page.
     pub fn key(&mut self, name: &str) -> bool {
         if let Some(go) = self.search.key(name) {
             let lines: Vec<String> = self.lines.iter().map(|line| line.text()).collect();
@@ -62,7 +62,7 @@ impl Reader {
         true
     }
 
-    /// A line up or down.
+    /// Scrolls by one line.
     pub fn scroll(&mut self, up: bool) {
         self.top = match up {
             true => self.top.saturating_sub(1),
@@ -70,7 +70,7 @@ impl Reader {
         };
     }
 
-    /// Turns to another page, so many further on.
+    /// Opens the page `by` pages further on.
     fn turn(&mut self, by: usize) {
         let here = PAGES.iter().position(|page| page.topic == self.page.topic);
         let next = (here.unwrap_or(0) + by) % PAGES.len();
@@ -82,7 +82,7 @@ impl Reader {
     }
 }
 
-/// Draws the page under a line with its topic, or with what is searched for.
+/// Draws the page below a line with its topic, or with the search text.
 pub fn draw(buffer: &mut Buffer, area: Rect, reader: &Reader, theme: &Theme) {
     let (line, count) = (reader.top + 1, reader.lines.len());
     let title = match (reader.search.typed(), reader.search.title()) {

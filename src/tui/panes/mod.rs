@@ -1,5 +1,5 @@
-//! What stands on the screen, one file a pane, a page or a bar. Each is a function from the app and the view into its
-//! part of the screen, and knows the brush ([`crate::paint`]) but no other pane.
+//! The panes, pages and bars of the screen, one file each. Each is a function that draws the app and the view into an area, with
+//! the helpers of [`crate::paint`] and without reference to another pane.
 
 pub mod branches;
 pub mod chooser;

@@ -1,4 +1,4 @@
-//! The slave-node table: what the shown minor iteration found at every slave node.
+//! The slave-node table: the values of every slave node in the shown minor iteration.
 
 use crate::app::App;
 use crate::layout::Pane;
@@ -18,11 +18,11 @@ use stickslip_scene::number;
 use stickslip_scene::shown;
 use unicode_width::UnicodeWidthStr;
 
-/// How wide the columns are.
+/// Widths of the columns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Columns {
     name: usize,
-    /// Modes as words rather than letters.
+    /// Whether modes are words instead of letters.
     words: bool,
     /// Width of each number.
     number: usize,
@@ -30,7 +30,7 @@ struct Columns {
     ratio: usize,
     /// How many of gap, F_n, F_t, T_max, ratio and slip are shown.
     shown: usize,
-    /// Whether pressure and shear follow.
+    /// Whether pressure and shear are shown.
     pressures: bool,
 }
 
@@ -42,7 +42,7 @@ const WORDS: usize = 17;
 const LETTERS: usize = 3;
 
 impl Columns {
-    /// The widest arrangement that fits: first words turn into letters, then numbers lose digits, then columns go.
+    /// The widest arrangement that fits: modes become letters first, then numbers lose digits, then columns are left out.
     fn fit(width: usize, name: usize) -> Self {
         let arrangements = [
             (true, 13, 13),
@@ -78,7 +78,7 @@ impl Columns {
         })
     }
 
-    /// These with pressure and shear behind them, where that fits.
+    /// Adds pressure and shear if they fit.
     fn with_pressures(self, width: usize) -> Self {
         let pressures = self.shown == 6 && self.width() + 2 * self.number < width;
         Columns { pressures, ..self }
@@ -148,7 +148,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     paint::lines(buffer, inner, &lines);
 }
 
-/// The slave node in whose row a place of the screen is.
+/// The slave node in the row at a screen position.
 pub fn slave_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usize> {
     let order = app.order(view);
     let count = view.model.contacts.len();
@@ -162,7 +162,7 @@ pub fn slave_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usiz
     order.get(top + row).copied().filter(|_| inside)
 }
 
-/// Heading: which node of how many shown, which those are, and how they are sorted.
+/// Title: the selected node, the number of nodes shown, the filter and the sort order.
 fn title(at: usize, shown: usize, count: usize, app: &App) -> String {
     if count < 2 {
         return "Slave nodes".into();
@@ -170,8 +170,8 @@ fn title(at: usize, shown: usize, count: usize, app: &App) -> String {
     let mut title = format!("Slave nodes  {}/{shown}", at + 1);
     title += &match app.filter {
         Filter::All => String::new(),
-        Filter::Active => format!(" active of {count}"),
-        Filter::Surface => format!(" on this surface of {count}"),
+        Filter::Active => format!(" active, of {count}"),
+        Filter::Surface => format!(" on this surface, of {count}"),
     };
     title += match app.sort {
         Sort::Scene => "",
@@ -179,12 +179,12 @@ fn title(at: usize, shown: usize, count: usize, app: &App) -> String {
         Sort::Gap => "  by gap",
     };
     if app.backward {
-        title += "  backward";
+        title += ", reversed";
     }
     title
 }
 
-/// First row shown, such that the selection stands in the middle where it can.
+/// First visible row, with the selection in the middle if possible.
 fn first_row(selected: usize, rows: usize, count: usize) -> usize {
     selected
         .saturating_sub(rows / 2)
@@ -275,8 +275,7 @@ fn row<'a>(
     Line::from(spans)
 }
 
-/// `≠` where an attached solver and the rules that it names decide otherwise, `*` where the mode changes, `~` where T_max has not
-/// settled.
+/// `≠` if an attached solver's decision differs from its rules, `*` if the mode changes, `~` if T_max has not settled.
 fn change_mark(differs: bool, changed: bool, t_max_moves: bool) -> &'static str {
     match (differs, changed, t_max_moves) {
         (true, ..) => "≠",
@@ -286,7 +285,7 @@ fn change_mark(differs: bool, changed: bool, t_max_moves: bool) -> &'static str 
     }
 }
 
-/// `◆` where the user holds the mode, `◇` where it is forced once.
+/// `◆` if the user holds the mode, `◇` if it is forced once.
 fn forced_mark(forced: Forced) -> &'static str {
     match forced {
         Forced::Held(_) => "◆",
@@ -295,7 +294,7 @@ fn forced_mark(forced: Forced) -> &'static str {
     }
 }
 
-/// Mode before and next, as words or letters, padded to the column.
+/// The previous and next mode, as words or letters, padded to the column.
 fn modes(
     slave: usize,
     changed: bool,
@@ -342,7 +341,7 @@ fn numbers(
     app: &App,
     view: &View,
 ) -> Vec<Span<'static>> {
-    // What changed the mode is shown as it is, however small.
+    // The value that changed the mode is shown exactly, even within round-off.
     let decided = |tested: Tested| {
         let mut tests = record.decision.tests.iter().flatten();
         record.decision.changes() && tests.any(|test| test.tested == tested)
@@ -378,7 +377,7 @@ fn numbers(
         .collect()
 }
 
-/// Tested numbers stand out where the test is a tie.
+/// Highlights tested values that are ties.
 fn number_style(column: usize, record: &ContactRecord, app: &App) -> Style {
     let tested = match column {
         0 => Tested::Gap,
@@ -399,7 +398,7 @@ fn number_style(column: usize, record: &ContactRecord, app: &App) -> Style {
     }
 }
 
-/// A name cut or padded to a width; what is cut off at the end shows as `…`.
+/// A name cut or padded to a width, with `…` in place of the rest.
 fn fitted(name: &str, width: usize) -> String {
     shown::padded(&paint::cut(name, width), width)
 }
@@ -433,7 +432,7 @@ mod tests {
     }
 
     #[test]
-    fn the_selection_is_always_on_the_screen() {
+    fn the_selection_is_always_visible() {
         for count in [1, 5, 300] {
             for rows in [1, 4, 10] {
                 for selected in 0..count {

@@ -1,4 +1,4 @@
-//! The remedies that were tried: what each costs and what it leaves; one of them selected, to be taken.
+//! The remedies that were tried, with their cost and result; the selected one can be applied.
 
 use crate::app::App;
 use crate::layout::Pane;
@@ -12,11 +12,11 @@ use stickslip_debugger::explain::remedies::{self, CLEAN, COLUMNS, Trial, TrialEn
 use stickslip_scene::shown;
 use unicode_width::UnicodeWidthStr;
 
-/// Columns by [`COLUMNS`], the most telling first: a narrow screen shows as many as fit.
+/// Indices into [`COLUMNS`], the most important first; a narrow screen shows those that fit.
 const ORDER: [usize; 10] = [0, 1, 3, 5, 6, 7, 9, 8, 4, 2];
-/// Lines before the first remedy.
+/// Lines above the first remedy.
 const HEAD: usize = 2;
-/// Least width of the remedies' names.
+/// Minimum width of the remedies' names.
 const NAME: usize = 26;
 
 /// Draws the list.
@@ -26,7 +26,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let tried = view.background.and_then(|background| background.tried());
     let Some(tried) = tried else {
         let inner = paint::frame(buffer, area, "Remedies", focused, theme);
-        let text = " r tries every remedy from the shown state, each in a trial of its own.";
+        let text = " Press r to try every remedy separately from the shown state.";
         paint::lines(buffer, inner, &[Line::styled(text, theme.faint)]);
         return;
     };
@@ -42,16 +42,16 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let count = tried.trials.len();
     let state = match (trying, tried.all) {
         (true, Some(all)) => format!("{count} of {all} tried; Ctrl-C stops; now: {}", tried.now),
-        (true, None) => "holding a census; Ctrl-C stops after it …".into(),
+        (true, None) => "running a census; Ctrl-C stops after it …".into(),
         (false, _) if tried.stopped => format!("stopped after {count}"),
-        (false, _) if count == 0 => "the history is done: there is nothing to remedy".into(),
+        (false, _) if count == 0 => "nothing to remedy: the history is complete".into(),
         (false, _) => {
             let good = tried
                 .trials
                 .iter()
                 .filter(|t| t.end == TrialEnd::Converged)
                 .count();
-            format!("{good} of {count} converge; Enter takes the selected one, in a new branch")
+            format!("{good} of {count} converge; Enter applies the selected one in a new branch")
         }
     };
     let width = usize::from(inner.width);
@@ -104,7 +104,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     paint::lines(buffer, inner, &lines);
 }
 
-/// The remedy in whose row a place of the screen is.
+/// The remedy in the row at a screen position.
 pub fn row_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usize> {
     let tried = view.background?.tried()?;
     let selected = app.remedy.min(tried.trials.len().saturating_sub(1));
@@ -114,7 +114,7 @@ pub fn row_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usize>
     (row < room && top + row < tried.trials.len()).then_some(top + row)
 }
 
-/// Which columns fit, in the order of [`COLUMNS`], and how wide they are.
+/// The columns that fit, in the order of [`COLUMNS`], with their widths.
 fn shown(rows: &[[String; 10]], width: usize) -> Vec<(usize, usize)> {
     let wide = |k: usize| {
         let cells = rows.iter().map(|row| row[k].width());
@@ -133,7 +133,7 @@ fn shown(rows: &[[String; 10]], width: usize) -> Vec<(usize, usize)> {
     shown
 }
 
-/// Converged and clean, converged with something left, or not.
+/// Mark of a trial: converged cleanly, converged with warnings, or not converged.
 fn mark(trial: &Trial, app: &App) -> (&'static str, Style) {
     let theme = &app.theme;
     match (&trial.end, &trial.left) {

@@ -1,4 +1,4 @@
-//! The residual over the major iterations of the shown increment, on a log scale, with the limit it must get under.
+//! The residual by major iteration in the shown increment, on a log scale, with its limit.
 
 use crate::app::App;
 use crate::convergence::{self, Point};
@@ -13,7 +13,7 @@ use stickslip_core::linear::norms::Norms;
 use stickslip_debugger::explain::names;
 use stickslip_scene::number;
 
-/// Height from which on there is a line for the judge.
+/// Minimum height for a line about the judge.
 const ROOM_FOR_JUDGE: u16 = 7;
 
 /// Draws the residual.
@@ -28,7 +28,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         paint::lines(
             buffer,
             inner,
-            &[Line::styled(" Nothing is solved yet.", theme.faint)],
+            &[Line::styled(" No iteration yet.", theme.faint)],
         );
         return;
     };
@@ -62,14 +62,14 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     above.extend(judged(view, theme).filter(|_| shows_judge));
     paint::lines(buffer, inner, &above);
     let above = above.len() as u16;
-    // A row for the numbers of the iterations below.
+    // One row for the iteration numbers below the chart.
     let plot = Rect {
         y: inner.y + above,
         height: inner.height.saturating_sub(above),
         ..inner
     };
     if convergence::fits(plot) {
-        // Those that an attached solver does not tell have no place.
+        // Values that an attached solver does not report are left out.
         let told = view
             .residuals
             .iter()
@@ -79,7 +79,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     }
 }
 
-/// A number of a caption; a dash where an attached solver does not tell it.
+/// A number of a caption; a dash if an attached solver does not report it.
 fn short(value: f64, view: &View) -> String {
     match view.is_untold(value) {
         true => number::UNTOLD.into(),
@@ -99,7 +99,7 @@ fn point((number, norms): &(u32, Norms), view: &View) -> Point {
     }
 }
 
-/// What the judge found worst of the last accepted increment; `None` before the first.
+/// The judge's worst violation in the last accepted increment; `None` before the first.
 fn judged(view: &View, theme: &Theme) -> Option<Line<'static>> {
     let verdict = view.frame().state.start.verdict.as_ref()?;
     let worst = verdict.largest()?;

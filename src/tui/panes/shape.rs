@@ -1,7 +1,6 @@
-//! The shape: bodies as they were (faint) and as they are, with their names where there are several, master surfaces
-//! with their outward side, contact forces, and the slave nodes by the letters of their modes. Of a solid, lines
-//! between its materials are drawn, and its elements where they are large enough to be told apart. Drawn at the start
-//! of the shown major iteration.
+//! The shape at the start of the shown major iteration: bodies in the reference (dim) and current configuration with their names if
+//! there are several, master surfaces with their outward side, contact forces, and slave nodes by the letters of their modes.
+//! Solids show the boundaries between materials, and their elements if these are large enough.
 
 use crate::app::App;
 use crate::camera::Camera;
@@ -28,18 +27,18 @@ use stickslip_debugger::explain::strain;
 use stickslip_scene::number;
 use unicode_width::UnicodeWidthStr;
 
-/// Length of the longest force, and of a normal, as parts of what is seen.
+/// Length of the largest force and of a normal, as fractions of the visible extent.
 const FORCE: f64 = 0.25;
 const NORMAL: f64 = 0.04;
-/// Least diagonal of an element that is drawn, in dots.
+/// Minimum diagonal of a drawn element, in dots.
 const ELEMENT: f64 = 12.0;
-/// Length of the longest motion that is drawn, as a part of what is seen.
+/// Length of the largest rigid-body motion, as a fraction of the visible extent.
 const MOTION: f64 = 0.15;
-/// Heads of arrows, by eighths of a turn anticlockwise from the right.
+/// Arrow heads by eighths of a turn, anticlockwise from the right.
 const HEADS: [&str; 8] = ["→", "↗", "↑", "↖", "←", "↙", "↓", "↘"];
-/// Mark of a node that the diagnosis is about, right of its letter.
+/// Mark of a diagnosed node, right of its letter.
 const MARK: &str = "!";
-/// Mark of the worst point of a solid that is outside the range of its law or inverted.
+/// Mark of a solid's worst point, which is inverted or outside the range of its law.
 const WORST: &str = "◆";
 /// Dots between two normals of an element.
 const SPACING: f64 = 16.0;
@@ -59,7 +58,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     }
 }
 
-/// Draws the shape alone, but in the last row; returns the longest force, `None` where there is no room.
+/// Draws the shape in all rows but the last; returns the largest force, `None` if there is no room.
 pub fn picture(buffer: &mut Buffer, inner: Rect, app: &App, view: &View) -> Option<f64> {
     if inner.is_empty() {
         return None;
@@ -81,7 +80,7 @@ pub fn picture(buffer: &mut Buffer, inner: Rect, app: &App, view: &View) -> Opti
     Some(longest)
 }
 
-/// The canvas inside the frame, and what of the scene is seen on it.
+/// The canvas, and the part of the scene that it shows.
 fn field(inner: Rect, app: &App, view: &View) -> (Canvas, Window) {
     let field = Rect {
         height: inner.height.saturating_sub(1).max(1),
@@ -98,7 +97,7 @@ fn field(inner: Rect, app: &App, view: &View) -> (Canvas, Window) {
     (canvas, window)
 }
 
-/// The slave node nearest to a place of the screen, if one is near.
+/// The slave node closest to a screen position, if it is near enough.
 pub fn slave_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usize> {
     // A cell is about twice as high as wide.
     const NEAR: u32 = 3;
@@ -116,18 +115,18 @@ pub fn slave_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usiz
     near.min().map(|(_, slave)| slave)
 }
 
-/// The map from the scene to the dots: equal in both directions, y upwards.
+/// The map from the scene to dots: uniform scale, y upwards.
 struct Window {
     middle: Point,
-    /// Dots per unit of length.
+    /// Dots per unit length.
     scale: f64,
     size: [f64; 2],
-    /// Length that the shorter side of the canvas shows.
+    /// Length shown by the shorter side of the canvas.
     extent: f64,
 }
 
 impl Window {
-    /// Enlarging goes towards a place, the selected node's; all of the shape stands in the middle.
+    /// Zooming keeps `towards` (the selected node) visible; the whole shape is centred.
     fn new(canvas: &Canvas, bounds: &Bounds, camera: &Camera, towards: Option<Point>) -> Self {
         let size = canvas.size();
         let [width, height] = bounds.size().map(|side| side.max(1e-300));
@@ -147,7 +146,7 @@ impl Window {
         }
     }
 
-    /// Whether something at a place, so many dots large, can be on the canvas.
+    /// Whether something at `place`, `size` dots large, can be visible.
     fn sees(&self, place: Point, size: f64) -> bool {
         let dot = self.dot(place);
         (0..2).all(|axis| dot[axis] > -size && dot[axis] < self.size[axis] + size)
@@ -160,7 +159,7 @@ impl Window {
     }
 }
 
-/// Where the selected node is, if there is one and it is anywhere.
+/// Position of the selected node, if there is one and its position is known.
 fn selected_place(app: &App, view: &View) -> Option<Point> {
     let slaves = &view.model.contacts;
     let slave = slaves.get(app.selected.min(slaves.len().saturating_sub(1)))?;
@@ -195,7 +194,7 @@ fn bodies(canvas: &mut Canvas, window: &Window, app: &App, view: &View) {
     }
 }
 
-/// Lines between the elements of a solid, where there is room, and between its materials.
+/// Lines between the elements of a solid if there is room, and between its materials.
 fn inside(canvas: &mut Canvas, window: &Window, solid: &Solid, app: &App, view: &View) {
     let draw = |canvas: &mut Canvas, face: &[usize], style| {
         let now: Vec<Point> = face.iter().map(|&node| view.place(node)).collect();
@@ -222,7 +221,7 @@ fn inside(canvas: &mut Canvas, window: &Window, solid: &Solid, app: &App, view: 
     } in &solid.elements
     {
         for face in kind.faces_of(nodes) {
-            // Neighbours share a face, and walk it each its own way.
+            // Neighbours share a face and traverse it in opposite directions.
             let mut ends = [face.first().copied(), face.last().copied()];
             ends.sort_unstable();
             match other.insert(ends, material) {
@@ -233,13 +232,13 @@ fn inside(canvas: &mut Canvas, window: &Window, solid: &Solid, app: &App, view: 
     }
 }
 
-/// Names of the bodies, where there are several and they have room: in the middle of a solid, beside a beam.
+/// Names of the bodies if there are several and they fit: in the middle of a solid, next to a beam.
 fn names(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view: &View) {
     if view.model.bodies.len() < 2 {
         return;
     }
     let area = canvas.area();
-    // Lines that stand back, as those between elements, give way to a name; outlines and forces do not.
+    // A name may cover dim lines, such as those between elements, but not outlines and forces.
     let gives_way = |cell: &Cell| cell.symbol() == " " || cell.modifier.contains(Modifier::DIM);
     for body in &view.model.bodies {
         let name = paint::cut(&body.name, 12);
@@ -269,7 +268,7 @@ fn names(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view:
     }
 }
 
-/// Mean of the places of nodes.
+/// Mean position of nodes.
 fn mean(nodes: &[usize], view: &View) -> Point {
     let sum = nodes
         .iter()
@@ -278,14 +277,14 @@ fn mean(nodes: &[usize], view: &View) -> Point {
     sum.map(|x| x / nodes.len() as f64)
 }
 
-/// Master surfaces, with a short line from the middle of each element to its outward side.
+/// Master surfaces, with normals on the outward side.
 fn surfaces(canvas: &mut Canvas, window: &Window, app: &App, view: &View) {
     let style = app.theme.text;
     let mut walked = SPACING;
     for element in view.model.surfaces.iter().flat_map(Element::all) {
         let nodes = outline::element(element, |node| view.place(node));
         draw_curve(canvas, window, &nodes, style);
-        // Short elements share a normal among several of them.
+        // Short elements share one normal.
         let (Some(first), Some(last)) = (nodes.first(), nodes.last()) else {
             continue;
         };
@@ -300,8 +299,8 @@ fn surfaces(canvas: &mut Canvas, window: &Window, app: &App, view: &View) {
     }
 }
 
-/// Normals of an element, each from its foot to its tip, about evenly spread; the outward side is on the right of
-/// the walk.
+/// Normals of an element from base to tip, about evenly spaced. The outward side is on the right when traversing the nodes in
+/// order.
 fn normals(nodes: &[Point], window: &Window) -> Vec<(Point, Point)> {
     let (Some(first), Some(last)) = (nodes.first(), nodes.last()) else {
         return Vec::new();
@@ -336,7 +335,7 @@ fn normals(nodes: &[Point], window: &Window) -> Vec<(Point, Point)> {
     }
 }
 
-/// Contact forces on the slave nodes as lines that end at the node; returns the largest.
+/// Contact forces as lines that end at the slave nodes; returns the largest.
 fn forces(canvas: &mut Canvas, window: &Window, app: &App, view: &View) -> f64 {
     let Some(event) = view.event() else {
         return 0.0;
@@ -367,18 +366,18 @@ fn forces(canvas: &mut Canvas, window: &Window, app: &App, view: &View) -> f64 {
     largest
 }
 
-/// What is known of the shown state, if that is an end.
+/// The diagnosis, if the solve fails in the shown state.
 fn found<'a>(view: &View<'a>) -> Option<&'a Examination> {
     view.examination().flatten().filter(|found| found.fails)
 }
 
-/// The worst point of the solids, if outside the range of its law or inverted.
+/// The worst point of the solids, if it is inverted or outside the range of its law.
 fn worst(view: &View) -> Option<PointDeformation> {
     let found = deformation(view.model, &view.frame().state.u)?;
     found.inverted().or(found.outside)
 }
 
-/// Motions of bodies that nothing holds, as lines; returns their ends, and the directions there.
+/// Rigid-body motions of bodies without support, as lines; returns the lines, which end in arrow heads.
 fn motions(canvas: &mut Canvas, window: &Window, app: &App, view: &View) -> Vec<[Dot; 2]> {
     let Some(found) = found(view) else {
         return Vec::new();
@@ -395,7 +394,7 @@ fn motions(canvas: &mut Canvas, window: &Window, app: &App, view: &View) -> Vec<
     lines
 }
 
-/// Heads of arrows.
+/// Arrow heads at the ends of lines.
 fn heads(buffer: &mut Buffer, canvas: &Canvas, lines: &[[Dot; 2]], app: &App) {
     for [from, to] in lines {
         let (x, y) = (to[0] - from[0], from[1] - to[1]);
@@ -409,7 +408,7 @@ fn heads(buffer: &mut Buffer, canvas: &Canvas, lines: &[[Dot; 2]], app: &App) {
     }
 }
 
-/// Letters of the modes at the slave nodes; the selected one is reversed and named.
+/// Letters of the modes at the slave nodes; the selected node is reversed and named.
 fn slaves(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view: &View) {
     let theme = &app.theme;
     let selected = app
@@ -423,7 +422,7 @@ fn slaves(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view
         let Some((x, y)) = canvas.cell(window.dot(view.place(node))) else {
             continue;
         };
-        // What is hidden until it is predicted must not be read off here.
+        // The shape must not reveal a mode that is still to be predicted.
         let mode = match app.hides(view, slave) {
             true => view.mode_before(slave),
             false => view.mode(slave),
@@ -445,7 +444,7 @@ fn slaves(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view
     }
 }
 
-/// The mark of the worst point of the solids, its stretch or determinant, and its element.
+/// Caption of the worst point: its mark, its element, and its stretch or that it is inverted.
 fn worst_words(model: &Model, point: &PointDeformation) -> String {
     let element = strain::element(model, point);
     match point.determinant > 0.0 {
@@ -459,7 +458,7 @@ fn worst_words(model: &Model, point: &PointDeformation) -> String {
 
 fn caption(buffer: &mut Buffer, inner: Rect, longest: f64, moves: bool, app: &App, view: &View) {
     let theme = &app.theme;
-    // First, so that a narrow pane does not cut it.
+    // First, so that a narrow pane does not cut it off.
     let mut spans: Vec<Span> = worst(view)
         .map(|point| Span::styled(worst_words(view.model, &point), theme.text))
         .into_iter()
@@ -472,14 +471,14 @@ fn caption(buffer: &mut Buffer, inner: Rect, longest: f64, moves: bool, app: &Ap
         ));
     }
     if moves {
-        spans.push(Span::styled("   → loose", theme.faint));
+        spans.push(Span::styled("   → rigid motion", theme.faint));
     }
     if found(view).is_some_and(|found| !found.nodes.is_empty()) {
         spans.push(Span::styled(format!("   {MARK} diagnosed"), theme.faint));
     }
     if app.camera != Camera::ALL {
         spans.push(Span::styled(
-            format!("   ×{:.2}  0: all of it", app.camera.zoom),
+            format!("   ×{:.2}  0: fit", app.camera.zoom),
             theme.faint,
         ));
     }
@@ -511,7 +510,7 @@ mod tests {
     }
 
     #[test]
-    fn the_normal_is_on_the_right_of_the_walk() {
+    fn the_normal_is_on_the_right_of_the_node_order() {
         let window = Window {
             middle: [0.0; 2],
             scale: 1.0,

@@ -1,5 +1,6 @@
-//! Two pages of an attached solver: what it says besides (its messages, its standard error, and what happened to it), which
-//! follows the end while it is there; and the parameters that `:set` changes, with what they are now.
+//! Pages of an attached solver: its log (messages, standard error and events), which follows the end until it is scrolled, and the
+//! parameters that
+//! `:set` changes, with their current values; and the text of a finished run.
 
 use crate::paint;
 use crate::theme::Theme;
@@ -17,44 +18,44 @@ use stickslip_manual::search::Search;
 use stickslip_scene::number;
 use stickslip_scene::shown;
 
-/// Rows that a page key goes past, and columns that a sideways key does.
+/// Rows and columns per page key.
 const PAGE: usize = 10;
 const ASIDE: usize = 20;
-/// Width of the words that say how a line was said.
+/// Width of the column with the kind of a log line.
 const HOW: usize = 8;
 
-/// Which page is read.
+/// The page that is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Page {
-    /// What the solver says.
+    /// The solver's log.
     Log,
     /// A finished run as text.
     Run,
-    /// What can be set.
+    /// The solver's parameters.
     Parameters,
 }
 
-/// A page that is being read.
+/// An open page.
 #[derive(Debug, Clone)]
 pub struct Reader {
-    /// Which.
+    /// The page.
     pub page: Page,
-    /// The first row that is shown, from 0; `None` at the end, where new rows come, and at the top of what does not grow.
+    /// The first visible row, from 0; `None` follows the end of a growing page and shows the top of others.
     top: Option<usize>,
-    /// Columns that are left out on the left.
+    /// Columns scrolled out on the left.
     aside: usize,
-    /// What is looked for in it.
+    /// The search in it.
     pub search: Search,
 }
 
-/// A row, and how it is drawn.
+/// A row and its style.
 struct Row {
     text: String,
     style: fn(&Theme) -> Style,
 }
 
 impl Reader {
-    /// The page, where one begins to read.
+    /// Opens a page: the log at its end, others at the top.
     pub fn new(page: Page) -> Reader {
         Reader {
             page,
@@ -64,7 +65,7 @@ impl Reader {
         }
     }
 
-    /// The first row that is shown of so many, in a page of this height.
+    /// The first visible row of `rows`, for a page of this height.
     fn first(&self, rows: usize, height: usize) -> usize {
         let last = rows.saturating_sub(height);
         match (self.top, self.page) {
@@ -74,7 +75,7 @@ impl Reader {
         }
     }
 
-    /// What a key does in a page of this size; false if it leaves it.
+    /// Handles a key in a page of this size; returns false if it closes the page.
     pub fn key(&mut self, name: &str, size: Rect, view: Option<&View>) -> bool {
         let rows = rows(self.page, size.width.into(), view);
         let height = usize::from(size.height);
@@ -105,7 +106,7 @@ impl Reader {
             "End" | "G" => last,
             _ => return true,
         };
-        // Who is at the end again follows it.
+        // Scrolling back to the end follows it again.
         self.top = (to < last || self.page != Page::Log).then_some(to.min(last));
         true
     }
@@ -122,9 +123,9 @@ pub fn draw(buffer: &mut Buffer, area: Rect, reader: &Reader, view: Option<&View
         .map_or("", |guest| &guest.offers.name);
     let title = reader.search.title().unwrap_or_else(|| {
         let what = match reader.page {
-            Page::Log => format!("What {name} says"),
-            Page::Run => "The run as text".into(),
-            Page::Parameters => format!("What can be set in {name}"),
+            Page::Log => format!("Log of {name}"),
+            Page::Run => "Text of the run".into(),
+            Page::Parameters => format!("Parameters of {name}"),
         };
         match rows.len() > height {
             true => format!(
@@ -169,7 +170,7 @@ fn rows(page: Page, width: usize, view: Option<&View>) -> Vec<Row> {
     }
 }
 
-/// A finished run as text; sentences are wrapped, tables are not.
+/// The text of a finished run; sentences wrap, tables do not.
 fn printed(lines: Vec<stickslip_debugger::recorded::log::Said>, width: usize) -> Vec<Row> {
     let printed = lines.into_iter().filter(|said| said.how == How::Printed);
     let wrapped = printed.flat_map(|said| match said.text.contains("  ") {
@@ -183,7 +184,7 @@ fn printed(lines: Vec<stickslip_debugger::recorded::log::Said>, width: usize) ->
     wrapped.map(row).collect()
 }
 
-/// What was said, a row a line, the newest last.
+/// The log, one line per row, the newest last.
 fn said((first, lines): (usize, Vec<stickslip_debugger::recorded::log::Said>)) -> Vec<Row> {
     let faint = |text: String| Row {
         text,
@@ -191,9 +192,11 @@ fn said((first, lines): (usize, Vec<stickslip_debugger::recorded::log::Said>)) -
     };
     let mut rows = Vec::with_capacity(lines.len() + 1);
     match (first, lines.is_empty()) {
-        (0, true) => rows.push(faint("It has said nothing yet.".into())),
+        (0, true) => rows.push(faint("No messages yet.".into())),
         (0, false) => {}
-        (gone, _) => rows.push(faint(format!("The first {gone} lines are forgotten."))),
+        (gone, _) => rows.push(faint(format!(
+            "The first {gone} lines are no longer stored."
+        ))),
     }
     rows.extend(lines.into_iter().map(|said| Row {
         text: format!("{:<HOW$} {}", said.how.word(), said.text),
@@ -207,7 +210,7 @@ fn said((first, lines): (usize, Vec<stickslip_debugger::recorded::log::Said>)) -
     rows
 }
 
-/// The parameters: what each is now and takes, and what it does.
+/// The parameters: current value, range and description.
 fn parameters(all: &[Parameter], width: usize, view: &View) -> Vec<Row> {
     let context = context(Some(view), 0, &[]);
     let mut rows = Vec::new();
@@ -220,7 +223,7 @@ fn parameters(all: &[Parameter], width: usize, view: &View) -> Vec<Row> {
         let now = present(known, &context);
         let began = match now == began {
             true => String::new(),
-            false => format!(", began with {began}"),
+            false => format!(", initially {began}"),
         };
         let text = format!("{name} = {now}   ({}{began})", known.range);
         rows.push(Row {
@@ -239,8 +242,8 @@ fn parameters(all: &[Parameter], width: usize, view: &View) -> Vec<Row> {
         );
     }
     let last = match all.is_empty() {
-        true => "It offers no parameters.",
-        false => ":set NAME VALUE sets one from here on.",
+        true => "The solver has no parameters.",
+        false => ":set NAME VALUE changes one from here on.",
     };
     rows.push(Row {
         text: last.into(),

@@ -1,4 +1,4 @@
-//! The top of the screen: which scene, where the solver is, and what the last minor iteration led to.
+//! The top of the screen: the scene, the position of the solver, and the outcome of the last minor iteration.
 
 use crate::app::{App, Overlay};
 use crate::layout::Places;
@@ -20,7 +20,7 @@ use stickslip_debugger::explain::report;
 use stickslip_scene::number;
 use unicode_width::UnicodeWidthStr;
 
-/// Draws the status. What its rows have no room for stands over the rows below.
+/// Draws the status. Lines that do not fit cover the rows below.
 pub fn draw(buffer: &mut Buffer, places: &Places, app: &App, view: Option<&View>) {
     let area = places.status;
     let Some(view) = view else {
@@ -32,7 +32,7 @@ pub fn draw(buffer: &mut Buffer, places: &Places, app: &App, view: Option<&View>
         paint::lines(buffer, area, &[line]);
         return;
     };
-    // The position is what a screen of one line must show.
+    // A screen of one line shows the position.
     let mut lines = vec![position(app, view, area.width as usize)];
     if area.height > 2 {
         lines.insert(0, scene(app, view, area.width as usize));
@@ -46,23 +46,23 @@ pub fn draw(buffer: &mut Buffer, places: &Places, app: &App, view: Option<&View>
     paint::over(buffer, Rect { height, ..area }, &lines, &app.theme);
 }
 
-/// Most lines that the last iteration's outcome takes.
+/// Maximum number of lines for the outcome.
 const OUTCOME: usize = 3;
 
-/// Who is attached, how it goes back, and what it said.
+/// The attached solver, how it goes back, and the counts of its warnings and errors.
 fn guest(app: &App, view: &View, guest: &Guest, width: usize) -> Line<'static> {
     let theme = &app.theme;
     let offers = guest.offers;
     let name = format!("{} {}", offers.name, offers.version);
     let (state, style) = match (guest.lost, offers.past, offers.goes_back) {
-        (true, ..) => ("✗ lost; the next step starts it anew", theme.bad),
+        (true, ..) => ("✗ lost; the next step restarts it", theme.bad),
         (_, Some(record), _) => (record, theme.warning),
-        (.., GoesBack::ToAny) => ("attached; back to any state", theme.faint),
+        (.., GoesBack::ToAny) => ("attached, can go back to any state", theme.faint),
         (.., GoesBack::ToIncrements) => (
-            "attached; back to increments, from there again",
+            "attached, goes back to increments, then replays",
             theme.faint,
         ),
-        (.., GoesBack::Again) => ("attached; back by starting anew", theme.faint),
+        (.., GoesBack::Again) => ("attached, goes back by restart", theme.faint),
     };
     let key = by_name("log")
         .ok()
@@ -81,7 +81,7 @@ fn guest(app: &App, view: &View, guest: &Guest, width: usize) -> Line<'static> {
         ("   ", theme.faint),
         (view.model.title.as_str(), theme.faint),
     ];
-    // What it is called gives way to what it does.
+    // A long name is cut in favour of the state.
     let fixed = state.width() + counted.width() + 17;
     let mut room = width;
     let mut spans = Vec::new();
@@ -115,8 +115,8 @@ fn scene<'a>(app: &App, view: &View<'a>, width: usize) -> Line<'a> {
     ])
 }
 
-/// Where the solver is: the minor iteration that is shown, or the first one to come. A narrow screen has it closer, and
-/// without the attempt where that is the first.
+/// The position of the solver: the shown minor iteration, or the first one. A narrow screen has less space between the parts, and
+/// leaves out attempt 1.
 fn position(app: &App, view: &View, width: usize) -> Line<'static> {
     let (wide, closer) = (place(app, view, "   ", true), place(app, view, "  ", true));
     let second = view.position().attempt > 1;
@@ -137,7 +137,7 @@ fn position(app: &App, view: &View, width: usize) -> Line<'static> {
         line.push_span(Span::styled(WORDS, app.theme.bad));
     }
     if app.unkept {
-        // Whoever goes on without it must not forget that.
+        // Nothing is recorded any more, so this must stay visible.
         const LOST: [&str; 2] = ["   no journal (:journal FILE)", "  no journal"];
         let fits = |words: &&&str| line.width() + words.width() <= width;
         let words = LOST.iter().find(fits).unwrap_or(&LOST[1]);
@@ -181,7 +181,7 @@ fn place(app: &App, view: &View, apart: &str, attempt: bool) -> Line<'static> {
     Line::from(spans)
 }
 
-/// The start, with the gaps that the scene starts with.
+/// The initial state, with its start gaps.
 fn start(view: &View) -> String {
     let text = "▸ at the start; nothing is solved yet";
     match view.start_gaps {
@@ -190,7 +190,7 @@ fn start(view: &View) -> String {
     }
 }
 
-/// What the shown minor iteration led to, and what the user has done to the solve.
+/// The outcome of the shown minor iteration, and the user's interventions.
 fn outcome(app: &App, view: &View, width: u16) -> Vec<Line<'static>> {
     let theme = &app.theme;
     if view.running {
@@ -227,11 +227,11 @@ fn outcome(app: &App, view: &View, width: u16) -> Vec<Line<'static>> {
             theme.text,
         ),
         (None, Some(_)) if app.hides_any(view) => {
-            ("? solved; what follows is yours to say".into(), theme.text)
+            ("? Solved. Predict the next mode (a)".into(), theme.text)
         }
         (None, Some(event)) => sentence(event, view.model, app),
     };
-    // Further lines stand under the words, not under the glyph.
+    // Further lines are indented to the words after the glyph.
     let words = paint::wrap(&text, (width as usize).saturating_sub(4));
     let indent = |index: usize| if index == 0 { " " } else { "   " };
     let line =
@@ -248,7 +248,7 @@ fn outcome(app: &App, view: &View, width: u16) -> Vec<Line<'static>> {
     lines
 }
 
-/// What follows from a minor iteration, in a sentence with a glyph before it.
+/// The outcome of a minor iteration as a sentence with a glyph.
 fn sentence(event: &Event, model: &Model, app: &App) -> (String, Style) {
     let theme = &app.theme;
     let (glyph, style) = match &event.outcome {
@@ -274,7 +274,7 @@ fn sentence(event: &Event, model: &Model, app: &App) -> (String, Style) {
         Outcome::Failed(_) => ("✗", theme.bad),
     };
     let told = report::outcome(model, event);
-    // The line above says where this is.
+    // The line above shows the position.
     let place = format!("{}: ", names::position_in(model, event.position));
     (
         format!("{glyph} {}", told.strip_prefix(&place).unwrap_or(&told)),
@@ -282,7 +282,7 @@ fn sentence(event: &Event, model: &Model, app: &App) -> (String, Style) {
     )
 }
 
-/// How the user stands behind the modes, if at all.
+/// Strategy, cuts and the user's interventions, if any.
 fn interventions(view: &View) -> Option<String> {
     let forced = (0..view.model.contacts.len()).map(|slave| view.forced(slave));
     let (mut held, mut once) = (0, 0);
@@ -295,7 +295,7 @@ fn interventions(view: &View) -> Option<String> {
     }
     let state = &view.frame().state;
     let controls = &state.controls;
-    // At the end of the path the last leg's is still in force.
+    // At the end of the path the last leg's value still applies.
     let leg = state.start.leg.min(view.model.path.len() - 2);
     let of_scene = view.model.on_leg(leg);
     let increment = (controls.increment != of_scene).then(|| {

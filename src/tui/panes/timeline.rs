@@ -1,7 +1,7 @@
-//! The timeline: slave nodes by minor iterations, a letter for the mode that each had.
+//! The timeline: slave nodes by minor iterations, with a letter for each mode.
 //!
-//! Majors and increments are ruled off, a cycle is bracketed, forced modes are small letters. Only the columns around
-//! the cursor are looked at, so that the length of the history costs nothing.
+//! Rules separate majors and increments, a bracket marks a cycle, and forced modes are lower-case letters. Only the columns around
+//! the cursor are computed, so that drawing does not depend on the length of the history.
 
 use crate::app::App;
 use crate::columns::{self, Column, rows_shown};
@@ -18,12 +18,12 @@ use stickslip_debugger::explain::names;
 use stickslip_debugger::history::strip::{PointKind, Strip};
 use unicode_width::UnicodeWidthStr;
 
-/// Rows that are no nodes: increments, majors, the cursor's mark, what each iteration led to, brackets.
+/// Rows besides nodes: increments, majors, the cursor, outcomes, brackets.
 pub const FRAME: u16 = 5;
-/// The letters of a finished run.
+/// Legend of a finished run's letters.
 const LETTERS: &str =
-    " C closed  · open  M on another face  1-9 tenths of a face  small: held fixed ";
-/// Width of the nodes' names.
+    " C closed  · open  M other face  1-9 tenths of a face  lower case: held fixed ";
+/// Minimum and maximum width of the names.
 const NAME: Range<usize> = 9..14;
 
 /// Draws the timeline.
@@ -88,7 +88,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
             let (letter, style) = cell(strip, slave, finished, app);
             buffer.set_string(column.x, nodes + row as u16, letter, reversed(style));
         }
-        // No such solver tells of cycles, whose brackets stand there.
+        // Only attached solvers differ from their rules, and they have no cycle brackets in this row.
         if (0..count).any(|slave| strip.differs(slave)) {
             buffer.set_string(column.x, below + 1, "≠", theme.warning);
         }
@@ -101,7 +101,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     finished_cycles(buffer, inner, below + 1, &columns, app, view);
 }
 
-/// Where the first column stands, and the iterations that are visible.
+/// Screen column of the first iteration, and the visible iterations.
 fn visible(inner: Rect, view: &View) -> (u16, Vec<Column>) {
     let names = (0..view.model.contacts.len()).map(|slave| view.slave(slave).width());
     let name = names.max().unwrap_or(0).clamp(NAME.start, NAME.end) + 2;
@@ -112,13 +112,13 @@ fn visible(inner: Rect, view: &View) -> (u16, Vec<Column>) {
     (left, shown)
 }
 
-/// What is inside the frame, where there is anything.
+/// The area inside the frame, if it is not empty.
 fn inside(area: Rect, view: &View) -> Option<Rect> {
     let inner = area.inner(Margin::new(1, 1));
     (!view.strips.is_empty() && inner.height > FRAME).then_some(inner)
 }
 
-/// The step of the branch in whose column a place of the screen is.
+/// The step of the branch in the column at a screen position.
 pub fn step_at(area: Rect, view: &View, at: Position) -> Option<usize> {
     let inner = inside(area, view).filter(|inner| inner.contains(at))?;
     let (_, columns) = visible(inner, view);
@@ -126,7 +126,7 @@ pub fn step_at(area: Rect, view: &View, at: Position) -> Option<usize> {
     column.map(|column| column.at)
 }
 
-/// The slave node in whose row a place of the screen is.
+/// The slave node in the row at a screen position.
 pub fn slave_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usize> {
     let inner = inside(area, view).filter(|inner| inner.contains(at))?;
     let count = view.model.contacts.len();
@@ -160,8 +160,7 @@ fn title(view: &View) -> String {
     format!("Timeline  step {} of {last}: {what}", view.cursor)
 }
 
-/// What stands between an iteration and the one before it: a double rule between increments, a single one between
-/// majors, or between attempts of a finished run.
+/// The rule before an iteration: double between increments, single between majors (in a finished run, between attempts).
 fn rule(view: &View, at: usize) -> Option<&'static str> {
     let before = view.strips.get(at.checked_sub(1)?)?;
     let (then, now) = (before.position, view.strips[at].position);
@@ -177,13 +176,13 @@ fn rule(view: &View, at: usize) -> Option<&'static str> {
     }
 }
 
-/// Numbers of increments and majors (of a finished run attempts) over their first columns.
+/// Numbers of increments and majors (in a finished run, attempts) above their first columns.
 fn headings(buffer: &mut Buffer, inner: Rect, shown: &[Column], view: &View, style: Style) {
     let finished = view.model.finished.is_some();
     columns::headings(buffer, inner, shown, style, |at| {
         let now = view.strips[at].position;
         let mut name = view.model.increment_name(now.increment);
-        // A finished run names the step where it begins, and on the left.
+        // In a finished run the step is named only at its first increment and in the leftmost column.
         let leftmost = shown.first().is_some_and(|first| first.at == at);
         if let Some((_, number)) = name.split_once('.').filter(|(_, n)| *n != "1" && !leftmost) {
             name = number.to_owned();
@@ -198,8 +197,7 @@ fn headings(buffer: &mut Buffer, inner: Rect, shown: &[Column], view: &View, sty
     });
 }
 
-/// The letter of a node's mode in an iteration, V for one that is fixed where two sides meet; a small one where it was
-/// forced.
+/// The letter of a node's mode in an iteration, V for a node fixed in a corner; lower case if it was forced.
 fn cell(strip: &Strip, slave: usize, finished: bool, app: &App) -> (&'static str, Style) {
     let (mode, forced) = (strip.before(slave), strip.is_forced(slave));
     if strip.kind == PointKind::Intervention && !forced {
@@ -233,7 +231,7 @@ fn cell(strip: &Strip, slave: usize, finished: bool, app: &App) -> (&'static str
     (letter, style)
 }
 
-/// The letter of a contact of a finished run.
+/// The letter of a contact in a finished run.
 fn finished_cell(strip: &Strip, slave: usize, letter: u8, app: &App) -> (&'static str, Style) {
     const DIGITS: [&str; 10] = ["0", "1", "2", "3", "4", "5", "6", "7", "8", "9"];
     let (letter, mode) = match letter {
@@ -252,7 +250,7 @@ fn finished_cell(strip: &Strip, slave: usize, letter: u8, app: &App) -> (&'stati
     }
 }
 
-/// What an iteration led to.
+/// Glyph of an iteration's outcome.
 fn end(kind: PointKind, app: &App) -> (&'static str, Style) {
     let theme = &app.theme;
     match kind {
@@ -270,7 +268,7 @@ fn end(kind: PointKind, app: &App) -> (&'static str, Style) {
     }
 }
 
-/// The bracket under the last round of a cycle that ends in this column.
+/// The bracket under the last period of a cycle that ends in this column.
 fn bracket(
     buffer: &mut Buffer,
     inner: Rect,
@@ -300,7 +298,7 @@ fn bracket(
     columns::bracket(buffer, inner.right(), y, ends, &text, app.theme.bad);
 }
 
-/// Brackets under the first turns of the cycles of a finished run.
+/// Brackets under the first periods of a finished run's cycles.
 fn finished_cycles(
     buffer: &mut Buffer,
     inner: Rect,
@@ -312,7 +310,7 @@ fn finished_cycles(
     let cycles = view.model.finished.iter().flat_map(|run| &run.cycles);
     let mut free = inner.x;
     for cycle in cycles {
-        // The start comes before the first iteration.
+        // Step 0 is the start, before the first iteration.
         let mut shown = columns.iter().filter(|column| {
             let iteration = column.at.checked_sub(1);
             iteration.is_some_and(|iteration| cycle.contains(&iteration))

@@ -1,8 +1,8 @@
-//! The work-precision page: a chart, measured just now or read from a table (`stickslip chart --csv`), drawn in the
-//! terminal, error over cost, both in powers of ten.
+//! The work-precision page: error over cost on log scales, from a chart that was just measured or a table (`stickslip chart
+//! --csv`).
 //!
-//! Each run is its series' letter, a capital where no other run beats it in both; failures stand as ✗ on a rail above. One
-//! run is selected, and told in full below.
+//! Each run is drawn as its series' letter, a capital if it is on the Pareto front; failed runs are ✗ in a row at the top. Details
+//! of the selected run are shown below the plot.
 
 use crate::chartframe::ChartFrame;
 use crate::chartpage::ChartPage;
@@ -16,14 +16,14 @@ use stickslip_scene::number;
 use stickslip_study::log_axis::{LogAxis, written};
 use stickslip_study::precision::{Point, Precision, ROUND_OFF};
 
-/// Columns left of the plot, for the numbers of the axis.
+/// Columns left of the plot, for the axis labels.
 const LEFT: u16 = 7;
-/// Rows under the plot: axis, selected run (two), where it comes from.
+/// Rows below the plot: axis, selected run (two), source.
 const BELOW: u16 = 5;
-/// Columns of the list of series, where there is room for it.
+/// Columns for the list of series, if there is room.
 const LEGEND: u16 = 36;
 
-/// A series' letter; after z they begin again.
+/// A series' letter; after z the letters repeat.
 fn letter(series: usize, front: bool) -> char {
     let letter = char::from(b'a' + (series % 26) as u8);
     if front {
@@ -129,13 +129,13 @@ fn plot_runs(buffer: &mut Buffer, plot: Rect, page: &ChartPage, theme: &Theme) {
             selected = Some((column(cost(point)), at, text));
         }
     }
-    // Above all others.
+    // The selected run is drawn last, over the others.
     if let Some((x, y, text)) = selected {
         put(x, y, &text, theme.selected);
     }
 }
 
-/// The series by their letters.
+/// The legend of the series.
 fn series(chart: &Precision, theme: &Theme, width: usize) -> Vec<Line<'static>> {
     let one = |(k, name): (usize, &String)| {
         Line::from(vec![
@@ -146,16 +146,16 @@ fn series(chart: &Precision, theme: &Theme, width: usize) -> Vec<Line<'static>> 
     let mut lines: Vec<Line> = chart.series.iter().enumerate().map(one).collect();
     lines.push(Line::default());
     for (mark, words) in [
-        ("A", "capital: beaten by none"),
+        ("A", "capital: on the Pareto front"),
         ("✗", "failed"),
-        ("▾", "the reference"),
+        ("▾", "reference"),
     ] {
         lines.push(Line::styled(format!(" {mark} {words}"), theme.faint));
     }
     lines
 }
 
-/// The selected run, and where all come from.
+/// Details of the selected run, and the source of the chart.
 fn told(page: &ChartPage, theme: &Theme, width: usize) -> Vec<Line<'static>> {
     let chart = page.shown();
     let axis = format!(" error over {}", page.cost.axis());
@@ -172,7 +172,7 @@ fn told(page: &ChartPage, theme: &Theme, width: usize) -> Vec<Line<'static>> {
         (Some(error), _) if point.is_round_off() => format!("error {error:.3e} (round-off)"),
         (Some(error), _) => format!("error {error:.3e}"),
         (None, Some(why)) => format!("✗ {why}"),
-        (None, None) => "the reference".to_owned(),
+        (None, None) => "reference".to_owned(),
     };
     let cost = format!(
         "   {error}   {} s, {} factorizations, {} minor iterations",
@@ -223,7 +223,7 @@ mod tests {
         let mut page = page();
         let shown = text(&page, 100, 24);
         let rows: Vec<&str> = shown.lines().collect();
-        // The failure stands above the plot, the nearer run below the other.
+        // The failed run is above the plot, the more accurate run below the other.
         assert!(rows[1].contains('✗'), "{shown}");
         let of = |mark: char| {
             rows[2..19]
@@ -239,7 +239,7 @@ mod tests {
         let shown = text(&page, 100, 24);
         assert!(shown.contains("✗ 2-cycle of minors at load 1"), "{shown}");
         assert!(page.key("x") && page.key("x"));
-        // By minor iterations, the finer mesh beats the coarser one.
+        // Measured in minor iterations, the finer mesh is better than the coarser one.
         let shown = text(&page, 100, 24);
         assert!(shown.contains("error over minor iterations"), "{shown}");
         page.run = 0;
