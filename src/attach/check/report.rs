@@ -107,14 +107,14 @@ fn mend(fault: &Fault) -> &'static str {
             "reserve standard output for the protocol: at the start, before any library prints, duplicate it and redirect it to standard error (in Python: os.dup2(2, 1))"
         }
         Fault::Misformed { .. } => {
-            "`stickslip help attach` describes every message; missing and infinite numbers are null"
+            "`stickslip help protocol` describes every message; missing and infinite numbers are null"
         }
         Fault::Torn(_) => "end every message with a line feed, and flush before exiting",
         Fault::TooLong { .. } => {
             "send sparse matrices as triplets, and leave displacements out of the states"
         }
         Fault::OtherAnswer { .. } | Fault::Unasked { .. } => {
-            "give each request exactly one answer, of the type that `stickslip help attach` names; send everything else as a message"
+            "give each request exactly one answer, of the type that `stickslip help protocol` names; send everything else as a message"
         }
         Fault::Version(_) => "set protocol 1 in hello",
         Fault::Refused { .. } => {

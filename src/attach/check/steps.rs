@@ -106,7 +106,7 @@ fn look(report: &mut Report, scene: &Scene, name: &str, states: &[State]) {
     let sound = match stickslip_scene::Scene::told(name, scene, None) {
         Ok(sound) => sound,
         Err(why) => {
-            let mend = "`stickslip help attach` describes the scene message";
+            let mend = "`stickslip help protocol` describes the scene message";
             return report.add("scene", Ok(fails(why.message, mend)));
         }
     };
