@@ -1,4 +1,4 @@
-//! Lines that are typed, and what they mean.
+//! Tests of typed lines and their meaning.
 
 use super::meaning::{Action, Question, Ui};
 use super::{ACTIONS, Context, complete, markdown, parse};
@@ -100,7 +100,7 @@ fn motions_take_counts_prefixes_and_key_letters() {
     );
     assert_eq!(
         read("step 0"),
-        Err("'0' is no count; usage: step [COUNT]".into())
+        Err("invalid count '0'; usage: step [COUNT]".into())
     );
     assert_eq!(read("step 1 2"), Err("usage: step [COUNT]".into()));
 }
@@ -109,11 +109,11 @@ fn motions_take_counts_prefixes_and_key_letters() {
 fn unknown_and_ambiguous_names_are_told() {
     assert_eq!(
         read("jump"),
-        Err("no action is called 'jump'; ? lists them all".into())
+        Err("unknown action 'jump'; ? lists all actions".into())
     );
     assert_eq!(read("mi"), Err("usage: minors LIMIT".into()));
     assert_eq!(read("re"), Err(
-        "'re' could be reverse-step, reverse-next, reverse-finish, reverse-continue, repeat, release, rename, remedies, reread, redraw".into()
+        "'re' is ambiguous: reverse-step, reverse-next, reverse-finish, reverse-continue, repeat, release, rename, remedies, reread, redraw".into()
     ));
 }
 
@@ -126,15 +126,15 @@ fn modes_are_forced_on_the_named_or_the_selected_node() {
     assert_eq!(read("force"), Ok(Action::Ui(Ui::Ask(Question::Mode))));
     assert_eq!(
         read("force beam.1 s"),
-        Err("beam.1 is not a slave node; those are beam.4, beam.5".into())
+        Err("beam.1 is not a slave node; slave nodes: beam.4, beam.5".into())
     );
     assert_eq!(
         read("force tip s"),
-        Err("no node is called 'tip'; slave nodes are beam.4, beam.5".into())
+        Err("unknown node 'tip'; slave nodes: beam.4, beam.5".into())
     );
     assert_eq!(
         read("force glued"),
-        Err("'glued' is no mode; free, sliding or fixed would be".into())
+        Err("invalid mode 'glued'; expected free, sliding or fixed".into())
     );
     assert_eq!(
         read("release"),
@@ -148,7 +148,7 @@ fn numbers_and_paths() {
         read("increment 0.005"),
         Ok(Action::Session(Command::Increment(0.005)))
     );
-    assert!(read("increment -1").is_err_and(|e| e.contains("'-1' is no increment")));
+    assert!(read("increment -1").is_err_and(|e| e.contains("invalid increment '-1'")));
     assert!(read("increment NaN").is_err());
     let set = |path: &str, value: &str| {
         Ok(Action::Session(Command::Set {
@@ -204,29 +204,29 @@ fn breakpoints_name_a_condition_a_node_and_what_it_is_held_against() {
         ("break leaves beam.4", "usage: break leaves [NODE] MODE"),
         (
             "break mode beam.4 glued",
-            "'glued' is no mode; free, sliding or fixed would be",
+            "invalid mode 'glued'; expected free, sliding or fixed",
         ),
         (
             "break mode tip",
-            "no node is called 'tip'; slave nodes are beam.4, beam.5",
+            "unknown node 'tip'; slave nodes: beam.4, beam.5",
         ),
         ("break margin", "usage: break margin [NODE] VALUE"),
         (
             "break margin beam.4 NaN",
-            "'NaN' is no margin; a number would be",
+            "invalid margin 'NaN'; expected a number",
         ),
         ("break cycle 2", "usage: break cycle "),
         (
             "break at 0",
-            "'0' is no place; INC, INC.MAJOR or INC.MAJOR.MINOR would be",
+            "invalid position '0'; expected INC[.MAJOR[.MINOR]]",
         ),
         (
             "break dance",
-            "'dance' is nothing to break at; mode, leaves, margin, element, cycle, residual, failure, at are",
+            "unknown condition 'dance'; conditions: mode, leaves, margin, element, cycle, residual, failure, at",
         ),
         (
             "delete x",
-            "'x' is no breakpoint's number; usage: delete NUMBER|all",
+            "invalid breakpoint number 'x'; usage: delete NUMBER|all",
         ),
     ] {
         assert_eq!(read(line), Err(told.into()), "{line}");
@@ -268,7 +268,7 @@ fn watches_have_the_name_that_is_given_or_their_own() {
     );
     assert_eq!(
         read("watch temperature"),
-        Err("'temperature' cannot be watched; gap, f_n, f_t, t_max, slip, margin, residual, interface can".into())
+        Err("cannot watch 'temperature'; quantities: gap, f_n, f_t, t_max, slip, margin, residual, interface".into())
     );
     assert!(read("watch gap as").is_err() && read("watch residual beam.4").is_err());
 }
@@ -287,7 +287,7 @@ fn a_census_takes_nodes_by_name_or_by_their_place_in_the_list() {
     assert_eq!(read("census beam.5"), census(&[1]));
     assert_eq!(read("census beam.5,beam.4"), census(&[0, 1]));
     assert_eq!(read("census 2, 1 2"), census(&[0, 1]));
-    assert!(read("census 3").is_err_and(|e| e.contains("no node is called '3'")));
+    assert!(read("census 3").is_err_and(|e| e.contains("unknown node '3'")));
     assert!(read("census 0").is_err() && read("census beam.1").is_err());
 }
 
@@ -387,7 +387,7 @@ fn markdown_names_every_action_once() {
         let [name, help] = [name.trim_end(), entry.help].map(|t| t.replace('|', "\\|"));
         let end = format!("| `{name}` | {help} |");
         let rows = text.lines().filter(|row| row.ends_with(&end));
-        // A bar that is not escaped would be one more column.
+        // An unescaped bar would start another column.
         let columns = |row: &str| row.replace("\\|", "").matches('|').count() - 1;
         assert_eq!(rows.map(columns).collect::<Vec<_>>(), [3], "{}", entry.name);
     }

@@ -21,7 +21,9 @@ pub const SAME_STATE: f64 = 1e-7;
 /// Whether two states are the same.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sameness {
+    /// Equal within [`SAME_STATE`].
     Same,
+    /// Not equal.
     Different,
 }
 

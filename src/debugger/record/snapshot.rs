@@ -209,7 +209,7 @@ impl Snapshot {
     /// # Errors If the file cannot be read, is damaged, or has an unknown format.
     pub fn read(path: &Path) -> Result<Snapshot, SnapshotError> {
         let file = path.display().to_string();
-        let text = input::text(path, RECORD_BYTES, "no snapshot has")
+        let text = input::text(path, RECORD_BYTES, "too large for a snapshot")
             .map_err(|why| SnapshotError::Read(Box::new(read::not_read(&file, &why))))?;
         Snapshot::from_text(&file, &text)
     }
