@@ -49,7 +49,7 @@ pub struct Placing {
     taken: Vec<Patch>,
 }
 
-/// Directions in which a label is tried: beside the point first, then above and below.
+/// Directions in which a label is tried: next to the point first, then above and below.
 const DIRECTIONS: [(f64, f64); 8] = [
     (1.0, -1.0),
     (1.0, 1.0),

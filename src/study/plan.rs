@@ -338,7 +338,7 @@ fn multiple(known: &[Listed], path: &str, value: &str) -> Option<String> {
     Some(short.to_string())
 }
 
-/// The paths of a scene that match a pattern, in which `*` stands for any step. A pattern without a match is
+/// The paths of a scene that match a pattern, with `*` for any step. A pattern without a match is
 /// returned unchanged, and the scene rejects it.
 fn expanded(known: &[Listed], pattern: &str) -> Vec<String> {
     let mut all: Vec<String> = Vec::new();
@@ -352,7 +352,7 @@ fn expanded(known: &[Listed], pattern: &str) -> Vec<String> {
     all
 }
 
-/// Whether a path matches a pattern in which `*` stands for one step between dots.
+/// Whether a path matches a pattern with `*` for one step between dots.
 fn fits(pattern: &str, path: &str) -> bool {
     let (pattern, path): (Vec<_>, Vec<_>) =
         (pattern.split('.').collect(), path.split('.').collect());

@@ -11,7 +11,7 @@
 //! )
 //! ```
 //!
-//! Paths are those of `check --paths`; a `*` stands for any single step (`materials.*.update`), and sets all
+//! Paths are those of `check --paths`; a `*` matches any single step (`materials.*.update`), and sets all
 //! matching paths to the same value.
 
 use super::builtin;
@@ -72,7 +72,7 @@ pub enum NoVary {
 }
 
 impl Vary {
-    /// Parses a varied setting: `PATH=A,B,C`. A value may be a range: `0.01..0.1/4` stands for four evenly
+    /// Parses a varied setting: `PATH=A,B,C`. A value may be a range: `0.01..0.1/4` means four evenly
     /// spaced values, including the ends, `0.01..0.1/4log` for four in constant ratio. `2x` is twice the
     /// scene's value (computed by the plan).
     ///

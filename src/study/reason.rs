@@ -29,7 +29,7 @@ pub enum Reason {
     NotFound,
     /// Round-off leaves no accuracy.
     RoundOff,
-    /// A damped motion did not come to rest.
+    /// A damped motion did not settle.
     Restless,
     /// The increment jumped to a state far from the predicted one.
     Jump,

@@ -9,7 +9,7 @@ use stickslip_core::step::event::Failure;
 /// Verdict on a run. Displays show its letter first and its colour second.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum RunVerdict {
-    /// The run finished, and its end is right as far as is known.
+    /// The run finished, and no check found its end wrong.
     Right,
     /// The run finished in a wrong state: it violates Coulomb's law, or is on another branch than the
     /// reference.

@@ -36,7 +36,7 @@ const OVERLAP: &str = "where: nodes start inside their surface; settings.initial
 const MOST_TRIED: usize = 6;
 
 /// Makes the page of a state. `spec` is the scene as written by its author, from which a finer mesh is
-/// generated; `tell` receives the page as it grows. `None` if interrupted.
+/// generated; calls `tell` as the page grows. `None` if interrupted.
 pub fn page(
     stepper: &mut Stepper,
     state: &State,

@@ -493,7 +493,7 @@ pub fn describe_failure(model: &Model, failure: &Failure) -> String {
             describe_failure(model, last)
         ),
         Failure::Restless { steps } => {
-            format!("the damped motion did not come to rest within {steps} steps")
+            format!("the damped motion still moves after {steps} steps")
         }
         Failure::Leapt {
             motion,

@@ -1,4 +1,4 @@
-//! Decides whether a number is more than the round-off of its own sum. This is the only place with such a rule.
+//! Decides whether a number is more than the round-off of the sum that it results from. This is the only place with such a rule.
 //!
 //! Forces, gaps, slips and drifts are sums of terms as large as the acting forces or the coordinates of the
 //! scene. In double precision such a sum has an error of a few ε = 2^-52 times its largest term. Below
@@ -46,7 +46,7 @@ impl RoundOff {
         clean(value, self.length)
     }
 
-    /// |F_t| over |T_max| as a cell of a table; a dash where T_max is round-off, and F_t too.
+    /// |F_t| over |T_max| as a table cell; a dash if both are round-off.
     pub fn ratio(&self, f_t: f64, t_max: f64) -> String {
         number::ratio(self.force(f_t), self.force(t_max))
     }

@@ -64,7 +64,7 @@ pub struct Summary {
     pub load_factor: f64,
     /// How it ends.
     pub verdict: BranchEnd,
-    /// Cost of its own points.
+    /// Cost of the points after the fork.
     pub own: Cost,
     /// Cost of its whole line.
     pub whole: Cost,

@@ -3,7 +3,6 @@
 //!
 //! Only those numbers are used: g >= 0 for rigid contact, no force across an open gap, F_n >= 0, |F_t| <=
 //! |T_max|, and friction that opposes the slip of a sliding node. Unreported quantities are not checked.
-//! |F_t| <= |T_max|, and friction against the slip of a node that slides. What the solver does not tell is not judged.
 
 use stickslip_core::contact::laws::{Finding, Law, Numbers};
 use stickslip_core::contact::record::ContactRecord;

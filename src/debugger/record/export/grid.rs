@@ -3,7 +3,7 @@
 //!
 //! | on nodes | |
 //! | --- | --- |
-//! | `node` | number of the node, from 1; its name stands in that line of `node_names` |
+//! | `node` | number of the node, from 1; its name is in that line of `node_names` |
 //! | `displacement` | x, y and 0; "Warp By Vector" shows the deformed shape |
 //! | `rotation` | of beams, anticlockwise (radians) |
 //! | `stress` | Cauchy stress of solids as VTK orders it: XX, YY, ZZ, XY, YZ, XZ ([`recovery`]) |
