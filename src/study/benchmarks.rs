@@ -386,7 +386,7 @@ mod tests {
     }
 
     #[test]
-    fn a_value_is_off_drifted_or_good() {
+    fn a_value_is_good_drifted_or_off() {
         let standing = |value| benchmark().compare(&run(value)).standing;
         assert_eq!(standing(2.1), Standing::Good);
         assert_eq!(standing(2.15), Standing::Drifted);
@@ -395,7 +395,7 @@ mod tests {
     }
 
     #[test]
-    fn a_value_is_taken_where_it_is_asked_for() {
+    fn a_value_is_taken_at_the_requested_load() {
         let mut at = benchmark();
         at.at = Some(0.5);
         assert_eq!(at.compare(&run(2.0)).ours, Some(7.0));
@@ -405,7 +405,7 @@ mod tests {
     }
 
     #[test]
-    fn what_makes_no_sense_is_refused() {
+    fn inconsistent_benchmarks_are_refused() {
         for wrong in ["value: 0.0, within: 0.1", "value: 1.0, within: 0.0"] {
             let text = format!(
                 "(title: \"t\", benchmarks: [(scene: \"a\", what: \"w\", of: \"m\", source: \"s\", {wrong})])"

@@ -263,7 +263,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn fields_split_as_they_were_joined() {
+    fn fields_survive_joining_and_splitting() {
         let fields = ["a", "b,c", "", "say \"no\"", "✗"];
         let line: Vec<String> = fields.iter().map(|f| field(f)).collect();
         let line = line.join(",");
@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn a_row_is_found_below_comments_blank_lines_and_a_field_of_two_lines() {
+    fn rows_are_located_after_comments_blank_lines_and_multi_line_fields() {
         let text = "# \"a\n\n  # b\nh,i\r\n \t\n# c\n1,\"2\n3\"\n\n4, 5\n";
         let table = Table::read("x", text).ok().unwrap();
         assert_eq!(table.heads(), ["h", "i"]);

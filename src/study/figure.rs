@@ -147,7 +147,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_are_short_where_that_is_clear() {
+    fn names_are_short_if_unique() {
         let own = |names: &[&str]| names.iter().map(|n| n.to_string()).collect::<Vec<_>>();
         let short = short_names(&own(&["history.increment", "settings.majors"]));
         assert_eq!(short, ["increment", "majors"]);
@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_are_six() {
+    fn numbers_have_six_digits() {
         assert_eq!(six(0.1 + 0.2), "0.3");
         assert_eq!(six(-0.0), "0");
         assert_eq!(six(1.0 / 3.0), "0.333333");

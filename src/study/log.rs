@@ -514,7 +514,7 @@ mod tests {
     }
 
     #[test]
-    fn results_without_digests_are_read_but_not_behind_one_that_has_one() {
+    fn results_without_digests_are_read_only_before_those_with_one() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("a.log");
         let of = |key: &str| format!("{}\t[1.0]", Key::of([key]));
@@ -532,7 +532,7 @@ mod tests {
     }
 
     #[test]
-    fn a_number_that_no_run_has_is_refused_without_a_digest_too() {
+    fn non_finite_numbers_are_refused_even_without_a_digest() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("a.log");
         for number in ["NaN", "-NaN"] {
@@ -543,7 +543,7 @@ mod tests {
     }
 
     #[test]
-    fn results_are_there_again_and_a_cut_line_is_not() {
+    fn results_are_read_back_and_an_incomplete_line_is_dropped() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("a.log");
         let (log, found) = open(&path).unwrap();
@@ -567,7 +567,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_log_is_left_alone() {
+    fn other_files_are_not_changed() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("a.csv");
         for text in ["a,b\n1,2\n", "a,b"] {

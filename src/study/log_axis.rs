@@ -73,7 +73,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_axis_holds_what_it_is_made_of_and_little_more() {
+    fn an_axis_contains_its_values_with_a_small_margin() {
         let values = [3e-3, 0.2];
         let axis = LogAxis::of(values.into_iter().chain([f64::INFINITY, 0.0]));
         let parts = values.map(|v| axis.part(v));

@@ -123,7 +123,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_label_lies_over_another_or_outside() {
+    fn labels_do_not_overlap_and_stay_inside() {
         let window = Patch {
             from: (0.0, 0.0),
             to: (300.0, 200.0),

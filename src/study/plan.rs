@@ -368,7 +368,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_star_is_one_step() {
+    fn a_star_matches_one_step() {
         assert!(fits("materials.*.update", "materials.lower.update"));
         assert!(!fits("materials.*.update", "materials.lower.E"));
         assert!(!fits("materials.*", "materials.lower.E"));

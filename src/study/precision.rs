@@ -520,7 +520,7 @@ mod tests {
     }
 
     #[test]
-    fn the_front_is_what_nothing_beats_in_both() {
+    fn the_front_has_the_runs_that_no_other_beats_in_both() {
         let mut points = vec![
             point(1.0, Some(1e-2)),
             point(2.0, Some(1e-3)),
@@ -535,7 +535,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_at_round_off_tie_so_that_the_cheapest_of_them_stays() {
+    fn of_errors_at_round_off_only_the_cheapest_is_on_the_front() {
         let mut points = vec![
             point(1.0, Some(3e-14)),
             point(2.0, Some(1e-16)),
@@ -550,7 +550,7 @@ mod tests {
     }
 
     #[test]
-    fn every_built_in_chart_is_sound() {
+    fn every_built_in_chart_is_valid() {
         for name in chart_file::names() {
             let chart = Chart::open(name, &[]).unwrap_or_else(|e| panic!("{e}"));
             let planned = Planned::new(chart).unwrap_or_else(|e| panic!("{e}"));

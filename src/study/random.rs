@@ -227,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn a_problem_depends_on_seed_and_number_alone() {
+    fn a_problem_depends_only_on_seed_and_number() {
         let all = population();
         let fewer = Population {
             count: 3,
@@ -249,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn every_kind_is_drawn_and_is_a_sound_scene() {
+    fn every_kind_is_drawn_and_is_a_valid_scene() {
         let all = population();
         let mut seen = std::collections::HashSet::new();
         for k in 0..all.count {

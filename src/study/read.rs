@@ -393,7 +393,7 @@ mod tests {
     }
 
     #[test]
-    fn ranges_have_their_ends() {
+    fn ranges_include_their_ends() {
         assert_eq!(values("a=1,2, 3x"), ["1", "2", "3x"]);
         assert_eq!(values("a=0.1..0.4/4"), ["0.1", "0.2", "0.3", "0.4"]);
         assert_eq!(values("a=0.01..1/3log,5"), ["0.01", "0.1", "1", "5"]);

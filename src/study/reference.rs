@@ -184,7 +184,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_built_in_table_reads_and_ends_where_its_scene_does() {
+    fn every_built_in_table_parses_and_ends_with_its_scene() {
         for EmbeddedFile { name, .. } in TABLES {
             let scene = stickslip_scene::Scene::open(name, &[]).unwrap();
             let path = &scene.model.path;
@@ -205,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn legs_are_told_from_the_corners() {
+    fn legs_are_found_from_the_corners() {
         let text = "increment,load,u_x\n1,1,0.1\n2,2,0.2\n3,1,0.3\n4,0,0.4\n";
         let table = Reference::read("x", text, &[0.0, 2.0, 0.0]).unwrap();
         let legs: Vec<usize> = table.rows.iter().map(|row| row.leg).collect();
@@ -215,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_said_with_its_line() {
+    fn errors_have_a_line_number() {
         for (text, part) in [
             ("", "no header"),
             ("a,b\n", "x:1:1: the header has no column load"),

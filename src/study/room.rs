@@ -92,7 +92,7 @@ mod tests {
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     #[test]
-    fn no_more_runs_are_at_work_than_fit_and_one_always_is() {
+    fn parallel_runs_fit_in_memory_and_one_always_runs() {
         for (bytes, most) in [(40.0, 2), (100.0, 1), (1e9, 1)] {
             let room = Room::new(100.0);
             let (now, seen) = (AtomicUsize::new(0), AtomicUsize::new(0));

@@ -147,7 +147,7 @@ mod tests {
 
     /// Fixed values: a change of these numbers makes all logs of shards invalid.
     #[test]
-    fn the_hash_is_the_same_for_ever() {
+    fn the_hash_never_changes() {
         let keys: Vec<Key> = (0..6).map(|k| Key::of(["cell", &k.to_string()])).collect();
         assert_eq!(keys[0].to_string(), PLANTED_KEY);
         let of = |n: u64| keys.iter().map(move |k| 1 + k.mixed() % n);
@@ -159,7 +159,7 @@ mod tests {
     const PLANTED_1000000: [u64; 6] = [542213, 190023, 691433, 727364, 373400, 178834];
 
     #[test]
-    fn every_cell_falls_to_one_shard_and_shards_are_alike_in_size() {
+    fn every_cell_belongs_to_one_shard_and_shards_are_of_similar_size() {
         let mut counts = [0; 40];
         for k in 0..40_000 {
             let key = Key::of(["seed 1", &k.to_string()]);
@@ -174,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn a_key_tells_where_parts_end_and_reads_back() {
+    fn a_key_separates_parts_and_reads_back() {
         assert_ne!(Key::of(["ab", "c"]), Key::of(["a", "bc"]));
         let key = Key::of(["ab", "c"]);
         assert_eq!(Key::read(&key.to_string()), Some(key));
@@ -191,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_are_told_as_ranges() {
+    fn numbers_are_formatted_as_ranges() {
         assert_eq!(ranges(&[], 3), "");
         assert_eq!(ranges(&[3, 5, 6, 7, 9], 3), "3, 5 to 7, 9");
         assert_eq!(ranges(&[1, 3, 5, 7], 2), "1, 3 and 2 more ranges");

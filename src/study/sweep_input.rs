@@ -96,7 +96,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_part_that_differs_is_told() {
+    fn the_first_different_part_is_reported() {
         let ours = input("map", "20");
         assert_eq!(ours.difference(&ours), None);
         let shard = Shard::new(3, 7).unwrap();

@@ -325,7 +325,7 @@ mod tests {
     }
 
     #[test]
-    fn coulombs_law_is_told_from_what_breaks_it() {
+    fn violations_of_coulombs_law_are_detected() {
         let problem = slider();
         assert!(broken(&problem, &[0.0, 0.5], &[1.0, -0.5]) < 1e-15);
         for (u, f) in [
@@ -342,7 +342,7 @@ mod tests {
     }
 
     #[test]
-    fn a_prepared_variant_has_the_model_that_setting_after_setting_makes() {
+    fn a_prepared_variant_equals_setting_values_in_turn() {
         let settings = [
             &[][..],
             &[
@@ -383,7 +383,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_refused_is_refused_by_setting_after_setting() {
+    fn a_prepared_variant_refuses_what_setting_in_turn_refuses() {
         let refused = [
             "settings.minors=0",
             "increment=0.5",

@@ -291,11 +291,11 @@ fn what_is_rigid_and_loose_at_once_is_refused_with_both_reasons() {
     )";
     let why = exported(&read(text)).unwrap_err();
     assert!(
-        why.contains("no stiffness: some motion is held rigidly"),
+        why.contains("no stiffness: some motion is rigidly fixed"),
         "{why}"
     );
     assert!(
-        why.contains("no compliance: some motion is resisted by nothing"),
+        why.contains("no compliance: some motion is unrestrained"),
         "{why}"
     );
 }
@@ -414,7 +414,7 @@ fn the_debugger_writes_cores_whole_problems_and_what_an_extension_says() {
     // By the extension: a picture of the state, the scene, and the problem for another program.
     let bytes = write(&mut session, Exported::Shown, "shown.svg").unwrap();
     assert!(
-        bytes.contains("the increment failed: the modes 6-cycle"),
+        bytes.contains("the increment failed: contact modes repeat with period 6"),
         "{bytes}"
     );
     let scene_file = write(&mut session, Exported::Shown, "scene.ron").unwrap();

@@ -173,7 +173,7 @@ fn a_long_outcome_goes_on_in_further_lines() {
     let screen = screen::text(&app(), Some(&view(&model, &frames)), 80, 24);
     let told: String = screen.lines().skip(2).take(3).collect();
     assert!(
-        told.contains("beam.1 free > fixed") && told.contains("beam.5 free"),
+        told.contains("beam.1 free → fixed") && told.contains("beam.5 free"),
         "{screen}"
     );
     assert!(

@@ -124,7 +124,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn files_that_are_missing_change_nothing_and_those_that_are_there_are_heeded() {
+    fn missing_files_change_nothing_and_existing_ones_apply() {
         let folder = tempfile::tempdir().unwrap();
         let config = || Config::from(folder.path());
         assert_eq!(config(), Ok(Config::default()));
@@ -143,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told_with_file_line_column_and_what_would_be_right() {
+    fn errors_have_file_line_column_and_a_hint() {
         let folder = tempfile::tempdir().unwrap();
         let told = |text: &str| {
             std::fs::write(folder.path().join(DEBUGGER), text).unwrap();

@@ -251,7 +251,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_gives_actions_other_keys_and_frees_their_own() {
+    fn a_file_changes_keys_and_frees_the_defaults() {
         let text =
             "// mine\n{\"step\": [\"j\", \"F11\"], \"down\": [\"Down\", \"Ctrl-n\"], \"sort\": []}";
         let keymap = Keymap::read("keys.ron", text).unwrap();
@@ -271,7 +271,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_file_has_wrong_is_told_with_its_place_and_what_would_be_right() {
+    fn errors_in_a_file_have_a_location_and_a_hint() {
         for (text, wanted) in [
             (
                 "{\n  \"stepp\": [\"j\"],\n}",

@@ -50,7 +50,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn folders_and_files_with_blanks_in_their_names() {
+    fn folders_and_files_with_spaces_complete() {
         let place = tempfile::tempdir().unwrap();
         std::fs::create_dir(place.path().join("my scenes")).unwrap();
         for file in [

@@ -74,7 +74,7 @@ fn forward(unit: Unit, count: u32) -> Result<Action, String> {
 }
 
 #[test]
-fn no_key_and_no_name_means_two_things() {
+fn keys_and_names_are_unique() {
     let mut keys: Vec<_> = ACTIONS.iter().flat_map(|entry| entry.keys).collect();
     let mut names: Vec<_> = ACTIONS.iter().map(|entry| entry.name).collect();
     let (all_keys, all_names) = (keys.len(), names.len());
@@ -106,7 +106,7 @@ fn motions_take_counts_prefixes_and_key_letters() {
 }
 
 #[test]
-fn unknown_and_ambiguous_names_are_told() {
+fn unknown_and_ambiguous_names_are_reported() {
     assert_eq!(
         read("jump"),
         Err("unknown action 'jump'; ? lists all actions".into())
@@ -172,7 +172,7 @@ fn numbers_and_paths() {
 }
 
 #[test]
-fn breakpoints_name_a_condition_a_node_and_what_it_is_held_against() {
+fn breakpoints_take_a_condition_a_node_and_a_value() {
     let set = |condition| Ok(Action::Session(Command::Break(condition)));
     let mode = |node, from, to| set(Condition::Mode { node, from, to });
     assert_eq!(read("break mode"), mode(None, None, None));
@@ -245,7 +245,7 @@ fn breakpoints_name_a_condition_a_node_and_what_it_is_held_against() {
 }
 
 #[test]
-fn watches_have_the_name_that_is_given_or_their_own() {
+fn watches_have_a_given_or_a_default_name() {
     let watch = |name: &str, quantity, slave| {
         let name = name.into();
         Ok(Action::Session(Command::Watch(Watch {
@@ -274,14 +274,14 @@ fn watches_have_the_name_that_is_given_or_their_own() {
 }
 
 #[test]
-fn finding_goes_round_from_the_selected_node() {
+fn finding_wraps_around_from_the_selected_node() {
     assert_eq!(read("node beam.5"), Ok(Action::Ui(Ui::Select(1))));
     assert_eq!(read("/ beam"), Ok(Action::Ui(Ui::Select(0))));
     assert!(read("node wall").is_err());
 }
 
 #[test]
-fn a_census_takes_nodes_by_name_or_by_their_place_in_the_list() {
+fn a_census_takes_nodes_by_name_or_by_index() {
     let census = |slaves: &[usize]| Ok(Action::Session(Command::Census(slaves.to_vec())));
     assert_eq!(read("census"), census(&[]));
     assert_eq!(read("census beam.5"), census(&[1]));
@@ -292,7 +292,7 @@ fn a_census_takes_nodes_by_name_or_by_their_place_in_the_list() {
 }
 
 #[test]
-fn files_to_export_to_must_be_named() {
+fn export_requires_a_file_name() {
     let export = |what, file: &str, overwrite| {
         Ok(Action::Session(Command::Export {
             what,
@@ -340,7 +340,7 @@ fn branches_complete_by_number_and_by_label() {
 }
 
 #[test]
-fn completion_knows_names_nodes_paths_and_values() {
+fn completion_offers_names_nodes_paths_and_values() {
     let model = model();
     let scenes = ["01-pinned".to_string()];
     let context = Context {

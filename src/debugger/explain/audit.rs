@@ -238,7 +238,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn depth_is_the_distance_from_the_outline_inside_and_nothing_outside() {
+    fn depth_is_the_distance_from_the_outline_and_zero_outside() {
         let corners = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]];
         let square: Vec<_> = (0..4).map(|k| [corners[k], corners[(k + 1) % 4]]).collect();
         assert_eq!(depth(&square, [1.0, 0.25]), 0.25);

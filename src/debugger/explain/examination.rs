@@ -19,7 +19,7 @@ use stickslip_core::step::stepper::Stepper;
 use stickslip_core::strategy::method;
 
 /// Shown at the end of the history.
-pub const DONE: &str = "The history has ended, so there is no next problem.";
+pub const DONE: &str = "The history is complete, so there is no next problem.";
 /// Shown if there is no condensed problem.
 pub const NOT_CONDENSED: &str = "The bodies cannot be condensed to the interface here, so there is no small problem to examine.";
 

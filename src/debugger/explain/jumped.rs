@@ -47,6 +47,6 @@ pub fn reservation(jumped: bool, unstable: Option<&StabilityLoss>) -> String {
 pub fn end(model: &Model, event: &Event) -> &'static str {
     match event.is_cut_short(model) {
         true => "; the path stops here, at its maximum length",
-        false => "; end of the history",
+        false => "; the history is complete",
     }
 }

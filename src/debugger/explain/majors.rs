@@ -277,7 +277,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_rate_is_that_of_a_geometric_sequence_and_is_not_told_of_two_numbers() {
+    fn a_rate_matches_a_geometric_sequence_and_needs_three_numbers() {
         let errors: Vec<f64> = (0..12).map(|k| 3.0 * 0.83_f64.powi(k)).collect();
         let found = rate(&errors).expect("there are enough");
         assert!((found - 0.83).abs() < 1e-12, "{found}");

@@ -113,7 +113,7 @@ pub fn too_many(nodes: usize) -> String {
     )
 }
 
-/// Where T_max tends while the modes repeat.
+/// The limit of T_max while the modes repeat, in words.
 pub fn spiral_words(problem: &InterfaceProblem, spiral: &Spiral) -> String {
     let Spiral { period, radius, .. } = spiral;
     let round = match period {
@@ -146,7 +146,7 @@ pub fn spiral_words(problem: &InterfaceProblem, spiral: &Spiral) -> String {
     }
 }
 
-/// Where T_max tends in a cycle; empty if it converges at once.
+/// The limit of T_max in a cycle, in words; empty if it converges at once.
 pub fn cycle_words<'a>(
     problem: &InterfaceProblem,
     name: &impl Fn(usize) -> &'a str,
@@ -178,7 +178,7 @@ fn fixed_words<'a>(found: &Spiral, name: &impl Fn(usize) -> &'a str) -> Option<S
     (!told.is_empty()).then(|| format!("  its fixed point: T_max = {told}{more}"))
 }
 
-/// Where T_max tends from a problem's states, and why; empty if the minor iterations settle soon.
+/// The limit of T_max from a problem's states, and its cause, in words; empty if the minor iterations settle soon.
 pub fn slow_words<'a>(problem: &InterfaceProblem, name: &impl Fn(usize) -> &'a str) -> Vec<String> {
     let Some(found) = spiral(problem, method(problem.settings.strategy), AHEAD) else {
         return Vec::new();

@@ -603,7 +603,7 @@ fn pattern(modes: &[Mode]) -> String {
             n => format!("{word} ({n} times)"),
         }
     });
-    stays.collect::<Vec<_>>().join(" > ")
+    stays.collect::<Vec<_>>().join(" → ")
 }
 
 /// Maximum number of stops named per node in a cycle of major iterations.

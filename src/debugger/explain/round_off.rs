@@ -65,7 +65,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_no_larger_than_round_off_is_nothing_and_all_else_is_itself() {
+    fn round_off_becomes_zero_and_other_values_are_unchanged() {
         let round_off = RoundOff {
             force: 1e-12,
             length: 1e-15,

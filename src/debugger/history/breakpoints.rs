@@ -181,7 +181,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn places_read_with_the_first_iteration_where_none_is_given() {
+    fn positions_default_to_the_first_iteration() {
         let read = |text: &str| text.parse::<RunPlace>().map(|place| place.to_string());
         assert_eq!(read("3"), Ok("3.1.1".into()));
         assert_eq!(read("3.2"), Ok("3.2.1".into()));

@@ -558,7 +558,7 @@ mod tests {
 
     /// A pipe accepts bytes but fails to sync, so a sync request shows as an error.
     #[test]
-    fn what_changed_something_is_synced_and_a_move_of_the_cursor_is_not() {
+    fn changes_are_synced_and_cursor_moves_are_not() {
         let folder = tempfile::tempdir().unwrap();
         let pipe = folder.path().join("a.journal");
         mkfifoat(CWD, &pipe, Mode::RUSR | Mode::WUSR).unwrap();
@@ -584,7 +584,7 @@ mod tests {
     }
 
     #[test]
-    fn dates_are_those_of_the_calendar() {
+    fn dates_match_the_calendar() {
         assert_eq!(stamp(0), "19700101-000000");
         assert_eq!(stamp(951_782_399), "20000228-235959");
         assert_eq!(stamp(951_782_400), "20000229-000000");

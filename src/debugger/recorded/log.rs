@@ -201,7 +201,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn colours_are_left_out_and_other_orders_are_shown() {
+    fn colours_are_removed_and_other_sequences_escaped() {
         assert_eq!(plain("\u{1b}[1m\u{1b}[31mMax\u{1b}[0m\tend"), "Max  end");
         assert_eq!(plain("\u{1b}]0;title"), "\u{1b}]0;title");
         assert_eq!(plain("cut \u{1b}[3"), "cut ");

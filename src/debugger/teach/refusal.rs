@@ -52,7 +52,7 @@ pub enum Unknown {
     #[error("the solve failed before this was known")]
     Failed,
     /// There is no later iteration.
-    #[error("the history has ended")]
+    #[error("the history is complete")]
     Done,
     /// The number of minor iterations tried.
     #[error("the increment does not end within {0} minor iterations")]

@@ -134,9 +134,10 @@ pub enum When {
         /// The next mode.
         mode: Mode,
     },
-    /// The residuals of the increment, continued from here, fall by a constant factor at the end.
+    /// Linear convergence: the residuals of the increment, continued from here, fall by a constant factor at
+    /// the end.
     Linear,
-    /// The residuals fall by ever smaller factors at the end (quadratic convergence).
+    /// Quadratic convergence: the number of correct digits doubles at the end.
     Quadratic,
     /// The judge found no violation in the last accepted increment.
     Obeys,

@@ -407,7 +407,7 @@ impl Tutor {
 
     /// What to do next, in a few words.
     pub fn todo(&self) -> String {
-        let on = "press Space to continue".to_owned();
+        let on = "Space continues".to_owned();
         match (
             self.step(),
             self.question.as_ref().map(|question| question.kind),

@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn equal_letters_stand_at_equal_distances() {
+    fn equal_letters_have_equal_spacing() {
         let shape = Shape::Text {
             at: (5.0, 15.0),
             text: "lilililililil".to_owned(),
@@ -253,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_is_as_wide_as_it_says_and_ends_at_the_sheet() {
+    fn lines_have_their_width_and_are_clipped_at_the_sheet() {
         let shape = Shape::Line {
             points: vec![(10.0, -1e9), (10.0, 5.0), (10.0, 1e9)],
             width: 2.0,

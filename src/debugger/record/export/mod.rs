@@ -157,7 +157,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_kind_is_known_by_its_extension_and_the_message_lists_all() {
+    fn a_kind_is_chosen_by_its_extension_and_the_error_lists_all() {
         assert_eq!(kind(Path::new("a/b.SVG")).unwrap().extension, "svg");
         for wrong in ["a.bmp", "svg", "a.", "-"] {
             let why = kind(Path::new(wrong)).err().unwrap().to_string();

@@ -586,7 +586,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn scales_are_round_numbers_below_what_there_is_room_for() {
+    fn scales_are_round_numbers_below_the_limit() {
         for (value, wanted) in [(0.37, 0.2), (5.0, 5.0), (99.0, 50.0), (1.2e-4, 1e-4)] {
             assert_eq!(round(value), wanted);
         }

@@ -43,7 +43,7 @@ pub enum ExportError {
     #[error(transparent)]
     Drawn(#[from] PlotError),
     /// The history has ended and its last problem is not known.
-    #[error("the history has ended, so there is no next problem to export")]
+    #[error("the history is complete, so there is no next problem to export")]
     Finished,
     /// The minor iterations do not cycle.
     #[error("the minor iterations do not cycle from here, so there is no core")]

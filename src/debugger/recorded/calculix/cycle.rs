@@ -120,7 +120,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn printed_numbers_are_apart_by_units_of_their_last_digit() {
+    fn distances_are_in_units_of_the_last_printed_digit() {
         for (a, b, units) in [
             (1081.0, 1082.0, Some(1.0)),
             (0.9988e2, 0.9987e2, Some(1.0)),
@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn who_changed_is_found_whoever_is_there_only_once() {
+    fn changed_slaves_include_those_of_one_iteration_only() {
         let of = |slaves: &[(u32, u32)]| -> Vec<Closed> {
             let closed = |&(slave, master): &(u32, u32)| Closed {
                 slave,
