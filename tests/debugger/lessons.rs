@@ -431,7 +431,7 @@ fn broken_lessons_are_told_with_their_place() {
         ),
         (
             r#"Ask(text: "x", answer: Number(of: "load", tolerance: 2.0))"#,
-            "a tolerance is relative",
+            "the tolerance is relative",
         ),
         (
             r#"Ask(text: "x", answer: Choice([("a", Right)]))"#,
