@@ -1,13 +1,13 @@
-//! The debugger without a terminal: commands in, frames out, and everything that the front ends share.
+//! The debugger without a terminal: commands in, frames out. Contains everything that the front ends share.
 //!
-//! Each takes only from those above it:
+//! Each module depends only on those listed above it:
 //!
-//! - [`explain`]: what happened, why, and what could be done about it, in the words that all front ends share.
-//! - [`history`]: what was done so far: frames, branches, breakpoints, watches.
-//! - [`record`]: what is kept in files: snapshots, journals, problems written as scenes.
+//! - [`explain`]: what happened, why, and what to do about it, in the wording that all front ends share.
+//! - [`history`]: frames, branches, breakpoints and watches.
+//! - [`record`]: files: snapshots, journals, and problems exported as scenes.
 //! - [`recorded`]: finished runs of other solvers, and the messages of running ones.
 //! - [`session`]: the state machine.
-//! - [`action`]: everything that can be done, by name, by key, or by a typed line.
+//! - [`action`]: all actions, by name, by key binding or typed on the command line.
 //! - [`teach`]: guided lessons.
 
 #![forbid(unsafe_code)]

@@ -1,4 +1,4 @@
-//! Benchmarks: scenes whose answers are known from elsewhere, and how far ours are from them.
+//! Benchmarks: compares results with values from other sources.
 //!
 //! ```ron
 //! (
@@ -16,9 +16,10 @@
 //! )
 //! ```
 //!
-//! Two tolerances, both relative, as Code_Aster's tests have them: `within` says how near the source's value ours must be, which
-//! has the errors of both in it; `drift` how near our own last value, so that a change is seen that the source would forgive.
-//! What is 0 by the source is measured by `scale`.
+//! Both tolerances are relative, as in Code_Aster's tests: `within` limits the difference from the source's
+//! value, which includes the errors of both; `drift` limits the difference from our own earlier value, to
+//! detect changes that the source's accuracy would hide. If the source's value is 0, errors are relative to
+//! `scale`.
 
 use super::figure::assigned;
 use super::one::{Spare, Watch, one};
@@ -37,15 +38,15 @@ use stickslip_scene::format::error::{SceneError, did_you_mean};
 use stickslip_scene::format::read::{text as file_text, value as from_ron};
 use stickslip_scene::{Scene, increments};
 
-/// Name of the list that the program carries.
+/// Name of the built-in list.
 pub const BUILTIN: &str = "benchmarks";
 const TABLE: EmbeddedFile = embedded!(BUILTIN, "../../problems/benchmarks/table.ron");
-/// Default of [`Benchmark::drift`]: other processors round otherwise.
+/// Default of [`Benchmark::drift`]: other processors round differently.
 const DRIFT: f64 = 1e-8;
-/// How near the end of an increment must be to a load factor that is named.
+/// Largest distance between the end of an increment and a given load factor.
 const NEAR: f64 = 1e-9;
 
-/// The text of the list that the program carries.
+/// The text of the built-in list.
 pub fn builtin_text() -> &'static str {
     TABLE.text
 }
@@ -57,77 +58,77 @@ pub struct Benchmarks {
     /// Path of the file, or [`BUILTIN`].
     #[serde(skip)]
     pub name: String,
-    /// What the list is called.
+    /// Title.
     pub title: String,
-    /// What it shows, for the reader.
+    /// What the list shows, for the reader.
     #[serde(default)]
     pub about: String,
-    /// The benchmarks, in the order of the table.
+    /// The benchmarks in the order of the table.
     #[serde(rename = "benchmarks")]
     pub list: Vec<Benchmark>,
 }
 
-/// One value that is known from elsewhere.
+/// A value known from another source.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Benchmark {
-    /// As [`Scene::open`] takes it.
+    /// Scene, as for [`Scene::open`].
     pub scene: String,
-    /// What is set for it: path and value.
+    /// Settings: path and value.
     #[serde(default, deserialize_with = "pairs")]
     pub set: Vec<(String, String)>,
     /// What is compared, in words.
     pub what: String,
-    /// The monitor that has it.
+    /// The monitor that is compared.
     pub of: String,
-    /// A monitor by which that is divided.
+    /// A monitor to divide by.
     #[serde(default)]
     pub over: Option<String>,
-    /// Load factor at which it is taken. `None`: the last.
+    /// Load factor of the comparison. `None`: the last.
     #[serde(default)]
     pub at: Option<f64>,
-    /// Where the value comes from.
+    /// The source of the value.
     pub source: String,
     /// The source's value.
     pub value: f64,
-    /// How near ours must be to it, relative to it.
+    /// Tolerance for the difference from it, relative.
     pub within: f64,
     /// What `within` and `drift` are relative to. `None`: the value itself.
     #[serde(default)]
     pub scale: Option<f64>,
-    /// Our own value when it was last looked at. `None`: nobody has.
+    /// Our own earlier value. `None` if there is none yet.
     #[serde(default)]
     pub own: Option<f64>,
-    /// How near ours must be to that.
+    /// Tolerance for the difference from our own value.
     #[serde(default = "default_drift")]
     pub drift: f64,
 }
 
-/// What came of a benchmark.
+/// Result of a benchmark.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Compared {
-    /// Our value; none where the run did not come so far.
+    /// Our value; `None` if the run did not get that far.
     pub ours: Option<f64>,
     /// (ours − source) / scale.
     pub error: Option<f64>,
     /// (ours − own) / scale.
     pub drift: Option<f64>,
-    /// What that is worth.
+    /// Assessment of the result.
     pub standing: Standing,
 }
 
-/// What a comparison is worth.
+/// Assessment of a comparison.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Standing {
-    /// Near the source, and where it was.
+    /// Close to the source and to our own value.
     Good,
-    /// Near the source, but not where it was.
+    /// Close to the source, but not to our own value.
     Drifted,
     /// Too far from the source.
     Off,
-    /// There is no value, since the run failed; the reason in a word.
+    /// No value, because the run failed; the reason in a word.
     Failed(String),
-    /// Somebody wanted the run to end before.
+    /// Interrupted before the run.
     NotRun,
 }
 
@@ -144,10 +145,9 @@ impl fmt::Display for Standing {
 }
 
 impl Benchmarks {
-    /// Reads a list from a file or, by its name, the list that the program carries; `None` where a file is something else.
+    /// Reads a list from a file, or the built-in list by its name; `None` if the file is something else.
     ///
-    /// # Errors
-    /// If it is such a list and cannot be read, with line and column.
+    /// # Errors If the list cannot be read, with line and column.
     pub fn open(name: &str) -> Result<Option<Benchmarks>, SceneError> {
         let path = Path::new(name);
         if !path.is_file() {
@@ -171,10 +171,9 @@ impl Benchmarks {
         Ok(Some(list))
     }
 
-    /// Reads a list; `name` is what messages call it.
+    /// Parses a list; `name` is its name for messages.
     ///
-    /// # Errors
-    /// If it cannot be read, with line and column, or what it says makes no sense.
+    /// # Errors If it cannot be read, with line and column, or is inconsistent.
     pub fn from_text(name: &str, text: &str) -> Result<Benchmarks, SceneError> {
         let mut list: Benchmarks = from_ron(name, text, "list of benchmarks")?;
         list.name = name.to_owned();
@@ -187,10 +186,10 @@ impl Benchmarks {
         Ok(list)
     }
 
-    /// Runs every scene, once for all benchmarks that want it with the same settings, and compares.
+    /// Runs each combination of scene and settings once, and compares the results.
     ///
-    /// # Errors
-    /// If a scene or a setting will not do, or a scene has no such monitor. What fails in a run is its result.
+    /// # Errors If a scene or a setting is invalid, or a monitor does not exist. The failure of a run is a
+    /// result.
     pub fn run(&self, jobs: NonZeroUsize, watch: &Watch) -> Result<Vec<Compared>, RunError> {
         let mut posed: Vec<(&Benchmark, Scene)> = Vec::new();
         let mut of = Vec::with_capacity(self.list.len());
@@ -227,7 +226,7 @@ impl Benchmarks {
             return Err(SceneError::whole(
                 &self.name,
                 format!(
-                    "the scene {} has no monitor {wanted:?}{} (monitors: {})",
+                    "scene {} has no monitor {wanted:?}{} (monitors: {})",
                     benchmark.scene,
                     did_you_mean(wanted, names()),
                     names().collect::<Vec<_>>().join(", ")
@@ -238,13 +237,13 @@ impl Benchmarks {
     }
 }
 
-/// Whether a text is such a list, sound or not.
+/// Whether a text is such a list, valid or not.
 fn is_list(text: &str) -> bool {
     stickslip_scene::format::kind::has_field(text, "benchmarks")
 }
 
 impl Benchmark {
-    /// What its errors are relative to.
+    /// What the errors are relative to.
     fn unit(&self) -> f64 {
         self.scale.unwrap_or(self.value).abs()
     }
@@ -252,18 +251,18 @@ impl Benchmark {
     fn check(&self) -> Result<(), String> {
         let numbers = [self.value, self.within, self.drift, self.unit()];
         if numbers.iter().any(|x| !x.is_finite()) || self.own.is_some_and(|own| !own.is_finite()) {
-            return Err("every number must be finite".into());
+            return Err("all numbers must be finite".into());
         }
         if self.within <= 0.0 || self.drift <= 0.0 {
-            return Err("within and drift are tolerances; they must be above 0".into());
+            return Err("within and drift must be above 0".into());
         }
         if self.unit() == 0.0 {
-            return Err("the value is 0; name a scale that its error is relative to".into());
+            return Err("the value is 0, so its error needs a scale".into());
         }
         Ok(())
     }
 
-    /// Compares what a run came to.
+    /// Compares the result of a run.
     fn compare(&self, run: &Run) -> Compared {
         let none = |standing| Compared {
             ours: None,
@@ -317,15 +316,15 @@ impl Benchmark {
         })
     }
 
-    /// Scene and settings in one text.
+    /// Scene and settings as text.
     pub fn case(&self) -> String {
         let settings = assigned(&self.set).map(|pair| format!(" {pair}"));
         self.scene.clone() + &settings.collect::<String>()
     }
 }
 
-/// The comparison as CSV: `case,what,source,value,ours,error,within,own,drift,allowed,standing`. Floats read back to the same bits;
-/// what there is none of is empty.
+/// The comparison as CSV: `case,what,source,value,ours,error,within,own,drift,allowed,standing`. Floats read
+/// back to the same bits; missing values are empty.
 pub fn table(list: &Benchmarks, compared: &[Compared]) -> String {
     use super::csv::field;
     let mut text =
@@ -387,7 +386,7 @@ mod tests {
     }
 
     #[test]
-    fn a_value_is_off_drifted_or_good() {
+    fn a_value_is_good_drifted_or_off() {
         let standing = |value| benchmark().compare(&run(value)).standing;
         assert_eq!(standing(2.1), Standing::Good);
         assert_eq!(standing(2.15), Standing::Drifted);
@@ -396,7 +395,7 @@ mod tests {
     }
 
     #[test]
-    fn a_value_is_taken_where_it_is_asked_for() {
+    fn a_value_is_taken_at_the_requested_load() {
         let mut at = benchmark();
         at.at = Some(0.5);
         assert_eq!(at.compare(&run(2.0)).ours, Some(7.0));
@@ -406,7 +405,7 @@ mod tests {
     }
 
     #[test]
-    fn what_makes_no_sense_is_refused() {
+    fn inconsistent_benchmarks_are_refused() {
         for wrong in ["value: 0.0, within: 0.1", "value: 1.0, within: 0.0"] {
             let text = format!(
                 "(title: \"t\", benchmarks: [(scene: \"a\", what: \"w\", of: \"m\", source: \"s\", {wrong})])"

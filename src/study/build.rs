@@ -1,5 +1,5 @@
-//! Sets the revision that the program is built from: `STICKSLIP_REVISION` where that is set, else what git reports of the
-//! work tree, but only in an optimised build, so that a commit does not rebuild all tests.
+//! Sets the revision of the program: `STICKSLIP_REVISION` if set, otherwise the output of git for the work
+//! tree, but only in optimised builds, so that a commit does not rebuild all tests.
 
 use std::env;
 use std::process::Command;
@@ -19,7 +19,7 @@ fn main() {
     println!("cargo::rustc-env=STICKSLIP_REVISION={revision}");
 }
 
-/// The last commit, and whether the work tree is another; none without git.
+/// The last commit, marked if the work tree differs; `None` without git.
 fn described() -> Option<String> {
     let arguments = ["describe", "--always", "--dirty"];
     let output = Command::new("git").args(arguments).output().ok()?;

@@ -1,9 +1,9 @@
-//! The studies that the program carries inside itself.
+//! The built-in studies.
 
 use stickslip_scene::embedded::EmbeddedFile;
 use stickslip_scene::embedded_all;
 
-/// In the order in which they are offered.
+/// In the order in which they are listed.
 const STUDIES: &[EmbeddedFile] = embedded_all![
     "../../problems/studies/",
     ".ron",
@@ -19,12 +19,12 @@ const STUDIES: &[EmbeddedFile] = embedded_all![
     "t-max-osc",
 ];
 
-/// All built-in studies, in the order in which they are offered.
+/// All built-in studies, in the order in which they are listed.
 pub fn list() -> &'static [EmbeddedFile] {
     STUDIES
 }
 
-/// The built-in study with a name, with or without the ending `.ron`.
+/// The built-in study with this name, with or without `.ron`.
 pub fn find(name: &str) -> Option<&'static EmbeddedFile> {
     let name = name.strip_suffix(".ron").unwrap_or(name);
     STUDIES.iter().find(|study| study.name == name)

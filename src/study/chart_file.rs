@@ -1,4 +1,4 @@
-//! A work-precision chart as its author writes it, and those that the program carries.
+//! The file format of work-precision charts, and the built-in charts.
 //!
 //! ```ron
 //! (
@@ -22,48 +22,48 @@ use stickslip_scene::embedded_all;
 use stickslip_scene::format::error::SceneError;
 use stickslip_scene::{Scene, builtin};
 
-/// A chart before anything is run.
+/// A chart before it is measured.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Chart {
-    /// What the chart is called.
+    /// Title.
     pub title: String,
-    /// As `Scene::open` takes it.
+    /// Scene, as for `Scene::open`.
     pub scene: String,
-    /// What is set for all runs: path and value.
+    /// Settings of all runs: path and value.
     pub set: Vec<(String, String)>,
-    /// Monitors whose error counts; none: all displacements.
+    /// Monitors whose error is measured; empty for all displacements.
     pub monitors: Vec<String>,
-    /// Monitors that are asked for instead, by name: the reference must have them.
+    /// Monitors requested by name instead; the reference must have them.
     pub by: Vec<String>,
-    /// What errors are measured against.
+    /// Reference for the errors.
     pub truth: Truth,
-    /// The curves, in the order of the file.
+    /// The curves in the order of the file.
     pub series: Vec<Series>,
 }
 
-/// What runs are measured against.
+/// The reference of a chart.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Truth {
-    /// The table that the program carries for the scene.
+    /// The built-in table for the scene.
     Builtin,
-    /// A reference table, by its file.
+    /// A reference table in a file.
     Table(PathBuf),
     /// A run with these settings.
     Run(Vec<(String, String)>),
-    /// The run with most unknowns, and of these with most increments.
+    /// The run with the most unknowns and, among these, the most increments.
     Finest,
 }
 
-/// Runs that are drawn as one line: the product of what is varied.
+/// Runs drawn as one line: all combinations of the varied settings.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Series {
-    /// What the legend calls it.
+    /// Name in the legend.
     pub name: String,
-    /// What is varied in it.
+    /// Varied settings.
     #[serde(default)]
     pub vary: Vec<Vary>,
-    /// What is set for all of its runs, path and value.
+    /// Settings of all its runs: path and value.
     #[serde(default, deserialize_with = "pairs")]
     pub set: Vec<(String, String)>,
 }
@@ -82,12 +82,12 @@ const CHARTS: &[EmbeddedFile] = embedded_all![
     "osc-inclined-cantilever",
 ];
 
-/// Names of the scenes that have a chart of their own.
+/// Names of the scenes with a built-in chart.
 pub fn names() -> impl Iterator<Item = &'static str> {
     CHARTS.iter().map(|chart| chart.name)
 }
 
-/// The file of a scene's chart.
+/// The file of a scene's built-in chart.
 pub fn text(name: &str) -> Option<&'static str> {
     let found = CHARTS.iter().find(|chart| chart.name == name);
     found.map(|chart| chart.text)
@@ -107,8 +107,8 @@ struct File {
 }
 
 impl Chart {
-    /// The chart of a scene: the one that the program carries for it, else of the increments and meshes that every scene
-    /// has; with `over`, of the product of that alone.
+    /// The chart of a scene: the built-in one or, if there is none, increments and meshes, which every scene
+    /// has; with `over`, only the combinations of those settings.
     ///
     /// # Errors
     /// If there is no such scene.
@@ -141,7 +141,7 @@ impl Chart {
         Ok(chart)
     }
 
-    /// Reads a chart from a text; `name` is what messages call it.
+    /// Parses a chart; `name` is its name for messages.
     ///
     /// # Errors
     /// If it cannot be read, with line and column.
@@ -162,7 +162,7 @@ impl Chart {
     }
 }
 
-/// The best truth there is about a scene. A file of one's own is not the built-in scene that it is called like.
+/// The most accurate reference for a scene. A user's file is not the built-in scene of the same name.
 fn truth(scene: &str) -> Truth {
     let builtin = builtin::find(scene).is_some() && !std::path::Path::new(scene).is_file();
     match builtin && Reference::builtin(scene, &[]).is_some() {
@@ -171,7 +171,7 @@ fn truth(scene: &str) -> Truth {
     }
 }
 
-/// What can be varied in every scene.
+/// Settings that can be varied in every scene.
 fn any() -> Vec<Series> {
     let one = |name: &str, path: &str, values: &[&str]| Series {
         name: name.to_owned(),

@@ -1,4 +1,4 @@
-//! The runs of work-precision charts: laid out, timed, and kept.
+//! The runs of work-precision charts: planned, timed and stored.
 
 use super::chart_file::{Chart, Truth};
 use super::figure::name;
@@ -14,17 +14,17 @@ use std::sync::Arc;
 use stickslip_platform::system;
 use stickslip_scene::format::SceneError;
 
-/// Runs that take this long altogether (seconds) are not repeated any more.
+/// Runs that take this long in total (seconds) are not repeated again.
 const LONG: f64 = 20.0;
 
-/// A run and its times, as a file keeps it.
+/// A run with its time, as stored in a log.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Timed {
     /// Median processor time, seconds.
     pub seconds: f64,
-    /// Of so many repetitions.
+    /// Number of repetitions.
     pub repeats: usize,
-    /// What it came to.
+    /// The result.
     pub run: Run,
 }
 
@@ -35,7 +35,8 @@ impl Outcome for Timed {
         self.seconds.is_finite() && self.run.is_sound()
     }
 
-    /// They must be the same but for their times. That which was repeated more often counts, and of equals the shorter time.
+    /// Two results must be equal except for their times. The one with more repetitions counts or, if equal, the
+    /// shorter time.
     fn join(&self, other: &Timed) -> Option<Timed> {
         let more = other.repeats.cmp(&self.repeats);
         let less = more.then(self.seconds.total_cmp(&other.seconds));
@@ -44,21 +45,20 @@ impl Outcome for Timed {
     }
 }
 
-/// A chart that is laid out: every run of it is known.
+/// A chart whose runs are all planned.
 pub struct Planned {
-    /// As its author asked for it.
+    /// The chart as requested.
     pub chart: Chart,
     /// Its series.
     pub plans: Vec<Plan>,
-    /// The run that is the reference, where a run of its own is.
+    /// The reference run, if it is a separate run.
     pub truth: Option<Plan>,
 }
 
 impl Planned {
-    /// Lays a chart out.
+    /// Plans the runs of a chart.
     ///
-    /// # Errors
-    /// If a path or a value will not do.
+    /// # Errors If a path or a value is invalid.
     pub fn new(chart: Chart) -> Result<Planned, SceneError> {
         let lay_out = |vary: &[Vary], set: &[(String, String)]| {
             Plan::new(Study {
@@ -81,18 +81,18 @@ impl Planned {
         })
     }
 
-    /// Its plans, the reference's last.
+    /// All plans, the reference's last.
     fn all(&self) -> impl Iterator<Item = &Plan> {
         self.plans.iter().chain(&self.truth)
     }
 
-    /// Number of its runs, that of the reference included.
+    /// Number of runs, including the reference's.
     pub fn runs(&self) -> usize {
         self.all().map(|plan| plan.cases.len()).sum()
     }
 }
 
-/// The runs of some charts as cells of a sweep: chart by chart, the reference of each last.
+/// The runs of some charts as cells of a sweep: chart by chart, with the reference of each one last.
 pub fn sweep(charts: &[Planned], repeats: usize) -> Sweep<'_, Timed> {
     let plans = || charts.iter().flat_map(Planned::all);
     let places = |plan: &Plan| 0..plan.cases.len();
@@ -125,7 +125,7 @@ pub fn sweep(charts: &[Planned], repeats: usize) -> Sweep<'_, Timed> {
     }
 }
 
-/// Runs a case some times; `None` if it was stopped from outside.
+/// Runs a case repeatedly; `None` if interrupted.
 fn timed(case: &Case, repeats: usize, watch: &Watch) -> Result<Option<Timed>, RunError> {
     let model = Arc::new(case.model()?);
     let quiet = Watch {

@@ -1,14 +1,14 @@
 //! All results of a study as one table.
 //!
-//! Columns: what differs between the runs; `status`; `increment,load,majors,minors,unsettled`; the monitors; `jumped`. One row
-//! per accepted increment: its status is `converged`, or `accepted` where a loop was cut off unsettled. A run that
-//! failed has one last row whose status is the reason (`minor-cycle`, `major-limit`, …): it says at which increment,
-//! tried load and major iteration, after how many minor ones, and has no monitors. One that was stopped from outside
-//! has a last row `interrupted`; one that had not begun has none.
+//! Columns: the varied settings; `status`; `increment,load,majors,minors,unsettled`; the monitors; `jumped`.
+//! One row per accepted increment, with the status `converged`, or `accepted` if a loop did not settle. A
+//! failed run has one more row whose status is the reason (`minor-cycle`, `major-limit`, …), with the
+//! increment, load and major iteration of the failure and the number of minor iterations until then, without
+//! monitors. An interrupted run has a last row `interrupted`; a run that had not started has no rows.
 //!
-//! `jumped` is 1 where an increment leaves its branch of stable equilibrium, else 0.
+//! `jumped` is 1 if an increment leaves its branch of stable equilibrium, otherwise 0.
 //!
-//! Floats have as many digits as they need to read back to the same bits.
+//! Floats have enough digits to read back to the same bits.
 
 use super::plan::Plan;
 use super::result::{CaseEnd, Run};
@@ -17,33 +17,33 @@ use std::path::Path;
 use stickslip_platform::input::{MARK, Unreadable};
 use stickslip_scene::shown;
 
-/// Why a table cannot be read: where, and what is wrong.
+/// Why a table cannot be read, with the location.
 #[derive(Debug, thiserror::Error)]
 pub enum TableError {
-    /// The file cannot be read at all.
+    /// The file cannot be read.
     #[error("{}", why.of(file))]
     Unreadable {
-        /// The file.
+        /// Name of the file.
         file: String,
-        /// Why.
+        /// Cause.
         why: Unreadable,
     },
-    /// Something in it is wrong.
+    /// The table is invalid.
     #[error("{file}:{line}:{column}: {message}")]
     Wrong {
-        /// The file.
+        /// Name of the file.
         file: String,
-        /// From 1.
+        /// Line, from 1.
         line: usize,
-        /// From 1, in characters.
+        /// Column, from 1, in characters.
         column: usize,
-        /// What is wrong there.
+        /// What is wrong.
         message: String,
     },
 }
 
 impl TableError {
-    /// A file that cannot be read at all.
+    /// The error for a file that cannot be read.
     pub(super) fn unreadable(file: &Path, why: Unreadable) -> TableError {
         let file = file.display().to_string();
         TableError::Unreadable { file, why }
@@ -127,30 +127,30 @@ pub fn field(text: &str) -> String {
     }
 }
 
-/// Lines before a table that say what it is.
+/// Comment lines before a table, with its origin.
 pub fn comments<'a>(lines: impl IntoIterator<Item = &'a String>) -> String {
     let comment = |line: &'a String| format!("# {}\n", shown::line(line));
     lines.into_iter().map(comment).collect()
 }
 
-/// A table that is read: CSV whose `#` lines are comments, with a header. Spaces around fields do not count.
+/// A table to be read: CSV with `#` lines as comments and a header. Spaces around fields are ignored.
 pub(super) struct Table<'a> {
     file: &'a str,
     text: &'a str,
     header: Row,
-    /// The rows below the header, with as many fields as each has.
+    /// The rows below the header, each with any number of fields.
     pub(super) rows: Vec<Row>,
 }
 
 /// A row of a [`Table`].
 pub(super) struct Row {
     pub(super) fields: csv::StringRecord,
-    /// Byte at which its line begins.
+    /// Byte offset of its line.
     start: usize,
 }
 
 impl<'a> Table<'a> {
-    /// Reads a text; messages call it `file`.
+    /// Parses a table; `file` is its name for messages.
     ///
     /// # Errors
     /// If there is no header.
@@ -199,12 +199,12 @@ impl<'a> Table<'a> {
         self.header.fields.iter().collect()
     }
 
-    /// The header as it stands in the file.
+    /// The header line of the file.
     pub(super) fn header_line(&self) -> &'a str {
         self.line(&self.header).trim()
     }
 
-    /// Refuses a row that has not as many fields as the header.
+    /// Rejects a row whose number of fields differs from the header's.
     pub(super) fn check(&self, row: &Row) -> Result<(), TableError> {
         let (has, wants) = (row.fields.len(), self.header.fields.len());
         if has == wants {
@@ -214,12 +214,12 @@ impl<'a> Table<'a> {
         Err(self.wrong(row, 0, message))
     }
 
-    /// What is wrong with the header, or with the table as a whole.
+    /// An error about the header, or about the whole table.
     pub(super) fn wrong_header(&self, message: String) -> TableError {
         self.wrong(&self.header, 0, message)
     }
 
-    /// What is wrong at a field (from 0) of a row.
+    /// An error at a field (from 0) of a row.
     pub(super) fn wrong(&self, row: &Row, field: usize, message: String) -> TableError {
         TableError::Wrong {
             file: self.file.to_owned(),
@@ -234,15 +234,15 @@ impl<'a> Table<'a> {
     }
 }
 
-/// Bytes of the comments and blank lines that a text begins with: the position of a record is before these.
+/// Length of the comments and blank lines at the beginning of a text: record positions do not include these.
 fn skipped(text: &str) -> usize {
     let lines = text.split_inclusive('\n');
     let skipped = lines.take_while(|line| line.trim().is_empty() || line.starts_with('#'));
     skipped.map(str::len).sum()
 }
 
-/// The column, from 1 and in characters, at which field number `wanted` (from 0) of a line begins; behind the line where it
-/// has fewer.
+/// The column (from 1, in characters) at which a field (from 0) of a line begins; past the end if there are
+/// fewer fields.
 fn column(line: &str, wanted: usize) -> usize {
     let (mut field, mut quoted) = (0, false);
     for (k, letter) in line.chars().enumerate() {
@@ -263,7 +263,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn fields_split_as_they_were_joined() {
+    fn fields_survive_joining_and_splitting() {
         let fields = ["a", "b,c", "", "say \"no\"", "✗"];
         let line: Vec<String> = fields.iter().map(|f| field(f)).collect();
         let line = line.join(",");
@@ -274,7 +274,7 @@ mod tests {
     }
 
     #[test]
-    fn a_row_is_found_below_comments_blank_lines_and_a_field_of_two_lines() {
+    fn rows_are_located_after_comments_blank_lines_and_multi_line_fields() {
         let text = "# \"a\n\n  # b\nh,i\r\n \t\n# c\n1,\"2\n3\"\n\n4, 5\n";
         let table = Table::read("x", text).ok().unwrap();
         assert_eq!(table.heads(), ["h", "i"]);

@@ -1,17 +1,18 @@
 //! Curves over two axes, and their drawing.
 //!
-//! A drawing is wider the longer its legend, and higher the more of it there is, so that nothing is cut off.
+//! The width of a drawing grows with the longest legend entry, its height with their number, so that nothing is
+//! cut off.
 
 use super::drawn::PlotError;
 use super::sheet::{Anchor, Axes, BLACK, CROSS, ENTRY, GREY, LABEL, MARGIN, SMALL, Sheet, widest};
 use stickslip_scene::number::six;
 
-/// The plot, without its axes' words, and its left end.
+/// Size of the plot without axis labels, and its left edge.
 const PLOT: (f64, f64) = (620.0, 440.0);
 const LEFT: f64 = 96.0;
-/// Curves named in the legend; a taller one is of no use.
+/// Maximum number of curves in the legend, for readability.
 const MOST_ENTRIES: usize = 48;
-/// Markers on a curve, about.
+/// Approximate number of markers on a curve.
 const MARKERS: usize = 12;
 
 /// Curves over two axes.
@@ -19,44 +20,44 @@ const MARKERS: usize = 12;
 pub struct Chart {
     /// Above it.
     pub title: String,
-    /// To the right.
+    /// Horizontal axis.
     pub x: Axis,
-    /// Upwards.
+    /// Vertical axis.
     pub y: Axis,
     /// Its curves, in the order of the legend.
     pub curves: Vec<Curve>,
-    /// Lines below the chart that say what it was made from; long ones are broken.
+    /// Lines below the chart that describe its origin; long ones are wrapped.
     pub footer: Vec<String>,
 }
 
-/// What a chart runs along.
+/// An axis of a chart.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Axis {
     /// What it is called.
     pub name: String,
-    /// It counts something: it starts at zero and has whole numbers only.
+    /// Whether it counts something: then it starts at zero and has only whole numbers.
     pub counts: bool,
 }
 
-/// One line with markers, and a line of the legend.
+/// A line with markers, and an entry of the legend.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Curve {
-    /// What the legend calls it.
+    /// Text in the legend.
     pub label: String,
-    /// Finite numbers.
+    /// Its points; all finite.
     pub points: Vec<(f64, f64)>,
-    /// What its last point is.
+    /// How the curve ends.
     pub end: CurveEnd,
 }
 
-/// What a curve's last point is.
+/// How a curve ends.
 #[derive(Debug, Clone, PartialEq)]
 pub enum CurveEnd {
-    /// Where it should end.
+    /// At its planned end.
     Whole,
-    /// Where it failed, and why: a cross, and a line of the legend.
+    /// At a failure, with the reason: drawn as a cross, and noted in the legend.
     Failed(String),
-    /// Where it was cut off, and why: a line of the legend.
+    /// Interrupted, with the reason: noted in the legend.
     Stopped(String),
 }
 
@@ -89,7 +90,7 @@ impl Chart {
         let mut sheet = Sheet::new(LEFT + PLOT.0 + 2.0 * MARGIN + legend, &self.title)?;
         let top = sheet.height;
         let place = self.curves(&mut sheet, top);
-        // Above all lines, so that none hides a failure.
+        // Drawn last, so that no line hides a failure.
         for curve in &self.curves {
             if let (CurveEnd::Failed(_), Some(end)) = (&curve.end, curve.points.last()) {
                 sheet.cross(place(end), 7.0, CROSS);
@@ -101,7 +102,7 @@ impl Chart {
         Ok(sheet)
     }
 
-    /// Draws axes and curves; says where a point stands.
+    /// Draws axes and curves; returns the function that positions points.
     fn curves(&self, sheet: &mut Sheet, top: f64) -> impl Fn(&(f64, f64)) -> (f64, f64) + use<> {
         let all = || self.curves.iter().flat_map(|c| &c.points);
         let x = bounds(&self.x, all().map(|p| p.0));
@@ -127,7 +128,7 @@ impl Chart {
         for (k, curve) in self.curves.iter().enumerate() {
             let points: Vec<(f64, f64)> = curve.points.iter().map(&place).collect();
             sheet.stroke(&points, 2.0, k);
-            // Curves take turns, so that the markers of two that agree are both seen.
+            // Markers are staggered, so that both of two equal curves are visible.
             let every = points.len().div_ceil(MARKERS).max(1);
             let first = every * k / self.curves.len();
             for at in points.into_iter().skip(first).step_by(every) {
@@ -137,7 +138,7 @@ impl Chart {
         place
     }
 
-    /// Draws the legend, and returns its lower end.
+    /// Draws the legend, and returns its lower edge.
     fn legend(&self, sheet: &mut Sheet, named: &[Curve], top: f64) -> f64 {
         let left = LEFT + PLOT.0 + MARGIN;
         let mut y = top + 0.5 * ENTRY;
@@ -161,7 +162,7 @@ impl Chart {
     }
 }
 
-/// The range of an axis, with some air.
+/// The range of an axis, with a small margin.
 fn bounds(axis: &Axis, values: impl Iterator<Item = f64>) -> (f64, f64) {
     let zero = axis.counts.then_some(0.0);
     let all = values.chain(zero).fold(None, |all: Option<(f64, f64)>, v| {
@@ -175,7 +176,7 @@ fn bounds(axis: &Axis, values: impl Iterator<Item = f64>) -> (f64, f64) {
     (if axis.counts { 0.0 } else { low - air }, high + air)
 }
 
-/// Nine round numbers at most within the range of an axis.
+/// At most nine round numbers within the range of an axis.
 fn ticks(axis: &Axis, (low, high): (f64, f64)) -> impl Iterator<Item = f64> + use<> {
     const MOST: f64 = 9.0;
     let least = (high - low) / MOST;

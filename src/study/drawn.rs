@@ -1,51 +1,51 @@
-//! Shapes on a sheet as plain data, and why they may not be drawn.
+//! Shapes on a sheet as plain data, and errors of drawing.
 
 use stickslip_scene::shown;
 
 /// Red, green and blue.
 pub type Colour = (u8, u8, u8);
 
-/// Where a text stands about its point.
+/// Position of a text relative to its point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Anchor {
-    /// To the right of it.
+    /// To the right of the point.
     Left,
-    /// About it.
+    /// Centred on the point.
     Middle,
-    /// To the left of it.
+    /// To the left of the point.
     Right,
 }
 
-/// Something drawn.
+/// A shape.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Shape {
     /// A line of text.
     Text {
-        /// Its point: to the right and downwards, pixels.
+        /// Its point in pixels: to the right and downwards.
         at: (f64, f64),
         /// The text.
         text: String,
-        /// Size of its letters, pixels.
+        /// Font size in pixels.
         size: f64,
         /// Its colour.
         colour: Colour,
-        /// Where it stands about its point.
+        /// Position relative to its point.
         anchor: Anchor,
-        /// Read from below upwards.
+        /// Whether it is vertical, reading upwards.
         upright: bool,
     },
-    /// A line through points.
+    /// A polyline.
     Line {
-        /// The points: to the right and downwards, pixels.
+        /// Points in pixels: to the right and downwards.
         points: Vec<(f64, f64)>,
-        /// How wide the line is, pixels.
+        /// Line width in pixels.
         width: f64,
         /// Its colour.
         colour: Colour,
     },
     /// A filled polygon.
     Fill {
-        /// Its corners: to the right and downwards, pixels.
+        /// Corners in pixels: to the right and downwards.
         corners: Vec<(f64, f64)>,
         /// Its colour.
         colour: Colour,
@@ -53,7 +53,7 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// Whether all of its points have a place.
+    /// Whether all its points are finite.
     pub fn is_finite(&self) -> bool {
         let points = match self {
             Shape::Text { at, .. } => std::slice::from_ref(at),
@@ -64,28 +64,28 @@ impl Shape {
     }
 }
 
-/// Why something could not be drawn.
+/// Why something cannot be drawn.
 #[derive(Debug, thiserror::Error)]
 pub enum PlotError {
-    /// Its data, its size, or the font will not do.
+    /// The data, the size or the font is unsuitable.
     #[error("the chart cannot be drawn: {0}")]
     Undrawable(String),
-    /// The program was built without what draws.
+    /// The program was built without plotting.
     #[error("this build has no plots; cargo install stickslip --features plot")]
     NotBuilt,
 }
 
 impl PlotError {
-    /// That it cannot be drawn, with why.
+    /// The error with this reason.
     pub fn new(why: impl ToString) -> PlotError {
         PlotError::Undrawable(why.to_string())
     }
 }
 
-/// Most characters of a label: of a curve, an axis, a run.
+/// Maximum length of a label of a curve, an axis or a run, in characters.
 const MOST_LETTERS: usize = 80;
 
-/// A text of a label as it is drawn: harmless, and not longer than a picture can bear.
+/// The text of a label with safe characters and limited length.
 pub fn label(text: &str) -> String {
     shown::cut(text, MOST_LETTERS)
 }

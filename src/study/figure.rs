@@ -1,4 +1,4 @@
-//! The results of a study as curves: the form of the paper's figures.
+//! The results of a study as curves, like the paper's figures.
 
 use super::curves::{Axis, Chart, Curve, CurveEnd};
 use super::monitor_kind::{MonitorKind, kind};
@@ -40,7 +40,7 @@ pub fn chart(plan: &Plan, runs: &[Run]) -> Chart {
     }
 }
 
-/// What tells a run from the others: `increment=0.02, geometry=frozen`. Empty where there is only one.
+/// The settings that distinguish a run: `increment=0.02, geometry=frozen`. Empty if there is only one run.
 pub fn label(names: &[String], values: &[String]) -> String {
     let pairs = names.iter().zip(values);
     let pairs = pairs.map(|(name, value)| match name.as_str() {
@@ -50,13 +50,13 @@ pub fn label(names: &[String], values: &[String]) -> String {
     pairs.collect::<Vec<_>>().join(", ")
 }
 
-/// Settings as one types them: `path=value`.
+/// Settings as typed: `path=value`.
 pub fn assigned(settings: &[(String, String)]) -> impl Iterator<Item = String> {
     let pairs = settings.iter();
     pairs.map(|(path, value)| format!("{path}={value}"))
 }
 
-/// What is set and varied in a study, after the scenes.
+/// The changed and varied settings of a study, after the scenes.
 pub(super) fn changes(study: &Study) -> String {
     let varied = study.vary.iter();
     let varied = varied.map(|vary| format!("{} over {}", vary.path, vary.values.join(", ")));
@@ -64,12 +64,12 @@ pub(super) fn changes(study: &Study) -> String {
     all.map(|change| format!("; {change}")).collect()
 }
 
-/// What tells a case of a plan from the others.
+/// The settings that distinguish a case of a plan.
 pub fn name(plan: &Plan, case: usize) -> String {
     label(&short_names(&plan.columns), &plan.cases[case].values)
 }
 
-/// The last step of each path where that is enough to tell them apart, else the whole paths.
+/// The last step of each path if those are unique, otherwise the whole paths.
 pub fn short_names(paths: &[String]) -> Vec<String> {
     let last = |path: &String| path.rsplit('.').next().unwrap_or(path).to_owned();
     let short: Vec<String> = paths.iter().map(last).collect();
@@ -97,7 +97,7 @@ fn axis(plan: &Plan, quantity: &AxisQuantity) -> Axis {
     }
 }
 
-/// What a monitor is measured in: of lengths and forces the scene's own units.
+/// Unit of a monitor; lengths and forces are in the scene's units.
 fn unit(plan: &Plan, monitor: &str) -> &'static str {
     let of = |case: &Case| {
         let model = case.model().ok()?;
@@ -113,7 +113,7 @@ fn unit(plan: &Plan, monitor: &str) -> &'static str {
     }
 }
 
-/// From the start of the history on, where the quantities have a value there.
+/// The points of a run, including the start if the quantities are defined there.
 fn points(plan: &Plan, run: &Run) -> Vec<(f64, f64)> {
     let counts = |q: &AxisQuantity| matches!(q, AxisQuantity::Majors | AxisQuantity::Minors);
     let start = (!counts(&plan.x) && !counts(&plan.y)).then_some(&run.start);
@@ -125,7 +125,7 @@ fn points(plan: &Plan, run: &Run) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// What the chart was made from, and by what.
+/// The origin of the chart: scenes, settings and program.
 fn footer(plan: &Plan, runs: &[Run]) -> Vec<String> {
     let study = &plan.study;
     let mut made = format!("Scene: {}", study.scenes.join(", "));
@@ -135,7 +135,7 @@ fn footer(plan: &Plan, runs: &[Run]) -> Vec<String> {
     made += &changes(study);
     let failed = runs.iter().filter(|run| run.failed().is_some()).count();
     let by = format!(
-        "{} runs, {failed} of them failed. {}",
+        "{} runs, of which {failed} failed. {}",
         runs.len(),
         origin::made_by()
     );
@@ -147,7 +147,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_are_short_where_that_is_clear() {
+    fn names_are_short_if_unique() {
         let own = |names: &[&str]| names.iter().map(|n| n.to_string()).collect::<Vec<_>>();
         let short = short_names(&own(&["history.increment", "settings.majors"]));
         assert_eq!(short, ["increment", "majors"]);
@@ -156,7 +156,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_are_six() {
+    fn numbers_have_six_digits() {
         assert_eq!(six(0.1 + 0.2), "0.3");
         assert_eq!(six(-0.0), "0");
         assert_eq!(six(1.0 / 3.0), "0.333333");

@@ -1,33 +1,35 @@
-//! Studies: scenes solved with many settings, and what came of it as tables and figures.
+//! Studies: solves scenes with many settings, and presents the results as tables and figures.
 //!
-//! - [`read`]: a study as its author writes it, RON or arguments; [`builtin`]: the studies that the program carries.
-//! - [`plan`]: the product of all settings, every case of it found sound before anything runs.
-//! - [`run`](mod@run): the cases as a sweep; [`one`](mod@one): one run, on one thread; [`room`]: as many as the memory has room for;
-//!   [`result`]: what one of them came to;
-//!   [`monitor_kind`]: what its numbers are measured in.
-//! - [`csv`]: all results as one table; [`figure`]: as [`curves`]; [`sheet`]: drawings as plain data, of [`drawn`] shapes;
-//!   [`pen`]: these as SVG and PNG, with the feature `plot`; [`placing`]: places for labels; [`log_axis`]: an axis in powers of ten.
+//! - [`read`]: studies from RON or arguments; [`builtin`]: the built-in studies.
+//! - [`plan`]: all combinations of the settings, each checked before anything runs.
+//! - [`run`](mod@run): the cases as a sweep; [`one`](mod@one): one run on one thread; [`room`]: limits parallel
+//!   runs by memory; [`result`]: the result of a run; [`monitor_kind`]: the units of its numbers.
+//! - [`csv`]: all results as one table; [`figure`]: as [`curves`]; [`sheet`]: drawings as plain data, made of
+//!   [`drawn`] shapes; [`pen`]: written as SVG and PNG, with the feature `plot`; [`placing`]: positions of
+//!   labels; [`log_axis`]: logarithmic axes.
 //!
-//! Values that are known from elsewhere: [`benchmarks`].
+//! Comparison with values from other sources: [`benchmarks`].
 //!
 //! Convergence maps:
 //!
-//! - [`random`]: random interface problems; [`trial`]: one of them with every strategy, judged; [`survey`]: all of them.
-//! - [`map`]: scenes over settings, judged; [`verdict_figure`]: both as pictures.
-//! - [`verdict`]: what a run is worth; [`origin`]: where results come from.
+//! - [`random`]: random interface problems; [`trial`]: one of them with every strategy, with verdicts;
+//!   [`survey`]: all of them.
+//! - [`map`]: scenes over settings, with verdicts; [`verdict_figure`]: figures of both.
+//! - [`verdict`]: the classes of runs; [`origin`]: program and machine.
 //!
-//! What all sweeps share:
+//! Shared by all sweeps:
 //!
-//! - [`sweep`]: cells that are computed side by side, stored, and put together.
-//! - [`log`]: a file of results; [`sweep_input`]: what these are of; [`shard`]: which cells a shard does.
+//! - [`sweep`]: cells that are computed in parallel, stored and merged.
+//! - [`log`]: the file of results; [`sweep_input`]: what the results depend on; [`shard`]: which cells belong
+//!   to a shard.
 //!
 //! Work-precision charts:
 //!
-//! - [`chart_file`]: a chart as its author writes it; [`chart_runs`]: its runs; [`precision`]: measured; [`precision_table`]: as a table;
-//!   [`precision_figure`]: drawn.
-//! - [`reference`](mod@reference): what runs are measured against; [`measuring`]: a chart measured beside other work.
+//! - [`chart_file`]: the file format; [`chart_runs`]: the runs; [`precision`]: the measured chart;
+//!   [`precision_table`]: as a table; [`precision_figure`]: as a picture.
+//! - [`reference`](mod@reference): reference curves; [`measuring`]: measures a chart in the background.
 //!
-//! Nothing here knows a command line.
+//! This package is independent of the command line.
 
 #![forbid(unsafe_code)]
 

@@ -1,12 +1,13 @@
-//! Results that outlive a kill: a file to which each is appended as it comes, a whole line each.
+//! Logs of results, which survive a killed process: each result is appended as a whole line when it is ready.
 //!
-//! The first line tells which program wrote it: results of another one are not ours. Every other line is a key, a tab,
-//! and a result as RON; the key is a hash of all that the result depends on, so that whatever is asked for next time, what
-//! is there already is not computed again. A line whose key is `input` tells what the results are of ([`Input`]). A line that
-//! a kill has cut off has no end, and is taken away, or passed over where the file is only read.
+//! The first line identifies the program that wrote the file; results of other revisions are refused. Each
+//! other line is a key, a tab, and a result in RON. The key is a hash of everything that the result depends on,
+//! so that existing results are never computed again. A line with the key `input` describes what the results
+//! belong to ([`Input`]). An incomplete last line was cut off by a kill; it is removed, or ignored if the file
+//! is only read.
 //!
-//! Each line ends with its digest ([`stickslip_exchange::seal`]); a mismatch refuses the file. Earlier versions wrote no
-//! digests: such lines are read, but not after a line with a digest.
+//! Each line ends with its digest ([`stickslip_exchange::seal`]); a file with a mismatch is refused. Earlier
+//! versions wrote no digests: such lines are read, but not after a line with a digest.
 
 use super::origin;
 use super::shard::Key;
@@ -23,78 +24,78 @@ use stickslip_scene::format::kind::{FileKind, mistaken};
 use stickslip_scene::format::notation;
 use stickslip_scene::format::read::plainly;
 
-/// Why results could not be kept, or taken up.
+/// Why results cannot be stored or read.
 #[derive(Debug, thiserror::Error)]
 pub enum LogError {
-    /// The system refused.
+    /// The system reports an error.
     #[error("{}: {source}", path.display())]
     File {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Why.
+        /// Cause.
         source: io::Error,
     },
     /// The file cannot be read.
     #[error("{}", why.of(&path.display().to_string()))]
     Unread {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Why.
+        /// Cause.
         why: Unreadable,
     },
-    /// Another run has the file.
-    #[error("{}: another run writes to it at present", .0.display())]
+    /// Another run is using the file.
+    #[error("{}: another run is writing to this file", .0.display())]
     Busy(PathBuf),
-    /// The file is of something else.
-    #[error("{}:1:1: {}; it is left alone", path.display(), told.clone().unwrap_or_else(|| format!("this is no file of kept results (it would begin with {ours:?})")))]
+    /// The file is something else.
+    #[error("{}:1:1: {}; the file has not been changed", path.display(), told.clone().unwrap_or_else(|| format!("not a log of results (it would begin with {ours:?})")))]
     Foreign {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// How a file of results begins.
+        /// Beginning of a log.
         ours: String,
-        /// What it is, and what reads it, where it is of the program.
+        /// If the program knows the kind of file: what it is, and what reads it.
         told: Option<String>,
     },
-    /// Another revision of the program wrote it, whose results may differ in their last bits.
-    #[error("{}:1:1: it is of another revision of the program, whose bits may differ: {theirs:?}, and this is {ours:?}", path.display())]
+    /// Another revision of the program wrote the file; its results may differ in their last bits.
+    #[error("{}:1:1: written by another revision of the program, whose results may differ: {theirs:?} instead of {ours:?}", path.display())]
     Revision {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
         /// Its first line.
         theirs: String,
-        /// What ours would be.
+        /// Our first line.
         ours: String,
     },
-    /// The results are of something else.
+    /// The results belong to something else.
     #[error("{}: {why}", path.display())]
     Other {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// In what it differs.
+        /// The difference.
         why: String,
     },
-    /// Two results of one cell are not the same.
+    /// Two results of one cell differ.
     #[error(transparent)]
     Disagree(#[from] Box<Disagreement>),
-    /// A result that cannot be stored.
-    #[error("{}: a result has a number that is not finite, and cannot be kept", .0.display())]
+    /// The result cannot be stored.
+    #[error("{}: a result has a number that is not finite, so it cannot be stored", .0.display())]
     Unsound(PathBuf),
-    /// A line of it cannot be read.
+    /// A line cannot be read.
     #[error("{}:{line}:{column}: this result cannot be read: {message}", path.display())]
     Broken {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// From 1.
+        /// Line, from 1.
         line: usize,
-        /// From 1, in characters.
+        /// Column, from 1, in characters.
         column: usize,
-        /// What is wrong there.
+        /// What is wrong.
         message: String,
     },
 }
 
 impl LogError {
-    /// What the system refused of a file.
+    /// Converts a system error about a file.
     fn file(path: &Path) -> impl Fn(io::Error) -> LogError + Copy + '_ {
         move |source| LogError::File {
             path: path.to_owned(),
@@ -102,7 +103,7 @@ impl LogError {
         }
     }
 
-    /// A line from its beginning.
+    /// An error at the beginning of a line.
     pub fn broken(path: &Path, line: usize, message: impl Into<String>) -> LogError {
         LogError::Broken {
             path: path.to_owned(),
@@ -113,7 +114,7 @@ impl LogError {
     }
 }
 
-/// Two results of one cell that are not the same.
+/// Two results of one cell that differ.
 #[derive(Debug, thiserror::Error)]
 #[error(
     "{cell} has two results that differ: {}:{} and {}:{}; one of them was computed by another program or on another kind of \
@@ -121,25 +122,26 @@ impl LogError {
     first.0.display(), first.1, second.0.display(), second.1
 )]
 pub struct Disagreement {
-    /// What the cell is called.
+    /// Name of the cell.
     pub cell: String,
-    /// File and line.
+    /// File and line of the first result.
     pub first: (PathBuf, usize),
-    /// File and line of the other.
+    /// File and line of the second result.
     pub second: (PathBuf, usize),
 }
 
-/// Most bytes of a file that is taken up.
+/// Maximum size of a log in bytes.
 const MOST_BYTES: u64 = 2 << 30;
 /// Error for a line whose digest does not match.
-const CHANGED: &str = "the line was changed after it was written (its digest differs); without the line, the result is computed again";
-/// What stands before a line that tells what results are of.
+const CHANGED: &str = "the line was changed after it was written (its digest differs); delete it to compute the result again";
+/// Key of a line that describes what the results belong to.
 const INPUT: &str = "input";
 
 /// Error for a result that no run can have.
-const UNSOUND: &str = "the result has a number that is not finite, which no run has; without the line, it is computed again";
+const UNSOUND: &str =
+    "the result has a number that is not finite; delete the line to compute it again";
 
-/// A result that a file keeps.
+/// A result that can be stored in a log.
 pub trait Outcome: Serialize + DeserializeOwned + Clone + Send + Sync {
     /// Maximum size in bytes of a result in a file.
     const MAX_BYTES: usize;
@@ -147,12 +149,12 @@ pub trait Outcome: Serialize + DeserializeOwned + Clone + Send + Sync {
     /// Whether a run can have this result: its numbers are finite wherever those of a run are.
     fn is_sound(&self) -> bool;
 
-    /// Whether the run ended by itself: only such results are kept.
+    /// Whether the run was not interrupted: only such results are stored.
     fn is_over(&self) -> bool {
         true
     }
 
-    /// Number of runs in the result; a file's result with another number than its cell has is refused.
+    /// Number of runs in the result; a result is refused if its cell has another number.
     fn runs(&self) -> usize {
         1
     }
@@ -171,47 +173,47 @@ pub fn same<T: Serialize>(one: &T, other: &T) -> bool {
     text(one) == text(other)
 }
 
-/// Where results are kept.
+/// An open log.
 #[derive(Debug)]
 pub struct Log {
     path: PathBuf,
     file: Mutex<File>,
 }
 
-/// What a file of results has.
+/// Contents of a log.
 #[derive(Debug)]
 pub struct Content<T> {
-    /// What they are of; nothing where nobody said.
+    /// What the results belong to; empty if the file does not say.
     pub inputs: Vec<Input>,
     /// The results in the order of the file.
     pub results: Vec<(Key, Found<T>)>,
 }
 
-/// A result that was there, and its line.
+/// A result in a log.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Found<T> {
-    /// Line of the file, from 1.
+    /// Line number, from 1.
     pub line: usize,
     /// The result.
     pub value: T,
 }
 
-/// The lines of a file that is read, one in memory at a time.
+/// The lines of a log, read one at a time.
 struct Lines<'a> {
     from: BufReader<&'a File>,
     path: &'a Path,
-    /// Most bytes of a line.
+    /// Maximum length of a line in bytes.
     most: usize,
-    /// Number of the last line.
+    /// Number of the last line read.
     number: usize,
-    /// Bytes of all whole lines so far.
+    /// Length of all complete lines so far, in bytes.
     whole: u64,
-    /// Whether a line had a digest.
+    /// Whether any line had a digest.
     are_sealed: bool,
 }
 
 impl Lines<'_> {
-    /// Reads the first line; false where there is none yet, or only a part of ours.
+    /// Reads the first line; `false` if it is missing or incomplete.
     fn head(&mut self) -> Result<bool, LogError> {
         let path = self.path;
         let foreign = || LogError::Foreign {
@@ -219,7 +221,7 @@ impl Lines<'_> {
             ours: head(),
             told: told(path),
         };
-        /// Most bytes of the first line of any revision.
+        /// Maximum length of the first line in any revision, in bytes.
         const MOST_HEAD: usize = 256;
         let bytes = self.bytes(MOST_HEAD)?;
         let mark = input::MARK.to_string();
@@ -243,7 +245,7 @@ impl Lines<'_> {
         }
     }
 
-    /// The next whole line, without its end.
+    /// The next complete line, without its end.
     fn next(&mut self) -> Result<Option<String>, LogError> {
         if self.number == 0 {
             return Ok(None);
@@ -257,7 +259,8 @@ impl Lines<'_> {
                 false => Err(broken("the line is longer than any result")),
             };
         }
-        let mut text = String::from_utf8(bytes).map_err(|_| broken("it is not text in UTF-8"))?;
+        let mut text =
+            String::from_utf8(bytes).map_err(|_| broken("the line is not valid UTF-8"))?;
         match unsealed(&text) {
             Seal::Whole(line) => {
                 text.truncate(line.len());
@@ -276,7 +279,7 @@ impl Lines<'_> {
         Ok(Some(text))
     }
 
-    /// The bytes up to the end of a line, that included, or so many.
+    /// The bytes up to and including the end of a line, or `most` bytes.
     fn bytes(&mut self, most: usize) -> Result<Vec<u8>, LogError> {
         let mut bytes = Vec::new();
         let read = (&mut self.from)
@@ -286,26 +289,26 @@ impl Lines<'_> {
     }
 }
 
-/// What a file is, where it is another one of the program.
+/// What kind of file this is, if it is another one of the program.
 fn told(path: &Path) -> Option<String> {
-    /// Bytes that tell one from another.
+    /// Number of bytes that identify the kind of file.
     const READ_TO_TELL: u64 = 1 << 16;
     let start = input::start(path, READ_TO_TELL).ok()?;
     let name = path.display().to_string();
     mistaken(&name, &String::from_utf8_lossy(&start), FileKind::Results)
 }
 
-/// What a line is.
+/// A parsed line.
 enum Entry<T> {
     Input(Input),
     Result(Key, T),
 }
 
-/// A line; the column where that is no such line, and why.
+/// Parses a line; errors have a column and a message.
 fn entry<T: Outcome>(line: &str) -> Result<Entry<T>, (usize, String)> {
     let (key, value) = line
         .split_once('\t')
-        .ok_or((1, "it has no key".to_owned()))?;
+        .ok_or((1, "the line has no key".to_owned()))?;
     let wrong = |e: ron::error::SpannedError| {
         let column = key.chars().count() + 1 + e.span.start.col;
         (column, plainly(&e.code))
@@ -313,7 +316,7 @@ fn entry<T: Outcome>(line: &str) -> Result<Entry<T>, (usize, String)> {
     if key == INPUT {
         return notation::read(value).map(Entry::Input).map_err(wrong);
     }
-    let key = Key::read(key).ok_or((1, "its key has not 32 hexadecimal digits".to_owned()))?;
+    let key = Key::read(key).ok_or((1, "the key must have 32 hexadecimal digits".to_owned()))?;
     let value = ron::from_str(value).map_err(wrong)?;
     Ok(Entry::Result(key, value))
 }
@@ -327,8 +330,8 @@ fn head() -> String {
     )
 }
 
-/// All that a file has, and the bytes of its whole lines; nothing where it has no first line yet. A file that says that it is of
-/// something else than `ours` is refused before its results are read.
+/// The contents of a file, and the length of its complete lines; empty if the first line is missing. A file
+/// that belongs to something else than `ours` is refused before its results are read.
 fn content<T: Outcome>(
     file: &File,
     path: &Path,
@@ -337,7 +340,7 @@ fn content<T: Outcome>(
     let failed = LogError::file(path);
     let size = file.metadata().map_err(failed)?.len();
     if size > MOST_BYTES {
-        let what = "no file of kept results is read that has";
+        let what = "too large for a log of results";
         let why = Unreadable::TooLarge {
             most: MOST_BYTES,
             what,
@@ -387,7 +390,7 @@ fn content<T: Outcome>(
     Ok((content, lines.whole))
 }
 
-/// Opens a file of results as the options say.
+/// Opens a file with these options.
 fn opened(path: &Path, options: &mut std::fs::OpenOptions) -> Result<File, LogError> {
     input::open(path, options).map_err(|why| LogError::Unread {
         path: path.to_owned(),
@@ -395,20 +398,18 @@ fn opened(path: &Path, options: &mut std::fs::OpenOptions) -> Result<File, LogEr
     })
 }
 
-/// Reads a file of results of a kind, without changing it; another process may be writing to it.
+/// Reads a log without changing it; another process may be writing to it.
 ///
-/// # Errors
-/// If it cannot be read, or is of something else.
+/// # Errors If it cannot be read, or belongs to something else.
 pub fn read<T: Outcome>(path: &Path, ours: &Input) -> Result<Content<T>, LogError> {
     let file = opened(path, File::options().read(true))?;
     Ok(content(&file, path, ours)?.0)
 }
 
 impl Log {
-    /// Opens or creates a file of results of a kind, and reads its content.
+    /// Opens or creates a log, and reads its contents.
     ///
-    /// # Errors
-    /// If it cannot be read or written, if it is something else, or if another run has it open.
+    /// # Errors If it cannot be read or written, is something else, or is open in another run.
     pub fn open<T: Outcome>(path: &Path, ours: &Input) -> Result<(Log, Content<T>), LogError> {
         let failed = LogError::file(path);
         let mut options = File::options();
@@ -435,10 +436,9 @@ impl Log {
         &self.path
     }
 
-    /// Keeps a result, in one write.
+    /// Appends a result, in one write.
     ///
-    /// # Errors
-    /// If it cannot be written, or if a file with it could not be read again.
+    /// # Errors If it cannot be written, or could not be read back.
     pub fn keep<T: Outcome>(&self, key: Key, value: &T) -> Result<(), LogError> {
         match value.is_sound() {
             true => self.write(&key.to_string(), value),
@@ -446,7 +446,7 @@ impl Log {
         }
     }
 
-    /// Says what the results are of.
+    /// Records what the results belong to.
     ///
     /// # Errors
     /// If it cannot be written.
@@ -479,7 +479,7 @@ mod tests {
         Log::open(path, &Input::new("test", Vec::new()))
     }
 
-    /// The error in a file of results, and its line.
+    /// The error for a file of results, and its line.
     fn refused(path: &Path) -> (usize, String) {
         match open(path) {
             Err(LogError::Broken { line, message, .. }) => (line, message),
@@ -506,7 +506,7 @@ mod tests {
             let line = 2 + rest[..place].matches('\n').count();
             assert_eq!(refused(&path), (line, CHANGED.to_owned()), "{changed}");
         }
-        // Without this line, the other results remain.
+        // Without this line, the other results can be read.
         let left: Vec<&str> = rest.lines().skip(1).collect();
         std::fs::write(&path, format!("{head}\n{}\n", left.join("\n"))).unwrap();
         let (_, found) = open(&path).unwrap();
@@ -514,7 +514,7 @@ mod tests {
     }
 
     #[test]
-    fn results_without_digests_are_read_but_not_behind_one_that_has_one() {
+    fn results_without_digests_are_read_only_before_those_with_one() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("a.log");
         let of = |key: &str| format!("{}\t[1.0]", Key::of([key]));
@@ -532,7 +532,7 @@ mod tests {
     }
 
     #[test]
-    fn a_number_that_no_run_has_is_refused_without_a_digest_too() {
+    fn non_finite_numbers_are_refused_even_without_a_digest() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("a.log");
         for number in ["NaN", "-NaN"] {
@@ -543,7 +543,7 @@ mod tests {
     }
 
     #[test]
-    fn results_are_there_again_and_a_cut_line_is_not() {
+    fn results_are_read_back_and_an_incomplete_line_is_dropped() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("a.log");
         let (log, found) = open(&path).unwrap();
@@ -567,7 +567,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_log_is_left_alone() {
+    fn other_files_are_not_changed() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("a.csv");
         for text in ["a,b\n1,2\n", "a,b"] {

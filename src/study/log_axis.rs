@@ -1,20 +1,20 @@
-//! An axis of numbers over several powers of ten, fitted to what is drawn over it.
+//! Logarithmic axes, fitted to the data.
 
-/// An axis in powers of ten.
+/// A logarithmic axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LogAxis {
-    /// Logarithm of the number at its beginning.
+    /// Decimal logarithm of the lower end.
     low: f64,
-    /// Logarithm of the number at its end.
+    /// Decimal logarithm of the upper end.
     high: f64,
 }
 
-/// Air at either end, as a part of the range; and the least range of an axis, in decades.
+/// Margin at either end as a fraction of the range, and the minimum range of an axis in decades.
 const AIR: f64 = 0.06;
 const LEAST: f64 = 0.5;
 
 impl LogAxis {
-    /// The axis that holds some numbers above zero, with a little air.
+    /// An axis that contains some positive numbers, with a small margin.
     pub fn of(values: impl Iterator<Item = f64>) -> LogAxis {
         let values = values.filter(|v| v.is_finite() && *v > 0.0);
         let range = values.fold(None, |range: Option<(f64, f64)>, v| {
@@ -30,13 +30,13 @@ impl LogAxis {
         }
     }
 
-    /// Where a number lies, from 0 to 1.
+    /// Position of a number, from 0 to 1.
     pub fn part(self, value: f64) -> f64 {
         let value = value.max(f64::MIN_POSITIVE).log10();
         ((value - self.low) / (self.high - self.low)).clamp(0.0, 1.0)
     }
 
-    /// Round numbers along it, about so many at most: powers of ten, or where these are few also their multiples.
+    /// About `most` round numbers along the axis: powers of ten and, if these are few, their multiples.
     pub fn ticks(self, most: usize) -> Vec<f64> {
         const STEPS: [&[f64]; 3] = [
             &[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0],
@@ -53,14 +53,14 @@ impl LogAxis {
         let decades = self.low.floor() as i32..=self.high.ceil() as i32;
         let decades = decades.filter(|decade| decade.rem_euclid(every) == 0);
         let all = decades.flat_map(|decade| steps.iter().map(move |step| (step, decade)));
-        // Written and read, so that it is the number that it says.
+        // Formatted and parsed, so that the value equals its label.
         let all = all.filter_map(|(step, decade)| format!("{step}e{decade}").parse::<f64>().ok());
         all.filter(|v| (self.low..=self.high).contains(&v.log10()))
             .collect()
     }
 }
 
-/// A number of an axis for a person.
+/// Formats a number of an axis.
 pub fn written(value: f64) -> String {
     match (1e-3..1e5).contains(&value) {
         true => format!("{value}"),
@@ -73,7 +73,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_axis_holds_what_it_is_made_of_and_little_more() {
+    fn an_axis_contains_its_values_with_a_small_margin() {
         let values = [3e-3, 0.2];
         let axis = LogAxis::of(values.into_iter().chain([f64::INFINITY, 0.0]));
         let parts = values.map(|v| axis.part(v));

@@ -1,10 +1,10 @@
-//! A convergence map of scenes: a cell for each combination of settings.
+//! Convergence maps of scenes: a cell for each combination of settings.
 //!
-//! A run that goes to its end may have gone there on a wrong branch. Its end is compared with that of a reference: of
-//! all runs that differ from it in nothing but how they are computed (`settings.…`, `history.increment`), the one with the
-//! smallest increment that went to the end with every loop settled; among equals the one whose strategy is the default, then
-//! the first. Where that is itself wrong, the map is; it names its references. Where there is nothing to compare with, a run
-//! that went to the end counts as converged, and the table says that it was not compared.
+//! A finished run may be on a wrong branch. Its end is compared with that of a reference. Candidates are all
+//! runs that differ only in how they are computed (`settings.…`, `history.increment`); the reference is the one
+//! with the smallest increment that finished with every loop settled; among equals the one with the default
+//! strategy, then the first. If the reference is wrong, so is the map; it therefore names its references.
+//! Without a reference, a finished run counts as converged, and the table shows that it was not compared.
 
 use super::figure::{changes, label, name, short_names};
 use super::log::Outcome;
@@ -22,17 +22,17 @@ use std::fmt::Write;
 use std::sync::Arc;
 use stickslip_core::model::Model;
 
-/// Ends of two runs that differ by more than this part of the largest value are on different branches, where nobody
-/// says otherwise.
+/// Default tolerance: runs whose ends differ by more than this fraction of the largest value are on different
+/// branches.
 pub const TOLERANCE: f64 = 1e-2;
 
-/// The strategy of a scene that names none.
+/// The strategy of scenes that do not set one.
 const DEFAULT_STRATEGY: &str = "ladder";
 
-/// What a run came to, as far as a map needs it.
+/// The result of a run, reduced to what a map needs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Ended {
-    /// What it failed by, in which increment, at which load factor; `None` if it went to the end.
+    /// Verdict, increment and load factor of a failure; `None` if the run finished.
     pub failed: Option<(RunVerdict, u32, f64)>,
     /// Accepted increments.
     pub increments: u64,
@@ -40,65 +40,65 @@ pub struct Ended {
     pub majors: u64,
     /// Minor iterations.
     pub minors: u64,
-    /// Increments that were accepted although a loop had not settled.
+    /// Increments accepted although a loop had not settled.
     pub unsettled: u64,
     /// Increments that jumped to another branch of equilibrium.
     #[serde(default)]
     pub jumped: u64,
-    /// What is compared, one a monitor.
+    /// The monitors that are compared.
     pub monitors: Vec<Seen>,
 }
 
 /// A monitor of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Seen {
-    /// The monitor's name.
+    /// Name of the monitor.
     pub name: String,
-    /// What it is, which says with what its differences are compared.
+    /// Kind of the monitor, which determines the scale of differences.
     pub kind: MonitorKind,
-    /// Its value in the end, and the largest magnitude that it ever had.
+    /// Its final value.
     pub end: f64,
-    /// The largest magnitude that it ever had.
+    /// Its largest magnitude.
     pub largest: f64,
 }
 
 /// A cell of a map.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cell {
-    /// What the run came to.
+    /// The result of the run.
     pub ended: Ended,
-    /// What that is worth.
+    /// Its verdict.
     pub verdict: RunVerdict,
-    /// The case that it was compared with (its own number: it is a reference), and the largest difference of a monitor
-    /// of its end, over the largest value of that kind.
+    /// The reference case (its own number if it is one), and the largest difference of a monitor's final value,
+    /// relative to the largest value of that kind.
     pub reference: Option<(usize, f64)>,
 }
 
 /// A convergence map.
 #[derive(Debug, Clone)]
 pub struct Map {
-    /// What was run.
+    /// The plan of the runs.
     pub plan: Arc<Plan>,
-    /// What the map is called.
+    /// Title.
     pub title: String,
-    /// Differences above it are wrong branches.
+    /// Larger differences mean a wrong branch.
     pub tolerance: f64,
-    /// One a case of the plan; `None` if it was stopped before.
+    /// One entry per case of the plan; `None` if interrupted before.
     pub cells: Vec<Option<Cell>>,
 }
 
-/// A grid of cells: the last column of the plan runs to the right, the one before it downwards.
+/// A grid of cells: the last column of the plan is horizontal, the one before it vertical.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Panel {
-    /// What all of its cells have in common; may be empty.
+    /// The settings that all its cells share; may be empty.
     pub name: String,
-    /// Names of what runs to the right and downwards.
+    /// Name of the horizontal axis.
     pub x: String,
-    /// Name of what runs downwards.
+    /// Name of the vertical axis.
     pub y: String,
-    /// Values that run to the right.
+    /// Values of the horizontal axis.
     pub columns: Vec<String>,
-    /// Values that run downwards.
+    /// Values of the vertical axis.
     pub rows: Vec<String>,
     /// Numbers of cases, row by row.
     pub cells: Vec<Vec<usize>>,
@@ -115,7 +115,7 @@ impl Outcome for Ended {
 }
 
 impl Ended {
-    /// What a run came to; `None` if it was stopped from outside.
+    /// The result of a run; `None` if interrupted.
     pub fn of(run: &Run, model: &Model) -> Option<Ended> {
         let failed = match &run.end {
             CaseEnd::Finished => None,
@@ -143,8 +143,8 @@ impl Ended {
         })
     }
 
-    /// Largest difference of a monitor's end to that of a reference, over the largest value of its kind in the
-    /// reference's run; infinite where something is no number.
+    /// Largest difference of a monitor's final value from the reference's, relative to the largest value of its
+    /// kind in the reference's run; infinite if a number is NaN.
     pub fn difference(&self, reference: &Ended) -> f64 {
         let scale = |kind: MonitorKind| {
             let of_kind = reference.monitors.iter().filter(|m| m.kind == kind);
@@ -170,8 +170,8 @@ impl Ended {
 }
 
 impl Cell {
-    /// Its glyph; for a cycle with the period, for a failure with the letter of its reason. One that jumped on its way has a
-    /// `↯` after it.
+    /// The glyph of the cell; with the period for a cycle, and the letter of the reason for a failure. A run
+    /// that jumped has `↯` after it.
     pub fn label(&self) -> String {
         let glyph = self.verdict.glyph();
         let jumped = if self.ended.jumped > 0 { "↯" } else { "" };
@@ -184,7 +184,8 @@ impl Cell {
     }
 }
 
-/// The cases of a plan as cells of a sweep; those of one problem, which are compared with each other, fall to one shard.
+/// The cases of a plan as cells of a sweep; the cases of one problem, which are compared with each other,
+/// belong to one shard.
 pub fn sweep(plan: &Plan) -> Sweep<'_, Ended> {
     let compute = |k: usize, spare: &Spare, watch: &Watch| {
         let case = &plan.cases[k];
@@ -204,7 +205,7 @@ pub fn sweep(plan: &Plan) -> Sweep<'_, Ended> {
 }
 
 impl Map {
-    /// Compares ends.
+    /// Compares the final values.
     pub fn judged(plan: impl Into<Arc<Plan>>, tolerance: f64, ended: Vec<Option<Ended>>) -> Map {
         let plan = plan.into();
         let mut groups: HashMap<Vec<&str>, Vec<usize>> = HashMap::new();
@@ -214,7 +215,7 @@ impl Map {
         let mut references = vec![None; plan.cases.len()];
         for members in groups.values() {
             let reference = reference(&plan, members, &ended);
-            // A run alone has nothing to be compared with, not even itself.
+            // A single run has no reference.
             if members.len() > 1 {
                 members.iter().for_each(|&k| references[k] = reference);
             }
@@ -285,7 +286,7 @@ impl Map {
         panels
     }
 
-    /// What it was made from, and by what.
+    /// Origin of the map, for footers.
     pub fn origin(&self) -> Vec<String> {
         let study = &self.plan.study;
         let mut made = match study.scenes.len() {
@@ -308,7 +309,7 @@ impl Map {
             n => format!(" and {n} more (the table has them)"),
         };
         let compared = match names.is_empty() {
-            true => "Nothing was compared: no two runs pose the same problem.".to_owned(),
+            true => "Nothing was compared: no two runs solve the same problem.".to_owned(),
             false => format!(
                 "Ends are compared with those of {}{more}; wrong: a monitor differs by more than {} of the largest value \
                  of its kind.",
@@ -319,12 +320,12 @@ impl Map {
         vec![made, compared, origin::made_by()]
     }
 
-    /// What tells a case from the others.
+    /// The settings that distinguish a case.
     pub fn name(&self, case: usize) -> String {
         name(&self.plan, case)
     }
 
-    /// A row for each cell, after lines that say what it is.
+    /// A table with a row for each cell, after comment lines with its origin.
     pub fn csv(&self) -> String {
         let mut text = super::csv::comments(&self.origin());
         let words = [
@@ -378,7 +379,7 @@ impl Map {
     }
 }
 
-/// The case among some that the others are compared with.
+/// The reference among some cases.
 fn reference(plan: &Plan, members: &[usize], ended: &[Option<Ended>]) -> Option<usize> {
     let sound = |k: &usize| {
         let ended = ended[*k].as_ref();

@@ -1,4 +1,4 @@
-//! A work-precision chart that is measured on a thread of its own, so that who wants it can go on.
+//! Measures a work-precision chart on a separate thread.
 
 use super::chart_file::Chart;
 use super::chart_runs::{Planned, sweep};
@@ -17,12 +17,12 @@ pub enum NotMeasured {
     /// The chart could not be measured.
     #[error(transparent)]
     Failed(#[from] PrecisionError),
-    /// The thread that measured has ended without an answer.
-    #[error("measuring broke down")]
+    /// The thread ended without a result.
+    #[error("the measurement ended unexpectedly")]
     BrokeDown,
 }
 
-/// A chart on its way; dropping it ends it.
+/// A chart being measured; dropping it interrupts the measurement.
 pub struct Measuring {
     stop: Arc<AtomicBool>,
     done: Arc<AtomicU64>,
@@ -31,8 +31,8 @@ pub struct Measuring {
 }
 
 impl Measuring {
-    /// Starts to measure a scene's file as it stands, with what was set from outside when it was opened: its own chart, or
-    /// with `over` the product of that. Each run is done once. Where a path or a value will not do, that is the result.
+    /// Starts to measure a scene, including its overrides: its own chart, or with `over` all combinations of
+    /// those settings. Each case runs once. An invalid path or value is reported as the result.
     pub fn start(scene: &Scene, over: Vec<Vary>) -> Measuring {
         let name = scene.name.clone();
         let set: Vec<(String, String)> = scene
@@ -69,24 +69,24 @@ impl Measuring {
                 all.store(increments, Ordering::Relaxed);
                 precision::run(&planned, measure, &watch)
             });
-            // Nobody may want it any more.
+            // The receiver may be gone.
             let _ = told.send(measured.map_err(NotMeasured::from));
         });
         measuring
     }
 
-    /// Increments done, and all that are planned; 0 until that is known.
+    /// Increments done, and planned in total; 0 until that is known.
     pub fn progress(&self) -> (u64, u64) {
         let [done, all] = [&self.done, &self.all].map(|count| count.load(Ordering::Relaxed));
         (done, all)
     }
 
-    /// Asks it to end; what was measured until then is the result.
+    /// Interrupts the measurement; the completed runs are the result.
     pub fn interrupt(&self) {
         self.stop.store(true, Ordering::Relaxed);
     }
 
-    /// The chart, or why there is none, once it is done.
+    /// The chart, or why there is none, once the measurement has ended.
     pub fn result(&self) -> Option<Result<Precision, NotMeasured>> {
         match self.result.try_recv() {
             Ok(result) => Some(result),

@@ -1,38 +1,38 @@
-//! What monitors are measured in: those of one kind can be compared, and have one scale.
+//! Kinds of monitors: those of one kind share a unit and a scale, and can be compared.
 
 use serde::{Deserialize, Serialize};
 use stickslip_core::model::{Model, ToldKind, Watched};
 
-/// What a monitor is: those of one kind have one scale.
+/// Kind of a monitor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename = "Kind")]
 pub enum MonitorKind {
     /// A displacement or gap.
     Length,
-    /// An angle, radians.
+    /// An angle in radians.
     Rotation,
     /// A force.
     Force,
-    /// A number of nodes, which is not compared.
+    /// A number of nodes; not compared.
     Count,
-    /// A force by area.
+    /// A force per area.
     Pressure,
-    /// A length that is a measure of error, and is not compared.
+    /// A length that measures an error; not compared.
     Drift,
 }
 
 impl MonitorKind {
-    /// Whether runs are told apart by it.
+    /// Whether runs are compared by it.
     pub fn is_compared(self) -> bool {
         !matches!(self, MonitorKind::Drift | MonitorKind::Count)
     }
 }
 
-/// What a monitor is.
+/// The kind of a monitor.
 pub fn kind(model: &Model, watched: &Watched) -> MonitorKind {
     match watched {
         Watched::Displacement { dof } => {
-            // The rotation is the third of a node.
+            // The rotation is the third unknown of a node.
             let turns = |n: usize| model.dofs.count[n] == 3 && model.dofs.first[n] + 2 == *dof;
             match (0..model.nodes.len()).any(turns) {
                 true => MonitorKind::Rotation,

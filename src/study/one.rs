@@ -1,4 +1,4 @@
-//! One run of a study, on one thread, and the solvers that runs share.
+//! One run of a study on one thread, and the solvers that runs share.
 
 use super::reason::Reason;
 use super::result::{CaseEnd, Failed, Row, Run};
@@ -12,15 +12,15 @@ use stickslip_core::step::drive::{RunEnd, Until};
 use stickslip_core::step::event::Outcome;
 use stickslip_core::step::stepper::Stepper;
 
-/// Who watches a study from outside. Both are called from all threads.
+/// Callbacks of a study, called from all threads.
 pub struct Watch<'a> {
-    /// Whether the study is to end now.
+    /// Whether the study should end now.
     pub stop: &'a (dyn Fn() -> bool + Sync),
-    /// An increment was accepted, or that many will never be, because their run has ended.
+    /// Reports accepted increments, or those skipped because their run has ended.
     pub done: &'a (dyn Fn(u64) + Sync),
 }
 
-/// Solvers whose runs have ended. The next run goes on with the workspace of one where its scene is laid out alike.
+/// Solvers of finished runs. The next run reuses the workspace of one with the same layout.
 #[derive(Default)]
 pub struct Spare {
     steppers: Mutex<Vec<Stepper>>,
@@ -47,7 +47,8 @@ impl Spare {
     }
 }
 
-/// Runs a model to the end of its history, which has so many increments, to its first failure, or to where it is stopped.
+/// Runs a model to the end of its history (with this number of increments), to its first failure, or until
+/// interrupted.
 pub fn one(increments: u64, model: Arc<Model>, spare: &Spare, watch: &Watch) -> Run {
     let _place = spare.room.take(&model);
     let monitors = model.monitors.iter().map(|m| m.name.clone()).collect();
@@ -103,7 +104,7 @@ pub fn one(increments: u64, model: Arc<Model>, spare: &Spare, watch: &Watch) -> 
     run
 }
 
-/// What the stepper stands at: the start of an increment.
+/// The row of the stepper's state, at the start of an increment.
 fn row(stepper: &mut Stepper, majors: u32, minors: u64, unsettled: u32) -> Row {
     let mut monitors = Vec::new();
     stepper.monitors(&mut monitors);

@@ -1,6 +1,6 @@
-//! Where results come from: the program's revision, and the machine.
+//! The origin of results: the program's revision, and the machine.
 
-/// The revision that the program was built from, as `build.rs` found it; a development build does not ask for it.
+/// The revision that the program was built from, set by `build.rs`; development builds have none.
 pub const REVISION: &str = env!("STICKSLIP_REVISION");
 
 /// The program's version, with its revision.
@@ -16,19 +16,19 @@ pub fn program() -> String {
     format!("stickslip {VERSION}")
 }
 
-/// The program and the machine, as tables and pictures name them.
+/// The program and the machine, as shown in tables and pictures.
 pub fn made_by() -> String {
     format!("{} on {}", program(), machine())
 }
 
-/// The processor's name, where the system tells it, else its kind; and the number of cores.
+/// The processor's name or, if unknown, its architecture; and the number of cores.
 pub fn machine() -> String {
     let cores = std::thread::available_parallelism().map_or(1, |n| n.get());
     let (system, kind) = (std::env::consts::OS, std::env::consts::ARCH);
     format!("{}, {cores} cores, {system}/{kind}", processor())
 }
 
-/// The processor's name, where the system tells it, else its kind.
+/// The processor's name or, if unknown, its architecture.
 pub fn processor() -> String {
     let told = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let name = told.lines().find_map(|line| {

@@ -1,11 +1,10 @@
-//! What stands for `pen` in a build without the feature `plot`: every function fails.
+//! Replaces `pen` in builds without the feature `plot`: every function fails.
 
 use super::drawn::{PlotError, Shape};
 
-/// Whether this build draws.
+/// Checks whether this build can draw.
 ///
-/// # Errors
-/// That it does not.
+/// # Errors Always.
 pub fn ready() -> Result<(), PlotError> {
     Err(PlotError::NotBuilt)
 }

@@ -1,6 +1,6 @@
-//! Places for labels in a drawing, so that none lies over another, over a marker, or outside.
+//! Places labels in a drawing, so that they do not overlap each other or markers, and stay inside.
 
-/// A rectangle on a sheet; pixels, y downwards.
+/// A rectangle on a sheet; in pixels, y downwards.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Patch {
     /// Its upper left corner.
@@ -10,7 +10,7 @@ pub struct Patch {
 }
 
 impl Patch {
-    /// The patch of a size about a point.
+    /// The patch of this size around a point.
     pub fn about((x, y): (f64, f64), (width, height): (f64, f64)) -> Patch {
         Patch {
             from: (x - 0.5 * width, y - 0.5 * height),
@@ -18,7 +18,7 @@ impl Patch {
         }
     }
 
-    /// Whether two have more than a border in common.
+    /// Whether two patches share more than a border.
     pub fn meets(&self, other: &Patch) -> bool {
         self.from.0 < other.to.0
             && other.from.0 < self.to.0
@@ -33,7 +33,7 @@ impl Patch {
             && self.to.1 >= other.to.1
     }
 
-    /// Its middle.
+    /// Centre.
     pub fn middle(&self) -> (f64, f64) {
         (
             0.5 * (self.from.0 + self.to.0),
@@ -42,14 +42,14 @@ impl Patch {
     }
 }
 
-/// What is taken of a window already.
+/// The occupied parts of a window.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Placing {
     window: Patch,
     taken: Vec<Patch>,
 }
 
-/// Directions in which a label is tried: beside, then above and below.
+/// Directions in which a label is tried: next to the point first, then above and below.
 const DIRECTIONS: [(f64, f64); 8] = [
     (1.0, -1.0),
     (1.0, 1.0),
@@ -62,7 +62,7 @@ const DIRECTIONS: [(f64, f64); 8] = [
 ];
 
 impl Placing {
-    /// Nothing is taken of a window yet.
+    /// An empty window.
     pub fn within(window: Patch) -> Placing {
         Placing {
             window,
@@ -70,12 +70,12 @@ impl Placing {
         }
     }
 
-    /// Takes a patch, whatever lies there.
+    /// Occupies a patch, whether free or not.
     pub fn take(&mut self, patch: Patch) {
         self.taken.push(patch);
     }
 
-    /// Takes what a line covers, in pieces.
+    /// Occupies the area of a line, in pieces.
     pub fn take_line(&mut self, from: (f64, f64), to: (f64, f64)) {
         const PIECE: f64 = 8.0;
         let length = (to.0 - from.0).hypot(to.1 - from.1);
@@ -93,10 +93,10 @@ impl Placing {
         }
     }
 
-    /// Finds and takes a place for a label of a size beside a point, no farther from it than `reach`; the nearest that is
-    /// free. `None` where all is taken.
+    /// Finds and occupies a place for a label next to a point: the closest free one within `reach`. `None` if
+    /// there is none.
     pub fn place(&mut self, at: (f64, f64), size: (f64, f64), reach: f64) -> Option<Patch> {
-        /// Air between a point and its label, and between two tries.
+        /// Distance between a point and its label, and between two tries.
         const AIR: f64 = 7.0;
         let mut away = AIR;
         while away <= reach {
@@ -123,7 +123,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_label_lies_over_another_or_outside() {
+    fn labels_do_not_overlap_and_stay_inside() {
         let window = Patch {
             from: (0.0, 0.0),
             to: (300.0, 200.0),

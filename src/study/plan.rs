@@ -1,4 +1,4 @@
-//! The product of all settings of a study, with every case found sound before any is run.
+//! Plans a study: all combinations of its settings, each checked before anything runs.
 
 use super::read::{AxisQuantity, Study, Vary};
 use super::shard::Key;
@@ -11,104 +11,102 @@ use stickslip_scene::format::error::{SceneError, did_you_mean, some_of};
 use stickslip_scene::format::paths::{self, Listed};
 use stickslip_scene::{Scene, increments};
 
-/// Most cells of a sweep.
+/// Maximum number of cells of a sweep.
 pub const MOST_CASES: u64 = 10_000_000;
 
-/// What is run.
+/// A planned study.
 #[derive(Debug, Clone)]
 pub struct Plan {
-    /// What its author asked for.
+    /// The study as requested.
     pub study: Study,
-    /// What it is called.
+    /// Title.
     pub title: String,
-    /// What differs between the cases: `scene` if there are several, then the varied paths.
+    /// The columns that distinguish cases: `scene` if there are several, then the varied paths.
     pub columns: Vec<String>,
-    /// The runs, in the order of the table.
+    /// The runs in the order of the table.
     pub cases: Vec<Case>,
-    /// Names of all monitors, in the order in which the scenes first have them.
+    /// Names of all monitors, in order of first occurrence.
     pub monitors: Vec<String>,
-    /// What runs to the right in its figure.
+    /// Horizontal axis of the figure.
     pub x: AxisQuantity,
-    /// What runs upwards in its figure.
+    /// Vertical axis of the figure.
     pub y: AxisQuantity,
 }
 
 /// One run of a study.
 #[derive(Debug, Clone)]
 pub struct Case {
-    /// A value per column of the plan.
+    /// One value per column of the plan.
     pub values: Vec<String>,
-    /// Its scene, which it has in common with others.
+    /// Its scene, shared with other cases.
     of: Arc<Posed>,
-    /// A value for each path that is set.
+    /// One value per path that is set.
     set: Vec<String>,
-    /// Increments from start to end of the history.
+    /// Number of increments of the history.
     pub increments: u64,
 }
 
-/// What all cases of a scene have in common.
+/// Data shared by all cases of a scene.
 #[derive(Debug)]
 struct Posed {
     /// The scene's text.
     text: Arc<str>,
-    /// Key of the meshes that it imports, if it does.
+    /// Key of the imported meshes, if there are any.
     meshes: Option<String>,
-    /// Key of the text and these.
+    /// Key of the text and the meshes.
     key: Key,
     base: Base,
-    /// The paths that are set, in this order.
+    /// The paths that are set, in order.
     paths: Vec<String>,
-    /// Where each of them stands in the scene; `None` where one stands nowhere, or is not for the base to set.
+    /// Location of each path in the scene; `None` if one does not exist or cannot be set in the base scene.
     places: Option<Vec<Place>>,
 }
 
 impl Case {
     /// The scene with the settings of this case.
     ///
-    /// # Errors
-    /// None that the plan has not refused already.
+    /// # Errors Never; the plan has checked all cases.
     pub fn open(&self) -> Result<Scene, SceneError> {
         let pairs = self.of.paths.iter().zip(&self.set);
         let settings: Vec<_> = pairs.map(|(p, v)| (p.clone(), v.clone())).collect();
         let scene = self.of.base.scene();
         match self.of.text.is_empty() {
-            // What was read from files of other programs has no text of its own.
+            // Scenes imported from other programs have no text.
             true => scene.with_all(&settings),
             false => Scene::from_text(&scene.name, &self.of.text, &settings),
         }
     }
 
-    /// Its model: that of the scene that [`Case::open`] reads, without reading it.
+    /// The model of the case, without parsing the scene again.
     ///
-    /// # Errors
-    /// None that the plan has not refused already.
+    /// # Errors Never; the plan has checked all cases.
     pub fn model(&self) -> Result<Model, SceneError> {
         let quick = self.placed().and_then(|set| self.of.base.model(&set));
         quick.map_or_else(|| Ok(self.open()?.model), Ok)
     }
 
-    /// A key of the scene's text, the meshes that it imports, and each of some paths with its value.
+    /// Key of the scene's text, its imported meshes, and the paths selected by `counts` with their values.
     fn key(&self, counts: impl Fn(&str) -> bool) -> Key {
         let settings = self.of.paths.iter().zip(&self.set);
         let settings = settings.filter(|(path, _)| counts(path));
         settings.fold(self.of.key, |key, (path, value)| key.and(path).and(value))
     }
 
-    /// What was set last at a path from outside, if anything.
+    /// The last value set at a path, if any.
     pub fn value(&self, path: &str) -> Option<&str> {
         let set = self.of.paths.iter().rposition(|own| own == path)?;
         self.set.get(set).map(String::as_str)
     }
 
-    /// What is set, by where it stands.
+    /// The settings, by location in the scene.
     fn placed(&self) -> Option<Vec<(&Place, &str)>> {
         let places = self.of.places.as_ref()?;
         let values = self.set.iter().map(String::as_str);
         Some(places.iter().zip(values).collect())
     }
 
-    /// Finds out the increments of its history, and that the scene is sound with its settings. Some monitors hang on these:
-    /// their names where they are not those of the base.
+    /// Determines the number of increments, and checks the scene with its settings. Returns the names of the
+    /// monitors if they differ from those of the base scene.
     fn check(&mut self) -> Result<Option<Vec<String>>, SceneError> {
         let quick = self.placed().and_then(|set| self.of.base.increments(&set));
         if let Some(count) = quick {
@@ -122,10 +120,10 @@ impl Case {
 }
 
 impl Plan {
-    /// Lays a study out.
+    /// Plans a study.
     ///
-    /// # Errors
-    /// If a scene, a path or a value will not do, in any of the cases, or an axis is nothing that the scenes have.
+    /// # Errors If a scene, a path or a value is invalid in any case, or the scenes do not have the quantity of
+    /// an axis.
     pub fn new(mut study: Study) -> Result<Plan, SceneError> {
         check_values(&mut study)?;
         let scene = (study.scenes.len() > 1).then(|| "scene".to_owned());
@@ -153,7 +151,7 @@ impl Plan {
         Ok(plan)
     }
 
-    /// The cases as cells of a sweep, whose shard depends on those paths that `count`.
+    /// The cases as cells of a sweep; the shard depends on the paths selected by `count`.
     pub(super) fn cells(&self, count: fn(&str) -> bool) -> Vec<Cell> {
         let cell = |case: &Case| Cell {
             key: case.key(|_| true),
@@ -163,14 +161,14 @@ impl Plan {
         self.cases.iter().map(cell).collect()
     }
 
-    /// The problem that a case poses: its values of all columns but those that say how it is computed.
+    /// The values of a case that define its problem: all columns except those about how it is computed.
     pub(super) fn posed<'a>(&self, case: &'a Case) -> Vec<&'a str> {
         let values = self.columns.iter().zip(&case.values);
         let posed = values.filter(|(path, _)| poses(path));
         posed.map(|(_, value)| value.as_str()).collect()
     }
 
-    /// All that the results of the cases depend on, by name.
+    /// Everything that the results depend on, by name.
     pub fn input(&self) -> Vec<(String, String)> {
         let mut parts: Vec<(String, String)> = Vec::new();
         let mut posed: Option<&Arc<Posed>> = None;
@@ -197,7 +195,7 @@ impl Plan {
         if self.title.is_empty() {
             self.title.clone_from(&scene.spec.title);
         }
-        // Each path that is set, and by which number of all that is set and varied.
+        // Each path that is set, with the index of its setting or variation.
         let patterns = study.set.iter().map(|(path, _)| path);
         let patterns = patterns.chain(study.vary.iter().map(|vary| &vary.path));
         let mut set: Vec<(String, usize)> = Vec::new();
@@ -258,7 +256,7 @@ impl Plan {
                 .chain(self.monitors.iter().map(String::as_str))
         };
         let message = format!(
-            "there is no {name:?} to draw{}; there are {}",
+            "unknown quantity {name:?}{}; available: {}",
             did_you_mean(name, known()),
             some_of(known())
         );
@@ -274,12 +272,12 @@ impl Posed {
     }
 }
 
-/// Whether a path says which problem it is, and not how it is computed.
+/// Whether a path belongs to the problem, and not to how it is computed.
 pub(super) fn poses(path: &str) -> bool {
     !path.starts_with("settings.") && !["history.increment", "history.least"].contains(&path)
 }
 
-/// Makes paths whole, and refuses what would run nothing, the same thing twice, or for ever.
+/// Completes paths, and rejects empty, repeated or too many values.
 fn check_values(study: &mut Study) -> Result<(), SceneError> {
     if let Some(first) = study.scenes.first() {
         let spec = Scene::open(first, &[])?.spec;
@@ -305,7 +303,7 @@ fn check_values(study: &mut Study) -> Result<(), SceneError> {
     }
     if cases > MOST_CASES {
         return wrong(format!(
-            "the product has {cases} runs; at most {MOST_CASES} can be had at once (`help cluster`)"
+            "the study has {cases} runs; the limit is {MOST_CASES} (`help cluster`)"
         ));
     }
     Ok(())
@@ -329,18 +327,19 @@ pub fn product(vary: &[Vary]) -> Vec<Vec<(String, String)>> {
     all
 }
 
-/// What `2x` means: twice what the scene has; `None` if it is no multiple, or there is no number to be multiplied.
+/// The value of `2x`: twice the scene's value; `None` if it is not a multiple, or the scene's value is not a
+/// number.
 fn multiple(known: &[Listed], path: &str, value: &str) -> Option<String> {
     let factor: f64 = value.strip_suffix('x')?.parse().ok()?;
     let own = known.iter().find(|listed| listed.path == path)?;
     let product = factor * own.value.parse::<f64>().ok()?;
-    // As a person would have typed it, without the round-off of the product.
+    // Formatted as typed, without the round-off of the product.
     let short: f64 = format!("{product:.12e}").parse().ok()?;
     Some(short.to_string())
 }
 
-/// The paths of a scene that fit a pattern, in which `*` stands for any step. A pattern that nothing fits stays, for the
-/// scene to refuse.
+/// The paths of a scene that match a pattern, with `*` for any step. A pattern without a match is
+/// returned unchanged, and the scene rejects it.
 fn expanded(known: &[Listed], pattern: &str) -> Vec<String> {
     let mut all: Vec<String> = Vec::new();
     if pattern.contains('*') {
@@ -353,7 +352,7 @@ fn expanded(known: &[Listed], pattern: &str) -> Vec<String> {
     all
 }
 
-/// Whether a path is that of a pattern in which `*` stands for one step between points.
+/// Whether a path matches a pattern with `*` for one step between dots.
 fn fits(pattern: &str, path: &str) -> bool {
     let (pattern, path): (Vec<_>, Vec<_>) =
         (pattern.split('.').collect(), path.split('.').collect());
@@ -369,7 +368,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_star_is_one_step() {
+    fn a_star_matches_one_step() {
         assert!(fits("materials.*.update", "materials.lower.update"));
         assert!(!fits("materials.*.update", "materials.lower.E"));
         assert!(!fits("materials.*", "materials.lower.E"));

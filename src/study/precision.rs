@@ -1,11 +1,12 @@
-//! Work against precision: what a setting costs, and how far it is from the truth.
+//! Work-precision charts: the cost and the error of settings.
 //!
-//! A chart has series of runs of one scene. Each run's **error** is the largest difference of a monitor to the
-//! reference's, over the reference's largest value of that kind (length, rotation, force), at those loads that the reference
-//! and every run that went to its end have in common; a run that failed has none. Its **cost** is the processor time of its
-//! thread, from the made scene to the end of the history (the median of some repetitions), its factorizations (as the
-//! stepper makes them: one a major iteration where it condenses, else one a minor), and its minor iterations. Of the runs
-//! that went to the end, those that no other one beats in both are the **front**; errors at round-off ([`ROUND_OFF`]) are equal there.
+//! A chart contains series of runs of one scene. The **error** of a run is the largest difference between a
+//! monitor and the reference, relative to the reference's largest value of that kind (length, rotation, force),
+//! at those loads that the reference and all finished runs have in common; a failed run has no error. The
+//! **cost** of a run is the processor time of its thread, from the built scene to the end of the history (the
+//! median of some repetitions), its factorizations (with condensation one per major iteration, otherwise one
+//! per minor), and its minor iterations. The **front** consists of the finished runs that no other run beats in
+//! both error and cost; errors at round-off ([`ROUND_OFF`]) count as equal.
 
 use super::chart_file::{Chart, Truth};
 use super::chart_runs::{Planned, Timed, sweep};
@@ -21,7 +22,7 @@ use std::collections::HashMap;
 use std::num::NonZeroUsize;
 use stickslip_core::model::Model;
 
-/// Errors below this are round-off: a few thousand operations with the numbers' own.
+/// Errors below this are round-off: a few thousand times the machine precision.
 pub const ROUND_OFF: f64 = 4096.0 * f64::EPSILON;
 
 /// A work-precision chart of one scene.
@@ -29,19 +30,19 @@ pub const ROUND_OFF: f64 = 4096.0 * f64::EPSILON;
 pub struct Precision {
     /// The scene's name.
     pub scene: String,
-    /// What the chart is called.
+    /// Title.
     pub title: String,
-    /// The monitors whose errors count.
+    /// The monitors whose errors are measured.
     pub monitors: Vec<String>,
-    /// What it was made from, and by what.
+    /// Origin of the chart, for footers.
     pub about: Vec<String>,
     /// Names of the series.
     pub series: Vec<String>,
     /// The runs.
     pub points: Vec<Point>,
-    /// What is counted as cost.
+    /// Kind of cost.
     pub cost: Cost,
-    /// The error that is wanted, if any.
+    /// Target error, if any.
     pub target: Option<f64>,
 }
 
@@ -50,13 +51,13 @@ pub struct Precision {
 pub struct Point {
     /// Number of its series.
     pub series: usize,
-    /// What tells it from the others of its series.
+    /// The settings that distinguish it within its series.
     pub name: String,
-    /// The same in full, as one would set it.
+    /// All its settings: path and value.
     pub settings: Vec<(String, String)>,
-    /// Median processor time (seconds), of so many repetitions.
+    /// Median processor time in seconds.
     pub seconds: f64,
-    /// How many repetitions.
+    /// Number of repetitions.
     pub repeats: usize,
     /// Factorizations of the bodies.
     pub factorizations: u64,
@@ -68,26 +69,26 @@ pub struct Point {
     pub increments: u64,
     /// Number of equations of the bodies.
     pub unknowns: usize,
-    /// Why it did not get to its end; `None` if it did.
+    /// Why it failed; `None` if it finished.
     pub failed: Option<String>,
-    /// Increments that were accepted although a loop had not settled.
+    /// Increments accepted although a loop had not settled.
     pub unsettled: usize,
-    /// `None` if it failed, or if it is itself the reference.
+    /// Relative error; `None` if the run failed or is the reference.
     pub error: Option<f64>,
-    /// Whether it is itself the reference.
+    /// Whether it is the reference.
     pub reference: bool,
-    /// No other run is both cheaper and nearer.
+    /// Whether it is on the front.
     pub front: bool,
 }
 
 impl Point {
-    /// Whether its error is round-off: such runs are equally near.
+    /// Whether its error is round-off: such errors count as equal.
     pub fn is_round_off(&self) -> bool {
         self.error.is_some_and(|error| error < ROUND_OFF)
     }
 }
 
-/// What is counted as cost.
+/// Kind of cost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Cost {
     /// Processor time, seconds.
@@ -114,7 +115,7 @@ stickslip_core::words! {
 }
 
 impl Cost {
-    /// That of a run.
+    /// The cost of a run.
     pub fn of(self, point: &Point) -> f64 {
         match self {
             Cost::Time => point.seconds,
@@ -124,27 +125,27 @@ impl Cost {
     }
 }
 
-/// How a chart is measured.
+/// How to measure a chart.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measure {
-    /// What is counted as cost.
+    /// Kind of cost.
     pub cost: Cost,
-    /// The error that is wanted, if any; relative.
+    /// Target error (relative), if any.
     pub target: Option<f64>,
-    /// Repetitions of every run, of which the median time counts.
+    /// Number of repetitions of each run; the median time counts.
     pub repeats: usize,
 }
 
-/// Why a chart could not be made.
+/// Why a chart cannot be made.
 #[derive(Debug, thiserror::Error)]
 pub enum PrecisionError {
-    /// The table of the reference cannot be read.
+    /// The reference table cannot be read.
     #[error(transparent)]
     Table(#[from] TableError),
-    /// There is nothing to compare with.
+    /// There is no reference.
     #[error("{0}")]
     Reference(String),
-    /// The runs cannot be had.
+    /// The runs cannot be computed.
     #[error(transparent)]
     Run(Box<RunError>),
 }
@@ -155,7 +156,7 @@ impl From<RunError> for PrecisionError {
     }
 }
 
-/// A run with what it is compared by.
+/// A run with the data for comparison.
 struct Measured {
     point: Point,
     run: Run,
@@ -163,10 +164,9 @@ struct Measured {
     path: Vec<f64>,
 }
 
-/// Runs all of a chart, one run at a time.
+/// Runs all cases of a chart, one at a time.
 ///
-/// # Errors
-/// As [`Precision::new`], and if a scene will not open.
+/// # Errors As [`Precision::new`], and if a scene cannot be opened.
 pub fn run(
     planned: &Planned,
     measure: Measure,
@@ -223,7 +223,7 @@ fn kinds(model: &Model) -> Vec<MonitorKind> {
     model.monitors.iter().map(|m| kind(model, &m.of)).collect()
 }
 
-/// The reference of a chart; with the number of the run that it is, if it is one of them.
+/// The reference of a chart, and the number of its run if it is one of the runs.
 fn truth(
     chart: &Chart,
     all: &[Measured],
@@ -239,13 +239,13 @@ fn truth(
         Truth::Builtin => {
             let name = chart.scene.strip_suffix(".ron").unwrap_or(&chart.scene);
             let known = Reference::builtin(name, &path);
-            let none = || wrong(format!("there is no reference for {name} in the program"));
+            let none = || wrong(format!("there is no built-in reference for {name}"));
             Ok((known.ok_or_else(none)??, None))
         }
         Truth::Run(settings) => {
             let names: Vec<String> = assigned(settings).collect();
             let name = format!("a run with {}", names.join(", "));
-            let stopped = "it was interrupted before its reference was there";
+            let stopped = "interrupted before the reference was computed";
             let run = run.ok_or_else(|| wrong(stopped.to_owned()))?.run;
             match run.failed() {
                 None => Ok((Reference::of(&run, name, &path), None)),
@@ -266,9 +266,8 @@ fn truth(
                 .enumerate()
                 .filter(|m| whole(&m))
                 .max_by_key(rank);
-            let (k, m) = finest.ok_or_else(|| {
-                wrong("no run went to its end, so that there is nothing to compare with".to_owned())
-            })?;
+            let (k, m) = finest
+                .ok_or_else(|| wrong("no run finished, so there is no reference".to_owned()))?;
             let series = &chart.series[m.point.series].name;
             let name = format!("the finest run of the set ({series}, {})", m.point.name);
             Ok((Reference::of(&m.run, name, &m.path), Some(k)))
@@ -276,7 +275,7 @@ fn truth(
     }
 }
 
-/// Measures all errors; the number of loads at which.
+/// Measures all errors; returns the number of loads compared.
 fn compare(
     precision: &mut Precision,
     all: &mut [Measured],
@@ -297,7 +296,7 @@ fn compare(
     precision.monitors = reference.monitors.iter().filter(counts).cloned().collect();
     if precision.monitors.is_empty() {
         return Err(PrecisionError::Reference(format!(
-            "the reference has no monitor to measure by; the scene has {names}"
+            "the reference has none of the scene's monitors ({names})"
         )));
     }
     let curve = |m: &Measured| Reference::of(&m.run, String::new(), &m.path);
@@ -312,7 +311,7 @@ fn compare(
     let rows: Vec<_> = reference.rows.iter().filter(common).collect();
     if rows.is_empty() {
         return Err(PrecisionError::Reference(
-            "there is no load that the reference and all runs have in common".to_owned(),
+            "the reference and the runs have no load in common".to_owned(),
         ));
     }
     let columns: Vec<(usize, &String)> = precision
@@ -351,13 +350,13 @@ fn compare(
     Ok(rows.len())
 }
 
-/// Refuses monitors that are asked for by name where the reference does not have them, or they are zero all along.
+/// Rejects monitors requested by name that the reference does not have, or that are always zero.
 fn measurable(reference: &Reference, by: &[String]) -> Result<(), PrecisionError> {
     for name in by {
         let place = reference.monitors.iter().position(|own| own == name);
         let Some(place) = place else {
             return Err(PrecisionError::Reference(format!(
-                "{} has no {name}; it has {} (--reference finest takes a run of the set, which has all monitors of the scene)",
+                "{} has no monitor {name}; it has {} (with --reference finest, a run with all monitors of the scene is the reference)",
                 reference.source,
                 reference.monitors.join(", ")
             )));
@@ -365,14 +364,14 @@ fn measurable(reference: &Reference, by: &[String]) -> Result<(), PrecisionError
         let values = reference.rows.iter().map(|row| row.values[place].abs());
         if values.fold(0.0, f64::max) == 0.0 {
             return Err(PrecisionError::Reference(format!(
-                "{name} is zero all along in the reference, so that no error is a part of it"
+                "{name} is always zero in the reference, so it has no relative error"
             )));
         }
     }
     Ok(())
 }
 
-/// Marks the runs that none beats in cost and error.
+/// Marks the runs on the front.
 pub(super) fn mark_front(points: &mut [Point], cost: Cost) {
     let measured: Vec<Option<(f64, f64)>> = points
         .iter()
@@ -388,10 +387,9 @@ pub(super) fn mark_front(points: &mut [Point], cost: Cost) {
 }
 
 impl Precision {
-    /// A chart of its runs, in the order of [`sweep`]: those that were done.
+    /// A chart of the completed runs, in the order of [`sweep`].
     ///
-    /// # Errors
-    /// If the reference will not do.
+    /// # Errors If the reference is not suitable.
     pub fn new(
         planned: &Planned,
         results: Vec<Option<Timed>>,
@@ -439,7 +437,7 @@ impl Precision {
         Ok(precision)
     }
 
-    /// The cheapest run that is as near as is wanted.
+    /// The cheapest run with at most the target error.
     pub fn cheapest(&self) -> Option<&Point> {
         let target = self.target?;
         let near = self
@@ -449,7 +447,7 @@ impl Precision {
         near.min_by(|a, b| self.cost.of(a).total_cmp(&self.cost.of(b)))
     }
 
-    /// What there is to say about the wanted error.
+    /// A sentence about the target error.
     pub fn verdict(&self) -> Option<String> {
         let target = self.target?;
         let meets = |point: &Point| {
@@ -470,7 +468,7 @@ impl Precision {
     }
 }
 
-/// What a chart was made from, and by what.
+/// The origin of a chart, for footers.
 fn origin(
     chart: &Chart,
     precision: &Precision,
@@ -484,7 +482,7 @@ fn origin(
     vec![
         format!("Scene: {}{set}", chart.scene),
         format!(
-            "Error: largest difference of {} over the largest value, at {loads} loads that all whole runs have, to {}",
+            "Error: largest difference of {}, relative to the largest value, at {loads} loads common to all finished runs; reference: {}",
             precision.monitors.join(", "),
             reference.source
         ),
@@ -522,14 +520,14 @@ mod tests {
     }
 
     #[test]
-    fn the_front_is_what_nothing_beats_in_both() {
+    fn the_front_has_the_runs_that_no_other_beats_in_both() {
         let mut points = vec![
             point(1.0, Some(1e-2)),
             point(2.0, Some(1e-3)),
-            point(3.0, Some(2e-3)), // beaten by the one before
+            point(3.0, Some(2e-3)), // worse than the previous one
             point(4.0, Some(1e-4)),
             point(0.1, None),       // failed
-            point(4.0, Some(1e-4)), // a tie beats nobody
+            point(4.0, Some(1e-4)), // equal in cost
         ];
         mark_front(&mut points, Cost::Time);
         let front: Vec<bool> = points.iter().map(|p| p.front).collect();
@@ -537,7 +535,7 @@ mod tests {
     }
 
     #[test]
-    fn errors_at_round_off_tie_so_that_the_cheapest_of_them_stays() {
+    fn of_errors_at_round_off_only_the_cheapest_is_on_the_front() {
         let mut points = vec![
             point(1.0, Some(3e-14)),
             point(2.0, Some(1e-16)),
@@ -552,7 +550,7 @@ mod tests {
     }
 
     #[test]
-    fn every_built_in_chart_is_sound() {
+    fn every_built_in_chart_is_valid() {
         for name in chart_file::names() {
             let chart = Chart::open(name, &[]).unwrap_or_else(|e| panic!("{e}"));
             let planned = Planned::new(chart).unwrap_or_else(|e| panic!("{e}"));

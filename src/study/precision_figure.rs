@@ -1,7 +1,8 @@
-//! Work-precision charts as pictures: error over cost, both in decades.
+//! Work-precision charts as pictures: error over cost, both logarithmic.
 //!
-//! Runs that failed stand on a rail above the plot, at what they cost until then, and are named below it. A run has its
-//! values beside it, or where there is no room a number, which is told below. Errors at round-off stand on one line.
+//! Failed runs are on a rail above the plot, at their cost until the failure, and are listed below it. Each run
+//! is labelled with its values or, if there is no room, with a number that is explained below. Errors at
+//! round-off share one line.
 
 use super::drawn::PlotError;
 use super::log_axis::{LogAxis, written};
@@ -9,15 +10,15 @@ use super::placing::{Patch, Placing};
 use super::precision::{Point, Precision, ROUND_OFF};
 use super::sheet::{Anchor, Axes, BLACK, CROSS, ENTRY, GREY, LABEL, MARGIN, SMALL, Sheet, widest};
 
-/// The plot, without its axes' words.
+/// Size of the plot, without axis labels.
 const PLOT: (f64, f64) = (620.0, 420.0);
 /// Height of the rail of failures.
 const RAIL: f64 = 44.0;
-/// Left of the plot.
+/// Left edge of the plot.
 const LEFT: f64 = 84.0;
-/// Runs that failed and are named below the plot.
+/// Maximum number of failed runs listed below the plot.
 const MOST_FAILED: usize = 40;
-/// Some charts, one below the other.
+/// Draws charts below each other.
 ///
 /// # Errors
 /// If the font cannot be read.
@@ -39,7 +40,7 @@ pub fn sheet(charts: &[Precision]) -> Result<Sheet, PlotError> {
     Ok(sheet)
 }
 
-/// Where costs and errors stand on the sheet.
+/// Maps costs and errors to the sheet.
 struct Frame {
     x: LogAxis,
     y: LogAxis,
@@ -52,7 +53,7 @@ impl Frame {
         self.axes.at(self.x.part(cost), self.y.part(error))
     }
 
-    /// Where a run stands: in the plot, on the rail, or (the reference itself) on the ground.
+    /// Position of a run: in the plot, on the rail, or (the reference itself) at the bottom.
     fn place(&self, chart: &Precision, point: &Point) -> (f64, f64) {
         let part = self.x.part(chart.cost.of(point));
         match (point.error, &point.failed) {
@@ -82,11 +83,14 @@ fn draw(sheet: &mut Sheet, chart: &Precision) -> Result<(), PlotError> {
         to: (LEFT + PLOT.0 - 2.0, top + PLOT.1 - 2.0),
     });
     if let Some(target) = chart.target {
-        let words = format!("wanted {target:?}");
+        let words = format!("target {target:?}");
         level(sheet, &frame, target, &words, &mut taken)?;
     }
     if chart.points.iter().any(Point::is_round_off) {
-        let words = format!("round-off: below {}, and equal", written(short(ROUND_OFF)));
+        let words = format!(
+            "round-off: below {}, treated as equal",
+            written(short(ROUND_OFF))
+        );
         level(sheet, &frame, ROUND_OFF, &words, &mut taken)?;
     }
     front(sheet, chart, &|cost, error| frame.at(cost, error));
@@ -111,12 +115,12 @@ fn draw(sheet: &mut Sheet, chart: &Precision) -> Result<(), PlotError> {
     sheet.paragraph(&chart.about, SMALL, GREY)
 }
 
-/// Two digits of a number.
+/// Rounds a number to two digits.
 fn short(value: f64) -> f64 {
     format!("{value:.1e}").parse().unwrap_or(value)
 }
 
-/// A line at an error, with words at its right end.
+/// Draws a line at an error, with text at its right end.
 fn level(
     sheet: &mut Sheet,
     frame: &Frame,
@@ -134,7 +138,7 @@ fn level(
     Ok(())
 }
 
-/// Where failures stand.
+/// Draws the rail of failures.
 fn rail(sheet: &mut Sheet) {
     let top = sheet.height;
     sheet.bar((LEFT, top), (PLOT.0, RAIL - 6.0), (250, 240, 240));
@@ -145,7 +149,7 @@ fn rail(sheet: &mut Sheet) {
 fn axes(sheet: &mut Sheet, chart: &Precision, frame: &Frame) {
     let error = match chart.monitors.as_slice() {
         [] => "error".to_owned(),
-        some => format!("error of {} (part of the largest)", some.join(", ")),
+        some => format!("error of {} (relative to the largest)", some.join(", ")),
     };
     let numbers = |axis: LogAxis, most| {
         let ticks = axis.ticks(most).into_iter();
@@ -158,7 +162,7 @@ fn axes(sheet: &mut Sheet, chart: &Precision, frame: &Frame) {
     );
 }
 
-/// Steps through the runs that none beats.
+/// Draws steps through the runs on the Pareto front.
 fn front(sheet: &mut Sheet, chart: &Precision, at: &dyn Fn(f64, f64) -> (f64, f64)) {
     let mut best: Vec<(f64, f64)> = chart
         .points
@@ -178,7 +182,7 @@ fn front(sheet: &mut Sheet, chart: &Precision, at: &dyn Fn(f64, f64) -> (f64, f6
         sheet.line(&steps, 1.0, GREY);
     }
     for place in best {
-        // A ring: what the marker does not cover.
+        // A ring: the part not covered by the marker.
         sheet.marker(place, 0, 8.5, BLACK);
         sheet.marker(place, 0, 7.0, (255, 255, 255));
     }
@@ -204,14 +208,14 @@ fn series(sheet: &mut Sheet, chart: &Precision, k: usize, frame: &Frame, taken: 
     }
 }
 
-/// The values of runs beside them; where there is no room a number, whose meaning is returned.
+/// Labels runs with their values or, if there is no room, with numbers; returns the meaning of the numbers.
 fn labels(
     sheet: &mut Sheet,
     chart: &Precision,
     frame: &Frame,
     taken: &mut Placing,
 ) -> Result<Vec<String>, PlotError> {
-    /// How far from its run a label stands at most, and a number.
+    /// Maximum distance of a label from its run, and of a number.
     const REACH: (f64, f64) = (30.0, 160.0);
     const SIZE: f64 = 11.5;
     let mut key: Vec<String> = Vec::new();
@@ -247,7 +251,7 @@ fn labels(
     }
 }
 
-/// `refine=2, increment=0.1` as `2, 0.1`.
+/// The values only: `refine=2, increment=0.1` gives `2, 0.1`.
 fn values(name: &str) -> String {
     let value = |pair: &str| pair.rsplit('=').next().unwrap_or(pair).to_owned();
     name.split(", ").map(value).collect::<Vec<_>>().join(", ")
@@ -264,7 +268,7 @@ fn legend(sheet: &mut Sheet, chart: &Precision, top: f64) {
     sheet.marker((left + 14.0, y), 0, 7.0, (255, 255, 255));
     sheet.text(
         (left + 36.0, y),
-        "beaten by none",
+        "on the Pareto front",
         LABEL,
         BLACK,
         Anchor::Left,

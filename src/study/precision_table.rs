@@ -1,4 +1,4 @@
-//! Work-precision charts as tables: written, and read again.
+//! Writes and reads work-precision charts as tables.
 
 use super::csv::{Table, TableError};
 use super::figure::assigned;
@@ -9,27 +9,26 @@ use stickslip_platform::input::{self, TABLE_BYTES};
 use stickslip_scene::format::error::quoted;
 use stickslip_scene::shown;
 
-/// Most characters of a name in a table that is read.
+/// Maximum length of a name in a table, in characters.
 const MOST_NAME: usize = 200;
-/// Most comments of a table that are kept, and most characters of one.
+/// Maximum number of comments kept, and their maximum length in characters.
 const MOST_COMMENTS: usize = 40;
 const MOST_COMMENT: usize = 2000;
-/// Most runs of a table that is read.
+/// Maximum number of runs in a table.
 const MOST_RUNS: usize = 20_000;
-/// The text of a table, for [`read`].
+/// Reads the text of a table, for [`read`].
 ///
 /// # Errors
 /// If the file cannot be read.
 pub fn open(file: &Path) -> Result<String, TableError> {
-    input::text(file, TABLE_BYTES, "no table of a chart has")
+    input::text(file, TABLE_BYTES, "too large for the table of a chart")
         .map_err(|why| TableError::unreadable(file, why))
 }
 
-/// Charts from a table as [`csv`](fn@csv) writes it; columns but `scene`, `series`, `run`, `status`, `error` and `seconds` may be
-/// missing, and the runs need not be of this program.
+/// Parses charts from a table as written by [`csv`](fn@csv). Only the columns `scene`, `series`, `run`,
+/// `status`, `error` and `seconds` are required, and the runs may come from other programs.
 ///
-/// # Errors
-/// If it cannot be read: file, line, column, what is wrong.
+/// # Errors If it cannot be read; the message has file, line and column.
 pub fn read(
     name: &str,
     text: &str,
@@ -42,7 +41,7 @@ pub fn read(
     let heads = table.heads();
     for wanted in ["scene", "series", "run", "status", "error", "seconds"] {
         if !heads.contains(&wanted) {
-            let message = format!("it is no table of a chart: it has no column {wanted}");
+            let message = format!("not the table of a chart: column {wanted} is missing");
             return Err(table.wrong_header(message));
         }
     }
@@ -57,7 +56,7 @@ pub fn read(
             let letters = word(head).chars().count();
             if letters > MOST_NAME {
                 let message = format!(
-                    "the text under {head} has {letters} characters; it must have {MOST_NAME} at most"
+                    "the text under {head} has {letters} characters; the limit is {MOST_NAME}"
                 );
                 return Err(wrong(head, message));
             }
@@ -68,7 +67,7 @@ pub fn read(
                 let value = word.parse::<f64>().ok().filter(|v| *v >= 0.0);
                 let none = || {
                     let word = quoted(word);
-                    let message = format!("{word} under {head} is no number that can be drawn");
+                    let message = format!("{word} under {head} is not a number that can be drawn");
                     wrong(head, message)
                 };
                 value.map(Some).ok_or_else(none)
@@ -77,9 +76,7 @@ pub fn read(
         let count = |head: &str| number(head).map(|value| value.unwrap_or(0.0) as u64);
         runs += 1;
         if runs > MOST_RUNS {
-            let message = format!(
-                "the table has more than {MOST_RUNS} runs; no chart of so many can be read"
-            );
+            let message = format!("the table has more than {MOST_RUNS} runs, the limit for charts");
             return Err(table.wrong(row, 0, message));
         }
         let (scene, own) = (word("scene"), word("series"));
@@ -127,12 +124,12 @@ pub fn read(
     }
     let last = charts
         .last_mut()
-        .ok_or_else(|| table.wrong_header("it has no rows".into()))?;
+        .ok_or_else(|| table.wrong_header("the table has no rows".into()))?;
     last.about = about;
     Ok(charts)
 }
 
-/// A row for each run of some charts, after lines that say what they are.
+/// A table with a row for each run of some charts, after comment lines with their origin.
 pub fn csv(charts: &[Precision]) -> String {
     let mut text = super::csv::comments(charts.iter().flat_map(|chart| &chart.about));
     text += "scene,series,run,settings,status,error,seconds,repeats,factorizations,majors,minors,increments,unknowns,\

@@ -1,16 +1,17 @@
-//! Random interface problems: small, of every kind that Coulomb's law can make trouble with, and the same for ever.
+//! Random interface problems: small, with all the difficulties of Coulomb's law, and reproducible.
 //!
-//! Problem k of a seed is drawn from a stream of its own of the PCG generator (XSL-RR 128/64), so that it depends on
-//! nothing but its seed, its number and the numbers of nodes to choose from; floats are made of whole numbers here. It
-//! has 1 to 4 nodes (or as asked), and with M = A Aᵀ/n + 0.02 I, A of n = 2 k columns, each entry uniform in −1 to 1
+//! Each problem k of a seed has a separate stream of the PCG generator (XSL-RR 128/64), so that it depends only
+//! on the seed, its number, and the possible numbers of nodes; floats are made from integers here. It has 1 to
+//! 4 nodes (or as requested), and with M = A Aᵀ/n + 0.02 I, A of n = 2 k columns, each entry uniform in −1 to 1
 //! (so that normal and tangential parts are coupled):
 //!
-//! - half of all have the stiffness M and loads, half the compliance M and a motion under no force; entries uniform
-//!   in −1 to 1. Of the compliances two fifths are singular: A lacks a column or two, and no I is added. Such a
-//!   problem may have no answer;
-//! - friction μ uniform in 0.2 to 1.2, the same for all nodes. In a sixth of all, each node has a cohesion uniform in
-//!   0 to 1, too, and the problem may have no answer;
-//! - gaps: half of the nodes touch (0), the others are uniform in −0.25 to 0.75: some penetrate. All nodes start free.
+//! - Half of them have the stiffness M and loads, half the compliance M and a displacement at zero force;
+//!   entries are uniform in −1 to 1. Two fifths of the compliances are singular: A lacks one or two columns,
+//!   and I is not added. Such a problem may have no solution;
+//! - The friction μ is uniform in 0.2 to 1.2, the same for all nodes. In a sixth of the problems, each node
+//!   also has a cohesion uniform in 0 to 1; such a problem may have no solution;
+//! - Gaps: half of the nodes are in contact (0), the others are uniform in −0.25 to 0.75: some penetrate. All
+//!   nodes start free.
 
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
@@ -19,41 +20,41 @@ use std::ops::RangeInclusive;
 use stickslip_core::model::{Friction, Mode, Settings};
 use stickslip_scene::format::condensed::{Contact, HEAD, Matrix, Problem};
 
-/// The numbers of nodes that problems are drawn with where nobody says.
+/// The default range of the number of nodes.
 pub const NODES: RangeInclusive<usize> = 1..=4;
-/// What is added to the diagonal of A Aᵀ/n.
+/// Added to the diagonal of A Aᵀ/n.
 const RIDGE: f64 = 0.02;
 
 /// A set of random problems.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Population {
-    /// What the random numbers start from; the same problems for the same one.
+    /// Seed of the random numbers.
     pub seed: u64,
-    /// How many.
+    /// Number of problems.
     pub count: usize,
-    /// Numbers of nodes that are equally likely.
+    /// Numbers of nodes, all equally likely.
     pub nodes: RangeInclusive<usize>,
 }
 
-/// A random problem, and of what kind it is.
+/// A random problem, with its kind.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drawn {
     /// The problem.
     pub problem: Problem,
-    /// How its body is given.
+    /// Form of its body.
     pub form: Form,
     /// Whether it has cohesion.
     pub cohesive: bool,
 }
 
-/// How the body behind the contacts is given.
+/// Form of the body behind the contacts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
     /// A stiffness.
     Stiffness,
     /// A compliance.
     Compliance,
-    /// A compliance that some force does not move at all.
+    /// A compliance with a force that causes no motion.
     Singular,
 }
 
@@ -64,22 +65,22 @@ stickslip_core::words! {
     Singular "singular",
 }
 
-/// Numbers of one stream.
+/// The random numbers of one stream.
 struct Draw(Pcg64);
 
 impl Draw {
-    /// Uniform in low to high, with 53 random bits.
+    /// A number uniform in low to high, with 53 random bits.
     fn uniform(&mut self, low: f64, high: f64) -> f64 {
         let part = (self.0.next_u64() >> 11) as f64 / (1u64 << 53) as f64;
         low + (high - low) * part
     }
 
-    /// True in that part of all cases.
+    /// True with this probability.
     fn chance(&mut self, part: f64) -> bool {
         self.uniform(0.0, 1.0) < part
     }
 
-    /// A whole number of a range; its own tiny bias is far below what any count of problems shows.
+    /// An integer in a range; the small bias is far below what any survey shows.
     fn whole(&mut self, range: &RangeInclusive<usize>) -> usize {
         let count = (range.end() - range.start() + 1) as u64;
         range.start() + (self.0.next_u64() % count) as usize
@@ -144,7 +145,7 @@ impl Population {
         }
     }
 
-    /// What tells this population from others but for its size: problem k is the same in all that agree in it.
+    /// Identifies this population except for its size: populations with the same name have the same problem k.
     pub fn name(&self) -> String {
         let (least, most) = (self.nodes.start(), self.nodes.end());
         format!("seed {}, {least} to {most} nodes", self.seed)
@@ -174,8 +175,8 @@ fn matrix(draw: &mut Draw, size: usize, form: Form) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// A problem as the text of a file; `head` is put before it as comments. All floats read back to the same bits.
-/// What the problem brings of states, histories and settings is not written: random ones bring none.
+/// A problem as the text of a file, with `head` as comments. All floats read back to the same bits. States,
+/// history and settings are not written, since random problems have none.
 pub fn text(problem: &Problem, head: &[String]) -> String {
     let mut text: String = head.iter().map(|line| format!("// {line}\n")).collect();
     // Writing to a string does not fail.
@@ -226,7 +227,7 @@ mod tests {
     }
 
     #[test]
-    fn a_problem_depends_on_seed_and_number_alone() {
+    fn a_problem_depends_only_on_seed_and_number() {
         let all = population();
         let fewer = Population {
             count: 3,
@@ -234,7 +235,7 @@ mod tests {
         };
         assert_eq!(all.draw(2), fewer.draw(2));
         assert_ne!(all.draw(2).problem.matrix, all.draw(3).problem.matrix);
-        // Planted: whatever changes these numbers makes published counts void.
+        // Fixed values: a change of these numbers makes published counts invalid.
         let first = all.draw(0);
         assert_eq!((first.form, first.cohesive), (Form::Singular, false));
         assert_eq!(first.problem.contacts.len(), 2);
@@ -248,7 +249,7 @@ mod tests {
     }
 
     #[test]
-    fn every_kind_is_drawn_and_is_a_sound_scene() {
+    fn every_kind_is_drawn_and_is_a_valid_scene() {
         let all = population();
         let mut seen = std::collections::HashSet::new();
         for k in 0..all.count {

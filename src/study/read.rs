@@ -1,4 +1,4 @@
-//! A study as its author writes it.
+//! The file format of studies.
 //!
 //! ```ron
 //! (
@@ -11,8 +11,8 @@
 //! )
 //! ```
 //!
-//! Paths are those of `check --paths`; a `*` in one stands for any one step of it (`materials.*.update`), and sets all
-//! that fit to the same value.
+//! Paths are those of `check --paths`; a `*` matches any single step (`materials.*.update`), and sets all
+//! matching paths to the same value.
 
 use super::builtin;
 use ron::error::SpannedError;
@@ -26,24 +26,24 @@ use stickslip_scene::format::locate::{locate, too_deep};
 use stickslip_scene::format::notation;
 use stickslip_scene::format::read::{or_mistaken, path_of, plainly, shallow, text};
 
-/// What is to be run, before anybody has looked whether the scenes have it.
+/// A study, before its scenes are checked.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Study {
     /// Path of the file, or name of the built-in study or scene.
     pub name: String,
-    /// Empty: the scene's.
+    /// Title; empty for the scene's.
     pub title: String,
     /// What the study shows, for the reader.
     pub about: String,
-    /// Scenes as `Scene::open` takes them, one at least.
+    /// Scenes, as for `Scene::open`; at least one.
     pub scenes: Vec<String>,
-    /// What differs from run to run; the last one changes fastest.
+    /// Varied settings; the last one changes fastest.
     pub vary: Vec<Vary>,
-    /// What is set for all runs: path and value.
+    /// Settings of all runs: path and value.
     pub set: Vec<(String, String)>,
-    /// Horizontal axis; none is the first monitor.
+    /// Horizontal axis; `None` for the first monitor.
     pub x: Option<AxisQuantity>,
-    /// Vertical axis; none is the load factor.
+    /// Vertical axis; `None` for the load factor.
     pub y: Option<AxisQuantity>,
 }
 
@@ -53,30 +53,30 @@ pub struct Study {
 pub struct Vary {
     /// Path of the setting.
     pub path: String,
-    /// Its values, as a person types them.
+    /// Its values, as typed.
     pub values: Vec<String>,
 }
 
-/// Why a text does not say what is varied.
+/// Why a text cannot be parsed as a varied setting.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum NoVary {
-    /// There is no list of values.
-    #[error("it must be PATH=A,B,C, as history.increment=0.01,0.02")]
+    /// The list of values is missing.
+    #[error("expected PATH=A,B,C, such as history.increment=0.01,0.02")]
     NoValues,
-    /// The text after `=` begins as a range and is none.
-    #[error("{0}: a range is LOW..HIGH/COUNT or LOW..HIGH/COUNTlog, as 0.01..0.1/4")]
+    /// The text after `=` is not a valid range.
+    #[error("{0}: expected a range LOW..HIGH/COUNT or LOW..HIGH/COUNTlog, such as 0.01..0.1/4")]
     NoRange(String),
-    /// Even ratios are wanted between ends that have none.
-    #[error("{0}: even ratios need ends above 0")]
+    /// A logarithmic range with an end at or below 0.
+    #[error("{0}: the ends of a logarithmic range must be above 0")]
     NoRatios(String),
 }
 
 impl Vary {
-    /// What is varied, as typed: `PATH=A,B,C`. A value may be a range: `0.01..0.1/4` are four evenly spaced values, ends
-    /// included, `0.01..0.1/4log` four with even ratios. `2x` is twice what the scene has (the plan works it out).
+    /// Parses a varied setting: `PATH=A,B,C`. A value may be a range: `0.01..0.1/4` means four evenly
+    /// spaced values, including the ends, `0.01..0.1/4log` for four in constant ratio. `2x` is twice the
+    /// scene's value (computed by the plan).
     ///
-    /// # Errors
-    /// A message that says what it must be.
+    /// # Errors If the text does not have this form.
     pub fn parse(text: &str) -> Result<Vary, NoVary> {
         let Some((path, values)) = text.split_once('=') else {
             return Err(NoVary::NoValues);
@@ -90,7 +90,7 @@ impl Vary {
     }
 }
 
-/// A value, or those of a range.
+/// A value, or the values of a range.
 fn spread(value: &str) -> Result<Vec<String>, NoVary> {
     let Some((low, rest)) = value.split_once("..") else {
         return Ok(vec![value.to_owned()]);
@@ -114,7 +114,7 @@ fn spread(value: &str) -> Result<Vec<String>, NoVary> {
             true => low * (high / low).powf(part),
             false => low + (high - low) * part,
         };
-        // As a person would have typed it, without the round-off of the division.
+        // Formatted as typed, without the round-off of the division.
         format!("{value:.9e}")
             .parse::<f64>()
             .map_or(value, |short| short)
@@ -122,7 +122,7 @@ fn spread(value: &str) -> Result<Vec<String>, NoVary> {
     Ok((0..count).map(|k| at(k).to_string()).collect())
 }
 
-/// A number that every accepted increment has.
+/// A quantity of an accepted increment.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum AxisQuantity {
     /// Number of the increment.
@@ -133,12 +133,12 @@ pub enum AxisQuantity {
     Majors,
     /// Minor iterations of the increment.
     Minors,
-    /// A monitor of the scene, by its name.
+    /// A monitor of the scene, by name.
     Monitor(String),
 }
 
 impl AxisQuantity {
-    /// The quantity of that name; what is none of the words is a monitor.
+    /// The quantity with this name; other words are names of monitors.
     pub fn named(name: &str) -> AxisQuantity {
         match name {
             "increment" => AxisQuantity::Increment,
@@ -162,7 +162,7 @@ impl AxisQuantity {
 }
 
 impl Study {
-    /// A study of one scene as it stands, with nothing varied yet.
+    /// A study of one unchanged scene, with nothing varied yet.
     pub fn of_scene(name: &str) -> Study {
         Study {
             name: name.to_owned(),
@@ -171,10 +171,9 @@ impl Study {
         }
     }
 
-    /// Opens a study file, a built-in study, or a scene to be varied; a file wins over what is built in.
+    /// Opens a study file, a built-in study, or a scene to be varied; a file takes precedence.
     ///
-    /// # Errors
-    /// If there is nothing of that name, or it is a study that cannot be read. Scenes are not read yet.
+    /// # Errors If nothing has this name, or the study cannot be read. Scenes are not read yet.
     pub fn open(name: &str) -> Result<Study, SceneError> {
         if std::path::Path::new(name).exists() {
             let text = text(name)?;
@@ -193,7 +192,7 @@ impl Study {
         Err(SceneError::whole(name, nothing_there(name)))
     }
 
-    /// Reads a study from a text; `name` is what messages call it.
+    /// Parses a study; `name` is its name for messages.
     ///
     /// # Errors
     /// If it cannot be read, with line and column.
@@ -201,7 +200,7 @@ impl Study {
         let mut file: File =
             parse(name, text).map_err(|error| or_mistaken(error, name, text, FileKind::Study))?;
         if file.scene.is_some() && !file.scenes.is_empty() {
-            let twice = "a study has either scene or scenes";
+            let twice = "a study needs either scene or scenes, not both";
             return Err(SceneError::whole(name, twice));
         }
         if let Some(scene) = file.scene.take() {
@@ -223,7 +222,7 @@ impl Study {
         })
     }
 
-    /// Varies one setting more, or with other values than before.
+    /// Varies another setting, or replaces its values.
     pub fn vary(&mut self, vary: Vary) {
         match self.vary.iter_mut().find(|old| old.path == vary.path) {
             Some(old) => *old = vary,
@@ -231,7 +230,7 @@ impl Study {
         }
     }
 
-    /// The study of a file; its scenes are opened by [`Scene::named_in`].
+    /// The study of a file; [`Scene::named_in`] opens its scenes.
     fn beside(mut self, file: &str) -> Result<Study, SceneError> {
         for scene in &mut self.scenes {
             *scene = Scene::named_in(file, scene).map_err(|why| SceneError::whole(file, why))?;
@@ -240,7 +239,7 @@ impl Study {
     }
 }
 
-/// The file, field by field.
+/// The fields of the file.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct File {
@@ -261,7 +260,7 @@ struct File {
     y: Option<String>,
 }
 
-/// A value of a setting: a number, a flag, or a text; settings take all of them as text.
+/// A value of a setting: a number, a flag or a text, stored as text.
 struct Word(String);
 
 impl<'de> Deserialize<'de> for Word {
@@ -294,7 +293,7 @@ impl Visitor<'_> for WordVisitor {
     fn visit_f64<E: serde::de::Error>(self, number: f64) -> Result<Word, E> {
         match number.is_finite() {
             true => Ok(Word(format!("{number:?}"))),
-            false => Err(E::custom("the number is beyond all bounds")),
+            false => Err(E::custom("the number must be finite")),
         }
     }
 
@@ -303,7 +302,7 @@ impl Visitor<'_> for WordVisitor {
     }
 
     fn visit_unit<E: serde::de::Error>(self) -> Result<Word, E> {
-        Err(E::custom("words stand in quotes here, as \"frozen\""))
+        Err(E::custom("words need quotes here: \"frozen\""))
     }
 }
 
@@ -314,13 +313,13 @@ impl From<(String, Vec<Word>)> for Vary {
     }
 }
 
-/// Settings as a file has them: path and value of each.
+/// Settings in a file: path and value of each.
 pub(super) fn pairs<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<(String, String)>, D::Error> {
     let words = Vec::<(String, Word)>::deserialize(from)?.into_iter();
     Ok(words.map(|(path, word)| (path, word.0)).collect())
 }
 
-/// Reads a file that holds one value.
+/// Parses a file that contains one value.
 pub(super) fn parse<T: DeserializeOwned>(name: &str, text: &str) -> Result<T, SceneError> {
     shallow(name, text, "study")?;
     notation::read(text).map_err(|error| {
@@ -340,7 +339,7 @@ fn unreadable(name: &str, error: &SpannedError, path: String) -> SceneError {
     }
 }
 
-/// ron's message, in words for an author who is no programmer where that helps.
+/// ron's error message, reworded for authors who are not programmers.
 fn message(error: &ron::Error) -> String {
     use ron::Error as E;
     match error {
@@ -359,10 +358,10 @@ fn message(error: &ron::Error) -> String {
     }
 }
 
-/// Whether a text is a study: it names scenes, or varies something, which no scene does. It need not be sound.
+/// Whether a text is a study, valid or not: it names scenes or varies something, which no scene does.
 fn is_study(text: &str) -> bool {
     if too_deep(text).is_some() {
-        // It is neither, and whoever reads it says so.
+        // It is neither; the parser reports that.
         return true;
     }
     let whole = locate(text, &Path::default());
@@ -378,7 +377,7 @@ fn nothing_there(name: &str) -> String {
         .map(|s| s.name)
         .collect();
     format!(
-        "there is no such file, and no built-in study or scene of that name{} (studies: {}; scenes: {})",
+        "no such file, built-in study or scene{} (studies: {}; scenes: {})",
         did_you_mean(name, studies.iter().chain(&scenes).copied()),
         studies.join(", "),
         scenes.join(", ")
@@ -394,7 +393,7 @@ mod tests {
     }
 
     #[test]
-    fn ranges_have_their_ends() {
+    fn ranges_include_their_ends() {
         assert_eq!(values("a=1,2, 3x"), ["1", "2", "3x"]);
         assert_eq!(values("a=0.1..0.4/4"), ["0.1", "0.2", "0.3", "0.4"]);
         assert_eq!(values("a=0.01..1/3log,5"), ["0.01", "0.1", "1", "5"]);

@@ -17,23 +17,23 @@ pub enum Reason {
     MajorCycle,
     /// The system of equations is singular.
     Singular,
-    /// The residual or the displacements grew out of all bounds.
+    /// The residual or the displacements diverged.
     Diverged,
     /// A slave node is held where it penetrates.
     OverConstrained,
     /// The judge refused the state.
     Refused,
-    /// All assumptions were tried, and none is consistent.
+    /// All assignments were tried; none is consistent.
     NoAnswer,
-    /// The search found no answer, and could not try all.
+    /// The search found no consistent state, but could not try all assignments.
     NotFound,
     /// Round-off leaves no accuracy.
     RoundOff,
-    /// A damped motion came to no rest.
+    /// A damped motion did not settle.
     Restless,
-    /// The increment leapt to a state far from the one that was predicted.
+    /// The increment jumped to a state far from the predicted one.
     Jump,
-    /// The way along the path doubles back, or cannot be measured.
+    /// The path control turned back, or its measure did not change.
     OffPath,
     /// An element of a solid is inverted.
     Inverted,
@@ -59,7 +59,7 @@ stickslip_core::words! {
 }
 
 impl Reason {
-    /// A letter for it, where there is no room for the word.
+    /// One letter for the reason, for small spaces.
     pub fn letter(self) -> char {
         match self {
             Reason::MinorCycle | Reason::MajorCycle => 'o',

@@ -1,8 +1,8 @@
-//! What runs are measured against: a table of monitors over the load factor.
+//! Reference curves for runs: tables of monitors over the load factor.
 //!
-//! A table is CSV: `#` lines are comments, then a header with `load` and monitors by name (others are not read), and if the
-//! path of the load factor turns round, `leg` (from 1; without it, a new leg begins after the load of each corner). What
-//! `stickslip run --csv` writes is one.
+//! A table is CSV: `#` lines are comments, followed by a header with `load` and names of monitors (other
+//! columns are ignored) and, if the load path reverses, `leg` (from 1; without it, a new leg starts after the
+//! load of each corner). The output of `stickslip run --csv` is such a table.
 
 use super::csv::{Table, TableError};
 use super::result::Run;
@@ -12,32 +12,32 @@ use stickslip_scene::embedded::EmbeddedFile;
 use stickslip_scene::embedded_all;
 use stickslip_scene::format::error::{quoted, shortened};
 
-/// Loads that differ by less than this part of the largest are the same.
+/// Relative difference below which loads are equal.
 pub const SAME_LOAD: f64 = 1e-9;
 
 /// A reference curve.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reference {
-    /// What it is: words for a footer.
+    /// Description for a footer.
     pub source: String,
     /// Names of its columns.
     pub monitors: Vec<String>,
-    /// Its rows, in the order of the path.
+    /// Its rows in the order of the path.
     pub rows: Vec<Point>,
 }
 
 /// Values at one load.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Point {
-    /// Leg of the path on which it lies, from 0.
+    /// Leg of the load path, from 0.
     pub leg: usize,
     /// The load factor λ.
     pub load: f64,
-    /// One a column.
+    /// One value per column.
     pub values: Vec<f64>,
 }
 
-/// The references that the program carries, by their scene's name.
+/// The built-in references, by scene.
 const TABLES: &[EmbeddedFile] = embedded_all![
     "../../problems/references/",
     ".csv",
@@ -50,10 +50,9 @@ const TABLES: &[EmbeddedFile] = embedded_all![
 ];
 
 impl Reference {
-    /// The reference that the program carries for a built-in scene; `path` is that of the scene's load factor.
+    /// The built-in reference for a scene; `path` is the scene's load path.
     ///
-    /// # Errors
-    /// None that the tests have not found.
+    /// # Errors Never for the built-in tables (checked by tests).
     pub fn builtin(scene: &str, path: &[f64]) -> Option<Result<Reference, TableError>> {
         let table = TABLES.iter().find(|table| table.name == scene)?;
         Some(Reference::read(
@@ -63,18 +62,17 @@ impl Reference {
         ))
     }
 
-    /// Opens a table.
+    /// Reads a table from a file.
     ///
-    /// # Errors
-    /// If it cannot be read: file, line, column, what is wrong.
+    /// # Errors If it cannot be read; the message has file, line and column.
     pub fn open(file: &Path, path: &[f64]) -> Result<Reference, TableError> {
         let name = file.display().to_string();
-        let text = input::text(file, TABLE_BYTES, "no reference has")
+        let text = input::text(file, TABLE_BYTES, "too large for a reference table")
             .map_err(|why| TableError::unreadable(file, why))?;
         Reference::read(&name, &text, path)
     }
 
-    /// Reads a table.
+    /// Parses a table.
     ///
     /// # Errors
     /// As [`Reference::open`].
@@ -85,7 +83,7 @@ impl Reference {
         let place = |wanted: &str| heads.iter().position(|head| *head == wanted);
         let load = place("load").ok_or_else(|| {
             let header = quoted(table.header_line());
-            table.wrong_header(format!("the header has no column load: {header}"))
+            table.wrong_header(format!("the header needs a column load: {header}"))
         })?;
         let leg = place("leg");
         let words = ["load", "leg", "increment", "majors", "minors"];
@@ -100,7 +98,7 @@ impl Reference {
                 let value = row.fields[k].parse::<f64>().ok();
                 let none = || {
                     let (word, head) = (quoted(&row.fields[k]), shortened(heads[k]));
-                    table.wrong(row, k, format!("{word} under {head} is no number"))
+                    table.wrong(row, k, format!("{word} under {head} is not a number"))
                 };
                 value.filter(|v| v.is_finite()).ok_or_else(none)
             };
@@ -120,7 +118,7 @@ impl Reference {
             });
         }
         if rows.is_empty() {
-            return Err(table.wrong_header("it has no rows".into()));
+            return Err(table.wrong_header("the table has no rows".into()));
         }
         Ok(Reference {
             source: [&[name], &about[..]].concat().join(" "),
@@ -129,7 +127,7 @@ impl Reference {
         })
     }
 
-    /// A run as a reference for others.
+    /// A run as the reference for others.
     pub fn of(run: &Run, source: String, path: &[f64]) -> Reference {
         let mut legs = Legs::new(path);
         let row = |row: &super::Row| Point {
@@ -144,7 +142,7 @@ impl Reference {
         }
     }
 
-    /// Its row at a load on a leg.
+    /// The row at a load on a leg.
     pub fn at(&self, leg: usize, load: f64) -> Option<&Point> {
         let size = self
             .rows
@@ -156,7 +154,7 @@ impl Reference {
     }
 }
 
-/// Tells on which leg of a path loads lie that come in order.
+/// Determines the leg of consecutive loads.
 struct Legs<'a> {
     path: &'a [f64],
     leg: usize,
@@ -186,7 +184,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_built_in_table_reads_and_ends_where_its_scene_does() {
+    fn every_built_in_table_parses_and_ends_with_its_scene() {
         for EmbeddedFile { name, .. } in TABLES {
             let scene = stickslip_scene::Scene::open(name, &[]).unwrap();
             let path = &scene.model.path;
@@ -207,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn legs_are_told_from_the_corners() {
+    fn legs_are_found_from_the_corners() {
         let text = "increment,load,u_x\n1,1,0.1\n2,2,0.2\n3,1,0.3\n4,0,0.4\n";
         let table = Reference::read("x", text, &[0.0, 2.0, 0.0]).unwrap();
         let legs: Vec<usize> = table.rows.iter().map(|row| row.leg).collect();
@@ -217,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_said_with_its_line() {
+    fn errors_have_a_line_number() {
         for (text, part) in [
             ("", "no header"),
             ("a,b\n", "x:1:1: the header has no column load"),

@@ -1,4 +1,4 @@
-//! What one run of a study came to.
+//! The result of one run of a study.
 
 use super::log::Outcome;
 use super::read::AxisQuantity;
@@ -6,35 +6,35 @@ use super::reason::Reason;
 use super::verdict::RunVerdict;
 use serde::{Deserialize, Serialize};
 
-/// A run, as far as it went.
+/// A run, until its end.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Run {
     /// Names of the scene's monitors.
     pub monitors: Vec<String>,
-    /// The load factor and the monitors before the first increment.
+    /// Load factor and monitors before the first increment.
     pub start: Row,
     /// One row per accepted increment.
     pub rows: Vec<Row>,
-    /// Major iterations that were begun in all, those of attempts that were cut or damped included.
+    /// Total number of major iterations started, including attempts that were cut or damped.
     pub begun: u64,
     /// Factorizations of the bodies, or of bodies and interface together.
     pub factorizations: u64,
-    /// How it ended.
+    /// How the run ended.
     pub end: CaseEnd,
 }
 
 /// One accepted increment.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Row {
-    /// From 1.
+    /// Increment number, from 1.
     pub increment: u32,
     /// The load factor λ at its end.
     pub load: f64,
     /// Major iterations of the increment.
     pub majors: u32,
-    /// All minor iterations, also those of majors that were tried again.
+    /// All minor iterations, including those of repeated major iterations.
     pub minors: u64,
-    /// Loops that were cut off by a limit whose being reached is accepted.
+    /// Loops stopped by a limit that the settings accept.
     pub unsettled: u32,
     /// Whether it jumped to another branch of equilibrium.
     pub jumped: bool,
@@ -49,33 +49,33 @@ pub enum CaseEnd {
     Finished,
     /// An increment failed.
     Failed(Failed),
-    /// Somebody wanted it to end.
+    /// Interrupted.
     Interrupted,
-    /// Somebody wanted all to end before it began.
+    /// Interrupted before the run started.
     NotRun,
 }
 
 /// Where and why a run failed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Failed {
-    /// Why.
+    /// Reason.
     pub reason: Reason,
-    /// What the run is worth.
+    /// Verdict on the run.
     pub verdict: RunVerdict,
     /// The increment that failed, from 1.
     pub increment: u32,
-    /// The load factor that was tried.
+    /// Load factor of the failed increment.
     pub load: f64,
     /// The major iteration in which it failed, from 1.
     pub major: u32,
-    /// Minor iterations that the increment took until then.
+    /// Minor iterations of the increment before the failure.
     pub minors: u64,
-    /// Loops that were cut off by a limit whose being reached is accepted.
+    /// Loops stopped by a limit that the settings accept.
     pub unsettled: u32,
 }
 
 impl Outcome for Run {
-    /// Some 10,000 increments with 100 monitors.
+    /// About 10,000 increments with 100 monitors.
     const MAX_BYTES: usize = 32 << 20;
 
     fn is_sound(&self) -> bool {
@@ -104,12 +104,12 @@ impl Run {
         }
     }
 
-    /// The state that the run got to: its last accepted increment, or the start.
+    /// The last accepted increment, or the start.
     pub fn last(&self) -> &Row {
         self.rows.last().unwrap_or(&self.start)
     }
 
-    /// Where it failed, if it did.
+    /// The failure, if there is one.
     pub fn failed(&self) -> Option<&Failed> {
         match &self.end {
             CaseEnd::Failed(failed) => Some(failed),
@@ -117,13 +117,13 @@ impl Run {
         }
     }
 
-    /// Major iterations in all, those of an increment that failed included.
+    /// Total number of major iterations, including those of a failed increment.
     pub fn majors(&self) -> u64 {
         let accepted: u64 = self.rows.iter().map(|row| u64::from(row.majors)).sum();
         accepted + self.failed().map_or(0, |failed| u64::from(failed.major))
     }
 
-    /// Minor iterations in all, those of an increment that failed included.
+    /// Total number of minor iterations, including those of a failed increment.
     pub fn minors(&self) -> u64 {
         let accepted: u64 = self.rows.iter().map(|row| row.minors).sum();
         accepted + self.failed().map_or(0, |failed| failed.minors)
@@ -134,7 +134,7 @@ impl Run {
         self.rows.iter().filter(|row| row.jumped).count()
     }
 
-    /// Increments that were accepted although a loop of theirs had not settled.
+    /// Number of increments accepted although a loop had not settled.
     pub fn unsettled(&self) -> usize {
         self.rows.iter().filter(|row| row.unsettled > 0).count()
     }

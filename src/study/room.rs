@@ -1,7 +1,8 @@
-//! Memory for runs side by side: a run begins only when what it will take fits beside those that are at work.
+//! Limits parallel runs by memory: a run starts only when its estimated memory fits next to the running ones.
 //!
-//! What a run takes is estimated ([`Estimate`]), what there is is what the machine and the process's groups leave
-//! ([`memory::free`]). A run alone may always begin: whether it fits was decided when its scene was read. Bits do not depend on it.
+//! The need of a run is estimated ([`Estimate`]); the supply is what the machine and the process's groups leave
+//! free ([`memory::free`]). A single run may always start: whether it fits was checked when its scene was read.
+//! Results do not depend on this.
 
 use std::collections::HashMap;
 use std::sync::{Condvar, Mutex, MutexGuard};
@@ -9,16 +10,16 @@ use stickslip_core::linear::estimate::Estimate;
 use stickslip_core::model::Model;
 use stickslip_scene::memory;
 
-/// What is taken, and by how many.
+/// Memory in use, and the number of runs.
 #[derive(Debug, Default)]
 struct Taken {
     bytes: f64,
     runs: usize,
-    /// Estimates, by what they hang on: unknowns, contacts and bodies.
+    /// Estimates by number of unknowns, contacts and bodies.
     known: HashMap<[usize; 3], f64>,
 }
 
-/// Memory that runs take and give back.
+/// Memory that runs take and return.
 #[derive(Debug)]
 pub struct Room {
     free: f64,
@@ -26,7 +27,7 @@ pub struct Room {
     given: Condvar,
 }
 
-/// A run's memory, until it is dropped.
+/// The memory of a run, returned when dropped.
 #[derive(Debug)]
 pub struct Place<'a> {
     room: &'a Room,
@@ -40,7 +41,7 @@ impl Default for Room {
 }
 
 impl Room {
-    /// So many bytes.
+    /// Memory of this many bytes.
     pub fn new(free: f64) -> Room {
         Room {
             free,
@@ -91,7 +92,7 @@ mod tests {
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     #[test]
-    fn no_more_runs_are_at_work_than_fit_and_one_always_is() {
+    fn parallel_runs_fit_in_memory_and_one_always_runs() {
         for (bytes, most) in [(40.0, 2), (100.0, 1), (1e9, 1)] {
             let room = Room::new(100.0);
             let (now, seen) = (AtomicUsize::new(0), AtomicUsize::new(0));

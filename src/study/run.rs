@@ -31,10 +31,9 @@ pub fn sweep(plan: &Plan) -> Sweep<'_, Run> {
     }
 }
 
-/// Runs all cases of a plan on a number of threads. The results are in the order of the plan.
+/// Runs all cases of a plan on some threads. The results are in the order of the plan.
 ///
-/// # Errors
-/// If there are no threads to be had. What fails in a run is its result.
+/// # Errors If the threads cannot be started. The failure of a run is a result.
 pub fn run(plan: &Plan, jobs: NonZeroUsize, watch: &Watch) -> Result<Vec<Run>, RunError> {
     let runs = sweep(plan).run(jobs, watch)?;
     Ok(runs.into_iter().flatten().collect())

@@ -1,7 +1,8 @@
-//! Which cells of a sweep a shard does: K of N, by a hash that stays the same for ever.
+//! Assigns the cells of a sweep to shards K of N, by a hash that never changes.
 //!
-//! A cell's [`Key`] is a hash of all that its result depends on. Its shard depends on the key of its problem, which leaves out how
-//! the problem is computed: cells that are compared with each other fall to one shard.
+//! A cell's [`Key`] is a hash of everything that its result depends on. Its shard depends on the key of its
+//! problem, which leaves out how the problem is computed: cells that are compared with each other belong to one
+//! shard.
 //!
 //! ```text
 //! h = high half of the problem's key ⊕ low half of it         64 bits
@@ -9,42 +10,42 @@
 //! K = 1 + h mod N
 //! ```
 //!
-//! so that it depends on the problem alone: not on the machine, the other cells, or their order.
+//! so that it depends only on the problem: not on the machine, the other cells, or their order.
 
 use std::fmt;
 use std::num::NonZeroU64;
 use std::str::FromStr;
 
-/// What tells a cell from all others: a hash (FNV-1a, 128 bits) of all that its result depends on.
+/// Identifies a cell: a hash (FNV-1a, 128 bits) of everything that its result depends on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Key(u128);
 
 impl Key {
-    /// The key of no parts.
+    /// The key of an empty list.
     pub const EMPTY: Key = Key(0x6c62_272e_07bb_0142_62b8_2175_6295_c58d);
 
-    /// The key of parts of text, the same on every machine.
+    /// The key of some texts, the same on every machine.
     pub fn of<'a>(parts: impl IntoIterator<Item = &'a str>) -> Key {
         parts.into_iter().fold(Key::EMPTY, Key::and)
     }
 
-    /// The key of the same parts and one more.
+    /// The key of the same texts and one more.
     pub fn and(self, part: &str) -> Key {
-        // A part's end is a byte that no text has.
+        // Separates parts: this byte does not occur in UTF-8.
         let bytes = part.bytes().chain([0xff]);
         Key(bytes.fold(self.0, |hash, byte| {
             (hash ^ u128::from(byte)).wrapping_mul(0x0000_0000_0100_0000_0000_0000_0000_013b)
         }))
     }
 
-    /// The key that a text of 32 hexadecimal digits is.
+    /// Parses a key of 32 hexadecimal digits.
     pub fn read(text: &str) -> Option<Key> {
         let digits = text.len() == 32 && text.bytes().all(|b| b.is_ascii_hexdigit());
         let value = digits.then(|| u128::from_str_radix(text, 16).ok());
         value.flatten().map(Key)
     }
 
-    /// The number h that chooses the shard.
+    /// The number h that determines the shard.
     pub fn mixed(self) -> u64 {
         let mut h = (self.0 >> 64) as u64 ^ self.0 as u64;
         h = (h ^ (h >> 33)).wrapping_mul(0xff51_afd7_ed55_8ccd);
@@ -91,15 +92,15 @@ impl Shard {
         self.of
     }
 
-    /// Whether it does the cells whose number h is this.
+    /// Whether the cell with this number h belongs to the shard.
     pub fn has(self, h: u64) -> bool {
         1 + h % self.of == self.number
     }
 }
 
-/// A text that names no shard.
+/// A text that is not a shard.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("it must be K/N, as 3/40: shard 3 of 40, K from 1 to N")]
+#[error("expected K/N, such as 3/40 for shard 3 of 40 (K from 1 to N)")]
 pub struct NoShard;
 
 impl FromStr for Shard {
@@ -118,7 +119,7 @@ impl fmt::Display for Shard {
     }
 }
 
-/// Numbers in words, as ranges: `3, 17 to 20 and 8 more ranges`; so many ranges are told.
+/// Formats numbers as ranges: `3, 17 to 20 and 8 more ranges`; shows at most `most` ranges.
 pub fn ranges(numbers: &[usize], most: usize) -> String {
     let mut ranges: Vec<(usize, usize)> = Vec::new();
     for &number in numbers {
@@ -144,9 +145,9 @@ pub fn ranges(numbers: &[usize], most: usize) -> String {
 mod tests {
     use super::*;
 
-    /// Planted: whatever changes these numbers makes all logs of shards void.
+    /// Fixed values: a change of these numbers makes all logs of shards invalid.
     #[test]
-    fn the_hash_is_the_same_for_ever() {
+    fn the_hash_never_changes() {
         let keys: Vec<Key> = (0..6).map(|k| Key::of(["cell", &k.to_string()])).collect();
         assert_eq!(keys[0].to_string(), PLANTED_KEY);
         let of = |n: u64| keys.iter().map(move |k| 1 + k.mixed() % n);
@@ -158,7 +159,7 @@ mod tests {
     const PLANTED_1000000: [u64; 6] = [542213, 190023, 691433, 727364, 373400, 178834];
 
     #[test]
-    fn every_cell_falls_to_one_shard_and_shards_are_alike_in_size() {
+    fn every_cell_belongs_to_one_shard_and_shards_are_of_similar_size() {
         let mut counts = [0; 40];
         for k in 0..40_000 {
             let key = Key::of(["seed 1", &k.to_string()]);
@@ -168,12 +169,12 @@ mod tests {
             assert_eq!(shards.len(), 1);
             counts[shards[0] as usize - 1] += 1;
         }
-        // A fair draw of 1,000 each has a deviation of 31.
+        // A fair draw of 1,000 each has a standard deviation of 31.
         assert!(counts.iter().all(|n| (850..1150).contains(n)), "{counts:?}");
     }
 
     #[test]
-    fn a_key_tells_where_parts_end_and_reads_back() {
+    fn a_key_separates_parts_and_reads_back() {
         assert_ne!(Key::of(["ab", "c"]), Key::of(["a", "bc"]));
         let key = Key::of(["ab", "c"]);
         assert_eq!(Key::read(&key.to_string()), Some(key));
@@ -190,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_are_told_as_ranges() {
+    fn numbers_are_formatted_as_ranges() {
         assert_eq!(ranges(&[], 3), "");
         assert_eq!(ranges(&[3, 5, 6, 7, 9], 3), "3, 5 to 7, 9");
         assert_eq!(ranges(&[1, 3, 5, 7], 2), "1, 3 and 2 more ranges");

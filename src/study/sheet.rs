@@ -1,6 +1,7 @@
-//! A drawing as plain data: texts, lines and filled shapes on a sheet; as SVG and PNG with the same bits everywhere.
+//! Drawings as plain data: texts, lines and filled shapes on a sheet, written as SVG or PNG with the same bits
+//! on every machine.
 //!
-//! Lengths are those of an SVG; x to the right, y downwards.
+//! Lengths are in SVG units; x to the right, y downwards.
 
 use super::drawn::label;
 use super::pen::{self, width_of};
@@ -8,13 +9,14 @@ use stickslip_scene::shown;
 
 pub use super::drawn::{Anchor, Colour, PlotError, Shape};
 
-/// Letters and axes.
+/// Text and axes.
 pub const BLACK: Colour = (0, 0, 0);
-/// What is less important.
+/// Less important text.
 pub const GREY: Colour = (90, 90, 90);
 /// Lines of a grid.
 pub const PALE: Colour = (225, 225, 225);
-/// Colours that colour-blind readers can tell apart (Okabe and Ito), without the yellow that white paper swallows.
+/// Colours that colour-blind readers can distinguish (Okabe and Ito), without the yellow, which is too pale on
+/// white paper.
 pub const COLOURS: [Colour; 7] = [
     (0, 114, 178),
     (230, 159, 0),
@@ -25,35 +27,35 @@ pub const COLOURS: [Colour; 7] = [
     (213, 94, 0),
 ];
 
-/// The colour of crosses, and of nothing else.
+/// Colour of crosses only.
 pub const CROSS: Colour = (192, 0, 0);
 
-/// Sizes of letters.
+/// Font sizes. This one is for titles.
 pub const TITLE: f64 = 22.0;
-/// Letters at axes and in legends.
+/// Text at axes and in legends.
 pub const LABEL: f64 = 15.0;
-/// Letters of a footer.
+/// Text in footers.
 pub const SMALL: f64 = 13.0;
-/// Air around everything.
+/// Margin around everything.
 pub const MARGIN: f64 = 16.0;
-/// Height of a line of a legend.
+/// Line height of a legend.
 pub const ENTRY: f64 = 22.0;
-/// Most characters of a line that is broken where it is too long.
+/// Maximum length of a line that is wrapped, in characters.
 const MAX_LINE: usize = 2000;
 
-/// The frame of a plot: its left upper corner and its size.
+/// The frame of a plot.
 #[derive(Debug, Clone, Copy)]
 pub struct Axes {
-    /// Left end.
+    /// Left edge.
     pub left: f64,
-    /// Upper end.
+    /// Upper edge.
     pub top: f64,
     /// Width and height.
     pub size: (f64, f64),
 }
 
 impl Axes {
-    /// The place at these parts of the axes, from 0 to 1.
+    /// The point at these fractions of the axes, from 0 to 1.
     pub fn at(&self, x: f64, y: f64) -> (f64, f64) {
         (
             self.left + self.size.0 * x,
@@ -61,7 +63,7 @@ impl Axes {
         )
     }
 
-    /// Draws grid, numbers and frame. Of each axis: its name, and where on it a number stands.
+    /// Draws grid, numbers and frame. Each axis has a name and a function that positions its numbers.
     pub fn draw(
         &self,
         sheet: &mut Sheet,
@@ -93,16 +95,16 @@ impl Axes {
 /// A drawing; later shapes lie above earlier ones.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Sheet {
-    /// Pixels.
+    /// Width in pixels.
     pub width: f64,
-    /// Pixels.
+    /// Height in pixels.
     pub height: f64,
-    /// What is drawn, from below upwards.
+    /// Shapes; later ones cover earlier ones.
     pub shapes: Vec<Shape>,
 }
 
 impl Sheet {
-    /// A sheet of a width with a title; it grows downwards.
+    /// A sheet with a title; its height grows.
     ///
     /// # Errors
     /// If the font cannot be read.
@@ -116,7 +118,7 @@ impl Sheet {
         Ok(sheet)
     }
 
-    /// Lines of text below all else, broken where they are too long.
+    /// Adds text at the bottom, wrapped.
     ///
     /// # Errors
     /// If the font cannot be read.
@@ -135,7 +137,7 @@ impl Sheet {
         Ok(())
     }
 
-    /// A text beside a point, at half its height.
+    /// Adds a text next to a point, centred on its height.
     pub fn text(&mut self, at: (f64, f64), text: &str, size: f64, colour: Colour, anchor: Anchor) {
         self.put(at, label(text), (size, colour, anchor));
     }
@@ -151,7 +153,7 @@ impl Sheet {
         });
     }
 
-    /// A text about a point, from below upwards.
+    /// Adds a vertical text around a point, reading upwards.
     pub fn upright(&mut self, at: (f64, f64), text: &str, size: f64) {
         self.shapes.push(Shape::Text {
             at,
@@ -163,7 +165,7 @@ impl Sheet {
         });
     }
 
-    /// A line through points.
+    /// Adds a polyline.
     pub fn line(&mut self, points: &[(f64, f64)], width: f64, colour: Colour) {
         self.shapes.push(Shape::Line {
             points: points.to_vec(),
@@ -180,13 +182,13 @@ impl Sheet {
         });
     }
 
-    /// A filled rectangle: its upper left corner, and its size.
+    /// Adds a filled rectangle: its upper left corner and its size.
     pub fn bar(&mut self, (x, y): (f64, f64), (width, height): (f64, f64), colour: Colour) {
         let (right, low) = (x + width, y + height);
         self.fill(&[(x, y), (right, y), (right, low), (x, low)], colour);
     }
 
-    /// A marker: one of five shapes, by number.
+    /// Adds one of five kinds of markers.
     pub fn marker(&mut self, (x, y): (f64, f64), kind: usize, r: f64, colour: Colour) {
         let far = 1.3 * r;
         let corners: Vec<(f64, f64)> = match kind % 5 {
@@ -203,7 +205,8 @@ impl Sheet {
         self.fill(&corners, colour);
     }
 
-    /// The line of series number k; every other one is dashed, so that two that agree are both seen.
+    /// Adds the line of series number k; every second one is dashed, so that both of two equal series are
+    /// visible.
     pub fn stroke(&mut self, points: &[(f64, f64)], width: f64, k: usize) {
         let colour = COLOURS[k % COLOURS.len()];
         match k % 2 {
@@ -213,25 +216,25 @@ impl Sheet {
         }
     }
 
-    /// The marker of series number k: 35 series before two look the same.
+    /// Adds the marker of series number k: 35 series have different markers.
     pub fn series_marker(&mut self, at: (f64, f64), k: usize) {
         self.marker(at, k, 4.0, COLOURS[k % COLOURS.len()]);
     }
 
-    /// A line of a legend, for series number k.
+    /// Adds the legend entry of series number k.
     pub fn entry(&mut self, (left, y): (f64, f64), k: usize, label: &str) {
         self.stroke(&[(left, y), (left + 28.0, y)], 2.0, k);
         self.series_marker((left + 14.0, y), k);
         self.text((left + 36.0, y), label, LABEL, BLACK, Anchor::Left);
     }
 
-    /// A marker with a border: dark outside, and so seen on any ground.
+    /// Adds a marker with a dark border, visible on any background.
     pub fn ringed(&mut self, at: (f64, f64), kind: usize, r: f64, inside: Colour) {
         self.marker(at, kind, r + 1.6, BLACK);
         self.marker(at, kind, r, inside);
     }
 
-    /// A line in dashes.
+    /// Adds a dashed line.
     pub fn dashed(&mut self, points: &[(f64, f64)], width: f64, colour: Colour) {
         const DASH: f64 = 6.0;
         let mut walked = 0.0;
@@ -260,7 +263,7 @@ impl Sheet {
         }
     }
 
-    /// An arrow; a short one is all head.
+    /// Adds an arrow; a short one consists only of its head.
     pub fn arrow(&mut self, from: (f64, f64), to: (f64, f64), width: f64, colour: Colour) {
         let (x, y) = (to.0 - from.0, to.1 - from.1);
         let length = x.hypot(y);
@@ -280,7 +283,7 @@ impl Sheet {
         self.fill(&corners, colour);
     }
 
-    /// The mark of a failure.
+    /// Adds the cross of a failure.
     pub fn cross(&mut self, (x, y): (f64, f64), r: f64, colour: Colour) {
         self.line(&[(x - r, y - r), (x + r, y + r)], 2.5, colour);
         self.line(&[(x - r, y + r), (x + r, y - r)], 2.5, colour);
@@ -294,7 +297,7 @@ impl Sheet {
         pen::svg(&self.shapes, self.size())
     }
 
-    /// The drawing as PNG, with two pixels for a unit of length.
+    /// The drawing as PNG, with two pixels per unit of length.
     ///
     /// # Errors
     /// If it cannot be drawn.
@@ -307,7 +310,7 @@ impl Sheet {
     }
 }
 
-/// Lines that are no wider than that, broken between words; words that are too long by themselves are cut.
+/// Wraps lines to a width, between words; longer words are split.
 fn broken(lines: &[String], size: f64, width: f64) -> Result<Vec<String>, PlotError> {
     let mut all = Vec::new();
     for line in lines {
@@ -322,7 +325,7 @@ fn broken(lines: &[String], size: f64, width: f64) -> Result<Vec<String>, PlotEr
     Ok(all)
 }
 
-/// The widest of some texts; a reader's own font may be a little wider than ours.
+/// Width of the widest text; a reader's font may be slightly wider than ours.
 ///
 /// # Errors
 /// If the font cannot be read.

@@ -1,4 +1,4 @@
-//! All random problems of a population with all variants: run, counted, and as a table.
+//! Surveys: runs all random problems of a population with all variants, and counts the verdicts.
 
 use super::figure::assigned;
 use super::one::{Spare, Watch};
@@ -12,37 +12,37 @@ use super::verdict::RunVerdict;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-/// What is tried, and what came of it.
+/// The problems, the variants and the verdicts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Survey {
     /// The problems.
     pub population: Population,
-    /// What is tried on each of them.
+    /// Variants tried on each problem.
     pub variants: Vec<Variant>,
-    /// One a problem, in order; `None` if it was stopped before.
+    /// One entry per problem, in order; `None` if interrupted before.
     pub judged: Vec<Option<Judged>>,
 }
 
-/// How a variant fared, in numbers of problems. Those that have an answer are told apart from those that have none.
+/// Number of problems by verdict of a variant, separately for problems with and without a solution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Tally {
-    /// Problems with an answer, and what the runs on them came to.
+    /// Problems with a solution.
     pub solvable: usize,
-    /// Those of them that ended in a right state.
+    /// Of these: ended in a right state.
     pub solved: usize,
-    /// Those that ended in a wrong one.
+    /// Of these: ended in a wrong state.
     pub wrong: usize,
-    /// Those whose iterations went round for ever.
+    /// Of these: the iterations cycle.
     pub cycled: usize,
-    /// Those that failed in another way.
+    /// Of these: failed in another way.
     pub failed: usize,
-    /// Said to have no answer, wrongly.
+    /// Of these: wrongly reported unsolvable.
     pub denied: usize,
-    /// Problems without an answer, and those of them that were said to have none.
+    /// Problems without a solution.
     pub unsolvable: usize,
-    /// Those without an answer that were said to have none.
+    /// Of these: reported unsolvable.
     pub admitted: usize,
-    /// Those that ended in a state, which is wrong.
+    /// Of these: ended in a state, which is wrong.
     pub invented: usize,
 }
 
@@ -61,7 +61,7 @@ pub fn sweep<'a>(population: &'a Population, variants: &'a [Variant]) -> Sweep<'
             steps: 1,
         }
     };
-    // Not how many there are: the first problems of a larger population are the same.
+    // The number of problems does not matter: the first problems of a larger population are the same.
     let tried = variants.iter().map(|variant| {
         let pairs: Vec<String> = assigned(&variant.settings).collect();
         ("strategy".to_owned(), pairs.join(" "))
@@ -88,13 +88,13 @@ pub fn sweep<'a>(population: &'a Population, variants: &'a [Variant]) -> Sweep<'
 }
 
 impl Survey {
-    /// The problems that were done, with their numbers.
+    /// The completed problems, with their numbers.
     pub fn done(&self) -> impl Iterator<Item = (usize, &Judged)> {
         let all = self.judged.iter().enumerate();
         all.filter_map(|(k, judged)| Some((k, judged.as_ref()?)))
     }
 
-    /// How variant number `v` fared on the problems that are meant.
+    /// Counts the verdicts of variant number `v` on the problems selected by `meant`.
     pub fn tally(&self, v: usize, meant: impl Fn(&Judged) -> bool) -> Tally {
         let mut tally = Tally::default();
         for (_, judged) in self.done().filter(|(_, judged)| meant(judged)) {
@@ -103,7 +103,7 @@ impl Survey {
         tally
     }
 
-    /// A table with a row for each problem and variant, after lines that say what it is.
+    /// A table with a row for each problem and variant, after comment lines with its origin.
     pub fn csv(&self) -> String {
         let mut text = super::csv::comments(&self.origin());
         text += "seed,problem,nodes,form,cohesion,answers,strategy,verdict,detail,majors,minors,violation\n";
@@ -132,9 +132,9 @@ impl Survey {
         text
     }
 
-    /// The same as sums: a row for each kind of problem, variant and verdict, with the number of problems, their minor
-    /// iterations together and the most of one, and the largest violation. However many problems there are, it has a few
-    /// hundred rows.
+    /// Totals: a row for each kind of problem, variant and verdict, with the number of problems, the total and
+    /// maximum of minor iterations, and the largest violation. It has a few hundred rows, however many problems
+    /// there are.
     pub fn totals(&self) -> String {
         let mut sums: BTreeMap<Kind<'_>, Sums> = BTreeMap::new();
         for (_, judged) in self.done() {
@@ -173,7 +173,7 @@ impl Survey {
         text
     }
 
-    /// What it was made of, and by what.
+    /// The origin of the survey, for tables and figures.
     pub fn origin(&self) -> Vec<String> {
         let Population { count, .. } = self.population;
         vec![
@@ -186,7 +186,7 @@ impl Survey {
     }
 }
 
-/// Problems and runs that are counted together.
+/// Key of problems and runs that are counted together.
 #[derive(PartialEq, Eq, PartialOrd, Ord)]
 struct Kind<'a> {
     nodes: usize,
@@ -197,7 +197,7 @@ struct Kind<'a> {
     verdict: &'static str,
 }
 
-/// What is known of those that are counted together.
+/// Totals of a kind.
 #[derive(Default)]
 struct Sums {
     problems: usize,
@@ -234,7 +234,7 @@ impl Tally {
         } += 1;
     }
 
-    /// A number of problems that have an answer, per 1,000 of them.
+    /// Converts a number of problems with a solution to a rate per 1,000 of them.
     pub fn per_thousand(&self, count: usize) -> f64 {
         1000.0 * count as f64 / self.solvable.max(1) as f64
     }

@@ -1,7 +1,8 @@
-//! Sweeps: cells that are computed side by side, stored in a log, split into shards, and put together again.
+//! Sweeps: cells that are computed in parallel, stored in a log, split into shards, and merged.
 //!
-//! A [`Sweep`] lists its cells and knows how to compute one. [`Store`] holds the results that exist already: of a log, or of the
-//! logs of all shards. What is put together depends neither on the order of the files nor on how often a cell is in them.
+//! A [`Sweep`] lists its cells and computes one of them. A [`Store`] contains the existing results, from one
+//! log or from the logs of all shards. The merged result depends neither on the order of the files nor on how
+//! often a cell occurs in them.
 
 use super::log::{self, Disagreement, Found, Log, LogError, Outcome};
 use super::one::{Spare, Watch};
@@ -13,19 +14,19 @@ use std::num::{NonZeroU64, NonZeroUsize};
 use std::path::{Path, PathBuf};
 use stickslip_scene::format::SceneError;
 
-/// A scene is read by recursion; as much stack as a program starts with is enough for all that it accepts.
+/// Scenes are parsed recursively; the stack of a main thread is sufficient for all valid ones.
 const STACK: usize = 8 << 20;
 
-/// Why a sweep could not be run.
+/// Why a sweep cannot be run.
 #[derive(Debug, thiserror::Error)]
 pub enum RunError {
     /// The threads cannot be started.
-    #[error("no threads to run on: {0}")]
+    #[error("the threads cannot be started: {0}")]
     Threads(#[from] rayon::ThreadPoolBuildError),
-    /// A scene is unsound.
+    /// A scene is invalid.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// The results cannot be kept, or taken up.
+    /// The log cannot be read or written.
     #[error(transparent)]
     Log(#[from] LogError),
 }
@@ -33,53 +34,53 @@ pub enum RunError {
 /// A cell of a sweep.
 #[derive(Debug, Clone, Copy)]
 pub struct Cell {
-    /// Hash of all that the result depends on. Cells with the same key have the same result.
+    /// Hash of everything that the result depends on. Cells with the same key have the same result.
     pub key: Key,
-    /// Hash that chooses the shard: cells that are compared with each other have the same one.
+    /// Hash that determines the shard: the same for cells that are compared with each other.
     pub shard: u64,
-    /// Units of progress.
+    /// Number of units of progress.
     pub steps: u64,
 }
 
-/// Computes a cell; `None` if it was stopped from outside.
+/// Computes a cell; `None` if interrupted.
 type Compute<'a, T> = dyn Fn(usize, &Spare, &Watch) -> Result<Option<T>, RunError> + Sync + 'a;
 
-/// Cells that are computed one by one.
+/// Cells that are computed independently.
 pub struct Sweep<'a, T> {
-    /// All that the results depend on.
+    /// Everything that the results depend on.
     pub input: Input,
-    /// In the order of the table.
+    /// Cells in the order of the table.
     pub cells: Vec<Cell>,
-    /// What cells and units of progress are called.
+    /// Names of cells and of units of progress.
     pub units: [&'static str; 2],
     /// Whether cells are timed, and therefore computed one at a time.
     pub is_timed: bool,
-    /// Number of runs that each result has.
+    /// Number of runs in each result.
     pub runs: usize,
-    /// What a cell is called.
+    /// Name of a cell.
     pub name: Box<dyn Fn(usize) -> String + Sync + 'a>,
     /// Computes a cell.
     pub compute: Box<Compute<'a, T>>,
 }
 
-/// Where results are kept.
+/// Where results are stored.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Keeping {
-    /// In a file, if there is one; a shard of the cells is computed.
+    /// In a file, if one is given; one shard of the cells is computed.
     Log(Option<PathBuf>, Shard),
-    /// In files that are there; nothing is computed.
+    /// In existing files; nothing is computed.
     Merge(Vec<PathBuf>),
 }
 
-/// The results of a sweep's cells that exist already.
+/// The existing results of a sweep's cells.
 pub struct Store<T> {
     found: HashMap<Key, Found<T>>,
     log: Option<Log>,
-    /// What is computed here; nothing where files are put together.
+    /// The shard computed here; `None` when files are merged.
     shard: Option<Shard>,
-    /// The files that were put together, each with the shards that it is of.
+    /// The merged files, each with the shards that it contains.
     files: Vec<(PathBuf, Vec<Shard>)>,
-    /// Kinds of the machines that computed them.
+    /// The machines that computed them.
     machines: BTreeSet<String>,
 }
 
@@ -88,14 +89,13 @@ pub struct Store<T> {
 pub struct Missing {
     /// Their numbers, from 0.
     pub cells: Vec<usize>,
-    /// The shards that they fall to, each with the file that has a part of it, where there is one.
+    /// Their shards, each with the file that contains a part of it, if there is one.
     pub shards: Vec<(Shard, Option<PathBuf>)>,
 }
 
-/// Computes a number of results, each on one thread, in their order.
+/// Computes results in parallel, each on one thread, and returns them in order.
 ///
-/// # Errors
-/// If there are no threads to be had, or a result is an error.
+/// # Errors If the threads cannot be started, or a result is an error.
 pub fn side_by_side<T: Send>(
     jobs: NonZeroUsize,
     count: usize,
@@ -105,25 +105,23 @@ pub fn side_by_side<T: Send>(
         .num_threads(jobs.get().min(count.max(1)))
         .stack_size(STACK)
         .build()?;
-    // One by one: cells differ much in what they cost, and the first ones are to be done first.
+    // One by one, because cells differ in cost and the first ones should be done first.
     let all = (0..count).into_par_iter().with_max_len(1);
     pool.install(|| all.map(compute).collect())
 }
 
 impl<T: Outcome> Sweep<'_, T> {
-    /// Computes all cells, and keeps no result.
+    /// Computes all cells without storing results.
     ///
-    /// # Errors
-    /// If there are no threads to be had, or a scene is unsound. What fails in a run is its result.
+    /// # Errors If the threads cannot be started, or a scene is invalid. The failure of a run is a result.
     pub fn run(&self, jobs: NonZeroUsize, watch: &Watch) -> Result<Vec<Option<T>>, RunError> {
         let store = Store::open(&Keeping::Log(None, Shard::WHOLE), self)?;
         self.run_with(&store, jobs, watch)
     }
 
-    /// Computes those cells that are to be computed here and have no result yet; `None` for the others.
+    /// Computes the cells of this shard that have no result yet; `None` for the others.
     ///
-    /// # Errors
-    /// As [`Sweep::run`], and if a result cannot be kept or is of another sweep.
+    /// # Errors As [`Sweep::run`], and if a result cannot be stored or belongs to another sweep.
     pub fn run_with(
         &self,
         store: &Store<T>,
@@ -171,16 +169,15 @@ impl<T: Outcome> Sweep<'_, T> {
             (Some(log), _) => log.path(),
             (None, first) => first.map_or(Path::new(""), |(path, _)| path),
         };
-        let message = format!("it is of {has} trials, and its problem has {wants}");
+        let message = format!("the result has {has} trials, but its problem has {wants}");
         Err(LogError::broken(path, found.line, message))
     }
 }
 
 impl<T: Outcome> Store<T> {
-    /// Opens what there is.
+    /// Opens the existing results.
     ///
-    /// # Errors
-    /// If a file cannot be read or written, is of another sweep, or contradicts another one.
+    /// # Errors If a file cannot be read or written, belongs to another sweep, or contradicts another one.
     pub fn open(keeping: &Keeping, sweep: &Sweep<'_, T>) -> Result<Store<T>, LogError> {
         let mut store = Store {
             found: HashMap::new(),
@@ -195,7 +192,7 @@ impl<T: Outcome> Store<T> {
                 if let Some(path) = path {
                     let input = sweep.input.clone().with(*shard);
                     let (log, content) = Log::open(path, &input)?;
-                    // Earlier revisions wrote logs that several maps share; they do not say what they are of.
+                    // Earlier revisions wrote logs that several maps share and that do not contain their input.
                     let is_shared = content.inputs.is_empty() && !content.results.is_empty();
                     if !is_shared && !content.inputs.contains(&input) {
                         log.name(&input)?;
@@ -221,7 +218,7 @@ impl<T: Outcome> Store<T> {
                     if is_shared {
                         continue;
                     }
-                    let message = "it is of no cell that is wanted".to_owned();
+                    let message = "none of its results belongs to this sweep".to_owned();
                     return Err(LogError::broken(path, found.line, message));
                 };
                 let Some(before) = self.found.get_mut(&key) else {
@@ -249,22 +246,22 @@ impl<T: Outcome> Store<T> {
         Ok(())
     }
 
-    /// Whether a cell is computed here, or was.
+    /// Whether a cell is or was computed here.
     pub fn does(&self, cell: &Cell) -> bool {
         self.shard.is_some_and(|shard| shard.has(cell.shard))
     }
 
-    /// Whether there was a result of a cell before.
+    /// Whether a cell had a result before.
     pub fn has(&self, cell: &Cell) -> bool {
         self.found.contains_key(&cell.key)
     }
 
-    /// Kinds of the machines that computed what was put together.
+    /// The machines that computed the merged results.
     pub fn machines(&self) -> impl Iterator<Item = &str> {
         self.machines.iter().map(String::as_str)
     }
 
-    /// What is missing to a whole, where files were put together; `None` where nothing is.
+    /// The cells missing from merged files; `None` if complete.
     pub fn missing(&self, cells: &[Cell]) -> Option<Missing> {
         let absent: Vec<usize> = (0..cells.len()).filter(|&k| !self.has(&cells[k])).collect();
         if self.shard.is_some() || absent.is_empty() {
@@ -283,7 +280,7 @@ impl<T: Outcome> Store<T> {
         })
     }
 
-    /// The number of shards that most of the files are of; of equals the largest.
+    /// The number of shards that most of the files belong to; the largest if several are equally common.
     fn usual(&self) -> NonZeroU64 {
         let mut counts: BTreeMap<NonZeroU64, usize> = BTreeMap::new();
         for shard in self.files.iter().flat_map(|(_, shards)| shards) {

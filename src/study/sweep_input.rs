@@ -1,27 +1,28 @@
-//! What a file of kept results is of, part by part, so that results of different sweeps are told apart, and why.
+//! Describes what the results in a log depend on, part by part, so that results of different sweeps are
+//! detected and the difference is reported.
 
 use super::shard::{Key, Shard};
 use serde::{Deserialize, Serialize};
 use stickslip_scene::shown;
 
-/// What a file of results is of.
+/// What the results in a log depend on.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Input {
-    /// The subcommand: `map`, `study` or `chart`, or what it does beside its usual work.
+    /// The subcommand: `map`, `study` or `chart`, or its variant.
     what: String,
-    /// All that its results depend on: what it is called, and its value.
+    /// Everything that the results depend on: names and values.
     parts: Vec<(String, String)>,
-    /// The shard that was asked for, K and N.
+    /// The requested shard, K and N.
     shard: (u64, u64),
-    /// The kind of machine.
+    /// The machine.
     machine: String,
 }
 
-/// Most characters of a value that a message has.
+/// Maximum number of characters of a value in a message.
 const SHOWN: usize = 80;
 
 impl Input {
-    /// What a shard is of.
+    /// The input of all shards.
     pub fn new(what: &str, parts: Vec<(String, String)>) -> Input {
         Input {
             what: what.to_owned(),
@@ -31,31 +32,31 @@ impl Input {
         }
     }
 
-    /// The same for a shard.
+    /// The input of one shard.
     pub fn with(mut self, shard: Shard) -> Input {
         self.shard = (shard.number(), shard.of().get());
         self
     }
 
-    /// The shard that was asked for; `None` where the numbers are none of a shard.
+    /// The requested shard; `None` if the numbers are invalid.
     pub fn shard(&self) -> Option<Shard> {
         Shard::new(self.shard.0, self.shard.1)
     }
 
-    /// The kind of machine that it was computed on.
+    /// The machine that computed the results.
     pub fn machine(&self) -> &str {
         &self.machine
     }
 
-    /// In what another one differs, as a sentence about it; `None` where its results are ours.
+    /// How another input differs, as a sentence; `None` if its results can be used.
     pub fn difference(&self, theirs: &Input) -> Option<String> {
         if theirs.what.ends_with(", as sums") {
-            let message = "it has the sums of `--aggregate`, which are no longer read; run its shards again with --csv (`help cluster`)";
+            let message = "it contains sums of `--aggregate`, which are no longer supported; run its shards again with --csv (`help cluster`)";
             return Some(message.to_owned());
         }
         if self.what != theirs.what {
             return Some(format!(
-                "its results are those of {}, and not of {}",
+                "its results belong to {}, not to {}",
                 theirs.what, self.what
             ));
         }
@@ -65,19 +66,19 @@ impl Input {
         if let Some(((name, ours), (their_name, theirs))) = other {
             return Some(match name == their_name {
                 true => format!(
-                    "its results are of another {name}: {}, and not {}",
+                    "its results have a different {name}: {} instead of {}",
                     cut(theirs),
                     cut(ours)
                 ),
-                false => format!("its results have a {their_name} where these have a {name}"),
+                false => format!("its results have {their_name} instead of {name}"),
             });
         }
         (self.parts.len() != theirs.parts.len())
-            .then(|| "its results are of more or fewer scenes or series".to_owned())
+            .then(|| "its results have a different number of scenes or series".to_owned())
     }
 }
 
-/// A text in a part, where only whether it is the same counts.
+/// Digest of a text in a part, of which only equality matters.
 pub fn digest(text: &str) -> String {
     Key::of([text]).to_string()
 }
@@ -95,15 +96,15 @@ mod tests {
     }
 
     #[test]
-    fn the_first_part_that_differs_is_told() {
+    fn the_first_different_part_is_reported() {
         let ours = input("map", "20");
         assert_eq!(ours.difference(&ours), None);
         let shard = Shard::new(3, 7).unwrap();
         assert_eq!(ours.difference(&ours.clone().with(shard)), None);
         let told = ours.difference(&input("map", "30")).unwrap();
-        assert!(told.contains("another friction.angle: 30, and not 20"));
+        assert!(told.contains("a different friction.angle: 30 instead of 20"));
         let told = ours.difference(&input("study", "20")).unwrap();
-        assert!(told.contains("those of study, and not of map"), "{told}");
+        assert!(told.contains("belong to study, not to map"), "{told}");
         let mut fewer = input("map", "20");
         fewer.parts.pop();
         assert!(ours.difference(&fewer).is_some());

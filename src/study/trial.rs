@@ -1,8 +1,10 @@
-//! One random interface problem, tried with every strategy, and judged by its census and by Coulomb's law itself.
+//! Tries one random interface problem with every strategy, and checks the results by its census and by
+//! Coulomb's law.
 //!
-//! How many answers a problem has is counted by the census of its frozen interface problem, before the first step. What
-//! a run ends in is judged without any of the solver: from the problem as it was drawn, the displacements u and the
-//! forces f of the run's end (at load factor 1, in one increment, which is not cut) must satisfy
+//! The number of solutions of a problem is counted by the census of its frozen interface problem, before the
+//! first step. The end of a run is checked independently of the solver: with the problem as drawn, the
+//! displacements u and the forces f at the end (at load factor 1, in one increment, which is not cut) must
+//! satisfy
 //!
 //! ```text
 //! K (u − free) = load + f   or   u = free + W (load + f)
@@ -27,46 +29,46 @@ use stickslip_scene::format::condensed::{Matrix, Problem};
 use stickslip_scene::format::{SceneError, paths};
 use stickslip_scene::{Scene, increments};
 
-/// A run whose end breaks a condition by more than this, relatively, is no answer. It is far above what the solver leaves
-/// (its tolerance is 1e-11) and far below what a wrong state breaks.
+/// A run whose end violates a condition by more than this, relatively, is not a solution. This is far above the
+/// solver's errors (its tolerance is 1e-11) and far below the violations of wrong states.
 pub const TOLERANCE: f64 = 1e-6;
-/// No run of a small problem takes as many minor iterations and is worth waiting for.
+/// Limit for a small problem; more minor iterations are not worth the time.
 const MOST_MINORS: u64 = 20_000;
 
-/// Settings to try, path by path, and what they are called.
+/// A set of settings to try, with its name.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Variant {
-    /// What they are called.
+    /// Its name.
     pub name: String,
-    /// Path and value of each.
+    /// Path and value of each setting.
     pub settings: Vec<(String, String)>,
 }
 
-/// What one random problem came to.
+/// Results of one random problem.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Judged {
-    /// Number of its contacts.
+    /// Number of contacts.
     pub nodes: usize,
-    /// Name of its form, and whether it has cohesion.
+    /// Name of its form.
     pub form: String,
     /// Whether it has cohesion.
     pub cohesive: bool,
-    /// Number of its answers by census.
+    /// Number of solutions in the census.
     pub answers: usize,
-    /// One a variant.
+    /// One trial per variant.
     pub trials: Vec<Trial>,
 }
 
-/// What one variant made of one problem.
+/// Result of one variant on one problem.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Trial {
-    /// What the run is worth.
+    /// Verdict on the run.
     pub verdict: RunVerdict,
     /// Major iterations.
     pub majors: u64,
     /// Minor iterations.
     pub minors: u64,
-    /// Largest violation of Coulomb's law and of equilibrium in the end, relatively; infinite where there is no end.
+    /// Largest relative violation of Coulomb's law and of equilibrium at the end; infinite if there is no end.
     pub violation: f64,
 }
 
@@ -89,24 +91,24 @@ impl Outcome for Judged {
 }
 
 impl Judged {
-    /// Whether the problem has an answer: by census, or since a run found one where the census has none (where assumptions
-    /// have a whole line of solutions, which it does not look into).
+    /// Whether the problem has a solution: in the census, or found by a run where the census has none (it does
+    /// not examine assignments with a whole line of solutions).
     pub fn solvable(&self) -> bool {
         self.answers > 0 || self.trials.iter().any(|t| t.verdict == RunVerdict::Right)
     }
 }
 
-/// A variant, and the way of solving that its settings come to on all problems of a population.
+/// A variant, with the solution method that its settings give for all problems of a population.
 #[derive(Debug, Clone)]
 pub struct Prepared<'a> {
     variant: &'a Variant,
-    /// `None` where the settings are not for a method alone, or will not do.
+    /// `None` if the settings are not only about the method, or are invalid.
     method: Option<Method>,
 }
 
-/// Variants to try on many problems.
+/// Prepares variants to be tried on many problems.
 pub fn prepared(variants: &[Variant]) -> Vec<Prepared<'_>> {
-    // All problems have this history and these settings; of what else they have nothing is read.
+    // All problems share this history and these settings, and nothing else matters here.
     let common = Problem {
         title: String::new(),
         about: String::new(),
@@ -128,7 +130,7 @@ pub fn prepared(variants: &[Variant]) -> Vec<Prepared<'_>> {
     variants.iter().map(prepared).collect()
 }
 
-/// What is set for a variant: an increment is not cut.
+/// The settings of a variant, without cuts of the increment.
 fn settings(variant: &Variant) -> Vec<(String, String)> {
     let least = ("history.least".to_owned(), "1".to_owned());
     std::iter::once(least)
@@ -136,10 +138,9 @@ fn settings(variant: &Variant) -> Vec<(String, String)> {
         .collect()
 }
 
-/// Tries one problem of a population with all variants; `None` if `stop` says so in between.
+/// Tries one problem of a population with all variants; `None` if `stop` returns true.
 ///
-/// # Errors
-/// If a variant's settings will not do.
+/// # Errors If a variant's settings are invalid.
 pub fn try_variants(
     population: &Population,
     k: usize,
@@ -175,27 +176,27 @@ pub fn try_variants(
     Ok(Some(judged))
 }
 
-/// The model of a scene with the settings of a variant, one after the other.
+/// The model of a scene after setting a variant's values in turn.
 fn changed(scene: &Scene, variant: &Variant) -> Result<Model, SceneError> {
     let mut own = scene.clone();
     for (path, value) in settings(variant) {
         own = own.with(&paths::whole(&own.spec, &path), &value)?;
     }
     if increments(&own.model.path, |leg| own.model.on_leg(leg)) != 1.0 {
-        let message = "random problems are solved in one increment, since their answers are known for that alone";
+        let message = "random problems are solved in one increment, because their solutions are known only for that";
         return Err(SceneError::whole(&scene.name, message));
     }
     Ok(own.model)
 }
 
-/// Number of answers by census; 0 where the problem cannot be condensed.
+/// Number of solutions in the census; 0 if the problem cannot be condensed.
 fn answers(stepper: &mut Stepper) -> usize {
     let frozen = stepper.interface_problem();
     let found = frozen.and_then(|frozen| census(&frozen).ok());
     found.map_or(0, |census| census.answers.len())
 }
 
-/// The run of a stepper that stands at the start.
+/// Runs a stepper from the start.
 fn one(problem: &Problem, stepper: &mut Stepper) -> Trial {
     let mut trial = Trial {
         verdict: RunVerdict::Failed(Reason::MinorLimit),
@@ -225,7 +226,7 @@ fn one(problem: &Problem, stepper: &mut Stepper) -> Trial {
     trial
 }
 
-/// By how much the present state breaks what it must satisfy, over the sizes of its own forces and lengths.
+/// Violation of the conditions in the current state, relative to its forces and lengths.
 fn violation(problem: &Problem, stepper: &Stepper) -> f64 {
     let (model, state) = (stepper.model(), stepper.state());
     // The contacts are the slaves, in order; n is y and t is −x (`format::condensed`).
@@ -241,7 +242,7 @@ fn violation(problem: &Problem, stepper: &Stepper) -> f64 {
     broken(problem, &u, &f)
 }
 
-/// The same of displacements and forces, n and t of each contact in turn.
+/// Violation of the conditions by displacements and forces, given as n and t of each contact in turn.
 fn broken(problem: &Problem, u: &[f64], f: &[f64]) -> f64 {
     let free = |i: usize| problem.free.get(i).copied().unwrap_or(0.0);
     let acts = |i: usize| problem.contacts[i / 2].load[i % 2] + f[i];
@@ -262,7 +263,7 @@ fn broken(problem: &Problem, u: &[f64], f: &[f64]) -> f64 {
     let gaps = problem.contacts.iter().map(|contact| contact.gap);
     let mut length = size(&mut gaps.chain(u.iter().copied()).chain(all().map(free)));
     let mut force = size(&mut all().map(acts).chain(f.iter().copied()));
-    // What is nothing at all has no size to be compared with.
+    // If everything is zero, there is no reference size.
     match stiff {
         true => force = force.max(size(&mut all().map(product))),
         false => length = length.max(size(&mut all().map(product))),
@@ -286,7 +287,7 @@ fn broken(problem: &Problem, u: &[f64], f: &[f64]) -> f64 {
         normal.max(tangential)
     });
     let worst = contacts.fold(balance, f64::max);
-    // A NaN is no answer either, and a maximum hides it.
+    // NaN is not a solution, but a maximum ignores it.
     match u.iter().chain(f).all(|v| v.is_finite()) {
         true => worst,
         false => f64::INFINITY,
@@ -299,7 +300,7 @@ mod tests {
     use stickslip_core::model::Friction;
     use stickslip_scene::format::condensed::Contact;
 
-    /// A node on two unit springs, a load (−1, 1) along n and t, friction μ = 0.5: it slides, u_t = 0.5.
+    /// A node on two unit springs, with load (−1, 1) along n and t and friction μ = 0.5: it slides, u_t = 0.5.
     fn slider() -> Problem {
         Problem {
             title: "slider".to_owned(),
@@ -324,16 +325,16 @@ mod tests {
     }
 
     #[test]
-    fn coulombs_law_is_told_from_what_breaks_it() {
+    fn violations_of_coulombs_law_are_detected() {
         let problem = slider();
         assert!(broken(&problem, &[0.0, 0.5], &[1.0, -0.5]) < 1e-15);
         for (u, f) in [
             ([0.0, 1.0], [1.0, 0.0]),    // no friction
-            ([0.0, 0.0], [1.0, -1.0]),   // more friction than there is
-            ([0.0, 1.5], [1.0, 0.5]),    // friction drives
+            ([0.0, 0.0], [1.0, -1.0]),   // more friction than the limit
+            ([0.0, 1.5], [1.0, 0.5]),    // friction drives the slip
             ([-1.0, 1.0], [0.0, 0.0]),   // penetrates
-            ([0.5, 0.25], [1.5, -0.75]), // pressed and apart
-            ([0.0, 0.6], [1.0, -0.5]),   // no balance
+            ([0.5, 0.25], [1.5, -0.75]), // force across an open gap
+            ([0.0, 0.6], [1.0, -0.5]),   // not in balance
             ([0.0, f64::NAN], [1.0, -0.5]),
         ] {
             assert!(broken(&problem, &u, &f) > 1e-2, "{u:?} {f:?}");
@@ -341,7 +342,7 @@ mod tests {
     }
 
     #[test]
-    fn a_prepared_variant_has_the_model_that_setting_after_setting_makes() {
+    fn a_prepared_variant_equals_setting_values_in_turn() {
         let settings = [
             &[][..],
             &[
@@ -382,7 +383,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_refused_is_refused_by_setting_after_setting() {
+    fn a_prepared_variant_refuses_what_setting_in_turn_refuses() {
         let refused = [
             "settings.minors=0",
             "increment=0.5",
@@ -392,7 +393,7 @@ mod tests {
         let all = refused.map(|text| {
             let (path, value) = text.split_once('=').unwrap();
             let first = (path.to_owned(), value.to_owned());
-            // What comes later and would do does not help.
+            // A valid later value must not hide an invalid earlier one.
             let later = ("settings.minors".to_owned(), "9".to_owned());
             Variant {
                 name: text.to_owned(),

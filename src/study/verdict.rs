@@ -6,30 +6,31 @@ use std::fmt;
 use stickslip_core::interface::method::NotFound;
 use stickslip_core::step::event::Failure;
 
-/// What a run came to. Its letter comes first wherever it is shown, its colour second.
+/// Verdict on a run. Displays show its letter first and its colour second.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum RunVerdict {
-    /// It went to the end, and its end is right as far as can be told.
+    /// The run finished, and no check found its end wrong.
     Right,
-    /// It went to the end, and to a wrong one: no state that Coulomb's law allows, or another branch than the reference.
+    /// The run finished in a wrong state: it violates Coulomb's law, or is on another branch than the
+    /// reference.
     Wrong,
-    /// Its iterations go round for ever; minor iterations, or major ones.
+    /// The iterations cycle.
     Cycle {
-        /// Iterations of one period.
+        /// Period of the cycle.
         period: u32,
-        /// Whether the major iterations go round, and not the minor ones.
+        /// Whether the major iterations cycle, not the minor ones.
         majors: bool,
     },
-    /// It grew out of all bounds.
+    /// The run diverged.
     Diverged,
-    /// It said that there is no answer: all assumptions were tried, or Lemke's pivoting ended on a ray.
+    /// Reported unsolvable: all assignments were tried, or Lemke's pivoting ended on a ray.
     NoAnswer,
-    /// It failed in another way.
+    /// The run failed in another way.
     Failed(Reason),
 }
 
 impl RunVerdict {
-    /// What a failure is worth.
+    /// The verdict on a failure.
     pub fn of(failure: &Failure) -> RunVerdict {
         match failure {
             Failure::Cycle(cycle) => RunVerdict::Cycle {
@@ -41,7 +42,7 @@ impl RunVerdict {
                 majors: true,
             },
             Failure::Diverged { .. } => RunVerdict::Diverged,
-            // That nothing was found where not all could be tried says nothing about the problem.
+            // An incomplete search without a result proves nothing about the problem.
             Failure::NoAnswer { .. } | Failure::NotFound(NotFound::Ray) => RunVerdict::NoAnswer,
             other => RunVerdict::Failed(Reason::from(other)),
         }
@@ -69,12 +70,12 @@ impl RunVerdict {
         self.names().1
     }
 
-    /// What it is called in tables: a word without blanks.
+    /// The word in tables, without spaces.
     pub fn word(self) -> &'static str {
         self.names().2
     }
 
-    /// What the word leaves out: a cycle's period, the reason of a failure; else empty.
+    /// What the word leaves out: the period of a cycle, the reason of a failure; otherwise empty.
     pub fn detail(self) -> String {
         match self {
             RunVerdict::Cycle { period, .. } => period.to_string(),

@@ -13,7 +13,7 @@ const ROW: f64 = 28.0;
 const BAR: f64 = 560.0;
 /// Width of a cell with two letters.
 const CELL: f64 = 44.0;
-/// Where the numbers of problems without an answer stand, right of the bars.
+/// Positions of the numbers of problems without a solution, right of the bars.
 const NONE: (f64, f64) = (430.0, 470.0);
 const WHITE: Colour = (255, 255, 255);
 
@@ -28,7 +28,7 @@ fn colour(verdict: RunVerdict) -> Colour {
     }
 }
 
-/// Every kind of verdict once, as the legend has them.
+/// Every kind of verdict once, as in the legend.
 const KINDS: [(RunVerdict, &str); 6] = [
     (RunVerdict::Right, "converged"),
     (RunVerdict::Wrong, "wrong branch or state"),
@@ -40,11 +40,11 @@ const KINDS: [(RunVerdict, &str); 6] = [
         "cycle, with its period",
     ),
     (RunVerdict::Diverged, "diverged"),
-    (RunVerdict::NoAnswer, "said to have no answer"),
+    (RunVerdict::NoAnswer, "reported unsolvable"),
     (RunVerdict::Failed(Reason::MinorLimit), "other failure"),
 ];
 
-/// The legend, in a line that is broken where it must be.
+/// Draws the legend, wrapped.
 fn legend(sheet: &mut Sheet) -> Result<(), PlotError> {
     let (mut x, mut y) = (MARGIN, sheet.height + 0.5 * ROW);
     for (verdict, words) in KINDS {
@@ -66,20 +66,21 @@ fn legend(sheet: &mut Sheet) -> Result<(), PlotError> {
     Ok(())
 }
 
-/// What letters are written with on a ground, so that they are read in grey, too.
+/// Text colour with good contrast on a background, also in greyscale.
 fn ink((r, g, b): Colour) -> Colour {
     let light = 0.3 * f64::from(r) + 0.6 * f64::from(g) + 0.1 * f64::from(b);
     if light > 115.0 { BLACK } else { WHITE }
 }
 
-/// A coloured rectangle with letters in it.
+/// Draws a coloured rectangle with text in it.
 fn letter(sheet: &mut Sheet, at: (f64, f64), size: (f64, f64), verdict: RunVerdict, text: &str) {
     sheet.bar(at, size, colour(verdict));
     let middle = (at.0 + 0.5 * size.0, at.1 + 0.5 * size.1);
     sheet.text(middle, text, LABEL, ink(colour(verdict)), Anchor::Middle);
 }
 
-/// Random problems: for each strategy what became of 1,000 that have an answer, and of those that have none.
+/// Bars for random problems: for each strategy the verdicts per 1,000 problems with a solution, and on those
+/// without.
 ///
 /// # Errors
 /// If the font cannot be read.
@@ -95,7 +96,7 @@ pub fn bars(survey: &Survey) -> Result<Sheet, PlotError> {
         .first()
         .map_or((0, 0), |t| (t.solvable, t.unsolvable));
     let title =
-        format!("Random interface problems by strategy, per 1,000 of {some} with an answer");
+        format!("Random interface problems by strategy, per 1,000 of {some} with a solution");
     let mut sheet = Sheet::new(numbers + NONE.1 + MARGIN, &title)?;
     let y = sheet.height + 0.5 * ROW;
     let heads = ["✓", "≠", "↺", "✗", "∅"].iter().enumerate();
@@ -150,7 +151,7 @@ pub fn bars(survey: &Survey) -> Result<Sheet, PlotError> {
     Ok(sheet)
 }
 
-/// Scenes: a grid of cells for each panel.
+/// Grids of cells for scenes, one per panel.
 ///
 /// # Errors
 /// If the font cannot be read.

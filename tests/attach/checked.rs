@@ -75,15 +75,15 @@ fn our_own_solver_passes_every_check() {
 
 /// What a solver does wrong, the check that finds it, and what it says.
 const WRONGS: &[(&str, &str, &str)] = &[
-    ("version", "start", "speaks version 2"),
+    ("version", "start", "uses version 2"),
     ("same-id", "scene", "a is already used"),
-    ("text", "step", "is no message"),
+    ("text", "step", "is not a message"),
     ("nan", "step", "write null instead"),
     ("wrong-id", "states", "it must be 7, as in the scene"),
     (
         "displacements",
         "states",
-        "it has 1 displacements, and the scene 4 nodes",
+        "it has 1 displacements; the scene has 4 nodes",
     ),
     ("random", "determinism", "after a restart, iteration"),
     ("restores-another", "restore", "after restoring iteration"),

@@ -32,7 +32,7 @@ const FAULTS: &[(&str, bool, &str)] = &[
     (
         "signal",
         false,
-        "the solver ended (killed by signal 9); step is not answered",
+        "the solver ended (killed by signal 9) without answering step",
     ),
     (
         "bye",
@@ -42,12 +42,12 @@ const FAULTS: &[(&str, bool, &str)] = &[
     (
         "bye-silently",
         false,
-        "the solver answered step with bye; what was done",
+        "the solver answered step with bye; all steps so far",
     ),
     (
         "hang",
         true,
-        "the solver did not answer step within 0.5 s, and was stopped; --timeout gives it longer",
+        "the solver did not answer step within 0.5 s and was stopped; allow more time with --timeout",
     ),
     (
         "hang-deaf",
@@ -57,20 +57,20 @@ const FAULTS: &[(&str, bool, &str)] = &[
     (
         "text",
         false,
-        r#"that is no message (not a JSON object): "Iteration 3: residual 1.0e-3"; what it prints belongs on standard error"#,
+        r#"that is not a message (not a JSON object): "Iteration 3: residual 1.0e-3"; it must print to standard error"#,
     ),
     (
         "text-then-answer",
         false,
-        "that is no message (not a JSON object)",
+        "that is not a message (not a JSON object)",
     ),
-    ("binary", false, "that is no message (not UTF-8)"),
+    ("binary", false, "that is not a message (not UTF-8)"),
     (
         "ansi",
         false,
         r#"(not a JSON object): "\u{1b}[2J\u{1b}]0;owned\u{7}\u{9b}31m""#,
     ),
-    ("blank", false, "that is no message (an empty line)"),
+    ("blank", false, "that is not a message (an empty line)"),
     ("number", false, r#"(not a JSON object): "42""#),
     ("array", false, "(not a JSON object)"),
     (
@@ -101,40 +101,32 @@ const FAULTS: &[(&str, bool, &str)] = &[
     (
         "zero",
         false,
-        "the solver's state is unsound: at: all counts are from 1 to",
+        "the solver's state is invalid: at: counters must be from 1 to",
     ),
     (
         "huge",
         false,
-        "the solver's state is unsound: at: all counts are from 1 to",
+        "the solver's state is invalid: at: counters must be from 1 to",
     ),
     (
         "wrong-id",
         false,
-        r"the solver's state is unsound: contacts[1].id is \u{1b}[2Jb; it must be 7, as in the scene",
+        r"the solver's state is invalid: contacts[1].id is \u{1b}[2Jb; it must be 7, as in the scene",
     ),
     (
         "other-order",
         false,
         "contacts[0].id is 7; it must be a, as in the scene",
     ),
-    ("too-few", false, "it has 1 contacts, and the scene 2"),
-    ("too-many", false, "it has 3 contacts, and the scene 2"),
+    ("too-few", false, "it has 1 contacts; the scene has 2"),
+    ("too-many", false, "it has 3 contacts; the scene has 2"),
     (
         "displacements",
         false,
-        "it has 1 displacements, and the scene 4 nodes",
+        "it has 1 displacements; the scene has 4 nodes",
     ),
-    (
-        "normal",
-        false,
-        "contacts[0].normal: it must be of length 1",
-    ),
-    (
-        "cut-to-nothing",
-        false,
-        "size: that of an increment is positive",
-    ),
+    ("normal", false, "contacts[0].normal: must have length 1"),
+    ("cut-to-nothing", false, "size: must be positive"),
     (
         "half",
         false,
@@ -157,12 +149,12 @@ const FAULTS: &[(&str, bool, &str)] = &[
     (
         "ok",
         false,
-        "the solver answered step with ok; state is the answer to that",
+        "the solver answered step with ok; expected state",
     ),
     (
         "saved",
         false,
-        "the solver answered step with saved; state is the answer to that",
+        "the solver answered step with saved; expected state",
     ),
     (
         "refuses-step",
@@ -172,12 +164,12 @@ const FAULTS: &[(&str, bool, &str)] = &[
     (
         "closes",
         false,
-        "the solver ended (standard output closed); step is not answered",
+        "the solver ended (standard output closed) without answering step",
     ),
     (
         "leaves-a-child",
         false,
-        "the solver ended (exit status 5; a child process keeps its output open); step is not answered",
+        "the solver ended (exit status 5; a child process keeps its output open) without answering step",
     ),
 ];
 
@@ -188,14 +180,14 @@ const AFTER: &[(&str, [&str; 2])] = &[
         "twice",
         [
             "the solver said state unasked, before ",
-            "the solver answered save with state; saved is the answer to that",
+            "the solver answered save with state; expected saved",
         ],
     ),
     (
         "unasked",
         [
-            "the solver said ok unasked, before ",
-            "the solver answered save with ok; saved is the answer to that",
+            "the solver sent ok before ",
+            "the solver answered save with ok; expected saved",
         ],
     ),
     (
@@ -218,7 +210,7 @@ const AFTER: &[(&str, [&str; 2])] = &[
 fn says(how: &str, said: &str, told: &str) {
     assert!(said.contains(told), "{how}: {said}");
     assert!(
-        said.ends_with("; what was done so far is kept"),
+        said.ends_with("; all steps so far are kept"),
         "{how}: {said}"
     );
     is_harmless(said);
@@ -296,26 +288,26 @@ fn each_fault_of_a_step_has_a_name_and_leaves_what_was_done() {
 const BAD_STARTS: &[(&str, &str)] = &[
     (
         "hang-at-start",
-        "did not answer hello within 0.5 s, and was stopped; --start-timeout gives it longer",
+        "did not answer hello within 0.5 s and was stopped; allow more time with --start-timeout",
     ),
     ("hang-in-scene", "did not answer scene within 0.5 s"),
     (
         "dies-in-scene",
-        "the solver ended (exit status 3); scene is not answered",
+        "the solver ended (exit status 3) without answering scene",
     ),
     (
         "version",
-        "the solver speaks version 2 of the protocol, and this program version 1",
+        "the solver uses version 2 of the protocol; this program supports version 1",
     ),
     ("refuses-to-talk", "the solver refuses hello: not with you"),
     (
         "scene-for-hello",
-        "the solver answered hello with scene; hello is the answer to that",
+        "the solver answered hello with scene; expected hello",
     ),
     ("hello-without-question", "hello"),
     (
         "parameter-twice",
-        r#"the solver's hello is unsound: parameter "gain": duplicate name"#,
+        r#"the solver's hello is invalid: parameter "gain": duplicate name"#,
     ),
     (
         "parameter-unsound",
@@ -327,7 +319,7 @@ const BAD_STARTS: &[(&str, &str)] = &[
     ),
     (
         "same-id",
-        "the solver's scene is unsound: contacts[1].id: a is already used",
+        "the solver's scene is invalid: contacts[1].id: a is already used",
     ),
     (
         "no-such-node",
@@ -468,15 +460,15 @@ fn one_that_is_another_when_started_again_is_not_believed() {
     for (how, told) in [
         (
             "random",
-            "done again, iteration 2 of the solver is not what it was (",
+            "when repeated, iteration 2 of the solver differed (",
         ),
         (
             "other-scene",
-            "started again, the solver tells another list of contacts",
+            "after a restart, the solver reports a different list of contacts",
         ),
         (
             "other-parameters",
-            "started again, the solver tells another set of parameters",
+            "after a restart, the solver reports",
         ),
     ] {
         let rude = Rude::new(how);
@@ -594,9 +586,7 @@ fn an_interrupt_is_a_message_then_a_signal_then_the_end() {
     for deaf in ["hang-deaf", "interrupt-ignored"] {
         let (said, frames) = interrupted(deaf, 3);
         assert!(
-            said.contains(
-                "interrupted: the solver did not end step when it was asked to, and was stopped"
-            ),
+            said.contains("interrupted: the solver did not stop during step and was ended"),
             "{said}"
         );
         assert_eq!(frames, 3);

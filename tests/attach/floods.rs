@@ -33,7 +33,7 @@ fn a_line_without_end_is_cut_off_at_the_bound() {
     let said = does(&mut session, minor());
     assert!(
         said.contains(
-            "the solver wrote a line of more than 67108864 bytes: \"{\\\"type\\\":\\\"xxx"
+            "the solver wrote a line longer than 67108864 bytes: \"{\\\"type\\\":\\\"xxx"
         ),
         "{said}"
     );

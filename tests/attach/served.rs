@@ -284,7 +284,7 @@ fn what_is_not_offered_is_refused_with_the_reason() {
     let said = does(&mut session, Command::Increment(0.1));
     assert_eq!(said, "the solver rude does not offer another increment");
     let said = does(&mut session, set("friction.angle", "3"));
-    assert_eq!(said, "the solver rude does not offer another friction");
+    assert_eq!(said, "the solver rude does not offer a friction change");
     let said = does(&mut session, set("gain", "-1"));
     assert_eq!(said, "gain takes a number from 0 on, and -1 is none");
     assert_eq!(session.frames().len(), 2);

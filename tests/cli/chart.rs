@@ -73,8 +73,8 @@ fn the_elastica_is_the_reference_of_problem_04_and_the_cheapest_mesh_is_named() 
     let svg = std::fs::read_to_string(directory.path().join("a.svg")).unwrap();
     for part in [
         "minor iterations",
-        "beaten by none",
-        "wanted 0.0002",
+        "on the Pareto front",
+        "target 0.0002",
         "Scene: 04",
         "cores",
         "failed",
@@ -171,13 +171,13 @@ fn a_chart_is_measured_by_any_monitor_contact_forces_included() {
     let errors: Vec<f64> = rows(&force).iter().map(|r| number(r, "error")).collect();
     assert!(errors.iter().all(|e| *e < 1e-8), "{errors:?}");
     assert!(
-        err(&force).contains("difference of contact_x over"),
+        err(&force).contains("difference of contact_x, relative to"),
         "{}",
         err(&force)
     );
     let svg = std::fs::read_to_string(directory.path().join("a.svg")).unwrap();
     assert!(
-        svg.contains("error of contact_x (part of the largest)"),
+        svg.contains("error of contact_x (relative to the largest)"),
         "{svg}"
     );
     let displacement: Vec<f64> = rows(&by(&["u_x"]))
@@ -188,7 +188,7 @@ fn a_chart_is_measured_by_any_monitor_contact_forces_included() {
     let none = by(&["no_such"]);
     assert_eq!(code(&none), 2);
     assert!(
-        err(&none).contains("no no_such") && err(&none).contains("u_x"),
+        err(&none).contains("no monitor no_such") && err(&none).contains("u_x"),
         "{}",
         err(&none)
     );
@@ -341,7 +341,7 @@ fn a_table_is_drawn_again_as_it_was_and_tables_of_other_programs_too() {
     assert!(svg.contains("✗ two, n=1: died") && svg.contains("two programs"));
     for (text, part) in [
         ("", "no header"),
-        ("a,b\n", "no table of a chart"),
+        ("a,b\n", "not the table of a chart"),
         ("scene,series,run,status,error,seconds\n", "no rows"),
         (
             "scene,series,run,status,error,seconds\nA,b,c,whole,x,1\n",

@@ -34,7 +34,7 @@ fn a_picture_says_which_state_it_is_of_whether_the_scene_converges_or_fails() {
     let output = exported(here, &[ROUGH, "-o", "end.svg"]);
     assert_eq!(code(&output), 0, "{}", err(&output));
     let svg = texts(&read(here, "end.svg"));
-    assert!(svg.contains("accepted, the end of the history."), "{svg}");
+    assert!(svg.contains("accepted; end of the history."), "{svg}");
     for word in [
         "free",
         "sliding",
@@ -61,7 +61,7 @@ fn a_picture_says_which_state_it_is_of_whether_the_scene_converges_or_fails() {
     assert!(err(&output).contains("exporting this state"));
     let svg = texts(&read(here, "failed.svg"));
     assert!(
-        svg.contains("increment 1, major 1, minor 2, load 0.05: the last state reached, the increment failed: the modes 2-cycle"),
+        svg.contains("increment 1, major 1, minor 2, load 0.05: last state; the increment failed: cycle of period 2"),
         "{svg}"
     );
     assert!(svg.contains("✗") && svg.contains("beam.5"), "{svg}");

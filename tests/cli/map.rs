@@ -426,7 +426,10 @@ fn wrong_usage_is_refused_with_2() {
         (vec!["--random", "0"], "whole number"),
         (vec!["--random", "5", "--nodes", "0..2"], "A..B"),
         (vec!["--random", "5", "--over", "nonsense=1"], "no value"),
-        (vec!["osc-two3", "--over", "increment=0..1"], "a range is"),
+        (
+            vec!["osc-two3", "--over", "increment=0..1"],
+            "expected a range",
+        ),
         (vec!["osc-two3", "--over", "nonsense=1"], "no value"),
         (vec!["osc-two3", "--random", "5"], "cannot be used"),
     ] {

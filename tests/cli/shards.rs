@@ -152,7 +152,7 @@ fn options_and_logs_of_sums_are_refused_with_what_replaces_them() {
         assert_eq!(code(&output), 2);
         let told = err(&output);
         assert!(
-            told.starts_with("b.log: it has the sums of `--aggregate`"),
+            told.starts_with("b.log: it contains sums of `--aggregate`"),
             "{told}"
         );
     }
@@ -199,10 +199,10 @@ fn logs_of_something_else_are_refused_with_the_reason() {
         ),
         (
             "map osc-two6 --over friction=5..45/6 --over increment=0.5,0.25,0.2",
-            "another scene",
+            "a different scene",
         ),
-        (STUDY, "those of map, and not of study"),
-        (RANDOM, "those of map, and not of map --random"),
+        (STUDY, "belong to map, not to study"),
+        (RANDOM, "belong to map, not to map --random"),
     ];
     for (words, why) in others {
         for part in [["--merge", "a.log"], ["--log", "a.log"]] {
@@ -224,7 +224,7 @@ fn logs_of_something_else_are_refused_with_the_reason() {
     .unwrap();
     let told = err(&merged(here, MAP, &["b.log".to_owned()], &[]));
     assert!(
-        told.starts_with("b.log:1:1: it is of another revision"),
+        told.starts_with("b.log:1:1: written by another revision"),
         "{told}"
     );
     // Another value of a cell.
@@ -340,7 +340,7 @@ fn sigterm_stops_a_shard_with_130_and_the_same_command_goes_on() {
         // Another one waits for nobody, and says that it may be tried again.
         let second = ran(here, words, &part);
         assert_eq!(code(&second), 75, "{}", err(&second));
-        assert!(err(&second).contains("another run writes to it"));
+        assert!(err(&second).contains("another run is writing to this file"));
         let output = signalled(child, "-TERM");
         assert_eq!(code(&output), 130, "{words}: {}", err(&output));
         let told = err(&output);

@@ -253,7 +253,7 @@ fn a_figure_names_its_runs_marks_failures_and_says_what_it_was_made_from() {
         "increment=0.05",
         "minor-cycle in increment 5, load 0.05",
         "Scene: osc-inclined-cantilever; settings.majors=70",
-        "2 runs, 2 of them failed",
+        "2 runs, of which 2 failed",
         concat!("stickslip ", env!("CARGO_PKG_VERSION")),
         std::env::consts::ARCH,
         "load factor",

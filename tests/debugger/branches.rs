@@ -167,7 +167,7 @@ fn branches_are_renamed_and_wrong_names_are_told() {
         |session: &mut Session, command| session.submit(command).expect_err("refused").to_string();
     let only = refused(&mut session, Command::Branch(To::Next));
     assert!(
-        only.contains("an intervention before the tip starts one"),
+        only.contains("an intervention before the tip starts another"),
         "{only}"
     );
     forward(&mut session, Unit::Run, 1);
@@ -179,14 +179,14 @@ fn branches_are_renamed_and_wrong_names_are_told() {
     assert_eq!(names(&session), ["b1: start", "b2: way out"]);
     for (name, told) in [
         ("", "one line"),
-        ("start", "another branch is called 'start'"),
-        ("b7", "looks like a branch's number"),
+        ("start", "'start' is already in use"),
+        ("b7", "looks like a branch number"),
     ] {
         let said = refused(&mut session, Command::Rename(name.into()));
         assert!(said.contains(told), "{said}");
     }
     let said = refused(&mut session, Command::Branch(To::Named("nowhere".into())));
-    assert!(said.contains("there are b1: start, b2: way out"), "{said}");
+    assert!(said.contains("branches: b1: start, b2: way out"), "{said}");
     branch(&mut session, "sta");
     branch(&mut session, "b2: way out");
     assert_eq!(session.tree().current(), 1);
@@ -237,7 +237,7 @@ fn ends_are_judged_as_cycle_same_cycle_accepted_same_state_and_running() {
     );
     let listed = submit(&mut session, Command::Branches);
     assert!(
-        listed.contains("b2: minors 50 (same cycle as b1: start, 3 minors)"),
+        listed.contains("b2: minors 50 (same cycle as b1: start, 3 minor)"),
         "{listed}"
     );
 }

@@ -242,7 +242,7 @@ fn breakpoints_are_listed_disabled_enabled_and_deleted() {
     say(&mut session, "break cycle");
     assert_eq!(session.breakpoints()[1].id, 3);
     say(&mut session, "delete all");
-    assert!(say(&mut session, "continue").contains("the history is done"));
+    assert!(say(&mut session, "continue").contains("the history is complete"));
 }
 
 #[test]
@@ -276,7 +276,7 @@ fn watches_show_the_numbers_of_the_iteration_that_is_looked_at() {
     assert!(twice.contains("'f_n beam.5' already"), "{twice}");
     let none = type_line(&mut session, "unwatch gap").expect_err("there is none");
     assert!(
-        none.contains("there are f_n beam.5, residual, to go"),
+        none.contains("watches: f_n beam.5, residual, to go"),
         "{none}"
     );
     say(&mut session, "unwatch to go");

@@ -144,7 +144,7 @@ fn a_journal_deleted_under_the_session_is_written_again_whole_and_the_user_is_to
         hold: false,
     };
     let reply = kept.session.submit(force).expect("forced").0;
-    let told = format!("{} was deleted, and is written again", kept.path.display());
+    let told = format!("{} was deleted and has been rewritten", kept.path.display());
     assert!(reply.contains(&told), "{reply}");
     type_lines(&mut kept.session, &["step 2"]);
     let record = Record::read(&kept.path).expect("a journal");
@@ -276,7 +276,7 @@ fn damage_is_told_with_its_line() {
     let cut = changed(&kept.path, forced, |line| line[..line.len() / 2].to_owned());
     let told = message(&cut);
     assert!(
-        told.starts_with(&format!("j:{forced}:")) && told.contains("no entry of a journal"),
+        told.starts_with(&format!("j:{forced}:")) && told.contains("not a journal entry"),
         "{told}"
     );
     let other = changed(&kept.path, forced, |line| {
@@ -285,25 +285,25 @@ fn damage_is_told_with_its_line() {
     let told = message(&other);
     assert!(
         told.starts_with(&format!(
-            "j:{forced}: replayed, it is not what it was: the state is"
+            "j:{forced}: the replay differs from the journal: the state is"
         )),
         "{told}"
     );
     let format = changed(&kept.path, 1, |line| line.replace("format:1", "format:9"));
     assert_eq!(
         message(&format),
-        "j: the journal has format 9, and this program knows only format 1"
+        "j: the journal has format 9, but this program reads only format 1"
     );
     let scene = changed(&kept.path, 1, |line| {
         line.replace("increment:0.05", "increment:-1.0")
     });
     assert!(
-        message(&scene).starts_with("j:1: the journal's scene is unsound"),
+        message(&scene).starts_with("j:1: the journal's scene is invalid"),
         "{}",
         message(&scene)
     );
-    assert!(message(b"").starts_with("j:1:1: the file has no whole line"));
-    assert!(message(b"(format:1").starts_with("j:1:1: the file has no whole line"));
+    assert!(message(b"").starts_with("j:1:1: no complete line found"));
+    assert!(message(b"(format:1").starts_with("j:1:1: no complete line found"));
     assert!(message(b"hello\n").starts_with("j:1:"));
     assert!(message(b"\xff\xfe\n").contains("UTF-8"));
 }
@@ -338,8 +338,8 @@ fn the_story_of_a_session_on_the_oscillating_cantilever() {
     let masked: Vec<String> = text
         .lines()
         .map(
-            |line| match (line.starts_with("A session of"), line.rfind(", state ")) {
-                (true, _) => "A session of DATE".into(),
+            |line| match (line.starts_with("Session of"), line.rfind(", state ")) {
+                (true, _) => "Session of DATE".into(),
                 (_, Some(at)) => format!("{}, state DIGEST", &line[..at]),
                 _ => line.to_owned(),
             },
@@ -409,7 +409,7 @@ fn resume_and_story_on_the_command_line_end_as_they_should() {
             &["resume", "--check", other.to_str().expect("a name")],
         ),
         1,
-        "other:5: replayed, it is not",
+        "other:5: the replay differs",
     );
     std::fs::write(&other, changed(&path, 5, |_| "(".into())).expect("written");
     ends(
@@ -452,7 +452,10 @@ fn a_command_that_writes_files_is_not_done_on_the_word_of_a_journal() {
     assert!(text.contains("Snapshot("), "{text}");
     let record = Record::from_bytes("j", text.as_bytes()).expect("a journal");
     let told = record.replay().map(|_| ()).expect_err("a refusal");
-    assert!(told.to_string().contains("no journal has such a command"));
+    assert!(
+        told.to_string()
+            .contains("a journal cannot contain this command")
+    );
     assert!(!file.exists());
 }
 

@@ -119,7 +119,7 @@ fn what_was_not_read_is_not_passed_over() {
     }
     debugger.type_keys("a");
     assert!(
-        shown(&debugger).contains("says more than was shown"),
+        shown(&debugger).contains("the lesson text continues"),
         "{}",
         shown(&debugger)
     );

@@ -456,7 +456,7 @@ fn a_page_in_the_debugger_scrolls_searches_turns_and_is_left() {
     assert!(
         page(&["help"], "")
             .text(80, 24)
-            .contains("Go through the iterations")
+            .contains("Move through the iterations")
     );
 }
 
@@ -480,7 +480,7 @@ fn pages_are_read_in_a_real_terminal() {
     session.type_and_see(" ", "17/");
     session.type_and_see("/least increment\r", "least increment");
     session.type_and_see("\x1b", "Slave nodes");
-    session.type_and_see("?", "Go through the iterations");
+    session.type_and_see("?", "Move through the iterations");
     session.keys("?");
     session.see("Slave nodes");
     session.quit();

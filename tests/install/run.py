@@ -248,7 +248,7 @@ def walk(place):
         ("24f", "0.25"),
         ("s", "fixed"),
         ("17f", "0.08"),
-        ("c", "the history is done"),
+        ("c", "the history is complete"),
         ("w", "wrote"),
     ])
     for snapshot in set(work.iterdir()) - before or sys.exit("no snapshot was written"):

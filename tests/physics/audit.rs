@@ -119,7 +119,7 @@ fn what_was_accepted_against_a_law_since_the_user_wanted_so_is_listed_apart() {
     let output = program(here, &["run", &file, set[0], set[1]])
         .output()
         .unwrap();
-    assert!(err(&output).contains("although s."), "{}", err(&output));
+    assert!(err(&output).contains("but s."), "{}", err(&output));
 }
 
 #[test]

@@ -488,7 +488,7 @@ fn a_cycle_among_hundreds_of_nodes_is_diagnosed_by_those_that_take_part() {
     assert_eq!((census.tried, census.answers.len()), (4, 1));
     assert_eq!(census.answers[0].answer.letters(), "+F");
     assert!(
-        finding.lines[0].starts_with("Of c11, c12, all other nodes"),
+        finding.lines[0].starts_with("For c11, c12, with all other nodes"),
         "{:?}",
         finding.lines
     );

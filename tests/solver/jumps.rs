@@ -221,7 +221,7 @@ fn the_program_says_where_a_run_jumped_and_its_table_has_a_column_for_it() {
     .unwrap();
     assert_eq!(code(&output), 0);
     let told = err(&output);
-    assert!(told.contains("jumped: another branch from here"), "{told}");
+    assert!(told.contains("after a jump to another branch"), "{told}");
     let table = out(&output);
     let mut lines = table.lines();
     assert!(lines.next().unwrap().ends_with(",c_y,jumped,worst_stretch"));

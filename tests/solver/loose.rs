@@ -130,7 +130,7 @@ fn the_program_gives_no_advice_that_does_not_help() {
     }
     let told = ran(&["nodes.a.at.y=0.5", "settings.strategy=table2"]);
     assert!(
-        told.contains("a smaller increment has a consistent state: one of 0.25 has"),
+        told.contains("a smaller increment of 0.25 has a consistent state"),
         "{told}"
     );
     assert!(!told.contains(none), "{told}");

@@ -275,13 +275,13 @@ fn the_program_says_what_accuracy_is_left_and_fails_where_none_is() {
     let [exact, coarse, none] = ["1e6", "1e10", "1e16"].map(ran);
     assert_eq!([&exact, &coarse, &none].map(program::code), [0, 0, 3]);
     assert_eq!(program::err(&exact), "");
-    let left = "warning: forces are known to about 6e-6 of the loads";
+    let left = "warning: forces are accurate to about 6e-6 of the loads";
     assert!(
         program::err(&coarse).contains(left),
         "{}",
         program::err(&coarse)
     );
-    let cannot = "double precision cannot carry this scene";
+    let cannot = "double precision is not sufficient for this scene";
     assert!(
         program::err(&none).contains(cannot),
         "{}",

@@ -165,7 +165,7 @@ fn an_end_that_is_judged_wrong_is_no_other_valid_state() {
     let mut debugger = attached(&exchange(&scene(), &steps([pulls()])), Offers::default());
     debugger.type_keys("s");
     debugger.type_keys(": b r a n c h e s Enter");
-    holds(&debugger, "accepted, but judged wrong");
+    holds(&debugger, "accepted, but fails the check");
 }
 
 #[test]
@@ -208,8 +208,8 @@ fn what_is_not_offered_is_grey_everywhere_and_its_key_gives_the_reason_and_does_
     }
     for (line, reason) in [
         ("hold free", "does not offer modes that are held"),
-        ("friction 20", "does not offer another friction"),
-        ("cohesion 2", "does not offer another cohesion"),
+        ("friction 20", "does not offer a friction change"),
+        ("cohesion 2", "does not offer a cohesion change"),
         (
             "minors 9",
             "does not offer settings of the two-level method",
@@ -221,7 +221,7 @@ fn what_is_not_offered_is_grey_everywhere_and_its_key_gives_the_reason_and_does_
             "export --frozen a.ron",
             "does not offer its interface problem",
         ),
-        ("export a.ron", "the scene is the solver's own"),
+        ("export a.ron", "the scene is known only to the solver"),
         ("chart", "scenes that stickslip solves itself"),
         ("set settings.minors 3", "does not offer settings"),
         (
@@ -292,7 +292,7 @@ fn a_solver_of_our_own_has_no_log_and_no_parameters() {
     let mut debugger = Debugger::new(Theme::mono(), Vec::new(), Some(session));
     for keys in ["O", ": l o g Enter", ": p a r a m Enter"] {
         debugger.type_keys(keys);
-        holds(&debugger, "this is our own solver");
+        holds(&debugger, "only attached solvers");
     }
     debugger.type_keys("m");
     holds(&debugger, "capital letter: hold until M releases it");
@@ -359,7 +359,7 @@ fn going_back_says_what_has_to_be_done_again() {
         },
     );
     debugger.type_keys("s s S");
-    let again = "the solver is started anew, and does 1 iteration again";
+    let again = "the solver restarts and repeats 1 iteration";
     assert!(
         debugger.app.message.text.contains(again),
         "{}",
@@ -367,7 +367,7 @@ fn going_back_says_what_has_to_be_done_again() {
     );
     debugger.type_keys("s");
     assert!(
-        !debugger.app.message.text.contains("anew"),
+        !debugger.app.message.text.contains("restarts"),
         "{}",
         debugger.app.message.text
     );
@@ -390,7 +390,7 @@ fn a_lost_solver_is_told_until_a_key_and_the_header_says_so_until_it_steps() {
     debugger.type_keys("s s s");
     assert!(!debugger.text(120, 40).contains("lost"));
     debugger.type_keys("s");
-    let why = "the solver ended: it fell off its chair; what was done so far is kept";
+    let why = "the solver ended: it fell off its chair; all steps so far are kept";
     for _ in 0..3 {
         debugger.advance();
         holds(&debugger, why);
@@ -404,7 +404,7 @@ fn a_lost_solver_is_told_until_a_key_and_the_header_says_so_until_it_steps() {
         assert!(debugger.text(width, height).contains("lost"));
     }
     debugger.type_keys("S");
-    let again = "the solver, which is lost, is started anew, and does 2 iterations again";
+    let again = "the solver, whose connection was lost, restarts and repeats 2 iterations";
     assert!(
         debugger.app.message.text.contains(again),
         "{}",
@@ -495,14 +495,11 @@ fn parameters_are_completed_set_and_listed_with_what_they_are_now() {
     );
     debugger.type_text("12.5");
     debugger.type_keys("Enter");
-    assert_eq!(
-        debugger.app.message.text,
-        "penalty factor is 12.5 from now on"
-    );
+    assert_eq!(debugger.app.message.text, "penalty factor set to 12.5");
     debugger.type_keys(":");
     debugger.type_text("set law p");
     debugger.type_keys("Tab Enter");
-    assert_eq!(debugger.app.message.text, "law is penalty from now on");
+    assert_eq!(debugger.app.message.text, "law set to penalty");
     debugger.type_keys(":");
     debugger.type_text("set law newton");
     debugger.type_keys("Enter");
@@ -627,7 +624,7 @@ fn a_kept_exchange_is_gone_through_with_all_its_ways_and_nothing_follows_on_it()
     debugger.type_keys("s");
     holds(
         &debugger,
-        "the kept exchange ends here, and there is no solver that could go on",
+        "the stored exchange ends here and cannot be continued",
     );
     assert!(!debugger.text(120, 40).contains("lost"));
     debugger.type_keys("]");
@@ -644,10 +641,13 @@ fn a_kept_exchange_is_gone_through_with_all_its_ways_and_nothing_follows_on_it()
     debugger.type_keys("S m");
     holds(
         &debugger,
-        "kept exchange, read-only: forced modes would need the solver Toy itself",
+        "stored exchange (read-only): forced modes would need the solver Toy itself",
     );
     debugger.type_keys(": j o u r n a l Space x Enter");
-    holds(&debugger, "kept exchange, read-only: it is its own journal");
+    holds(
+        &debugger,
+        "stored exchange (read-only): it does not need a journal",
+    );
 }
 
 #[test]
@@ -661,10 +661,7 @@ fn a_kept_exchange_is_told_as_text() {
         let output = run(&[command, name], std::process::Stdio::null());
         assert!(output.status.success(), "{output:?}");
         let text = String::from_utf8(output.stdout).unwrap();
-        assert!(
-            text.contains("Way b2, which leaves b1 after step 1:"),
-            "{text}"
-        );
+        assert!(text.contains("Branch b2, from b1 after step 1:"), "{text}");
     }
     let output = run(&[name], std::process::Stdio::null());
     assert_eq!(output.status.code(), Some(2));
@@ -688,9 +685,9 @@ fn a_solver_is_attached_stepped_forced_gone_back_with_and_gone_with_the_program(
     session.see_taken();
     session.see("attached, can go back to any state");
     session.keys("s");
-    session.see("a free > fixed");
+    session.see("a free → fixed");
     session.keys("s");
-    session.see("a fixed > sliding");
+    session.see("a fixed → sliding");
     session.keys("S");
     session.see("1 of 2 steps");
     session.keys("mx");

@@ -221,7 +221,7 @@ fn what_is_selected_is_copied_and_named() {
     assert!(force.unwrap().parse::<f64>().is_ok_and(|f| f < 0.0));
     assert!(told.starts_with("copied f_n a: "), "{told}");
     let (found, _) = copied("osc-two6", "c d", "");
-    assert!(found.unwrap().contains("\ncensus: of 16"));
+    assert!(found.unwrap().contains("\ncensus: 1 of 16"));
     let (remedy, _) = copied("osc-two6", "c r Down", "");
     assert!(remedy.unwrap().contains("\tconverged\t"));
     let (keys, _) = copied("osc-two6", "", "copy keys");
@@ -383,7 +383,7 @@ fn the_terminal_reports_the_mouse_only_while_it_is_wanted() {
     let mut session = started(&none, &[]);
     session.see("nothing is solved yet");
     assert_eq!(modes(&session), on);
-    session.type_and_see("c", "6-cycle");
+    session.type_and_see("c", "period 6");
     let rows = session.text();
     let row = rows.lines().position(|row| row.contains("* b ")).unwrap();
     session.type_and_see(&format!("\x1b[<0;8;{}M", row + 1), "Decision  b");
@@ -451,7 +451,7 @@ fn the_user_s_files_give_keys_and_colours_and_no_color_wins() {
     });
     session.type_and_see(
         ":colours purple\r",
-        "'purple' is none of dark, light, high contrast, none",
+        "unknown word 'purple'; expected one of: dark, light, high contrast, none",
     );
     session.quit();
     let mut session = started(&mine, &[("NO_COLOR", "1")]);
@@ -467,7 +467,7 @@ fn a_wrong_file_of_the_user_s_ends_the_program_with_its_place_and_what_would_be_
         (
             "keys.ron",
             "{\n \"stpe\": []}",
-            "keys.ron:2:2: no action is called \"stpe\"; did you mean \"step\"?",
+            "keys.ron:2:2: unknown action \"stpe\"; did you mean \"step\"?",
         ),
         (
             "debugger.ron",

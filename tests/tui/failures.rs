@@ -196,8 +196,8 @@ fn a_state_that_the_judge_refuses_has_a_page_with_the_law_the_node_and_what_is_a
     for part in [
         "cone",
         name.as_str(),
-        "F_t 0.7 of at most 0.5",
-        "1.0e-9 is allowed",
+        "F_t 0.7 (limit 0.5)",
+        "limit 1.0e-9",
         "do: 1. ",
         "a finer mesh, refine=2",
     ] {

@@ -101,7 +101,7 @@ fn the_command_line_completes_recalls_and_complains() {
     assert!(screen::text(&app, Some(&view), 80, 24).contains("\n:jump"));
     press(&mut app, &view, "Enter");
     let screen = render(&app, &view, 80, 24);
-    assert_eq!(find(&screen, "no action is called 'jump'").fg, Color::Red);
+    assert_eq!(find(&screen, "unknown action 'jump'").fg, Color::Red);
 }
 
 #[test]
@@ -116,7 +116,7 @@ fn help_lists_every_action_and_scrolls() {
     press(&mut app, &view, "G");
     let end = screen::text(&app, Some(&view), 80, 24);
     assert!(
-        top.contains("Go through the iterations") && end.contains("closer to switching"),
+        top.contains("Move through the iterations") && end.contains("closer to switching"),
         "{end}"
     );
     assert_eq!(

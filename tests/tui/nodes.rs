@@ -60,7 +60,7 @@ fn without_colour_the_weights_carry_everything() {
             .contains(Modifier::REVERSED)
     );
     assert!(
-        find(&screen, "beam.2 fixed →")
+        find(&screen, "* beam.2 fixed →")
             .modifier
             .contains(Modifier::REVERSED),
         "the selected row"
@@ -87,7 +87,7 @@ fn a_tie_is_told_from_a_near_tie() {
         "{screen}"
     );
     assert!(
-        screen.contains("tie, margin 0 force") && screen.contains("A tie keeps the"),
+        screen.contains("tie, margin 0 force") && screen.contains("keeps the"),
         "{screen}"
     );
     assert!(screen.contains(" 1-2e-10 "), "{screen}");
@@ -123,7 +123,7 @@ fn held_and_off_surface_nodes_are_told_in_words() {
     let mut app = app();
     let screen = screen::text(&app, Some(&view), 80, 24);
     assert!(
-        screen.contains("You hold it free; Table 2 (◁) wanted fixed."),
+        screen.contains("You hold it free; Table 2 (◁) decides fixed."),
         "{screen}"
     );
     assert!(
@@ -162,14 +162,14 @@ fn outcomes_have_a_glyph_and_a_sentence() {
     };
     assert_eq!(
         say(Outcome::Minor),
-        " ▸ beam.2 fixed > sliding, beam.4 free > fixed"
+        " ▸ beam.2 fixed → sliding, beam.4 free → fixed"
     );
     assert_eq!(
         say(Outcome::Major {
             after,
             settled: true
         }),
-        " ▸ minors settled; residual 2.000e-5, wanted 1.0e-11"
+        " ▸ minor iterations settled; residual 2.000e-5, limit 1.0e-11"
     );
     let done = |unsettled| Outcome::Increment {
         after,
@@ -184,7 +184,7 @@ fn outcomes_have_a_glyph_and_a_sentence() {
     assert_eq!(say(done(0)), " ✓ load 0.3 accepted");
     assert_eq!(
         say(done(1)),
-        " ✓ load 0.3 accepted, although one loop was cut off unsettled"
+        " ✓ load 0.3 accepted, but 1 loop of minor iterations did not settle"
     );
     let cycle = Cycle {
         start: 2,
@@ -193,7 +193,7 @@ fn outcomes_have_a_glyph_and_a_sentence() {
     };
     assert_eq!(
         say(Outcome::Failed(Failure::Cycle(cycle))),
-        " ✗ the modes 2-cycle since minor 2: beam.5 free > fixed > …"
+        " ✗ cycle of period 2 from minor 2: beam.5 free → fixed → …"
     );
 }
 
@@ -268,7 +268,11 @@ fn the_table_sorts_and_filters_and_the_selection_stays_on_its_node() {
     press(&mut app, &view, "Enter :");
     type_text(&mut app, &view, "sort lucky");
     press(&mut app, &view, "Enter");
-    assert!(app.message.text.contains("none of scene, margin, gap"));
+    assert!(
+        app.message
+            .text
+            .contains("expected one of: scene, margin, gap")
+    );
     // What has no margin and no gap is last either way.
     frames[1].event = None;
     let view = self::view(&model, &frames);

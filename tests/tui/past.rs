@@ -76,7 +76,10 @@ fn that_stick_and_slip_are_not_in_the_file_is_on_every_screen_and_first_in_the_h
         assert!(one_line(&shown).contains(words::NO_MODES), "{shown}");
         debugger.type_keys("?");
         let help = debugger.text(width, height);
-        assert!(help.contains("Stick and slip are not in"), "{help}");
+        assert!(
+            help.contains("CalculiX's files do not distinguish"),
+            "{help}"
+        );
     }
 }
 
@@ -248,7 +251,7 @@ fn faces_show_how_much_of_them_touches() {
     assert_eq!(found, wanted);
     assert_eq!(run.switching[0].most(), (0, 2));
     let notes = words::notes(&run).join("\n");
-    assert!(notes.contains("faces.sta is not there"), "{notes}");
+    assert!(notes.contains("faces.sta is missing"), "{notes}");
     assert!(
         notes.contains("step 1, increment 1, attempt 1, iteration 4"),
         "{notes}"
@@ -272,10 +275,10 @@ fn a_session_walks_searches_is_resized_stopped_and_leaves_no_trace() {
     session.resize(120, 40);
     session.see("Timeline  step");
     session.type_and_see("/39\r", "Decision  node 39");
-    session.type_and_see("?", "Stick and slip are not in CalculiX's files");
+    session.type_and_see("?", "CalculiX's files do not distinguish");
     // Part of a page may be drawn over the timeline; keys right after Esc would be read as one with it.
     session.keys(ESC);
-    session.see_no_more("Stick and slip are not in CalculiX's files");
+    session.see_no_more("CalculiX's files do not distinguish");
     session.type_and_see("O", "2 steps, 9 increments, 13 attempts");
     session.keys(ESC);
     session.see_no_more("2 steps, 9 increments, 13 attempts");

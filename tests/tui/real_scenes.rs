@@ -93,7 +93,7 @@ fn stepping_back_shows_the_same_screens() {
         assert_eq!(panes(&debugger.text(120, 40)), panes(screen));
     }
     debugger.type_keys("S");
-    assert!(debugger.text(120, 40).contains("this is the start"));
+    assert!(debugger.text(120, 40).contains("already at the start"));
 }
 
 #[test]
@@ -102,7 +102,7 @@ fn a_person_ends_the_oscillation() {
     debugger.type_keys("c");
     let cycle = debugger.text(120, 40);
     assert!(
-        cycle.contains("✗ the modes 2-cycle since minor 1: beam.5 free > fixed"),
+        cycle.contains("✗ cycle of period 2 from minor 1: beam.5 free → fixed"),
         "{cycle}"
     );
     debugger.type_keys("m s");
@@ -129,7 +129,7 @@ fn another_increment_starts_the_increment_again() {
     );
     assert!(again.contains("increment 0.01 (scene: 0.05)"), "{again}");
     debugger.type_keys("i - 1 Enter");
-    assert!(debugger.text(120, 40).contains("'-1' is no increment"));
+    assert!(debugger.text(120, 40).contains("invalid increment '-1'"));
 }
 
 #[test]
@@ -168,7 +168,11 @@ fn branches_breakpoints_and_watches_are_told_in_the_message_line() {
         ("s", "", "in b2: beam.5 sliding   f_n beam.5 = 5."),
         ("[", "", "b1: start (cycle)"),
         ("]", "", "in b2: beam.5 sliding"),
-        ("b", "dance", "'dance' is nothing to break at; mode, leaves"),
+        (
+            "b",
+            "dance",
+            "unknown condition 'dance'; conditions: mode, leaves",
+        ),
     ] {
         debugger.type_keys(keys);
         if !line.is_empty() {

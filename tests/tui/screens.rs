@@ -173,7 +173,7 @@ fn a_long_outcome_goes_on_in_further_lines() {
     let screen = screen::text(&app(), Some(&view(&model, &frames)), 80, 24);
     let told: String = screen.lines().skip(2).take(3).collect();
     assert!(
-        told.contains("beam.1 free > fixed") && told.contains("beam.5 free"),
+        told.contains("beam.1 free → fixed") && told.contains("beam.5 free"),
         "{screen}"
     );
     assert!(
@@ -224,5 +224,8 @@ fn a_narrow_screen_shows_the_cell_that_fired_alone() {
         screen.contains("fixed → sliding   F_n > 0, |F_t| > |T_max|"),
         "{screen}"
     );
-    assert!(screen.contains("F_t is more than friction can"), "{screen}");
+    assert!(
+        screen.contains("F_t exceeds the friction limit"),
+        "{screen}"
+    );
 }

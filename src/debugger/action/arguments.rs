@@ -1,4 +1,4 @@
-//! Arguments of actions: what is typed after a name, read.
+//! Parses the arguments of actions.
 
 use super::context::{Context, any_or_exact, chosen, exact, find, model, several};
 use super::meaning::{Action, ChartOf, Colours, Copied, Filter, Question, Sort, Ui, Whose};
@@ -13,10 +13,10 @@ use stickslip_core::model::Mode;
 use stickslip_manual as manual;
 use stickslip_study::Vary;
 
-/// Most characters of what follows an action's name.
+/// Maximum number of characters after an action's name.
 const LONGEST_REST: usize = 1000;
 
-/// Reads a line: an action's name and its arguments.
+/// Parses a line: the name of an action and its arguments.
 pub fn parse(line: &str, context: &Context) -> Result<Action, Misread> {
     let line = line.trim();
     let (word, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
@@ -27,7 +27,7 @@ pub fn parse(line: &str, context: &Context) -> Result<Action, Misread> {
 }
 
 impl Entry {
-    /// The action that this entry is with these arguments.
+    /// The action of this entry with these arguments.
     pub fn act(&self, rest: &str, context: &Context) -> Result<Action, Misread> {
         if rest.chars().count() > LONGEST_REST {
             return Err(Misread::LongRest {
@@ -68,7 +68,7 @@ impl Entry {
                 [word] => Command::Goto {
                     step: word
                         .parse()
-                        .map_err(|_| Misread::no_value(word, "step's number", self.usage()))?,
+                        .map_err(|_| Misread::no_value(word, "step number", self.usage()))?,
                 },
                 _ => return Err(self.misused()),
             },
@@ -162,7 +162,7 @@ impl Entry {
         Ok(Action::Session(command))
     }
 
-    /// That the words are too many or too few.
+    /// The error for too few or too many words.
     fn misused(&self) -> Misread {
         Misread::Usage(self.usage())
     }
@@ -177,14 +177,14 @@ impl Entry {
         }
     }
 
-    /// A number of a list, from 0.
+    /// An entry of a list, counted from 0.
     fn number(&self, words: &[&str]) -> Result<usize, Misread> {
         let [word] = words[..] else {
             return Err(self.misused());
         };
         match word.parse::<usize>() {
             Ok(number) if number > 0 => Ok(number - 1),
-            _ => Err(Misread::no_value(word, "number of the list", self.usage())),
+            _ => Err(Misread::no_value(word, "list entry", self.usage())),
         }
     }
 
@@ -194,7 +194,7 @@ impl Entry {
             ["all"] => Ok(None),
             [word] => match word.parse() {
                 Ok(number) => Ok(Some(number)),
-                Err(_) => Err(Misread::no_value(word, "breakpoint's number", self.usage())),
+                Err(_) => Err(Misread::no_value(word, "breakpoint number", self.usage())),
             },
             _ => Err(self.misused()),
         }
@@ -243,7 +243,7 @@ impl Entry {
     }
 
     fn set(&self, rest: &str, words: &[&str], context: &Context) -> Result<Command, Misread> {
-        // Names and texts of attached solvers may hold blanks.
+        // Names and texts of attached solvers may contain spaces.
         if let Some((known, value)) = parameter(rest, context)
             && !value.is_empty()
         {
@@ -263,12 +263,12 @@ impl Entry {
     }
 }
 
-/// What a breakpoint can wait for.
+/// The kinds of breakpoint conditions.
 pub(super) const CONDITIONS: [&str; 8] = [
     "mode", "leaves", "margin", "element", "cycle", "residual", "failure", "at",
 ];
 
-/// A breakpoint's condition. A node may be left out, or be `any`, for any node.
+/// Parses a breakpoint condition. A missing node, or `any`, means any node.
 fn condition(words: &[&str], context: &Context) -> Result<Condition, Misread> {
     let (word, rest) = words
         .split_first()
@@ -288,7 +288,7 @@ fn condition(words: &[&str], context: &Context) -> Result<Condition, Misread> {
         ("margin", [.., value]) if rest.len() <= 2 => {
             let below = value.parse::<f64>().ok().filter(|below| below.is_finite());
             let below = below
-                .ok_or_else(|| Misread::no_value(value, "margin", "a number would be".into()))?;
+                .ok_or_else(|| Misread::no_value(value, "margin", "expected a number".into()))?;
             let node = any_or_exact(rest.get(rest.len().wrapping_sub(2)), context)?;
             Ok(Condition::Margin { node, below })
         }
@@ -307,7 +307,7 @@ fn condition(words: &[&str], context: &Context) -> Result<Condition, Misread> {
     }
 }
 
-/// `[NODE] [MODE]`: a single word that is a mode is one, anything else is a node.
+/// Parses `[NODE] [MODE]`: a single word is a mode if it can be one, otherwise a node.
 fn node_and_mode(
     words: &[&str],
     context: &Context,
@@ -325,7 +325,7 @@ fn node_and_mode(
     }
 }
 
-/// A mode by its letter (f, s, x) or the beginning of its name.
+/// A mode by its letter (f, s, x) or a prefix of its name.
 pub fn mode(word: &str) -> Option<Mode> {
     let word = word.to_lowercase();
     match word.as_str() {
@@ -340,18 +340,18 @@ pub fn mode(word: &str) -> Option<Mode> {
     }
 }
 
-/// An increment's size.
+/// Parses an increment size.
 pub fn increment(word: &str) -> Result<f64, Misread> {
     match word.trim().parse::<f64>() {
         Ok(size) if size.is_finite() && size > 0.0 => Ok(size),
         _ => {
-            let instead = "a positive number such as 0.005 would be".into();
+            let instead = "expected a positive number such as 0.005".into();
             Err(Misread::no_value(word.trim(), "increment", instead))
         }
     }
 }
 
-/// A file, or settings with their values; nothing is the scene's own chart.
+/// Parses a file, or settings with their values; nothing means the scene's own chart.
 fn chart_of(rest: &str, words: &[&str]) -> Result<ChartOf, Misread> {
     if rest.is_empty() {
         return Ok(ChartOf::Scene);
@@ -363,7 +363,7 @@ fn chart_of(rest: &str, words: &[&str]) -> Result<ChartOf, Misread> {
     over.map(ChartOf::Settings).map_err(Misread::NoChart)
 }
 
-/// The choice that a word, or its beginning, stands for; `None` without a word.
+/// The choice that a word is a prefix of; `None` without a word.
 fn one_of<T: Copy>(
     words: &[&str],
     all: impl IntoIterator<Item = T>,
@@ -384,7 +384,7 @@ fn one_of<T: Copy>(
     })
 }
 
-/// The number of the monitor of this name.
+/// The number of the monitor with this name.
 fn monitor(name: &str, context: &Context) -> Result<usize, Misread> {
     let monitors = &model(context)?.monitors;
     let found = monitors.iter().position(|monitor| monitor.name == name);

@@ -1,4 +1,4 @@
-//! Completion: what a line that is being typed could go on as.
+//! Completion of typed lines.
 
 use super::arguments::CONDITIONS;
 use super::context::{Context, names};
@@ -12,13 +12,13 @@ use stickslip_core::model::Mode;
 use stickslip_manual as manual;
 use stickslip_scene::format::paths;
 
-/// What a line could go on as: whole lines, of which the first is the likeliest.
+/// Completions of a line: whole lines, the most likely first.
 pub fn complete(line: &str, context: &Context) -> Vec<String> {
     let first = line.split_whitespace().next();
     let entry = first.and_then(|name| context.entry(name).ok());
     let sets = entry.is_some_and(|entry| entry.verb == Verb::Set) && context.offers.is_some();
     let start = match entry.filter(|entry| entry.takes_rest() || sets) {
-        // What is one argument, blanks and all, goes on as a whole.
+        // A path is one argument, including its spaces.
         Some(_) => line.find(char::is_whitespace),
         None => line.rfind(|c: char| c.is_whitespace() || (c == ',' && is_list(entry))),
     };
@@ -41,18 +41,18 @@ pub fn complete(line: &str, context: &Context) -> Vec<String> {
         .collect()
 }
 
-/// Whether what follows an action's name is a path, blanks and all.
+/// Whether the action's argument is a path, which may contain spaces.
 pub fn takes_path(name: &str) -> bool {
     by_name(name).is_ok_and(|entry| entry.endings().is_some())
 }
 
-/// Whether an action takes nodes apart by commas.
+/// Whether the action takes nodes separated by commas.
 fn is_list(entry: Option<&Entry>) -> bool {
     entry.is_some_and(|entry| entry.verb == Verb::Census)
 }
 
 impl Entry {
-    /// Whether all that stands after its name is one argument that can be completed.
+    /// Whether everything after the name is one argument that can be completed.
     fn takes_rest(&self) -> bool {
         matches!(
             self.verb,
@@ -60,7 +60,7 @@ impl Entry {
         ) || self.endings().is_some()
     }
 
-    /// Endings of the files that it takes, any where there are none; `None` if it takes no path.
+    /// File extensions that the action accepts, empty for any; `None` if it does not take a path.
     fn endings(&self) -> Option<&'static [&'static str]> {
         match self.verb {
             Verb::Open => Some(&["ron", "dat", "journal"]),
@@ -71,13 +71,13 @@ impl Entry {
         }
     }
 
-    /// Files and folders that its path could go on as.
+    /// Files and folders that complete a path.
     fn paths(&self, word: &str) -> Vec<String> {
         self.endings()
             .map_or(Vec::new(), |endings| beginning_with(word, endings))
     }
 
-    /// What can stand as the next argument after the text before it.
+    /// The possible next arguments after the text before.
     fn candidates(&self, before: &str, context: &Context) -> Vec<String> {
         let given = before.split_whitespace().count() - 1;
         let nodes = || context.model.into_iter().flat_map(names).map(String::from);
@@ -134,7 +134,7 @@ impl Entry {
     }
 }
 
-/// Values that a setting can take, where they are words.
+/// The possible values of a setting, if they are words.
 fn values(before: &str) -> &'static [&'static str] {
     let path = before.split_whitespace().nth(1).unwrap_or_default();
     let found = paths::of_settings()

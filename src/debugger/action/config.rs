@@ -1,4 +1,4 @@
-//! What the user has set for the debugger: two files in the user's configuration folder, each of which may be missing.
+//! The user's configuration of the debugger: two optional files in the user's configuration folder.
 //!
 //! `debugger.ron`, and `keys.ron` ([`Keymap`]):
 //!
@@ -17,20 +17,20 @@ use stickslip_platform::input;
 use stickslip_scene::format::SceneError;
 use stickslip_scene::format::read;
 
-/// The files, in the folder.
+/// Names of the files.
 pub const KEYS: &str = "keys.ron";
 const DEBUGGER: &str = "debugger.ron";
-/// Most bytes of each.
+/// Maximum size of each file in bytes.
 const MOST: u64 = 1 << 20;
 
-/// What the user has set.
+/// The user's configuration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Config {
     /// The keys.
     pub keymap: Keymap,
     /// The colours.
     pub colours: Colours,
-    /// Whether the mouse is heeded.
+    /// Whether mouse support is on.
     pub mouse: bool,
 }
 
@@ -67,17 +67,16 @@ fn on() -> bool {
     true
 }
 
-/// The user's folder for configurations, where the system names one.
+/// The user's configuration folder, if the system has one.
 pub fn folder() -> Option<PathBuf> {
     let ours = directories::ProjectDirs::from("", "", "stickslip")?;
     Some(ours.config_dir().to_owned())
 }
 
 impl Config {
-    /// What the files in the user's folder say.
+    /// Reads the files in the user's folder.
     ///
-    /// # Errors
-    /// If one is there and cannot be read, or says what does not make sense.
+    /// # Errors If an existing file cannot be read or is invalid.
     pub fn open() -> Result<Config, SceneError> {
         match folder() {
             Some(folder) => Config::from(&folder),
@@ -85,10 +84,9 @@ impl Config {
         }
     }
 
-    /// What the files in a folder say.
+    /// Reads the files in a folder.
     ///
-    /// # Errors
-    /// If one is there and cannot be read, or says what does not make sense.
+    /// # Errors If an existing file cannot be read or is invalid.
     pub fn from(folder: &Path) -> Result<Config, SceneError> {
         let mut config = Config::default();
         if let Some((file, text)) = text(&folder.join(DEBUGGER))? {
@@ -108,14 +106,14 @@ impl Config {
     }
 }
 
-/// The name and the text of a file that may be missing.
+/// Name and text of a file, which may be missing.
 fn text(path: &Path) -> Result<Option<(String, String)>, SceneError> {
     let file = path.display().to_string();
-    // Anything but a name that nothing has is worth a message.
+    // A dangling link is an error, a missing file is not.
     if !path.exists() && !path.is_symlink() {
         return Ok(None);
     }
-    match input::text(path, MOST, "a configuration is a page") {
+    match input::text(path, MOST, "too large for a configuration file") {
         Ok(text) => Ok(Some((file, text))),
         Err(why) => Err(read::unread(&file, why)),
     }
@@ -126,7 +124,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn files_that_are_missing_change_nothing_and_those_that_are_there_are_heeded() {
+    fn missing_files_change_nothing_and_existing_ones_apply() {
         let folder = tempfile::tempdir().unwrap();
         let config = || Config::from(folder.path());
         assert_eq!(config(), Ok(Config::default()));
@@ -145,7 +143,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_told_with_file_line_column_and_what_would_be_right() {
+    fn errors_have_file_line_column_and_a_hint() {
         let folder = tempfile::tempdir().unwrap();
         let told = |text: &str| {
             std::fs::write(folder.path().join(DEBUGGER), text).unwrap();

@@ -1,4 +1,4 @@
-//! What an action needs to know to understand its arguments, and slave nodes by the names that are typed.
+//! The context in which arguments of actions are read, and the lookup of slave nodes by name.
 
 use super::keymap::Keymap;
 use super::misread::Misread;
@@ -11,31 +11,31 @@ use stickslip_core::step::state::State;
 use stickslip_scene::Scene;
 use stickslip_scene::embedded::EmbeddedFile;
 
-/// What an action needs to know to understand its arguments.
+/// What the arguments of actions can refer to.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Context<'a> {
-    /// The model, if a scene is open.
+    /// The model of the open scene.
     pub model: Option<&'a Model>,
-    /// The scene itself, which knows more names of its nodes than the model does (`beam.end` for `beam.5`).
+    /// The scene, which has more names for nodes than the model (`beam.end` for `beam.5`).
     pub scene: Option<&'a Scene>,
-    /// The history, whose branches have names.
+    /// The history, for names of branches.
     pub tree: Option<&'a Tree>,
     /// The selected slave node, by slave number.
     pub selected: usize,
-    /// Names of the built-in scenes, and of the built-in lessons.
+    /// Names of the built-in scenes.
     pub scenes: &'a [String],
-    /// Lessons that the program carries.
+    /// The built-in lessons.
     pub lessons: &'a [EmbeddedFile],
-    /// What an attached solver offers; none is a solver of ours.
+    /// Capabilities of an attached solver; `None` for our own.
     pub offers: Option<&'a Offers>,
     /// The shown state.
     pub state: Option<&'a State>,
-    /// The present keys; none are those of the table.
+    /// The current keys; `None` for the defaults.
     pub keymap: Option<&'a Keymap>,
 }
 
 impl Context<'_> {
-    /// The entry that a word names: its name, its one-letter key, or the beginning of one name only.
+    /// Finds an entry by name, one-letter key, or unique prefix.
     pub fn entry(&self, word: &str) -> Result<&'static Entry, Misread> {
         let key = (word.chars().count() == 1).then_some(word);
         match (self.keymap, key) {
@@ -48,7 +48,7 @@ impl Context<'_> {
     }
 }
 
-/// The slave node that a word names, or the selected one where there is no word.
+/// The named slave node, or the selected one without a name.
 pub(super) fn chosen(word: Option<&str>, context: &Context) -> Result<usize, Misread> {
     match word {
         Some(word) => exact(word, context),
@@ -57,12 +57,12 @@ pub(super) fn chosen(word: Option<&str>, context: &Context) -> Result<usize, Mis
     }
 }
 
-/// The model of the scene that is open.
+/// The model of the open scene.
 pub(super) fn model<'a>(context: &Context<'a>) -> Result<&'a Model, Misread> {
     context.model.ok_or(Misread::NoScene)
 }
 
-/// The slave node of exactly this name. No guesses here: what follows changes the solve.
+/// The slave node with exactly this name. No guessing, because the action changes the solve.
 pub fn exact(word: &str, context: &Context) -> Result<usize, Misread> {
     let model = model(context)?;
     let alias = context.scene.and_then(|scene| scene.node(word).ok());
@@ -86,7 +86,8 @@ pub fn exact(word: &str, context: &Context) -> Result<usize, Misread> {
     })
 }
 
-/// The only node whose name differs from a word just by dots and dashes: earlier versions wrote node.1 as node-1 in places.
+/// The only node whose name equals a word except for dots and dashes: earlier versions wrote node.1 as node-1
+/// in places.
 fn respelled(word: &str, model: &Model) -> Option<usize> {
     let plain = |name: &str| name.replace('-', ".");
     let nodes = model.nodes.iter().enumerate();
@@ -97,8 +98,8 @@ fn respelled(word: &str, model: &Model) -> Option<usize> {
         .map(|(node, _)| node)
 }
 
-/// Slave nodes apart by blanks or commas, ascending and each once: by name, or, where no node is called so, by the place in
-/// the scene's list, from 1.
+/// Slave nodes separated by spaces or commas, in ascending order without duplicates: by name or, if no node has
+/// that name, by index in the scene's list, from 1.
 pub(super) fn several(words: &[&str], context: &Context) -> Result<Vec<usize>, Misread> {
     let words = words.iter().flat_map(|word| word.split(','));
     let mut nodes = Vec::new();
@@ -121,7 +122,7 @@ pub(super) fn several(words: &[&str], context: &Context) -> Result<Vec<usize>, M
     }
 }
 
-/// The next slave node after the selected one whose name is, or else contains, the word.
+/// The next slave node after the selected one whose name equals or else contains the word.
 pub(super) fn find(word: &str, context: &Context) -> Result<usize, Misread> {
     if let Ok(slave) = exact(word, context) {
         return Ok(slave);
@@ -146,7 +147,7 @@ pub(super) fn names(model: &Model) -> impl Iterator<Item = &str> {
         .map(|slave| model.nodes[slave.node].name.as_str())
 }
 
-/// The first few slave nodes' names, for messages.
+/// The first few names of slave nodes, for messages.
 fn some_names(model: &Model) -> String {
     const SHOWN: usize = 4;
     let mut list = names(model).take(SHOWN).collect::<Vec<_>>().join(", ");

@@ -1,4 +1,4 @@
-//! Which key does which action: the keys of the table, and those that a file puts in their place.
+//! The key bindings: the defaults of the table, and the changes of a file.
 //!
 //! ```ron
 //! {
@@ -17,7 +17,7 @@ use stickslip_scene::format::error::{Path, did_you_mean, quoted};
 use stickslip_scene::format::locate::{line_and_column, locate};
 use stickslip_scene::format::read;
 
-/// Keys that are no letters, as help calls them.
+/// Names of keys other than letters.
 const NAMED: [&str; 15] = [
     "Space",
     "Shift-Tab",
@@ -35,21 +35,21 @@ const NAMED: [&str; 15] = [
     "Delete",
     "Backspace",
 ];
-/// Actions that keep their keys, whatever else does not answer.
+/// Actions whose keys cannot change, because they must always work.
 const FIXED: [&str; 3] = ["interrupt", "suspend", "redraw"];
-/// Actions without which one cannot go on, or not leave.
+/// Actions that need at least one key.
 const NEEDED: [&str; 4] = ["command", "cancel", "help", "quit"];
-/// Most keys of an action.
+/// Maximum number of keys per action.
 const MOST: usize = 8;
 
 /// The keys of all actions.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Keymap {
-    /// By the action's name, where they are not those of the table.
+    /// Changed keys by action name.
     changed: BTreeMap<&'static str, Vec<String>>,
 }
 
-/// What the file holds, in its order.
+/// The entries of the file, in order.
 struct Written(Vec<(String, Vec<String>)>);
 
 impl<'de> Deserialize<'de> for Written {
@@ -58,7 +58,7 @@ impl<'de> Deserialize<'de> for Written {
         impl<'de> Visitor<'de> for Pairs {
             type Value = Written;
             fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
-                f.write_str("actions and their keys, { \"step\": [\"s\"], ... }")
+                f.write_str("a map from actions to keys, { \"step\": [\"s\"], ... }")
             }
             fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Written, A::Error> {
                 let mut pairs = Vec::new();
@@ -73,10 +73,9 @@ impl<'de> Deserialize<'de> for Written {
 }
 
 impl Keymap {
-    /// The keys as the text of a file changes them.
+    /// Reads the key bindings from the text of a file.
     ///
-    /// # Errors
-    /// If the text is no such file, names an action that there is not or a key that no terminal has, or gives a key to two.
+    /// # Errors If the text cannot be parsed, an action or key is unknown, or two actions share a key.
     pub fn read(file: &str, text: &str) -> Result<Keymap, SceneError> {
         let Written(written) = read::value(file, text, "list of keys")?;
         let wrong = |byte: usize, path: &Path, message: String| SceneError {
@@ -90,7 +89,7 @@ impl Keymap {
         for (name, keys) in &written {
             let path = Path(vec![name.as_str().into()]);
             let of_keys = locate(text, &path).start;
-            // The place of the name itself, which stands before its keys.
+            // Position of the action's name, which precedes its keys.
             let of_name = text[..of_keys]
                 .rfind('"')
                 .and_then(|end| text[..end].rfind('"'));
@@ -100,11 +99,11 @@ impl Keymap {
             let entry = ACTIONS.iter().find(|entry| entry.name == name);
             let entry = entry.ok_or_else(|| {
                 let near = did_you_mean(name, names());
-                misnamed(format!("no action is called {}{near}", quoted(name)))
+                misnamed(format!("unknown action {}{near}", quoted(name)))
             })?;
             if FIXED.contains(&entry.name) {
                 let key = entry.keys.join(", ");
-                return Err(misnamed(format!("{name} is {key} always")));
+                return Err(misnamed(format!("{name} is always {key}")));
             }
             if keys.is_empty() && NEEDED.contains(&entry.name) {
                 return Err(misnamed(format!("{name} needs a key")));
@@ -118,10 +117,10 @@ impl Keymap {
                 check(key).map_err(|message| wrong(byte, &path, message))?;
             }
             if keymap.changed.insert(entry.name, keys.clone()).is_some() {
-                return Err(misnamed(format!("{name} stands here twice")));
+                return Err(misnamed(format!("{name} occurs twice")));
             }
         }
-        // Only now is it known which keys are free.
+        // Keys freed by other entries are known only now.
         for (name, keys) in &written {
             for (index, key) in keys.iter().enumerate() {
                 let mut owners = ACTIONS.iter().filter(|entry| {
@@ -132,7 +131,7 @@ impl Keymap {
                     let path = Path(vec![name.as_str().into(), index.into()]);
                     let byte = locate(text, &path).start;
                     let message = format!(
-                        "{} is a key of {} already; give that others here, too: {:?}: [...]",
+                        "{} is already a key of {}; give that action other keys: {:?}: [...]",
                         quoted(key),
                         owner.name,
                         owner.name
@@ -160,7 +159,7 @@ impl Keymap {
         changed.into_iter().flatten().map(String::as_str).chain(own)
     }
 
-    /// The action that a key does.
+    /// The action of a key.
     pub fn by_key(&self, key: &str) -> Option<&'static Entry> {
         let changed = |entry: &&Entry| self.changed.contains_key(entry.name);
         let moved = || {
@@ -172,13 +171,13 @@ impl Keymap {
         by_key(key).filter(|entry| !changed(entry)).or_else(moved)
     }
 
-    /// Whether they are not all those of the table.
+    /// Whether any key differs from the table.
     pub fn is_changed(&self) -> bool {
         !self.changed.is_empty()
     }
 
-    /// All actions that have a key or could, with their present keys, as a file would have them: a heading, and lines of the
-    /// file.
+    /// All actions that have or can have a key, with their current keys, in the format of the file: a heading
+    /// and lines for each group.
     pub fn listed(&self) -> Vec<(Group, Vec<String>)> {
         let line = |entry: &Entry| {
             let keys: Vec<String> = self.keys(entry).map(|key| format!("{key:?}")).collect();
@@ -198,7 +197,7 @@ impl Keymap {
             .collect()
     }
 
-    /// The present keys as the text of a file.
+    /// The current keys in the format of the file.
     pub fn text(&self) -> String {
         let groups = self.listed().into_iter().map(|(group, lines)| {
             let lines: String = lines.iter().map(|line| format!("    {line}\n")).collect();
@@ -208,7 +207,7 @@ impl Keymap {
     }
 }
 
-/// Whether a terminal has a key of this name, and it is free for an action.
+/// Checks that terminals have a key with this name and that it can be assigned.
 fn check(key: &str) -> Result<(), String> {
     let mut letters = key.chars();
     let number = |text: &str| text.parse::<u8>().is_ok_and(|n| (1..=12).contains(&n));
@@ -221,10 +220,12 @@ fn check(key: &str) -> Result<(), String> {
         _ if function.strip_prefix('F').is_some_and(number) => true,
         _ => match key.strip_prefix("Ctrl-") {
             Some("c" | "z" | "l") => {
-                return Err(format!("{key} does what it does always"));
+                return Err(format!("{key} cannot be reassigned"));
             }
             Some("i" | "m" | "h" | "j") => {
-                return Err(format!("a terminal sends another key for {key}"));
+                return Err(format!(
+                    "terminals cannot distinguish {key} from another key"
+                ));
             }
             Some(letter) => letter.len() == 1 && letter.chars().all(|c| c.is_ascii_lowercase()),
             None => NAMED.contains(&key),
@@ -233,7 +234,7 @@ fn check(key: &str) -> Result<(), String> {
     match known {
         true => Ok(()),
         false => Err(format!(
-            "no key is called {}{}; a letter is, F1 to F12, Shift-F1, Ctrl-a, {}",
+            "unknown key {}{}; keys: a letter, F1 to F12, Shift-F1, Ctrl-a, {}",
             quoted(key),
             did_you_mean(key, NAMED),
             NAMED.join(", ")
@@ -250,7 +251,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_gives_actions_other_keys_and_frees_their_own() {
+    fn a_file_changes_keys_and_frees_the_defaults() {
         let text =
             "// mine\n{\"step\": [\"j\", \"F11\"], \"down\": [\"Down\", \"Ctrl-n\"], \"sort\": []}";
         let keymap = Keymap::read("keys.ron", text).unwrap();
@@ -261,7 +262,7 @@ mod tests {
         assert_eq!(name("Ctrl-n"), Some("down"));
         assert_eq!(name(">"), None);
         assert_eq!(name("c"), Some("continue"));
-        // What it prints is read again, to the same keys.
+        // The printed file has to give the same keys.
         let again = Keymap::read("keys.ron", &keymap.text()).unwrap();
         for entry in ACTIONS {
             assert!(again.keys(entry).eq(keymap.keys(entry)), "{}", entry.name);
@@ -270,27 +271,27 @@ mod tests {
     }
 
     #[test]
-    fn what_a_file_has_wrong_is_told_with_its_place_and_what_would_be_right() {
+    fn errors_in_a_file_have_a_location_and_a_hint() {
         for (text, wanted) in [
             (
                 "{\n  \"stepp\": [\"j\"],\n}",
-                "keys.ron:2:3: no action is called \"stepp\"; did you mean \"step\"?",
+                "keys.ron:2:3: unknown action \"stepp\"; did you mean \"step\"?",
             ),
             (
                 "{\"step\": [\"s\"], \"next\": [\n \"d\"]}",
-                "keys.ron:2:2: next[0]: \"d\" is a key of diagnosis already; give that others",
+                "keys.ron:2:2: next[0]: \"d\" is already a key of diagnosis; give that action other keys",
             ),
             (
                 "{\"step\": [\"x\"], \"next\": [\"x\"]}",
-                "keys.ron:1:11: step[0]: \"x\" is a key of next already",
+                "keys.ron:1:11: step[0]: \"x\" is already a key of next",
             ),
             (
                 "{\"step\": [\"x\", \"x\"]}",
-                "keys.ron:1:11: step[0]: \"x\" is a key of step already",
+                "keys.ron:1:11: step[0]: \"x\" is already a key of step",
             ),
             (
                 "{\"step\": [\"Pageup\"]}",
-                "keys.ron:1:11: step[0]: no key is called \"Pageup\"; did you mean \"PageUp\"?",
+                "keys.ron:1:11: step[0]: unknown key \"Pageup\"; did you mean \"PageUp\"?",
             ),
             (
                 "{\"step\": [\"3\"]}",
@@ -298,16 +299,16 @@ mod tests {
             ),
             (
                 "{\"step\": [\"Ctrl-c\"]}",
-                "keys.ron:1:11: step[0]: Ctrl-c does what it does always",
+                "keys.ron:1:11: step[0]: Ctrl-c cannot be reassigned",
             ),
             (
                 "{\"interrupt\": [\"x\"]}",
-                "keys.ron:1:2: interrupt is Ctrl-c always",
+                "keys.ron:1:2: interrupt is always Ctrl-c",
             ),
             ("{\"quit\": []}", "keys.ron:1:2: quit needs a key"),
             (
                 "{\"step\": [\"x\"], \"step\": [\"j\"]}",
-                "step stands here twice",
+                "step occurs twice",
             ),
             (
                 "{\"step\": \"x\"}",

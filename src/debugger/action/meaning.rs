@@ -1,114 +1,114 @@
-//! What a key or a typed line can mean: a command for the session, or something that concerns the terminal alone.
+//! The meaning of a key or a typed line: a command for the session, or an action of the terminal.
 
 use crate::history::watches::WatchQuantity;
 use crate::record::command::Command;
 use stickslip_manual as manual;
 use stickslip_study::Vary;
 
-/// What a key or a typed line means.
+/// What a key or a typed line does.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Action {
     /// A command for the session.
     Session(Command),
-    /// What concerns the terminal alone.
+    /// An action of the terminal.
     Ui(Ui),
 }
 
-/// Which work-precision chart is wanted.
+/// Which work-precision chart to show.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum ChartOf {
-    /// That of this scene.
+    /// The scene's own chart.
     Scene,
-    /// This scene over the product of these settings.
+    /// The scene, for all combinations of these settings.
     Settings(Vec<Vary>),
-    /// A table that was written before.
+    /// A table written before.
     File(String),
 }
 
-/// What concerns the terminal alone.
+/// An action of the terminal.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Ui {
-    /// The last motion once more.
+    /// Repeat the last motion.
     Repeat,
-    /// Stop a run; never the program.
+    /// Interrupt a run, without ending the program.
     Interrupt,
-    /// Move the selection, scroll or pan, whatever the pane with the focus does with it.
+    /// Move in the focused pane: select, scroll or pan.
     Move(Step),
     /// Select a slave node, by slave number.
     Select(usize),
-    /// Give the focus to the next pane.
+    /// Focus the next pane.
     NextPane,
-    /// Give the focus to the pane before.
+    /// Focus the previous pane.
     PreviousPane,
-    /// Give the pane with the focus the whole screen, or take it back.
+    /// Show the focused pane alone, or all panes again.
     Zoom,
-    /// Zoom the decision.
+    /// Show the decision alone.
     Explain,
-    /// Show a page, or zoom it and back.
+    /// Show a page; if it is shown, show it alone or with the others.
     Page(Page),
     /// Start from this consistent state of the census (from 0).
     StartFrom(usize),
-    /// Take this remedy of the list (from 0).
+    /// Apply this remedy of the list (from 0).
     Apply(usize),
     /// Show a work-precision chart.
     Chart(ChartOf),
-    /// The shape larger, smaller, and all of it.
+    /// Enlarge the shape.
     Enlarge,
-    /// The shape smaller.
+    /// Shrink the shape.
     Shrink,
-    /// All of the shape.
+    /// Show the whole shape.
     Fit,
-    /// Sort the slave nodes: like this, or in the next way.
+    /// Sort the slave nodes in this order, or in the next one.
     Sort(Option<Sort>),
-    /// Sort them the other way round.
+    /// Reverse the sort order.
     SortBackward,
-    /// Which slave nodes the table shows: these, or the next kind.
+    /// Show these slave nodes in the table, or the next kind.
     Filter(Option<Filter>),
-    /// Which monitor the curve shows: this one, or the next.
+    /// Show this monitor, or the next.
     Monitor(Option<usize>),
-    /// Begin a lesson, by file or built-in name.
+    /// Start a lesson, by file or built-in name.
     Lesson(String),
-    /// On with the lesson.
+    /// Continue the lesson.
     On,
-    /// The lesson's words once more from their beginning.
+    /// Show the lesson text again from the top.
     Reread,
-    /// An answer to the lesson's question, or a prediction.
+    /// Answer the lesson's question, or predict a mode.
     Answer(String),
-    /// Free mode: whose decisions hide until predicted; none switches it on or off.
+    /// Free mode: choose whose decisions are hidden until predicted; `None` switches it on or off.
     Predict(Option<Whose>),
-    /// Show what an attached solver says besides.
+    /// Show the log of an attached solver.
     Log,
-    /// Show what can be set in it.
+    /// Show the parameters of an attached solver.
     Parameters,
-    /// Ask for what an action still needs.
+    /// Ask for a missing argument.
     Ask(Question),
-    /// Open the line for typed commands.
+    /// Open the command line.
     CommandLine,
-    /// Load another scene, by file or built-in name.
+    /// Open another scene, by file or built-in name.
     Open(String),
     /// Show the list of all actions.
     Help,
-    /// Show this page of the manual.
+    /// Show a page of the manual.
     Manual(&'static manual::Page),
-    /// Copy something to the terminal's clipboard; none is what is selected.
+    /// Copy to the terminal's clipboard; `None` is the selection.
     Copy(Option<Copied>),
-    /// Show the present keys, as a file would have them.
+    /// Show the current keys in the format of the file.
     Keys,
-    /// Other colours; none tells the present ones.
+    /// Change the colours; `None` shows the current choice.
     Colours(Option<Colours>),
-    /// Heed the mouse or not; none switches.
+    /// Turn mouse support on or off; `None` toggles it.
     Mouse(Option<bool>),
-    /// Draw the whole screen again.
+    /// Redraw the screen.
     Redraw,
-    /// Give the terminal back to the shell until it resumes the program (Ctrl-Z).
+    /// Suspend the program (Ctrl-Z).
     Suspend,
-    /// Leave whatever is open: a count, a prompt, a zoomed pane.
+    /// Close what is open: a count, a prompt, a zoomed pane.
     Cancel,
-    /// Leave the program.
+    /// Quit the program.
     Quit,
 }
 
-/// A step inside a pane.
+/// A movement within a pane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Step {
     /// One row up.
@@ -129,23 +129,23 @@ pub enum Step {
     Last,
 }
 
-/// A pane that has a key of its own.
+/// A pane with a key.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Page {
     /// All iterations so far.
     Timeline,
-    /// Why the iterations cycle.
+    /// The cause of a cycle.
     Diagnosis,
     /// All branches, and how they ended.
     Branches,
-    /// What gets past a failure.
+    /// Ways to get past a failure.
     Remedies,
 }
 
-/// How the table sorts the slave nodes.
+/// Sort order of the slave nodes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sort {
-    /// As the scene lists them.
+    /// The order of the scene.
     Scene,
     /// Closest to switching first.
     Margin,
@@ -160,14 +160,14 @@ stickslip_core::words! {
     Gap "gap",
 }
 
-/// Which slave nodes the table shows; the selected one is always there.
+/// Which slave nodes the table shows, in addition to the selected one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Filter {
-    /// All of them.
+    /// All.
     All,
-    /// Those that touch, or whose mode changes.
+    /// Those in contact, and those whose mode changes.
     Active,
-    /// Those on the surface that the selected one is on.
+    /// Those on the same surface as the selected one.
     Surface,
 }
 
@@ -178,14 +178,14 @@ stickslip_core::words! {
     Surface "surface",
 }
 
-/// Whose decisions hide, in free mode, until they are predicted.
+/// Whose decisions are hidden, in free mode, until they are predicted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Whose {
-    /// Any one node's, the selected one's say, for all.
+    /// All, until any one node is predicted, such as the selected one.
     Selected,
-    /// Those of every node whose mode changes.
+    /// Those of all nodes whose mode changes.
     Changed,
-    /// Nobody's.
+    /// None.
     Off,
 }
 
@@ -196,40 +196,40 @@ stickslip_core::words! {
     Off "off",
 }
 
-/// What an action can ask for.
+/// A missing argument that an action asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Question {
-    /// The mode to force the selected node into.
+    /// Mode to force the selected node into.
     Mode,
-    /// The increment's new size.
+    /// New size of the increment.
     Increment,
-    /// Which node to select.
+    /// Node to select.
     Node,
-    /// Which scene to open.
+    /// Scene to open.
     Scene,
-    /// Where to break.
+    /// Condition of a breakpoint.
     Break,
-    /// Which lesson to begin.
+    /// Lesson to start.
     Lesson,
     /// The answer to the lesson's question, or the next mode of the selected node.
     Answer,
 }
 
-/// What can be copied, besides what is selected in the pane with the focus.
+/// What can be copied in addition to the selection of the focused pane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Copied {
     /// All numbers of the selected slave node.
     Row,
-    /// The line that was typed last.
+    /// The last line typed.
     Command,
-    /// The present keys, as a file would have them.
+    /// The current keys in the format of the file.
     Keys,
-    /// A number of the selected slave node, or of the solve.
+    /// A quantity of the selected slave node, or of the solve.
     Number(WatchQuantity),
 }
 
 impl Copied {
-    /// All, in the order in which they are offered.
+    /// All variants, in the order in which they are offered.
     pub fn all() -> impl Iterator<Item = Copied> {
         let numbers = WatchQuantity::ALL.into_iter().map(Copied::Number);
         [Copied::Row, Copied::Command, Copied::Keys]
@@ -237,7 +237,7 @@ impl Copied {
             .chain(numbers)
     }
 
-    /// The word for it.
+    /// The word typed for it.
     pub fn word(self) -> &'static str {
         match self {
             Copied::Row => "row",
@@ -248,17 +248,17 @@ impl Copied {
     }
 }
 
-/// Which colours the screen has.
+/// The colours of the screen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Colours {
-    /// The terminal's own, for dark grounds; they do on most light ones.
+    /// The terminal's own colours, for dark backgrounds and most light ones.
     #[default]
     Dark,
-    /// The terminal's own, those that stand out on light grounds.
+    /// The terminal's own colours that stand out on light backgrounds.
     Light,
-    /// White and bright colours on black, nothing dim.
+    /// White and bright colours on black; nothing dim.
     HighContrast,
-    /// Bold, dim, underlined and reversed only.
+    /// Only bold, dim, underlined and reversed.
     None,
 }
 

@@ -1,70 +1,70 @@
-//! Why a line means no action.
+//! Errors of typed lines.
 
 use crate::history::breakpoints::NoPlace;
 use stickslip_core::interface::census::MOST;
 use stickslip_manual::NoPage;
 use stickslip_study::read::NoVary;
 
-/// Why a line means no action: what is wrong, and what would be right.
+/// Why a typed line is not an action, with a hint at what would be valid.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum Misread {
     /// The line is empty.
-    #[error("type an action's name; ? lists them all")]
+    #[error("type the name of an action; ? lists all actions")]
     Nothing,
-    /// The name is longer than any.
-    #[error("no action's name is so long; ? lists them all")]
+    /// The name is longer than any action's.
+    #[error("unknown action (name too long); ? lists all actions")]
     LongName,
-    /// No action has this name.
-    #[error("no action is called '{0}'; ? lists them all")]
+    /// Unknown name.
+    #[error("unknown action '{0}'; ? lists all actions")]
     NoAction(String),
     /// Several names begin with this word.
-    #[error("'{word}' could be {}", names.join(", "))]
+    #[error("'{word}' is ambiguous: {}", names.join(", "))]
     Ambiguous {
-        /// What was typed.
+        /// The word typed.
         word: String,
-        /// The names that begin with it.
+        /// The matching names.
         names: Vec<&'static str>,
     },
-    /// The arguments are too long to be meant.
-    #[error("what follows {name} is longer than {most} characters")]
+    /// The arguments are too long.
+    #[error("the arguments of {name} are longer than {most} characters")]
     LongRest {
         /// The action.
         name: &'static str,
-        /// Most characters that it takes.
+        /// Maximum number of characters.
         most: usize,
     },
-    /// Words too many or too few; how the action is written.
+    /// Too few or too many words; shows the usage.
     #[error("{0}")]
     Usage(String),
-    /// A word that is no value of its kind; `instead` says what would be one.
-    #[error("'{word}' is no {kind}; {instead}")]
+    /// A word that is not valid for its kind; `instead` says what is expected.
+    #[error("invalid {kind} '{word}'; {instead}")]
     NoValue {
-        /// What was typed.
+        /// The word typed.
         word: String,
-        /// What it should be: "mode", "number".
+        /// The kind: "mode", "number".
         kind: &'static str,
-        /// What would be one.
+        /// What is expected.
         instead: String,
     },
-    /// There is no such page of the manual.
+    /// The manual has no such page.
     #[error(transparent)]
     NoPage(#[from] NoPage),
-    /// A word that is no place in a run.
+    /// Not a position in a run.
     #[error(transparent)]
     NoPlace(#[from] NoPlace),
-    /// A word that is none of a few.
-    #[error("'{word}' is none of {}", all.join(", "))]
+    /// Not one of a few words.
+    #[error("unknown word '{word}'; expected one of: {}", all.join(", "))]
     NoneOf {
-        /// What was typed.
+        /// The word typed.
         word: String,
-        /// The words that would do.
+        /// The valid words.
         all: Vec<&'static str>,
     },
-    /// A word that is no quantity to watch, and the quantities.
-    #[error("'{0}' cannot be watched; {1} can")]
+    /// Not a quantity to watch; a list of the quantities.
+    #[error("cannot watch '{0}'; quantities: {1}")]
     NotWatched(String, String),
-    /// A word that is no condition to break at, and the conditions.
-    #[error("'{0}' is nothing to break at; {1} are")]
+    /// Not a condition to break at; a list of the conditions.
+    #[error("unknown condition '{0}'; conditions: {1}")]
     NoCondition(String, String),
     /// No scene is open.
     #[error("open a scene first")]
@@ -72,57 +72,57 @@ pub enum Misread {
     /// The scene has no slave nodes.
     #[error("this scene has no slave nodes")]
     NoSlaves,
-    /// The node exists and is not a slave node.
-    #[error("{word} is not a slave node; those are {slaves}")]
+    /// The node exists but is not a slave node.
+    #[error("{word} is not a slave node; slave nodes: {slaves}")]
     NoSlave {
-        /// What was typed.
+        /// The word typed.
         word: String,
         /// The names of the slave nodes.
         slaves: String,
     },
-    /// No node has this name.
-    #[error("no node is called '{word}'; slave nodes are {slaves}")]
+    /// Unknown node.
+    #[error("unknown node '{word}'; slave nodes: {slaves}")]
     NoNode {
-        /// What was typed.
+        /// The word typed.
         word: String,
         /// The names of the slave nodes.
         slaves: String,
     },
-    /// No name of a slave node contains this word.
-    #[error("no slave node's name contains '{word}'; there are {slaves}")]
+    /// The word does not occur in any slave node's name.
+    #[error("no slave node name contains '{word}'; slave nodes: {slaves}")]
     NotFound {
-        /// What was typed.
+        /// The word typed.
         word: String,
         /// The names of the slave nodes.
         slaves: String,
     },
-    /// More nodes than a census is held over.
-    #[error("a census is held over at most {MOST} nodes, and these are {0}")]
+    /// Too many nodes for a census.
+    #[error("too many nodes for a census: {0}; the limit is {MOST}")]
     ManyNodes(usize),
     /// The scene has no monitors.
     #[error("this scene has no monitors")]
     NoMonitors,
-    /// No monitor has this name.
-    #[error("no monitor is called '{name}'; there are {monitors}")]
+    /// Unknown monitor.
+    #[error("unknown monitor '{name}'; monitors: {monitors}")]
     NoMonitor {
-        /// What was typed.
+        /// The word typed.
         name: String,
         /// The names of the monitors.
         monitors: String,
     },
-    /// Settings of a chart that cannot be read.
+    /// Invalid settings of a chart.
     #[error(transparent)]
     NoChart(#[from] NoVary),
 }
 
 impl Misread {
-    /// A word that is no mode.
+    /// An invalid mode.
     pub(super) fn no_mode(word: &str) -> Misread {
-        let instead = "free, sliding or fixed would be".into();
+        let instead = "expected free, sliding or fixed".into();
         Misread::no_value(word, "mode", instead)
     }
 
-    /// A word that is no value of a kind.
+    /// A word that is not valid for its kind.
     pub(super) fn no_value(word: &str, kind: &'static str, instead: String) -> Misread {
         let word = word.into();
         Misread::NoValue {

@@ -1,14 +1,16 @@
-//! Actions: what can be done by name, by key, or by a typed line.
+//! Actions: everything a user can do, by name, by key or as a typed line.
 //!
-//! An action is either a [`Command`](crate::record::command::Command) for the session or a [`Ui`] action of the terminal
-//! around it. A key press and a typed line both end in [`Entry::act`], so whatever has a key has a name and the other way
-//! round. An action that lacks an argument it needs asks for it ([`Ui::Ask`]).
+//! An action is either a [`Command`](crate::record::command::Command) for the session or a [`Ui`] action of the
+//! terminal. Key presses and typed lines both end in [`Entry::act`], so that every key has a name. An action
+//! with a missing argument asks for it ([`Ui::Ask`]).
 //!
-//! - [`meaning`]: what an action can be; [`table`]: all of them by name; [`context`]: what their arguments are read against.
-//! - [`keymap`]: which key does which; [`config`]: what the user has set; `turns`: what must wait for the solver.
-//! - `offered`: what the solver that is open lets be done; `parameters`: what `set` changes in an attached one.
-//! - [`arguments`]: reading a line; [`complete`](mod@complete): what a line could go on as, `paths` for files;
-//!   [`misread`]: why it means nothing.
+//! - [`meaning`]: the types of actions; [`table`]: all actions by name; [`context`]: what their arguments refer
+//!   to.
+//! - [`keymap`]: the key bindings; [`config`]: the user's configuration; `turns`: which actions wait for the
+//!   solver.
+//! - `offered`: which actions the current solver supports; `parameters`: what `set` changes in an attached one.
+//! - [`arguments`]: parsing of lines; [`complete`](mod@complete): completion, with `paths` for files;
+//!   [`misread`]: the errors.
 
 pub mod arguments;
 pub mod complete;

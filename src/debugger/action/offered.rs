@@ -1,5 +1,5 @@
-//! What an attached solver offers, and what it does not, with the reason: the one place that greys keys, help and completions, and
-//! that refuses what is asked for all the same.
+//! Which actions an attached solver supports, and why not the others. Keys, help and completions are greyed,
+//! and commands are refused, from this list only.
 
 use super::context::Context;
 use super::meaning::{Action, ChartOf, Page, Question, Ui};
@@ -10,44 +10,43 @@ use stickslip_core::model::{Friction, Mode};
 use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::solver::Offers;
 
-/// What an action needs of the solver that is open.
+/// What an action needs of the current solver.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Need {
-    /// A mode can be forced once.
+    /// Forcing a mode for one iteration.
     Force,
-    /// A mode can be held.
+    /// Holding a mode.
     Hold,
-    /// One of the two.
+    /// Either of the two.
     ForceOrHold,
     Increment,
     Friction,
     Cohesion,
-    /// Settings of the two-level method.
+    /// The settings of the two-level method.
     Settings,
-    /// Something that `set` changes.
+    /// Anything that `set` changes.
     Parameters,
     /// The frozen interface problem.
     Problem,
-    /// The same, and its answers can be sent as forces.
+    /// The frozen interface problem, with forced modes to start from its states.
     Answers,
-    /// A scene that is measured again and again.
+    /// A scene that can be solved repeatedly.
     Chart,
-    /// A scene as a file of its own.
+    /// A scene that can be written to a file.
     Scene,
-    /// A run that goes on, and can be written down.
+    /// A run that can continue and be recorded.
     Journal,
-    /// A solver that is attached, and says something besides.
+    /// An attached solver with a log.
     Attached,
 }
 
 impl Need {
-    /// Whether it is met; `None` is a solver of our own.
+    /// Checks the need; `None` is our own solver.
     fn check(self, solver: Option<&Offers>) -> Result<(), String> {
         match (solver, self) {
-            (None, Need::Attached) => Err(
-                "this is our own solver, which has no messages and no parameters of its own; `stickslip attach` steps another"
-                    .into(),
-            ),
+            (None, Need::Attached) => {
+                Err("only attached solvers (`stickslip attach`) have a log and parameters".into())
+            }
             (None, _) => Ok(()),
             (Some(offers), need) => need.of(offers),
         }
@@ -69,21 +68,21 @@ impl Need {
             Need::Hold => takes(force(true)),
             Need::ForceOrHold => takes(force(false)).or_else(|why| takes(force(true)).map_err(|_| why)),
             Need::Increment => takes(Intervention::Increment(1.0)),
-            Need::Friction if !offers.friction => has(false, "another friction"),
+            Need::Friction if !offers.friction => has(false, "a friction change"),
             Need::Friction => takes(Intervention::Friction(Friction::default())),
-            Need::Cohesion => has(offers.cohesion, "another cohesion"),
+            Need::Cohesion => has(offers.cohesion, "a cohesion change"),
             Need::Settings => has(offers.settings, "settings of the two-level method"),
             Need::Parameters => has(!offers.parameters.is_empty(), "parameters that can be set"),
             Need::Problem => has(offers.problem, "its interface problem"),
             Need::Answers => has(offers.problem, "its interface problem").and_then(|()| takes(force(false))),
             Need::Chart => Err(
-                "a chart is measured on scenes that stickslip solves itself (:chart FILE shows a table)".into(),
+                "charts can be measured only on scenes that stickslip solves itself (:chart FILE shows a table)".into(),
             ),
             Need::Scene => Err(
-                "the scene is the solver's own, and no file of ours; `export --frozen` writes its interface problem, where it offers that"
+                "the scene is known only to the solver; `export --frozen` writes its interface problem, if the solver offers it"
                     .into(),
             ),
-            Need::Journal => offers.past.map_or(Ok(()), |record| Err(format!("{record}: it is its own journal"))),
+            Need::Journal => offers.past.map_or(Ok(()), |record| Err(format!("{record}: it does not need a journal"))),
             Need::Attached => Ok(()),
         }
     }
@@ -155,20 +154,18 @@ impl Need {
 }
 
 impl Entry {
-    /// Whether the solver that is open offers what this needs, as it stands without arguments.
+    /// Whether the current solver supports this action, without arguments.
     ///
-    /// # Errors
-    /// Why not.
+    /// # Errors The reason why not.
     pub fn offered(&self, context: &Context) -> Result<(), String> {
         Need::of_verb(&self.verb).map_or(Ok(()), |need| need.check(context.offers))
     }
 }
 
 impl Action {
-    /// Whether the solver that is open offers what this needs.
+    /// Whether the current solver supports this action.
     ///
-    /// # Errors
-    /// Why not.
+    /// # Errors The reason why not.
     pub fn offered(&self, context: &Context) -> Result<(), String> {
         let need = match self {
             Action::Session(command) => Need::of_command(command),

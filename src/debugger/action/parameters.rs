@@ -1,5 +1,5 @@
-//! What is typed after `set`: paths of our own scenes, or parameters of an attached solver, by name, which may hold blanks, with
-//! their present values.
+//! The arguments of `set`: paths of our own scenes, or parameters of an attached solver, whose names may
+//! contain spaces, with their current values.
 
 use super::context::Context;
 use stickslip_core::step::intervene::Value;
@@ -8,7 +8,7 @@ use stickslip_scene::format::paths;
 use stickslip_scene::number;
 use stickslip_scene::shown;
 
-/// The parameter with whose name a text begins, the longest such, and what follows.
+/// The parameter with the longest name that a text begins with, and the rest of the text.
 pub fn parameter<'a, 'b>(text: &'b str, context: &Context<'a>) -> Option<(&'a Parameter, &'b str)> {
     let all = context.offers?.parameters.iter();
     let begun = all.filter_map(|known| {
@@ -19,7 +19,7 @@ pub fn parameter<'a, 'b>(text: &'b str, context: &Context<'a>) -> Option<(&'a Pa
     begun.max_by_key(|(known, _)| known.name.len())
 }
 
-/// What a parameter is now, as a person would write it.
+/// The current value of a parameter, as typed.
 pub fn present(known: &Parameter, context: &Context) -> String {
     let now = match (context.model, context.state) {
         (Some(model), Some(state)) => known.now(model, state),
@@ -31,7 +31,8 @@ pub fn present(known: &Parameter, context: &Context) -> String {
     }
 }
 
-/// What can follow `set` where a solver is attached: the names of its parameters, and after a name its choices, or what it is now.
+/// Completions of `set` for an attached solver: the names of its parameters and, after a name, its choices or
+/// its current value.
 pub(super) fn parameter_lines(rest: &str, context: &Context) -> Vec<String> {
     let Some((known, _)) =
         parameter(rest, context).filter(|(known, _)| rest.trim_start().len() > known.name.len())
@@ -49,7 +50,7 @@ pub(super) fn parameter_lines(rest: &str, context: &Context) -> Vec<String> {
         .collect()
 }
 
-/// What `set` can change during a run.
+/// The paths that `set` can change during a run.
 pub(super) fn set_paths(context: &Context) -> Vec<String> {
     if let Some(offers) = context.offers {
         let names = offers.parameters.iter();

@@ -1,14 +1,14 @@
-//! Files and folders that a path being typed could go on as.
+//! Completion of paths.
 
 use std::path::Path;
 use stickslip_scene::shown;
 
-/// Most entries that are offered of a folder, and most that are looked at.
+/// Maximum number of completions, and of folder entries read.
 const MOST: usize = 200;
 const LOOKED_AT: usize = 5000;
 
-/// What a path could go on as, as it would be typed: files with one of these endings (any where there are none), and folders
-/// with `/` behind them, sorted. Names that begin with a point, only where that was typed.
+/// Completions of a path, as they would be typed, sorted: files with one of these extensions (any, if the list
+/// is empty), and folders with a trailing `/`. Hidden names only if the dot was typed.
 pub(super) fn beginning_with(word: &str, endings: &[&str]) -> Vec<String> {
     let (folder, begun) = match word.rfind('/') {
         Some(slash) => word.split_at(slash + 1),
@@ -24,7 +24,7 @@ pub(super) fn beginning_with(word: &str, endings: &[&str]) -> Vec<String> {
             continue;
         };
         let hidden = name.starts_with('.') && !begun.starts_with('.');
-        // Such a name cannot be typed.
+        // Names with control characters cannot be typed.
         if !name.starts_with(begun) || hidden || name.contains(shown::is_order) {
             continue;
         }
@@ -50,7 +50,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn folders_and_files_with_blanks_in_their_names() {
+    fn folders_and_files_with_spaces_complete() {
         let place = tempfile::tempdir().unwrap();
         std::fs::create_dir(place.path().join("my scenes")).unwrap();
         for file in [

@@ -1,6 +1,6 @@
-//! Every action by name: the one table behind keys, footer, help, completion and the README's list.
+//! All actions by name: the table behind keys, footer, help, completion and the README's list.
 //!
-//! Keys are plain strings here (`"s"`, `"F10"`, `"Ctrl-c"`); no terminal library is known to this file.
+//! Keys are plain strings here (`"s"`, `"F10"`, `"Ctrl-c"`), independent of any terminal library.
 
 use super::meaning::{Page, Step, Ui};
 use super::misread::Misread;
@@ -9,15 +9,15 @@ use crate::record::command::{Command, Exported, To, Unit};
 /// Heading under which help lists an action.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Group {
-    /// Going through the iterations.
+    /// Moving through the iterations.
     Go,
-    /// Interfering with the solver.
+    /// Changing the solve.
     Change,
     /// Branches of the history.
     Branches,
     /// Breakpoints and watches.
     Breakpoints,
-    /// Looking around.
+    /// Views and analyses.
     Look,
     /// Lessons and predictions.
     Learn,
@@ -27,34 +27,34 @@ pub enum Group {
 
 stickslip_core::words! {
     Group, ALL, title:
-    Go "Go through the iterations",
+    Go "Move through the iterations",
     Change "Interfere",
-    Branches "Branches: what if",
+    Branches "Branches",
     Breakpoints "Breakpoints and watches",
-    Look "Look around",
+    Look "Views and analyses",
     Learn "Learn",
-    Program "The program",
+    Program "Program",
 }
 
-/// One action: how it is called, which keys do it, what it does.
+/// An action: its name, its keys and its help.
 #[derive(Debug)]
 pub struct Entry {
-    /// Its name, as it is typed.
+    /// Name, as typed.
     pub name: &'static str,
-    /// Arguments as help shows them; those in brackets may be left out.
+    /// Arguments as shown in help; those in brackets are optional.
     pub arguments: &'static str,
-    /// The keys that do it.
+    /// Default keys.
     pub keys: &'static [&'static str],
-    /// The heading under which help lists it.
+    /// Heading in help.
     pub group: Group,
-    /// Word in the footer; empty where the footer leaves it out.
+    /// Word in the footer; empty if the footer omits the action.
     pub label: &'static str,
-    /// What help says of it.
+    /// Help text.
     pub help: &'static str,
     pub(super) verb: Verb,
 }
 
-/// How an entry reads its arguments.
+/// How the arguments of an action are read.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Verb {
     Forward(Unit),
@@ -65,10 +65,10 @@ pub(super) enum Verb {
     Release,
     Increment,
     Set,
-    /// A short name for one path of `set`.
+    /// A short name for a path of `set`.
     SetPath(&'static str),
     Goto,
-    /// Go to the branch that is named, or to this one.
+    /// Go to the named branch, or to this one.
     Branch(Option<To>),
     Rename,
     Compare,
@@ -79,7 +79,7 @@ pub(super) enum Verb {
     },
     Watch,
     Unwatch,
-    /// Take a consistent state, or a remedy, by its number from 1.
+    /// Apply a consistent state or a remedy, numbered from 1.
     StartFrom,
     Apply,
     /// A command without arguments.
@@ -109,7 +109,7 @@ pub(super) enum Verb {
     Do(Ui),
 }
 
-/// Shorthand that keeps the table one line an action.
+/// Shorthand that keeps the table at one line per action.
 const fn entry(
     group: Group,
     name: &'static str,
@@ -130,112 +130,112 @@ const fn entry(
     }
 }
 
-/// The one table.
+/// All actions.
 #[rustfmt::skip]
 pub const ACTIONS: &[Entry] = &[
-    entry(Group::Go, "step", "[COUNT]", &["s", "F11"], "step", "One minor iteration forward", Verb::Forward(Unit::Minor)),
-    entry(Group::Go, "next", "[COUNT]", &["n", "F10"], "next", "To the end of this major iteration", Verb::Forward(Unit::Major)),
-    entry(Group::Go, "finish", "[COUNT]", &["f", "Shift-F11"], "finish", "To the end of this increment", Verb::Forward(Unit::Increment)),
-    entry(Group::Go, "continue", "", &["c", "F5"], "continue", "On to a breakpoint, a failure, or the end of the history", Verb::Forward(Unit::Run)),
-    entry(Group::Go, "reverse-step", "[COUNT]", &["S"], "", "One minor iteration back", Verb::Back(Unit::Minor)),
-    entry(Group::Go, "reverse-next", "[COUNT]", &["N"], "", "Back by a major iteration", Verb::Back(Unit::Major)),
-    entry(Group::Go, "reverse-finish", "[COUNT]", &["F"], "", "Back by an increment", Verb::Back(Unit::Increment)),
-    entry(Group::Go, "reverse-continue", "", &["C"], "", "Back to the last breakpoint that held, the last failure, or the start", Verb::Back(Unit::Run)),
-    entry(Group::Go, "goto", "STEP", &[], "", "To a step of this branch by its number; 0 is the start", Verb::Goto),
-    entry(Group::Go, "repeat", "", &["Enter"], "", "The last motion again (digits before a motion are its count); in a list, take the selected entry", Verb::Do(Ui::Repeat)),
-    entry(Group::Go, "interrupt", "", &["Ctrl-c"], "", "Stop a run after the present minor iteration", Verb::Do(Ui::Interrupt)),
+    entry(Group::Go, "step", "[COUNT]", &["s", "F11"], "step", "Go forward by one minor iteration", Verb::Forward(Unit::Minor)),
+    entry(Group::Go, "next", "[COUNT]", &["n", "F10"], "next", "Go to the end of this major iteration", Verb::Forward(Unit::Major)),
+    entry(Group::Go, "finish", "[COUNT]", &["f", "Shift-F11"], "finish", "Go to the end of this increment", Verb::Forward(Unit::Increment)),
+    entry(Group::Go, "continue", "", &["c", "F5"], "continue", "Continue to a breakpoint, a failure or the end of the history", Verb::Forward(Unit::Run)),
+    entry(Group::Go, "reverse-step", "[COUNT]", &["S"], "", "Go back by one minor iteration", Verb::Back(Unit::Minor)),
+    entry(Group::Go, "reverse-next", "[COUNT]", &["N"], "", "Go back by one major iteration", Verb::Back(Unit::Major)),
+    entry(Group::Go, "reverse-finish", "[COUNT]", &["F"], "", "Go back by one increment", Verb::Back(Unit::Increment)),
+    entry(Group::Go, "reverse-continue", "", &["C"], "", "Go back to the last breakpoint hit, the last failure or the start", Verb::Back(Unit::Run)),
+    entry(Group::Go, "goto", "STEP", &[], "", "Go to a step of this branch, by number; 0 is the start", Verb::Goto),
+    entry(Group::Go, "repeat", "", &["Enter"], "", "Repeat the last motion (digits before a motion are its count); in a list, choose the selected entry", Verb::Do(Ui::Repeat)),
+    entry(Group::Go, "interrupt", "", &["Ctrl-c"], "", "Interrupt a run after the current minor iteration", Verb::Do(Ui::Interrupt)),
 
     entry(Group::Change, "force", "[NODE] MODE", &["m"], "mode", "Force a mode for one minor iteration (then f, s, x; capital: hold)", Verb::Force { hold: false }),
     entry(Group::Change, "hold", "[NODE] MODE", &[], "", "Force a mode until released", Verb::Force { hold: true }),
-    entry(Group::Change, "release", "[NODE]", &["M"], "", "Give the node back to Table 2", Verb::Release),
-    entry(Group::Change, "increment", "SIZE", &["i"], "increment", "Start this increment again with another size", Verb::Increment),
-    entry(Group::Change, "friction", "DEGREES", &[], "", "Change the friction angle of every slave node", Verb::SetPath("friction.angle")),
-    entry(Group::Change, "cohesion", "FORCE", &[], "", "Change the cohesion of every slave node", Verb::SetPath("friction.cohesion")),
-    entry(Group::Change, "minors", "LIMIT", &[], "", "Change the limit of minor iterations", Verb::SetPath("settings.minors")),
-    entry(Group::Change, "majors", "LIMIT", &[], "", "Change the limit of major iterations", Verb::SetPath("settings.majors")),
-    entry(Group::Change, "start-from", "NUMBER", &[], "", "Start from a consistent state of the census: its modes and T_max", Verb::StartFrom),
-    entry(Group::Change, "apply", "NUMBER", &[], "", "Take a remedy of the list, in a new branch", Verb::Apply),
-    entry(Group::Change, "set", "PATH VALUE", &[], "", "Change friction.* or settings.*; in an attached solver, a parameter that it offers", Verb::Set),
+    entry(Group::Change, "release", "[NODE]", &["M"], "", "Release the node, so that Table 2 decides again", Verb::Release),
+    entry(Group::Change, "increment", "SIZE", &["i"], "increment", "Restart this increment with another size", Verb::Increment),
+    entry(Group::Change, "friction", "DEGREES", &[], "", "Change the friction angle of all slave nodes", Verb::SetPath("friction.angle")),
+    entry(Group::Change, "cohesion", "FORCE", &[], "", "Change the cohesion of all slave nodes", Verb::SetPath("friction.cohesion")),
+    entry(Group::Change, "minors", "LIMIT", &[], "", "Change the limit on minor iterations", Verb::SetPath("settings.minors")),
+    entry(Group::Change, "majors", "LIMIT", &[], "", "Change the limit on major iterations", Verb::SetPath("settings.majors")),
+    entry(Group::Change, "start-from", "NUMBER", &[], "", "Start with the modes and T_max of a consistent state of the census", Verb::StartFrom),
+    entry(Group::Change, "apply", "NUMBER", &[], "", "Apply remedy NUMBER in a new branch", Verb::Apply),
+    entry(Group::Change, "set", "PATH VALUE", &[], "", "Change friction.* or settings.*, or a parameter of an attached solver", Verb::Set),
 
-    entry(Group::Branches, "branch", "NAME", &[], "", "To the tip of another branch: b2, its name, or the beginning of it", Verb::Branch(None)),
-    entry(Group::Branches, "branch-next", "", &["]"], "", "To the tip of the next branch", Verb::Branch(Some(To::Next))),
-    entry(Group::Branches, "branch-previous", "", &["["], "", "To the tip of the branch before", Verb::Branch(Some(To::Previous))),
-    entry(Group::Branches, "tree", "", &["v"], "", "The branches as a tree, beside each other; Enter goes to the selected one", Verb::Do(Ui::Page(Page::Branches))),
-    entry(Group::Branches, "branches", "", &[], "", "All branches, and how each ended", Verb::Plain(Command::Branches)),
-    entry(Group::Branches, "rename", "NAME", &[], "", "Call this branch so", Verb::Rename),
-    entry(Group::Branches, "compare", "[BRANCH]", &[], "", "This branch beside another, or beside the one that it left", Verb::Compare),
+    entry(Group::Branches, "branch", "NAME", &[], "", "Go to the tip of another branch: b2, its name, or a prefix", Verb::Branch(None)),
+    entry(Group::Branches, "branch-next", "", &["]"], "", "Go to the next branch", Verb::Branch(Some(To::Next))),
+    entry(Group::Branches, "branch-previous", "", &["["], "", "Go to the previous branch", Verb::Branch(Some(To::Previous))),
+    entry(Group::Branches, "tree", "", &["v"], "", "Show the branches as a tree, and compare two; Enter goes to the selected one", Verb::Do(Ui::Page(Page::Branches))),
+    entry(Group::Branches, "branches", "", &[], "", "List all branches, and how each one ended", Verb::Plain(Command::Branches)),
+    entry(Group::Branches, "rename", "NAME", &[], "", "Rename this branch", Verb::Rename),
+    entry(Group::Branches, "compare", "[BRANCH]", &[], "", "Compare this branch with another, by default with its parent", Verb::Compare),
 
     entry(Group::Breakpoints, "break", "CONDITION", &["b"], "", "Stop when: mode|leaves [NODE] [MODE], margin [NODE] VALUE, element [NODE], cycle, residual, failure, at INC[.MAJOR[.MINOR]]", Verb::Break),
-    entry(Group::Breakpoints, "breakpoints", "", &[], "", "All breakpoints", Verb::Plain(Command::Breakpoints)),
+    entry(Group::Breakpoints, "breakpoints", "", &[], "", "List all breakpoints", Verb::Plain(Command::Breakpoints)),
     entry(Group::Breakpoints, "delete", "NUMBER|all", &[], "", "Delete a breakpoint", Verb::Delete),
-    entry(Group::Breakpoints, "disable", "NUMBER|all", &[], "", "Pass a breakpoint without stopping", Verb::Enable { on: false }),
-    entry(Group::Breakpoints, "enable", "NUMBER|all", &[], "", "Stop at it again", Verb::Enable { on: true }),
-    entry(Group::Breakpoints, "watch", "WHAT [NODE]", &[], "", "Watch gap, f_n, f_t, t_max, slip or margin of a node, or residual or interface; `as NAME` names it", Verb::Watch),
-    entry(Group::Breakpoints, "unwatch", "NAME", &[], "", "End a watch", Verb::Unwatch),
+    entry(Group::Breakpoints, "disable", "NUMBER|all", &[], "", "Disable a breakpoint", Verb::Enable { on: false }),
+    entry(Group::Breakpoints, "enable", "NUMBER|all", &[], "", "Enable a breakpoint", Verb::Enable { on: true }),
+    entry(Group::Breakpoints, "watch", "WHAT [NODE]", &[], "", "Watch gap, f_n, f_t, t_max, slip or margin of a node, or residual or interface; add `as NAME` to name it", Verb::Watch),
+    entry(Group::Breakpoints, "unwatch", "NAME", &[], "", "Remove a watch", Verb::Unwatch),
 
-    entry(Group::Look, "up", "", &["Up", "k"], "", "Node above; scroll or pan in other panes", Verb::Do(Ui::Move(Step::Up))),
-    entry(Group::Look, "down", "", &["Down", "j"], "", "Node below", Verb::Do(Ui::Move(Step::Down))),
+    entry(Group::Look, "up", "", &["Up", "k"], "", "Select the node above; scroll or pan in other panes", Verb::Do(Ui::Move(Step::Up))),
+    entry(Group::Look, "down", "", &["Down", "j"], "", "Select the node below", Verb::Do(Ui::Move(Step::Down))),
     entry(Group::Look, "left", "", &["Left", "h"], "", "Pan the shape", Verb::Do(Ui::Move(Step::Left))),
     entry(Group::Look, "right", "", &["Right", "l"], "", "Pan the shape", Verb::Do(Ui::Move(Step::Right))),
-    entry(Group::Look, "page-up", "", &["PageUp"], "", "A page of nodes up", Verb::Do(Ui::Move(Step::PageUp))),
-    entry(Group::Look, "page-down", "", &["PageDown"], "", "A page of nodes down", Verb::Do(Ui::Move(Step::PageDown))),
-    entry(Group::Look, "first", "", &["Home", "g"], "", "First node", Verb::Do(Ui::Move(Step::First))),
-    entry(Group::Look, "last", "", &["End", "G"], "", "Last node", Verb::Do(Ui::Move(Step::Last))),
-    entry(Group::Look, "node", "NAME", &["/"], "", "Find a slave node, a branch or a remedy by a part of its name; `/` and Enter alone find the next", Verb::Node),
-    entry(Group::Look, "sort", "[ORDER]", &[">"], "", "Sort the nodes: as in the scene, by margin (closest to switching first), by gap", Verb::Sort),
-    entry(Group::Look, "sort-backward", "", &["<"], "", "Sort the other way round, and back", Verb::Do(Ui::SortBackward)),
-    entry(Group::Look, "filter", "[WHICH]", &["A"], "", "Show all nodes, active ones (touching or changing), those on the selected one's surface", Verb::Filter),
-    entry(Group::Look, "monitor", "[NAME]", &["y"], "", "The load over the next monitor, or the one of that name", Verb::Monitor),
-    entry(Group::Look, "explain", "", &["e"], "explain", "The decision on the selected node in full, and who pushed it", Verb::Do(Ui::Explain)),
-    entry(Group::Look, "diagnosis", "", &["d"], "diagnosis", "Why the minor iterations cycle, and which states are consistent; Enter starts from the selected one", Verb::Do(Ui::Page(Page::Diagnosis))),
-    entry(Group::Look, "remedies", "", &["r"], "remedies", "Try every remedy from here; Enter takes the selected one", Verb::Do(Ui::Page(Page::Remedies))),
-    entry(Group::Look, "timeline", "", &["t"], "timeline", "All modes by iteration; Left and Right go through them with the whole screen", Verb::Do(Ui::Page(Page::Timeline))),
-    entry(Group::Look, "census", "[NODES]", &[], "", "Try every assignment of modes on the problem that is solved next: of these nodes, or of all that can touch (up to 8 one by one, up to 64 by branch and bound)", Verb::Census),
-    entry(Group::Look, "chart", "[FILE|PATH=A,B,C]", &[], "", "Error over cost: of this scene, measured now (its own chart, or over settings), or a table that `stickslip chart --csv` made", Verb::Chart),
-    entry(Group::Look, "log", "", &["O"], "", "What an attached solver says besides: its messages and its standard error", Verb::Do(Ui::Log)),
-    entry(Group::Look, "parameters", "", &[], "", "What can be set in an attached solver, with its present values", Verb::Do(Ui::Parameters)),
-    entry(Group::Look, "pane", "", &["Tab"], "pane", "To the next pane; a small screen turns the page", Verb::Do(Ui::NextPane)),
-    entry(Group::Look, "previous-pane", "", &["Shift-Tab"], "", "To the pane before", Verb::Do(Ui::PreviousPane)),
-    entry(Group::Look, "zoom", "", &["z"], "zoom", "This pane alone, and back", Verb::Do(Ui::Zoom)),
-    entry(Group::Look, "enlarge", "", &["+", "="], "", "The shape larger", Verb::Do(Ui::Enlarge)),
-    entry(Group::Look, "shrink", "", &["-"], "", "The shape smaller", Verb::Do(Ui::Shrink)),
-    entry(Group::Look, "fit", "", &["0"], "", "The whole shape", Verb::Do(Ui::Fit)),
-    entry(Group::Look, "copy", "[WHAT]", &["Y"], "", "Copy what is selected to the clipboard: a row, a value, a command; or row, command, keys, gap, f_n, …", Verb::Copy),
+    entry(Group::Look, "page-up", "", &["PageUp"], "", "Move up by a page of nodes", Verb::Do(Ui::Move(Step::PageUp))),
+    entry(Group::Look, "page-down", "", &["PageDown"], "", "Move down by a page of nodes", Verb::Do(Ui::Move(Step::PageDown))),
+    entry(Group::Look, "first", "", &["Home", "g"], "", "Select the first node", Verb::Do(Ui::Move(Step::First))),
+    entry(Group::Look, "last", "", &["End", "G"], "", "Select the last node", Verb::Do(Ui::Move(Step::Last))),
+    entry(Group::Look, "node", "NAME", &["/"], "", "Find a slave node, branch or remedy by part of its name; `/` and Enter find the next", Verb::Node),
+    entry(Group::Look, "sort", "[ORDER]", &[">"], "", "Sort the nodes: as in the scene, by margin (closest to switching first) or by gap", Verb::Sort),
+    entry(Group::Look, "sort-backward", "", &["<"], "", "Reverse the sort order", Verb::Do(Ui::SortBackward)),
+    entry(Group::Look, "filter", "[WHICH]", &["A"], "", "Show all nodes, active ones (in contact or changing), or those on the same surface", Verb::Filter),
+    entry(Group::Look, "monitor", "[NAME]", &["y"], "", "Plot the load against the next monitor, or the named one", Verb::Monitor),
+    entry(Group::Look, "explain", "", &["e"], "explain", "Show the decision at the selected node in full, and which nodes pushed it", Verb::Do(Ui::Explain)),
+    entry(Group::Look, "diagnosis", "", &["d"], "diagnosis", "Show why the minor iterations cycle, and the consistent states; Enter starts from the selected one", Verb::Do(Ui::Page(Page::Diagnosis))),
+    entry(Group::Look, "remedies", "", &["r"], "remedies", "Try all remedies from here; Enter applies the selected one", Verb::Do(Ui::Page(Page::Remedies))),
+    entry(Group::Look, "timeline", "", &["t"], "timeline", "Show all modes by iteration; Left and Right move through the iterations", Verb::Do(Ui::Page(Page::Timeline))),
+    entry(Group::Look, "census", "[NODES]", &[], "", "Try all assignments of modes in the next frozen problem, for these nodes or for all that can touch (up to 8 one by one, up to 64 by branch and bound)", Verb::Census),
+    entry(Group::Look, "chart", "[FILE|PATH=A,B,C]", &[], "", "Show a work-precision chart: measure this scene (its own chart, or over settings), or read a table of `stickslip chart --csv`", Verb::Chart),
+    entry(Group::Look, "log", "", &["O"], "", "Show the log of an attached solver: its messages and its standard error", Verb::Do(Ui::Log)),
+    entry(Group::Look, "parameters", "", &[], "", "Show the parameters of an attached solver, with their values", Verb::Do(Ui::Parameters)),
+    entry(Group::Look, "pane", "", &["Tab"], "pane", "Go to the next pane; on small screens, to the next page", Verb::Do(Ui::NextPane)),
+    entry(Group::Look, "previous-pane", "", &["Shift-Tab"], "", "Go to the previous pane", Verb::Do(Ui::PreviousPane)),
+    entry(Group::Look, "zoom", "", &["z"], "zoom", "Show this pane alone, or all panes again", Verb::Do(Ui::Zoom)),
+    entry(Group::Look, "enlarge", "", &["+", "="], "", "Enlarge the shape", Verb::Do(Ui::Enlarge)),
+    entry(Group::Look, "shrink", "", &["-"], "", "Shrink the shape", Verb::Do(Ui::Shrink)),
+    entry(Group::Look, "fit", "", &["0"], "", "Show the whole shape", Verb::Do(Ui::Fit)),
+    entry(Group::Look, "copy", "[WHAT]", &["Y"], "", "Copy the selection to the clipboard: a row, a value, a command; or name it: row, command, keys, gap, f_n, …", Verb::Copy),
 
-    entry(Group::Learn, "lesson", "[NAME]", &["L"], "", "A guided lesson: a file, or a built-in one", Verb::Lesson),
-    entry(Group::Learn, "on", "", &["Space"], "go on", "On with the lesson: more of its words, then the next step", Verb::Do(Ui::On)),
-    entry(Group::Learn, "reread", "", &["Backspace"], "", "The lesson's words once more from their beginning, where the screen has no room for all", Verb::Do(Ui::Reread)),
+    entry(Group::Learn, "lesson", "[NAME]", &["L"], "", "Start a guided lesson: a file, or a built-in one", Verb::Lesson),
+    entry(Group::Learn, "on", "", &["Space"], "more", "Continue the lesson: more of its text, then the next step", Verb::Do(Ui::On)),
+    entry(Group::Learn, "reread", "", &["Backspace"], "", "Show the lesson text again from the top", Verb::Do(Ui::Reread)),
     entry(Group::Learn, "answer", "[WORD]", &["a"], "answer", "Answer the lesson's question, or predict the selected node's next mode", Verb::Answer),
-    entry(Group::Learn, "predict", "[WHOSE]", &["p"], "", "Decisions hide until predicted: any one (selected), every changed one, or off", Verb::Predict),
+    entry(Group::Learn, "predict", "[WHOSE]", &["p"], "", "Hide decisions until predicted: any one (selected), every changed one, or off", Verb::Predict),
 
-    entry(Group::Program, "command", "", &[":"], "command", "Any action by its name; Tab completes, Up and Down recall", Verb::Do(Ui::CommandLine)),
+    entry(Group::Program, "command", "", &[":"], "command", "Run any action by name; Tab completes, Up and Down recall", Verb::Do(Ui::CommandLine)),
     entry(Group::Program, "snapshot", "[FILE]", &["w"], "", "Write a snapshot of the shown state", Verb::Snapshot { overwrite: false }),
-    entry(Group::Program, "snapshot!", "FILE", &[], "", "The same, over a file that is there already", Verb::Snapshot { overwrite: true }),
-    entry(Group::Program, "core", "FILE", &[], "", "Write the fewest nodes that still cycle as a scene of their own", Verb::Export { what: Exported::Core, overwrite: false }),
-    entry(Group::Program, "core!", "FILE", &[], "", "The same, over a file that is there already", Verb::Export { what: Exported::Core, overwrite: true }),
-    entry(Group::Program, "export", "[--frozen] FILE", &[], "", "Make a file of the shown state, by its extension: .svg, .png a picture; .ron the scene, with --frozen its interface problem; .dat, .mtx, .h5 that for other solvers; .vtu the state for ParaView", Verb::Export { what: Exported::Shown, overwrite: false }),
-    entry(Group::Program, "export!", "[--frozen] FILE", &[], "", "The same, over a file that is there already", Verb::Export { what: Exported::Shown, overwrite: true }),
-    entry(Group::Program, "journal", "[FILE]", &[], "", "Keep the journal in this new file, with all that was done; or tell where it is", Verb::Journal),
-    entry(Group::Program, "open", "[SCENE]", &["o"], "", "Another scene: a file, or a built-in one; a journal goes on where it was", Verb::Open),
-    entry(Group::Program, "keys", "", &[], "", "The present keys, as the file has them that changes them", Verb::Do(Ui::Keys)),
-    entry(Group::Program, "colours", "[NAME]", &[], "", "Other colours: dark, light, high contrast, none", Verb::Colours),
-    entry(Group::Program, "mouse", "[on|off]", &[], "", "Heed the mouse, or leave it to the terminal", Verb::Mouse),
-    entry(Group::Program, "redraw", "", &["Ctrl-l"], "", "Draw the screen anew", Verb::Do(Ui::Redraw)),
-    entry(Group::Program, "suspend", "", &["Ctrl-z"], "", "Back to the shell for a while (fg returns)", Verb::Do(Ui::Suspend)),
-    entry(Group::Program, "cancel", "", &["Esc"], "", "Drop a count, close a prompt, unzoom", Verb::Do(Ui::Cancel)),
-    entry(Group::Program, "help", "[TOPIC]", &["?", "F1"], "help", "This list, or a page of the manual", Verb::Help),
+    entry(Group::Program, "snapshot!", "FILE", &[], "", "Write a snapshot over an existing file", Verb::Snapshot { overwrite: true }),
+    entry(Group::Program, "core", "FILE", &[], "", "Write the fewest nodes that still cycle as a separate scene", Verb::Export { what: Exported::Core, overwrite: false }),
+    entry(Group::Program, "core!", "FILE", &[], "", "Write the core over an existing file", Verb::Export { what: Exported::Core, overwrite: true }),
+    entry(Group::Program, "export", "[--frozen] FILE", &[], "", "Write the shown state to a file, by its extension: .svg, .png a picture; .ron the scene, with --frozen its interface problem; .dat, .mtx, .h5 the interface problem for other solvers; .vtu the state for ParaView", Verb::Export { what: Exported::Shown, overwrite: false }),
+    entry(Group::Program, "export!", "[--frozen] FILE", &[], "", "Export over an existing file", Verb::Export { what: Exported::Shown, overwrite: true }),
+    entry(Group::Program, "journal", "[FILE]", &[], "", "Write the journal to this new file, with all entries so far; or show its path", Verb::Journal),
+    entry(Group::Program, "open", "[SCENE]", &["o"], "", "Open another scene: a file, or a built-in one; a journal continues where it ended", Verb::Open),
+    entry(Group::Program, "keys", "", &[], "", "Show the current keys, in the format of the file that changes them", Verb::Do(Ui::Keys)),
+    entry(Group::Program, "colours", "[NAME]", &[], "", "Change the colours: dark, light, high contrast, none", Verb::Colours),
+    entry(Group::Program, "mouse", "[on|off]", &[], "", "Turn mouse support on or off", Verb::Mouse),
+    entry(Group::Program, "redraw", "", &["Ctrl-l"], "", "Redraw the screen", Verb::Do(Ui::Redraw)),
+    entry(Group::Program, "suspend", "", &["Ctrl-z"], "", "Suspend the program (fg returns)", Verb::Do(Ui::Suspend)),
+    entry(Group::Program, "cancel", "", &["Esc"], "", "Drop a count, close a prompt or unzoom", Verb::Do(Ui::Cancel)),
+    entry(Group::Program, "help", "[TOPIC]", &["?", "F1"], "help", "Show this list, or a page of the manual", Verb::Help),
     entry(Group::Program, "quit", "", &["q"], "quit", "Leave", Verb::Do(Ui::Quit)),
 ];
 
-/// The entry that a key does.
+/// The entry of a key.
 pub fn by_key(key: &str) -> Option<&'static Entry> {
     ACTIONS.iter().find(|entry| entry.keys.contains(&key))
 }
 
-/// Most characters of an action's name.
+/// Maximum length of an action's name.
 const LONGEST_NAME: usize = 40;
 
-/// The entry that a word names: its name, its one-letter key, or the beginning of one name only.
+/// Finds an entry by name, one-letter key, or unique prefix.
 pub fn by_name(word: &str) -> Result<&'static Entry, Misread> {
     if word.chars().count() > LONGEST_NAME {
         return Err(Misread::LongName);
@@ -268,7 +268,7 @@ pub(super) fn begun(word: &str) -> Result<&'static Entry, Misread> {
     }
 }
 
-/// Whether a word is the beginning of a name; a `!` at the end stands for itself, so that `snap!` is `snapshot!`.
+/// Whether a word is a prefix of a name; a final `!` must match, so that `snap!` is `snapshot!`.
 fn begins(name: &str, word: &str) -> bool {
     match (name.strip_suffix('!'), word.strip_suffix('!')) {
         (Some(name), Some(word)) => name.starts_with(word),
@@ -278,19 +278,19 @@ fn begins(name: &str, word: &str) -> bool {
 }
 
 impl Entry {
-    /// Whether digits typed before its key are its count.
+    /// Whether digits before the key are a count.
     pub fn takes_count(&self) -> bool {
         self.arguments == "[COUNT]"
     }
 
-    /// How it is written.
+    /// The usage line.
     pub fn usage(&self) -> String {
         format!("usage: {} {}", self.name, self.arguments)
             .trim_end()
             .to_string()
     }
 
-    /// File and scene names may hold blanks; elsewhere a word too many is a mistake.
+    /// File and scene names may contain spaces; elsewhere an extra word is an error.
     pub(super) fn most_words(&self) -> usize {
         match self.verb {
             Verb::Snapshot { .. } | Verb::Open | Verb::Monitor => usize::MAX,
@@ -304,7 +304,7 @@ impl Entry {
     }
 }
 
-/// The table as the README shows it.
+/// The table in Markdown, as in the README.
 pub fn markdown() -> String {
     let mut text = String::new();
     for group in Group::ALL {
@@ -312,7 +312,7 @@ pub fn markdown() -> String {
         for entry in ACTIONS.iter().filter(|entry| entry.group == group) {
             let keys: Vec<_> = entry.keys.iter().map(|key| format!("`{key}`")).collect();
             let name = format!("{} {}", entry.name, entry.arguments);
-            // In a table of Markdown a bar parts columns even in code.
+            // In Markdown tables, a bar separates columns even in code.
             let [name, help] = [name.trim_end(), entry.help].map(|text| text.replace('|', "\\|"));
             text += &format!("| {} | `{name}` | {help} |\n", keys.join(" "));
         }

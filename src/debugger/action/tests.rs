@@ -1,4 +1,4 @@
-//! Lines that are typed, and what they mean.
+//! Tests of typed lines and their meaning.
 
 use super::meaning::{Action, Question, Ui};
 use super::{ACTIONS, Context, complete, markdown, parse};
@@ -74,7 +74,7 @@ fn forward(unit: Unit, count: u32) -> Result<Action, String> {
 }
 
 #[test]
-fn no_key_and_no_name_means_two_things() {
+fn keys_and_names_are_unique() {
     let mut keys: Vec<_> = ACTIONS.iter().flat_map(|entry| entry.keys).collect();
     let mut names: Vec<_> = ACTIONS.iter().map(|entry| entry.name).collect();
     let (all_keys, all_names) = (keys.len(), names.len());
@@ -100,20 +100,20 @@ fn motions_take_counts_prefixes_and_key_letters() {
     );
     assert_eq!(
         read("step 0"),
-        Err("'0' is no count; usage: step [COUNT]".into())
+        Err("invalid count '0'; usage: step [COUNT]".into())
     );
     assert_eq!(read("step 1 2"), Err("usage: step [COUNT]".into()));
 }
 
 #[test]
-fn unknown_and_ambiguous_names_are_told() {
+fn unknown_and_ambiguous_names_are_reported() {
     assert_eq!(
         read("jump"),
-        Err("no action is called 'jump'; ? lists them all".into())
+        Err("unknown action 'jump'; ? lists all actions".into())
     );
     assert_eq!(read("mi"), Err("usage: minors LIMIT".into()));
     assert_eq!(read("re"), Err(
-        "'re' could be reverse-step, reverse-next, reverse-finish, reverse-continue, repeat, release, rename, remedies, reread, redraw".into()
+        "'re' is ambiguous: reverse-step, reverse-next, reverse-finish, reverse-continue, repeat, release, rename, remedies, reread, redraw".into()
     ));
 }
 
@@ -126,15 +126,15 @@ fn modes_are_forced_on_the_named_or_the_selected_node() {
     assert_eq!(read("force"), Ok(Action::Ui(Ui::Ask(Question::Mode))));
     assert_eq!(
         read("force beam.1 s"),
-        Err("beam.1 is not a slave node; those are beam.4, beam.5".into())
+        Err("beam.1 is not a slave node; slave nodes: beam.4, beam.5".into())
     );
     assert_eq!(
         read("force tip s"),
-        Err("no node is called 'tip'; slave nodes are beam.4, beam.5".into())
+        Err("unknown node 'tip'; slave nodes: beam.4, beam.5".into())
     );
     assert_eq!(
         read("force glued"),
-        Err("'glued' is no mode; free, sliding or fixed would be".into())
+        Err("invalid mode 'glued'; expected free, sliding or fixed".into())
     );
     assert_eq!(
         read("release"),
@@ -148,7 +148,7 @@ fn numbers_and_paths() {
         read("increment 0.005"),
         Ok(Action::Session(Command::Increment(0.005)))
     );
-    assert!(read("increment -1").is_err_and(|e| e.contains("'-1' is no increment")));
+    assert!(read("increment -1").is_err_and(|e| e.contains("invalid increment '-1'")));
     assert!(read("increment NaN").is_err());
     let set = |path: &str, value: &str| {
         Ok(Action::Session(Command::Set {
@@ -172,7 +172,7 @@ fn numbers_and_paths() {
 }
 
 #[test]
-fn breakpoints_name_a_condition_a_node_and_what_it_is_held_against() {
+fn breakpoints_take_a_condition_a_node_and_a_value() {
     let set = |condition| Ok(Action::Session(Command::Break(condition)));
     let mode = |node, from, to| set(Condition::Mode { node, from, to });
     assert_eq!(read("break mode"), mode(None, None, None));
@@ -204,29 +204,29 @@ fn breakpoints_name_a_condition_a_node_and_what_it_is_held_against() {
         ("break leaves beam.4", "usage: break leaves [NODE] MODE"),
         (
             "break mode beam.4 glued",
-            "'glued' is no mode; free, sliding or fixed would be",
+            "invalid mode 'glued'; expected free, sliding or fixed",
         ),
         (
             "break mode tip",
-            "no node is called 'tip'; slave nodes are beam.4, beam.5",
+            "unknown node 'tip'; slave nodes: beam.4, beam.5",
         ),
         ("break margin", "usage: break margin [NODE] VALUE"),
         (
             "break margin beam.4 NaN",
-            "'NaN' is no margin; a number would be",
+            "invalid margin 'NaN'; expected a number",
         ),
         ("break cycle 2", "usage: break cycle "),
         (
             "break at 0",
-            "'0' is no place; INC, INC.MAJOR or INC.MAJOR.MINOR would be",
+            "invalid position '0'; expected INC[.MAJOR[.MINOR]]",
         ),
         (
             "break dance",
-            "'dance' is nothing to break at; mode, leaves, margin, element, cycle, residual, failure, at are",
+            "unknown condition 'dance'; conditions: mode, leaves, margin, element, cycle, residual, failure, at",
         ),
         (
             "delete x",
-            "'x' is no breakpoint's number; usage: delete NUMBER|all",
+            "invalid breakpoint number 'x'; usage: delete NUMBER|all",
         ),
     ] {
         assert_eq!(read(line), Err(told.into()), "{line}");
@@ -245,7 +245,7 @@ fn breakpoints_name_a_condition_a_node_and_what_it_is_held_against() {
 }
 
 #[test]
-fn watches_have_the_name_that_is_given_or_their_own() {
+fn watches_have_a_given_or_a_default_name() {
     let watch = |name: &str, quantity, slave| {
         let name = name.into();
         Ok(Action::Session(Command::Watch(Watch {
@@ -268,31 +268,31 @@ fn watches_have_the_name_that_is_given_or_their_own() {
     );
     assert_eq!(
         read("watch temperature"),
-        Err("'temperature' cannot be watched; gap, f_n, f_t, t_max, slip, margin, residual, interface can".into())
+        Err("cannot watch 'temperature'; quantities: gap, f_n, f_t, t_max, slip, margin, residual, interface".into())
     );
     assert!(read("watch gap as").is_err() && read("watch residual beam.4").is_err());
 }
 
 #[test]
-fn finding_goes_round_from_the_selected_node() {
+fn finding_wraps_around_from_the_selected_node() {
     assert_eq!(read("node beam.5"), Ok(Action::Ui(Ui::Select(1))));
     assert_eq!(read("/ beam"), Ok(Action::Ui(Ui::Select(0))));
     assert!(read("node wall").is_err());
 }
 
 #[test]
-fn a_census_takes_nodes_by_name_or_by_their_place_in_the_list() {
+fn a_census_takes_nodes_by_name_or_by_index() {
     let census = |slaves: &[usize]| Ok(Action::Session(Command::Census(slaves.to_vec())));
     assert_eq!(read("census"), census(&[]));
     assert_eq!(read("census beam.5"), census(&[1]));
     assert_eq!(read("census beam.5,beam.4"), census(&[0, 1]));
     assert_eq!(read("census 2, 1 2"), census(&[0, 1]));
-    assert!(read("census 3").is_err_and(|e| e.contains("no node is called '3'")));
+    assert!(read("census 3").is_err_and(|e| e.contains("unknown node '3'")));
     assert!(read("census 0").is_err() && read("census beam.1").is_err());
 }
 
 #[test]
-fn files_to_export_to_must_be_named() {
+fn export_requires_a_file_name() {
     let export = |what, file: &str, overwrite| {
         Ok(Action::Session(Command::Export {
             what,
@@ -340,7 +340,7 @@ fn branches_complete_by_number_and_by_label() {
 }
 
 #[test]
-fn completion_knows_names_nodes_paths_and_values() {
+fn completion_offers_names_nodes_paths_and_values() {
     let model = model();
     let scenes = ["01-pinned".to_string()];
     let context = Context {
@@ -387,7 +387,7 @@ fn markdown_names_every_action_once() {
         let [name, help] = [name.trim_end(), entry.help].map(|t| t.replace('|', "\\|"));
         let end = format!("| `{name}` | {help} |");
         let rows = text.lines().filter(|row| row.ends_with(&end));
-        // A bar that is not escaped would be one more column.
+        // An unescaped bar would start another column.
         let columns = |row: &str| row.replace("\\|", "").matches('|').count() - 1;
         assert_eq!(rows.map(columns).collect::<Vec<_>>(), [3], "{}", entry.name);
     }

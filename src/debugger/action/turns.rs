@@ -1,10 +1,10 @@
-//! When an action can be done: at once, or only while the session rests.
+//! Which actions are possible while the session is busy.
 
 use super::meaning::{Action, Page, Question, Ui};
 use crate::record::command::Command;
 
 impl Action {
-    /// Whether an action asks something of the session, or changes it.
+    /// Whether an action queries or changes the session.
     pub fn asks(&self) -> bool {
         match self {
             Action::Session(_) => true,
@@ -25,7 +25,7 @@ impl Action {
         }
     }
 
-    /// Whether an action means the same before another scene is shown and after.
+    /// Whether an action means the same after another scene has been opened.
     pub fn outlives_the_scene(&self) -> bool {
         match self {
             Action::Session(command) => matches!(command, Command::Journal(None)),

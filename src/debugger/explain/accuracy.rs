@@ -6,7 +6,7 @@ use stickslip_core::linear::norms::Norms;
 pub fn left(norms: &Norms) -> Option<String> {
     (norms.noise > Norms::AUDIBLE).then(|| {
         format!(
-            "forces are known to about {:.0e} of the loads: that is the round-off of the stiffest ones",
+            "forces are accurate to about {:.0e} of the loads, due to round-off of the stiffest ones",
             norms.noise
         )
     })
@@ -17,7 +17,7 @@ pub fn left(norms: &Norms) -> Option<String> {
 pub fn raised(tolerance: f64, reached: f64) -> Option<String> {
     (reached > tolerance).then(|| {
         format!(
-            "settings.tolerance {tolerance:.0e} is below what round-off leaves in this scene: increments were accepted at up to {reached:.1e}"
+            "settings.tolerance {tolerance:.0e} is below the round-off of this scene: increments were accepted at errors up to {reached:.1e}"
         )
     })
 }

@@ -1,7 +1,8 @@
-//! Possible remedies for a failure, ordered by its kind alone: the list that the diagnosis ([`super::page`]) and the
+//! Possible remedies for a kind of failure, in order: the list that the diagnosis ([`super::page`]) and the
 //! remedies ([`super::remedies`]) try.
 //!
-//! A remedy is shown as advice only after a trial in which it helped. Remedies that need a person are listed as not tried.
+//! A remedy is shown as advice only if it helped in a trial. Remedies that need a person are listed as not
+//! tried.
 
 use super::remedy::{Kind, Remedy};
 use stickslip_core::linear::singular::Singular;
@@ -11,21 +12,21 @@ use stickslip_core::model::{
 use stickslip_core::step::event::Failure;
 use stickslip_core::step::state::State;
 
-/// Something to do.
+/// A possible measure.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Advice {
-    /// It can be tried from the state.
+    /// Can be tried from the state.
     Remedy(Remedy),
-    /// It is done in the scene's file, or by hand.
+    /// Done by the user, in the scene's file or the debugger.
     ByHand(&'static str),
-    /// A finer mesh: what is tried from the start, where there is a scene to make one of.
+    /// A finer mesh, tried from the start if the mesh can be generated.
     Finer,
 }
 
-/// What a finer mesh is called where it was not tried.
+/// The finer mesh in the list of untried remedies.
 pub const FINER: &str = "a finer mesh, with smaller kinks (refine=2)";
 
-/// What to do about a failure, best first.
+/// What to do about a failure, in order of preference.
 pub fn advice(model: &Model, state: &State, failure: &Failure) -> Vec<Advice> {
     let remedies = kinds(state, failure)
         .into_iter()
@@ -33,7 +34,7 @@ pub fn advice(model: &Model, state: &State, failure: &Failure) -> Vec<Advice> {
         .map(Advice::Remedy);
     let by_hand = by_hand(model, state, failure).iter().copied();
     let by_hand = by_hand.map(Advice::ByHand);
-    // Nothing that can be tried does what a support, or another load, does.
+    // A missing support or another load cannot be replaced by any setting.
     let scene_first = matches!(
         failure,
         Failure::Singular(Singular::Rigid { .. })
@@ -67,11 +68,11 @@ fn refines(failure: &Failure) -> bool {
     matches!(failure, Failure::MajorCycle(_) | Failure::Refused(_))
 }
 
-/// What can be tried, best first; what would change nothing is left out later.
+/// What can be tried, in order of preference; those without effect are removed later.
 fn kinds(state: &State, failure: &Failure) -> Vec<Kind> {
     let settings = &state.controls.settings;
     let climbs = settings.strategy == Strategy::Ladder;
-    // The ladder has tried the halves itself.
+    // The ladder has tried smaller increments itself.
     let parts: &[Kind] = match climbs {
         true => &[Kind::Part(0.37), Kind::Part(0.1)],
         false => &[
@@ -123,7 +124,7 @@ fn kinds(state: &State, failure: &Failure) -> Vec<Kind> {
             add(true, parts);
         }
         Failure::LadderEnded { .. } | Failure::NotFound(_) => {
-            // Where all scales with the load, a part of it is the same problem.
+            // If the problem scales with the load, a smaller increment is the same problem.
             add(
                 !matches!(failure, Failure::LadderEnded { scales: true, .. }),
                 parts,
@@ -144,16 +145,16 @@ fn kinds(state: &State, failure: &Failure) -> Vec<Kind> {
         | Failure::Inverted(_)
         | Failure::CutTooOften { .. }
         | Failure::OverConstrained { .. } => {}
-        // Its method is not ours, and what it takes it says itself.
+        // An attached solver has its own method and reports its own remedies.
         Failure::Reported { .. } => {}
     }
     all
 }
 
-/// What is done in the scene's file, or by hand.
+/// What the user can do in the scene's file or in the debugger.
 fn by_hand(model: &Model, state: &State, failure: &Failure) -> &'static [&'static str] {
     match failure {
-        Failure::Cycle(_) => &["one of the nodes forced to its third mode (m)"],
+        Failure::Cycle(_) => &["forcing a node into its third mode (m)"],
         Failure::MajorCycle(_) => &["an arc where the kink is a corner of the body"],
         Failure::NoAnswer { .. } => &[
             "other loads or friction",
@@ -170,7 +171,7 @@ fn by_hand(model: &Model, state: &State, failure: &Failure) -> &'static [&'stati
                 true => &[
                     "a support against that motion",
                     "slave nodes that start sliding or fixed (slaves, start)",
-                    "a prescribed displacement instead of the load, until there is a first touch",
+                    "a prescribed displacement instead of the load, until first contact",
                 ],
                 false => &[
                     "a support against that motion",
@@ -182,37 +183,33 @@ fn by_hand(model: &Model, state: &State, failure: &Failure) -> &'static [&'stati
             &["past a limit point, a prescribed displacement instead of the load"]
         }
         Failure::Reported { .. } => &[
-            "a node that still changes (t) forced to another mode (m)",
-            "another increment, where the solver takes one",
+            "forcing a node that still changes (t) into another mode (m)",
+            "another increment size, if the solver supports it",
         ],
         Failure::Refused(_) => &["a smaller history.least"],
-        Failure::Inverted(_) => &["a load or prescribed motion that presses the element less"],
-        Failure::Restless { .. } => &["a support, or a surface, that stops what moves"],
-        Failure::CutTooOften { .. } => {
-            &["the debugger, to see between which states it goes to and fro"]
-        }
+        Failure::Inverted(_) => &["a load or prescribed motion that compresses the element less"],
+        Failure::Restless { .. } => &["a support or surface that stops the motion"],
+        Failure::CutTooOften { .. } => &["the debugger, to see the states it alternates between"],
         Failure::Leapt { .. } => match model.jumps {
             Jumps::Stop => &[
-                "history.jumps=cut, to go on on the other branch",
+                "history.jumps=cut, to continue on the other branch",
                 "history.jumps=dynamic, for a damped motion to the next equilibrium",
                 "a prescribed displacement instead of the load",
             ],
             _ => &["a prescribed displacement instead of the load"],
         },
         Failure::DoubledBack => &[
-            "another measure of the path: history.arc.monitor, or history.arc.slip",
+            "another path measure: history.arc.monitor or history.arc.slip",
             "a smaller history.arc.least",
         ],
-        Failure::Unmoved => {
-            &["another measure of the path: history.arc.monitor, or history.arc.slip"]
+        Failure::Unmoved => &["another path measure: history.arc.monitor or history.arc.slip"],
+        Failure::RoundOff { .. } => {
+            &["stiffnesses of similar size: a far smaller stiffness still acts as rigid"]
         }
-        Failure::RoundOff { .. } => &[
-            "stiffnesses that lie closer together: a stiffness many times smaller is as good as rigid",
-        ],
         Failure::OverConstrained { .. } => &[
-            "the node moved out of the surface",
-            "its support removed",
-            "the surface reversed (reverse)",
+            "moving the node out of the surface",
+            "removing its support",
+            "reversing the surface (reverse)",
         ],
     }
 }

@@ -1,8 +1,9 @@
-//! What can be told of an attached solver's state from the interface problem that it offers: which states are consistent, and
-//! whether Table 2 (or Newton's method) would cycle on it.
+//! Analyses the interface problem that an attached solver reports: its consistent states, and whether Table 2
+//! (or Newton's method) would cycle on it.
 //!
-//! The problem becomes a scene of contacts ([`mod@stickslip_scene::format::condensed`]), in total forces from zero load to one; it is
-//! examined as a frozen problem of our own bodies is, and what is found is told in the numbers of the solver's scene.
+//! The problem becomes a scene of contacts ([`mod@stickslip_scene::format::condensed`]), in total forces from
+//! load zero to one. It is examined like a frozen problem of our own bodies; results are reported with the node
+//! numbers of the solver's scene.
 
 use super::examination::{DONE, Examination, examine_nodes, frozen};
 use super::names;
@@ -16,7 +17,7 @@ use stickslip_scene::format::SceneError;
 use stickslip_scene::format::condensed::{Contact, Matrix, Problem};
 use stickslip_scene::limits;
 
-/// The scene that a problem is, with the modes of a state to start from.
+/// The scene of a reported problem, starting with the modes of a state.
 pub fn problem(model: &Model, state: &State, posed: &Posed) -> Problem {
     let contacts = posed.contacts.iter().enumerate().map(|(place, &slave)| {
         let (node, friction) = (&state.nodes[slave], posed.friction[place]);
@@ -64,7 +65,7 @@ pub fn problem(model: &Model, state: &State, posed: &Posed) -> Problem {
     }
 }
 
-/// The id of a contact in such a scene: its name, with characters that ids cannot have replaced.
+/// The id of a contact in this scene: its name, without the characters that ids cannot have.
 fn id(name: &str, place: usize) -> String {
     match limits::node_id_of(name, limits::NAME - 8) {
         name if name.is_empty() || name.split('.').next() == Some("floor") => {
@@ -74,10 +75,9 @@ fn id(name: &str, place: usize) -> String {
     }
 }
 
-/// The scene that a problem is, and a solver of ours at its start.
+/// The scene of a reported problem, and our solver at its start.
 ///
-/// # Errors
-/// If the problem is unsound.
+/// # Errors If the problem is invalid.
 pub fn stepper(
     model: &Model,
     state: &State,
@@ -89,8 +89,8 @@ pub fn stepper(
     Ok((scene, stepper))
 }
 
-/// What is known of the problem that is solved next from a state: of these contacts, or (none) of all that matter. It ends where
-/// `stop` says so.
+/// Examines the problem that is solved next from a state, for these contacts or, if there are none, for all
+/// relevant ones. Stops early if `stop` returns true.
 pub fn examine(
     model: &Model,
     state: &State,
@@ -108,9 +108,7 @@ pub fn examine(
     let mut stepper = match stepper(model, state, posed) {
         Ok((_, stepper)) => stepper,
         Err(why) => {
-            return told(format!(
-                "The interface problem that it tells is unsound: {why}."
-            ));
+            return told(format!("The reported interface problem is invalid: {why}."));
         }
     };
     let start = stepper.state().clone();
@@ -122,7 +120,7 @@ pub fn examine(
             examine_nodes(&mut stepper, &start, &places, stop)
         }
     };
-    // From places in the problem to contacts of the scene.
+    // Maps nodes of the problem to contacts of the scene.
     let slave = |place: usize| posed.contacts.get(place).copied().unwrap_or(place);
     found.nodes = found.nodes.iter().map(|&place| slave(place)).collect();
     if let Some(problem) = &mut found.problem {

@@ -1,6 +1,6 @@
-//! The attempt of an increment that failed, seen again: what its major iterations led to, one after the other.
+//! Repeats the failed attempt of an increment, to record the result of each major iteration.
 //!
-//! A state does not say how it was come to. Its attempt is made again from its start, so that what is told of it was seen.
+//! A state does not contain its history, so that the attempt is repeated from its start.
 
 use std::mem::discriminant;
 use std::ops::ControlFlow;
@@ -13,29 +13,29 @@ use stickslip_core::step::event::{Failure, Outcome};
 use stickslip_core::step::state::State;
 use stickslip_core::step::stepper::Stepper;
 
-/// What a major iteration led to.
+/// Result of a major iteration.
 #[derive(Debug, Clone)]
 pub struct Major {
-    /// How far it is from equilibrium.
+    /// Norms after it: the distance from equilibrium.
     pub after: Norms,
     /// Values of all degrees of freedom.
     pub u: Arc<Vec<f64>>,
-    /// Mode of each slave node, and where it stands.
+    /// Mode of each slave node, and its point on the surface.
     pub contacts: Vec<(Mode, Option<SurfacePoint>)>,
 }
 
-/// An attempt, from its start to its failure.
+/// An attempt from its start to its failure.
 #[derive(Debug, Clone)]
 pub struct Attempt {
-    /// Its major iterations that came to an end.
+    /// The major iterations that ended.
     pub majors: Vec<Major>,
-    /// How it failed.
+    /// The failure.
     pub failure: Failure,
 }
 
 impl Attempt {
-    /// Makes the attempt again that failed in a state. `None` where it was stopped, or ends otherwise than it did, as
-    /// after changes by hand. The stepper is left where it ends.
+    /// Repeats the attempt that failed in a state. `None` if interrupted, or if the attempt ends differently,
+    /// as after interventions. The stepper is left at the end of the attempt.
     pub fn again(
         stepper: &mut Stepper,
         state: &State,
@@ -74,7 +74,7 @@ impl Attempt {
         }
     }
 
-    /// The largest of residual and interface error after each of its major iterations, relative.
+    /// The largest relative error (residual or interface) after each major iteration.
     pub fn errors(&self) -> Vec<f64> {
         let error = |major: &Major| major.after.relative.max(major.after.interface);
         self.majors.iter().map(error).collect()

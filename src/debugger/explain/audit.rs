@@ -1,8 +1,9 @@
-//! The judge's findings over a whole history, and what no single increment shows.
+//! Audits a whole history: the judge's worst findings, and checks that no single increment shows.
 //!
-//! Every accepted increment carries what the judge found of it. An audit keeps the worst of each law, those that were only
-//! marked apart, and adds what contact of slave nodes with master surfaces cannot see: nodes of a master that lie inside
-//! a slave's body, and increments in which friction gave work.
+//! Every accepted increment includes the judge's findings. An audit keeps the worst finding for each law
+//! (separately for increments that were accepted with a mark), and adds what the contact of slave nodes with
+//! master surfaces cannot show: nodes of a master inside a slave's body, and increments in which friction
+//! produced work.
 
 use stickslip_core::contact::element::Element;
 use stickslip_core::contact::feet::place;
@@ -13,32 +14,32 @@ use stickslip_core::model::{BodyKind, Solid};
 use stickslip_core::step::event::Outcome;
 use stickslip_core::step::stepper::Stepper;
 
-/// Points of every edge of an outline, for the search for nodes inside it.
+/// Number of points per edge of an outline, for the search for nodes inside it.
 const POINTS: usize = 8;
 
-/// What was found where.
+/// A finding and its increment.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Found {
-    /// From 1.
+    /// Increment number, from 1.
     pub increment: u32,
-    /// λ at the end of the increment.
+    /// Load factor λ at the end of the increment.
     pub load_factor: f64,
-    /// The worst violation of a contact law there.
+    /// The worst violation of a contact law in it.
     pub finding: Finding,
 }
 
-/// A master's node inside the body of slave nodes.
+/// A master node inside a slave's body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Inside {
-    /// From 1.
+    /// Increment number, from 1.
     pub increment: u32,
-    /// λ at the end of the increment.
+    /// Load factor λ at the end of the increment.
     pub load_factor: f64,
-    /// Number of the node and of the body in the scene.
+    /// Number of the node in the scene.
     pub node: usize,
     /// Number of the body in the model, from 0.
     pub body: usize,
-    /// How far it is from the outline (length).
+    /// Distance from the outline (length).
     pub depth: f64,
 }
 
@@ -47,36 +48,36 @@ pub struct Inside {
 pub struct Stretched {
     /// Increment number, from 1.
     pub increment: u32,
-    /// λ at the end of the increment.
+    /// Load factor λ at the end of the increment.
     pub load_factor: f64,
     /// Deformation at the point.
     pub point: PointDeformation,
 }
 
-/// A history judged.
+/// The audit of a history.
 #[derive(Debug, Clone, Default)]
 pub struct Audit {
-    /// Accepted increments, and those of them that were only marked.
+    /// Number of accepted increments.
     pub increments: u32,
-    /// Those of them that were only marked.
+    /// Number of increments accepted with a mark.
     pub marked: u32,
-    /// The worst place of each law over all increments that were not marked, in the order of [`Law::ALL`], and then of
+    /// The worst finding for each law over all unmarked increments, in the order of [`Law::ALL`] and then
     /// [`Law::OF_BONDS`].
     pub worst: [Option<Found>; 11],
-    /// The same of the marked ones.
+    /// The same for marked increments.
     pub worst_marked: [Option<Found>; 11],
-    /// Where friction gave the most work.
+    /// The increment in which friction produced the most work.
     pub work: Option<Found>,
-    /// The deepest place of a master's node in a slave's body.
+    /// The master node deepest inside a slave's body.
     pub inside: Option<Inside>,
     /// The smallest principal stretch of the solids.
     pub stretch: Option<Stretched>,
-    /// The first point outside the range of its law.
+    /// The first point outside the range of its material law.
     pub outside: Option<Stretched>,
 }
 
 impl Audit {
-    /// Takes in what the last minor iteration led to, if it was an accepted increment.
+    /// Adds the last minor iteration, if it ended in an accepted increment.
     pub fn take(&mut self, stepper: &Stepper) {
         let (event, state) = (stepper.event(), stepper.state());
         let (Outcome::Increment { marked, .. }, Some(verdict)) =
@@ -131,13 +132,13 @@ impl Audit {
         }
     }
 
-    /// The laws that unmarked increments broke.
+    /// The laws violated by unmarked increments.
     pub fn broken(&self) -> impl Iterator<Item = &Found> {
         let all = self.worst.iter().flatten();
         all.filter(|found| found.finding.is_broken())
     }
 
-    /// The worst place of a law in increments that were not marked.
+    /// The worst finding for a law in unmarked increments.
     pub fn of(&self, law: Law) -> Option<&Found> {
         let mut all = self.worst.iter().flatten();
         all.find(|found| found.finding.law == law)
@@ -155,7 +156,7 @@ fn keep_worse(worst: &mut Option<Found>, found: Option<Found>) {
     }
 }
 
-/// The node of a master surface that lies deepest inside a solid that slave nodes belong to: node, body, depth.
+/// The node of a master surface deepest inside a solid with slave nodes: node, body, depth.
 fn deepest(model: &Model, u: &[f64]) -> Option<(usize, usize, f64)> {
     let now: Vec<[f64; 2]> = model
         .nodes
@@ -195,7 +196,7 @@ fn deepest(model: &Model, u: &[f64]) -> Option<(usize, usize, f64)> {
     deepest
 }
 
-/// The outline of a solid as a chain of short straight lines; the body lies on their left.
+/// The outline of a solid as a chain of short segments, with the body on their left.
 fn outline(solid: &Solid, now: &[[f64; 2]]) -> Vec<[[f64; 2]; 2]> {
     let at = |k: usize| -1.0 + 2.0 * k as f64 / POINTS as f64;
     let lines = solid.edges.iter().flat_map(|nodes| {
@@ -205,7 +206,7 @@ fn outline(solid: &Solid, now: &[[f64; 2]]) -> Vec<[[f64; 2]; 2]> {
     lines.collect()
 }
 
-/// Distance of a point from an outline where it is inside; else 0.
+/// Distance of a point from an outline if it is inside; otherwise 0.
 fn depth(outline: &[[[f64; 2]; 2]], point: [f64; 2]) -> f64 {
     let mut turns = 0;
     let mut nearest = f64::INFINITY;
@@ -221,7 +222,7 @@ fn depth(outline: &[[[f64; 2]; 2]], point: [f64; 2]) -> f64 {
     if turns == 0 { 0.0 } else { nearest }
 }
 
-/// Distance of a point from a straight line between two others.
+/// Distance of a point from a segment.
 fn distance(a: [f64; 2], b: [f64; 2], point: [f64; 2]) -> f64 {
     let along = [b[0] - a[0], b[1] - a[1]];
     let to = [point[0] - a[0], point[1] - a[1]];
@@ -237,7 +238,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn depth_is_the_distance_from_the_outline_inside_and_nothing_outside() {
+    fn depth_is_the_distance_from_the_outline_and_zero_outside() {
         let corners = [[0.0, 0.0], [2.0, 0.0], [2.0, 1.0], [0.0, 1.0]];
         let square: Vec<_> = (0..4).map(|k| [corners[k], corners[(k + 1) % 4]]).collect();
         assert_eq!(depth(&square, [1.0, 0.25]), 0.25);

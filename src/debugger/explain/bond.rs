@@ -1,10 +1,10 @@
-//! The law of a slave node's pair in words, with its numbers.
+//! Describes the contact law of a slave node's pair, with its numbers.
 
 use stickslip_core::contact::record::ContactRecord;
 use stickslip_core::model::{Bond, Contact};
 use stickslip_scene::number::four;
 
-/// What the law is called.
+/// The name of the law.
 pub fn name(contact: &Contact) -> &'static str {
     match contact.bond {
         Bond::Hard => "hard",
@@ -17,20 +17,20 @@ pub fn name(contact: &Contact) -> &'static str {
     }
 }
 
-/// What the law did in a minor iteration, a line for each direction; empty where contact is hard.
+/// The law's result in a minor iteration, one line per direction; empty for hard contact.
 pub fn lines(contact: &Contact, record: &ContactRecord) -> Vec<String> {
     let [normal, tangential] = contact.bond.give();
     let mut lines = Vec::new();
     if contact.bond.is_tied() {
         lines.push(format!(
-            "tied: F_n {}, F_t {}, whatever they are",
+            "tied: F_n {}, F_t {} (not limited)",
             four(record.f_n),
             four(record.f_t)
         ));
     }
     if normal > 0.0 {
         let (give, inside) = (four(normal), four(normal * record.f_n));
-        lines.push(format!("penalty: inside by c F_n = {inside}, c = {give}"));
+        lines.push(format!("penalty: penetration c F_n = {inside}, c = {give}"));
     }
     if tangential > 0.0 {
         let (give, slip) = (four(tangential), four(tangential * record.f_t));

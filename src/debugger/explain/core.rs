@@ -1,7 +1,7 @@
-//! The core of a cycle: the fewest nodes that still cycle when all others go on for ever with what they do.
+//! The core of a cycle: the smallest set of nodes that still cycles with all other modes frozen.
 //!
-//! A frozen interface problem that cycles is shrunk by giving every node outside a trial set the equations of what it
-//! brings ([`InterfaceProblem::reduced`]) and running Table 2 over what is left.
+//! To shrink a frozen interface problem that cycles, every node outside a trial set keeps the equations of its
+//! initial mode ([`InterfaceProblem::reduced`]), and Table 2 runs over the remaining nodes.
 
 use stickslip_core::contact::state::ContactState;
 use stickslip_core::interface::minor_history::Cycle;
@@ -12,32 +12,33 @@ use stickslip_core::interface::trials::Trials;
 use stickslip_core::model::Mode;
 use stickslip_core::strategy::method;
 
-/// Most members over which all sets are tried, smallest first; among more, each member is dropped once if it can be.
+/// Up to this number of members, all subsets are tried, smallest first; beyond it, each member is dropped once,
+/// if possible.
 const EXHAUSTIVE: usize = 10;
-/// Most members of which a core is looked for; among more, of those whose modes change.
+/// Maximum number of members searched; with more, only those whose modes change.
 const MOST: usize = 40;
-/// Numbers of two iterations that differ by less than this, relatively, are the same.
+/// Relative difference below which two iterations are equal.
 const SAME_ITERATION: f64 = 1e-12;
 
-/// Iterations that are run in search of a cycle into which T_max spirals.
+/// Maximum number of iterations in search of a cycle that T_max spirals into.
 const AHEAD: usize = 600;
-/// Most rounds until the T_max of a cycle has come to rest.
+/// Maximum number of periods until T_max converges.
 const ROUNDS: usize = 1000;
 
-/// The fewest nodes that still cycle.
+/// The smallest set of nodes that still cycles.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Core {
-    /// Places of its nodes among those of the whole problem.
+    /// Indices of its nodes in the whole problem.
     pub places: Vec<usize>,
-    /// The problem of these nodes alone; their states are where the cycle starts from.
+    /// The problem of these nodes alone; the cycle starts from their states.
     pub problem: InterfaceProblem,
-    /// Its cycle; members by place in `problem`.
+    /// Its cycle; members are indices in `problem`.
     pub cycle: Cycle,
 }
 
 impl Core {
-    /// Its problem at a point of the cycle, where the T_max of all rounds has come to rest: of the points of one round,
-    /// that into which the nodes bring least.
+    /// Its problem at a point of the cycle after T_max has converged. Of the points of one period, the one with
+    /// the smallest initial values.
     pub fn on_cycle(&self) -> InterfaceProblem {
         let mut nodes = self.problem.states();
         let mut around = vec![nodes.clone()];
@@ -80,12 +81,13 @@ impl Core {
     }
 }
 
-/// Shrinks a problem that cycles from what its nodes bring; `None` if it does not, or if too many nodes take part.
+/// Shrinks a problem that cycles from its initial modes; `None` if it does not cycle or too many nodes take
+/// part.
 pub fn core(whole: &InterfaceProblem) -> Option<Core> {
     let start = cycle(whole)?;
     let mut members: Vec<usize> = start.members.iter().map(|(place, _)| *place).collect();
     if members.len() > MOST {
-        // Where some modes change, the T_max of many other nodes follows; those go on with what they have.
+        // When some modes change, the T_max of many other nodes follows; those nodes are frozen.
         let changing = start.members.iter().filter(|member| changes(&member.1));
         members = changing.map(|(place, _)| *place).collect();
     }
@@ -123,13 +125,13 @@ pub fn core(whole: &InterfaceProblem) -> Option<Core> {
     Some(best)
 }
 
-/// Whether a mode of a pattern is another than the rest.
+/// Whether the modes of a pattern change.
 fn changes(pattern: &[Mode]) -> bool {
     pattern.windows(2).any(|pair| pair[0] != pair[1])
 }
 
-/// The cycle into which the minor iterations of a frozen problem run; `None` if they settle or cannot be solved, or
-/// where the settings' limit of minor iterations is too few to tell. Members are places in the problem.
+/// The cycle that the minor iterations of a frozen problem run into. `None` if they settle, cannot be solved,
+/// or reach the limit of the settings first. Members are indices in the problem.
 pub fn cycle(problem: &InterfaceProblem) -> Option<Cycle> {
     let mut nodes = problem.states();
     let mut trials = Trials::new(problem)?;
@@ -152,7 +154,7 @@ pub fn cycle(problem: &InterfaceProblem) -> Option<Cycle> {
     spiralling(problem)
 }
 
-/// The cycle of modes that goes round while T_max still spirals in, so slowly that it has not come back within the limit.
+/// The cycle of modes while T_max still spirals in too slowly to repeat within the limit.
 fn spiralling(problem: &InterfaceProblem) -> Option<Cycle> {
     let found = spiral(problem, method(problem.settings.strategy), AHEAD)?;
     let takes_part =

@@ -1,5 +1,5 @@
-//! Why the minor iterations cycle, and what gets out: everything that can be said of a cycle from its frozen interface
-//! problem, as data and in words.
+//! Why the minor iterations cycle and what escapes the cycle, found from its frozen interface problem, as data
+//! and in words.
 
 use crate::explain::core::{Core, core, cycle};
 use crate::explain::influence::{Influence, influences};
@@ -16,74 +16,75 @@ use stickslip_core::model::{BoundUpdate, SlipCount};
 use stickslip_core::model::{Mode, Model};
 use stickslip_core::strategy::method;
 
-/// Most nodes of a problem that is diagnosed: each iteration of its cycle costs dense solves of twice that size. Of a scene
-/// with more, those that take part in the cycle are looked at ([`cycling`]).
+/// Maximum number of nodes of a diagnosed problem: each iteration of its cycle requires dense solves of twice
+/// that size. A larger scene is reduced to the nodes that take part in the cycle ([`cycling`]).
 pub const MOST_NODES: usize = 200;
-/// Branches that are looked at to count the states of a cycle that has no small core.
+/// Maximum number of branches searched to count the states of a cycle without a small core.
 const BRANCHES: usize = census::BUDGET / 10;
-/// Nodes with which all of them are looked at; with more, fewer, by the square.
+/// Number of nodes up to which all these branches are searched; beyond it, the number falls with its square.
 const AT_FULL: f64 = 20.0;
-/// Most consistent states that are told one by one.
+/// Maximum number of consistent states listed.
 const MOST_TOLD: usize = 12;
-/// Most iterations of a period that are told one by one.
+/// Maximum number of iterations of a period listed.
 const MOST_PHASES: usize = 12;
 
-/// What is known of a cycle.
+/// Diagnosis of a cycle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Diagnosis {
-    /// The cycle that the nodes' states start. Nodes are places in the problem.
+    /// The cycle that starts from the nodes' states. Nodes are indices in the problem.
     pub cycle: Cycle,
-    /// What happens in each iteration of one period.
+    /// The iterations of one period.
     pub phases: Vec<Phase>,
-    /// The fewest nodes that still cycle; `None` if that cannot be told.
+    /// The smallest set of nodes that still cycles; `None` if unknown.
     pub core: Option<Core>,
-    /// The problem of all nodes that take part, or of those whose modes change where those are too many to try all that they
-    /// can do, or else of the core; the other nodes go on with what they do. Where nothing is consistent with that, the problem of all nodes that can touch, if these are
-    /// few enough.
+    /// The problem of all nodes that take part; if those are too many for a census, of those whose modes
+    /// change, or of the core, with all other nodes frozen. If it has no consistent state, the problem of all
+    /// nodes that can touch, if they are few enough.
     pub problem: InterfaceProblem,
-    /// What is consistent in it; `None` if even the core is too large.
+    /// Its consistent states; `None` if even the core is too large.
     pub census: Option<Census>,
-    /// Why it cycles.
+    /// The cause of the cycle.
     pub cause: Cause,
-    /// What was tried on it, and whether it settles there.
+    /// Changes tried on the problem, and whether the minor iterations then settle.
     pub ways: Vec<(Way, bool)>,
 }
 
 /// One iteration of a cycle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Phase {
-    /// What it found at each node.
+    /// The record of each node.
     pub records: Vec<ContactRecord>,
-    /// For each node whose mode it changes, in the first `MOST_PHASES` of them: the change, since the iteration before, that did most to what was tested.
+    /// For each node whose mode changes (in the first `MOST_PHASES` iterations): the change since the previous
+    /// iteration with the largest effect on the tested quantity.
     pub pushes: Vec<Push>,
 }
 
-/// What made a node's mode change.
+/// The main cause of a node's mode change.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Push {
-    /// Place of the node whose mode changes.
+    /// Index of the node whose mode changes.
     pub node: usize,
-    /// The modes that the pushing node had in the iteration before and in this one.
+    /// Modes of the pushing node in the previous iteration and in this one.
     pub from_modes: [Mode; 2],
-    /// Which change pushed which node.
+    /// The effect, with the pushing node.
     pub influence: Influence,
-    /// What was tested.
+    /// The tested quantity.
     pub tested: Tested,
 }
 
 /// Why Table 2 cycles.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Cause {
-    /// No state of these nodes obeys Coulomb's law.
+    /// No state of these nodes satisfies Coulomb's law.
     NoAnswer,
-    /// In the answer these nodes slide, as they never do in the cycle: Table 2 sends a rough node that touches to fixed,
-    /// and from there it opens. Places in the diagnosed problem.
+    /// In the consistent state these nodes slide, which never happens in the cycle: Table 2 sends a rough node
+    /// in new contact to fixed, and from there it opens. Indices in the diagnosed problem.
     NoWayToSliding(Vec<usize>),
-    /// The modes have settled; T_max, taken from the iteration before, swings to and fro.
+    /// The modes have settled, but the lagged T_max oscillates.
     Lag,
-    /// Several states obey the law, and Table 2 passes by them all.
+    /// Several states are consistent, but Table 2 never reaches any.
     Several,
-    /// One state obeys the law, and Table 2 passes by it.
+    /// One state is consistent, but Table 2 never reaches it.
     Passed,
     /// Too many nodes for a census.
     Unknown,
@@ -92,17 +93,17 @@ pub enum Cause {
 /// A change that can be tried on the frozen problem.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Way {
-    /// Start from the consistent state of this number in the census.
+    /// Start from the consistent state with this number in the census.
     Answer(usize),
     /// `settings.t_max=consistent`.
     ConsistentLimit,
-    /// `settings.slip` the other way.
+    /// The other value of `settings.slip`.
     OtherSlip,
 }
 
 impl Diagnosis {
-    /// Diagnoses a problem whose nodes' states start a cycle; `None` if they do not, or if it has more than
-    /// [`MOST_NODES`] nodes. The count of states ends where `stop` says so.
+    /// Diagnoses a problem whose states start a cycle; `None` if they do not, or if it has more than
+    /// [`MOST_NODES`] nodes. The search for states stops early if `stop` returns true.
     pub fn of(problem: &InterfaceProblem, stop: &dyn Fn() -> bool) -> Option<Diagnosis> {
         if problem.nodes.len() > MOST_NODES {
             return None;
@@ -123,7 +124,7 @@ impl Diagnosis {
             search(problem, (BRANCHES as f64 * few) as usize, stop).ok()
         };
         let mut found = counted(&studied);
-        // Of too many nodes nothing is known, or no more than that none was found so far.
+        // A search that ended early without a state proves nothing.
         let unknown = |found: &Census| found.answers.is_empty() && !found.exact;
         if found.as_ref().is_none_or(unknown)
             && let Some(core) = &core
@@ -132,7 +133,7 @@ impl Diagnosis {
             studied = core.problem.clone();
             found = counted(&studied);
         }
-        // What is inconsistent with what the others do may be consistent with something else that they could do.
+        // A state may become consistent when the frozen nodes change, too.
         let all = undecided(problem);
         let none = found.as_ref().is_some_and(|found| found.answers.is_empty());
         if none
@@ -159,8 +160,8 @@ impl Diagnosis {
     }
 }
 
-/// The problem that goes round in a cycle: the whole one, or where that has many nodes only those that take part, all others
-/// going on with what they do. `None` if that is singular, or too large still. The states are where the cycle starts.
+/// The problem of a cycle: the whole problem or, if it is large, that of the nodes that take part, with all
+/// others frozen. `None` if it is singular or still too large. The states are at the start of the cycle.
 pub fn cycling(problem: InterfaceProblem, cycle: &Cycle) -> Option<InterfaceProblem> {
     if problem.nodes.len() <= MOST_NODES {
         return Some(problem);
@@ -176,26 +177,26 @@ pub fn cycling(problem: InterfaceProblem, cycle: &Cycle) -> Option<InterfaceProb
     problem.reduced(&members)
 }
 
-/// The nodes that can do one thing or another, by place.
+/// Indices of the nodes with more than one possible mode.
 pub fn undecided(problem: &InterfaceProblem) -> Vec<usize> {
     let choices = |place: &usize| problem.nodes[*place].choices().len();
     let all = 0..problem.nodes.len();
     all.filter(|place| choices(place) > 1).collect()
 }
 
-/// That so many nodes take part in a cycle that they cannot be looked at.
+/// Message that too many nodes take part in a cycle.
 pub fn too_many(cycle: &Cycle) -> String {
     let count = cycle.members.len();
     format!(
-        "{count} nodes take part in the cycle: too many, or with what all others do they are singular"
+        "{count} nodes take part in the cycle: too many, or singular with all other nodes frozen"
     )
 }
 
-/// One period of the iterations, with who pushed whom.
+/// The iterations of one period, with the pushes.
 fn phases(problem: &InterfaceProblem, period: u32) -> Option<Vec<Phase>> {
     let mut trials = Trials::new(problem)?;
     let mut nodes = problem.states();
-    // The iteration before the first is the last of the period.
+    // The iteration before the first one is the last of the period.
     let mut states = vec![nodes.clone()];
     let mut all = Vec::new();
     for _ in 0..period {
@@ -304,7 +305,7 @@ fn cause(
     }
 }
 
-/// Tries what can be tried on the frozen problem alone.
+/// Tries changes on the frozen problem alone.
 fn ways(problem: &InterfaceProblem, census: Option<&Census>) -> Vec<(Way, bool)> {
     let settles = |changed: &InterfaceProblem| cycle(changed).is_none() && runs(changed);
     let mut ways = Vec::new();
@@ -327,7 +328,7 @@ fn ways(problem: &InterfaceProblem, census: Option<&Census>) -> Vec<(Way, bool)>
     ways
 }
 
-/// The problem with its nodes' states at a consistent state of the census.
+/// The problem with its states set to a consistent state of the census.
 pub fn started(
     problem: &InterfaceProblem,
     census: &Census,
@@ -355,11 +356,11 @@ fn runs(problem: &InterfaceProblem) -> bool {
         .any(|(_, settled)| settled)
 }
 
-/// The diagnosis in words, a line each, most important first. Nodes are named as the scene names them.
+/// The diagnosis in words, one line each, most important first, with node names of the scene.
 pub fn words(model: &Model, problem: &InterfaceProblem, diagnosis: &Diagnosis) -> Vec<String> {
     let name = |place: usize| names::slave(model, problem.nodes[place].slave);
     let studied = |place: usize| names::slave(model, diagnosis.problem.nodes[place].slave);
-    // Nodes that were left out of the problem, and those of it that were left out of the census.
+    // Nodes left out of the problem, and nodes of the problem left out of the census.
     let left_out = model.contacts.len() > problem.nodes.len()
         || undecided(problem).len() > diagnosis.problem.nodes.len();
     let mut lines = vec![format!(
@@ -374,7 +375,7 @@ pub fn words(model: &Model, problem: &InterfaceProblem, diagnosis: &Diagnosis) -
     }
     if diagnosis.phases.len() > MOST_PHASES {
         let more = diagnosis.phases.len() - MOST_PHASES;
-        lines.push(format!("and so on for {more} more minor iterations"));
+        lines.push(format!("and {more} more minor iterations"));
     }
     lines.extend(proven::cycle_words(problem, &name));
     if let Some(core) = &diagnosis.core
@@ -382,7 +383,7 @@ pub fn words(model: &Model, problem: &InterfaceProblem, diagnosis: &Diagnosis) -
     {
         let names: Vec<_> = core.places.iter().map(|&place| name(place)).collect();
         lines.push(format!(
-            "core: {} still cycle{}, period {}, when all other nodes go on with what they do",
+            "core: {} still cycle{} (period {}) with all other modes frozen",
             list(&names),
             if names.len() == 1 { "s" } else { "" },
             core.cycle.period
@@ -402,7 +403,7 @@ pub fn words(model: &Model, problem: &InterfaceProblem, diagnosis: &Diagnosis) -
     lines
 }
 
-/// Over which nodes states are counted, where those are fewer than take part.
+/// The nodes over which states are counted, if not all that take part.
 fn of_which_words(problem: &InterfaceProblem, diagnosis: &Diagnosis) -> Option<String> {
     let (counted, part) = (&diagnosis.problem.nodes, diagnosis.cycle.members.len());
     if counted.len() >= part {
@@ -422,7 +423,7 @@ fn of_which_words(problem: &InterfaceProblem, diagnosis: &Diagnosis) -> Option<S
         false => "whose modes change",
     };
     Some(format!(
-        "of {part} nodes that take part, the states of the {} {which} are counted; all others go on with what they do",
+        "of {part} nodes that take part, the states of the {} {which} are counted, with all others frozen",
         counted.len()
     ))
 }
@@ -443,34 +444,36 @@ fn cause_words<'a>(
     let members: Vec<&str> = (0..diagnosis.problem.nodes.len()).map(name).collect();
     let nodes = list(&members);
     match &diagnosis.cause {
-        Cause::NoAnswer if left_out => format!(
-            "no state of {nodes} obeys contact and friction as long as all other nodes go on with what they do"
-        ),
+        Cause::NoAnswer if left_out => {
+            format!("no modes of {nodes} are consistent with all other nodes frozen")
+        }
         Cause::NoAnswer => format!(
-            "no state of {nodes} obeys contact and friction at this increment, so no iteration can find one"
+            "no modes of {nodes} are consistent in this increment, so no iteration can find any"
         ),
         Cause::NoWayToSliding(sliding) => {
             let sliding: Vec<&str> = sliding.iter().map(|&place| name(place)).collect();
             format!(
-                "in the one consistent state {} slide{}, and Table 2 has no way there: a rough node that touches is \
-                 sent to fixed, and from there it opens",
+                "in the only consistent state {} slide{}, which Table 2 cannot reach: it sends a \
+                 rough node in new contact to fixed, and from there the node opens",
                 list(&sliding),
                 if sliding.len() == 1 { "s" } else { "" }
             )
         }
         Cause::Lag => format!(
-            "the modes have settled, but T_max of {nodes}, lagged by one iteration, swings to and fro"
+            "the modes have settled, but T_max of {nodes}, lagged by one iteration, oscillates"
         ),
         Cause::Several => format!(
-            "{} states of {nodes} are consistent, and Table 2 passes by them all",
+            "{} combinations of modes of {nodes} are consistent, but Table 2 never reaches any",
             diagnosis.census.as_ref().map_or(0, |c| c.answers.len())
         ),
         Cause::Passed => {
-            format!("one state of {nodes} is consistent, and Table 2 passes by it")
+            format!(
+                "one combination of modes of {nodes} is consistent, but Table 2 never reaches it"
+            )
         }
         Cause::Unknown => {
             format!(
-                "{} nodes take part, too many to try all of their states",
+                "{} nodes take part, too many to try all combinations of modes",
                 members.len()
             )
         }
@@ -496,10 +499,10 @@ fn push_words<'a>(push: &Push, phase: &Phase, name: &impl Fn(usize) -> &'a str) 
     let source = name(from.from);
     let doing = match push.from_modes {
         [a, b] if a == b => format!("the new T_max of {source}"),
-        [_, Mode::Free] => format!("opening {source}"),
-        [Mode::Free, _] => format!("closing {source}"),
-        [_, Mode::Sliding] => format!("letting {source} slide"),
-        [_, Mode::Fixed] => format!("sticking {source}"),
+        [_, Mode::Free] => format!("the opening of {source}"),
+        [Mode::Free, _] => format!("the closing of {source}"),
+        [_, Mode::Sliding] => format!("the sliding of {source}"),
+        [_, Mode::Fixed] => format!("the sticking of {source}"),
     };
     let did = match record.decision.next {
         Mode::Free => "open",
@@ -518,18 +521,18 @@ pub(super) fn census_words<'a>(census: &Census, name: &impl Fn(usize) -> &'a str
     let count = census.answers.len();
     let mut lines = vec![match (count, census.exact) {
         (0, true) => format!("census: none of {all} assignments is consistent"),
-        (1, true) => format!("census: of {all} assignments one is consistent"),
-        (n, true) => format!("census: of {all} assignments {n} are consistent"),
-        (0, false) => format!("census: of {all} assignments none was found consistent so far"),
-        (n, false) => format!("census: of {all} assignments at least {n} are consistent"),
+        (1, true) => format!("census: 1 of {all} assignments is consistent"),
+        (n, true) => format!("census: {n} of {all} assignments are consistent"),
+        (0, false) => format!("census: none of {all} assignments has been found consistent so far"),
+        (n, false) => format!("census: at least {n} of {all} assignments are consistent"),
     }];
     match (census.visited, census.exact) {
         (0, true) => {}
         (n, true) => lines.push(format!(
-            "  branch and bound: {n} branches rule all others out"
+            "  branch and bound: {n} branches exclude all others"
         )),
         (n, false) => lines.push(format!(
-            "  branch and bound: not done after {n} branches, so there may be more"
+            "  branch and bound: incomplete after {n} branches; there may be more"
         )),
     }
     for (number, found) in census.answers.iter().enumerate().take(MOST_TOLD) {
@@ -545,7 +548,7 @@ pub(super) fn census_words<'a>(census: &Census, name: &impl Fn(usize) -> &'a str
             .worst()
             .map_or(String::new(), |(place, margin)| {
                 format!(
-                    "; closest to failing: {} at {} by {:.4e}",
+                    "; tightest condition: {} at {}, margin {:.4e}",
                     condition_words(margin.condition),
                     name(place),
                     margin.value
@@ -553,7 +556,7 @@ pub(super) fn census_words<'a>(census: &Census, name: &impl Fn(usize) -> &'a str
             });
         let ties = match found.ties.as_slice() {
             [] => String::new(),
-            ties => format!(" (a tie: {} leads to the same)", ties.join(", ")),
+            ties => format!(" (tie: same as {})", ties.join(", ")),
         };
         lines.push(format!(
             "  {}: {}{ties}{margin}",
@@ -567,7 +570,7 @@ pub(super) fn census_words<'a>(census: &Census, name: &impl Fn(usize) -> &'a str
     lines.extend(differing(census, name));
     if let Some((answer, place, margin)) = &census.nearest {
         lines.push(format!(
-            "  nearest: {}, which breaks \"{}\" at {} by {:.4e}",
+            "  nearest: {}, which violates \"{}\" at {} by {:.4e}",
             answer.letters(),
             condition_words(margin.condition),
             name(*place),
@@ -577,7 +580,7 @@ pub(super) fn census_words<'a>(census: &Census, name: &impl Fn(usize) -> &'a str
     lines
 }
 
-/// Where several consistent states differ, a line a node.
+/// How several consistent states differ, one line per node.
 fn differing<'a>(census: &Census, name: &impl Fn(usize) -> &'a str) -> Vec<String> {
     let all = &census.answers;
     let [first, _, ..] = all.as_slice() else {
@@ -606,7 +609,7 @@ fn differing<'a>(census: &Census, name: &impl Fn(usize) -> &'a str) -> Vec<Strin
     lines
 }
 
-/// What a node is assumed to do, in words.
+/// The assumed mode of a node, in words.
 pub fn assumed_words(assumed: Assumed) -> &'static str {
     match assumed {
         Assumed::Free => "free",
@@ -616,7 +619,7 @@ pub fn assumed_words(assumed: Assumed) -> &'static str {
     }
 }
 
-/// What a node does in a state, in words: without friction, sliding has no direction.
+/// The mode of a node in a state, in words: without friction, sliding has no direction.
 pub fn answer_words(node: &NodeAnswer) -> &'static str {
     match node.assumed.mode() {
         Mode::Sliding if node.limit == 0.0 && node.f_n != 0.0 => "sliding",
@@ -648,6 +651,6 @@ fn way_words(way: Way, settles: bool) -> String {
             )
         }
         Way::ConsistentLimit => format!("tried: settings.t_max=consistent: {ends}"),
-        Way::OtherSlip => format!("tried: settings.slip the other way: {ends}"),
+        Way::OtherSlip => format!("tried: settings.slip set to its other value: {ends}"),
     }
 }

@@ -1,5 +1,5 @@
-//! What is known of the frozen problem that is solved next from a state: the diagnosis of the cycle that it runs into, or
-//! else the census of its consistent states.
+//! Examines the frozen problem that is solved next from a state: the diagnosis of its cycle, or otherwise the
+//! census of its consistent states.
 
 use super::core::cycle;
 use super::diagnosis::{self, Cause, Diagnosis, MOST_NODES, cycling, started, too_many};
@@ -18,44 +18,43 @@ use stickslip_core::step::state::{State, Status};
 use stickslip_core::step::stepper::Stepper;
 use stickslip_core::strategy::method;
 
-/// What is said at the end of the history.
-pub const DONE: &str = "The history is done; nothing is solved next from here.";
-/// What is said where there is no small problem.
-pub const NOT_CONDENSED: &str =
-    "The bodies cannot be condensed to the interface here, so there is no small problem to study.";
+/// Shown at the end of the history.
+pub const DONE: &str = "The history is complete, so there is no next problem.";
+/// Shown if there is no condensed problem.
+pub const NOT_CONDENSED: &str = "The bodies cannot be condensed to the interface here, so there is no small problem to examine.";
 
-/// Why it cannot be told whether the minor iterations cycle.
+/// Why it is unknown whether the minor iterations cycle.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum Untold {
-    /// The solver does not condense, so that there is no interface problem.
+    /// There is no interface problem, because the solver does not condense.
     #[error("{NOT_CONDENSED}")]
     NotCondensed,
-    /// There are too many nodes; the text says how many.
+    /// Too many nodes; the text contains their number.
     #[error("{0}")]
     TooMany(String),
 }
 
-/// What is known at a place.
+/// Result of an examination.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Examination {
-    /// In words, a line each: what happened, where, why, what to do, and then the details.
+    /// The text, line by line: what happened, where, why, what to do, and details.
     pub lines: Vec<String>,
     /// Whether the minor iterations cycle from here, or the increment failed.
     pub fails: bool,
-    /// Slave numbers of the nodes that it is about.
+    /// Slave numbers of the nodes concerned.
     pub nodes: Vec<usize>,
-    /// Where bodies move that nothing holds: a place, and a direction of at most length one.
+    /// Motion of unrestrained bodies: points, with directions of length one at most.
     pub arrows: Vec<[[f64; 2]; 2]>,
-    /// What is being found out still; empty where that is all.
+    /// The analysis in progress; empty when all are done.
     pub going_on: String,
-    /// The problem that the census was held over.
+    /// The problem of the census.
     pub problem: Option<InterfaceProblem>,
     /// All consistent states; `None` if they were not counted.
     pub census: Option<Census>,
 }
 
 impl Examination {
-    /// The starts that lead to a consistent state of the census; `None` if there is no such state.
+    /// The initial modes for a consistent state of the census; `None` if it does not exist.
     pub fn starts(&self, number: usize) -> Option<Vec<Start>> {
         let started = started(self.problem.as_ref()?, self.census.as_ref()?, number)?;
         let start = |node: &stickslip_core::interface::problem::ProblemNode| Start {
@@ -74,8 +73,8 @@ fn nothing(why: &str) -> Examination {
     }
 }
 
-/// What is known of the frozen problem that is solved next from a state: the diagnosis of its cycle, or else its census,
-/// which ends where `stop` says so.
+/// Examines the frozen problem that is solved next from a state: the diagnosis of its cycle, or otherwise its
+/// census. Stops early if `stop` returns true.
 pub fn frozen(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -> Examination {
     if state.status == Status::Finished {
         return nothing(DONE);
@@ -141,7 +140,7 @@ pub fn frozen(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -> 
     found
 }
 
-/// Census of these slave nodes at a state, all others going on with what they do; it ends where `stop` says so.
+/// The census of these slave nodes at a state, with all others frozen. Stops early if `stop` returns true.
 pub fn examine_nodes(
     stepper: &mut Stepper,
     state: &State,
@@ -158,16 +157,16 @@ pub fn examine_nodes(
     let wanted = |place: &usize| slaves.contains(&problem.nodes[*place].slave);
     let places: Vec<usize> = (0..problem.nodes.len()).filter(wanted).collect();
     let Some(studied) = problem.reduced(&places) else {
-        return nothing("With what all other nodes do, the frozen interface problem is singular.");
+        return nothing("With all other nodes frozen, the interface problem is singular.");
     };
     let model = stepper.model();
     let names = slaves.iter().map(|&slave| names::slave(model, slave));
     let names = names.collect::<Vec<_>>().join(", ");
-    let head = format!("Of {names}, all other nodes going on with what they do:");
+    let head = format!("For {names}, with all other nodes frozen:");
     counted(model, &studied, &head, stop)
 }
 
-/// What a census finds.
+/// The result of a census.
 fn counted(
     model: &Model,
     studied: &InterfaceProblem,
@@ -190,12 +189,11 @@ fn counted(
     }
 }
 
-/// The problem that goes round in a cycle from a state that the stepper stands at, and the cycle by slave number; none
-/// where there is no cycle. The states of the problem are where the cycle starts. A large problem is stepped on to its cycle, so that only those nodes are looked at that take
-/// part.
+/// The problem whose minor iterations cycle from a state of the stepper, and the cycle by slave number; `None`
+/// if there is no cycle. The problem's states are at the start of the cycle. A large problem is stepped to its
+/// cycle and reduced to the nodes that take part.
 ///
-/// # Errors
-/// Why that cannot be told.
+/// # Errors If it is unknown whether there is a cycle.
 pub fn going_round(
     stepper: &mut Stepper,
     state: &State,
@@ -226,12 +224,12 @@ pub fn going_round(
     }
 }
 
-/// The problem with its nodes' states where its cycle starts.
+/// The problem with the states at the start of its cycle.
 fn at_start(problem: &InterfaceProblem, cycle: &Cycle) -> InterfaceProblem {
     let mut nodes = problem.states();
     if let Some(mut trials) = Trials::new(problem) {
         for _ in 1..cycle.start {
-            // It can be solved up to the cycle, since that was found.
+            // The iterations before the cycle have been solved before.
             let _ = trials.minor(&mut nodes, method(problem.settings.strategy));
         }
     }

@@ -1,20 +1,21 @@
-//! A finer mesh, tried: the scene with every generated element divided in two, from its start to the load that failed.
+//! Tries a finer mesh: the scene with every generated element divided in two, from its start to the load of the
+//! failure.
 
 use super::restart::{Restart, changed, restart};
 use stickslip_core::step::state::State;
 use stickslip_scene::format::spec::Spec;
 
-/// How the trial ended.
+/// Result of the trial.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finer {
-    /// The refinement that was tried.
+    /// The refinement tried.
     pub refine: usize,
     /// End of the run.
     pub run: Restart,
 }
 
-/// Tries a scene with twice its refinement, with the settings of a failed state. `None` where that was stopped, or where
-/// no element of it is generated.
+/// Tries a scene with twice its refinement and the settings of a failed state. `None` if interrupted, or if
+/// none of its meshes is generated.
 pub fn finer(spec: &Spec, state: &State, stop: &dyn Fn() -> bool) -> Option<Finer> {
     let mut spec = spec.clone();
     spec.refine *= 2;

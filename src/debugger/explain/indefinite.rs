@@ -1,8 +1,8 @@
-//! What the numbers of a frozen problem tell where nothing solves it: whether its compliance is indefinite by no more than
-//! rounding, and whether it is solved without that.
+//! Analyses a frozen problem without a solution: whether its compliance is indefinite only by rounding, and
+//! whether it can be solved without that.
 //!
-//! Small negative eigenvalues are set to zero, and the problem is solved again with all that the ladder has. What it finds
-//! is looked at in the matrix as it was given.
+//! Small negative eigenvalues are set to zero, and the problem is solved again with all strategies of the
+//! ladder. The solution is checked with the original matrix.
 
 use super::diagnosis::{answer_words, condition_words};
 use stickslip_core::interface::census::search;
@@ -14,59 +14,59 @@ use stickslip_core::model::Strategy;
 use stickslip_core::strategy::{in_force, method, rungs};
 use stickslip_scene::number::four;
 
-/// A negative eigenvalue up to this part of the largest one may be due to rounding.
+/// Negative eigenvalues up to this fraction of the largest one may be due to rounding.
 const SMALL: f64 = 1e-2;
-/// Most nodes of a problem that is looked at.
+/// Maximum number of nodes of a problem.
 const MOST: usize = 100;
-/// Most minor iterations of a strategy.
+/// Maximum number of minor iterations per strategy.
 const MINORS: u32 = 400;
-/// Branches of the search for a state.
+/// Maximum number of branches in the search for a state.
 const BRANCHES: usize = 1000;
-/// Conditions that are broken by less than this (relative) count as obeyed.
+/// Relative violation of a condition below which it is satisfied.
 const OBEYED: f64 = 1e-9;
-/// Largest tolerance that is tried, a power of ten.
+/// Largest tolerance tried, as a power of ten.
 const COARSEST: i32 = -3;
-/// Most nodes of which it is told what they do.
+/// Maximum number of nodes named.
 const MOST_NAMED: usize = 8;
 
-/// What was found of a compliance with a negative eigenvalue.
+/// Analysis of a compliance with a negative eigenvalue.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Indefinite {
-    /// Smallest and largest eigenvalue (length by force).
+    /// Smallest and largest eigenvalue (length per force).
     pub ends: [f64; 2],
-    /// What came of it.
+    /// The conclusion.
     pub came: Came,
 }
 
-/// What comes of a negative eigenvalue.
+/// Conclusion about a negative eigenvalue.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Came {
-    /// It is too large to be due to rounding.
+    /// Too large to be due to rounding.
     NotByRounding,
-    /// The problem is solved all the same, by this rung of the ladder.
+    /// The problem is solved all the same, by this strategy of the ladder.
     SolvedAsItIs(Strategy),
-    /// It is not, and this was tried.
+    /// The problem is not solved; results of the trials.
     Tried {
-        /// What solves the problem once it is made semidefinite.
+        /// The solution after the problem is made semidefinite.
         semidefinite: Option<Solved>,
-        /// The least tolerance (`settings.tolerance`) with which it is solved as it is, of those that were tried.
+        /// The smallest tolerance tried (`settings.tolerance`) with which the original problem is solved.
         tolerance: Option<(f64, Solved)>,
     },
 }
 
-/// A consistent state, and what found it.
+/// A consistent state, and the strategy that found it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Solved {
-    /// What found it.
+    /// The strategy.
     pub by: Strategy,
     /// The state.
     pub answer: Answer,
-    /// The same assumption in the matrix as it is given; `None` where its equations are singular.
+    /// The state with the same modes for the original matrix; `None` if its equations are singular.
     pub as_given: Option<Answer>,
 }
 
-/// Looks at a problem's compliance. `None` where no eigenvalue is negative, where there is no compliance, or where there are
-/// too many nodes.
+/// Analyses a problem's compliance. `None` if no eigenvalue is negative, if there is no compliance, or if there
+/// are too many nodes.
 pub fn indefinite(problem: &InterfaceProblem, stop: &dyn Fn() -> bool) -> Option<Indefinite> {
     if problem.nodes.len() > MOST {
         return None;
@@ -88,7 +88,7 @@ pub fn indefinite(problem: &InterfaceProblem, stop: &dyn Fn() -> bool) -> Option
     if let Some((by, _)) = solved(problem, OBEYED, stop) {
         return came(Came::SolvedAsItIs(by));
     }
-    // What is as small as the negative one is zero, too.
+    // Eigenvalues of the same size as the negative one become zero, too.
     let without = compliance.raised(-least, 0.0);
     let semidefinite = without.and_then(|raised| {
         let (by, answer) = solved(&raised, OBEYED, stop)?;
@@ -119,13 +119,13 @@ pub fn indefinite(problem: &InterfaceProblem, stop: &dyn Fn() -> bool) -> Option
     })
 }
 
-/// The same assumption in another problem.
+/// The state with the same modes in another problem.
 fn as_given(problem: &InterfaceProblem, answer: &Answer) -> Option<Answer> {
     let assumed: Vec<Assumed> = answer.nodes.iter().map(|node| node.assumed).collect();
     Trials::new(problem)?.answer(&assumed)
 }
 
-/// A state that obeys up to a tolerance, and which rung of the ladder finds it.
+/// A state that satisfies all conditions up to a tolerance, and the strategy of the ladder that finds it.
 fn solved(
     problem: &InterfaceProblem,
     tolerance: f64,
@@ -141,7 +141,7 @@ fn solved(
         let mut problem = of_ladder.clone();
         problem.settings = in_force(&of_ladder.settings, rung);
         let found = match strategy {
-            // What they find, if anything, is what the run says; here forces are to be unique.
+            // The result of these strategies is in the run's messages; here the forces have to be unique.
             Strategy::Copositive | Strategy::GaussSeidel => return None,
             Strategy::Lemke => by_pivoting(&problem, tolerance),
             Strategy::Census => {
@@ -156,7 +156,7 @@ fn solved(
     })
 }
 
-/// Where the minor iterations settle.
+/// The state at which the minor iterations settle.
 fn by_iterations(problem: &InterfaceProblem) -> Option<Answer> {
     let mut nodes = problem.states();
     let mut trials = Trials::new(problem)?;
@@ -177,7 +177,7 @@ fn by_iterations(problem: &InterfaceProblem) -> Option<Answer> {
     None
 }
 
-/// Where pivoting ends.
+/// The state at which pivoting ends.
 fn by_pivoting(problem: &InterfaceProblem, tolerance: f64) -> Option<Answer> {
     let brought = problem.nodes.iter().map(|node| {
         let state = &node.state;
@@ -197,23 +197,23 @@ fn by_pivoting(problem: &InterfaceProblem, tolerance: f64) -> Option<Answer> {
     })
 }
 
-/// What was found, in words, most important first.
+/// The analysis in words, most important first.
 pub fn words<'a>(found: &Indefinite, name: &impl Fn(usize) -> &'a str) -> Vec<String> {
     let [least, largest] = found.ends;
     let head = format!(
-        "W, the compliance of the interface, has an eigenvalue of {} ({} of the largest)",
+        "W, the compliance of the interface, has the eigenvalue {} ({} of the largest)",
         four(least),
         four(-least / largest)
     );
     let (semidefinite, tolerance) = match &found.came {
         Came::NotByRounding => {
             return vec![format!(
-                "{head}: it is indefinite, and not by rounding; some forces move their points against them"
+                "{head}: it is indefinite, not only by rounding; some forces move their points in the opposite direction"
             )];
         }
         Came::SolvedAsItIs(by) => {
             return vec![format!(
-                "{head}: it is indefinite, perhaps by rounding; strategy {} solves it all the same",
+                "{head}: it is indefinite, perhaps by rounding; strategy {} still solves it",
                 by.name()
             )];
         }
@@ -225,8 +225,8 @@ pub fn words<'a>(found: &Indefinite, name: &impl Fn(usize) -> &'a str) -> Vec<St
     let coarsest = format!("1e{COARSEST}");
     if semidefinite.is_none() && tolerance.is_none() {
         return vec![format!(
-            "{head}: it is indefinite, perhaps by rounding of its entries; made semidefinite it is not solved either, nor \
-             with settings.tolerance up to {coarsest}"
+            "{head}: it is indefinite, perhaps by rounding of its entries; neither making it \
+             semidefinite nor settings.tolerance up to {coarsest} gives a solution"
         )];
     }
     let mut lines = vec![format!(
@@ -234,33 +234,33 @@ pub fn words<'a>(found: &Indefinite, name: &impl Fn(usize) -> &'a str) -> Vec<St
     )];
     lines.push(match tolerance {
         Some((tolerance, solved)) => format!(
-            "what would help: with settings.tolerance={tolerance:e} this frozen problem is solved as it is, by strategy {}: {}",
+            "what would help: settings.tolerance={tolerance:e}; strategy {} then solves this frozen problem: {}",
             solved.by.name(),
             does(&solved.answer, name)
         ),
-        None => format!("  with settings.tolerance up to {coarsest} it is not solved"),
+        None => format!("  settings.tolerance up to {coarsest} gives no solution"),
     });
     lines.push(match semidefinite {
         Some(solved) => format!(
-            "what would help: made semidefinite, as more digits of W may make it, it is solved by strategy {}: {}; {}",
+            "what would help: more digits of W may make it semidefinite; strategy {} then solves it: {}; {}",
             solved.by.name(),
             does(&solved.answer, name),
             in_given(solved, name)
         ),
-        None => "  made semidefinite it is not solved".into(),
+        None => "  making it semidefinite gives no solution".into(),
     });
     lines
 }
 
-/// What a state is in the matrix as it is given.
+/// The state in the original matrix.
 fn in_given<'a>(solved: &Solved, name: &impl Fn(usize) -> &'a str) -> String {
     let worst = |answer: &Answer| answer.worst().filter(|_| !answer.obeys(OBEYED));
     match &solved.as_given {
-        None => "in W as it is its equations are singular".to_owned(),
+        None => "with the original W its equations are singular".to_owned(),
         Some(answer) => match worst(answer) {
-            None => "in W as it is that state obeys, too".to_owned(),
+            None => "the state is consistent with the original W, too".to_owned(),
             Some((place, margin)) => format!(
-                "in W as it is that state breaks \"{}\" at {} by {}",
+                "with the original W the state violates \"{}\" at {} by {}",
                 condition_words(margin.condition),
                 name(place),
                 four(-margin.value)
@@ -269,7 +269,7 @@ fn in_given<'a>(solved: &Solved, name: &impl Fn(usize) -> &'a str) -> String {
     }
 }
 
-/// What the nodes do, a letter each; by name where they are few.
+/// The modes of the nodes, one letter each; with names if there are few.
 fn does<'a>(answer: &Answer, name: &impl Fn(usize) -> &'a str) -> String {
     if answer.nodes.len() > MOST_NAMED {
         return answer.letters();

@@ -1,8 +1,10 @@
-//! Who pushed whom: what the changes at other nodes did to one node's gap and forces, from one minor iteration to the next.
+//! Pushes: how the changes at other nodes moved one node's gap and forces, from one minor iteration to the
+//! next.
 //!
-//! On the frozen interface problem both iterations are linear systems that differ only in the equations of the nodes
-//! that changed. With M the matrix of the later one, and δ_j the amount by which the earlier answer misses row j of it,
-//! the answers differ by `Σ_j M⁻¹ e_j δ_j`, exactly: each term is what node j's change did.
+//! On the frozen interface problem both iterations are linear systems that differ only in the equations of the
+//! nodes that changed. Let M be the matrix of the later one, and δ_j the residual of the earlier solution in
+//! its row j. Then the solutions differ by exactly `Σ_j M⁻¹ e_j δ_j`: each term is the effect of node j's
+//! change.
 
 use stickslip_core::contact::state::ContactState;
 use stickslip_core::contact::table1::{Equation, Motion};
@@ -15,12 +17,12 @@ use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::state::State;
 use stickslip_core::step::stepper::Stepper;
 
-/// What one node's change did to another node.
+/// Effect of one node's change on another node.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Influence {
-    /// Place of the node that changed.
+    /// Index of the node that changed.
     pub from: usize,
-    /// Change of the other node's gap and slip (length) and forces that is due to it.
+    /// Resulting change of the other node's gap, length.
     pub gap: f64,
     /// Change of its slip, length.
     pub slip: f64,
@@ -30,8 +32,8 @@ pub struct Influence {
     pub f_t: f64,
 }
 
-/// What the change of every node did to each of the nodes `targets`, from the iteration that the nodes go into with
-/// `before` to that with `after`; nodes that changed nothing are left out. `None` if either has no solution.
+/// The effects of all nodes' changes on each of the nodes `targets`, between the iterations that start from
+/// `before` and from `after`; nodes without a change are left out. `None` if either iteration has no solution.
 pub fn influences(
     problem: &InterfaceProblem,
     before: &[ContactState],
@@ -46,7 +48,8 @@ pub fn influences(
     })
 }
 
-/// The same, where `missed` tells by how much the earlier answer misses an equation of a node. `trials` has solved for `after`.
+/// As [`influences`]; `missed` returns the residual of the earlier solution in a node's equation. `trials` has
+/// solved for `after`.
 pub(super) fn spread(
     trials: &mut Trials<'_>,
     after: &[ContactState],
@@ -96,7 +99,7 @@ pub(super) fn spread(
     Some(found)
 }
 
-/// What an equation gives a value to, at a node that has come this far.
+/// The left side of an equation, at a node with these values.
 pub(super) fn left_side(row: &Equation, given: &NodeIncrement) -> f64 {
     let motion = match row.motion {
         Motion::None => 0.0,
@@ -106,39 +109,39 @@ pub(super) fn left_side(row: &Equation, given: &NodeIncrement) -> f64 {
     motion + row.d_n * given.force[0] + row.d_t * given.force[1]
 }
 
-/// What the change of one node did to the node that is looked at.
+/// Effect of one node's change on the selected node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Push {
     /// Slave number of the node that changed.
     pub slave: usize,
-    /// Its modes in the iteration before and in this one.
+    /// Its modes in the previous iteration and in this one.
     pub modes: [Mode; 2],
-    /// What the changes of other nodes do to it.
+    /// The effect.
     pub influence: Influence,
 }
 
-/// How to come to the iteration that is looked at: from a state, by steps done before.
+/// How to reach the shown iteration: from a state, by recorded steps.
 pub struct Way {
-    /// The state after the way.
+    /// The state after the steps.
     pub state: Box<State>,
-    /// Minor iterations (none) and interventions, up to the state that the shown iteration started from.
+    /// Minor iterations (`None`) and interventions, up to the state that the shown iteration started from.
     pub steps: Vec<Option<Intervention>>,
-    /// Which of the steps is the minor iteration before the shown one.
+    /// Index of the minor iteration before the shown one.
     pub before: usize,
 }
 
-/// The frozen problem between two minor iterations, and what the nodes came with into the first of them.
+/// The frozen problem between two minor iterations, and the nodes' states before the first of them.
 pub struct Between {
     problem: InterfaceProblem,
     before: Vec<ContactState>,
 }
 
-/// What pushed a node in the iteration that comes after the way; `None` if that cannot be told.
+/// The pushes on a node in the iteration after the steps; `None` if unknown.
 pub fn pushes(stepper: &mut Stepper, slave: usize, way: &Way) -> Option<Vec<Push>> {
     pushed(&between(stepper, way)?, slave)
 }
 
-/// Goes the way, up to the iteration after it.
+/// Repeats the steps and the iteration after them.
 pub fn between(stepper: &mut Stepper, way: &Way) -> Option<Between> {
     stepper.restore(&way.state);
     let mut before: Vec<ContactState> = Vec::new();
@@ -157,7 +160,7 @@ pub fn between(stepper: &mut Stepper, way: &Way) -> Option<Between> {
     Some(Between { problem, before })
 }
 
-/// What pushed a node between two minor iterations.
+/// The pushes on a node between two minor iterations.
 pub fn pushed(Between { problem, before }: &Between, slave: usize) -> Option<Vec<Push>> {
     let after = problem.states();
     let target = problem.nodes.iter().position(|node| node.slave == slave)?;
@@ -171,7 +174,7 @@ pub fn pushed(Between { problem, before }: &Between, slave: usize) -> Option<Vec
     Some(found.into_iter().flatten().map(push).collect())
 }
 
-/// States of a problem's nodes among those of all slave nodes.
+/// The states of a problem's nodes, from those of all slave nodes.
 fn pick(problem: &InterfaceProblem, nodes: &[ContactState]) -> Vec<ContactState> {
     problem.nodes.iter().map(|node| nodes[node.slave]).collect()
 }

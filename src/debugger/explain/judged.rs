@@ -1,11 +1,11 @@
-//! What the judge found, in words: the law, the node, the amount.
+//! Describes the judge's findings: the law, the node, the amount.
 
 use crate::explain::names::slave;
 use stickslip_core::contact::laws::{Finding, Law, Numbers};
 use stickslip_core::model::Model;
 use stickslip_scene::number::four;
 
-/// What a finding says, as a part of a sentence.
+/// A finding, as part of a sentence.
 pub fn finding(model: &Model, finding: &Finding) -> String {
     let Numbers {
         gap,
@@ -16,44 +16,41 @@ pub fn finding(model: &Model, finding: &Finding) -> String {
     } = finding.numbers;
     let node = finding.slave.map_or("a node", |s| slave(model, s));
     let told = match finding.law {
-        Law::Penetration => format!("{node} is inside its surface by {:.3e}", -gap),
+        Law::Penetration => format!("{node} penetrates its surface by {:.3e}", -gap),
         Law::Gap if finding.amount.is_infinite() => {
-            format!("{node} bears a force and has no surface to touch")
+            format!("{node} carries a force without facing a surface")
         }
-        Law::Gap => format!(
-            "{node} bears a force, and its surface is {:.3e} away",
-            gap.abs()
-        ),
+        Law::Gap => format!("{node} carries a force across a gap of {:.3e}", gap.abs()),
         Law::Tension => format!("the surface pulls {node}: F_n {f_n:.6e}"),
         Law::Cone => format!(
-            "at {node} F_t {f_t:.6e} is more than friction can give (limit {limit:.6e}), or more than \
-             the sides of its corner can"
+            "F_t at {node} exceeds the friction limit of the node or of its corner (F_t \
+             {f_t:.6e}, limit {limit:.6e})"
         ),
         Law::Slip if f_t * slip > 0.0 => format!(
-            "friction drives the slip of {node} instead of opposing it: it slipped by {slip:.6e} along t, and F_t is {f_t:.6e}"
+            "friction drives the slip of {node} instead of opposing it (slip {slip:.6e}, F_t {f_t:.6e})"
         ),
         Law::Slip => format!(
-            "{node} slipped by {slip:.6e} along t, and friction is not at its limit against that: F_t is \
-             {f_t:.6e}, the limit {limit:.6e}"
+            "{node} slipped by {slip:.6e} with friction below its limit (F_t {f_t:.6e}, limit \
+             {limit:.6e})"
         ),
         Law::Touch => format!(
-            "friction drives {node} wherever it touched: its foot went {slip:.6e} along t since the last increment, when it was \
-             open, and F_t is {f_t:.6e}"
+            "friction drives {node}, wherever it made contact: since the last increment, in \
+             which it was open, its projection moved by {slip:.6e} along t (F_t {f_t:.6e})"
         ),
-        Law::Work => format!(
-            "friction gave work at {node}: it slipped by {slip:.6e} along t, and F_t is {f_t:.6e} at the end"
-        ),
+        Law::Work => {
+            format!("friction produced work at {node} (slip {slip:.6e}, final F_t {f_t:.6e})")
+        }
         Law::Penalty if finding.amount.is_infinite() => {
-            format!("{node} bears a force and has no surface to touch")
+            format!("{node} carries a force without facing a surface")
         }
         Law::Penalty => format!(
-            "{node} is inside its surface by {:.6e}, which is not what its penalty gives to F_n {f_n:.6e}",
+            "{node} penetrates its surface by {:.6e}, which does not match its penalty law for F_n {f_n:.6e}",
             -gap
         ),
         Law::Tied => format!("{node} has left the point of the surface that it is tied to"),
         Law::Stick => format!(
-            "{node} slipped by {slip:.6e} along t beyond its elastic slip, and friction is not at its limit against that: F_t is \
-             {f_t:.6e}, the limit {limit:.6e}"
+            "{node} slipped by {slip:.6e} beyond its elastic slip with friction below its limit \
+             (F_t {f_t:.6e}, limit {limit:.6e})"
         ),
         Law::Balance => format!("the forces on {node} are not in balance"),
         Law::Moments => "loads and reactions are not in balance".into(),
@@ -61,7 +58,7 @@ pub fn finding(model: &Model, finding: &Finding) -> String {
     format!("{told} ({}: {:.1e})", finding.law.name(), finding.amount)
 }
 
-/// Where a finding is, as a part of a sentence: the node and its place, with its numbers.
+/// Location of a finding, as part of a sentence: the node, its coordinates and its numbers.
 pub fn place(model: &Model, places: &[[f64; 2]], finding: &Finding) -> String {
     let Some(contact) = finding.slave.and_then(|s| model.contacts.get(s)) else {
         return "in the scene as a whole".into();
@@ -76,7 +73,7 @@ pub fn place(model: &Model, places: &[[f64; 2]], finding: &Finding) -> String {
     } = finding.numbers;
     let name = &model.nodes[contact.node].name;
     format!(
-        "{name} at ({x}, {y}): gap {}, F_n {}, F_t {} of at most {}",
+        "{name} at ({x}, {y}): gap {}, F_n {}, F_t {} (limit {})",
         four(gap),
         four(f_n),
         four(f_t),

@@ -1,7 +1,7 @@
-//! The load at which a body comes loose, and its reason: friction is used up, or no contact presses against the motion any
-//! more.
+//! The load at which a body becomes loose, and why: friction is used up, or no contact presses against the
+//! motion any more.
 //!
-//! Walks the failed increment again in smaller steps ([`super::reach`]). In the last equilibrium, computes the remaining
+//! Repeats the failed increment in smaller steps ([`super::reach`]). In the last equilibrium, computes the remaining
 //! resistance of each contact of the body against the free motion. With v the relative velocity, friction resists with at
 //! most tan φ F_n + c per |v_t|, of which |F_t| is used; an opening contact yields F_n per v_n until its force is zero.
 
@@ -58,12 +58,12 @@ pub fn limit_load(
         Resistance {
             friction: [0.0, _],
             opening: [left, all],
-        } if left <= LEFT * all => "nothing presses against the motion any more",
+        } if left <= LEFT * all => "no contact presses against the motion any more",
         _ => "equilibrium ends",
     };
     let name = moving.name();
     Some(format!(
-        "limit load: {why} at load {}: body {name} is held up to there",
+        "limit load: {why} at load {}: body {name} is held up to this load",
         four(load)
     ))
 }

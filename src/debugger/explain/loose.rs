@@ -1,5 +1,5 @@
-//! What moves where nothing holds it: the motion of a body, which way the loads push it, what would stop it, and since when
-//! it is loose.
+//! Describes unrestrained bodies: their motion, its direction under the loads, what would stop it, and since
+//! when they are loose.
 
 use super::names::slave;
 use std::collections::HashSet;
@@ -12,25 +12,25 @@ use stickslip_core::step::stepper::Stepper;
 use stickslip_scene::number::four;
 use stickslip_scene::shown::first_of;
 
-/// Most motions that are told one by one.
+/// Maximum number of motions described.
 const MOST: usize = 3;
-/// Most nodes that are named.
+/// Maximum number of nodes named.
 const MOST_NODES: usize = 4;
 /// Arrows that show the motion of a body.
 const ARROWS: usize = 8;
-/// Rates below this part of the largest are none.
+/// Rates below this fraction of the largest are zero.
 const NONE: f64 = 1e-9;
 
-/// What is told of bodies that come loose, and drawn.
+/// Description of loose bodies, with arrows for the shape.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Loose {
-    /// In words.
+    /// The text.
     pub lines: Vec<String>,
-    /// A place on a body that moves, and the direction in which it does, of at most length one.
+    /// Points on a moving body, with directions of length one at most.
     pub arrows: Vec<[[f64; 2]; 2]>,
 }
 
-/// A rigid motion of a body, with the sign in which the loads push it.
+/// A rigid motion of a body, in the direction of the loads.
 pub(super) struct Moving<'a> {
     model: &'a Model,
     places: &'a [[f64; 2]],
@@ -41,10 +41,10 @@ pub(super) struct Moving<'a> {
     sign: f64,
 }
 
-/// Explains rigid motions that nothing resists in a state. The stepper is left at the state.
+/// Describes rigid motions that nothing resists in a state. The stepper is left at the state.
 pub fn loose(stepper: &mut Stepper, state: &State, motions: &[RigidMotion]) -> Loose {
     stepper.restore(state);
-    // The places of the contacts are needed, not the matrix; it may be singular.
+    // This locates the contacts; the matrix is not needed and may be singular.
     stepper.norms();
     let at_start = stepper.loose(&state.start.nodes);
     let still = matches!(stepper.loose(&state.nodes), Singular::Rigid { .. });
@@ -93,7 +93,7 @@ impl<'a> Moving<'a> {
         &self.model.bodies[self.body].name
     }
 
-    /// How fast a place of the body moves: along a unit vector, or turning by one.
+    /// Velocity of a point of the body: for a translation by a unit vector, or a rotation at rate one.
     fn velocity(&self, at: [f64; 2]) -> [f64; 2] {
         let v = match self.motion {
             Motion::Translation(along) => along,
@@ -102,7 +102,7 @@ impl<'a> Moving<'a> {
         v.map(|x| self.sign * x)
     }
 
-    /// Power of the loads on the body in this motion: a force, or a moment.
+    /// Power of the loads on the body in this motion: a force or a moment.
     fn power(&self, state: &State) -> f64 {
         let (model, dofs) = (self.model, &self.model.dofs);
         let nodes = &model.bodies[self.body].nodes;
@@ -149,10 +149,10 @@ impl<'a> Moving<'a> {
             }
         };
         let loads = match (power > 0.0, self.motion) {
-            (false, _) => "no load pushes it that way, and none could be carried".to_owned(),
-            (true, Motion::Translation(_)) => format!("the loads push it with {}", four(power)),
+            (false, _) => "no load acts in this direction, and none could be carried".to_owned(),
+            (true, Motion::Translation(_)) => format!("the loads push with {}", four(power)),
             (true, Motion::Rotation(_)) => {
-                format!("the loads turn it with a moment of {}", four(power))
+                format!("the loads turn it with moment {}", four(power))
             }
         };
         format!(
@@ -161,29 +161,30 @@ impl<'a> Moving<'a> {
         )
     }
 
-    /// What its contacts do: how many are open, slide, stick; `still` where nothing holds it in these modes.
+    /// How many contacts of the body are open, slide or stick; `still` if it is loose with these modes.
     fn contacts(&self, state: &State, still: bool) -> String {
         let own: Vec<usize> = self.own().collect();
         let count = |mode: Mode| own.iter().filter(|s| state.nodes[**s].mode == mode).count();
         let (free, sliding, fixed) = (count(Mode::Free), count(Mode::Sliding), count(Mode::Fixed));
         if own.is_empty() {
-            return "why: it has no contact, and its supports leave this motion free".into();
+            return "why: the body has no contact, and its supports do not prevent this motion"
+                .into();
         }
         let why = match (free, sliding, fixed) {
-            (_, 0, 0) if still => "an open node resists nothing",
+            (_, 0, 0) if still => "an open node has no resistance",
             (_, _, 0) if still => {
-                "a sliding node resists along its normal only: its friction is a force, T_max, that does not grow with the motion"
+                "a sliding node resists only along its normal: its friction force T_max does not grow with the motion"
             }
-            _ if !still => "the modes that were tried before these held it still less",
-            _ => "where they stick, they leave this motion free",
+            _ if !still => "the modes tried before restrained it even less",
+            _ => "the sticking nodes do not prevent this motion",
         };
         format!(
-            "why: of its {} contacts {free} are open, {sliding} slide, {fixed} stick; {why}",
+            "why: of the body's {} contacts, {free} are open, {sliding} slide, {fixed} stick; {why}",
             own.len()
         )
     }
 
-    /// The contacts of the body, as slave or as master.
+    /// The contacts of the body, as slave or master.
     fn own(&self) -> impl Iterator<Item = usize> {
         let model = self.model;
         let masters: Vec<bool> = model
@@ -197,7 +198,7 @@ impl<'a> Moving<'a> {
         })
     }
 
-    /// Whether a node is one of the body's.
+    /// Whether a node belongs to the body.
     fn has(&self, node: usize) -> bool {
         self.nodes.contains(&node)
     }
@@ -213,7 +214,8 @@ impl<'a> Moving<'a> {
         self.over(state, s).map_or(0.0, |over| over.gap)
     }
 
-    /// The contacts of the body above a surface, each with its velocity relative to the surface along n and t.
+    /// The contacts of the body that face a surface, with their velocities relative to the surface along n and
+    /// t.
     pub(super) fn rates(&self, state: &State) -> Vec<(usize, [f64; 2])> {
         let rate = |s: usize| {
             let (node, over) = (self.model.contacts[s].node, self.over(state, s)?);
@@ -228,7 +230,7 @@ impl<'a> Moving<'a> {
         self.own().filter_map(rate).collect()
     }
 
-    /// Which contact or support would stop the motion.
+    /// The contact or support that would stop the motion.
     fn stopped(&self, state: &State) -> String {
         let mut closing: Vec<(f64, usize)> = Vec::new();
         let mut sliding = Vec::new();
@@ -245,7 +247,7 @@ impl<'a> Moving<'a> {
         closing.sort_by(|a, b| a.0.total_cmp(&b.0));
         if let Some(&(way, s)) = closing.first() {
             return format!(
-                "what would stop it: contact of {}, after a way of {}; a load does not move it there in equilibrium, a prescribed displacement does",
+                "what would stop it: contact of {}, after a motion of {}; a prescribed displacement can move the body there in equilibrium, a load cannot",
                 slave(self.model, s),
                 four(way)
             );
@@ -258,16 +260,16 @@ impl<'a> Moving<'a> {
             Motion::Rotation(_) => "a support of one of its nodes away from that point".into(),
         };
         if sliding.is_empty() {
-            return format!("what would stop it: {support}; this motion brings no contact nearer");
+            return format!("what would stop it: {support}; this motion closes no contact");
         }
         let nodes = sliding.iter().map(|&s| slave(self.model, s));
         format!(
-            "what would stop it: sticking of {}, as far as friction carries it (start: fixed); or {support}",
+            "what would stop it: sticking of {}, up to the friction limit (start: fixed); or {support}",
             first_of(nodes, MOST_NODES, ", ")
         )
     }
 
-    /// Arrows on nodes that are spread over the body.
+    /// Arrows at nodes distributed over the body.
     fn arrows(&self) -> Vec<[[f64; 2]; 2]> {
         let nodes: Vec<usize> = match self.model.bodies[self.body].kind.lines() {
             [] => self.model.bodies[self.body].nodes.clone(),
@@ -288,18 +290,13 @@ impl<'a> Moving<'a> {
     }
 }
 
-/// Since when it is loose.
+/// Since when the body is loose.
 fn since(model: &Model, state: &State, at_start: &Singular) -> String {
     let load = state.start.load_factor;
     if matches!(at_start, Singular::Rigid { .. }) {
         return match state.next.increment {
-            0 | 1 => {
-                "since when: from the start; nothing held it in the modes that the nodes start with"
-                    .into()
-            }
-            _ => format!(
-                "since when: it is loose in the modes of the last equilibrium, load {load}, already"
-            ),
+            0 | 1 => "since when: from the start, with the initial modes of its nodes".into(),
+            _ => format!("since when: already with the modes of the last equilibrium, load {load}"),
         };
     }
     let rank = |mode: Mode| match mode {
@@ -312,9 +309,9 @@ fn since(model: &Model, state: &State, at_start: &Singular) -> String {
         .map(|s| slave(model, s))
         .collect();
     match let_go.is_empty() {
-        true => format!("since when: at load {load} it was held"),
+        true => format!("since when: after load {load}, at which it was held"),
         false => format!(
-            "since when: at load {load} it was held; on the way to {} {} let go",
+            "since when: after load {load}, at which it was held; on the way to {}, {} lost contact or stick",
             state.load_factor,
             first_of(let_go, MOST_NODES, ", ")
         ),

@@ -1,5 +1,5 @@
-//! Why the major iterations do not come to an end: a node that hops to and fro over a kink of its surface, modes that the
-//! geometry of each of them rejects, or convergence that is slow.
+//! Why the major iterations do not converge: a node that alternates across a kink of its surface, modes that
+//! the geometry of the next iteration rejects, or slow convergence.
 
 use super::attempt::{Attempt, Major};
 use super::names::{mode, slave};
@@ -10,26 +10,27 @@ use stickslip_core::step::major_history::{MajorCycle, Stop};
 use stickslip_core::step::state::State;
 use stickslip_scene::number::four;
 
-/// Most nodes of a cycle that are told one by one.
+/// Maximum number of cycle members described.
 const MOST_NODES: usize = 2;
-/// Most residuals that are shown.
+/// Maximum number of residuals shown.
 const MOST_RESIDUALS: usize = 8;
-/// Major iterations over which a rate is taken.
+/// Number of major iterations from which a rate is computed.
 const OVER: usize = 6;
-/// An error that falls by less than this factor in a major iteration does not fall.
+/// An error that falls by less than this factor per major iteration counts as constant.
 const FALLS: f64 = 0.98;
 
-/// The corner in which two neighbouring elements of a surface meet.
+/// The kink between two neighbouring elements of a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Kink {
-    /// By how much the surface turns there (degrees): positive where it is convex, negative where it is concave.
+    /// Turning angle of the surface (degrees), positive if convex, negative if concave.
     pub degrees: f64,
-    /// Where they meet.
+    /// Position of the kink.
     pub at: [f64; 2],
 }
 
 impl Kink {
-    /// Between two elements, each by surface and element; `None` where they do not meet, and on a smooth surface.
+    /// The kink between two elements, each given by surface and element; `None` if they do not meet, or on a
+    /// smooth surface.
     pub fn between(
         model: &Model,
         places: &[[f64; 2]],
@@ -55,7 +56,7 @@ impl Kink {
         })
     }
 
-    /// In words.
+    /// Describes the kink.
     fn words(&self) -> String {
         let kind = if self.degrees >= 0.0 {
             "convex"
@@ -82,7 +83,7 @@ fn slope(element: Element<'_>, places: &[[f64; 2]], xi: f64) -> [f64; 2] {
     slope
 }
 
-/// What can be told of a cycle of major iterations: where, and why.
+/// Describes where and why the major iterations cycle.
 pub fn cycle_words(model: &Model, attempt: &Attempt, round: &MajorCycle) -> Vec<String> {
     let from = attempt.majors.len().saturating_sub(round.period as usize);
     let around = &attempt.majors[from..];
@@ -91,7 +92,7 @@ pub fn cycle_words(model: &Model, attempt: &Attempt, round: &MajorCycle) -> Vec<
     };
     let places = model.places(&last.u);
     let mut lines = Vec::new();
-    // Those that change come first; where there are any, the others are only carried along by them.
+    // Members that change come first; if there are any, the others only follow them.
     let changes = |stops: &[Stop]| hops(stops).is_some() || switches(stops).is_some();
     let mut members: Vec<&(usize, Vec<Stop>)> = round.members.iter().collect();
     if members.iter().any(|(_, stops)| changes(stops)) {
@@ -120,33 +121,33 @@ pub fn cycle_words(model: &Model, attempt: &Attempt, round: &MajorCycle) -> Vec<
                 };
                 let meet = kink.map_or(String::new(), |kink| format!(", {}", kink.words()));
                 lines.push(format!(
-                    "where: {name}, now at {here}, hops between {one} and {other}{meet}; {moves}"
+                    "where: {name}, now at {here}, alternates between {one} and {other}{meet}; {moves}"
                 ));
                 lines.push(match kink {
                     Some(kink) if kink.degrees >= 0.0 => format!(
-                        "why: from one to the other its normal turns by {} degrees, and its forces with it: on each element they carry it over the edge to the other",
+                        "why: between the elements its normal turns by {} degrees, and its forces with it: on each element they push it across the edge onto the other",
                         four(kink.degrees)
                     ),
-                    Some(_) => "why: in a concave corner both sides press on it, and it can be held by one of them only: the other then lets it in".to_owned(),
-                    None if is_smooth(a.0) && is_smooth(b.0) => "why: the surface is smooth and its normal the same on both, but its curvature is not: the steps from each of them are too long".to_owned(),
-                    None => "why: the two elements do not meet, and from each of them the other one is nearer".to_owned(),
+                    Some(_) => "why: in a concave corner both sides press on the node, but only one can hold it; it then penetrates the other".to_owned(),
+                    None if is_smooth(a.0) && is_smooth(b.0) => "why: the surface is smooth, but its curvature differs between the elements: the steps from each of them are too long".to_owned(),
+                    None => "why: the two elements do not meet, and from each of them the other one is closer".to_owned(),
                 });
             }
             (None, Some([a, b])) => {
                 lines.push(format!(
-                    "where: {name}, now at {here}, goes to and fro between {} and {}; {moves}",
+                    "where: {name}, now at {here}, alternates between {} and {}; {moves}",
                     mode(a),
                     mode(b)
                 ));
                 lines.push(format!(
-                    "why: the geometry and forces to which {} leads make Table 2 want {} in the next major iteration, and the other way round",
+                    "why: with the geometry and forces that result from {}, Table 2 decides {} in the next major iteration, and vice versa",
                     mode(a),
                     mode(b)
                 ));
             }
             (None, None) => {
                 lines.push(format!(
-                    "where: {name}, now at {here}, is carried along; {moves}"
+                    "where: {name}, now at {here}, follows the others; {moves}"
                 ));
             }
         }
@@ -154,7 +155,7 @@ pub fn cycle_words(model: &Model, attempt: &Attempt, round: &MajorCycle) -> Vec<
     let told = members.len().min(MOST_NODES);
     if round.members.len() > told {
         lines.push(format!(
-            "and {} more nodes change, or are carried along",
+            "and {} more nodes change or follow",
             round.members.len() - told
         ));
     }
@@ -162,7 +163,7 @@ pub fn cycle_words(model: &Model, attempt: &Attempt, round: &MajorCycle) -> Vec<
     lines
 }
 
-/// Two elements between which a node goes, if it does.
+/// The two elements between which a node alternates, if it does.
 fn hops(stops: &[Stop]) -> Option<[(usize, usize); 2]> {
     let mut elements = stops.iter().filter_map(|stop| stop.element);
     let first = elements.next()?;
@@ -170,14 +171,14 @@ fn hops(stops: &[Stop]) -> Option<[(usize, usize); 2]> {
     Some([first, other])
 }
 
-/// Two modes between which a node goes, if it does.
+/// The two modes between which a node alternates, if it does.
 fn switches(stops: &[Stop]) -> Option<[Mode; 2]> {
     let first = stops.first()?.mode;
     let other = stops.iter().find(|stop| stop.mode != first)?.mode;
     Some([first, other])
 }
 
-/// The largest distance between two places that a node has in these major iterations.
+/// The largest distance between two positions of a node in these major iterations.
 fn moved(model: &Model, around: &[Major], node: usize) -> f64 {
     let places: Vec<[f64; 2]> = around.iter().map(|m| model.place(&m.u, node)).collect();
     let pairs = places
@@ -188,7 +189,7 @@ fn moved(model: &Model, around: &[Major], node: usize) -> f64 {
         .fold(0.0, f64::max)
 }
 
-/// The last residuals, a line.
+/// The last residuals, in one line.
 fn residuals(attempt: &Attempt) -> Option<String> {
     let errors = attempt.errors();
     let from = errors.len().saturating_sub(MOST_RESIDUALS);
@@ -203,8 +204,8 @@ fn residuals(attempt: &Attempt) -> Option<String> {
     })
 }
 
-/// What can be told where the limit of major iterations ended the increment: the rate, how many more it would take, and
-/// on what the rate depends.
+/// Describes an increment that reached the limit of major iterations: the convergence rate, how many more it
+/// would take, and what the rate depends on.
 pub fn limit_words(settings: &Settings, attempt: &Attempt) -> Vec<String> {
     let errors = attempt.errors();
     let mut lines = Vec::new();
@@ -217,27 +218,27 @@ pub fn limit_words(settings: &Settings, attempt: &Attempt) -> Vec<String> {
     {
         lines.push(match rate < FALLS {
             true => format!(
-                "why: an iteration leaves {} of the error of the one before; at this rate about {:.0} more would come to {limit:.1e}",
+                "why: the error falls by a factor of {} per iteration; about {:.0} more would reach {limit:.1e}",
                 four(rate),
                 ((limit / last).ln() / rate.ln()).ceil().max(1.0)
             ),
             false => format!(
-                "why: the error does not fall (a factor of {} an iteration), so more iterations do not help",
+                "why: the error does not fall (factor {} per iteration), so more iterations would not help",
                 four(rate)
             ),
         });
     }
     lines.extend(residuals(attempt));
     if settings.geometry == Geometry::Frozen {
-        lines.push("what the rate depends on: settings.geometry is frozen, so the tangent does not know that normals and projections turn with the motion, and where nodes slide the iterations converge linearly at best".into());
+        lines.push("what the rate depends on: settings.geometry is frozen, so the tangent neglects that normals and projections turn with the motion; with sliding nodes, convergence is linear at best".into());
     }
     if settings.residual == ResidualMethod::Accumulate {
-        lines.push("what the rate depends on: settings.residual is accumulate, so the error of every linearisation stays in the contact forces until it is taken back".into());
+        lines.push("what the rate depends on: settings.residual is accumulate, so each linearisation error stays in the contact forces until it is corrected".into());
     }
     lines
 }
 
-/// What can be told where the displacements grew out of all bounds: the node that went furthest, and the errors.
+/// Describes divergence: the node that moved furthest, and the errors.
 pub fn flight_words(model: &Model, state: &State, attempt: &Attempt) -> Vec<String> {
     let way = |node: usize| {
         let (now, then) = (
@@ -250,19 +251,19 @@ pub fn flight_words(model: &Model, state: &State, attempt: &Attempt) -> Vec<Stri
     let furthest = nodes.max_by(|a, b| way(*a).total_cmp(&way(*b)));
     let place = furthest.map(|node| {
         format!(
-            "where: {} went furthest from the last equilibrium, by {}; the scene is {} long",
+            "where: {} moved furthest from the last equilibrium, by {} (scene length {})",
             model.nodes[node].name,
             four(way(node)),
             four(model.length)
         )
     });
     let mut lines: Vec<String> = place.into_iter().collect();
-    lines.push("why: the tangent at the last equilibrium leads far away from the next one, if there is one near: the load is close to what the structure can bear, or the increment is too large for its curvature".into());
+    lines.push("why: the tangent at the last equilibrium points far away from the next one: the load is close to the limit load, or the increment is too large for the curvature of the path".into());
     lines.extend(residuals(attempt));
     lines
 }
 
-/// The factor by which errors fall from one to the next, over the last few of them; `None` where there are too few.
+/// Convergence factor over the last few errors; `None` if there are too few.
 pub fn rate(errors: &[f64]) -> Option<f64> {
     let last = errors.len().checked_sub(1)?;
     let from = last.saturating_sub(OVER);
@@ -276,7 +277,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_rate_is_that_of_a_geometric_sequence_and_is_not_told_of_two_numbers() {
+    fn a_rate_matches_a_geometric_sequence_and_needs_three_numbers() {
         let errors: Vec<f64> = (0..12).map(|k| 3.0 * 0.83_f64.powi(k)).collect();
         let found = rate(&errors).expect("there are enough");
         assert!((found - 0.83).abs() < 1e-12, "{found}");

@@ -1,18 +1,21 @@
-//! Explanations: what happened, why, and what could be done about it, in the words that the command line and the debugger
-//! share.
+//! Explanations of what happened, why, and what to do about it, in the wording shared by the command line and
+//! the debugger.
 //!
-//! - [`names`]: the words for things; [`round_off`]: which of them are nothing; [`report`]: sentences about what happened; [`judged`]: about what the judge found.
-//! - [`influence`]: who pushed whom; [`core`]: the fewest nodes that still cycle; [`diagnosis`]: why a cycle goes round;
-//!   [`smaller`]: whether a smaller increment has a consistent state, where one has none.
-//! - [`proven`]: what a matrix proves: one state at most, and where T_max goes while the modes repeat; [`indefinite`]: whether
-//!   it is indefinite by rounding, and what comes of it without.
-//! - [`advice`]: what to do about a failure; [`remedy`]: what can be tried; [`remedies`]: every way out, tried.
-//! - [`attempt`]: the attempt that failed, seen again; [`majors`]: why its major iterations do not end; [`loose`]: what moves
-//!   where nothing holds it; [`strain`]: solids outside the range of their law; [`reach`]: up to which load there is an answer;
-//!   [`finer`]: whether a finer mesh has one; [`restart`]: a changed scene, tried from its start.
-//! - [`touch`]: how far the forces depend on where touching nodes are held.
-//! - [`examination`]: the frozen problem at a state; [`page`]: all of that, as the debugger shows it.
-//! - [`attached`]: the same of a solver of another's, from the problem that it offers; [`pushes_told`]: who pushed whom there.
+//! - [`names`]: words for nodes, modes and positions; [`round_off`]: which numbers are round-off; [`report`]:
+//!   what happened, in sentences; [`judged`]: the judge's findings.
+//! - [`influence`]: which node pushed which; [`core`]: the smallest set of nodes that still cycles;
+//!   [`diagnosis`]: the cause of a cycle; [`smaller`]: whether a smaller increment has a consistent state.
+//! - [`proven`]: what a matrix proves: uniqueness, and the limit of T_max while the modes repeat;
+//!   [`indefinite`]: whether a matrix is indefinite only by rounding, and the solution without that.
+//! - [`advice`]: what to do about a failure; [`remedy`]: what can be tried; [`remedies`]: trials of all
+//!   remedies.
+//! - [`attempt`]: repeats the failed attempt; [`majors`]: why its major iterations do not converge; [`loose`]:
+//!   unrestrained bodies; [`strain`]: solids outside the range of their law; [`reach`]: the load that smaller
+//!   steps reach; [`finer`]: a trial on a finer mesh; [`restart`]: trials of a changed scene.
+//! - [`touch`]: how far the forces depend on where nodes in new contact are held.
+//! - [`examination`]: the frozen problem of a state; [`page`]: the whole diagnosis, as the debugger shows it.
+//! - [`attached`]: the diagnosis for an attached solver, from the problem that it reports; [`pushes_told`]: the
+//!   pushes there.
 //! - [`audit`]: the judge's findings over a history; [`outline`]: the shape of a state as lines.
 
 pub mod accuracy;

@@ -1,4 +1,4 @@
-//! The words for things: slave nodes, modes, rules, places of the iteration, and Table 2 as it is printed.
+//! The words for slave nodes, modes, rules and positions, and Table 2 as printed.
 
 use stickslip_core::contact::table2::Rule;
 use stickslip_core::model::{Mode, Model};
@@ -12,12 +12,12 @@ pub fn slave(model: &Model, slave: usize) -> &str {
         .map_or("?", |s| model.nodes[s.node].name.as_str())
 }
 
-/// A mode's word.
+/// The word for a mode.
 pub fn mode(mode: Mode) -> &'static str {
     mode.word()
 }
 
-/// The status of a contact that has a mode next: a finished run does not distinguish stick from slip.
+/// The word for a contact with this mode; a finished run does not distinguish stick from slip.
 pub fn status(model: &Model, of: Mode) -> &'static str {
     match (&model.finished, of) {
         (None, _) => mode(of),
@@ -29,7 +29,7 @@ pub fn status(model: &Model, of: Mode) -> &'static str {
 /// Modes in the order of Table 2's rows and columns.
 pub const MODES: [Mode; 3] = [Mode::Fixed, Mode::Sliding, Mode::Free];
 
-/// Table 2: what sends a node from the mode of the row to that of the column, in two lines.
+/// Table 2: the conditions, in two lines, that send a node from the mode of the row to that of the column.
 pub const TABLE_2: [[[&str; 2]; 3]; 3] = [
     [
         ["F_n > 0", "|F_t| < |T_max|"],
@@ -44,14 +44,14 @@ pub const TABLE_2: [[[&str; 2]; 3]; 3] = [
     [["g < 0, rough", ""], ["g < 0, smooth", ""], ["g > 0", ""]],
 ];
 
-/// Newton's table, whose columns are Table 2's; it does not ask which mode a node has.
+/// Newton's table, with the columns of Table 2; it does not depend on the node's mode.
 const NEWTON: [[&str; 2]; 3] = [
     ["F_n > k g", "|F_t+k s| ≤ lim"],
     ["F_n > k g", "|F_t+k s| > lim"],
     ["F_n ≤ k g", ""],
 ];
 
-/// What sends a node from mode to mode, by the rule's strategy; empty where all nodes are looked at together.
+/// The table of a rule's strategy; empty if the strategy treats all nodes together.
 pub fn table(rule: Rule) -> [[[&'static str; 2]; 3]; 3] {
     match rule {
         Rule::NewtonOpens | Rule::NewtonSticks | Rule::NewtonSlides => [NEWTON; 3],
@@ -67,7 +67,7 @@ pub fn table(rule: Rule) -> [[[&'static str; 2]; 3]; 3] {
     }
 }
 
-/// Where an iteration of a scene was; a finished run has its own names.
+/// The position of an iteration; finished runs name it differently.
 pub fn position_in(model: &Model, at: Position) -> String {
     let increment = model.increment_name(at.increment);
     match model.finished {
@@ -79,7 +79,7 @@ pub fn position_in(model: &Model, at: Position) -> String {
     }
 }
 
-/// Where a minor iteration was.
+/// The position of a minor iteration.
 pub fn position(at: Position) -> String {
     let again = if at.attempt > 1 {
         format!(" (attempt {})", at.attempt)

@@ -1,14 +1,14 @@
-//! The shape of a state as lines, for all who draw it: where nodes are, the curves of elements, what is to be seen, and
-//! what of a line lies in a window.
+//! The shape of a state as lines, for all front ends that draw it: node positions, curves of elements, the
+//! visible extent, and clipping.
 
 use stickslip_core::contact::element::Element;
 use stickslip_core::fem::lagrange;
 use stickslip_core::model::Model;
 
-/// A place in the scene or on paper.
+/// A point in the scene or on the sheet.
 pub type Point = [f64; 2];
 
-/// Straight pieces that an element's curve is drawn with.
+/// Number of straight pieces per element curve.
 const PIECES: usize = 12;
 
 /// The Lagrange curve through the nodes of an element.
@@ -31,7 +31,7 @@ pub fn curve(nodes: &[Point]) -> Vec<Point> {
         .collect()
 }
 
-/// The points whose Lagrange curve is that of an element of a master surface, whose nodes are at `place`.
+/// The points whose Lagrange curve is that of a master element; `place` gives the positions of nodes.
 pub fn element(element: Element<'_>, place: impl Fn(usize) -> Point) -> Vec<Point> {
     let nodes: Vec<Point> = element.nodes.iter().map(|&node| place(node)).collect();
     if !element.is_smooth() {
@@ -48,26 +48,26 @@ pub fn element(element: Element<'_>, place: impl Fn(usize) -> Point) -> Vec<Poin
 /// A rectangle in the scene.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bounds {
-    /// Least x and y.
+    /// Minimum x and y.
     pub low: Point,
-    /// Greatest x and y.
+    /// Maximum x and y.
     pub high: Point,
 }
 
 impl Bounds {
-    /// Holds no point yet.
+    /// Contains no points.
     pub const NOTHING: Bounds = Bounds {
         low: [f64::INFINITY; 2],
         high: [f64::NEG_INFINITY; 2],
     };
 
-    /// About the origin, where there is nothing to be seen.
+    /// Around the origin, for empty scenes.
     pub const UNIT: Bounds = Bounds {
         low: [-1.0, -1.0],
         high: [1.0, 1.0],
     };
 
-    /// Grows to hold a point; what is no number is left out.
+    /// Extends the bounds to a point; NaN is ignored.
     pub fn add(&mut self, point: Point) {
         for (axis, x) in point.into_iter().enumerate().filter(|(_, x)| x.is_finite()) {
             self.low[axis] = self.low[axis].min(x);
@@ -80,15 +80,15 @@ impl Bounds {
         [self.high[0] - self.low[0], self.high[1] - self.low[1]]
     }
 
-    /// Length from corner to corner.
+    /// Length of the diagonal.
     pub fn diagonal(&self) -> f64 {
         let [x, y] = self.size();
         x.hypot(y)
     }
 }
 
-/// What is to be seen of a scene whose nodes are at `place`: the bodies as they were and as they are, and what of the
-/// surfaces is near. `None` where it has no size.
+/// The visible extent of a scene with nodes at `place`: the undeformed and deformed bodies, and nearby parts of
+/// surfaces. `None` if it has no size.
 pub fn extent(model: &Model, place: &dyn Fn(usize) -> Point) -> Option<Bounds> {
     let mut bodies = Bounds::NOTHING;
     for node in model.bodies.iter().flat_map(|body| &body.nodes) {
@@ -115,14 +115,14 @@ pub fn extent(model: &Model, place: &dyn Fn(usize) -> Point) -> Option<Bounds> {
     (all.diagonal() > 0.0 && all.diagonal().is_finite()).then_some(all)
 }
 
-/// The same, rounded to coarse steps, so that the picture does not breathe while it is stepped through.
+/// The extent rounded to coarse steps, so that the picture does not rescale at every step.
 pub fn bounds(model: &Model, place: &dyn Fn(usize) -> Point) -> Bounds {
     let all = extent(model, place);
     let step = all.map_or(0.0, |all| all.diagonal() / 16.0);
     let Some(all) = all.filter(|_| step > 0.0 && step.is_finite()) else {
         return Bounds::UNIT;
     };
-    // A power of two is a step that itself seldom changes.
+    // With powers of two, the step itself seldom changes.
     let step = 2f64.powf(step.log2().ceil());
     let down = |x: f64| (x / step).floor() * step;
     let up = |x: f64| (x / step).ceil() * step;
@@ -132,8 +132,8 @@ pub fn bounds(model: &Model, place: &dyn Fn(usize) -> Point) -> Bounds {
     }
 }
 
-/// The part of a line inside the rectangle from `low` to `high` (Liang and Barsky). `None` if there is none, or if an end
-/// is not a number.
+/// The part of a line inside the rectangle from `low` to `high` (Liang and Barsky); `None` if there is none or
+/// an end is NaN.
 pub fn clip(from: Point, to: Point, low: Point, high: Point) -> Option<(Point, Point)> {
     if !from.iter().chain(&to).all(|x| x.is_finite()) {
         return None;
@@ -156,7 +156,7 @@ pub fn clip(from: Point, to: Point, low: Point, high: Point) -> Option<(Point, P
     (enter <= leave).then(|| (mix(from, to, enter), mix(from, to, leave)))
 }
 
-/// The place on the way from one point to another.
+/// Linear interpolation between two points.
 pub fn mix(from: Point, to: Point, part: f64) -> Point {
     [0, 1].map(|axis| from[axis] + (to[axis] - from[axis]) * part)
 }

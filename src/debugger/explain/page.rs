@@ -1,8 +1,8 @@
-//! The page of the diagnosis: what happened, which nodes and where, why, what was tried, and what to do, best first.
+//! The diagnosis page: what happened, where, why, what was tried, and what to do, most useful first.
 //!
-//! A state that failed is asked why it did; any other one, which states of the frozen problem that is solved next are
-//! consistent. What takes long (trials of remedies, the load up to which there is an answer) comes after what does not, so
-//! that a reader sees the page grow.
+//! For a failed state it explains the failure; for other states it shows the consistent states of the frozen
+//! problem that is solved next. Slow parts (trials of remedies, the load that smaller steps reach) come last,
+//! so that the page grows while it is read.
 
 use super::advice::{Advice, FINER, advice};
 use super::attempt::Attempt;
@@ -30,13 +30,13 @@ use stickslip_core::step::stepper::Stepper;
 use stickslip_scene::format::spec::Spec;
 use stickslip_scene::number::{four, plain};
 
-/// Shown where the first increment fails and nodes start inside their surface.
-const OVERLAP: &str = "where: nodes start inside their surface; settings.initial_gaps=ramp pushes them out over the first leg, adjust moves them onto the surface";
-/// Most remedies that are tried for a page; the list of remedies tries all.
+/// Shown if the first increment fails and nodes start inside their surface.
+const OVERLAP: &str = "where: nodes start inside their surface; settings.initial_gaps=ramp moves them out over the first leg of the path, adjust moves them onto the surface";
+/// Maximum number of remedies tried for the page; the list of remedies tries all.
 const MOST_TRIED: usize = 6;
 
-/// Makes the page of a state. `spec` is the scene as its author wrote it, of which a finer mesh is made; `tell` sees the
-/// page grow; `None` where it was stopped.
+/// Makes the page of a state. `spec` is the scene as written by its author, from which a finer mesh is
+/// generated; calls `tell` as the page grows. `None` if interrupted.
 pub fn page(
     stepper: &mut Stepper,
     state: &State,
@@ -61,13 +61,13 @@ pub fn page(
         });
     };
     let mut page = Page::of(stepper, state, failure, stop);
-    tell(&page.shown("trying what helps …"));
+    tell(&page.shown("trying remedies …"));
     let remedies = page.remedies(stepper.model(), state, failure);
     for remedy in &remedies {
         tell(&page.shown(&format!("trying {} …", remedy.label)));
         match attempt(stepper, state, spec, remedy, stop) {
             Some(trial) => page.trials.push((remedy.clone(), trial)),
-            // A scene that cannot be changed this way gives no trial.
+            // The scene cannot be changed this way, so there is no trial.
             None if matches!(remedy.how, How::Restart(_)) && !stop() => {}
             None => return None,
         }
@@ -83,7 +83,7 @@ pub fn page(
     }
     page.facts.extend(limit_load(stepper, state, failure, stop));
     if page.asks_how_far(failure) {
-        tell(&page.shown("looking how far smaller steps come …"));
+        tell(&page.shown("checking how far smaller steps reach …"));
         let reached = reach(stepper, state, stop)?;
         let far = format!("how far: {}", reached.words(stepper.model(), failure));
         page.facts.push(far);
@@ -91,7 +91,7 @@ pub fn page(
     Some(page.shown(""))
 }
 
-/// What a failure's page says without trying anything, as `run` prints it.
+/// The part of a failure's page that needs no trials, as printed by `run`.
 pub fn facts(
     stepper: &mut Stepper,
     state: &State,
@@ -105,19 +105,19 @@ pub fn facts(
     lines
 }
 
-/// A page as it is made.
+/// The page in progress.
 struct Page {
     what: Vec<String>,
     /// Where and why.
     facts: Vec<String>,
-    /// What is to be done in the file, or by hand.
+    /// Remedies in the scene's file or by hand.
     by_hand: Vec<&'static str>,
-    /// What was tried.
+    /// Trials of remedies.
     trials: Vec<(Remedy, Trial)>,
-    /// Whether a finer mesh can help, and what came of it where it was tried.
+    /// Whether a finer mesh can help.
     refines: bool,
     finer: Option<Finer>,
-    /// The frozen problem, where it has something to say.
+    /// The examination of the frozen problem.
     found: Examination,
 }
 
@@ -159,9 +159,9 @@ impl Page {
             state.next.increment,
             plain(state.load_factor),
             match failure {
-                // Who takes part is told node by node below.
+                // The members are described one by one below.
                 Failure::MajorCycle(round) => format!(
-                    "the major iterations {}-cycle since major {}, with {} nodes that take part",
+                    "major iterations cycle with period {} from major {}; {} nodes take part",
                     round.period,
                     round.start,
                     round.members.len()
@@ -173,7 +173,7 @@ impl Page {
         page
     }
 
-    /// Where and why, by the kind of failure.
+    /// Where and why, for each kind of failure.
     fn explain(
         &mut self,
         stepper: &mut Stepper,
@@ -235,7 +235,7 @@ impl Page {
                     judged::place(model, &model.places(&state.u), found)
                 ));
                 self.facts.push(format!(
-                    "why: the iterations have converged, and positions and forces are against a law all the same: {} is {:.1e}, {:.1e} is allowed",
+                    "why: the iterations have converged, but the state violates a law: {} is {:.1e}, limit {:.1e}",
                     found.law.name(), found.amount, found.allowed
                 ));
             }
@@ -254,25 +254,25 @@ impl Page {
                 unstable: Some(stability),
                 ..
             } => self.facts.push(format!(
-                "why: {}, and the least increment still ends there: no stable equilibrium is near",
+                "why: {}, even with the smallest increment: no stable equilibrium is near",
                 leads_away(*stability)
             )),
             Failure::Leapt {
                 motion, predicted, ..
             } => {
                 self.facts.push(format!(
-                    "why: {:.1} times the motion that tangent and last increments predict, and the least increment still does it: between the two states lies a part of the path that this load does not hold in equilibrium",
+                    "why: the motion is {:.1} times what the tangent and the previous increments predict, even with the smallest increment: load control skips the part of the path between the two states",
                     motion / predicted.max(f64::MIN_POSITIVE)
                 ));
             }
             Failure::DoubledBack => self.facts.push(
-                "why: displacements and load go back on the last increment's way: the path turns by more than a right angle here, or ends".into(),
+                "why: displacements and load turn back along the last increment: the path turns by more than a right angle here, or ends".into(),
             ),
             Failure::Unmoved => self.facts.push(
-                "why: the tangent at the start of the increment moves other things, but not what history.arc measures".into(),
+                "why: the tangent at the start of the increment does not change what history.arc measures".into(),
             ),
             Failure::Restless { .. } => self.facts.push(
-                "why: past the load at which equilibrium ends nothing stops what moves".into(),
+                "why: beyond the last equilibrium load nothing stops the motion".into(),
             ),
             Failure::RoundOff { .. } => self.facts.extend(stiffest(stepper.model())),
             // The element comes first.
@@ -281,10 +281,10 @@ impl Page {
     }
 
     fn not_again(&mut self) {
-        self.facts.push("its attempt, made again from its start, does not end like this: something was changed by hand on the way".into());
+        self.facts.push("repeated from its start, the attempt ends differently: something was changed by hand during it".into());
     }
 
-    /// What this major iteration's first strategy ended with before the ladder went on.
+    /// The first strategy's failure in this major iteration, before the ladder continued.
     fn explain_first(&mut self, model: &Model, first: &Failure) {
         let members: &[(usize, Vec<stickslip_core::model::Mode>)] = match first {
             Failure::Cycle(cycle) => &cycle.members,
@@ -294,7 +294,7 @@ impl Page {
             .nodes
             .extend(members.iter().map(|member| member.0));
         self.facts.push(format!(
-            "where: the strategy that it began with ended so: {}",
+            "where: the first strategy failed: {}",
             describe_failure(model, first)
         ));
     }
@@ -319,7 +319,7 @@ impl Page {
         }
     }
 
-    /// What is tried for the page: the consistent states, and what helps against a failure of the kind.
+    /// The remedies tried for the page: the consistent states, and those for this kind of failure.
     fn remedies(&self, model: &Model, state: &State, failure: &Failure) -> Vec<Remedy> {
         let mut all = Remedy::answers(model, &self.found);
         all.truncate(2);
@@ -338,7 +338,7 @@ impl Page {
         all
     }
 
-    /// Whether it is worth while to look how far smaller steps come: not where a trial has come to the load.
+    /// Whether to check how far smaller steps reach: not if a trial has reached the load.
     fn asks_how_far(&self, failure: &Failure) -> bool {
         let helped = self.trials.iter().any(|(_, trial)| helps(trial));
         let can = !matches!(
@@ -351,18 +351,18 @@ impl Page {
         can && !helped
     }
 
-    /// The page as far as it is made.
+    /// The page so far.
     fn shown(&self, going_on: &str) -> Examination {
         let mut lines = self.what.clone();
         let mut details = Vec::new();
-        // Where and why come before what to do, all else after it.
+        // Where and why come before what to do, everything else after it.
         for fact in &self.facts {
             match HEADS.iter().any(|head| fact.starts_with(head)) {
                 true => lines.push(fact.clone()),
                 false => details.push(fact.clone()),
             }
         }
-        // So does what explains in the frozen problem, or else what comes first there.
+        // The cause in the frozen problem also comes first.
         let all = &self.found.lines;
         let explains = |line: &&String| HEADS.iter().any(|head| line.starts_with(head));
         let first = match all.iter().any(|line| explains(&line)) {
@@ -382,20 +382,20 @@ impl Page {
         }
     }
 
-    /// Remedies, best first: those that helped, those that did not, and those that were not tried.
+    /// Remedies, best first: those that helped, those that did not, and those not tried.
     fn to_do(&self) -> Vec<String> {
         let mut trials: Vec<&(Remedy, Trial)> = self
             .trials
             .iter()
             .filter(|(_, trial)| helps(trial))
             .collect();
-        // What lasts over the increments to come is better than what helps in this one.
+        // A remedy that lasts over later increments is better than one for this increment only.
         trials.sort_by_key(|(remedy, trial)| {
             let lasts = matches!(
                 remedy.how,
                 How::Set(..) | How::Increment(_) | How::IncrementOn(..)
             );
-            // A cause in the scene can only be removed by changing the scene.
+            // A cause in the scene can be removed only by changing the scene.
             let scene = matches!(remedy.how, How::Restart(_));
             (!scene, !lasts, trial.factorizations, trial.minors)
         });
@@ -405,8 +405,8 @@ impl Page {
                 n => format!("{n} minor iterations"),
             };
             let from = match remedy.how {
-                How::Restart(_) => "tried from the start: it gets past this load",
-                _ => "tried: it converges",
+                How::Restart(_) => "tried from the start: passes this load",
+                _ => "tried: converges",
             };
             format!(
                 "{}: {} ({from}, {minors})",
@@ -418,7 +418,7 @@ impl Page {
         let finer = finer.filter(|finer| finer.run.failure.is_none());
         let finer = finer.map(|finer| {
             format!(
-                "a finer mesh: --set refine={} (tried from the start: it gets past this load, {} minor iterations)",
+                "a finer mesh: --set refine={} (tried from the start: passes this load, {} minor iterations)",
                 finer.refine, finer.run.minors
             )
         });
@@ -438,7 +438,7 @@ impl Page {
         vain.extend(self.finer.iter().filter_map(|finer| {
             let end = match finer.run.failure.as_ref()? {
                 Some(failure) => remedies::end_words(&TrialEnd::Failed(failure.clone())),
-                None => format!("{} minors", finer.run.minors),
+                None => format!("{} minor", finer.run.minors),
             };
             Some(format!("a finer mesh, refine={} ({end})", finer.refine))
         }));
@@ -457,20 +457,20 @@ impl Page {
     }
 }
 
-/// Why equations may be singular although no rigid motion of a body is free.
+/// Why equations may be singular although no body has a free rigid motion.
 fn unexplained(model: &Model) -> &'static str {
     let given = |body: &Body| matches!(body.kind, BodyKind::Linear(_));
     match model.bodies.iter().any(given) {
         true => {
-            "why: the tangent has a direction in which the forces do not change: the matrix of a body is singular and no contact makes up for it, or the load has come to its largest value on this branch (a limit point)"
+            "why: in one direction the forces do not change: the matrix of a body is singular and no contact restrains it, or the load has reached its maximum on this branch (a limit point)"
         }
         false => {
-            "why: the tangent has a direction in which the forces do not change, with modes that hold every body: the load has come to its largest value on this branch (a limit point), or contacts repeat what supports do"
+            "why: in one direction the forces do not change, although every body is held: the load has reached its maximum on this branch (a limit point), or contacts and supports are redundant"
         }
     }
 }
 
-/// Where a node stands that can neither move nor have its surface moved.
+/// Where a penetrating node and its surface are both immovable.
 fn over_constrained(stepper: &mut Stepper, state: &State, slave: usize) -> Option<String> {
     stepper.restore(state);
     let over = stepper.kinematics(slave)?;
@@ -479,13 +479,13 @@ fn over_constrained(stepper: &mut Stepper, state: &State, slave: usize) -> Optio
     let [x, y] = model.place(&state.u, contact.node).map(four);
     let [n_x, n_y] = over.normal.map(four);
     Some(format!(
-        "where: {} at ({x}, {y}), its gap {} along the normal ({n_x}, {n_y}); supports or prescribed motions hold it along that normal, and what it touches is rigid",
+        "where: {} at ({x}, {y}), its gap {} along the normal ({n_x}, {n_y}); supports or prescribed motions fix it along that normal, and its surface is rigid",
         names::slave(model, slave),
         four(over.gap)
     ))
 }
 
-/// Which body has the stiffest forces.
+/// The body with the stiffest forces.
 fn stiffest(model: &Model) -> Option<String> {
     let stiffness = |body: &Body| match &body.kind {
         BodyKind::Beam(beam) => Some(("EA", beam.ea)),
@@ -502,17 +502,17 @@ fn stiffest(model: &Model) -> Option<String> {
         .filter_map(|body| Some((body, stiffness(body)?)));
     let (body, (word, value)) = all.max_by(|a, b| a.1.1.total_cmp(&b.1.1))?;
     Some(format!(
-        "why: body {} is the stiffest, {word} = {}: its forces are large numbers that cancel, and what their last digits leave is more than {:.0e} of the loads",
+        "why: body {} is the stiffest, {word} = {}: its forces are large numbers that cancel, with a round-off above {:.0e} of the loads",
         body.name,
         four(value),
         Norms::LOUDEST
     ))
 }
 
-/// Beginnings of lines that come before what to do.
+/// First words of the lines that come before what to do.
 const HEADS: [&str; 5] = ["where:", "why:", "what would", "since when:", "how far:"];
 
-/// Whether a trial came to the load with all laws kept.
+/// Whether a trial reached the load without violations.
 fn helps(trial: &Trial) -> bool {
     trial.end == TrialEnd::Converged && trial.left.is_none_or(|left| left.held == 0)
 }

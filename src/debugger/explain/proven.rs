@@ -1,5 +1,5 @@
-//! What the matrix of a frozen problem proves, in words: that there is one state at most, and where T_max goes while the
-//! modes repeat.
+//! What the matrix of a frozen problem proves: that there is at most one consistent state, and the limit of
+//! T_max while the modes repeat.
 
 use stickslip_core::interface::census::{Census, MOST_SEARCHED};
 use stickslip_core::interface::family::{Family, families};
@@ -9,37 +9,37 @@ use stickslip_core::interface::uniqueness::{Inapplicable, Uniqueness};
 use stickslip_core::strategy::method;
 use stickslip_scene::number::four;
 
-/// Minor iterations that are run to see where T_max goes.
+/// Number of minor iterations used to follow T_max.
 const AHEAD: usize = 200;
-/// Most nodes of a cycle of which it is told where T_max goes.
+/// Maximum number of nodes of a cycle for which T_max is analysed.
 const MOST_OF_CYCLE: usize = 64;
-/// Factors below this are round-off: T_max is at its fixed point after one round.
+/// Factors below this are round-off: T_max reaches its fixed point within one period.
 const AT_ONCE: f64 = 1e-9;
-/// Most nodes whose factors, or whose T_max, are told.
+/// Maximum number of nodes named.
 const MOST_NAMED: usize = 3;
 
-/// What the matrix says of the number of states; `name` names a node by its place.
+/// What the matrix proves about the number of states; `name` returns the name of a node by index.
 pub fn uniqueness_words<'a>(found: Uniqueness, name: &impl Fn(usize) -> &'a str) -> String {
     let why = match found {
         Uniqueness::Unique { spare, carried } => {
             let but = if carried {
-                " (but for forces that supports carry)"
+                " (except for forces carried by supports)"
             } else {
                 ""
             };
             return match spare.is_infinite() {
                 true => format!(
-                    "unique, for this frozen problem: without friction its matrix allows one state at most{but}"
+                    "unique for this frozen problem: without friction its matrix allows at most one state{but}"
                 ),
                 false => format!(
-                    "unique, for this frozen problem: its matrix allows one state at most{but}, and would with tan φ up to \
-                     {spare:.3} times as large"
+                    "unique for this frozen problem: its matrix allows at most one state{but}, \
+                     even with tan φ up to {spare:.3} times as large"
                 ),
             };
         }
         Uniqueness::Unproven { spare } => {
             return format!(
-                "the matrix alone does not prove that there is one state at most: it would with tan φ {spare:.3} times as large"
+                "the matrix does not prove uniqueness; it would with tan φ {spare:.3} times as large"
             );
         }
         Uniqueness::Not(why) => why,
@@ -48,19 +48,19 @@ pub fn uniqueness_words<'a>(found: Uniqueness, name: &impl Fn(usize) -> &'a str)
         Inapplicable::Cohesion(place) => {
             format!("{} has cohesion, which it loses when it opens", name(place))
         }
-        Inapplicable::Singular => "some forces move nothing, or nothing holds a body".into(),
+        Inapplicable::Singular => "some forces cause no motion, or a body is unrestrained".into(),
         Inapplicable::Semidefinite(zero) => {
             let are = if zero == 1 { "is" } else { "are" };
             format!(
-                "it is singular, {zero} of its eigenvalues {are} 0, so that forces need not be unique"
+                "it is singular ({zero} of its eigenvalues {are} 0), so that forces need not be unique"
             )
         }
         Inapplicable::Indefinite => "it is not positive definite".into(),
     };
-    format!("the matrix alone says nothing of how many states there are: {why}")
+    format!("the matrix proves nothing about the number of states: {why}")
 }
 
-/// The families of states that differ in their forces alone, a line each.
+/// Families of states that differ only in their forces, one line each.
 pub fn family_words<'a>(
     problem: &InterfaceProblem,
     census: &Census,
@@ -87,10 +87,10 @@ pub fn family_words<'a>(
         let forces: Vec<String> = forces.collect();
         let more = match family.ranges.len().saturating_sub(MOST_NAMED) {
             0 => String::new(),
-            more => format!("; and so on at {more} more"),
+            more => format!("; and {more} more nodes"),
         };
         format!(
-            "forces are a family of dimension {}: the motions are the same, the forces are not unique ({which}): {}{more}",
+            "the forces are not unique, with a family of dimension {} for the same motion ({which}): {}{more}",
             family.dimension,
             forces.join("; ")
         )
@@ -106,17 +106,19 @@ fn end(value: f64) -> String {
     }
 }
 
-/// More nodes than a search is made over.
+/// Message that there are too many nodes for a search.
 pub fn too_many(nodes: usize) -> String {
-    format!("States are counted of at most {MOST_SEARCHED} slave nodes, and {nodes} can touch.")
+    format!(
+        "Consistent states are counted for at most {MOST_SEARCHED} slave nodes; {nodes} can touch."
+    )
 }
 
-/// Where T_max goes while the modes repeat.
+/// The limit of T_max while the modes repeat, in words.
 pub fn spiral_words(problem: &InterfaceProblem, spiral: &Spiral) -> String {
     let Spiral { period, radius, .. } = spiral;
     let round = match period {
-        1 => "an iteration".to_owned(),
-        _ => format!("a round of {period} iterations"),
+        1 => "in each iteration".to_owned(),
+        _ => format!("in each period of {period} iterations"),
     };
     let more = match spiral.iterations(problem.force) {
         Some(more) => format!("after {more} more iterations it repeats to 1e-12"),
@@ -125,11 +127,11 @@ pub fn spiral_words(problem: &InterfaceProblem, spiral: &Spiral) -> String {
     let away = spiral.distance;
     match spiral.fate {
         Fate::Cycles if *radius <= AT_ONCE => {
-            format!("the modes go round for ever, {round}, and T_max is the same in each")
+            format!("the modes repeat endlessly, with the same T_max {round}")
         }
         Fate::Cycles => format!(
-            "T_max spirals into the cycle by a factor of {radius:.4} {round} ({away:.3e} away after {} iterations); {more}, \
-             but the modes go round for ever",
+            "T_max spirals into the cycle by a factor of {radius:.4} {round} ({away:.3e} away \
+             after {} iterations); {more}, but the modes repeat endlessly",
             spiral.start
         ),
         Fate::Settles => format!(
@@ -138,13 +140,13 @@ pub fn spiral_words(problem: &InterfaceProblem, spiral: &Spiral) -> String {
             spiral.start
         ),
         Fate::SwingsApart => format!(
-            "T_max swings apart by a factor of {radius:.4} {round}: it cannot settle with these modes"
+            "T_max diverges by a factor of {radius:.4} {round}: it cannot settle with these modes"
         ),
-        Fate::Passes => "the modes repeat for a while, and will change".to_owned(),
+        Fate::Passes => "the modes repeat for a while, but will change".to_owned(),
     }
 }
 
-/// Where T_max goes in a cycle that was found: nothing where it comes to rest at once.
+/// The limit of T_max in a cycle, in words; empty if it converges at once.
 pub fn cycle_words<'a>(
     problem: &InterfaceProblem,
     name: &impl Fn(usize) -> &'a str,
@@ -162,7 +164,7 @@ pub fn cycle_words<'a>(
     }
 }
 
-/// T_max at the fixed point, of the first nodes.
+/// The fixed point of T_max at the first nodes.
 fn fixed_words<'a>(found: &Spiral, name: &impl Fn(usize) -> &'a str) -> Option<String> {
     let all = found.places.iter().zip(&found.fixed);
     let told = all
@@ -171,12 +173,12 @@ fn fixed_words<'a>(found: &Spiral, name: &impl Fn(usize) -> &'a str) -> Option<S
     let told = told.collect::<Vec<_>>().join(", ");
     let more = match found.places.len().saturating_sub(MOST_NAMED) {
         0 => String::new(),
-        more => format!(", and so on at {more} more"),
+        more => format!(", and {more} more nodes"),
     };
     (!told.is_empty()).then(|| format!("  its fixed point: T_max = {told}{more}"))
 }
 
-/// Where T_max goes from a problem's states, and on what that depends: nothing where the minor iterations soon settle.
+/// The limit of T_max from a problem's states, and its cause, in words; empty if the minor iterations settle soon.
 pub fn slow_words<'a>(problem: &InterfaceProblem, name: &impl Fn(usize) -> &'a str) -> Vec<String> {
     let Some(found) = spiral(problem, method(problem.settings.strategy), AHEAD) else {
         return Vec::new();
@@ -194,18 +196,18 @@ pub fn slow_words<'a>(problem: &InterfaceProblem, name: &impl Fn(usize) -> &'a s
     factors.sort_by(|a, b| b.1.total_cmp(&a.1));
     lines.extend(factors.iter().take(MOST_NAMED).map(|&(place, factor)| {
         format!(
-            "  tan φ |W_nt / W_nn| = {factor:.4} at {}, by itself",
+            "  tan φ |W_nt / W_nn| = {factor:.4} at {} alone",
             name(place)
         )
     }));
     if found.fate == Fate::SwingsApart {
-        lines.push("  settings.t_max=consistent solves with the T_max of this iteration".into());
+        lines.push("  settings.t_max=consistent uses the T_max of the same iteration".into());
     }
     lines
 }
 
-/// tan φ |W_nt / W_nn| of a node, if it slides alone: the factor by which its lagged T_max converges, an iteration. W is
-/// the compliance of the node, all others going on with what they do. `None` where it cannot be told.
+/// tan φ |W_nt / W_nn| of a node that slides alone: the factor by which its lagged T_max converges per
+/// iteration. W is the compliance of the node with all others frozen. `None` if unknown.
 pub fn factor(problem: &InterfaceProblem, place: usize) -> Option<f64> {
     let alone = problem.reduced(&[place])?;
     let r = &alone.relation.response;

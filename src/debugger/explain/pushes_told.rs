@@ -1,11 +1,13 @@
-//! Who pushed whom in an attached solver: from the numbers that it told of two iterations, and the interface problem between them.
+//! Pushes in an attached solver, computed from the numbers that it reported for two iterations and the
+//! interface problem between them.
 //!
-//! With total forces f, (gap, u) = W f + q is linear, and each contact's mode says which two numbers its equations fix. By how much
-//! their values differ between the two iterations is what the contact's change did ([`influence`](super::influence)). What a
-//! fixed contact sticks to, or at which bound one slides, need not be known: the numbers that were told say it.
+//! With total forces f, (gap, u) = W f + q is linear, and each contact's mode determines which two numbers its
+//! equations fix. The differences of these numbers between the two iterations are the contact's change
+//! ([`influence`](super::influence)). The position where a fixed contact sticks and the friction bound of a
+//! sliding one are implied by the reported numbers.
 //!
-//! It is told only where W f + q gives the gaps of both iterations, and nothing but modes and friction bounds has changed
-//! between them.
+//! The pushes are available only if W f + q matches the gaps of both iterations, and only modes and friction
+//! bounds have changed between them.
 
 use super::attached;
 use super::influence::{Push, left_side, spread};
@@ -20,27 +22,29 @@ use stickslip_core::step::event::Event;
 use stickslip_core::step::solver::{GoesBack, Offers, Posed};
 use stickslip_core::step::state::State;
 
-/// Most contacts whose problem is asked for at every look: its numbers go through a pipe, as text.
+/// Maximum number of contacts for which the problem is requested in every iteration, because it is sent as text
+/// through a pipe.
 const MOST: usize = 100;
-/// What numbers may differ by that should be equal, in parts of the largest of their kind.
+/// Relative tolerance for values that should agree.
 const SAME: f64 = 1e-6;
 
-/// Two minor iterations in the same frozen problem, one after the other.
+/// Two consecutive minor iterations in the same frozen problem.
 pub struct Iterations {
-    /// The state that the later one started from.
+    /// The state before the later one.
     pub start: Box<State>,
-    /// What each of the two found.
+    /// The events of both.
     pub found: [Arc<Event>; 2],
 }
 
-/// Whether a solver is asked for its problem at every look: it offers it, goes back to any state, and has not too many contacts.
+/// Whether a solver is asked for its problem in every iteration: it reports the problem, can return to any
+/// state, and has few enough contacts.
 pub fn are_told(model: &Model, offers: &Offers) -> bool {
     let few = model.contacts.len() <= MOST;
     offers.problem && offers.goes_back == GoesBack::ToAny && few
 }
 
-/// What pushed a contact from one iteration to the next, where `posed` is the problem at the start of the later one. `None`
-/// where the problem gives other numbers than the solver told.
+/// The pushes on a contact between the iterations; `posed` is the problem at the start of the later one. `None`
+/// if the problem does not match the solver's numbers.
 pub fn pushes(
     model: &Model,
     iterations: &Iterations,
@@ -48,7 +52,7 @@ pub fn pushes(
     slave: usize,
 ) -> Option<Vec<Push>> {
     let Some(target) = posed.contacts.iter().position(|&known| known == slave) else {
-        // What the problem leaves out, nothing pushes that is in it.
+        // Contacts outside the problem are not affected by those in it.
         return Some(Vec::new());
     };
     let [before, after] = &iterations.found;
@@ -81,7 +85,7 @@ pub fn pushes(
         if change.abs() <= SAME * scale {
             return 0.0;
         }
-        // What keeps its mode can have another bound, and nothing else.
+        // With the same mode, only the bound can have changed.
         is_explained &= then == Mode::Sliding && row.motion == Motion::None;
         change
     };
@@ -96,17 +100,17 @@ pub fn pushes(
     is_explained.then(|| found.into_iter().flatten().map(push).collect())
 }
 
-/// What an iteration told of the problem's contacts.
+/// The reported numbers of an iteration for the problem's contacts.
 struct Told {
     modes: Vec<Mode>,
     /// f_n and f_t of each.
     forces: DVector<f64>,
-    /// gap and u of each, by the problem.
+    /// gap and u of each, computed from the problem.
     motion: DVector<f64>,
 }
 
 impl Told {
-    /// `None` where forces were not told, or the problem gives other gaps.
+    /// `None` if forces were not reported, or the problem gives other gaps.
     fn new(posed: &Posed, nodes: &[ContactRecord]) -> Option<Told> {
         let records = posed.contacts.iter().map(|&slave| nodes.get(slave));
         let records: Vec<&ContactRecord> = records.collect::<Option<_>>()?;
@@ -129,17 +133,17 @@ impl Told {
         })
     }
 
-    /// Forces and motions of a contact, as its equations have them.
+    /// Forces and motions of a contact, in the convention of its equations.
     fn given(&self, place: usize) -> NodeIncrement {
         let of = |numbers: &DVector<f64>| [numbers[2 * place], numbers[2 * place + 1]];
         NodeIncrement {
             force: of(&self.forces),
-            // Those of the surface relative to the node.
+            // Motion of the surface relative to the node.
             motion: of(&self.motion).map(|x| -x),
         }
     }
 
-    /// Whether all contacts that slide do so at f_t = ± (μ f_n + c), with the present normal force.
+    /// Whether all sliding contacts satisfy f_t = ± (μ f_n + c) with the current normal force.
     fn follows_law(&self, posed: &Posed) -> bool {
         let most = SAME * self.forces.amax();
         (0..self.modes.len()).all(|place| {

@@ -1,5 +1,5 @@
-//! Up to which load there is an answer: the increment that failed is walked again from the last equilibrium in steps
-//! that are cut as long as they fail, whatever the strategy.
+//! The largest load that smaller steps reach: repeats the failed increment from the last equilibrium in steps
+//! that are cut whenever they fail, with any strategy.
 
 use super::report;
 use std::mem::discriminant;
@@ -13,46 +13,46 @@ use stickslip_core::step::state::State;
 use stickslip_core::step::stepper::Stepper;
 use stickslip_scene::number::six;
 
-/// Steps are cut to no less than this part of the increment.
+/// Smallest step, as a fraction of the increment.
 const FINEST: f64 = 1.0 / 4096.0;
-/// Most steps that are tried.
+/// Maximum number of steps tried.
 const TRIALS: u32 = 60;
-/// Most minor iterations of a step.
+/// Maximum number of minor iterations per step.
 const MINORS: u64 = 400;
 
-/// How far it goes.
+/// Result of the smaller steps.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reach {
-    /// Load factor that was come to.
+    /// Load factor reached.
     pub load: f64,
-    /// The last equilibrium from which it set out, by its load factor.
+    /// Load factor of the last equilibrium before the failure.
     pub from: f64,
-    /// Load factor that failed.
+    /// Load factor of the failed increment.
     pub wanted: f64,
-    /// The state that was reached.
+    /// State reached.
     pub at: Box<State>,
-    /// Size of the step that failed last, and of what. `None` where the load that failed was come to, or the number of
-    /// trials was used up.
+    /// Size and failure of the last failed step. `None` if the load was reached, or the number of trials was
+    /// used up.
     pub ends: Option<(f64, Failure)>,
 }
 
 impl Reach {
-    /// In words; `first` is what the increment failed of.
+    /// Describes the result; `first` is the failure of the increment.
     pub fn words(&self, model: &Model, first: &Failure) -> String {
         let Reach { load, wanted, .. } = self;
         match &self.ends {
             None if load == wanted => {
-                format!("in smaller steps load {wanted} is reached")
+                format!("smaller steps reach load {wanted}")
             }
-            None => format!("in smaller steps it comes to load {load} at least"),
+            None => format!("smaller steps reach at least load {load}"),
             Some((size, failure)) => {
                 let why = match discriminant(failure) == discriminant(first) {
-                    true => "the same".to_owned(),
+                    true => "the same failure".to_owned(),
                     false => report::describe_failure(model, failure),
                 };
                 let far = match *load == self.from {
                     true => format!("not even a step of {size:.1e} beyond load {load} succeeds"),
-                    false => format!("in smaller steps it comes to load {}", six(*load)),
+                    false => format!("smaller steps reach load {}", six(*load)),
                 };
                 format!("{far}; there: {why}")
             }
@@ -60,8 +60,8 @@ impl Reach {
     }
 }
 
-/// Walks the increment that failed in a state, in steps that are cut. `None` where that was stopped. The stepper is left
-/// anywhere.
+/// Repeats the increment that failed in a state, in steps that are cut when they fail. `None` if interrupted.
+/// The stepper's final state is unspecified.
 pub fn reach(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -> Option<Reach> {
     let (from, wanted) = (state.start.load_factor, state.load_factor);
     let whole = (wanted - from).abs();
@@ -95,7 +95,7 @@ pub fn reach(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -> O
     })
 }
 
-/// One step of this size from an accepted state: what is accepted, or why not.
+/// Takes one step of this size from an accepted state.
 fn step(
     stepper: &mut Stepper,
     from: &State,
@@ -107,11 +107,11 @@ fn step(
     let until = Until::end().minors(MINORS).interrupted_by(stop);
     let end = stepper.drive(until, |stepper| match &stepper.event().outcome {
         Outcome::Increment { jumped: false, .. } => ControlFlow::Break(Ok(stepper.state().clone())),
-        // A state that has left the branch is no answer near the last state.
+        // A jump to another branch does not count as reaching the load.
         Outcome::Increment { .. } => {
             ControlFlow::Break(Err(Failure::Singular(Singular::Unexplained)))
         }
-        // Cutting is done here.
+        // This function does the cutting itself.
         Outcome::Cut { why, .. }
         | Outcome::Leaps { why, .. }
         | Outcome::Fallback { why, .. }

@@ -1,7 +1,7 @@
-//! Remedies for an increment that does not converge: each is tried from the same state, and measured.
+//! Tries remedies for an increment that does not converge, each from the same state, and measures them.
 //!
-//! What there is to try is in [`super::remedy`]. A trial ends where the load that failed is accepted, where it fails, or
-//! after [`BUDGET`] minor iterations. What it did is kept as steps, so that the chosen one can be done again in a branch.
+//! [`super::remedy`] lists the remedies. A trial ends when the failed load is accepted, when it fails, or after
+//! [`BUDGET`] minor iterations. Its steps are recorded, so that the chosen remedy can be repeated in a branch.
 
 use super::advice::{Advice, advice};
 use super::examination::{Examination, frozen};
@@ -24,21 +24,21 @@ use stickslip_core::step::stepper::Stepper;
 use stickslip_scene::format::paths;
 use stickslip_scene::format::spec::Spec;
 
-/// Most minor iterations of a trial.
+/// Maximum number of minor iterations of a trial.
 pub const BUDGET: u32 = 400;
-/// Most iterations of a trial on an attached solver, which may take its time.
+/// Maximum number of iterations of a trial on an attached solver, which may be slow.
 const BUDGET_ATTACHED: u32 = 60;
-/// A node keeps its mode while the inequality is violated by less than this, relatively.
+/// A node keeps its mode if the inequality is violated by less than this, relatively.
 pub const HYSTERESIS: f64 = 1e-3;
-/// Violations below this, relatively, are round-off.
+/// Relative violations below this are round-off.
 pub const CLEAN: f64 = 1e-8;
 
 /// How a trial ended.
 #[derive(Debug, Clone, PartialEq)]
 pub enum TrialEnd {
-    /// The load that failed was accepted.
+    /// The failed load was accepted.
     Converged,
-    /// A state was accepted, as held modes or the settings want it, that the judge found against this law.
+    /// A state was accepted that violates this law, because of held modes or settings.
     Against(Law),
     /// It failed.
     Failed(Failure),
@@ -46,51 +46,51 @@ pub enum TrialEnd {
     Budget,
 }
 
-/// Amounts below this are round-off, and none.
+/// Amounts below this are round-off and shown as zero.
 const ROUND_OFF: f64 = 1e-14;
 
-/// What is left of violations in the accepted state, over the scale of forces and the length of the scene.
+/// Remaining violations in the accepted state, relative to the scale of forces and the length of the scene.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Left {
-    /// Deepest penetration, or largest distance over which a force acts (length).
+    /// Largest penetration, or largest gap with a force across it (length).
     pub penetration: f64,
-    /// Largest tension of a touching node (force).
+    /// Largest tension of a node in contact (force).
     pub tension: f64,
-    /// Largest |F_t| beyond what friction can give (force).
+    /// Largest |F_t| beyond the friction limit (force).
     pub shear: f64,
-    /// Nodes whose mode Table 2 would change, were they not held.
+    /// Number of held nodes whose mode Table 2 would change.
     pub held: usize,
     /// Relative residual.
     pub residual: f64,
-    /// The largest of the first three, relatively.
+    /// The largest of the first three.
     pub worst: f64,
 }
 
-/// What a remedy did.
+/// Result of a trial.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trial {
-    /// What was tried, as the list calls it.
+    /// Name of the remedy in the list.
     pub label: String,
-    /// What is typed to take it.
+    /// What to type to apply it.
     pub how: How,
     /// How it ended.
     pub end: TrialEnd,
-    /// Minor iterations that it took.
+    /// Number of minor iterations.
     pub minors: u32,
-    /// Major iterations that it took.
+    /// Number of major iterations.
     pub majors: u32,
-    /// Factorizations of the bodies: one a major iteration, or one a minor where the system is not condensed.
+    /// Factorizations of the bodies: one per major iteration, or per minor iteration without condensation.
     pub factorizations: u32,
     /// Wall time of the solves.
     pub seconds: f64,
-    /// Violations in the state that was accepted.
+    /// Violations in the accepted state.
     pub left: Option<Left>,
-    /// Minor iterations (none) and interventions, in order.
+    /// Minor iterations (`None`) and interventions, in order.
     pub steps: Vec<Option<Intervention>>,
 }
 
 impl Trial {
-    /// One that has not begun.
+    /// A trial that has not started.
     fn new(remedy: &Remedy) -> Trial {
         Trial {
             label: remedy.label.clone(),
@@ -106,7 +106,7 @@ impl Trial {
     }
 }
 
-/// Everything that is tried from a state, whatever it failed of, in the order of the list.
+/// All kinds of remedies, in the order in which they are tried.
 const KINDS: [Kind; 19] = [
     Kind::Strategy(Strategy::Sliding),
     Kind::Strategy(Strategy::Least),
@@ -129,8 +129,8 @@ const KINDS: [Kind; 19] = [
     Kind::Hysteresis,
 ];
 
-/// All that there is to try from a state: the consistent states, what helps against its failure, and everything else. The
-/// count of states ends where `stop` says so.
+/// All remedies that apply to a state: the consistent states, those for its failure, and all others. The search
+/// for consistent states stops early if `stop` returns true.
 pub fn all(
     stepper: &mut Stepper,
     state: &State,
@@ -165,7 +165,7 @@ pub fn all(
     all
 }
 
-/// What there is to try on an attached solver: it takes modes to start from, and perhaps another increment.
+/// Remedies that an attached solver supports: initial modes, and possibly another increment size.
 pub fn offered(model: &Model, state: &State, offers: &Offers, found: &Examination) -> Vec<Remedy> {
     let parts = [Kind::Part(0.5), Kind::Part(0.1)];
     let parts = parts
@@ -180,7 +180,8 @@ pub fn offered(model: &Model, state: &State, offers: &Offers, found: &Examinatio
     all.filter(takes).collect()
 }
 
-/// Tries a remedy that changes the scene from its start; `None` if interrupted, or if there is no such scene.
+/// Tries a remedy that changes the scene from its start; `None` if interrupted, or if the scene cannot be
+/// built.
 fn attempt_restart(
     spec: &Spec,
     state: &State,
@@ -212,8 +213,8 @@ fn attempt_restart(
     Some(trial)
 }
 
-/// Tries a remedy; `None` if interrupted, or if an attached solver is lost. `spec` is the original scene, for remedies that change
-/// it.
+/// Tries a remedy; `None` if interrupted, or if an attached solver is lost. `spec` is the original scene, for
+/// remedies that change it.
 pub fn attempt(
     solver: &mut dyn Solver,
     state: &State,
@@ -228,7 +229,7 @@ pub fn attempt(
     let target = (state.start.leg, state.load_factor);
     let mut trial = Trial::new(remedy);
     let change = |solver: &mut dyn Solver, trial: &mut Trial, what: Intervention| {
-        // What cannot be done is not a part of the trial: a node past its surface cannot touch.
+        // Impossible interventions are skipped: a node past its surface cannot touch.
         if solver.intervene(&what).is_ok() {
             trial.steps.push(Some(what));
         }
@@ -279,14 +280,14 @@ pub fn attempt(
         RunEnd::Finished => TrialEnd::Converged,
         RunEnd::Spent => TrialEnd::Budget,
     };
-    // The last major iteration, where the trial ended within it.
+    // Count the last major iteration, even if the trial ended within it.
     if is_own && trial.end == TrialEnd::Budget {
         trial.factorizations += 1;
     }
     Some(trial)
 }
 
-/// Whether an increment was accepted that has come to the load that failed.
+/// Whether an increment was accepted at or beyond the failed load.
 fn is_there(state: &State, event: &Event, (leg, load): (usize, f64)) -> bool {
     let accepted = matches!(event.outcome, Outcome::Increment { .. });
     #[cfg(mutants)]
@@ -297,7 +298,7 @@ fn is_there(state: &State, event: &Event, (leg, load): (usize, f64)) -> bool {
     accepted && (state.status == Status::Finished || state.start.leg > leg || close)
 }
 
-/// What is held, and released, after a minor iteration that did not settle.
+/// The holds and releases of hysteresis after a minor iteration that did not settle.
 fn hysteresis(stepper: &Stepper, event: &Event) -> Vec<Intervention> {
     let near = |record: &ContactRecord| {
         let margins = record.decision.tests.iter().flatten();
@@ -323,7 +324,7 @@ fn hysteresis(stepper: &Stepper, event: &Event) -> Vec<Intervention> {
     hold.chain(release).collect()
 }
 
-/// The scale of what is tested: a force or a length.
+/// Scale of the tested quantity: a force or a length.
 fn scale_of(
     tested: stickslip_core::contact::table2::Tested,
     stepper: &Stepper,
@@ -341,7 +342,7 @@ fn scale_of(
     }
 }
 
-/// What the judge found of the state that was accepted last.
+/// The judge's findings in the last accepted state.
 fn left(stepper: &Stepper, event: &Event, after: &Norms) -> Left {
     let verdict = stepper.state().start.verdict.as_ref();
     let amount = |law: Law| {
@@ -365,7 +366,8 @@ fn left(stepper: &Stepper, event: &Event, after: &Norms) -> Left {
     }
 }
 
-/// Best first: those that converged and leave no violation, by cost; those that leave one, by its size; then the others.
+/// Best first: those that converged without violations, by cost; then those with violations, by size; then the
+/// others.
 pub fn sort(trials: &mut [Trial]) {
     let class = |trial: &Trial| match (&trial.end, &trial.left) {
         (TrialEnd::Converged, Some(left)) if left.worst > CLEAN || left.held > 0 => 1,
@@ -386,15 +388,15 @@ pub fn sort(trials: &mut [Trial]) {
     });
 }
 
-/// An end in a word or two.
+/// The end of a trial, in a word or two.
 pub fn end_words(end: &TrialEnd) -> String {
     match end {
         TrialEnd::Converged => "converged".into(),
-        TrialEnd::Against(law) => format!("breaks {}", law.name()),
-        TrialEnd::Budget => format!("{BUDGET} minors"),
+        TrialEnd::Against(law) => format!("violates {}", law.name()),
+        TrialEnd::Budget => format!("{BUDGET} minor"),
         TrialEnd::Failed(Failure::Cycle(cycle)) => format!("{}-cycle", cycle.period),
-        TrialEnd::Failed(Failure::MinorLimit { .. }) => "minors' limit".into(),
-        TrialEnd::Failed(Failure::MajorLimit { .. }) => "majors' limit".into(),
+        TrialEnd::Failed(Failure::MinorLimit { .. }) => "minor limit".into(),
+        TrialEnd::Failed(Failure::MajorLimit { .. }) => "major limit".into(),
         TrialEnd::Failed(Failure::MajorCycle(_)) => "majors cycle".into(),
         TrialEnd::Failed(Failure::Singular(_)) => "singular".into(),
         TrialEnd::Failed(Failure::Diverged { .. }) => "diverged".into(),
@@ -414,12 +416,12 @@ pub fn end_words(end: &TrialEnd) -> String {
     }
 }
 
-/// Headings of the table, and what each column of [`row`] is.
+/// Headings of the table; the columns of [`row`].
 pub const COLUMNS: [&str; 10] = [
     "end", "minors", "majors", "factors", "ms", "penetr.", "tension", "shear", "residual", "held",
 ];
 
-/// A trial as the cells of a table, in the order of [`COLUMNS`].
+/// A trial as a row of the table, in the order of [`COLUMNS`].
 pub fn row(trial: &Trial) -> [String; 10] {
     let tiny = |value: f64| match value {
         value if value <= 0.0 => "0".into(),

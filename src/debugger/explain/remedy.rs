@@ -1,8 +1,9 @@
-//! What can be tried against an increment that fails: every remedy by its full name, with what is typed to take it.
+//! Remedies for an increment that fails, with their names and what to type to apply them.
 //!
-//! A remedy is what is done before the first minor iteration (a consistent state of the census, a strategy or another
-//! setting, another increment, other modes to start from), and perhaps hysteresis, which corrects the verdict after each.
-//! [`super::remedies`] tries them; [`super::advice`] says which of them help against what.
+//! A remedy consists of interventions before the first minor iteration (a consistent state of the census,
+//! another strategy or setting, another increment size, other initial modes) and possibly hysteresis, which
+//! corrects the decisions after each one. [`super::remedies`] tries them; [`super::advice`] selects them by the
+//! kind of failure.
 
 use super::examination::Examination;
 use super::names;
@@ -18,37 +19,37 @@ use stickslip_core::step::state::State;
 use stickslip_scene::gaps::{StartGaps, start_gaps, turned};
 use stickslip_scene::number;
 
-/// Limits of iterations are raised this many times.
+/// Factor by which iteration limits are raised.
 const MORE: u32 = 10;
 
-/// Something that can be tried.
+/// Kind of remedy.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Kind {
-    /// Start from the consistent state of this number in the census.
+    /// Start from the consistent state with this number in the census.
     Answer(usize),
     /// Another strategy.
     Strategy(Strategy),
-    /// T_max in the matrix.
+    /// T_max in the matrix (`settings.t_max=consistent`).
     ConsistentLimit,
-    /// The tangent knows how the geometry changes.
+    /// A tangent that includes the change of geometry (`settings.geometry=consistent`).
     ConsistentGeometry,
     /// The other residual method.
     OtherResidual,
-    /// What a fixed node holds on to, the other way.
+    /// The other reference for sticking (`settings.sticking`).
     OtherSticking,
-    /// A node that touches is held where it was.
+    /// Hold nodes in new contact where they were (`settings.touch=start`).
     TouchAtStart,
-    /// A cycle aims at half the load first.
+    /// Solve half the load first after a cycle (`settings.at_cycle=damp`).
     Damp,
-    /// This part of the increment.
+    /// This fraction of the increment.
     Part(f64),
     /// More minor iterations.
     MoreMinors,
     /// More major iterations.
     MoreMajors,
-    /// The nodes that stand on a surface start in this mode; where none does, the one that is nearest to its surface.
+    /// Start the nodes on their surface in this mode; if there are none, the closest node.
     Start(Mode),
-    /// A node keeps its mode while it misses its condition by little.
+    /// Nodes keep their mode as long as they violate its condition only slightly.
     Hysteresis,
     /// Treatment of nodes that start inside their surface; tried from the start of the scene.
     Gaps(InitialGaps),
@@ -56,25 +57,25 @@ pub enum Kind {
     Law,
 }
 
-/// What is typed to take a remedy.
+/// What to type to apply a remedy.
 #[derive(Debug, Clone, PartialEq)]
 pub enum How {
-    /// A setting, by path and value.
+    /// A setting: path and value.
     Set(&'static str, String),
     /// An increment size.
     Increment(f64),
-    /// An increment size where each leg of the path has its own: the leg, and the size.
+    /// The leg and the increment size, if each leg of the path has its own size.
     IncrementOn(usize, f64),
-    /// A consistent state of the census, by its number from 0.
+    /// Number of a consistent state in the census, from 0.
     StartFrom(usize),
     /// Values to change in the scene, by path, for a restart.
     Restart(Vec<(String, &'static str)>),
-    /// Only from the list of remedies.
+    /// Available only in the list of remedies.
     Listed,
 }
 
 impl How {
-    /// What is typed in the debugger.
+    /// What to type in the debugger.
     pub fn typed(&self) -> String {
         match self {
             How::Set(path, value) => format!(":set {path} {value}"),
@@ -86,26 +87,26 @@ impl How {
                 let option = |(path, value): &(String, &str)| format!("--set {path}={value}");
                 changes.iter().map(option).collect::<Vec<_>>().join(" ")
             }
-            How::Listed => "r, then Enter on it".into(),
+            How::Listed => "r, then select it and press Enter".into(),
         }
     }
 }
 
-/// Something to try from a state.
+/// A remedy at a state.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Remedy {
     /// What kind it is.
     pub kind: Kind,
-    /// In a few words; the name of its branch.
+    /// Short name, also used for its branch.
     pub label: String,
-    /// What is typed to take it.
+    /// What to type to apply it.
     pub how: How,
-    /// What is done before the first minor iteration.
+    /// Interventions before the first minor iteration.
     pub first: Vec<Intervention>,
 }
 
 impl Remedy {
-    /// What touches in a state, and not as its surface tells, goes on in another mode; `None` where it has that mode.
+    /// The remedy that starts nodes in contact in another mode than their surface's; `None` if they have it.
     pub fn touching(state: &State, mode: Mode) -> Option<Remedy> {
         let nodes = state.nodes.iter().enumerate();
         let others = nodes.filter(|(_, node)| node.mode != Mode::Free && node.mode != mode);
@@ -118,13 +119,13 @@ impl Remedy {
             .collect();
         (!first.is_empty()).then(|| Remedy {
             kind: Kind::Start(mode),
-            label: format!("start what touches {}", names::mode(mode)),
+            label: format!("start contacts {}", names::mode(mode)),
             how: How::Listed,
             first,
         })
     }
 
-    /// The remedy of a kind at a state; `None` where it would change nothing, or there is nothing to start from.
+    /// The remedy of a kind at a state; `None` if it would change nothing or does not apply.
     pub fn of(kind: Kind, model: &Model, state: &State) -> Option<Remedy> {
         let remedy = |label: &str, how: How, first: Vec<Intervention>| Remedy {
             kind,
@@ -135,7 +136,7 @@ impl Remedy {
         match kind {
             Kind::Answer(_) | Kind::Law => None,
             Kind::Gaps(gaps) => {
-                // Later increments do not begin with the overlap.
+                // Only the first increment starts with the overlap.
                 let starts = state.next.increment == 1;
                 let keeps = model.settings.initial_gaps == InitialGaps::Keep;
                 let inside = |found: &StartGaps| !found.inside.is_empty();
@@ -166,7 +167,7 @@ impl Remedy {
             }
             Kind::Start(mode) => {
                 let first = starts(model, state, mode);
-                let label = format!("start what touches {}", names::mode(mode));
+                let label = format!("start contacts {}", names::mode(mode));
                 (!first.is_empty()).then(|| remedy(&label, How::Listed, first))
             }
             _ => {
@@ -179,8 +180,8 @@ impl Remedy {
         }
     }
 
-    /// Another law for materials outside the range of theirs in a failed state, and whether the law is certainly the cause.
-    /// `None` if all are inside.
+    /// Another law for materials outside the range of theirs in a failed state, and whether the law is
+    /// certainly the cause. `None` if all are inside.
     pub fn law(model: &Model, state: &State, failure: &Failure) -> Option<(Remedy, bool)> {
         let cause = MaterialCause::of(model, state, failure)?;
         let points = cause.before.into_iter().chain([cause.point]);
@@ -204,7 +205,7 @@ impl Remedy {
         Some((law, cause.is_certain()))
     }
 
-    /// Starting from each consistent state that was found.
+    /// The remedies that start from each consistent state found.
     pub fn answers(model: &Model, found: &Examination) -> Vec<Remedy> {
         let count = found.census.as_ref().map_or(0, |c| c.answers.len());
         let answer = |number: usize| {
@@ -216,7 +217,7 @@ impl Remedy {
             let more = if starts.len() > SHOWN { ", …" } else { "" };
             Some(Remedy {
                 kind: Kind::Answer(number),
-                label: format!("answer {}: {}{more}", number + 1, some.join(", ")),
+                label: format!("state {}: {}{more}", number + 1, some.join(", ")),
                 how: How::StartFrom(number),
                 first: vec![Intervention::Assume(starts)],
             })
@@ -225,7 +226,7 @@ impl Remedy {
     }
 }
 
-/// Changes the settings as a kind wants, and says so: label, path, and value.
+/// Changes the settings for a kind; returns label, path and value.
 fn change(kind: Kind, settings: &mut Settings) -> Option<(&'static str, &'static str, String)> {
     let told = match kind {
         Kind::Strategy(strategy) => {
@@ -241,7 +242,7 @@ fn change(kind: Kind, settings: &mut Settings) -> Option<(&'static str, &'static
                 Strategy::Lemke => "Lemke's pivoting",
                 Strategy::Census => "a census of all assignments",
                 Strategy::Copositive => "pivoting with the friction force in two parts",
-                Strategy::GaussSeidel => "Gauss-Seidel, and a solve for its modes",
+                Strategy::GaussSeidel => "Gauss-Seidel, then a solve with its modes",
             };
             (label, "settings.strategy", strategy.name().to_owned())
         }
@@ -287,12 +288,12 @@ fn change(kind: Kind, settings: &mut Settings) -> Option<(&'static str, &'static
         Kind::MoreMinors => {
             settings.minors = settings.minors.saturating_mul(MORE);
             let value = settings.minors.to_string();
-            ("ten times the minors", "settings.minors", value)
+            ("10 times the minor limit", "settings.minors", value)
         }
         Kind::MoreMajors => {
             settings.majors = settings.majors.saturating_mul(MORE);
             let value = settings.majors.to_string();
-            ("ten times the majors", "settings.majors", value)
+            ("10 times the major limit", "settings.majors", value)
         }
         Kind::Answer(_)
         | Kind::Part(_)
@@ -304,7 +305,7 @@ fn change(kind: Kind, settings: &mut Settings) -> Option<(&'static str, &'static
     Some(told)
 }
 
-/// Modes to start the increment again with: of the nodes that stand on their surface, or else of the nearest one.
+/// Initial modes to restart the increment with: for the nodes on their surface, or else for the closest one.
 fn starts(model: &Model, state: &State, mode: Mode) -> Vec<Intervention> {
     let places = model.places(&state.start.u);
     let over = |slave: usize| {
@@ -336,5 +337,5 @@ fn starts(model: &Model, state: &State, mode: Mode) -> Vec<Intervention> {
     if all.len() == 1 { Vec::new() } else { all }
 }
 
-/// A node this near to its surface, over the scene's length, stands on it.
+/// A node closer to its surface than this fraction of the scene's length is on it.
 const TOUCHES: f64 = 1e-6;

@@ -1,4 +1,4 @@
-//! What happened, in words: the sentences that the command line and the debugger share.
+//! Sentences about what happened, shared by the command line and the debugger.
 
 use crate::explain::accuracy;
 use crate::explain::judged;
@@ -21,56 +21,54 @@ use stickslip_core::step::way::Change;
 use stickslip_scene::number::{four, six};
 use stickslip_scene::shown::first_of;
 
-/// Why Table 2 decided as it did; `friction` says whether there is any.
+/// Why Table 2 decided as it did; `friction` is whether there is any.
 pub fn reason(decision: &Decision, friction: bool) -> String {
     let text = match decision.rule {
         Rule::Custom(reason) => reason.0,
-        Rule::FixedStays => "Stays fixed: the surface pushes, and friction can carry F_t.",
-        Rule::FixedSlides => "Fixed → sliding: F_t is more than friction can carry.",
-        Rule::FixedDragged => {
-            "Fixed → sliding: its supports drag it along, and nothing could stick it there."
+        Rule::FixedStays => {
+            "Stays fixed: the surface pushes, and F_t is within the friction limit."
         }
+        Rule::FixedSlides => "Fixed → sliding: F_t exceeds the friction limit.",
+        Rule::FixedDragged => "Fixed → sliding: its supports drag it along, so it cannot stick.",
         Rule::FixedOpens => "Fixed → free: the surface would have to pull.",
-        Rule::SlidingSticks => "Sliding → fixed: friction would drive the slip, not oppose it.",
-        Rule::SlidingStays if !friction => {
-            "Stays sliding: there is no friction that could hold it."
+        Rule::SlidingSticks => {
+            "Sliding → fixed: friction would drive the slip instead of opposing it."
         }
+        Rule::SlidingStays if !friction => "Stays sliding: there is no friction.",
         Rule::SlidingStays => "Stays sliding: friction opposes the slip.",
         Rule::SlidingPasses if !friction => {
-            "Stays sliding, and goes on past the end of its side: there is no friction that could hold it."
+            "Stays sliding, past the end of its side: there is no friction."
         }
         Rule::SlidingPasses => {
-            "Stays sliding, since friction opposes the slip, and goes on past the end of its side."
+            "Stays sliding, past the end of its side: friction opposes the slip."
         }
         Rule::CornerStays => {
-            "Stays where two sides meet: they push, and together they can carry F_t."
+            "Stays in the corner: both sides push, and F_t is within their friction limits."
         }
         Rule::CornerSlides => {
-            "Two sides → sliding along one: F_t is more than both together can carry."
+            "Corner → sliding along one side: F_t exceeds the friction limits of both sides."
         }
-        Rule::CornerOpens => "Two sides → free: they would have to pull.",
+        Rule::CornerOpens => "Corner → free: the sides would have to pull.",
         Rule::CornerReleases => {
-            "Two sides → sliding along the one it came along: it slid into the corner, and F_t opposes that slip by less than friction must."
+            "Corner → sliding back along the side it came from: F_t opposes that slip by less than friction requires."
         }
         Rule::SlidingOpens => "Sliding → free: the surface would have to pull.",
-        Rule::FreeSticks => "Free → fixed: the node has gone into the surface.",
-        Rule::FreeSlides => "Free → sliding: the node has gone into a smooth surface.",
+        Rule::FreeSticks => "Free → fixed: the node penetrates the surface.",
+        Rule::FreeSlides => "Free → sliding: the node penetrates a smooth surface.",
         Rule::FreeStays => "Stays free: the gap is open.",
         Rule::FreeEnters => {
-            "Free → sliding: the node has gone into the surface, and the strategy lets it slide against its travel."
+            "Free → sliding: the node penetrates the surface, and the strategy makes it slide against its motion."
         }
         Rule::Waits => {
             let (next, wanted) = (mode(decision.next), mode(decision.wanted));
             return format!(
-                "Waits {next}: one change at a time, and another node comes first; {wanted} is wanted (◁)."
+                "Stays {next} for now: only one node changes at a time; {wanted} (◁) comes later."
             );
         }
         Rule::NewtonOpens => "Newton: free, since F_n does not exceed k·g.",
-        Rule::NewtonSticks => "Newton: fixed, since force and slip keep within the friction.",
-        Rule::NewtonSlides if !friction => {
-            "Newton: slides; there is no friction that could hold it."
-        }
-        Rule::NewtonSlides => "Newton: slides, since force and slip exceed the friction.",
+        Rule::NewtonSticks => "Newton: fixed, since force and slip are within the friction limit.",
+        Rule::NewtonSlides if !friction => "Newton: sliding, since there is no friction.",
+        Rule::NewtonSlides => "Newton: sliding, since force and slip exceed the friction limit.",
         Rule::Pivots => {
             let here = format!(
                 "Lemke: {} in this basis of the problem relaxed by z.",
@@ -79,54 +77,52 @@ pub fn reason(decision: &Decision, friction: bool) -> String {
             let first = match decision.tests[1].map(|test| test.tested) {
                 Some(Tested::Gap) => " Its gap was the first to close.",
                 Some(Tested::NormalForce) => " Its F_n was the first to vanish.",
-                Some(Tested::ShearForce) => " It was the first to come to its friction limit.",
-                Some(Tested::Slip) => " Its slip was the first to come to an end.",
+                Some(Tested::ShearForce) => " It was the first to reach its friction limit.",
+                Some(Tested::Slip) => " Its slip was the first to end.",
                 _ => "",
             };
             return here + first;
         }
         Rule::Sweeps => {
             return format!(
-                "Gauss-Seidel: {} by Coulomb's law at this node, the forces of all others held.",
+                "Gauss-Seidel: {} by Coulomb's law at this node, with the forces of all others fixed.",
                 mode(decision.next)
             );
         }
         Rule::Found => {
             return format!(
-                "Found {} in a consistent state; checked next.",
+                "A consistent state with this node {} was found; it is checked next.",
                 mode(decision.next)
             );
         }
         Rule::OffSurface => {
-            "Free: the projection lies past an end of every surface, so there is nothing to touch."
+            "Free: the projection lies past an end of every surface, so there is no contact."
         }
-        Rule::Tied => {
-            "Tied: it is held at its point of the surface, in tension too. Table 2 is not asked."
-        }
+        Rule::Tied => "Tied: held at its point of the surface, even in tension, without Table 2.",
         Rule::Held if decision.wanted == decision.next => {
             return format!(
-                "You hold it {}; Table 2 wants the same.",
+                "You hold it {}; Table 2 decides the same.",
                 mode(decision.next)
             );
         }
         Rule::Held => {
             let (next, wanted) = (mode(decision.next), mode(decision.wanted));
-            return format!("You hold it {next}; Table 2 (◁) wanted {wanted}. M releases it.");
+            return format!("You hold it {next}; Table 2 (◁) decides {wanted}. M releases it.");
         }
         Rule::Theirs if decision.wanted == decision.next => {
-            "The solver decided by rules of its own, which are not Table 2's."
+            "The solver decided by its own rules, not by Table 2."
         }
         Rule::Theirs => {
             let (next, wanted) = (mode(decision.next), mode(decision.wanted));
             return format!(
-                "The solver takes {next}; on the same numbers its rules, as we know them (◁), want {wanted}."
+                "The solver chooses {next}; with the same numbers, its documented rules give {wanted} (◁)."
             );
         }
     };
     text.into()
 }
 
-/// What a minor iteration led to.
+/// The outcome of a minor iteration.
 pub fn outcome(model: &Model, event: &Event) -> String {
     let at = position_in(model, event.position);
     if !event.words.iteration.is_empty() {
@@ -134,12 +130,12 @@ pub fn outcome(model: &Model, event: &Event) -> String {
     }
     match &event.outcome {
         Outcome::Minor if together(event, Rule::Found) => {
-            format!("{at}: a consistent state is found; it is checked next")
+            format!("{at}: found a consistent state; it is checked next")
         }
         Outcome::Minor if together(event, Rule::Pivots) => format!("{at}: {}", pivot(model, event)),
         Outcome::Minor if together(event, Rule::Sweeps) => format!("{at}: {}", sweeps(event)),
         Outcome::Minor => match changes(model, event).as_str() {
-            // Of an attached solver it is not known what else moves.
+            // For an attached solver, other changes are unknown.
             "" if event
                 .nodes
                 .iter()
@@ -147,18 +143,15 @@ pub fn outcome(model: &Model, event: &Event) -> String {
             {
                 format!("{at}: no mode changes")
             }
-            "" => format!("{at}: modes settled, T_max still moves"),
+            "" => format!("{at}: modes settled, T_max changes"),
             changes => format!("{at}: {changes}"),
         },
         Outcome::Damped {
             cycle: c,
             target: aim,
-        } => format!(
-            "{at}: {}; damped: aims at load {aim} first",
-            cycle(model, c)
-        ),
+        } => format!("{at}: {}; damped: solves load {aim} first", cycle(model, c)),
         Outcome::Climbed { why, to } => format!(
-            "{at}: {}; goes on with strategy {}",
+            "{at}: {}; continues with strategy {}",
             describe_failure(model, why),
             to.name()
         ),
@@ -167,7 +160,7 @@ pub fn outcome(model: &Model, event: &Event) -> String {
             describe_failure(model, why)
         ),
         Outcome::Leaps { why, size } => format!(
-            "{at}: {}; nothing is near: the increment is taken whole, {size}",
+            "{at}: {}; no equilibrium is near, so the whole increment {size} is solved",
             describe_failure(model, why)
         ),
         Outcome::Turns { why, changes } => {
@@ -177,42 +170,42 @@ pub fn outcome(model: &Model, event: &Event) -> String {
             };
             let changes: Vec<String> = changes.iter().map(change).collect();
             format!(
-                "{at}: {}; the path turns a corner, behind which {}",
+                "{at}: {}; the path has a corner, after which {}",
                 describe_failure(model, why),
                 changes.join(", ")
             )
         }
         Outcome::HeldBack { why, stiffness } => {
             let why = why.as_ref().map_or_else(
-                || "a node slides too far, or against its force".to_owned(),
+                || "a node slides too far or against its force".to_owned(),
                 |why| describe_failure(model, why),
             );
             format!(
-                "{at}: {why}; the major iteration begins again, sliding held back by {}",
+                "{at}: {why}; the major iteration restarts with slip stiffness {}",
                 four(*stiffness)
             )
         }
         Outcome::Moves(moves) => format!("{at}: {}", self::moves(model, moves)),
         Outcome::Fallback { why, by, size } => format!(
-            "{at}: {}; the halves have failed: tries {}, from {size} on",
+            "{at}: {}; smaller increments have failed: tries {} from size {size}",
             describe_failure(model, why),
             by.words()
         ),
         Outcome::Major { after, settled } => {
             let leaves = |node: &ContactRecord| node.decision.rule == Rule::CornerReleases;
             let how = match (settled, event.nodes.iter().any(leaves)) {
-                (true, false) => "minors settled".to_owned(),
-                (true, true) => format!("minors settled, then {}", changes(model, event)),
-                (false, _) => "minors cut off unsettled".to_owned(),
+                (true, false) => "minor iterations settled".to_owned(),
+                (true, true) => format!("minor iterations settled, then {}", changes(model, event)),
+                (false, _) => "minor iterations stopped before settling".to_owned(),
             };
             format!(
-                "{at}: {how}; residual {:.3e}, wanted {:.1e}",
+                "{at}: {how}; residual {:.3e}, limit {:.1e}",
                 after.relative.max(after.interface),
                 after.limit
             )
         }
         Outcome::Refused { why, .. } => format!(
-            "{at}: refused: {}; goes on, and from here on net slip counts",
+            "{at}: refused: {}; continues, counting net slip from here on",
             judged::finding(model, why)
         ),
         Outcome::Increment { after, last, .. } => {
@@ -228,33 +221,33 @@ pub fn outcome(model: &Model, event: &Event) -> String {
     }
 }
 
-/// What a damped motion does.
+/// Describes a damped motion.
 fn moves(model: &Model, moves: &Moves) -> String {
     match moves {
         Moves::LetsGo { why, load } => format!(
-            "{}; no equilibrium is near that of load {load}: a damped motion goes on from there",
+            "{}; no equilibrium is near that of load {load}: a damped motion starts there",
             describe_failure(model, why)
         ),
         Moves::Step { motion, number } => {
-            format!("step {number} of a damped motion: it moves by {motion:.3e}")
+            format!("step {number} of a damped motion, by {motion:.3e}")
         }
         Moves::Slower(slow) => {
             let why = match slow {
                 Slow::Failed(why) => describe_failure(model, why),
-                Slow::Far { motion } => format!("it would move by {motion:.3e} at once"),
-                Slow::Unstable => "it would end in an unstable state".to_owned(),
+                Slow::Far { motion } => format!("the step would move by {motion:.3e}"),
+                Slow::Unstable => "the step would end in an unstable state".to_owned(),
             };
-            format!("{why}; the damped motion goes on slower")
+            format!("{why}; the damped motion continues with a smaller step")
         }
     }
 }
 
-/// Whether all nodes were looked at together, by this rule.
+/// Whether all nodes were treated together, by this rule.
 fn together(event: &Event, rule: Rule) -> bool {
     event.nodes.iter().any(|node| node.decision.rule == rule)
 }
 
-/// A step of Lemke's: what reached its bound, and what is left to go.
+/// A pivot of Lemke's method: the bound reached, and the remaining relaxation.
 fn pivot(model: &Model, event: &Event) -> String {
     let tests = |s: usize| event.nodes[s].decision.tests;
     let mut nodes = 0..event.nodes.len();
@@ -271,12 +264,12 @@ fn pivot(model: &Model, event: &Event) -> String {
     let cover = (0..event.nodes.len()).find_map(|s| Some(tests(s)[0]?.value));
     let left = cover.map_or(String::new(), |z| format!("relaxed by z = {z:.3e}"));
     match what {
-        Some(what) => format!("a pivot: {what}; {left}"),
-        None => format!("a pivot; {left}"),
+        Some(what) => format!("pivot: {what}; {left}"),
+        None => format!("pivot; {left}"),
     }
 }
 
-/// Sweeps of Gauss-Seidel: how much the forces still change.
+/// Gauss-Seidel sweeps: the remaining change of the forces.
 fn sweeps(event: &Event) -> String {
     let change = event
         .nodes
@@ -288,7 +281,7 @@ fn sweeps(event: &Event) -> String {
     format!("sweeps{left}")
 }
 
-/// What an accepted increment was accepted in spite of; empty where there is nothing.
+/// Objections to an accepted increment; empty if there are none.
 pub fn reservations(model: &Model, event: &Event) -> String {
     let Outcome::Increment {
         unsettled,
@@ -304,8 +297,8 @@ pub fn reservations(model: &Model, event: &Event) -> String {
     };
     let mut text = match unsettled {
         0 => String::new(),
-        1 => ", although one loop was cut off unsettled".into(),
-        n => format!(", although {n} loops were cut off unsettled"),
+        1 => ", but 1 loop of minor iterations did not settle".into(),
+        n => format!(", but {n} loops of minor iterations did not settle"),
     };
     let defied = |rule: fn(Rule) -> bool| -> Vec<&str> {
         (0..event.nodes.len())
@@ -319,27 +312,27 @@ pub fn reservations(model: &Model, event: &Event) -> String {
     let otherwise = defied(|rule| rule == Rule::Theirs);
     if !otherwise.is_empty() {
         text += &format!(
-            ", although its rules, as we know them, want another mode at {}",
+            ", but the solver's documented rules give another mode at {}",
             otherwise.join(", ")
         );
     }
     let defied = defied(|rule| rule != Rule::Theirs);
     if !defied.is_empty() {
         text += &format!(
-            ", although Table 2 rejects the mode held at {}",
+            ", but Table 2 rejects the mode held at {}",
             defied.join(", ")
         );
     }
     if let Some(found) = marked {
-        text += &format!(", although {}", judged::finding(model, found));
+        text += &format!(", but {}", judged::finding(model, found));
     }
     if let Some(point) = left_range {
-        text += &format!(", although {}", strain::left(model, point));
+        text += &format!(", but {}", strain::left(model, point));
     }
     text += &jumped::reservation(*jumped, unstable.as_ref());
     if let Some(motion) = motion {
         text += &format!(
-            ", by a damped motion of {} steps from the equilibrium at load {}, viscosity took {}",
+            ", after a damped motion of {} steps from the equilibrium at load {} (energy {} dissipated)",
             motion.steps,
             motion.from,
             six(motion.dissipated)
@@ -353,14 +346,14 @@ fn changes(model: &Model, event: &Event) -> String {
     let all: Vec<usize> = (0..event.nodes.len()).filter(changed).collect();
     let told = |&s: &usize| {
         let d = &event.nodes[s].decision;
-        format!("{} {} > {}", slave(model, s), mode(d.before), mode(d.next))
+        format!("{} {} → {}", slave(model, s), mode(d.before), mode(d.next))
     };
-    // Three fit in the place of two and a number.
+    // Three changes fit in the space of two and a count.
     let most = if all.len() == 3 { 3 } else { 2 };
     first_of(all.iter().map(told), most, ", ")
 }
 
-/// What the user did.
+/// Describes an intervention.
 pub fn intervention(model: &Model, intervention: &Intervention) -> String {
     match intervention {
         Intervention::Force {
@@ -388,9 +381,9 @@ pub fn intervention(model: &Model, intervention: &Intervention) -> String {
                 .collect();
             format!("the next minor iteration starts with {}", told.join(", "))
         }
-        Intervention::Release { slave: s } => format!("{} obeys Table 2 again", slave(model, *s)),
+        Intervention::Release { slave: s } => format!("{} follows Table 2 again", slave(model, *s)),
         Intervention::Increment(increment) => {
-            format!("the increment starts again with size {increment}")
+            format!("the increment restarts with size {increment}")
         }
         Intervention::Friction(f) => format!(
             "friction angle {} degrees, cohesion {}",
@@ -398,15 +391,15 @@ pub fn intervention(model: &Model, intervention: &Intervention) -> String {
         ),
         Intervention::Frictions(all) => {
             let angle = all.first().map_or(0.0, |first| first.angle);
-            format!("friction angle {angle} degrees, cohesion of each node by its area")
+            format!("friction angle {angle} degrees, cohesion by area")
         }
         Intervention::Settings(_) => "settings changed".into(),
-        Intervention::Parameter { name, value } => format!("{name} is {value} from now on"),
+        Intervention::Parameter { name, value } => format!("{name} set to {value}"),
     }
 }
 
-/// Where and why a run ended, and the last load with a sound state. `at` and `load` belong to the failed minor iteration,
-/// and `state` is the state after it.
+/// Where and why a run ended, and the last load with a valid state. `at` and `load` belong to the failed minor
+/// iteration, and `state` is the state after it.
 pub fn failure(model: &Model, state: &State, at: Position, load: f64, failure: &Failure) -> String {
     let again = match at.attempt {
         0 | 1 => String::new(),
@@ -422,13 +415,13 @@ pub fn failure(model: &Model, state: &State, at: Position, load: f64, failure: &
     )
 }
 
-/// Up to which load a failed run is sound.
+/// The last equilibrium of a failed run.
 pub fn sound(at: Position, state: &State) -> String {
     let accepted = state.start.load_factor;
     match at.increment {
-        0 | 1 => format!("no equilibrium was accepted beyond the start, load {accepted}"),
+        0 | 1 => format!("no equilibrium after the start (load {accepted})"),
         n => format!(
-            "the last equilibrium is that of increment {}, load {accepted}",
+            "the last equilibrium is increment {}, load {accepted}",
             n - 1
         ),
     }
@@ -439,7 +432,7 @@ pub fn describe_failure(model: &Model, failure: &Failure) -> String {
     match failure {
         Failure::Cycle(c) => cycle(model, c),
         Failure::Reported { reason, .. } if reason.is_empty() => {
-            "the solver failed, and does not say why".into()
+            "the solver failed without giving a reason".into()
         }
         Failure::Reported { reason, .. } => format!("the solver failed: {reason}"),
         Failure::MinorLimit { limit, changing } => {
@@ -454,15 +447,15 @@ pub fn describe_failure(model: &Model, failure: &Failure) -> String {
             relative,
             interface,
         } => format!(
-            "no equilibrium within {limit} major iterations; relative residual {relative:.3e}, interface {interface:.3e}"
+            "no convergence within {limit} major iterations; relative residual {relative:.3e}, interface {interface:.3e}"
         ),
         Failure::MajorCycle(round) => major_cycle(model, round),
         Failure::NoAnswer { first, tried } => {
             let none =
-                format!("no consistent state at this increment: all {tried} assignments were tried");
+                format!("this increment has no consistent state (all {tried} assignments tried)");
             match first {
                 None => none,
-                Some(first) => format!("{none} (at first: {})", describe_failure(model, first)),
+                Some(first) => format!("{none}; first failure: {}", describe_failure(model, first)),
             }
         }
         Failure::LadderEnded {
@@ -470,30 +463,30 @@ pub fn describe_failure(model: &Model, failure: &Failure) -> String {
             last,
             scales,
         } => format!(
-            "no strategy of the ladder found a consistent state (at first: {}; at last: {}){}",
+            "no strategy of the ladder found a consistent state (first failure: {}; last: {}){}",
             describe_failure(model, first),
             describe_failure(model, last),
             match scales {
-                true => "; without gaps all scales with the load, so a smaller increment is the same problem and was not tried",
+                true => "; without gaps, the problem scales with the load, so a smaller increment would not help",
                 false => "",
             }
         ),
         Failure::NotFound(why) => not_found(*why),
         Failure::Singular(Singular::Rigid { motions }) => {
             let motions = motions.iter().map(motion).collect();
-            format!("nothing holds a rigid motion: {}", some(motions, "; "))
+            format!("unrestrained rigid motion: {}", some(motions, "; "))
         }
         Failure::Singular(Singular::Unexplained) => {
-            "the equations are singular, though every body is held: a limit point, or constraints that repeat each other".into()
+            "the equations are singular although every body is held: a limit point, or redundant constraints".into()
         }
         Failure::Diverged { relative } => {
-            format!("diverged: displacements beyond all bounds, relative residual {relative:.3e}")
+            format!("diverged, relative residual {relative:.3e}")
         }
         Failure::Refused(found) => {
-            format!("refused, since {}", judged::finding(model, found))
+            format!("refused: {}", judged::finding(model, found))
         }
         Failure::Inverted(point) => {
-            format!("refused, since {}", strain::inverted(model, point))
+            format!("refused: {}", strain::inverted(model, point))
         }
         Failure::CutTooOften { slave: s, cuts, last } => format!(
             "the increment was cut {cuts} times because of {}: {}",
@@ -501,7 +494,7 @@ pub fn describe_failure(model: &Model, failure: &Failure) -> String {
             describe_failure(model, last)
         ),
         Failure::Restless { steps } => {
-            format!("a damped motion of {steps} steps came to no rest")
+            format!("the damped motion still moves after {steps} steps")
         }
         Failure::Leapt {
             motion,
@@ -509,50 +502,50 @@ pub fn describe_failure(model: &Model, failure: &Failure) -> String {
             unstable,
         } => jumped::jump(*motion, *predicted, *unstable),
         Failure::DoubledBack => {
-            "along the path, the increment would go back the way that it came".into()
+            "the path control would turn back along the previous increment".into()
         }
         Failure::Unmoved => {
-            "along the path, what is measured does not move while the load does: no size can be given to the increment".into()
+            "the path measure (history.arc) does not change with the load, so the increment has no size".into()
         }
         Failure::RoundOff { noise } => format!(
-            "double precision cannot carry this scene: the round-off of its stiffest forces is {noise:.1e} of the loads; at most {:.0e} is accepted",
+            "double precision is not sufficient for this scene: the round-off of its stiffest forces is {noise:.1e} of the loads; the limit is {:.0e}",
             Norms::LOUDEST
         ),
         Failure::OverConstrained { slave: s, gap } => format!(
-            "{} penetrates by {:.3e}, and neither it nor its surface can move to close that",
+            "{} penetrates by {:.3e}, but neither the node nor its surface can move",
             slave(model, *s),
             -gap
         ),
     }
 }
 
-/// Why pivoting, or the census, found nothing.
+/// Why pivoting or the census found no state.
 fn not_found(why: NotFound) -> String {
     match why {
         NotFound::Ray => {
-            "pivoting ended on a ray from every start, so it found no consistent state".into()
+            "pivoting ended on a ray from every start, without a consistent state".into()
         }
         NotFound::Astray { pivots } => {
-            format!("pivoting was given up after {pivots} pivots; its path might still end in a consistent state")
+            format!("pivoting stopped after {pivots} pivots; there may still be a consistent state")
         }
         NotFound::NoStart => {
-            "pivoting has no start: the equations of every one that it knows are singular".into()
+            "pivoting cannot start: the equations of all known starts are singular".into()
         }
         NotFound::Unsettled { sweeps } => {
-            format!("{sweeps} sweeps of Gauss-Seidel came to no modes that last")
+            format!("after {sweeps} sweeps of Gauss-Seidel the modes still change")
         }
         NotFound::TooMany { nodes } => format!(
-            "{nodes} nodes can touch, too many to try what each does: a census is held over at most {}",
+            "{nodes} nodes can touch, too many for a census (limit {})",
             census::MOST
         ),
         NotFound::Loose => {
-            "no census can be held: the equations of the nodes that cannot touch are singular".into()
+            "no census is possible: the equations of the nodes that cannot touch are singular".into()
         }
         NotFound::NotCondensed => {
-            "the bodies cannot be condensed to the interface, so pivoting and census have nothing to work on".into()
+            "the bodies cannot be condensed to the interface, so pivoting and census are not possible".into()
         }
         NotFound::Unconfirmed { states } => format!(
-            "{states} state{} found consistent, and no minor iteration that checked {} agreed",
+            "{states} state{} found consistent, but no minor iteration confirmed {}",
             if states == 1 { " was" } else { "s were" },
             if states == 1 { "it" } else { "one" }
         ),
@@ -571,7 +564,7 @@ fn motion(rigid: &RigidMotion) -> String {
         }
         Motion::Rotation([x, y]) => {
             format!(
-                "body {body} can turn about ({}, {})",
+                "body {body} can rotate about ({}, {})",
                 rounded(x),
                 rounded(y)
             )
@@ -579,17 +572,17 @@ fn motion(rigid: &RigidMotion) -> String {
     }
 }
 
-/// Four decimals without trailing zeros: for a place that a person is to find.
+/// Four decimals without trailing zeros: coordinates for people.
 fn rounded(x: f64) -> f64 {
     let rounded = (x * 1e4).round() / 1e4;
-    // Neither a minus before a zero, nor infinity in place of what is only large.
+    // Avoid "-0", and infinity for very large numbers.
     match rounded.is_finite() {
         true => rounded + 0.0,
         false => x,
     }
 }
 
-/// The first few of many.
+/// The first few of a list.
 fn some(mut all: Vec<String>, between: &str) -> String {
     const MOST: usize = 6;
     let more = all.len().saturating_sub(MOST);
@@ -601,23 +594,23 @@ fn some(mut all: Vec<String>, between: &str) -> String {
     }
 }
 
-/// Modes one after the other; long stays are counted.
+/// A sequence of modes; long runs are counted.
 fn pattern(modes: &[Mode]) -> String {
     let stays = modes.chunk_by(|a, b| a == b).map(|stay| {
         let word = mode(stay[0]);
         match stay.len() {
             1 => word.to_string(),
-            2 => format!("{word} > {word}"),
+            2 => format!("{word} → {word}"),
             n => format!("{word} ({n} times)"),
         }
     });
-    stays.collect::<Vec<_>>().join(" > ")
+    stays.collect::<Vec<_>>().join(" → ")
 }
 
-/// Most stops of a node in a cycle of major iterations that are named.
+/// Maximum number of stops named per node in a cycle of major iterations.
 const MOST_STOPS: usize = 4;
 
-/// A cycle of major iterations.
+/// Describes a cycle of major iterations.
 pub fn major_cycle(model: &Model, round: &MajorCycle) -> String {
     let member = |(s, stops): &(usize, Vec<Stop>)| {
         let elements: Vec<_> = stops.iter().map(|stop| stop.element).collect();
@@ -632,18 +625,18 @@ pub fn major_cycle(model: &Model, round: &MajorCycle) -> String {
         let words: Vec<String> = stops.iter().take(MOST_STOPS).map(stop).collect();
         match (moves, switches) {
             (false, false) => format!("{} stays {}", slave(model, *s), words[0]),
-            _ => format!("{} {} > …", slave(model, *s), words.join(" > ")),
+            _ => format!("{} {} → …", slave(model, *s), words.join(" → ")),
         }
     };
     format!(
-        "the major iterations {}-cycle since major {}: {}",
+        "major iterations cycle with period {} from major {}: {}",
         round.period,
         round.start,
         some(round.members.iter().map(member).collect(), "; ")
     )
 }
 
-/// A master element's name: its surface, and its number from 1.
+/// Name of a master element: its surface, and its number from 1.
 pub fn place(model: &Model, element: Option<(usize, usize)>) -> String {
     match element {
         Some((surface, element)) => {
@@ -654,10 +647,10 @@ pub fn place(model: &Model, element: Option<(usize, usize)>) -> String {
     }
 }
 
-/// Most nodes of a cycle that are named though their modes stay.
+/// Maximum number of cycle members with constant modes that are named.
 const MOST_FOLLOWING: usize = 3;
 
-/// A cycle of modes.
+/// Describes a cycle of modes.
 pub fn cycle(model: &Model, cycle: &Cycle) -> String {
     let member = |(s, modes): &(usize, Vec<Mode>)| {
         let name = slave(model, *s);
@@ -665,10 +658,10 @@ pub fn cycle(model: &Model, cycle: &Cycle) -> String {
             [first, rest @ ..] if rest.iter().all(|m| m == first) => {
                 format!("{name} stays {} while its T_max repeats", mode(*first))
             }
-            modes => format!("{name} {} > …", pattern(modes)),
+            modes => format!("{name} {} → …", pattern(modes)),
         }
     };
-    // Those whose modes change come first: the T_max of many others may follow.
+    // Members whose modes change come first: the T_max of many others may follow them.
     let changes = |modes: &[Mode]| modes.windows(2).any(|pair| pair[0] != pair[1]);
     let (changing, following): (Vec<_>, Vec<_>) =
         cycle.members.iter().partition(|(_, modes)| changes(modes));
@@ -686,7 +679,7 @@ pub fn cycle(model: &Model, cycle: &Cycle) -> String {
         _ => told.extend(following.into_iter().map(member)),
     }
     format!(
-        "the modes {}-cycle since minor {}: {}",
+        "cycle of period {} from minor {}: {}",
         cycle.period,
         cycle.start,
         told.join("; ")

@@ -1,5 +1,5 @@
-//! Tries a changed scene from its start to the load of a failure: for changes that are impossible within a run, such as
-//! another mesh or material law.
+//! Tries a changed scene from its start to the load of a failure, for changes that are impossible within a run,
+//! such as another mesh or material law.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;

@@ -1,9 +1,10 @@
-//! Round-off is not physics: the one place that decides whether a number is anything but the round-off of its own sum.
+//! Decides whether a number is more than the round-off of the sum that it results from. This is the only place with such a rule.
 //!
-//! A force, gap, slip or drift is a sum of terms that are as large as the forces at work, or as the coordinates of the
-//! scene. Double precision leaves of such a sum no less than a few ε = 2^-52 times its largest term. Below [`TIMES`] of
-//! these, and below what the stiffest forces leave ([`Norms::noise`]), a number is shown as 0, no arrow is drawn from it,
-//! and no lesson asks about it. A number that decided a mode is shown as it is all the same, with [`NOTE`].
+//! Forces, gaps, slips and drifts are sums of terms as large as the acting forces or the coordinates of the
+//! scene. In double precision such a sum has an error of a few ε = 2^-52 times its largest term. Below
+//! [`TIMES`] such errors, and below the noise of the stiffest forces ([`Norms::noise`]), a number is shown as
+//! 0, no arrow is drawn for it, and no lesson asks about it. A number that decided a mode is always shown, with
+//! [`NOTE`].
 
 use stickslip_core::linear::norms::Norms;
 use stickslip_core::model::Model;
@@ -11,10 +12,10 @@ use stickslip_scene::number;
 
 /// Round-off in units of the machine precision times the largest term of a sum.
 pub const TIMES: f64 = 64.0;
-/// What is said of a number that decided something though it is no larger than round-off.
+/// Note for a number that decided something although it is round-off.
 pub const NOTE: &str = "(round-off)";
 
-/// Below which size forces and lengths are round-off.
+/// Sizes below which forces and lengths are round-off.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct RoundOff {
     /// Force.
@@ -24,7 +25,7 @@ pub struct RoundOff {
 }
 
 impl RoundOff {
-    /// Of a scene where its forces are as large as these norms say.
+    /// The limits for a scene with these norms.
     pub fn of(model: &Model, norms: &Norms) -> RoundOff {
         let ulps = TIMES * f64::EPSILON;
         let coordinates = model.nodes.iter().flat_map(|node| node.at);
@@ -35,23 +36,23 @@ impl RoundOff {
         }
     }
 
-    /// A force, or 0 where it is round-off.
+    /// A force, or 0 if it is round-off.
     pub fn force(&self, value: f64) -> f64 {
         clean(value, self.force)
     }
 
-    /// A length, or 0 where it is round-off.
+    /// A length, or 0 if it is round-off.
     pub fn length(&self, value: f64) -> f64 {
         clean(value, self.length)
     }
 
-    /// |F_t| over |T_max| as a cell of a table; a dash where T_max is round-off, and F_t too.
+    /// |F_t| over |T_max| as a table cell; a dash if both are round-off.
     pub fn ratio(&self, f_t: f64, t_max: f64) -> String {
         number::ratio(self.force(f_t), self.force(t_max))
     }
 }
 
-/// A value, or 0 where it is no larger than round-off; what is not a number stays what it is.
+/// A value, or 0 if it is round-off; NaN stays NaN.
 fn clean(value: f64, round_off: f64) -> f64 {
     match value.abs() <= round_off {
         true => 0.0,
@@ -64,7 +65,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_no_larger_than_round_off_is_nothing_and_all_else_is_itself() {
+    fn round_off_becomes_zero_and_other_values_are_unchanged() {
         let round_off = RoundOff {
             force: 1e-12,
             length: 1e-15,

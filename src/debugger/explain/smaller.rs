@@ -1,5 +1,5 @@
-//! Whether a smaller increment has a consistent state where an increment has none. That is found out, not supposed: a
-//! scene may have none however small the increment.
+//! Checks whether a smaller increment has a consistent state if the current one has none. A scene may have
+//! none, however small the increment.
 
 use crate::explain::diagnosis::undecided;
 use stickslip_core::interface::census::census;
@@ -7,36 +7,36 @@ use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::state::State;
 use stickslip_core::step::stepper::Stepper;
 
-/// How often the increment is halved in search of a consistent state.
+/// Maximum number of halvings of the increment.
 const HALVINGS: i32 = 6;
 
-/// What was found.
+/// Result of the search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Smaller {
-    /// An increment of this size has a consistent state, as the bodies are linearised at its start.
+    /// An increment of this size has a consistent state, with the bodies linearised at its start.
     Found(f64),
-    /// None has, halved down to this size.
+    /// No increment down to this size has one.
     None(f64),
 }
 
 impl Smaller {
-    /// In words.
+    /// Describes the result.
     pub fn words(&self) -> String {
         match self {
             Smaller::Found(size) => {
-                format!("a smaller increment has a consistent state: one of {size} has")
+                format!("a smaller increment of {size} has a consistent state")
             }
             Smaller::None(size) => {
                 format!(
-                    "nor has a smaller increment a consistent state: none, halved down to {size}"
+                    "smaller increments have no consistent state either (halved down to {size})"
                 )
             }
         }
     }
 }
 
-/// Looks for a consistent state at smaller increments from where the present one of a state starts. `None` if that cannot
-/// be told. The stepper is left anywhere.
+/// Searches for a consistent state in smaller increments from the start of a state's current increment. `None`
+/// if unknown. The stepper's final state is unspecified.
 pub fn smaller(stepper: &mut Stepper, state: &State) -> Option<Smaller> {
     let size = (state.load_factor - state.start.load_factor).abs();
     let mut smallest = size;

@@ -1,4 +1,4 @@
-//! Describes solids outside the range of their law: which element, its deformation, and which law to use instead
+//! Describes solids outside the range of their material law: the element, its deformation, and a suitable law
 //! ([`stickslip_core::fem::deformation`]).
 
 use stickslip_core::fem::deformation::{Deformation, PointDeformation, Range, deformation};
@@ -50,7 +50,7 @@ pub fn outside(model: &Model, point: &PointDeformation) -> String {
         place(model, point),
         match range(model, point) {
             Range::Volume(_) => format!("swollen to det F = {}", four(point.determinant)),
-            _ => format!("pressed to a stretch of {stretch}"),
+            _ => format!("compressed to a stretch of {stretch}"),
         },
         limit(model, point)
     )
@@ -74,7 +74,7 @@ pub fn limit(model: &Model, point: &PointDeformation) -> String {
         (Range::Volume(most), _) => {
             format!("law: neohookean may soften beyond det F = {}", four(most))
         }
-        (Range::Unlimited, _) => "its stress update has no limit of its own".into(),
+        (Range::Unlimited, _) => "its stress update has no limit".into(),
     }
 }
 
@@ -88,7 +88,7 @@ pub fn other_law(model: &Model, point: &PointDeformation) -> Option<(String, &'s
     }
 }
 
-/// Reports that an accepted increment leaves the range, with the law to use instead.
+/// Describes an accepted increment that leaves the range, with a suitable law.
 pub fn left(model: &Model, point: &PointDeformation) -> String {
     let suggested = other_law(model, point).map_or(String::new(), |(path, value)| {
         format!(" (suggested, not tried: {path}={value})")
@@ -99,7 +99,7 @@ pub fn left(model: &Model, point: &PointDeformation) -> String {
 /// Role of a solid's law in a failure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MaterialCause {
-    /// The worst point of the failed iterate if outside the range, else of the last equilibrium.
+    /// The worst point of the failed iterate if it is outside the range, otherwise of the last equilibrium.
     pub point: PointDeformation,
     /// The worst point of the last equilibrium, if it was already outside.
     pub before: Option<PointDeformation>,
@@ -144,7 +144,7 @@ impl MaterialCause {
     pub fn words(&self, model: &Model) -> String {
         let before = match &self.before {
             Some(before) if before.stretch != self.point.stretch => format!(
-                "; in the last equilibrium, {} was pressed to {}",
+                "; in the last equilibrium, {} was compressed to {}",
                 element(model, before),
                 four(before.stretch)
             ),

@@ -1,4 +1,4 @@
-//! Branches by name: what each is called, what it cost, and where it accepted increments.
+//! Branches: their names, their cost, and where they accepted increments.
 
 use crate::explain::names;
 use crate::history::strip::Strip;
@@ -6,7 +6,7 @@ use crate::history::tree::Tree;
 use stickslip_core::model::Model;
 use stickslip_core::step::intervene::Intervention;
 
-/// What a stretch of the history cost.
+/// Cost of a part of the history.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Cost {
     /// Minor iterations.
@@ -19,14 +19,14 @@ pub struct Cost {
     pub seconds: f64,
 }
 
-/// Why a word names no branch.
+/// Why a word does not name a branch.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum NoBranch {
-    /// No branch has this name; what branches there are.
-    #[error("no branch is called '{0}'; there are {1}")]
+    /// No branch has this name; a list of the branches.
+    #[error("branch '{0}' does not exist; branches: {1}")]
     Unknown(String, String),
-    /// Several branches have names like this; which.
-    #[error("'{0}' could be {1}")]
+    /// The labels of several branches begin with this; a list of them.
+    #[error("branch '{0}' is ambiguous: {1}")]
     Ambiguous(String, String),
 }
 
@@ -39,10 +39,9 @@ pub fn name(tree: &Tree, branch: usize) -> String {
     format!("b{}: {label}", branch + 1)
 }
 
-/// The branch that a word stands for: `b2`, its label, its whole name, or the beginning of one label only.
+/// Finds a branch by number (`b2`), label, whole name, or a unique prefix of its label.
 ///
-/// # Errors
-/// A message that lists the branches.
+/// # Errors If none or several match; the message lists the branches.
 pub fn find(tree: &Tree, word: &str) -> Result<usize, NoBranch> {
     let all = 0..tree.branches().len();
     let label = |b: usize| tree.branches()[b].label.as_str();
@@ -69,7 +68,7 @@ pub fn find(tree: &Tree, word: &str) -> Result<usize, NoBranch> {
     }
 }
 
-/// What was done, in the few words of a branch's name.
+/// The label of a branch that starts with this intervention.
 pub fn label(model: &Model, intervention: &Intervention, setting: Option<(&str, &str)>) -> String {
     if let Some((path, value)) = setting {
         let path = path.strip_prefix("settings.").unwrap_or(path);
@@ -105,7 +104,7 @@ pub fn label(model: &Model, intervention: &Intervention, setting: Option<(&str, 
     }
 }
 
-/// What points of a branch's line cost.
+/// Cost of a range of points on a branch's line.
 pub fn cost(tree: &Tree, branch: usize, places: std::ops::Range<usize>) -> Cost {
     let strips = places
         .filter_map(|at| tree.point(branch, at))
@@ -120,7 +119,8 @@ pub fn cost(tree: &Tree, branch: usize, places: std::ops::Range<usize>) -> Cost 
     cost
 }
 
-/// The last place on a branch's line where an increment was accepted at the same load on the same leg of the path.
+/// The last point on a branch's line where an increment was accepted at the same load on the same leg of the
+/// path.
 pub(super) fn accepted_like(tree: &Tree, branch: usize, like: &Strip) -> Option<usize> {
     let same = |strip: &Strip| (strip.load_factor, strip.leg) == (like.load_factor, like.leg);
     accepted(tree, branch)
@@ -128,7 +128,7 @@ pub(super) fn accepted_like(tree: &Tree, branch: usize, like: &Strip) -> Option<
         .map(|(at, _)| at)
 }
 
-/// Places of a branch's line where an increment was accepted, last first.
+/// Points of a branch's line where an increment was accepted, last first.
 pub(super) fn accepted(tree: &Tree, branch: usize) -> impl Iterator<Item = (usize, &Strip)> {
     (0..tree.len(branch))
         .rev()

@@ -1,7 +1,7 @@
-//! Breakpoints: conditions at which a run stops, forward or backward.
+//! Breakpoints: conditions that stop a run, forward or backward.
 //!
-//! A condition looks at nothing but the [`Strip`] of a minor iteration and of the point before it. Strips are kept for
-//! ever, so a run backward finds exactly what a run forward stopped at, without solving anything.
+//! A condition depends only on the [`Strip`]s of a minor iteration and of the point before it. Strips are never
+//! discarded, so running backward finds exactly the points where running forward stopped, without solving.
 
 use crate::explain::names;
 use crate::history::strip::{PointKind, Strip};
@@ -10,41 +10,41 @@ use std::fmt;
 use std::str::FromStr;
 use stickslip_core::model::{Mode, Model};
 
-/// When to stop. A node is a slave number; none stands for any node.
+/// Condition of a breakpoint. A node is a slave number; `None` matches any node.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Condition {
-    /// A node is solved in another mode next: from a given one or any, to a given one or any.
+    /// A node's mode changes for the next iteration.
     Mode {
         /// Slave number, from 0; `None` for any.
         node: Option<usize>,
-        /// The mode before; `None` for any.
+        /// Mode before; `None` for any.
         from: Option<Mode>,
-        /// The mode after; `None` for any.
+        /// Mode after; `None` for any.
         to: Option<Mode>,
     },
-    /// A node's margin falls below a value (force or length), in single precision.
+    /// A node's margin (force or length, in single precision) falls below a value.
     Margin {
         /// Slave number, from 0; `None` for any.
         node: Option<usize>,
-        /// The value, force or length as the test that is nearest to switching has it.
+        /// Threshold: a force or a length, depending on which inequality is closest to switching.
         below: f64,
     },
-    /// A node changes its interface element, or loses or finds one.
+    /// A node changes its interface element, or leaves or reaches a surface.
     Element {
         /// Slave number, from 0; `None` for any.
         node: Option<usize>,
     },
-    /// The minor iterations cycle.
+    /// The minor iterations form a cycle.
     Cycle,
-    /// A major iteration leaves a larger relative residual than it started from.
+    /// A major iteration ends with a larger relative residual than it started with.
     Residual,
     /// The increment fails.
     Failure,
-    /// A place is reached or passed.
+    /// A position is reached or passed.
     At(RunPlace),
 }
 
-/// A place in a run; without a minor or major iteration the first one.
+/// A position in a run; a missing minor or major iteration means the first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename = "Place")]
 pub struct RunPlace {
@@ -56,9 +56,9 @@ pub struct RunPlace {
     pub minor: u32,
 }
 
-/// A word that is no place in a run.
+/// A word that is not a position in a run.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("'{0}' is no place; INC, INC.MAJOR or INC.MAJOR.MINOR would be")]
+#[error("invalid position '{0}'; expected INC[.MAJOR[.MINOR]]")]
 pub struct NoPlace(String);
 
 impl FromStr for RunPlace {
@@ -88,22 +88,22 @@ impl fmt::Display for RunPlace {
 /// A breakpoint.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Breakpoint {
-    /// Its number, from 1; never used twice in a session.
+    /// Number, from 1; never reused in a session.
     pub id: u32,
     /// When it stops a run.
     pub condition: Condition,
-    /// Whether it stops one at present.
+    /// Whether it is enabled.
     pub enabled: bool,
 }
 
-/// The enabled breakpoints that hold at a point, by number. `before` is the point before it on the same line.
+/// The numbers of the enabled breakpoints that are hit at a point. `before` is the previous point of the line.
 pub fn hits(breakpoints: &[Breakpoint], before: &Strip, now: &Strip) -> Vec<u32> {
     let hit = |b: &&Breakpoint| b.enabled && b.condition.holds(before, now);
     breakpoints.iter().filter(hit).map(|b| b.id).collect()
 }
 
 impl Condition {
-    /// Whether it holds at a minor iteration; never at the start or at an intervention.
+    /// Whether the condition is met at a minor iteration; never at the start or at an intervention.
     pub fn holds(&self, before: &Strip, now: &Strip) -> bool {
         if !now.kind.is_solved() {
             return false;
@@ -145,7 +145,7 @@ impl Condition {
         }
     }
 
-    /// It in words.
+    /// The condition in words.
     pub fn describe(&self, model: &Model) -> String {
         let name = |node: &Option<usize>| match node {
             Some(node) => names::slave(model, *node),
@@ -157,7 +157,7 @@ impl Condition {
                 (None, None) => format!("{} changes mode", name(node)),
                 (Some(_), None) => format!("{} leaves {}", name(node), mode(from)),
                 (None, Some(_)) => format!("{} becomes {}", name(node), mode(to)),
-                _ => format!("{} goes from {} to {}", name(node), mode(from), mode(to)),
+                _ => format!("{} changes from {} to {}", name(node), mode(from), mode(to)),
             },
             Condition::Margin { node, below } => format!("margin of {} below {below}", name(node)),
             Condition::Element { node } => format!("{} changes element", name(node)),
@@ -169,7 +169,7 @@ impl Condition {
     }
 }
 
-/// One breakpoint in words: `2 (any node leaves sliding)`.
+/// Number and condition: `2 (any node leaves sliding)`.
 pub fn describe(model: &Model, breakpoint: &Breakpoint) -> String {
     let off = if breakpoint.enabled { "" } else { ", disabled" };
     let condition = breakpoint.condition.describe(model);
@@ -181,7 +181,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn places_read_with_the_first_iteration_where_none_is_given() {
+    fn positions_default_to_the_first_iteration() {
         let read = |text: &str| text.parse::<RunPlace>().map(|place| place.to_string());
         assert_eq!(read("3"), Ok("3.1.1".into()));
         assert_eq!(read("3.2"), Ok("3.2.1".into()));

@@ -1,9 +1,10 @@
-//! Two branches side by side: modes, forces, residuals and cost, at their tips and where they can be compared.
+//! Compares two branches: modes, forces, residuals and cost, at their tips and at a common point.
 //!
-//! The common place is the last load at which both accepted an increment after they parted (on a path that goes to and
-//! fro, on the same leg); without one, the last minor iteration of the same position. States are the same
-//! where displacements differ by less than [`SAME_STATE`] of the scene's length, and forces by less than [`SAME_STATE`] of the
-//! larger branch's largest force; modes may differ between them only in ties, and are told beside.
+//! The common point is the last load at which both accepted an increment after the fork (on the same leg, if
+//! the load path reverses). If there is none, it is the last minor iteration at the same position. Two states
+//! are the same if displacements differ by less than [`SAME_STATE`] of the scene's length, and forces by less
+//! than [`SAME_STATE`] of the larger branch's largest force. Modes of equal states can differ only in ties and
+//! are listed separately.
 
 use crate::explain::names;
 use crate::history::branches::{self, Cost};
@@ -14,60 +15,62 @@ use stickslip_core::model::{Mode, Model};
 use stickslip_core::step::event::Position;
 use stickslip_scene::shown::first_of;
 
-/// States that differ by less, relatively, are the same.
+/// Relative difference below which two states are the same.
 pub const SAME_STATE: f64 = 1e-7;
 
 /// Whether two states are the same.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sameness {
-    /// They are.
+    /// Equal within [`SAME_STATE`].
     Same,
-    /// They are not.
+    /// Not equal.
     Different,
 }
 
-/// A slave node on one side. Compression positive.
+/// A slave node in one of the branches. Compression is positive.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NodeSide {
-    /// Mode of the iteration, and of the next.
+    /// Mode of the iteration.
     pub mode: Mode,
     /// Mode of the next iteration.
     pub next: Mode,
-    /// Total forces after it, and the gap; `None` if the frame is thinned, or nothing was solved.
+    /// Total forces (normal, tangential) after the iteration; `None` if the frame is thinned or nothing was
+    /// solved.
     pub forces: Option<[f64; 2]>,
-    /// Gap, length; negative is penetration.
+    /// Gap (length), negative for penetration; `None` as for the forces.
     pub gap: Option<f64>,
 }
 
-/// One branch at one place.
+/// One branch at one point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Side {
-    /// Its number in [`Tree::branches`].
+    /// Number in [`Tree::branches`].
     pub branch: usize,
-    /// Place on the branch's line.
+    /// Index on the branch's line.
     pub at: usize,
-    /// Increment, major and minor iteration there.
+    /// Increment, major and minor iteration.
     pub position: Position,
-    /// λ there.
+    /// Load factor λ.
     pub load_factor: f64,
-    /// One entry a slave node.
+    /// One entry per slave node.
     pub nodes: Vec<NodeSide>,
-    /// Relative residual and violation of the interface: after the major iteration where it ended here, else before.
+    /// Relative residual: after the major iteration if it ended here, otherwise before it.
     pub residual: f64,
     /// Relative violation of the interface conditions at the same time; `None` if it was not measured.
     pub interface: Option<f64>,
-    /// From the root to here.
+    /// Cost from the root to here.
     pub cost: Cost,
 }
 
-/// Two branches.
+/// Two branches side by side.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Comparison {
-    /// Both at their ends.
+    /// Both at their tips.
     pub tips: [Side; 2],
-    /// Where both can be compared.
+    /// Both at their common point, if there is one.
     pub common: Option<[Side; 2]>,
-    /// Whether the states there are the same; `None` if there is no such place, or a frame is thinned.
+    /// Whether the states at the common point are the same; `None` if there is no such point, or a frame is
+    /// thinned.
     pub sameness: Option<Sameness>,
 }
 
@@ -86,7 +89,7 @@ pub fn compare(tree: &Tree, a: usize, b: usize) -> Option<Comparison> {
     })
 }
 
-/// Whether a branch has the same state as another where both accepted the same load, and that load.
+/// Whether two branches have the same state at the last load that both accepted, and that load.
 pub(super) fn sameness(tree: &Tree, a: usize, b: usize) -> Option<(Sameness, f64)> {
     let [at_a, at_b] = common_load(tree, a, b)?;
     let (_, strip) = tree.point(a, at_a)?;
@@ -155,7 +158,7 @@ fn common(tree: &Tree, a: usize, b: usize) -> Option<[usize; 2]> {
     })
 }
 
-/// The last load that both accepted after they parted.
+/// The last load that both accepted after the fork.
 fn common_load(tree: &Tree, a: usize, b: usize) -> Option<[usize; 2]> {
     let start = parting(tree, a, b);
     branches::accepted(tree, a)
@@ -195,7 +198,7 @@ fn same(tree: &Tree, a: (usize, usize), b: (usize, usize)) -> Option<Sameness> {
     })
 }
 
-/// A comparison in one line.
+/// The comparison in one line.
 pub fn describe(tree: &Tree, comparison: &Comparison) -> String {
     let model = tree.model();
     let cost = |side: &Side| {
@@ -206,7 +209,7 @@ pub fn describe(tree: &Tree, comparison: &Comparison) -> String {
             ..
         } = side.cost;
         format!(
-            "{} at load {}, residual {:.1e}, {minors} minors, {majors} majors, {seconds:.3} s",
+            "{} at load {}, residual {:.1e}, {minors} minor, {majors} major, {seconds:.3} s",
             branches::name(tree, side.branch),
             side.load_factor,
             side.residual
@@ -214,16 +217,16 @@ pub fn describe(tree: &Tree, comparison: &Comparison) -> String {
     };
     let [a, b] = &comparison.tips;
     let state = match (&comparison.common, comparison.sameness) {
-        (None, _) => "no place in common since they parted".into(),
+        (None, _) => "the branches share no iteration after the fork".into(),
         (Some([a, _]), Some(Sameness::Same)) => format!("same state at load {}", a.load_factor),
         (Some([a, b]), Some(Sameness::Different)) => format!(
-            "at load {} they differ{}",
+            "different states at load {}{}",
             a.load_factor,
             differing(model, a, b)
         ),
         (Some([a, _]), None) => {
             format!(
-                "at load {} one of them is not kept; go there first",
+                "at load {} one state was thinned; go there first to recompute it",
                 a.load_factor
             )
         }

@@ -1,4 +1,4 @@
-//! A frame: what one minor iteration left behind, or what one intervention changed.
+//! A frame: the state after one minor iteration or one intervention.
 
 use std::sync::Arc;
 use stickslip_core::step::event::Event;
@@ -7,28 +7,28 @@ use stickslip_core::step::state::State;
 
 /// A point of the history.
 ///
-/// A frame that was thinned has neither event nor slave nodes nor displacements ([`Frame::is_whole`]); its
-/// intervention and monitors stay. The frame under the cursor and the last one are always whole.
+/// A thinned frame has no event, slave nodes or displacements ([`Frame::is_whole`]); its intervention and
+/// monitors stay. The frame at the cursor and the last one are always whole.
 #[derive(Debug, Clone)]
 pub struct Frame {
-    /// The state from which the next minor iteration goes on.
+    /// The state from which the next minor iteration starts.
     pub state: State,
     /// The last minor iteration; `None` at the start.
     pub event: Option<Arc<Event>>,
-    /// What the user changed here, if this frame is due to that and not to a minor iteration.
+    /// The change made by the user, if this frame is an intervention.
     pub intervention: Option<Intervention>,
-    /// Values of the scene's monitors, where this frame ends an accepted increment.
+    /// Values of the scene's monitors, if this frame ends an accepted increment.
     pub monitors: Option<Arc<Vec<f64>>>,
 }
 
 impl Frame {
-    /// Whether state and event are there, and were not thinned.
+    /// Whether state and event have not been thinned.
     pub fn is_whole(&self) -> bool {
         !self.state.u.is_empty()
     }
 }
 
-/// A monitor's value and the load factor at the end of every accepted increment among these frames.
+/// A monitor's value and the load factor at the end of each accepted increment in these frames.
 pub fn curve(frames: &[Frame], monitor: usize) -> Vec<[f64; 2]> {
     let point = |frame: &Frame| {
         let value = *frame.monitors.as_ref()?.get(monitor)?;

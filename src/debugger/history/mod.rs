@@ -1,10 +1,11 @@
-//! What was done so far: frames, and the tree of branches that they make.
+//! The history of a session: frames, and the tree of branches that they form.
 //!
-//! - [`frame`]: a point of the history in full; [`strip`]: what is kept of every point, whatever happens to its frame.
-//! - [`tree`]: the branches and their memory; [`branches`]: their names and costs; [`compare`]: two of them side by side;
-//!   [`verdicts`]: how each ended.
-//! - [`rounds`]: whether the modes of a line go round.
-//! - [`breakpoints`], [`watches`]: where a run stops, and what is looked at.
+//! - [`frame`]: a point of the history in full; [`strip`]: the compact record of a point, which is never
+//!   discarded.
+//! - [`tree`]: the branches, within a memory budget; [`branches`]: their names and cost; [`compare`]: two of
+//!   them side by side; [`verdicts`]: how each one ended.
+//! - [`rounds`]: whether the modes on a line repeat.
+//! - [`breakpoints`]: where a run stops; [`watches`]: quantities to observe.
 
 pub mod branches;
 pub mod breakpoints;

@@ -1,7 +1,8 @@
-//! Whether the modes of a line go round, as seen from outside: for solvers that do not say so themselves.
+//! Detects repeating contact modes on a line, for solvers that do not report cycles.
 //!
-//! Only modes are looked at, over minor and major iterations of one increment: a sequence that has repeated itself twice with a
-//! period of at least two is called a cycle; where none has, the nodes that keep changing are told.
+//! Only modes are compared, over the minor and major iterations of one increment. A sequence of period 2 or
+//! more that has occurred twice in a row is reported as a cycle. Without a cycle, the nodes that keep changing
+//! are reported.
 
 use super::strip::Strip;
 use crate::explain::names;
@@ -9,25 +10,25 @@ use std::collections::VecDeque;
 use stickslip_core::interface::cycle;
 use stickslip_core::model::{Mode, Model};
 
-/// Longest period that is looked for.
+/// Longest period searched for.
 const LONGEST: usize = 12;
-/// Iterations that are looked back for nodes that keep changing.
+/// Number of latest iterations searched for nodes that keep changing.
 const BACK: usize = 8;
-/// Fewest changes among them that count as going on.
+/// Number of changes among them from which a node keeps changing.
 const OFTEN: usize = 3;
-/// Nodes that are named.
+/// Maximum number of nodes named.
 const NAMED: usize = 6;
 
-/// Whether the modes of an attached solver have begun to go round, seen iteration by iteration.
+/// Detects, iteration by iteration, when the modes of an attached solver start to repeat.
 #[derive(Debug, Default)]
 pub struct Watch {
     recent: VecDeque<Strip>,
-    /// Whether they went round at the last look.
+    /// Whether they repeated at the last iteration.
     round: bool,
 }
 
 impl Watch {
-    /// Looks at one iteration more; the cycle, where it is seen first here.
+    /// Adds an iteration. Returns a cycle when it is first detected.
     pub fn see(&mut self, strip: &Strip) -> Option<Rounds> {
         if self.recent.len() == 2 * LONGEST + 2 {
             self.recent.pop_front();
@@ -40,34 +41,34 @@ impl Watch {
         found.filter(|_| began)
     }
 
-    /// What the last iterations did.
+    /// The behaviour of the modes over the last iterations.
     pub fn now(&mut self) -> Option<Rounds> {
         rounds(self.recent.make_contiguous())
     }
 }
 
-/// What the modes did up to the end of a line.
+/// Behaviour of the modes up to the end of a line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Rounds {
     /// They repeat.
     Cycle {
-        /// Iterations of a round.
+        /// Number of iterations in one period.
         period: usize,
-        /// Place on the line at which the first round began.
+        /// Index on the line where the first period starts.
         since: usize,
-        /// Who takes part, by slave number, and its modes over the last round.
+        /// Participating slave nodes, with their modes over the last period.
         members: Vec<(usize, Vec<Mode>)>,
     },
-    /// They change without an order.
+    /// They change without a period.
     Restless {
-        /// Who changed, by slave number, and how often in the last [`Rounds::Restless::over`] iterations.
+        /// Slave nodes that changed, and how often in the last [`Rounds::Restless::over`] iterations.
         members: Vec<(usize, usize)>,
-        /// Iterations that were looked at.
+        /// Number of iterations examined.
         over: usize,
     },
 }
 
-/// What the modes did up to the end of these strips; `None` where they are at rest.
+/// The behaviour of the modes up to the end of these strips; `None` if they do not keep changing.
 pub fn rounds(strips: &[Strip]) -> Option<Rounds> {
     let last = strips.last()?.position.increment;
     let solved = strips.iter().enumerate();
@@ -77,7 +78,7 @@ pub fn rounds(strips: &[Strip]) -> Option<Rounds> {
         .take_while(|(_, strip)| strip.position.increment == last)
         .collect();
     let nodes = strips.last()?.slaves();
-    // From the last iteration back: the modes with which each was solved, and those that follow the last.
+    // Counted back from the last iteration: the modes used in each solve; 0 are the modes for the next one.
     let modes = |back: usize, slave: usize| match back {
         0 => tail[0].1.next(slave),
         back => tail[back - 1].1.before(slave),
@@ -86,7 +87,7 @@ pub fn rounds(strips: &[Strip]) -> Option<Rounds> {
     if tail.is_empty() {
         return None;
     }
-    // Modes alone prove nothing, so that the turn before must be the same.
+    // Equal modes may be a coincidence, so that two full periods have to agree.
     let repeats = |then: usize| {
         let period = tail.len() - then;
         (2..=LONGEST.min(tail.len() / 2)).contains(&period)
@@ -124,7 +125,7 @@ pub fn rounds(strips: &[Strip]) -> Option<Rounds> {
     (!members.is_empty()).then_some(Rounds::Restless { members, over })
 }
 
-/// The same in a sentence; `since` says whether it tells the step from which on.
+/// The behaviour in a sentence; `tells_since` adds the first step.
 pub fn words(model: &Model, rounds: &Rounds, tells_since: bool) -> String {
     match rounds {
         Rounds::Cycle {
@@ -133,7 +134,7 @@ pub fn words(model: &Model, rounds: &Rounds, tells_since: bool) -> String {
             members,
         } => {
             let since = match tells_since {
-                true => format!(" since step {since}"),
+                true => format!(" from step {since}"),
                 false => String::new(),
             };
             let member = |(slave, modes): &(usize, Vec<Mode>)| {
@@ -145,7 +146,7 @@ pub fn words(model: &Model, rounds: &Rounds, tells_since: bool) -> String {
             };
             let told: Vec<String> = members.iter().take(NAMED).map(member).collect();
             format!(
-                "the modes {period}-cycle{since}: {}{}",
+                "cycle of period {period}{since}: {}{}",
                 told.join("; "),
                 more(members.len())
             )
@@ -159,10 +160,10 @@ pub fn words(model: &Model, rounds: &Rounds, tells_since: bool) -> String {
             let order = if *over < BACK {
                 ""
             } else {
-                ", without a period"
+                " without a period"
             };
             format!(
-                "in the last {over} iterations these changed{order}: {}{}",
+                "changed in the last {over} iterations{order}: {}{}",
                 told.join(", "),
                 more(members.len())
             )

@@ -1,7 +1,9 @@
-//! What is kept of every minor iteration, whatever happens to its frame: enough for a timeline, breakpoints and costs.
+//! The compact record of a point of the history, which is never thinned: enough for the timeline, breakpoints
+//! and costs.
 //!
-//! Memory: [`Strip::BYTES_PER_NODE`] bytes for each slave node, and [`Strip::BYTES_PER_ITERATION`] for the iteration. An
-//! iteration that moves a node to another element adds 4 bytes a node, one that begins an increment or ends a major iteration its norms.
+//! Memory: [`Strip::BYTES_PER_NODE`] bytes per slave node and [`Strip::BYTES_PER_ITERATION`] per iteration. An
+//! iteration in which a node moves to another element takes 4 more bytes per node; the start of an increment
+//! and the end of a major iteration add their norms.
 
 use std::sync::Arc;
 use stickslip_core::contact::record::{ContactRecord, Forced};
@@ -10,41 +12,41 @@ use stickslip_core::model::{Mode, Model};
 use stickslip_core::step::event::{Event, Failure, Outcome, Position};
 use stickslip_core::step::state::State;
 
-/// How a point of the history came to be.
+/// Kind of a point of the history.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PointKind {
     /// The start of the scene.
     Start,
-    /// The user changed something.
+    /// An intervention of the user.
     Intervention,
-    /// A minor iteration after which the minors go on.
+    /// A minor iteration; the modes have not settled.
     Minor,
-    /// A cycle of minors, damped.
+    /// A cycle of minor iterations, damped.
     Damped,
-    /// The ladder's next strategy took over.
+    /// The next strategy of the ladder took over.
     Climbed,
-    /// The increment was cut.
+    /// The increment was cut and is tried again.
     Cut,
     /// The end of a major iteration.
     Major,
-    /// The same; the judge refused the state, and net slip counts from here on.
+    /// The end of a major iteration; the state was refused by the check, and from here on net slip counts.
     Refused,
     /// The end of an increment: accepted.
     Increment,
-    /// The same, and it jumped to another branch of equilibrium.
+    /// Accepted after a jump to another equilibrium branch.
     Jumped,
     /// Accepted, and the end of the history.
     Last,
-    /// The same, and it jumped.
+    /// Accepted after a jump, and the end of the history.
     LastJumped,
-    /// A cycle of minors: failed.
+    /// A cycle of minor iterations: failed.
     Cycle,
     /// Failed for another reason.
     Failed,
 }
 
 impl PointKind {
-    /// What an outcome makes of an iteration.
+    /// The kind of an iteration with this outcome.
     pub fn of(outcome: &Outcome) -> PointKind {
         match outcome {
             Outcome::Minor => PointKind::Minor,
@@ -69,12 +71,12 @@ impl PointKind {
         }
     }
 
-    /// Whether a minor iteration was solved here.
+    /// Whether a minor iteration was solved.
     pub fn is_solved(self) -> bool {
         !matches!(self, PointKind::Start | PointKind::Intervention)
     }
 
-    /// Whether a major iteration ended here, well or not.
+    /// Whether a major iteration ended, successfully or not.
     pub fn ends_major(self) -> bool {
         self.is_solved()
             && !matches!(
@@ -83,12 +85,12 @@ impl PointKind {
             )
     }
 
-    /// Whether the increment failed here.
+    /// Whether the increment failed.
     pub fn is_failure(self) -> bool {
         matches!(self, PointKind::Cycle | PointKind::Failed)
     }
 
-    /// Whether an increment was accepted here.
+    /// Whether an increment was accepted.
     pub fn is_accepted(self) -> bool {
         matches!(
             self,
@@ -96,7 +98,7 @@ impl PointKind {
         )
     }
 
-    /// Whether the history ended here.
+    /// Whether the history ended.
     pub fn is_last(self) -> bool {
         matches!(self, PointKind::Last | PointKind::LastJumped)
     }
@@ -105,31 +107,33 @@ impl PointKind {
 /// The compact record of one minor iteration, or of the start or an intervention.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Strip {
-    /// The minor iteration; at the start the first to come; of an intervention the last one before it.
+    /// The minor iteration; at the start, the first one to be solved; for an intervention, the last one before
+    /// it.
     pub position: Position,
     /// Load factor at the end of its increment.
     pub load_factor: f64,
-    /// Leg of the load path on which the next increment lies.
+    /// Leg of the load path that the next increment lies on.
     pub leg: u32,
     /// What happened there.
     pub kind: PointKind,
-    /// Relative residual about which the minor iteration was linearised.
+    /// Relative residual at the start of the major iteration.
     pub residual: f64,
-    /// Norms before it, where this is the first minor iteration of an increment's attempt, or any of a finished run.
+    /// Norms before the iteration, if it is the first of an attempt or belongs to a finished run.
     pub first: Option<Box<Norms>>,
-    /// Norms after it, where a major iteration ended here and did not fail.
+    /// Norms after the iteration, if a major iteration ended successfully.
     pub after: Option<Box<Norms>>,
-    /// Wall time that it took to solve; not a part of the state, and never compared.
+    /// Wall time of the solve; not part of the state, and never compared.
     pub seconds: f32,
-    /// A byte a slave node: bits 0-1 the mode before, 2-3 the mode next, 4 forced once, 5 held, 6 held where two sides meet, 7 an
-    /// attached solver decided otherwise than the rules that it names.
+    /// One byte per slave node: bits 0-1 mode before, 2-3 next mode, 4 forced once, 5 held, 6 held in a corner,
+    /// 7 an attached solver departed from its own rules.
     marks: Box<[u8]>,
-    /// Signed distance of the deciding inequality from switching, by slave node (force or length), rounded.
+    /// Margin of each slave node: signed distance of the deciding inequality from switching (force or length),
+    /// rounded.
     margins: Box<[f32]>,
-    /// Interface element that each slave node is on for the next iteration, numbered over all surfaces; shared with the
-    /// strip before where nothing moved.
+    /// Interface element of each slave node for the next iteration, numbered over all surfaces; shared with the
+    /// previous strip if no node moved.
     elements: Arc<[u32]>,
-    /// Letters of a solver that does not distinguish stick from slip, by slave node; else empty.
+    /// One letter per slave node, for solvers that do not distinguish stick from slip; otherwise empty.
     letters: Box<[u8]>,
 }
 
@@ -143,10 +147,10 @@ const DIFFERS: u8 = 1 << 7;
 impl Strip {
     /// A mark and a margin.
     pub const BYTES_PER_NODE: usize = size_of::<u8>() + size_of::<f32>();
-    /// What an iteration takes besides its nodes.
+    /// Size of an iteration without its nodes.
     pub const BYTES_PER_ITERATION: usize = size_of::<Strip>();
 
-    /// The strip of a state that a minor iteration left behind, or of one before any.
+    /// The strip of a state after a minor iteration, or before the first one.
     pub fn of(
         model: &Model,
         state: &State,
@@ -187,7 +191,7 @@ impl Strip {
         }
     }
 
-    /// The strip of an intervention that led from the strip before to a state.
+    /// The strip of a state after an intervention; `before` is the previous strip.
     pub fn intervention(model: &Model, state: &State, before: &Strip) -> Strip {
         let mark = |node: &stickslip_core::contact::state::ContactState| {
             mark(node.mode, node.mode, node.forced)
@@ -213,58 +217,60 @@ impl Strip {
         self.marks.len()
     }
 
-    /// Mode that a slave node had in this iteration.
+    /// Mode of a slave node in this iteration.
     pub fn before(&self, slave: usize) -> Mode {
         mode(self.marks[slave])
     }
 
-    /// Mode that it has in the next one: Table 2's verdict, or another where the user, damping or the end of the surface
-    /// had the last word.
+    /// Mode of a slave node in the next iteration: that of Table 2, unless the user, damping or the end of the
+    /// surface decided.
     pub fn next(&self, slave: usize) -> Mode {
         mode(self.marks[slave] >> 2)
     }
 
-    /// Whether its mode changes here.
+    /// Whether a node's mode changes.
     pub fn changes(&self, slave: usize) -> bool {
         self.before(slave) != self.next(slave)
     }
 
-    /// Whether its mode was forced for this iteration, or held.
+    /// Whether a node's mode was forced for this iteration, or held.
     pub fn is_forced(&self, slave: usize) -> bool {
         self.marks[slave] & (ONCE | HELD) != 0
     }
 
-    /// Whether it was held where two sides meet.
+    /// Whether a node was held in a corner between two sides.
     pub fn in_corner(&self, slave: usize) -> bool {
         self.marks[slave] & CORNER != 0
     }
 
-    /// Whether an attached solver decided otherwise on it than the rules that it names.
+    /// Whether an attached solver departed from its own rules at a node.
     pub fn differs(&self, slave: usize) -> bool {
         self.marks[slave] & DIFFERS != 0
     }
 
-    /// Whether its mode was held until released.
+    /// Whether a node's mode is held until released.
     pub fn is_held(&self, slave: usize) -> bool {
         self.marks[slave] & HELD != 0
     }
 
-    /// Signed distance from switching (force or length), rounded to single precision; infinite where nothing was tested.
+    /// Margin of a node: signed distance from switching (force or length), in single precision; infinite if
+    /// nothing was tested.
     pub fn margin(&self, slave: usize) -> f32 {
         self.margins[slave]
     }
 
-    /// Interface element of a slave node for the next iteration, numbered over all surfaces; none past all ends.
+    /// Interface element of a slave node for the next iteration, numbered over all surfaces; `None` past the
+    /// ends.
     pub fn element(&self, slave: usize) -> Option<u32> {
         Some(self.elements[slave]).filter(|element| *element != NOWHERE)
     }
 
-    /// Letter of a slave node, where the solver gives one in place of a mode.
+    /// Letter of a slave node, if the solver reports letters instead of modes.
     pub fn letter(&self, slave: usize) -> Option<u8> {
         self.letters.get(slave).copied()
     }
 
-    /// Whether two strips tell the same, but for the time that it took.
+    /// Whether two strips are equal except for the wall time.
     pub fn tells_the_same(&self, other: &Strip) -> bool {
         let numbers = |strip: &Strip| {
             let margins = strip.margins.iter().map(|margin| margin.to_bits());
@@ -279,7 +285,7 @@ impl Strip {
     }
 }
 
-/// Whether an event is the first of an increment's attempt.
+/// Whether an event is the first of an attempt.
 fn begins(event: &Event) -> bool {
     (event.position.major, event.position.minor) == (1, 1)
 }
@@ -310,7 +316,7 @@ fn mode(bits: u8) -> Mode {
     }
 }
 
-/// Elements of a state's nodes; the strip's before where they are the same.
+/// Elements of a state's nodes; shared with the previous strip if equal.
 fn elements(model: &Model, state: &State, before: Option<&Strip>) -> Arc<[u32]> {
     let number = |node: &stickslip_core::contact::state::ContactState| match node.spot {
         None => NOWHERE,

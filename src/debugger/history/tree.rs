@@ -1,14 +1,15 @@
-//! The history as a tree of branches, with a bounded memory.
+//! The history as a tree of branches, within a memory budget.
 //!
-//! A branch is a name and the points that are its own, from where it left its parent. The *line* of the current branch
-//! is all points from the root to its tip, in one slice; the own points of other branches are put away beside it.
+//! A branch has a name and its own points, which start where it leaves its parent. The *line* of the current
+//! branch consists of all points from the root to its tip, in one slice; the own points of the other branches
+//! are stored separately.
 //!
-//! Every point has a [`Strip`], for ever. Its [`Frame`] is whole (state and event) as long as the budget of
-//! [`BUDGET`] bytes allows; beyond it frames are thinned: first those inside major iterations, far from the cursor
-//! before near, then ends of majors, then every second end of an increment. A thinned frame keeps its place, its
-//! intervention and its monitors, and is computed again from the nearest whole one before it when it is wanted.
-//! The root, the cursor's frame and the tip of every branch are always whole. [`BRANCH_BUDGET`] bounds these frames and the
-//! strips; beyond it no branch can begin.
+//! The [`Strip`] of a point is never discarded. Its [`Frame`] is whole (state and event) as long as all whole
+//! frames fit into [`BUDGET`] bytes. Beyond that, frames are thinned: first those inside major iterations,
+//! those far from the cursor before near ones; then the ends of major iterations; then every second end of an
+//! increment. A thinned frame keeps its position, intervention and monitors, and is recomputed from the nearest
+//! whole frame before it when needed. The root, the frame at the cursor and the tips of all branches are always
+//! whole. [`BRANCH_BUDGET`] limits those frames and the strips; beyond it no new branch can start.
 
 use crate::history::frame::Frame;
 use crate::history::strip::{PointKind, Strip};
@@ -22,15 +23,15 @@ use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::state::IncrementStart;
 use stickslip_core::step::state::State;
 
-/// Most bytes that whole frames may take.
+/// Maximum size of all whole frames, in bytes.
 pub const BUDGET: usize = 256 << 20;
-/// Maximum size in bytes of the data that is never thinned (tips of all branches, strips of all points) at which a branch
-/// can begin.
+/// Size in bytes of the data that is never thinned (tips of all branches, strips of all points) above which no
+/// branch can start.
 pub const BRANCH_BUDGET: usize = 256 << 20;
-/// Once over the budget, frames are thinned until this part of it is used, so that it is not done at every iteration.
+/// Part of the budget that is left in use after thinning, so that not every iteration has to thin.
 const AFTER_THINNING: f64 = 0.75;
 
-/// Points one after another.
+/// A sequence of points.
 #[derive(Debug, Default)]
 struct Points {
     frames: Vec<Frame>,
@@ -55,18 +56,18 @@ impl Points {
     }
 }
 
-/// A branch: what it is called, and where it left which other.
+/// A branch: its name, and where it left its parent.
 #[derive(Debug)]
 pub struct Branch {
-    /// What was done in it, or the user's name for it.
+    /// Its first intervention, or the user's name for it.
     pub label: String,
-    /// Whether the user gave it its name.
+    /// Whether the user named it.
     pub named: bool,
-    /// The branch that it left; `None` for the first.
+    /// Its parent; `None` for the first branch.
     pub parent: Option<usize>,
-    /// Place on the line of the first point that is its own.
+    /// Index on the line of its first own point.
     pub from: usize,
-    /// Own points that are not on the present line.
+    /// Own points that are not on the current line.
     away: Points,
 }
 
@@ -79,7 +80,7 @@ pub struct Tree {
     current: usize,
     ledger: Ledger,
     budget: usize,
-    /// What is left of a state in a thinned frame.
+    /// The state left in a thinned frame.
     hollow: State,
 }
 
@@ -137,7 +138,7 @@ impl Tree {
         &self.line.frames
     }
 
-    /// Their strips.
+    /// The strips of these frames.
     pub fn strips(&self) -> &[Strip] {
         &self.line.strips
     }
@@ -152,19 +153,19 @@ impl Tree {
         self.current
     }
 
-    /// Gives the current branch another label.
+    /// Renames the current branch.
     pub fn rename(&mut self, label: String, named: bool) {
         let branch = &mut self.branches[self.current];
         (branch.label, branch.named) = (label, named);
     }
 
-    /// Bytes that whole frames take now.
+    /// Bytes taken by whole frames.
     pub fn bytes(&self) -> usize {
         self.ledger.bytes
     }
 
-    /// Size in bytes of the data that is never thinned: the place and the strip of every point, and a whole frame at the
-    /// tip of every branch. It depends on the tree alone, so a replay computes the same value.
+    /// Size in bytes of the data that is never thinned: the entry and the strip of every point, and a whole
+    /// frame at the tip of every branch. It depends only on the tree, so that a replay computes the same value.
     pub fn kept(&self) -> usize {
         let away: usize = self.branches.iter().map(|branch| branch.away.len()).sum();
         let strip = Strip::BYTES_PER_ITERATION + self.model.contacts.len() * Strip::BYTES_PER_NODE;
@@ -173,7 +174,7 @@ impl Tree {
         (self.line.len() + away) * point + self.branches.len() * tip
     }
 
-    /// Adds a point to the tip, to be looked at from now on.
+    /// Appends a point to the tip.
     pub fn push(&mut self, mut frame: Frame, strip: Strip) {
         if let Some(tip) = self.line.frames.last() {
             copy(&mut frame, tip);
@@ -185,8 +186,8 @@ impl Tree {
         self.thin([tip, tip]);
     }
 
-    /// Adds an intervention after a place of the line: at the tip of the current branch, or in a new one that starts
-    /// there. The place's frame is whole. Returns whether a branch was started.
+    /// Adds an intervention after a point of the line, whose frame is whole: at the tip of the current branch,
+    /// or otherwise in a new branch. Returns whether a branch was started.
     pub fn intervene(&mut self, at: usize, state: State, intervention: Intervention) -> bool {
         let forks = at + 1 < self.line.len();
         if forks {
@@ -203,11 +204,10 @@ impl Tree {
         forks
     }
 
-    /// Starts a new branch after a place of the line, whose frame is whole, and makes it the current one. It has no
-    /// points of its own yet.
+    /// Starts an empty branch after a point of the line, whose frame is whole, and makes it the current one.
     pub fn fork(&mut self, at: usize) {
         let away = self.line.split_off(at + 1);
-        // The nearest branch of the line that owns the next place is the parent.
+        // The parent is the branch in the chain that owns the next point.
         let chain = self.chain(self.current);
         self.put_away(&chain, at + 1, away);
         let parent = chain
@@ -232,7 +232,7 @@ impl Tree {
         chain
     }
 
-    /// Gives points that stood on the line from a place on back to the branches of the chain that own them.
+    /// Returns points of the line, from `start` on, to the branches of the chain that own them.
     fn put_away(&mut self, chain: &[usize], start: usize, mut points: Points) {
         for &branch in chain.iter().rev() {
             let branch = &mut self.branches[branch];
@@ -246,7 +246,7 @@ impl Tree {
         }
     }
 
-    /// Makes a branch the current one; its line is the line then.
+    /// Makes a branch the current one, so that its line becomes the current line.
     pub fn switch(&mut self, to: usize) {
         let line = std::mem::take(&mut self.line);
         self.put_away(&self.chain(self.current), 0, line);
@@ -272,7 +272,7 @@ impl Tree {
         self.on_line_until(branch) + self.branches[branch].away.len()
     }
 
-    /// Where the own points of a branch that are put away begin.
+    /// Index at which the stored own points of a branch start.
     fn on_line_until(&self, branch: usize) -> usize {
         let chain = self.chain(self.current);
         match chain.iter().position(|&b| b == branch) {
@@ -301,13 +301,13 @@ impl Tree {
         self.point(branch, self.len(branch).checked_sub(1)?)
     }
 
-    /// The nearest whole frame of the line at or before a place.
+    /// The nearest whole frame of the line at or before an index.
     pub fn whole_before(&self, at: usize) -> usize {
         let whole = |k: &usize| self.line.frames[*k].is_whole();
         (0..=at).rev().find(whole).unwrap_or(0)
     }
 
-    /// Fills a thinned frame of the line again. False where that tells something else than its strip does.
+    /// Restores a thinned frame of the line. Returns `false` if the frame does not match its strip.
     pub fn refill(&mut self, at: usize, state: State, event: Option<Arc<Event>>) -> bool {
         let before = at.checked_sub(1).map(|k| &self.line.strips[k]);
         let (frame, strip) = (&mut self.line.frames[at], &self.line.strips[at]);
@@ -323,7 +323,7 @@ impl Tree {
         again.tells_the_same(strip)
     }
 
-    /// Thins frames until the budget is kept again, but neither of two that are looked at.
+    /// Thins frames until they fit into the budget, except the two being shown.
     pub fn thin(&mut self, looked_at: [usize; 2]) {
         if self.ledger.bytes <= self.budget {
             return;
@@ -343,10 +343,10 @@ impl Tree {
         }
     }
 
-    /// Whole frames that may be thinned, in the order in which they are: class, nearness, and where they are.
+    /// Whole frames that may be thinned, in order: class, distance, location.
     fn candidates(&self, looked_at: [usize; 2]) -> Vec<(u8, usize, Option<usize>, usize)> {
         let mut found = Vec::new();
-        // A branch that another one left at its tip ends on the line.
+        // The tip of a branch that another one left there lies on the line.
         let ending: Vec<usize> = self
             .chain(self.current)
             .into_iter()
@@ -354,7 +354,7 @@ impl Tree {
             .map(|b| self.on_line_until(b).saturating_sub(1))
             .collect();
         let mut gather = |points: &Points, branch: Option<usize>| {
-            // The last one is a tip; the root is the first of the line.
+            // The last point is a tip; the first of the line is the root.
             let last = points.len().saturating_sub(1);
             for (at, (frame, strip)) in points.frames.iter().zip(&points.strips).enumerate() {
                 let on_line = || at == 0 || looked_at.contains(&at) || ending.contains(&at);
@@ -383,8 +383,9 @@ impl Tree {
     }
 }
 
-/// Gives a frame memory of this thread's, shared with the frame before where both hold the same. What it came in goes back
-/// to the solver's thread, which fills it again, instead of waiting for new pages at every iteration.
+/// Moves a frame into memory allocated by this thread, sharing the parts that equal those of the previous
+/// frame. The original buffers return to the solver's thread, which reuses them instead of waiting for new
+/// pages in each iteration.
 fn copy(frame: &mut Frame, before: &Frame) {
     fn part<T: Clone + PartialEq>(own: &mut Arc<T>, before: &Arc<T>) {
         *own = if own == before {
@@ -404,7 +405,7 @@ fn copy(frame: &mut Frame, before: &Frame) {
     }
 }
 
-/// Takes state and event out of a frame.
+/// Drops state and event of a frame.
 fn empty(frame: &mut Frame, hollow: &State) {
     let mut left = State {
         next: frame.state.next,
@@ -412,17 +413,17 @@ fn empty(frame: &mut Frame, hollow: &State) {
         ..hollow.clone()
     };
     if frame.monitors.is_some() {
-        // The curve of a monitor is over the load factor that was accepted here.
+        // A monitor's curve needs the load factor accepted here.
         Arc::make_mut(&mut left.start).load_factor = frame.state.start.load_factor;
     }
     (frame.state, frame.event) = (left, None);
 }
 
-/// What whole frames take in memory. Parts that several frames share are counted once, for as long as one has them.
+/// Memory taken by whole frames. A part shared by several frames counts once.
 #[derive(Debug, Default)]
 struct Ledger {
     bytes: usize,
-    /// Frames that have a shared part, by its address.
+    /// Number of frames that share a part, by its address.
     shared: HashMap<usize, usize>,
 }
 
@@ -459,7 +460,7 @@ fn whole_bytes(frame: &Frame) -> usize {
     bytes
 }
 
-/// The parts of a frame that others may share: address and bytes.
+/// The parts of a frame that others may share: address and size.
 fn each_shared(frame: &Frame, tell: &mut impl FnMut(usize, usize)) {
     fn address<T>(part: &Arc<T>) -> usize {
         Arc::as_ptr(part).addr()

@@ -1,4 +1,4 @@
-//! How each branch ended: verdicts, found by comparing it with the branches before it.
+//! How each branch ended, found by comparing it with earlier branches.
 
 use super::branches::{Cost, cost, name};
 use super::compare::{self, Sameness};
@@ -7,70 +7,70 @@ use super::tree::Tree;
 use stickslip_core::interface::minor_history::Cycle;
 use stickslip_core::step::event::{Failure, Outcome, Position};
 
-/// How a branch ends, as far as it goes. Branches are numbers in [`Tree::branches`].
+/// How a branch ends so far. Branches are numbers in [`Tree::branches`].
 #[derive(Debug, Clone, PartialEq)]
 pub enum BranchEnd {
-    /// In the middle of an increment, or nothing is solved in it yet.
+    /// Inside an increment, or before the first iteration.
     Running,
-    /// At an accepted increment that no other branch has reached; nothing to compare with.
+    /// At an accepted increment that no other branch has reached.
     Accepted,
-    /// Displacements and forces are those of an earlier branch at the same load.
+    /// Displacements and forces equal those of an earlier branch at the same load.
     Same {
         /// The earlier branch.
         branch: usize,
-        /// λ at which both were compared.
+        /// Load factor λ of the comparison.
         load: f64,
     },
-    /// At an accepted increment whose state the judge finds wrong, and no earlier branch has the same.
+    /// At an accepted increment whose state fails the check; no earlier branch has the same state.
     Marked,
-    /// An earlier branch accepted another state at the same load; this one is as valid.
+    /// An earlier branch accepted a different state at the same load; both are valid.
     Other {
         /// The earlier branch.
         branch: usize,
-        /// λ at which both were compared.
+        /// Load factor λ of the comparison.
         load: f64,
     },
-    /// The cycle that an earlier branch ends in, too, in the same increment.
+    /// The same cycle as an earlier branch, in the same increment.
     SameCycle {
         /// The earlier branch.
         branch: usize,
     },
     /// A cycle.
     Cycle,
-    /// The residual or the displacements grew out of all bounds.
+    /// The residual or the displacements diverged.
     Diverged,
     /// Failed for another reason.
     Failed,
 }
 
-/// A branch, summed up.
+/// Summary of a branch.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Summary {
-    /// Number in the order of making, from 0; `b1` is number 0.
+    /// Number in order of creation, from 0; `b1` has number 0.
     pub number: usize,
     /// `b2: beam.5 sliding`
     pub name: String,
-    /// Number of the branch that it left; `None` for the first.
+    /// Number of its parent; `None` for the first.
     pub parent: Option<usize>,
-    /// Place on its line of the first point of its own.
+    /// Index on its line of its first own point.
     pub from: usize,
-    /// Number of points on its line, those that it shares included.
+    /// Number of points on its line, including those of its parents.
     pub length: usize,
-    /// Whether it is the one that the session is on.
+    /// Whether it is the session's current branch.
     pub is_current: bool,
-    /// The last minor iteration on it.
+    /// Its last minor iteration.
     pub position: Position,
-    /// λ there.
+    /// Load factor λ of that iteration.
     pub load_factor: f64,
     /// How it ends.
     pub verdict: BranchEnd,
-    /// What its own points cost, and its whole line.
+    /// Cost of the points after the fork.
     pub own: Cost,
-    /// What its whole line cost.
+    /// Cost of its whole line.
     pub whole: Cost,
 }
 
-/// All branches, summed up.
+/// Summaries of all branches.
 pub fn summaries(tree: &Tree) -> Vec<Summary> {
     (0..tree.branches().len())
         .filter_map(|branch| summary(tree, branch))
@@ -96,8 +96,8 @@ fn summary(tree: &Tree, number: usize) -> Option<Summary> {
     })
 }
 
-/// How a branch ends. It is compared with earlier branches only, so that the first of several alike is the one that
-/// the others are like.
+/// How a branch ends. It is compared with earlier branches only: of several equal ones, the first is the
+/// reference.
 pub fn verdict(tree: &Tree, branch: usize) -> BranchEnd {
     let Some((frame, tip)) = tree.tip(branch) else {
         return BranchEnd::Running;
@@ -146,7 +146,7 @@ pub fn verdict(tree: &Tree, branch: usize) -> BranchEnd {
                             load,
                         };
                     }
-                    // A state that is wrong is nothing that another would be as valid as.
+                    // A state that fails the check does not count as another valid state.
                     Some((Sameness::Different, load)) if !ends_marked(tree, earlier) => {
                         other.get_or_insert(BranchEnd::Other {
                             branch: earlier,
@@ -164,7 +164,7 @@ pub fn verdict(tree: &Tree, branch: usize) -> BranchEnd {
     }
 }
 
-/// Whether the judge finds the last state of a branch wrong.
+/// Whether the last state of a branch fails the check.
 fn ends_marked(tree: &Tree, branch: usize) -> bool {
     let event = tree
         .tip(branch)
@@ -187,7 +187,7 @@ fn cycle(outcome: &Outcome) -> Option<&Cycle> {
     }
 }
 
-/// Whether two cycles have the same period and members with the same patterns, wherever in the period they start.
+/// Whether two cycles have the same period, members and patterns, up to a shift.
 fn alike(a: &Cycle, b: &Cycle) -> bool {
     if a.period != b.period || a.members.len() != b.members.len() {
         return false;
@@ -210,10 +210,10 @@ pub fn describe(tree: &Tree, verdict: &BranchEnd) -> String {
     match verdict {
         BranchEnd::Running => "running".into(),
         BranchEnd::Accepted => "accepted".into(),
-        BranchEnd::Marked => "accepted, but judged wrong".into(),
+        BranchEnd::Marked => "accepted, but fails the check".into(),
         BranchEnd::Same { branch, load } => format!("same state as {} at load {load}", b(branch)),
         BranchEnd::Other { branch, load } => {
-            format!("another valid state than {} at load {load}", b(branch))
+            format!("valid, but different from {} at load {load}", b(branch))
         }
         BranchEnd::SameCycle { branch } => format!("same cycle as {}", name(tree, *branch)),
         BranchEnd::Cycle => "cycle".into(),
@@ -222,7 +222,7 @@ pub fn describe(tree: &Tree, verdict: &BranchEnd) -> String {
     }
 }
 
-/// The branches as the tree shows them: number and depth, children after their parent.
+/// The branches in the order of the tree view: number and depth, children after their parent.
 pub fn order(all: &[Summary]) -> Vec<(usize, usize)> {
     let mut order = Vec::with_capacity(all.len());
     let mut left: Vec<(usize, usize)> = all
@@ -244,7 +244,7 @@ pub fn listed(tree: &Tree) -> String {
         let mark = if summary.is_current { "▸" } else { "" };
         let verdict = describe(tree, &summary.verdict);
         format!(
-            "{mark}{} ({verdict}, {} minors)",
+            "{mark}{} ({verdict}, {} minor)",
             summary.name, summary.whole.minors
         )
     };

@@ -1,15 +1,16 @@
-//! Watches: named quantities of the state that is looked at.
+//! Watches: named quantities of the shown state.
 
 use crate::explain::names;
 use crate::history::frame::Frame;
 use serde::{Deserialize, Serialize};
 use stickslip_core::model::Model;
 
-/// A number of the last minor iteration. Forces and lengths as [`stickslip_core::contact::record::ContactRecord`] has them.
+/// A quantity of the last minor iteration. Forces and lengths are those of
+/// [`stickslip_core::contact::record::ContactRecord`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename = "Quantity")]
 pub enum WatchQuantity {
-    /// Gap, length; negative is penetration.
+    /// Gap (length), negative for penetration.
     Gap,
     /// Normal force; compression is positive.
     NormalForce,
@@ -19,11 +20,11 @@ pub enum WatchQuantity {
     BoundUpdate,
     /// Slip, length.
     Slip,
-    /// How far the node is from switching, force or length.
+    /// Distance from switching (force or length).
     Margin,
-    /// Relative residual before the present major iteration.
+    /// Relative residual at the start of the current major iteration.
     Residual,
-    /// Violation of the interface conditions before it.
+    /// Violation of the interface conditions at the same time.
     Interface,
 }
 
@@ -40,7 +41,7 @@ stickslip_core::words! {
 }
 
 impl WatchQuantity {
-    /// Whether it is a slave node's.
+    /// Whether the quantity belongs to a slave node.
     pub fn is_nodal(self) -> bool {
         !matches!(self, WatchQuantity::Residual | WatchQuantity::Interface)
     }
@@ -49,16 +50,16 @@ impl WatchQuantity {
 /// A watch.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Watch {
-    /// What the user calls it.
+    /// Name given by the user.
     pub name: String,
-    /// What is watched.
+    /// Quantity watched.
     pub quantity: WatchQuantity,
-    /// Slave number, where the quantity is a node's.
+    /// Slave number, for a nodal quantity.
     pub slave: usize,
 }
 
 impl Watch {
-    /// A watch with the name that it has where the user gives none: `gap beam.5`.
+    /// A watch with the default name, such as `gap beam.5`.
     pub fn new(model: &Model, quantity: WatchQuantity, slave: usize) -> Watch {
         let name = match quantity.is_nodal() {
             true => format!("{} {}", quantity.word(), names::slave(model, slave)),
@@ -71,7 +72,7 @@ impl Watch {
         }
     }
 
-    /// Its value at a whole frame; `None` if nothing was solved for it.
+    /// Its value at a whole frame; `None` if no value has been solved.
     pub fn value(&self, frame: &Frame) -> Option<f64> {
         let event = frame.event.as_deref()?;
         match self.quantity {

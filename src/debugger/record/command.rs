@@ -1,4 +1,4 @@
-//! What the debugger can be told: the commands that a session carries out, and that journals hold.
+//! The commands that a session executes and journals record.
 
 use crate::history::breakpoints::Condition;
 use crate::history::strip::PointKind;
@@ -8,148 +8,149 @@ use std::path::PathBuf;
 use stickslip_core::model::Mode;
 use stickslip_core::step::intervene::{Intervention, Start};
 
-/// What the debugger can be told to do to the solver.
+/// A command of a session.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Command {
-    /// Forward by `count` of `unit`.
+    /// Go forward by `count` of `unit`.
     Forward {
-        /// What is counted.
+        /// Unit counted.
         unit: Unit,
-        /// How many of it.
+        /// Number of units.
         count: u32,
     },
-    /// Back by `count` of `unit`; exact.
+    /// Go back by `count` of `unit`; restores the exact states.
     Back {
-        /// What is counted.
+        /// Unit counted.
         unit: Unit,
-        /// How many of it.
+        /// Number of units.
         count: u32,
     },
-    /// Force a slave node (by slave number) into a mode: for the next minor iteration, or until released.
+    /// Force a slave node into a mode, for the next minor iteration or until released.
     Force {
         /// Slave number, from 0.
         slave: usize,
-        /// The mode that it is to have.
+        /// New mode.
         mode: Mode,
-        /// Until it is released, and not only for the next minor iteration.
+        /// Whether it is held until released.
         hold: bool,
     },
-    /// Give a slave node back to Table 2.
+    /// Release a slave node, so that Table 2 decides again.
     Release {
         /// Slave number, from 0.
         slave: usize,
     },
-    /// Change the increment size and start the present increment again.
+    /// Change the increment size and restart the current increment.
     Increment(f64),
-    /// Change a scalar that may change during a run: `friction.angle`, `friction.cohesion`, `settings.*`.
+    /// Change a scalar that can change during a run: `friction.angle`, `friction.cohesion`, `settings.*`.
     Set {
-        /// Its path, as a person types it.
+        /// Path in the scene, as typed.
         path: String,
-        /// Its value, as a person types it.
+        /// Value, as typed.
         value: String,
     },
-    /// Start several slave nodes at once from a state that is known.
+    /// Start several slave nodes from a known state.
     Assume(Vec<Start>),
-    /// Take these steps in a new branch of this name: minor iterations (none) and interventions.
+    /// Take these steps in a new branch: minor iterations (`None`) and interventions.
     Follow {
-        /// What the branch is called.
+        /// Label of the branch.
         label: String,
-        /// The steps, in order; `None` is a minor iteration.
+        /// Steps in order; `None` is a minor iteration.
         steps: Vec<Option<Intervention>>,
     },
-    /// Find out why the minor iterations cycle from the shown state, or which states are consistent; of these slave
-    /// nodes (by slave number), where there are any, all others going on with what they do.
+    /// Find the cause of the cycle that starts at the shown state, or the consistent states. With slave
+    /// numbers: for these nodes only, all others frozen.
     Census(Vec<usize>),
-    /// Try every remedy from the shown state.
+    /// Try all remedies from the shown state.
     Remedies,
-    /// Go to a point of the current branch's line, by its place; the start is 0.
+    /// Go to a point of the current line; the start is 0.
     Goto {
-        /// Place on the branch's line, from 0.
+        /// Index on the line, from 0.
         step: usize,
     },
     /// Go to the tip of another branch.
     Branch(To),
-    /// Call the current branch so.
+    /// Rename the current branch.
     Rename(String),
     /// List the branches.
     Branches,
-    /// Compare the current branch with another: this one, or the one that it left.
+    /// Compare the current branch with the named one, by default with its parent.
     Compare(Option<String>),
     /// Set a breakpoint.
     Break(Condition),
     /// List the breakpoints.
     Breakpoints,
-    /// Delete a breakpoint by its number, or all.
+    /// Delete the breakpoint with this number, or all.
     Delete(Option<u32>),
-    /// Switch a breakpoint by its number, or all, on or off.
+    /// Enable or disable a breakpoint, or all.
     Enable {
         /// Number of the breakpoint; `None` for all.
         id: Option<u32>,
-        /// On, or else off.
+        /// Enable; otherwise disable.
         on: bool,
     },
-    /// Watch a number.
+    /// Watch a quantity.
     Watch(Watch),
-    /// End a watch, by its name.
+    /// Remove a watch, by name.
     Unwatch(String),
-    /// Write a file of the shown state, the kind by the file's extension; the core of the cycle that it runs into; or its
-    /// whole frozen interface problem. `overwrite` only when asked.
+    /// Write a file made from the shown state: a kind chosen by the extension, the core of its cycle, or its
+    /// whole frozen problem.
     Export {
-        /// What is written.
+        /// What to write.
         what: Exported,
-        /// Where to.
+        /// Destination.
         file: PathBuf,
-        /// Whether a file of that name may be overwritten.
+        /// Whether an existing file may be overwritten.
         overwrite: bool,
     },
-    /// Write a snapshot of the shown state. `overwrite` only when asked.
+    /// Write a snapshot of the shown state.
     Snapshot {
-        /// Where to; `None` for a name made of the scene's.
+        /// Destination; `None` for a name derived from the scene's.
         file: Option<PathBuf>,
-        /// Whether a file of that name may be overwritten.
+        /// Whether an existing file may be overwritten.
         overwrite: bool,
     },
-    /// Begin a journal in a new file, with all that was done; none tells where it is.
+    /// Start a journal in a new file, with all entries so far; without a file, report the path of the current
+    /// one.
     Journal(Option<PathBuf>),
 }
 
-/// What can be written of a state.
+/// What can be exported from a state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Exported {
-    /// The fewest nodes that still cycle.
+    /// The core: the smallest set of nodes that still cycles.
     Core,
-    /// The whole interface problem.
+    /// The whole frozen interface problem.
     Whole,
-    /// What the file's extension says: a picture, the scene, a problem for another program.
+    /// Chosen by the file's extension: a picture, the scene, or a problem for another program.
     Shown,
 }
 
-/// Which branch.
+/// Which branch to go to.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum To {
     /// The next one in the list.
     Next,
     /// The one before in the list.
     Previous,
-    /// The one of that name.
+    /// The branch with this name.
     Named(String),
 }
 
-/// How far a motion goes.
+/// Unit of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Unit {
     /// One minor iteration.
     Minor,
-    /// To the end of the present major iteration.
+    /// To the end of the current major iteration.
     Major,
-    /// To the end of the present increment.
+    /// To the end of the current increment.
     Increment,
-    /// To the end of the history, a failure, or (back) the start.
+    /// To the end of the history, a failure, or (backward) the start.
     Run,
 }
 
 impl Command {
-    /// Whether it changes nothing, and is in no journal.
+    /// Whether the command changes nothing and is not recorded in journals.
     pub fn is_look(&self) -> bool {
         matches!(
             self,
@@ -164,7 +165,7 @@ impl Command {
         )
     }
 
-    /// Whether it only goes along a branch.
+    /// Whether the command only moves along a branch.
     pub fn is_motion(&self) -> bool {
         matches!(
             self,
@@ -174,7 +175,7 @@ impl Command {
 }
 
 impl Unit {
-    /// Whether a point of this kind ends a motion by this unit.
+    /// Whether a motion by this unit ends at a point of this kind.
     pub fn ends(self, kind: PointKind) -> bool {
         match self {
             Unit::Minor => kind.is_solved(),

@@ -1,10 +1,10 @@
-//! What differs between two snapshots, node by node.
+//! Compares two snapshots, node by node.
 //!
-//! Exact: position, number of minor iterations, status, modes, rules, what is forced, interventions, and the scalars of
-//! the scenes. Within 1e-9 of a scale: numbers, since another processor may add in another order. The scale is
-//! the force scale of the residual norms for forces, the diagonal of the scene's bodies for lengths, 1 for rotations
-//! and for residuals, which are relative already; and always the number itself where that is larger. NaN equals NaN.
-//! Names of scenes are not compared.
+//! Compared exactly: position, number of minor iterations, status, modes, rules, forced modes, interventions,
+//! and the scalars of the scenes. Numbers may differ by 1e-9 of their scale, because another processor may sum
+//! in another order. The scale is the force scale of the residual norms for forces, the diagonal of the scene's
+//! bodies for lengths, and 1 for rotations and for residuals, which are relative already; or the number itself,
+//! if that is larger. NaN equals NaN. Names of scenes are not compared.
 
 use super::snapshot::{Displacement, Recorded, SlaveRecord, Snapshot};
 use crate::explain::names;
@@ -19,30 +19,30 @@ use stickslip_scene::Scene;
 use stickslip_scene::format::paths;
 use stickslip_scene::shown;
 
-/// How far numbers may be apart, relative to their scale.
+/// Largest relative difference of equal numbers.
 pub const TOLERANCE: f64 = 1e-9;
 
-/// One thing that differs.
+/// One difference.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Difference {
-    /// What it is, as `beam.end f_n`.
+    /// What differs, such as `beam.end f_n`.
     pub what: String,
-    /// What the left one has, as text.
+    /// Value on the left, as text.
     pub left: String,
-    /// What the right one has, as text.
+    /// Value on the right, as text.
     pub right: String,
-    /// For numbers: how far they are apart, and how far they may be.
+    /// For numbers: the difference and its limit.
     pub apart: Option<(f64, f64)>,
 }
 
-/// All that differs; prints as a table.
+/// All differences; displayed as a table.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Differences {
-    /// What differs.
+    /// One row per difference.
     pub rows: Vec<Difference>,
 }
 
-/// What numbers are measured by.
+/// Scales of forces and lengths.
 struct Scales {
     force: f64,
     length: f64,
@@ -54,7 +54,7 @@ pub fn compare(a: &Snapshot, b: &Snapshot) -> Differences {
 }
 
 impl Differences {
-    /// All that differs.
+    /// All differences.
     fn between(a: &Snapshot, b: &Snapshot) -> Differences {
         let mut found = Differences::default();
         found.scenes(a, b);
@@ -76,7 +76,7 @@ impl Differences {
         found
     }
 
-    /// Whether nothing differs.
+    /// Whether there are no differences.
     pub fn is_empty(&self) -> bool {
         self.rows.is_empty()
     }
@@ -100,8 +100,8 @@ impl Differences {
         if self.rows.len() == before {
             self.exact_text(
                 "scene",
-                "as it is".into(),
-                "another, but for no scalar".into(),
+                "original".into(),
+                "differs, but not in a scalar".into(),
             );
         }
     }
@@ -194,7 +194,8 @@ impl Differences {
         }
     }
 
-    /// A thing that only one of the two has is a difference; what both have is for the caller to compare.
+    /// Reports an item that only one side has as a difference, and returns items that both have, for the caller
+    /// to compare.
     fn both<'a, T>(
         &mut self,
         what: &str,
@@ -228,7 +229,7 @@ impl Differences {
     }
 
     fn number(&mut self, what: &str, left: f64, right: f64, scale: f64) {
-        // Equality covers the infinities, whose distance is no number.
+        // Equality covers the infinities, whose difference is NaN.
         if left == right || (left.is_nan() && right.is_nan()) {
             return;
         }
@@ -251,7 +252,7 @@ impl Differences {
 
 const ABSENT: &str = "-";
 
-/// A value as a word: `Some(FixedSlides)` is FixedSlides.
+/// The name of a value: `Some(FixedSlides)` gives `FixedSlides`.
 fn word<T: Debug>(value: &T) -> String {
     let text = format!("{value:?}");
     match text.strip_prefix("Some(").and_then(|t| t.strip_suffix(')')) {
@@ -275,7 +276,7 @@ fn by_name<T>(all: &[T], name: impl Fn(&T) -> &String) -> BTreeMap<String, &T> {
 
 type Pairs<'a, T> = Vec<(&'a String, (Option<&'a T>, Option<&'a T>))>;
 
-/// What either has by its name, from both.
+/// All items by name, from both sides.
 fn paired<'a, T>(a: &'a BTreeMap<String, T>, b: &'a BTreeMap<String, T>) -> Pairs<'a, T> {
     let only_b = b.keys().filter(|key| !a.contains_key(*key));
     a.keys()
@@ -290,11 +291,11 @@ fn force(state: &Recorded) -> f64 {
 }
 
 fn length(snapshot: &Snapshot) -> f64 {
-    // An unsound scene has no size; its numbers are then measured by themselves.
+    // An invalid scene has no size; its lengths are compared relative to themselves.
     Scene::from_spec(&snapshot.name, snapshot.scene.clone()).map_or(0.0, |s| s.model.length)
 }
 
-/// A status without its numbers, which need not be the same to the last bit.
+/// A status without its numbers, which may differ by round-off.
 fn status(status: &Status) -> String {
     let Status::Failed(failure) = status else {
         return format!("{status:?}").to_lowercase();

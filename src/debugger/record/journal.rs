@@ -1,11 +1,12 @@
-//! The journal of a session: what changed anything, written as it happens, so that it can be replayed to the same bits.
+//! The journal of a session: all its commands, written as they are executed, from which the session can be
+//! replayed bit by bit.
 //!
-//! A RON text file, one entry per line. The first line is the [`Header`] with the whole scene, so the file is
-//! self-contained; then comes an [`Entry`] for every command that changed something or moved the cursor, with a digest of
-//! the state after it, and before a motion that solves a line that announces it. Entries that changed something are synced
-//! to the disk (fdatasync), and so is the folder when a journal begins; cursor moves are only written to the system. A kill
-//! loses neither, a power failure only cursor moves. A last line without its end is an entry cut off by a kill; it is
-//! dropped and reported.
+//! A RON text file with one entry per line. The first line is the [`Header`] with the whole scene, so that the
+//! file is self-contained. Each command that changed something or moved the cursor adds an [`Entry`] with a
+//! digest of the resulting state; a motion that solves is announced by a line before it starts. Entries that
+//! changed something are synced to disk (fdatasync), and so is the folder of a new journal; cursor moves are
+//! only passed to the system. Nothing is lost if the process is killed; a power failure can lose cursor moves.
+//! An incomplete last line was cut off by a kill; it is dropped and reported.
 
 use crate::record::command::Command;
 use serde::de::DeserializeOwned;
@@ -23,99 +24,99 @@ use stickslip_scene::Scene;
 use stickslip_scene::format::kind::FileKind;
 use stickslip_scene::format::{SceneError, Spec, notation, read};
 
-/// The format that this program writes, and the only one that it reads.
+/// Format version written by this program, and the only one it reads.
 pub const FORMAT: u32 = 1;
-/// How the names of journals end.
+/// File extension of journals.
 const EXTENSION: &str = "journal";
 
 /// The first line.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Header {
-    /// Version of this format.
+    /// Format version.
     pub format: u32,
-    /// Version of the program that wrote it.
+    /// Version of the program that wrote the journal.
     pub version: String,
-    /// When the session began, in seconds since 1970.
+    /// Start of the session, in seconds since 1970.
     pub began: u64,
-    /// What the scene was called.
+    /// Name of the scene.
     pub name: String,
-    /// The whole scene, with what was set from outside.
+    /// The whole scene, with all `--set` overrides.
     pub scene: Spec,
 }
 
-/// Any other line.
+/// Any line after the first.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 enum Line {
-    /// A motion has begun to solve.
+    /// A motion has started to solve.
     Begun(Command),
     Done(Entry),
 }
 
-/// A command, and where it led.
+/// A command and its result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Entry {
-    /// When it was done, in seconds since 1970.
+    /// Time of the command, in seconds since 1970.
     pub at: u64,
-    /// What was done.
+    /// The command.
     pub command: Command,
-    /// New minor iterations that it solved, and increments that were accepted among them.
+    /// New minor iterations that it solved.
     pub solved: u64,
-    /// Increments that were accepted among the new minor iterations.
+    /// Increments accepted among them.
     pub accepted: u64,
-    /// Branch, and place on its line, afterwards.
+    /// Current branch afterwards.
     pub branch: usize,
-    /// Place on the branch's line afterwards, from 0.
+    /// Cursor afterwards: index on the branch's line, from 0.
     pub cursor: usize,
-    /// Digest of the state there ([`digest`]).
+    /// Digest of the resulting state ([`digest`]).
     pub digest: String,
-    /// What the user was told.
+    /// Reply shown to the user.
     pub said: String,
 }
 
 /// Why a journal cannot be written, read or replayed.
 #[derive(Debug, thiserror::Error)]
 pub enum JournalError {
-    /// The system refused.
+    /// The system reports an error.
     #[error("{}: the journal cannot be {doing}: {source}", file.display())]
     File {
-        /// The journal.
+        /// Path of the journal.
         file: PathBuf,
-        /// What was tried, as "written".
+        /// Failed operation, such as "written".
         doing: &'static str,
-        /// Why.
+        /// Cause.
         source: io::Error,
     },
-    /// It cannot be read, is no journal, or is a damaged one.
+    /// The file cannot be read, is not a journal, or is damaged.
     #[error(transparent)]
     Read(Box<SceneError>),
-    /// A new journal was wanted, and there is a file of that name.
-    #[error("{}: the file exists already; `stickslip resume` goes on with a journal", .0.display())]
+    /// The file for a new journal exists.
+    #[error("{}: the file already exists; `stickslip resume` continues a journal", .0.display())]
     Exists(PathBuf),
-    /// Another session has it.
+    /// Another session is writing this journal.
     #[error("{}: another session is writing this journal", .0.display())]
     Busy(PathBuf),
-    /// The system names no directory for journals.
+    /// The system does not name a directory for journals.
     #[error(
-        "there is no place for journals: this system names no home directory; --journal FILE names a file"
+        "no folder for journals: this system has no home directory; choose a file with --journal FILE"
     )]
     NoPlace,
-    /// There is none in this directory.
+    /// The directory contains no journal.
     #[error("there is no journal in {}; `stickslip SCENE` writes one", .0.display())]
     NoJournal(PathBuf),
-    /// The scene in it is unsound.
-    #[error("{file}:1: the journal's scene is unsound: {source}")]
+    /// The journal's scene is invalid.
+    #[error("{file}:1: the journal's scene is invalid: {source}")]
     Scene {
-        /// The journal.
+        /// Name of the journal.
         file: String,
         /// What is wrong with the scene.
         source: Box<SceneError>,
     },
-    /// Done again, a command leads to another state than the journal says.
-    #[error("{file}:{line}: replayed, it is not what it was: {message}")]
+    /// A replayed command leads to another state than recorded.
+    #[error("{file}:{line}: the replay differs from the journal: {message}")]
     Differs {
-        /// The journal.
+        /// Name of the journal.
         file: String,
         /// Line of the command, from 1.
         line: usize,
@@ -130,30 +131,29 @@ impl From<SceneError> for JournalError {
     }
 }
 
-/// Where the journal of a session is to be.
+/// Where to write the journal of a session.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Keep {
-    /// There is none.
+    /// No journal.
     Nowhere,
-    /// In the user's directory for journals.
+    /// In the user's folder for journals.
     Default,
-    /// In this file.
+    /// To this file.
     File(PathBuf),
 }
 
-/// A journal that is being written.
+/// A journal open for writing.
 pub struct Journal {
     path: PathBuf,
     file: File,
-    /// Bytes of all whole lines.
+    /// Length of all complete lines, in bytes.
     whole: u64,
 }
 
 impl Journal {
-    /// Begins a journal of a session on a scene, with what was done until now. Nobody else may read it.
+    /// Creates the journal of a session, with the entries so far. The file is readable by its owner only.
     ///
-    /// # Errors
-    /// If the file exists, or cannot be written; it is not left behind half written.
+    /// # Errors If the file exists or cannot be written. No incomplete file is left behind.
     pub fn create(path: &Path, scene: &Scene, done: &[Entry]) -> Result<Journal, JournalError> {
         let failed = |source: io::Error| match source.kind() {
             io::ErrorKind::AlreadyExists => JournalError::Exists(path.to_owned()),
@@ -175,7 +175,7 @@ impl Journal {
                 Ok(journal)
             }
             Err(error) => {
-                // It is ours, and of no use to anybody.
+                // This call created the file, and it is incomplete.
                 let _ = std::fs::remove_file(path);
                 Err(error)
             }
@@ -198,10 +198,9 @@ impl Journal {
         Ok(())
     }
 
-    /// Begins a journal in the user's directory for journals, with a name from the scene and the time.
+    /// Creates a journal in the user's folder for journals, named after the scene and the time.
     ///
-    /// # Errors
-    /// If there is no such directory, or the file cannot be written.
+    /// # Errors If there is no such folder, or the file cannot be written.
     pub fn create_default(scene: &Scene) -> Result<Journal, JournalError> {
         let directory = directory()?;
         std::fs::create_dir_all(&directory).map_err(|e| failure(&directory, "written", e))?;
@@ -210,7 +209,7 @@ impl Journal {
             0 => directory.join(format!("{stem}.{EXTENSION}")),
             k => directory.join(format!("{stem}-{k}.{EXTENSION}")),
         };
-        // Two sessions can begin in the same second.
+        // Several sessions can start in the same second.
         const MOST: u32 = 100;
         let mut k = 0;
         loop {
@@ -221,7 +220,7 @@ impl Journal {
         }
     }
 
-    /// Opens a journal to go on with it.
+    /// Opens a journal to continue it.
     ///
     /// # Errors
     /// If it cannot be written, or another session is writing it.
@@ -238,7 +237,7 @@ impl Journal {
         Ok(journal)
     }
 
-    /// Cuts off what a kill has left of a line.
+    /// Removes an incomplete last line.
     ///
     /// # Errors
     /// If it cannot be written.
@@ -249,12 +248,12 @@ impl Journal {
         Ok(())
     }
 
-    /// Where it is.
+    /// Path of the file.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// Whether the journal still exists under its name: the file was neither deleted nor replaced.
+    /// Whether the file still exists at its path and has not been replaced.
     pub(crate) fn is_there(&self) -> bool {
         match (std::fs::metadata(&self.path), self.file.metadata()) {
             (Ok(named), Ok(own)) => system::is_same_file(&named, &own),
@@ -262,21 +261,21 @@ impl Journal {
         }
     }
 
-    /// Takes the file for this session, until the process ends.
+    /// Locks the file for this session until the process ends.
     fn lock(&self) -> Result<(), JournalError> {
         match self.file.try_lock() {
             Err(TryLockError::WouldBlock) => Err(JournalError::Busy(self.path.clone())),
-            // Where a file system knows no locks, there is nothing to be done.
+            // Some file systems do not support locks.
             _ => Ok(()),
         }
     }
 
-    /// Notes that a motion begins to solve.
+    /// Records that a motion starts to solve.
     pub(crate) fn begun(&mut self, command: &Command) -> Result<(), JournalError> {
         self.write(&Line::Begun(command.clone()), false)
     }
 
-    /// Notes what a command led to; `sync` where it changed something.
+    /// Records the result of a command; `sync` if it changed something.
     pub(crate) fn done(&mut self, entry: Entry, sync: bool) -> Result<(), JournalError> {
         self.write(&Line::Done(entry), sync)
     }
@@ -294,27 +293,27 @@ impl Journal {
         });
         match written {
             Ok(()) => self.whole += text.len() as u64,
-            // What there is of the line is of no use; a device has no length to cut.
+            // Drop the incomplete line; devices cannot be truncated.
             Err(_) => drop(self.file.set_len(self.whole)),
         }
         written.map_err(failed)
     }
 }
 
-/// A journal that was read.
+/// A journal that has been read.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Record {
-    /// What messages call it.
+    /// Name of the file for messages.
     pub file: String,
-    /// The first line: the scene, and who wrote it.
+    /// The first line.
     pub header: Header,
-    /// Entries, with their lines.
+    /// Entries with their line numbers.
     pub entries: Vec<(usize, Entry)>,
-    /// A motion that was under way when the session ended.
+    /// A motion that was running when the session ended.
     pub unfinished: Option<Command>,
-    /// The line of which only a part was written.
+    /// Number of an incomplete last line.
     pub torn: Option<usize>,
-    /// Bytes of all whole lines.
+    /// Length of all complete lines, in bytes.
     pub whole_bytes: u64,
 }
 
@@ -325,13 +324,13 @@ impl Record {
     /// If the file cannot be read or is damaged, with the line.
     pub fn read(path: &Path) -> Result<Record, JournalError> {
         let file = path.display().to_string();
-        let bytes = input::bytes(path, RECORD_BYTES, "no journal has").map_err(|why| {
+        let bytes = input::bytes(path, RECORD_BYTES, "too large for a journal").map_err(|why| {
             SceneError::whole(&file, format!("the journal cannot be read: {why}"))
         })?;
         Record::from_bytes(&file, &bytes)
     }
 
-    /// Reads a journal from the bytes of its file; `file` is what messages call it.
+    /// Reads a journal from bytes; `file` is its name for messages.
     ///
     /// # Errors
     /// If it is damaged, with the line.
@@ -347,11 +346,11 @@ impl Record {
         let text = str::from_utf8(&bytes[marked..whole]).map_err(|e| {
             let good = &bytes[..marked + e.valid_up_to()];
             let line = 1 + good.iter().filter(|byte| **byte == b'\n').count();
-            damaged(file, (line, 1), "the line is not text in UTF-8")
+            damaged(file, (line, 1), "the line is not valid UTF-8")
         })?;
         let mut lines = text.lines().enumerate().map(|(k, line)| (k + 1, line));
         let (_, first) = lines.next().ok_or_else(|| {
-            let message = "the file has no whole line; a journal's first is its scene";
+            let message = "no complete line found; the first line of a journal contains the scene";
             damaged(file, (1, 1), message)
         })?;
         let header = header(file, first).map_err(|error| match error.at {
@@ -378,10 +377,9 @@ impl Record {
         Ok(record)
     }
 
-    /// The scene that it holds.
+    /// The scene of the journal.
     ///
-    /// # Errors
-    /// If this version finds it unsound.
+    /// # Errors If this version rejects it.
     pub fn scene(&self) -> Result<Scene, JournalError> {
         let header = &self.header;
         Scene::from_spec(&header.name, header.scene.clone()).map_err(|source| JournalError::Scene {
@@ -390,21 +388,21 @@ impl Record {
         })
     }
 
-    /// What is to be said about its end; empty where it ended well.
+    /// Remarks about the end of the journal; empty if it is complete.
     pub fn reservations(&self) -> String {
         let mut told = String::new();
         if let Some(line) = self.torn {
-            let _ = write!(told, "; line {line} was only begun, and is left out");
+            let _ = write!(told, "; line {line} is incomplete and has been ignored");
         }
         if self.unfinished.is_some() {
-            told += "; a motion was under way at the end, and is not repeated";
+            told += "; the last motion was interrupted and is not repeated";
         }
         told
     }
 }
 
 fn header(file: &str, line: &str) -> Result<Header, SceneError> {
-    /// What any format has.
+    /// The part that every format version has.
     #[derive(Deserialize)]
     struct Any {
         format: u32,
@@ -414,7 +412,7 @@ fn header(file: &str, line: &str) -> Result<Header, SceneError> {
     {
         return Err(SceneError::whole(
             file,
-            format!("the journal has format {format}, and this program knows only format {FORMAT}"),
+            format!("the journal has format {format}, but this program reads only format {FORMAT}"),
         ));
     }
     parsed(file, 1, line)
@@ -422,7 +420,7 @@ fn header(file: &str, line: &str) -> Result<Header, SceneError> {
 
 fn parsed<T: DeserializeOwned>(file: &str, number: usize, line: &str) -> Result<T, SceneError> {
     notation::read(line)
-        .map_err(|e| read::refused(file, number, "the line is no entry of a journal: ", &e))
+        .map_err(|e| read::refused(file, number, "the line is not a journal entry: ", &e))
 }
 
 fn damaged(file: &str, at: (usize, usize), message: &str) -> SceneError {
@@ -440,36 +438,34 @@ fn failure(file: &Path, doing: &'static str, source: io::Error) -> JournalError 
     }
 }
 
-/// Syncs the name of a new file. Some file systems cannot sync folders; the file itself is synced in any case.
+/// Syncs the folder of a new file. Some file systems cannot sync folders; the file itself is synced in any
+/// case.
 fn sync_folder(file: &Path) {
     let folder = file.parent().filter(|folder| *folder != Path::new(""));
     let _ = File::open(folder.unwrap_or(Path::new("."))).and_then(|folder| folder.sync_all());
 }
 
-/// Whether a file's name says that it is a journal.
+/// Whether a file has the extension of a journal.
 pub fn is_named_so(file: &Path) -> bool {
     file.extension().is_some_and(|ending| ending == EXTENSION)
 }
 
-/// Where journals are kept that are given no place: in the user's directory for states, or for data where the system
-/// has none.
+/// Default folder for journals: in the user's folder for state, or for data on systems without one.
 ///
-/// # Errors
-/// If the system names no home directory.
+/// # Errors If the system has no home directory.
 pub fn directory() -> Result<PathBuf, JournalError> {
     Ok(home()?.join("journals"))
 }
 
-/// The program's own place among what the user keeps: journals, and what was done of the lessons.
+/// The program's folder for journals and lesson progress.
 ///
-/// # Errors
-/// If the system names no home directory.
+/// # Errors If the system has no home directory.
 pub fn home() -> Result<PathBuf, JournalError> {
     let ours = directories::ProjectDirs::from("", "", "stickslip").ok_or(JournalError::NoPlace)?;
     Ok(ours.state_dir().unwrap_or(ours.data_local_dir()).to_owned())
 }
 
-/// The journal that was written last.
+/// The latest journal.
 ///
 /// # Errors
 /// If there is none.
@@ -489,7 +485,7 @@ pub fn newest() -> Result<PathBuf, JournalError> {
     newest.map(|(_, path)| path).ok_or_else(none)
 }
 
-/// A digest of a state's bits, computed from its RON text, in which floats are exact.
+/// Digest of a state's bits, computed from its RON text, in which floats are exact.
 pub fn digest(state: &State) -> String {
     let state = state.digested();
     #[cfg(mutants)]
@@ -503,18 +499,18 @@ pub fn digest(state: &State) -> String {
     let mut digest = Digest::default();
     match notation::line_to(&mut digest, &state) {
         Ok(()) => digest.to_string(),
-        // No state is known that RON cannot take; a digest that equals no other says so.
+        // RON can represent all known states; otherwise return a digest that never matches.
         Err(error) => format!("none: {error}"),
     }
 }
 
-/// Seconds since 1970; 0 where the clock stands before that.
+/// Seconds since 1970; 0 if the clock is set earlier.
 pub(crate) fn now() -> u64 {
     let since = SystemTime::now().duration_since(UNIX_EPOCH);
     since.map_or(0, |since| since.as_secs())
 }
 
-/// A time of day and date, UTC: `20260131-235959`.
+/// Date and time in UTC: `20260131-235959`.
 fn stamp(seconds: u64) -> String {
     let [year, month, day, hour, minute, second] = date(seconds);
     format!("{year:04}{month:02}{day:02}-{hour:02}{minute:02}{second:02}")
@@ -523,9 +519,9 @@ fn stamp(seconds: u64) -> String {
 /// The last second of the year 9999.
 const LAST_SECOND: u64 = 253_402_300_799;
 
-/// Year, month, day, hour, minute and second of a time since 1970, UTC; no later than the year 9999.
+/// Year, month, day, hour, minute and second in UTC of a time since 1970; capped at the end of the year 9999.
 pub(super) fn date(seconds: u64) -> [u64; 6] {
-    // A file may claim any time; years are counted one by one here.
+    // A file can contain any time, and the loop below counts years.
     let seconds = seconds.min(LAST_SECOND);
     let (mut days, rest) = (seconds / 86_400, seconds % 86_400);
     let leap = |year: u64| {
@@ -562,7 +558,7 @@ mod tests {
 
     /// A pipe accepts bytes but fails to sync, so a sync request shows as an error.
     #[test]
-    fn what_changed_something_is_synced_and_a_move_of_the_cursor_is_not() {
+    fn changes_are_synced_and_cursor_moves_are_not() {
         let folder = tempfile::tempdir().unwrap();
         let pipe = folder.path().join("a.journal");
         mkfifoat(CWD, &pipe, Mode::RUSR | Mode::WUSR).unwrap();
@@ -588,7 +584,7 @@ mod tests {
     }
 
     #[test]
-    fn dates_are_those_of_the_calendar() {
+    fn dates_match_the_calendar() {
         assert_eq!(stamp(0), "19700101-000000");
         assert_eq!(stamp(951_782_399), "20000228-235959");
         assert_eq!(stamp(951_782_400), "20000229-000000");

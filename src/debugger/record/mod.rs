@@ -1,9 +1,10 @@
-//! What is kept in files: recorded states, journals of sessions, and problems written as scenes of their own.
+//! Files of the debugger: snapshots, journals, and exports.
 //!
-//! - [`snapshot`]: a recorded state; [`differences`]: what differs between two.
-//! - [`command`]: what a session can be told, as journals have it; [`journal`]: the record of a session; [`story`]: it as
-//!   text to read.
-//! - [`export`]: files made of a state, the kind by the extension: pictures, scenes, problems for other programs.
+//! - [`snapshot`]: recorded states; [`differences`]: comparison of two snapshots.
+//! - [`command`]: the commands of a session, as recorded in journals; [`journal`]: the record of a session;
+//!   [`story`]: a journal as readable text.
+//! - [`export`]: files made from a state, with the kind chosen by the extension: pictures, scenes, problems for
+//!   other programs.
 
 pub mod command;
 pub mod differences;

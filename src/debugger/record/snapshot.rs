@@ -1,8 +1,8 @@
-//! Recorded states: a RON file that stands alone, can be computed again, and can be compared.
+//! Snapshots: recorded states in self-contained RON files, which can be recomputed and compared.
 //!
-//! A snapshot holds the scene, what the user did and after how many minor iterations, and the state that this led to.
-//! Computing it again means to start the scene and to do the same; nothing of the recorded state goes into that.
-//! Floats are written so that they read back to the same bits, NaN and the infinities included.
+//! A snapshot contains the scene, the interventions with the minor iterations at which they happened, and the
+//! resulting state. Recomputing starts the scene and repeats the steps; it does not use the recorded state.
+//! Floats are written so that they read back to the same bits, including NaN and the infinities.
 
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
@@ -24,36 +24,36 @@ use stickslip_scene::format::kind::FileKind;
 use stickslip_scene::format::{SceneError, Spec, notation, read};
 use stickslip_scene::solver::solver;
 
-/// The format that this program writes, and the only one that it reads.
+/// Format version written by this program, and the only one it reads.
 pub const FORMAT: u32 = 1;
 
 /// A recorded state.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Snapshot {
-    /// Version of this format.
+    /// Format version.
     pub format: u32,
-    /// What the scene was called.
+    /// Name of the scene.
     pub name: String,
-    /// The whole scene, with what was set from outside.
+    /// The whole scene, with all `--set` overrides.
     pub scene: Spec,
-    /// What the user did, in order.
+    /// Interventions in order.
     pub interventions: Vec<Applied>,
-    /// Number of minor iterations done.
+    /// Number of minor iterations.
     pub steps: u64,
-    /// The last minor iteration; the first to come where none was done.
+    /// The last minor iteration; the first one to be solved if there is none.
     pub position: Position,
-    /// What there is then.
+    /// The resulting state.
     pub state: Recorded,
 }
 
-/// An intervention and the number of minor iterations that had been done before it.
+/// An intervention, and the number of minor iterations before it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Applied {
-    /// Minor iterations that had been done before it.
+    /// Number of minor iterations before it.
     pub step: u64,
-    /// What was done.
+    /// The intervention.
     pub intervention: Intervention,
 }
 
@@ -63,34 +63,34 @@ pub struct Applied {
 pub struct Recorded {
     /// Load factor at the end of the last minor iteration's increment.
     pub load_factor: f64,
-    /// How the iterations stand.
+    /// Status of the run.
     pub status: Status,
     /// Residual at the start of the last major iteration.
     pub before: Option<Norms>,
     /// Residual at its end, if it has ended.
     pub after: Option<Norms>,
-    /// One a slave node, in the order of the scene.
+    /// One entry per slave node, in the order of the scene.
     pub slaves: Vec<SlaveRecord>,
-    /// One a node that moves.
+    /// One entry per moving node.
     pub displacements: Vec<Displacement>,
     /// Shear forces of shear-rigid beams, body by body.
     pub shear: Vec<f64>,
 }
 
-/// A slave node, as the last minor iteration found it. Forces are on the slave node, compression positive.
+/// A slave node after the last minor iteration. Forces act on the slave node; compression is positive.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SlaveRecord {
-    /// The node's name.
+    /// Name of the node.
     pub node: String,
     /// Mode of the last minor iteration.
     pub mode: Mode,
     /// Mode of the next one.
     pub next: Mode,
-    /// The cell of Table 2 that fired, by the name that traces give it; `None` if nothing was solved.
+    /// The cell of Table 2 that applied, named as in traces; `None` if nothing was solved.
     #[serde(with = "rule_name")]
     pub rule: Option<Rule>,
-    /// Gap, negative where the node penetrates; `None` if nothing was solved.
+    /// Gap, negative for penetration; `None` if nothing was solved.
     pub gap: Option<f64>,
     /// Normal force; compression is positive.
     pub f_n: f64,
@@ -100,11 +100,11 @@ pub struct SlaveRecord {
     pub t_max: f64,
     /// Slip, length.
     pub slip: f64,
-    /// Whether its mode was forced by hand.
+    /// Whether the user forced its mode.
     pub forced: Forced,
 }
 
-/// A rule by its name: RON has no bare words with hyphens.
+/// A rule by name, as a string because RON has no bare words with hyphens.
 mod rule_name {
     use serde::de::IntoDeserializer;
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -121,51 +121,51 @@ mod rule_name {
     }
 }
 
-/// Displacement of a node at the start of the major iteration to come.
+/// Displacement of a node at the start of the next major iteration.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Displacement {
-    /// The node's name.
+    /// Name of the node.
     pub node: String,
     /// Along x, length.
     pub x: f64,
     /// Along y, length.
     pub y: f64,
-    /// Only beam nodes turn.
+    /// Rotation, for beam nodes only.
     pub rotation: Option<f64>,
 }
 
-/// Why a snapshot cannot be written, read or computed again.
+/// Why a snapshot cannot be written, read or recomputed.
 #[derive(Debug, thiserror::Error)]
 pub enum SnapshotError {
-    /// It cannot be written.
+    /// The file cannot be written.
     #[error(transparent)]
     File(#[from] FileError),
-    /// It cannot be read, is no snapshot, or is a damaged one.
+    /// The file cannot be read, is not a snapshot, or is damaged.
     #[error(transparent)]
     Read(Box<SceneError>),
     /// The state cannot be written as text.
     #[error("the snapshot cannot be written as text: {0}")]
     Unwritable(ron::Error),
-    /// The scene in it is unsound.
-    #[error("the snapshot's scene is unsound: {0}")]
+    /// The snapshot's scene is invalid.
+    #[error("the snapshot's scene is invalid: {0}")]
     Scene(#[from] SceneError),
-    /// It is of an attached solver.
+    /// The snapshot belongs to an attached solver.
     #[error(
-        "it was taken of the attached solver {name}; replay FILE -- COMMAND does it again with that"
+        "the snapshot was taken from the attached solver {name}; use stickslip replay FILE -- COMMAND"
     )]
     Attached {
-        /// What the solver is called.
+        /// Name of the solver.
         name: String,
     },
-    /// Its steps cannot be done again.
-    #[error("it cannot be computed again: {0}")]
+    /// The steps cannot be repeated.
+    #[error("the snapshot cannot be recomputed: {0}")]
     Replay(String),
 }
 
 impl Snapshot {
-    /// Records a state. `applied` is what the user did so far, `steps` the number of minor iterations done, and
-    /// `event` the last of them.
+    /// Records a state. `applied` are the interventions so far, `steps` is the number of minor iterations, and
+    /// `event` the last one.
     pub fn take(
         scene: &Scene,
         applied: &[Applied],
@@ -186,18 +186,17 @@ impl Snapshot {
 
     /// The snapshot as text.
     ///
-    /// # Errors
-    /// If it cannot be put into RON, which no snapshot is known to do.
+    /// # Errors If it cannot be represented in RON; no such snapshot is known.
     pub fn to_text(&self) -> Result<String, SnapshotError> {
         let layout = ron::ser::PrettyConfig::new()
             .new_line("\n")
-            // Lists of slaves and nodes are tables: one row, one line.
+            // Tables of slaves and nodes: one row per line.
             .depth_limit(3);
         let text = notation::lines(self, layout).map_err(SnapshotError::Unwritable)?;
         Ok(text + "\n")
     }
 
-    /// Writes the snapshot to a file, whole or not at all.
+    /// Writes the snapshot to a file, completely or not at all.
     ///
     /// # Errors
     /// If the file exists and `overwrite` is not set, or cannot be written.
@@ -207,21 +206,19 @@ impl Snapshot {
 
     /// Reads a snapshot from a file.
     ///
-    /// # Errors
-    /// If the file cannot be read, is damaged, or has a format that this program does not know.
+    /// # Errors If the file cannot be read, is damaged, or has an unknown format.
     pub fn read(path: &Path) -> Result<Snapshot, SnapshotError> {
         let file = path.display().to_string();
-        let text = input::text(path, RECORD_BYTES, "no snapshot has")
+        let text = input::text(path, RECORD_BYTES, "too large for a snapshot")
             .map_err(|why| SnapshotError::Read(Box::new(read::not_read(&file, &why))))?;
         Snapshot::from_text(&file, &text)
     }
 
-    /// Reads a snapshot from a text; `file` is what messages call it.
+    /// Reads a snapshot from text; `file` is its name for messages.
     ///
-    /// # Errors
-    /// If the text is damaged, or has a format that this program does not know.
+    /// # Errors If the text is damaged, or has an unknown format.
     pub fn from_text(file: &str, text: &str) -> Result<Snapshot, SnapshotError> {
-        /// What any format has.
+        /// The part that every format version has.
         #[derive(Deserialize)]
         struct Header {
             format: u32,
@@ -235,7 +232,7 @@ impl Snapshot {
                 return Err(SceneError::whole(
                     file,
                     format!(
-                        "the snapshot has format {}, and this program knows only format {FORMAT}; read it with the version that wrote it",
+                        "the snapshot has format {}, but this program reads only format {FORMAT}; use the version that wrote it",
                         header.format
                     ),
                 ));
@@ -248,10 +245,9 @@ impl Snapshot {
         read().map_err(|error| SnapshotError::Read(Box::new(error)))
     }
 
-    /// Computes the snapshot again, from the start of its scene.
+    /// Recomputes the snapshot from the start of its scene.
     ///
-    /// # Errors
-    /// If the scene is unsound, or the run does not come that far.
+    /// # Errors If the scene is invalid, or the run does not get that far.
     pub fn replay(&self) -> Result<Snapshot, SnapshotError> {
         if self.scene.attached.is_some() {
             let name = self.name.clone();
@@ -261,15 +257,14 @@ impl Snapshot {
         self.replay_on(&scene, &mut solver(Arc::new(scene.model.clone())))
     }
 
-    /// The same with an attached solver, from its start.
+    /// Recomputes the snapshot with an attached solver, from its start.
     ///
-    /// # Errors
-    /// As [`Snapshot::replay`]; if the solver solves something else, or cannot go on.
+    /// # Errors As [`Snapshot::replay`]; also if the solver has another scene or cannot continue.
     pub fn replay_with(&self, solver: &mut dyn Solver) -> Result<Snapshot, SnapshotError> {
         let scene = Scene::from_spec(&self.name, self.scene.clone())?;
         if scene.model != **solver.model() {
             return Err(SnapshotError::Replay(
-                "the solver's scene is not that of the snapshot".into(),
+                "the solver's scene differs from the snapshot's".into(),
             ));
         }
         self.replay_on(&scene, solver)
@@ -300,14 +295,14 @@ impl Snapshot {
             RunEnd::Spent => {}
             RunEnd::Finished | RunEnd::Failed(_) | RunEnd::Interrupted => {
                 return Err(SnapshotError::Replay(format!(
-                    "the history ends after {done} minor iterations, and the snapshot was taken after {}",
+                    "the history ends after {done} minor iterations, but the snapshot was taken after {}",
                     self.steps
                 )));
             }
         }
         if applied.peek().is_some() {
             return Err(SnapshotError::Replay(
-                "its interventions are not in order, or lie beyond its last step".into(),
+                "its interventions are out of order or after its last step".into(),
             ));
         }
         let event = (self.steps > 0).then(|| solver.event());
@@ -356,7 +351,7 @@ impl SlaveRecord {
     fn of(model: &Model, state: &State, event: Option<&Event>, slave: usize) -> SlaveRecord {
         let now = &state.nodes[slave];
         let node = model.nodes[model.contacts[slave].node].name.clone();
-        // A minor iteration that could not be solved has no records.
+        // A minor iteration that cannot be solved has no records.
         match event.and_then(|e| e.nodes.get(slave)) {
             Some(found) => SlaveRecord {
                 node,

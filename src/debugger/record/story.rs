@@ -1,21 +1,20 @@
-//! A journal as text to read: what was seen, what was done, what happened.
+//! A journal as readable text: what the user did and what happened.
 
 use crate::explain::names;
 use crate::record::command::{Command, To, Unit};
 use crate::record::journal::{Entry, JournalError, Record, date};
 use stickslip_core::model::Model;
 
-/// The story of a session.
+/// The text of a journal.
 ///
-/// # Errors
-/// If this version finds the journal's scene unsound.
+/// # Errors If this version rejects the journal's scene.
 pub fn story(record: &Record) -> Result<String, JournalError> {
     let model = record.scene()?.model;
     let header = &record.header;
     let [year, month, day, hour, minute, _] = date(header.began);
     let mut text = format!("{}: {}\n", header.name, model.title);
     text += &format!(
-        "A session of {year:04}-{month:02}-{day:02} {hour:02}:{minute:02} UTC with stickslip {}.\n",
+        "Session of {year:04}-{month:02}-{day:02} {hour:02}:{minute:02} UTC with stickslip {}.\n",
         header.version
     );
     let slaves = model.contacts.len();
@@ -27,7 +26,7 @@ pub fn story(record: &Record) -> Result<String, JournalError> {
     let told: Vec<&Entry> = record.entries.iter().map(|(_, entry)| entry).collect();
     let mut number = 0;
     for (k, entry) in told.iter().enumerate() {
-        // Of steps over known iterations only the last tells where the user went.
+        // Of consecutive cursor moves only the last one matters.
         let next = told.get(k + 1);
         if is_look(entry) && next.is_some_and(|next| is_look(next)) {
             continue;
@@ -39,7 +38,7 @@ pub fn story(record: &Record) -> Result<String, JournalError> {
         }
     }
     if number == 0 {
-        text += "Nothing was done.\n";
+        text += "No commands were recorded.\n";
     }
     text += &end(record);
     Ok(text)
@@ -54,13 +53,13 @@ fn is_look(entry: &Entry) -> bool {
     motion && entry.solved == 0
 }
 
-/// What the user did, in a sentence.
+/// The command, in a sentence.
 pub fn done(model: &Model, entry: &Entry) -> String {
     let slave = |s: &usize| names::slave(model, *s);
     match &entry.command {
-        _ if is_look(entry) => "Looked at another iteration.".into(),
+        _ if is_look(entry) => "Moved to another iteration.".into(),
         Command::Forward { unit, count } => format!("{}.", forward(*unit, *count)),
-        Command::Back { .. } | Command::Goto { .. } => "Looked at another iteration.".into(),
+        Command::Back { .. } | Command::Goto { .. } => "Moved to another iteration.".into(),
         Command::Force {
             slave: s,
             mode,
@@ -81,14 +80,16 @@ pub fn done(model: &Model, entry: &Entry) -> String {
             format!("Started from a consistent state: {}.", told.join(", "))
         }
         Command::Follow { label, steps } => {
-            format!("Took a remedy, {} steps: {label}.", steps.len())
+            format!("Applied a remedy ({} steps): {label}.", steps.len())
         }
-        Command::Release { slave: s } => format!("Gave {} back to Table 2.", slave(s)),
-        Command::Increment(size) => format!("Started the increment again with size {size}."),
+        Command::Release { slave: s } => {
+            format!("Released {}, so that Table 2 decides again.", slave(s))
+        }
+        Command::Increment(size) => format!("Restarted the increment with size {size}."),
         Command::Set { path, value } => format!("Set {path} to {value}."),
         Command::Branch(To::Named(name)) => format!("Went to branch {name}."),
         Command::Branch(_) => "Went to another branch.".into(),
-        Command::Rename(name) => format!("Called the branch '{name}'."),
+        Command::Rename(name) => format!("Renamed the branch to '{name}'."),
         Command::Break(condition) => {
             format!("Set a breakpoint: {}.", condition.describe(model))
         }
@@ -96,7 +97,7 @@ pub fn done(model: &Model, entry: &Entry) -> String {
         Command::Enable { id, on: true } => format!("Enabled {}.", breakpoint(*id)),
         Command::Enable { id, on: false } => format!("Disabled {}.", breakpoint(*id)),
         Command::Watch(watch) => format!("Watched {}.", watch.name),
-        Command::Unwatch(name) => format!("Watched {name} no more."),
+        Command::Unwatch(name) => format!("Stopped watching {name}."),
         Command::Branches
         | Command::Compare(_)
         | Command::Breakpoints
@@ -104,7 +105,7 @@ pub fn done(model: &Model, entry: &Entry) -> String {
         | Command::Remedies
         | Command::Export { .. }
         | Command::Journal(_)
-        | Command::Snapshot { .. } => "Looked around.".into(),
+        | Command::Snapshot { .. } => "Viewed or wrote results.".into(),
     }
 }
 
@@ -117,15 +118,15 @@ fn forward(unit: Unit, count: u32) -> String {
         Unit::Minor => "minor iteration",
         Unit::Major => "major iteration",
         Unit::Increment => "increment",
-        Unit::Run => return "Ran on".into(),
+        Unit::Run => return "Continued the run".into(),
     };
     match count {
-        1 => format!("Went on by a {what}").replace("a increment", "an increment"),
-        n => format!("Went on by {n} {what}s"),
+        1 => format!("Advanced by a {what}").replace("a increment", "an increment"),
+        n => format!("Advanced by {n} {what}s"),
     }
 }
 
-/// What it led to.
+/// The result of the command.
 fn seen(entry: &Entry) -> Vec<String> {
     let mut lines = Vec::new();
     if entry.solved > 0 {
@@ -140,7 +141,7 @@ fn seen(entry: &Entry) -> Vec<String> {
             plural(entry.solved)
         ));
     }
-    lines.push(format!("Seen: {}", entry.said));
+    lines.push(format!("Result: {}", entry.said));
     lines
 }
 
@@ -148,7 +149,7 @@ fn end(record: &Record) -> String {
     let mut text = String::new();
     if let Some((_, last)) = record.entries.last() {
         text += &format!(
-            "\nIt ended in branch b{} at step {}, state {}",
+            "\nThe session ended in branch b{} at step {}, state {}",
             last.branch.saturating_add(1),
             last.cursor,
             last.digest

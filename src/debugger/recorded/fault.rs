@@ -1,18 +1,18 @@
-//! The named ends of a solver that does not do what the protocol says.
+//! Errors of attached solvers that fail or violate the protocol.
 
 use std::time::Duration;
 use stickslip_exchange::attach::PROTOCOL;
 use stickslip_scene::shown;
 
-/// Most characters of a solver's own words in a fault.
+/// Maximum number of characters of a solver's own words in a message.
 const MOST: usize = 400;
 
-/// Words of a solver, harmless and on one line.
+/// A solver's words as one line of safe characters.
 fn plain(words: &str) -> String {
     shown::cut(words, MOST)
 }
 
-/// The reason that it gives, after what it does; nothing where it gives none.
+/// The solver's reason after a colon; empty if there is none.
 fn why(reason: &str) -> String {
     match reason.trim() {
         "" => String::new(),
@@ -20,129 +20,131 @@ fn why(reason: &str) -> String {
     }
 }
 
-/// Why an attached solver cannot go on.
+/// Why an attached solver cannot continue.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Fault {
-    /// It could not be started.
+    /// The solver cannot be started.
     #[error("{} cannot be started: {why}", plain(command))]
     NotStarted {
-        /// What was to be started.
+        /// The command.
         command: String,
-        /// What the system says.
+        /// Error of the system.
         why: String,
     },
-    /// It ended, or closed its output.
-    #[error("the solver ended ({}); {asked} is not answered", plain(how))]
+    /// The solver ended, or closed its output.
+    #[error("the solver ended ({}) without answering {asked}", plain(how))]
     Died {
         /// Its exit status, and the last line of its standard error.
         how: String,
-        /// What it was asked.
+        /// The pending request.
         asked: String,
     },
-    /// It said that it ends.
+    /// The solver announced that it ends.
     #[error("the solver answered {asked} with bye{}", why(reason))]
     Bye {
         /// Its reason; may be empty.
         reason: String,
-        /// What it was asked.
+        /// The pending request.
         asked: String,
     },
-    /// It does not answer in time.
+    /// The solver did not answer in time.
     #[error(
-        "the solver did not answer {asked} within {} s, and was stopped; {longer} gives it longer",
+        "the solver did not answer {asked} within {} s and was stopped; allow more time with {longer}",
         after.as_secs_f64()
     )]
     Silent {
-        /// What it was asked.
+        /// The pending request.
         asked: String,
-        /// How long it had.
+        /// The time limit.
         after: Duration,
-        /// The option by which it has longer.
+        /// The option that extends the limit.
         longer: &'static str,
     },
-    /// It was interrupted, and had to be stopped.
-    #[error("interrupted: the solver did not end {asked} when it was asked to, and was stopped")]
+    /// The solver did not react to an interrupt and was stopped.
+    #[error("interrupted: the solver did not stop during {asked} and was ended")]
     Stopped {
-        /// What it was asked.
+        /// The pending request.
         asked: String,
     },
-    /// Something else than a message.
+    /// Output that is not a message.
     #[error(
-        "the solver wrote something to its standard output that is no message ({}): {line:?}; what it prints belongs on standard error",
+        "the solver wrote a line to standard output that is not a message ({}): {line:?}; it must print to standard error",
         plain(why)
     )]
     Junk {
-        /// What is wrong with it.
+        /// What is wrong with the line.
         why: String,
-        /// Its beginning.
+        /// Beginning of the line.
         line: String,
     },
-    /// JSON, but no message that there is.
+    /// JSON that is not a known message.
     #[error(
         "the solver's answer to {asked} cannot be read ({}): {line:?}",
         plain(why)
     )]
     Misformed {
-        /// What it was asked.
+        /// The pending request.
         asked: String,
-        /// What is wrong with it.
+        /// What is wrong with the message.
         why: String,
-        /// What stands there.
+        /// The message.
         line: String,
     },
-    /// A line without an end.
+    /// An incomplete line.
     #[error("the solver ended in the middle of a line: {0:?}")]
     Torn(String),
     /// A line that is too long.
-    #[error("the solver wrote a line of more than {most} bytes: {line:?}")]
+    #[error("the solver wrote a line longer than {most} bytes: {line:?}")]
     TooLong {
-        /// How long it may be.
+        /// Maximum length.
         most: usize,
-        /// Its beginning.
+        /// Beginning of the line.
         line: String,
     },
-    /// Another message than the one that answers.
-    #[error("the solver answered {asked} with {answer}; {expected} is the answer to that")]
+    /// A message of the wrong kind.
+    #[error("the solver answered {asked} with {answer}; expected {expected}")]
     OtherAnswer {
-        /// What it was asked.
+        /// The pending request.
         asked: String,
-        /// What it answered.
+        /// The answer.
         answer: String,
-        /// What would be right.
+        /// The expected answer.
         expected: &'static str,
     },
-    /// It speaks another version.
-    #[error("the solver speaks version {0} of the protocol, and this program version {PROTOCOL}")]
-    Version(u32),
-    /// An answer to nothing.
+    /// Unsupported protocol version.
     #[error(
-        "the solver said {answer} unasked, before {asked}; each request has one answer, and what is told besides is a message"
+        "the solver uses version {0} of the protocol; this program supports version {PROTOCOL}"
+    )]
+    Version(u32),
+    /// An answer without a request.
+    #[error(
+        "the solver sent {answer} before {asked} was requested; send exactly one answer per request, and use log messages for anything else"
     )]
     Unasked {
-        /// What it said.
+        /// The message.
         answer: String,
-        /// What it would have been asked next.
+        /// The next request.
         asked: String,
     },
-    /// It refused what it offers, or what every solver does.
+    /// The solver refused something that it offers or that is mandatory.
     #[error("the solver refuses {asked}{}", self::why(why))]
     Refused {
-        /// What it was asked.
+        /// The request.
         asked: String,
-        /// Its words.
+        /// The solver's reason.
         why: String,
     },
-    /// A message that does not fit the scene.
-    #[error("the solver's {message} is unsound: {}", plain(why))]
+    /// A message that does not match the scene.
+    #[error("the solver's {message} is invalid: {}", plain(why))]
     Unfit {
-        /// Which message.
+        /// Kind of the message.
         message: &'static str,
-        /// What is wrong, and what would be right.
+        /// What is wrong, and what was expected.
         why: String,
     },
-    /// Done again, it is not what it was.
+    /// A repeated iteration gave another result.
     #[error(
-        "done again, iteration {iteration} of the solver is not what it was ({}): it does not do the same twice, so nothing can follow from a state that it has left",
+        "when repeated, iteration {iteration} of the solver differed ({}): the solver is not deterministic, so it can continue only from its last state",
         plain(why)
     )]
     Changed {
@@ -151,21 +153,21 @@ pub enum Fault {
         /// What differs.
         why: String,
     },
-    /// Started again, it solves something else.
+    /// After a restart, the solver has another scene.
     #[error(
-        "started again, the solver tells another {what}; nothing of what it did before can be gone back to"
+        "after a restart, the solver reports a different {what}; it cannot return to earlier states"
     )]
     OtherScene {
-        /// What is another.
+        /// What differs.
         what: &'static str,
     },
     /// A state of another session.
-    #[error("this state is none that the solver has had since it was attached")]
+    #[error("the solver has not had this state since it was attached")]
     Unknown,
-    /// A kept exchange without a scene.
+    /// A stored exchange without a scene.
     #[error("the file ends before the solver describes its scene")]
     NoScene,
-    /// The exchange that was opened ends here.
-    #[error("the kept exchange ends here, and there is no solver that could go on")]
+    /// End of a stored exchange.
+    #[error("the stored exchange ends here and cannot be continued")]
     Past,
 }

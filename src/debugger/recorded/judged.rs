@@ -1,14 +1,16 @@
-//! The laws of contact and friction, checked on the numbers that an attached solver tells of an accepted state.
+//! Checks the laws of contact and friction with the numbers that an attached solver reports for an accepted
+//! state.
 //!
-//! Nothing but those numbers is looked at: g >= 0 where nothing gives way, no force over an open gap, F_n >= 0,
-//! |F_t| <= |T_max|, and friction against the slip of a node that slides. What the solver does not tell is not judged.
+//! Only those numbers are used: g >= 0 for rigid contact, no force across an open gap, F_n >= 0, |F_t| <=
+//! |T_max|, and friction that opposes the slip of a sliding node. Unreported quantities are not checked.
 
 use stickslip_core::contact::laws::{Finding, Law, Numbers};
 use stickslip_core::contact::record::ContactRecord;
 use stickslip_core::model::{Mode, Model};
 
-/// Forces and lengths against a law that are accepted without a word, over the largest force and the largest motion. Other
-/// solvers stop where their own criterion is met, which is often a thousandth, or meet the laws on the average of an element.
+/// Violations below this limit are accepted silently, relative to the largest force and the largest motion.
+/// Other solvers stop at their own criterion, often a thousandth, or satisfy the laws only on average over an
+/// element.
 pub const ALLOWED: f64 = 1e-2;
 
 /// Forces below this fraction of the solver's residual scale are round-off or negligible.
@@ -16,13 +18,14 @@ pub(super) const ROUND_OFF: f64 = 1e-6;
 
 /// Reference sizes for relative amounts.
 pub struct Sizes {
-    /// The largest contact force on the way to the state. Once all contacts are open again, only round-off is left.
+    /// The largest contact force on the way to the state. Once all contacts are open again, only round-off is
+    /// left.
     pub force: f64,
     /// The largest displacement (length).
     pub length: f64,
 }
 
-/// The largest force of the contacts in a state.
+/// The largest contact force in a state.
 pub fn largest_force(nodes: &[ContactRecord]) -> f64 {
     let forces = nodes.iter().flat_map(|node| [node.f_n, node.f_t]);
     forces
@@ -61,7 +64,7 @@ pub fn broken(model: &Model, nodes: &[ContactRecord], sizes: &Sizes) -> Option<F
         .max_by(|a, b| a.amount.total_cmp(&b.amount))
 }
 
-/// How far a node is from each law; a number that is not told makes NaN, which breaks none.
+/// The violation of each law at a node; an unreported number gives NaN, which violates none.
 fn of_node(
     node: &ContactRecord,
     hard: bool,
@@ -79,7 +82,7 @@ fn of_node(
         (Law::Gap, unless(!acts || !hard, gap / length)),
         (Law::Tension, unless(tied, -f_n / force)),
         (Law::Cone, unless(tied, (f_t.abs() - limit) / force)),
-        // Friction drives where it should hold back: twice its force is missing.
+        // Friction pushes in the direction of slip: the violation is twice its force.
         (
             Law::Slip,
             unless(tied || !slides || slip <= ALLOWED, 2.0 * f_t.abs() / force),

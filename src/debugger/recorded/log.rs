@@ -1,4 +1,5 @@
-//! What an attached solver said besides: its messages, and its standard error; and the whole exchange in a file, where it is kept.
+//! The log of an attached solver: its messages and its standard error; also stores the whole exchange in a
+//! file, on request.
 
 use std::collections::VecDeque;
 use std::fs::File;
@@ -10,33 +11,33 @@ use stickslip_exchange::attach::message::Level;
 use stickslip_exchange::attach::{Kept, Side};
 use stickslip_scene::shown;
 
-/// Most lines that are kept to be shown.
+/// Maximum number of lines kept for display.
 const MOST_LINES: usize = 10_000;
-/// Most characters of a line that are shown.
+/// Maximum number of characters displayed of a line.
 const MOST_CHARS: usize = 2_000;
 
 /// A line of the log.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Said {
-    /// How it was said.
+    /// Source of the line.
     pub how: How,
-    /// The line, in what a terminal can be given.
+    /// The line, safe to print to a terminal.
     pub text: String,
 }
 
-/// How something was said.
+/// Source of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum How {
-    /// On its standard error.
+    /// Standard error of the solver.
     Printed,
-    /// In a message.
+    /// A message of the solver.
     Told(Level),
-    /// By this program: it was started, gone back, lost.
+    /// A remark of this program, for example that the solver was started or lost.
     Noted,
 }
 
 impl How {
-    /// A word for it, as the page `:log` has it.
+    /// The word for the source on the page `:log`.
     pub fn word(self) -> &'static str {
         match self {
             How::Printed => "stderr",
@@ -48,25 +49,24 @@ impl How {
     }
 }
 
-/// A handle of the log; all handles are of one.
+/// Handle of the log; all clones share it.
 #[derive(Debug, Clone, Default)]
 pub struct Log(Arc<Mutex<Inner>>);
 
 #[derive(Debug, Default)]
 struct Inner {
     lines: VecDeque<Said>,
-    /// Lines that there were, those that are gone included.
+    /// Number of lines so far, including dropped ones.
     count: usize,
     kept: Option<File>,
-    /// Why the exchange is kept no more although it should be.
+    /// Why the exchange can no longer be stored.
     lost: Option<String>,
 }
 
 impl Log {
-    /// Keeps the exchange in a file from now on.
+    /// Stores the exchange in a file from now on.
     ///
-    /// # Errors
-    /// If it exists and may not be overwritten, or cannot be written.
+    /// # Errors If the file exists and may not be overwritten, or cannot be written.
     pub fn keep(&self, path: &Path, overwrite: bool) -> std::io::Result<()> {
         let mut options = File::options();
         options.write(true).append(!overwrite).truncate(overwrite);
@@ -80,12 +80,12 @@ impl Log {
         Ok(())
     }
 
-    /// A line of the exchange, as it went.
+    /// Adds a line of the exchange, verbatim.
     pub fn exchanged(&self, side: Side, text: &str) {
         self.with(|inner| inner.write(side, text));
     }
 
-    /// A line of its standard error.
+    /// Adds a line of the solver's standard error.
     pub fn printed(&self, line: &str) {
         self.with(|inner| {
             inner.write(Side::Logged, line);
@@ -93,7 +93,7 @@ impl Log {
         });
     }
 
-    /// A message of it.
+    /// Adds a message of the solver.
     pub fn told(&self, level: Level, text: &str) {
         self.with(|inner| {
             text.lines()
@@ -101,7 +101,7 @@ impl Log {
         });
     }
 
-    /// Something that happened.
+    /// Adds a remark of this program.
     pub fn noted(&self, text: &str) {
         self.with(|inner| {
             inner.write(Side::Noted, text);
@@ -109,7 +109,7 @@ impl Log {
         });
     }
 
-    /// The lines that are left, and the number of the first of them, from 0.
+    /// The lines kept, and the number of the first one, counted from 0.
     pub fn lines(&self) -> (usize, Vec<Said>) {
         self.with(|inner| {
             (
@@ -119,7 +119,7 @@ impl Log {
         })
     }
 
-    /// The lines from a number on, as far as they are left.
+    /// The lines from a number on, if they are still kept.
     pub fn since(&self, number: usize) -> Vec<Said> {
         self.with(|inner| {
             let gone = inner.count - inner.lines.len();
@@ -132,12 +132,12 @@ impl Log {
         })
     }
 
-    /// How many lines there have been.
+    /// Number of lines so far.
     pub fn count(&self) -> usize {
         self.with(|inner| inner.count)
     }
 
-    /// The last line of its standard error.
+    /// The last line of the solver's standard error.
     pub fn last_printed(&self) -> Option<String> {
         self.with(|inner| {
             let mut lines = inner.lines.iter().rev();
@@ -147,13 +147,13 @@ impl Log {
         })
     }
 
-    /// Why the exchange is kept no more although it should be; once.
+    /// Why the exchange can no longer be stored; returned once.
     pub fn lost(&self) -> Option<String> {
         self.with(|inner| inner.lost.take())
     }
 
     fn with<T>(&self, with: impl FnOnce(&mut Inner) -> T) -> T {
-        // No thread panics while it holds the lock; were it so, lines are lines all the same.
+        // Even after a panic in another thread, the lines are valid.
         with(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
@@ -173,20 +173,20 @@ impl Inner {
             return;
         };
         if let Err(error) = file.write_all(Kept::line(side, text).as_bytes()) {
-            self.lost = Some(format!("the exchange is not kept any more: {error}"));
+            self.lost = Some(format!("the exchange is no longer stored: {error}"));
             self.kept = None;
         }
     }
 }
 
-/// A line without what was meant for a terminal: colours and the like are left out, a tab is two blanks.
+/// Removes terminal control sequences such as colours; a tab becomes two spaces.
 fn plain(line: &str) -> String {
     let mut text = String::with_capacity(line.len());
     let mut letters = line.chars().peekable();
     while let Some(letter) = letters.next() {
         match letter {
             '\u{1b}' if letters.next_if_eq(&'[').is_some() => {
-                // Parameters, up to the letter that says what they are of.
+                // Skip the parameters, up to the final letter of the sequence.
                 letters.by_ref().find(|c| ('@'..='~').contains(c));
             }
             '\t' => text.push_str("  "),
@@ -201,7 +201,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn colours_are_left_out_and_other_orders_are_shown() {
+    fn colours_are_removed_and_other_sequences_escaped() {
         assert_eq!(plain("\u{1b}[1m\u{1b}[31mMax\u{1b}[0m\tend"), "Max  end");
         assert_eq!(plain("\u{1b}]0;title"), "\u{1b}]0;title");
         assert_eq!(plain("cut \u{1b}[3"), "cut ");

@@ -1,12 +1,13 @@
-//! Solvers of others without their processes: the messages of the protocol of [`stickslip_exchange::attach`] as this
-//! program's states and events, and finished runs, which are stepped as read-only solvers ([`Solver`](stickslip_core::step::Solver)).
+//! Other programs' solvers without their processes: converts messages of the attach protocol
+//! ([`stickslip_exchange::attach`]) into states and events, and opens finished runs as read-only solvers
+//! ([`Solver`](stickslip_core::step::Solver)).
 //!
-//! - [`fault`]: the errors of a solver that breaks the protocol; [`log`]: its log.
-//! - [`told`]: its messages as states and events; [`posed`]: its frozen interface problem; [`judged`]: the contact laws, checked with
-//!   its numbers.
+//! - [`fault`]: errors of a solver that violates the protocol; [`log`]: its log.
+//! - [`told`]: its messages as states and events; [`posed`]: its frozen interface problem; [`judged`]: the
+//!   contact laws, checked with its numbers.
 //! - [`orders`]: interventions as requests.
-//! - [`past`]: a solver whose exchange was kept in a file; [`story`]: such a file as text.
-//! - [`calculix`]: finished CalculiX runs; [`recording`]: any finished run, by the name of its file.
+//! - [`past`]: a solver replayed from its stored exchange; [`story`]: such a file as text.
+//! - [`calculix`]: finished CalculiX runs; [`recording`]: opens a finished run by file name.
 
 pub mod calculix;
 pub mod fault;

@@ -1,4 +1,4 @@
-//! What a solver is asked for an intervention, and what an exchange says was changed.
+//! Converts interventions into requests to a solver, and the requests of an exchange back into interventions.
 
 use stickslip_core::model::{Friction, Mode};
 use stickslip_core::step::intervene::{self, Intervention};
@@ -6,14 +6,14 @@ use stickslip_core::step::solver::{Offers, Range};
 use stickslip_exchange::attach::Request;
 use stickslip_exchange::attach::message::Id;
 
-/// Parameters that have a meaning: the increment, and Coulomb's law at all contacts.
+/// Parameters with a fixed meaning. This one is the increment.
 pub const INCREMENT: &str = "increment";
-/// The coefficient of friction.
+/// The coefficient of friction, for all contacts.
 pub const FRICTION: &str = "friction";
-/// The cohesion.
+/// The cohesion, for all contacts.
 pub const COHESION: &str = "cohesion";
 
-/// What a solver is asked for an intervention.
+/// The requests for an intervention.
 pub fn requests(intervention: &Intervention, ids: &[Id], offers: &Offers) -> Vec<Request> {
     let force = |slave: usize, mode: Mode, hold: bool| {
         let contact = ids.get(slave)?.clone();
@@ -67,14 +67,14 @@ pub fn requests(intervention: &Intervention, ids: &[Id], offers: &Offers) -> Vec
     }
 }
 
-/// Whether a parameter takes whole numbers only.
+/// Whether a parameter is an integer.
 fn is_whole(name: &str, offers: &Offers) -> bool {
     let known = offers.parameters.iter().find(|known| known.name == name);
     known.is_some_and(|known| matches!(known.range, Range::Numbers { whole: true, .. }))
 }
 
-/// Adds to what was changed at a state what a request changed that was granted; `now` is the friction there. The two halves of a
-/// change of friction become one again.
+/// Adds a granted request to the changes made at a state; `now` is the friction there. Combines the two
+/// requests of one friction change.
 pub fn add(changed: &mut Vec<Intervention>, request: &Request, ids: &[Id], now: Friction) {
     let slave = |id: &Id| ids.iter().position(|known| known == id);
     let force =
@@ -103,7 +103,7 @@ pub fn add(changed: &mut Vec<Intervention>, request: &Request, ids: &[Id], now: 
     changed.extend(intervention);
 }
 
-/// What another value of a parameter changes; `now` is the friction before.
+/// The intervention that sets a parameter; `now` is the friction before.
 pub fn set(name: &str, value: &serde_json::Value, now: Friction) -> Intervention {
     match (name, value.as_f64()) {
         (INCREMENT, Some(size)) => Intervention::Increment(size),

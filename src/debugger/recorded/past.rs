@@ -1,7 +1,7 @@
-//! An exchange that was kept in a file: everything that an attached solver did, to be looked at without it.
+//! Replays a stored exchange: everything an attached solver did, without the solver.
 //!
-//! The file is gone through once; what it tells is a tree of states, as the session had it. Stepping goes along the tree and nowhere
-//! else: there is no solver that could.
+//! The file is read once into a tree of states, like that of the original session. Steps can only follow this
+//! tree.
 
 use super::fault::Fault;
 use super::log::Log;
@@ -24,45 +24,46 @@ use stickslip_platform::input::{self, Unreadable};
 use stickslip_scene::Scene;
 use stickslip_scene::format::{SceneError, read};
 
-/// Steps from the start: each an iteration (`None`), or something that was changed.
+/// Steps from the start: an iteration (`None`) or an intervention each.
 pub type Line = Vec<Option<Intervention>>;
 
-/// A solver that is no more.
+/// The solver of a stored exchange.
 pub struct Past {
     start: State,
     model: Arc<Model>,
     places: Places<Option<Led>>,
     offers: Offers,
-    /// The present state, and the iteration that led to it.
+    /// The current state, and the iteration before it.
     now: Led,
 }
 
-/// An exchange that was read.
+/// A stored exchange that has been read.
 pub struct Opened {
-    /// What was solved.
+    /// The solver's scene.
     pub scene: Scene,
-    /// The solver that is no more.
+    /// The replayed solver.
     pub past: Past,
-    /// All ways that were gone to their ends, in the order in which these were reached.
+    /// All paths through the tree, in the order in which their ends were reached.
     pub lines: Vec<Line>,
-    /// What the solver said besides.
+    /// Log of the solver.
     pub log: Log,
 }
 
-/// What a kept exchange is.
-pub const READ_ONLY: &str = "kept exchange, read-only";
-/// Most bytes of a kept exchange.
+/// Kind of the recording.
+pub const READ_ONLY: &str = "stored exchange (read-only)";
+/// Maximum size of the file in bytes.
 const MOST_BYTES: u64 = 1 << 30;
 
-/// Reads the file of a kept exchange; `None` where it is the name of something else.
+/// Reads a stored exchange; `None` if the file is something else.
 pub fn file(name: &str) -> Option<Result<Opened, SceneError>> {
     let path = Path::new(name);
     let head = input::start(path, HEAD.len() as u64).ok()?;
     (head == HEAD.as_bytes()).then(|| {
         let not_read = |why: Unreadable| read::not_read(name, &why);
-        let large = "no exchange that was kept whole is so large";
+        let large = "too large for an exchange";
         let mut bytes = input::bytes(path, MOST_BYTES, large).map_err(not_read)?;
-        // Who wrote it may have been ended in the middle of a letter; such a line is left out in any case.
+        // If the writer was killed, the last line may end inside a character; incomplete lines are dropped
+        // anyway.
         bytes.truncate(
             bytes
                 .iter()
@@ -73,10 +74,9 @@ pub fn file(name: &str) -> Option<Result<Opened, SceneError>> {
     })
 }
 
-/// Reads a kept exchange; `name` is the file's.
+/// Reads a stored exchange; `name` is that of the file.
 ///
-/// # Errors
-/// What is wrong with it.
+/// # Errors If it is damaged.
 pub fn open(name: &str, text: &str) -> Result<Opened, SceneError> {
     let kept = Kept::read(text).map_err(|broken| read::of_file(name, broken))?;
     let log = Log::default();
@@ -95,13 +95,13 @@ pub fn open(name: &str, text: &str) -> Result<Opened, SceneError> {
             }
             Side::Logged => log.printed(&line.text),
             Side::Asked => reader.asked(Request::read(&line.text).map_err(broken)?),
-            // A solver may have written what is no message: that was its end.
+            // An invalid message ended the original session.
             Side::Answered => match Answer::read(&line.text) {
                 Ok(Answer::Message { level, text }) => log.told(level, &text),
                 Ok(answer) => reader
                     .answered(name, answer)
                     .map_err(|fault| SceneError::whole(name, fault.to_string()))?,
-                Err(_) => log.noted(&format!("no message: {}", line.text)),
+                Err(_) => log.noted(&format!("invalid message: {}", line.text)),
             },
         }
     }
@@ -138,20 +138,20 @@ pub fn open(name: &str, text: &str) -> Result<Opened, SceneError> {
     })
 }
 
-/// A file as far as it is read.
+/// State of the reader.
 struct Reader {
     hello: Option<Hello>,
     met: Option<Met>,
     places: Places<Option<Led>>,
-    /// Where the solver is, and what was changed there.
+    /// Current state of the solver, and the interventions there.
     at: u64,
     changed: Vec<Intervention>,
     tokens: HashMap<String, u64>,
-    /// What was asked and is not yet answered.
+    /// A request without an answer yet.
     pending: Option<Request>,
 }
 
-/// Who it is and what it solves.
+/// The solver and its scene.
 struct Met {
     scene: Scene,
     hello: Hello,
@@ -172,7 +172,7 @@ impl Reader {
         }
     }
 
-    /// A solver is started.
+    /// Handles the start of a solver.
     fn begin(&mut self) {
         self.at = 0;
         self.changed.clear();
@@ -219,7 +219,7 @@ impl Reader {
         Ok(())
     }
 
-    /// The state at which the solver is, without what was changed there.
+    /// The current state of the solver, without the interventions there.
     fn state<'a>(&'a self, met: &'a Met) -> &'a State {
         let led = self.places.get(self.at).and_then(Option::as_ref);
         &led.unwrap_or(&met.start).state
@@ -234,7 +234,7 @@ impl Reader {
         }
         let mut from = self.state(met).clone();
         for intervention in &asked {
-            // It was taken then.
+            // It was accepted in the original session.
             let _ = from.intervene(&met.scene.model, intervention);
         }
         let frame = Frame {
@@ -252,13 +252,13 @@ impl Reader {
 }
 
 impl Past {
-    /// Goes back to the start.
+    /// Returns to the start.
     pub fn rewind(&mut self) {
         self.now.state.clone_from(&self.start);
         self.now.event = Event::nothing_yet(&self.model);
     }
 
-    /// The place to which the present state leads.
+    /// The next recorded iteration from the current state.
     fn next(&self) -> Option<&Led> {
         let place = self
             .places

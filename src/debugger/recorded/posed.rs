@@ -1,14 +1,13 @@
-//! The frozen interface problem that a solver tells, checked.
+//! Checks the frozen interface problem that a solver reports.
 
 use super::fault::Fault;
 use stickslip_core::model::Friction;
 use stickslip_core::step::solver::{Posed, PosedForm};
 use stickslip_exchange::attach::message::{Id, Matrix, Problem};
 
-/// The problem, of contacts with these ids.
+/// Converts the problem, whose contacts have these ids.
 ///
-/// # Errors
-/// [`Fault::Unfit`] where its parts do not fit together.
+/// # Errors [`Fault::Unfit`] if its parts do not match.
 pub fn posed(problem: &Problem, ids: &[Id]) -> Result<Posed, Fault> {
     let unfit = |why: String| Fault::Unfit {
         message: "problem",
@@ -20,8 +19,8 @@ pub fn posed(problem: &Problem, ids: &[Id]) -> Result<Posed, Fault> {
     for id in &problem.contacts {
         match place(id) {
             Some(contact) if !contacts.contains(&contact) => contacts.push(contact),
-            Some(_) => return Err(unfit(format!("contact {id} stands there twice"))),
-            None => return Err(unfit(format!("there is no contact {id}"))),
+            Some(_) => return Err(unfit(format!("contact {id} occurs twice"))),
+            None => return Err(unfit(format!("contact {id} does not exist"))),
         }
     }
     let size = 2 * count;
@@ -35,10 +34,10 @@ pub fn posed(problem: &Problem, ids: &[Id]) -> Result<Posed, Fault> {
     };
     let (q, load) = (or_zeros(&problem.q), or_zeros(&problem.load));
     if problem.q.is_empty() && problem.load.is_empty() {
-        return Err(unfit("it has neither q nor load".into()));
+        return Err(unfit("it needs either q or load".into()));
     }
     if !problem.load.is_empty() && problem.kind == PosedForm::Compliance {
-        return Err(unfit("load stands with a stiffness only".into()));
+        return Err(unfit("load is only allowed with a stiffness".into()));
     }
     let lengths = [
         ("q", q.len(), size),
@@ -48,7 +47,7 @@ pub fn posed(problem: &Problem, ids: &[Id]) -> Result<Posed, Fault> {
     ];
     if let Some((name, found, wanted)) = lengths.iter().find(|(_, found, wanted)| found != wanted) {
         return Err(unfit(format!(
-            "{name} has {found} numbers; it must have {wanted}"
+            "{name} has {found} numbers; expected {wanted}"
         )));
     }
     let matrix = match &problem.matrix {
@@ -59,13 +58,15 @@ pub fn posed(problem: &Problem, ids: &[Id]) -> Result<Posed, Fault> {
         } => {
             if *told != size {
                 return Err(unfit(format!(
-                    "the matrix has size {told}; it must have {size}"
+                    "the matrix has size {told}; expected {size}"
                 )));
             }
             let mut rows = vec![vec![0.0; size]; size];
             for &(i, j, value) in triplets {
                 let entry = rows.get_mut(i).and_then(|row| row.get_mut(j));
-                *entry.ok_or_else(|| unfit(format!("there is no entry ({i}, {j})")))? += value;
+                *entry
+                    .ok_or_else(|| unfit(format!("entry ({i}, {j}) is outside the matrix")))? +=
+                    value;
             }
             rows
         }
@@ -84,7 +85,7 @@ pub fn posed(problem: &Problem, ids: &[Id]) -> Result<Posed, Fault> {
         .any(|f| !(0.0..90.0).contains(&f.angle) || !(0.0..f64::INFINITY).contains(&f.cohesion))
     {
         return Err(unfit(
-            "mu and cohesion must be finite, and not negative".into(),
+            "mu and cohesion must be finite and not negative".into(),
         ));
     }
     Ok(Posed {

@@ -1,4 +1,4 @@
-//! Recordings: finished runs that are opened to be viewed, by the name of their file.
+//! Opens finished runs by file name, for viewing.
 
 use super::{calculix, past, story};
 use stickslip_scene::calculix::cel_of;
@@ -6,23 +6,22 @@ use stickslip_scene::shown;
 
 /// A finished run.
 pub enum Recording {
-    /// The exchange with an attached solver.
+    /// The stored exchange with an attached solver.
     Exchange(Box<past::Opened>),
     /// A CalculiX run.
     Calculix(Box<calculix::Opened>),
 }
 
 impl Recording {
-    /// Opens the recording that a file name stands for; `None` where it is the name of something else.
+    /// Opens the recording with this file name; `None` if the name is not that of a recording.
     ///
-    /// # Errors
-    /// If it is damaged, or the name is that of a file next to a .cel.
+    /// # Errors If it is damaged, or belongs to a .cel.
     pub fn open(name: &str) -> Result<Option<Recording>, String> {
         if let Some(cel) = cel_of(name) {
             let cel = shown::cut(&cel.display().to_string(), 120);
             let name = shown::cut(name, 120);
             return Err(format!(
-                "{name}: this file belongs to a CalculiX run, and is read with its contact elements: `stickslip {cel}`"
+                "{name}: this file belongs to a CalculiX run; open the run with `stickslip {cel}`"
             ));
         }
         if let Some(run) = calculix::file(name) {
@@ -33,7 +32,7 @@ impl Recording {
         Ok(exchange.map(Box::new).map(Recording::Exchange))
     }
 
-    /// What it is.
+    /// Kind of the recording.
     pub fn kind(&self) -> &'static str {
         match self {
             Recording::Exchange(_) => past::READ_ONLY,
@@ -41,17 +40,17 @@ impl Recording {
         }
     }
 
-    /// What the debugger says when it opens the run.
+    /// Hint shown when the run is opened.
     pub fn greeting(&self) -> &'static str {
         match self {
             Recording::Exchange(_) => {
-                "a kept exchange: all that the solver did, to be gone through; nothing can follow on it"
+                "stored exchange (read-only): all iterations of the solver; it cannot be continued"
             }
             Recording::Calculix(_) => calculix::words::GREETING,
         }
     }
 
-    /// It as text; `name` is the file's.
+    /// The recording as text; `name` is that of the file.
     pub fn text(&mut self, name: &str) -> String {
         match self {
             Recording::Exchange(opened) => story::story(name, opened),

@@ -1,4 +1,4 @@
-//! What a kept exchange tells, as text: the iterations, what was changed between them, and where the modes went round.
+//! A stored exchange as text: iterations, interventions, and cycles.
 
 use super::log::How;
 use super::past::{Line, Opened};
@@ -10,17 +10,17 @@ use stickslip_core::model::Model;
 use stickslip_core::step::solver::Solver;
 use stickslip_exchange::attach::message::Level;
 
-/// Contacts that are named, and messages that are told.
+/// Maximum number of contacts named, and of messages shown.
 const NAMED: usize = 6;
 const TOLD: usize = 20;
 
-/// The story of a file of this name.
+/// The text of the file with this name.
 pub fn story(file: &str, opened: &mut Opened) -> String {
     let model = opened.past.model().clone();
     let offers = opened.past.offers();
     let who = format!("{} {}", offers.name, offers.version);
     let mut text = format!(
-        "{file}: {}\nA kept exchange with {}; it can be looked at, and not gone on with.\n",
+        "{file}: {}\nStored exchange with {} (read-only).\n",
         model.title,
         who.trim()
     );
@@ -31,7 +31,7 @@ pub fn story(file: &str, opened: &mut Opened) -> String {
     let more = if slaves > NAMED { ", …" } else { "" };
     let _ = writeln!(text, "Contacts: {}{more}.", named.join(", "));
     if opened.lines.is_empty() {
-        text += "\nNothing was solved.\n";
+        text += "\nNo iterations.\n";
     }
     for number in 0..opened.lines.len() {
         let (before, line) = (&opened.lines[..number], &opened.lines[number]);
@@ -45,10 +45,10 @@ pub fn story(file: &str, opened: &mut Opened) -> String {
         text += "\n";
         let _ = match (number, opened.lines.len()) {
             (0, 1) => Ok(()),
-            (0, _) => writeln!(text, "Way b1:"),
+            (0, _) => writeln!(text, "Branch b1:"),
             _ => writeln!(
                 text,
-                "Way b{}, which leaves b{} after step {along}:",
+                "Branch b{}, from b{} after step {along}:",
                 number + 1,
                 whose + 1
             ),
@@ -59,12 +59,12 @@ pub fn story(file: &str, opened: &mut Opened) -> String {
     text
 }
 
-/// How many steps two ways have in common.
+/// Number of steps that two paths share.
 pub fn in_common(a: &Line, b: &Line) -> usize {
     a.iter().zip(b).take_while(|(a, b)| a == b).count()
 }
 
-/// A way, told from a step on.
+/// The steps of a path, from a step on.
 fn way(model: &Model, past: &mut super::past::Past, line: &Line, from: usize) -> String {
     past.rewind();
     let mut strips = vec![Strip::of(model, past.state(), None, None, 0.0)];
@@ -73,7 +73,7 @@ fn way(model: &Model, past: &mut super::past::Past, line: &Line, from: usize) ->
         let before = &strips[strips.len() - 1];
         let (strip, told) = match step {
             Some(intervention) => {
-                // It was taken then.
+                // It was accepted in the original session.
                 let _ = past.intervene(intervention);
                 let strip = Strip::intervention(model, past.state(), before);
                 (
@@ -95,7 +95,7 @@ fn way(model: &Model, past: &mut super::past::Past, line: &Line, from: usize) ->
                 let differ = match differ.is_empty() {
                     true => String::new(),
                     false => format!(
-                        "; ≠ the rules that it names at {}{more}",
+                        "; ≠ own rules at {}{more}",
                         differ[..differ.len().min(NAMED)].join(", ")
                     ),
                 };
@@ -116,7 +116,7 @@ fn way(model: &Model, past: &mut super::past::Past, line: &Line, from: usize) ->
     text + &cycle(model, &strips)
 }
 
-/// Where the modes go round at the end of an increment's attempt, in a line.
+/// The cycle at the end of an attempt, if there is one, as a line.
 fn cycle(model: &Model, strips: &[Strip]) -> String {
     match rounds(strips) {
         Some(found @ Rounds::Cycle { .. }) => format!("       ↺ {}\n", words(model, &found, true)),
@@ -124,7 +124,7 @@ fn cycle(model: &Model, strips: &[Strip]) -> String {
     }
 }
 
-/// Its last warnings and errors, and what was noted last.
+/// The last warnings and errors, and the last remark.
 fn said(opened: &Opened) -> String {
     let (_, lines) = opened.log.lines();
     let grave = |how: How| matches!(how, How::Told(Level::Warning | Level::Error));
@@ -135,11 +135,11 @@ fn said(opened: &Opened) -> String {
         .collect();
     let mut text = String::new();
     if !all.is_empty() {
-        let _ = writeln!(text, "\nIt warned {} times:", all.len());
+        let _ = writeln!(text, "\nWarnings and errors: {}", all.len());
         text += &all[all.len().saturating_sub(TOLD)..].concat();
     }
     if let Some(last) = lines.iter().rev().find(|said| said.how == How::Noted) {
-        let _ = writeln!(text, "\nLast noted: {}", last.text);
+        let _ = writeln!(text, "\nLast remark: {}", last.text);
     }
     text
 }

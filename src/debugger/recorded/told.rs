@@ -1,8 +1,8 @@
-//! What an attached solver told, as the debugger knows it: from messages of the protocol to states and events of the core.
+//! Converts the messages of an attached solver into states and events of the core.
 //!
-//! Numbers that a solver does not know are NaN; a gap and a margin that it does not tell are infinite, as they are where nothing
-//! is near. Where it says by which rules it decides, every decision is made again here on its numbers ([`decide`], or Newton's
-//! on the projections), so that the user sees where the two differ.
+//! Numbers that a solver does not report are NaN; an unreported gap or margin is infinite, as if nothing were
+//! near. If the solver names its decision rules, each decision is repeated here with its numbers ([`decide`],
+//! or Newton's method on the projections), to show where the two differ.
 
 use super::fault::Fault;
 use super::judged::{self, Sizes};
@@ -23,39 +23,39 @@ use stickslip_exchange::attach::message::{self, Decides, Ended, Found, Id};
 use stickslip_scene::Scene;
 use stickslip_scene::shown;
 
-/// Forces and lengths that differ by less than this part of the scene's are a tie in decisions that are made again.
+/// Relative difference of forces and lengths below which a repeated decision is a tie.
 const TIE: f64 = 1e-9;
 
-/// Most iterations of any kind that are counted.
+/// Largest accepted counter.
 const MOST_COUNT: u32 = 1_000_000_000;
-/// Within what a normal has length 1.
+/// Tolerance for the length of a unit normal.
 const UNIT: f64 = 1e-3;
-/// Most characters that are kept of a solver's words for a decision, and for what failed.
+/// Maximum number of characters kept of a solver's texts.
 const MOST_WORDS: usize = 400;
 
-/// What states are made with.
+/// The context in which messages are converted.
 pub struct Frame<'a> {
     /// The scene.
     pub model: &'a Model,
-    /// What the solver calls the contacts.
+    /// The solver's ids of the contacts.
     pub ids: &'a [Id],
-    /// By which rules it decides.
+    /// The solver's decision rules.
     pub decides: Option<Decides>,
 }
 
-/// What an iteration led to.
+/// Result of an iteration.
 #[derive(Clone)]
 pub struct Led {
-    /// What it did.
+    /// The event of the iteration.
     pub event: Event,
-    /// What the next one goes on from, under a number that is still to be given.
+    /// The state from which the next iteration starts; its identifier is set later.
     pub state: State,
-    /// The monitors, as far as they were told.
+    /// Values of the monitors reported.
     pub monitors: Vec<f64>,
 }
 
-/// The scene of an attached solver, with its names of the contacts, and the state at its start. `increment` is the first increment,
-/// if the solver reports it.
+/// The scene of an attached solver, with its ids of the contacts, and the start state. `increment` is the first
+/// increment, if the solver reports it.
 ///
 /// # Errors
 /// [`Fault::Unfit`].
@@ -85,10 +85,9 @@ fn unfit<T>(why: impl Into<String>) -> Result<T, Fault> {
 }
 
 impl Frame<'_> {
-    /// What a state message says of the iteration that was made from `from`.
+    /// Converts a state message about the iteration that started from `from`.
     ///
-    /// # Errors
-    /// [`Fault::Unfit`] for one that is not of this scene.
+    /// # Errors [`Fault::Unfit`] if the message does not match the scene.
     pub fn led(&self, from: &State, told: &message::State) -> Result<Led, Fault> {
         let at = self.check(told)?;
         let load = told.load.unwrap_or(from.load_factor);
@@ -142,7 +141,7 @@ impl Frame<'_> {
         })
     }
 
-    /// Whether a message is of this scene; where its iteration was.
+    /// Checks that a message matches the scene; returns the position of its iteration.
     ///
     /// # Errors
     /// [`Fault::Unfit`].
@@ -150,16 +149,16 @@ impl Frame<'_> {
         let at = told.at;
         let counts = [at.increment, at.attempt, at.major, at.minor];
         if counts.iter().any(|count| !(1..=MOST_COUNT).contains(count)) {
-            return unfit(format!("at: all counts are from 1 to {MOST_COUNT}"));
+            return unfit(format!("at: counters must be from 1 to {MOST_COUNT}"));
         }
         if told.size.is_some_and(|size| size <= 0.0) {
-            return unfit("size: that of an increment is positive");
+            return unfit("size: must be positive");
         }
         let count = self.ids.len();
         let solved = told.ended != Ended::Failure && told.ended != Ended::Cut;
         if told.contacts.len() != count && (solved || !told.contacts.is_empty()) {
             return unfit(format!(
-                "it has {} contacts, and the scene {count}",
+                "it has {} contacts; the scene has {count}",
                 told.contacts.len()
             ));
         }
@@ -172,20 +171,20 @@ impl Frame<'_> {
             }
             let is_unit = |n: &[f64; 2]| (n[0].hypot(n[1]) - 1.0).abs() < UNIT;
             if !found.normal.as_ref().is_none_or(is_unit) {
-                return unfit(format!("contacts[{k}].normal: it must be of length 1"));
+                return unfit(format!("contacts[{k}].normal: must have length 1"));
             }
         }
         let nodes = self.model.nodes.len();
         match &told.displacements {
             Some(all) if all.len() != nodes => unfit(format!(
-                "it has {} displacements, and the scene {nodes} nodes",
+                "it has {} displacements; the scene has {nodes} nodes",
                 all.len()
             )),
             _ => Ok(at),
         }
     }
 
-    /// What counts as a tie, by the size of the forces.
+    /// Tolerances for ties, relative to the forces.
     fn ties(&self, told: &message::State) -> Ties {
         let forces = told
             .contacts
@@ -199,7 +198,7 @@ impl Frame<'_> {
         }
     }
 
-    /// What was found at a contact, and the solver's own words for it.
+    /// The record of a contact, and the solver's own reason.
     fn record(
         &self,
         from: &State,
@@ -246,7 +245,7 @@ impl Frame<'_> {
         (record, word)
     }
 
-    /// Somewhere on its surface; nowhere past its ends. Which element it is on, the solver alone knows.
+    /// A point on the node's surface, or `None` past its ends. Only the solver knows the element.
     fn spot(&self, k: usize, found: &Found) -> Option<SurfacePoint> {
         found.over.then(|| SurfacePoint {
             surface: self.model.contacts[k]
@@ -259,7 +258,7 @@ impl Frame<'_> {
         })
     }
 
-    /// The decision, with what our rules make of the solver's numbers.
+    /// The decision, and what our rules yield for the solver's numbers.
     fn decision(
         &self,
         found: &Found,
@@ -298,7 +297,7 @@ impl Frame<'_> {
         }
     }
 
-    /// The state from which the solver goes on.
+    /// The state from which the solver continues.
     fn next(&self, from: &State, told: &message::State, event: &Event) -> State {
         let mut state = from.clone();
         if let Some(displacements) = &told.displacements {
@@ -313,14 +312,14 @@ impl Frame<'_> {
     }
 }
 
-/// The largest displacement (length); 0 where none is told.
+/// The largest displacement (length); 0 if none are reported.
 fn largest(displacements: Option<&[[f64; 2]]>) -> f64 {
     let all = displacements.unwrap_or_default().iter();
     all.fold(0.0, |most: f64, [x, y]| most.max(x.hypot(*y)))
 }
 
 impl Led {
-    /// Gives the state its number.
+    /// Sets the identifier of the state.
     pub fn state_at(&mut self, place: u64) {
         if let Some(outside) = &mut self.state.outside {
             outside.place = place;
@@ -328,7 +327,7 @@ impl Led {
     }
 }
 
-/// Whether a node is forced: as the solver says, or as it was told.
+/// Whether a node is forced: as reported, or as requested.
 fn forced(from: &State, k: usize, found: &Found) -> Forced {
     match found.forced {
         Some(message::Forced::Once) => Forced::Once(found.mode),
@@ -339,7 +338,7 @@ fn forced(from: &State, k: usize, found: &Found) -> Forced {
 
 fn by_table_2(found: &Found, friction: &Friction, ties: &Ties) -> Option<Decision> {
     let before = found.mode;
-    // What a row does not look at may be missing.
+    // Numbers that the row does not use may be missing.
     let rest = |x: Option<f64>, needed: bool| match (x, needed) {
         (Some(x), _) => Some(x),
         (None, false) => Some(0.0),
@@ -392,13 +391,13 @@ fn by_newton(
     Some(method(Strategy::Newton).choose(&numbers, &known).decision)
 }
 
-/// A row of Table 2, or of another strategy of ours, by its name.
+/// A row of Table 2 or of another strategy of ours, by name.
 fn rule(name: &str) -> Option<Rule> {
     let name: StrDeserializer<'_, NoName> = name.into_deserializer();
     Rule::deserialize(name).ok()
 }
 
-/// Norms; those that are not told are NaN.
+/// Residual norms; unreported ones are NaN.
 fn norms(told: &message::Norms) -> Norms {
     let known = |x: Option<f64>| x.unwrap_or(f64::NAN);
     Norms {
@@ -416,7 +415,7 @@ fn outcome(told: &message::State) -> Outcome {
     let after = norms(told.after.as_ref().unwrap_or(&told.residual));
     let why = || Failure::Reported {
         reason: shown::cut(told.reason.trim(), MOST_WORDS),
-        // JSON has no word for one that grew out of all bounds.
+        // JSON cannot represent infinity.
         relative: told
             .after
             .map(|after| after.relative.unwrap_or(f64::INFINITY)),

@@ -1,17 +1,18 @@
-//! Looking closer without disturbing: what needs solves of its own, made on a thread of its own beside the session's.
+//! Analyses that need extra solves, run on a separate thread so that they do not disturb the session's solver.
 //!
-//! - **Pushes**: what the changes of all nodes since the minor iteration before did to one node ([`pushes`]). The
-//!   thread goes over both iterations again and takes the frozen interface problem between them.
-//! - **Findings**: the diagnosis of the cycle that the shown state runs into, or else the census of the frozen problem
-//!   that is solved next from it.
-//! - **Exports**: files of a state ([`exports`](super::exports)).
-//! - **Remedies**: trials of every way out ([`remedies`]).
+//! - **Pushes**: how much the changes of all nodes since the previous minor iteration moved one node
+//!   ([`pushes`]). The thread repeats both iterations and reads the frozen interface problem between them.
+//! - **Examinations**: the diagnosis of the cycle that the shown state runs into, or otherwise the census of
+//!   the frozen problem that is solved next.
+//! - **Exports**: files made from a state ([`exports`](super::exports)).
+//! - **Remedies**: a trial of each remedy ([`remedies`]).
 //!
-//! The thread has a solver of its own, of the session's scene. Where the session's solver has the frozen problem at hand, it lends
-//! it, so that nothing is factored twice; a large solver is dropped when nothing is asked, so that the session takes no more
-//! memory than a run.
+//! The thread has a separate solver for the session's scene. If the session's solver already has the frozen
+//! problem, the thread borrows it, so that nothing is factored twice. A large solver is dropped when the queue
+//! is empty, so that the session needs no more memory than a run.
 //!
-//! Pushes and examinations are kept by place (branch and step on its line), which never changes its meaning.
+//! Pushes and examinations are cached by position (branch, step on its line), because the state at a position
+//! never changes.
 
 use super::exports::{Export, is_of_problem, write, write_posed};
 use super::worker::Lender;
@@ -36,51 +37,51 @@ use stickslip_core::step::stepper::Stepper;
 use stickslip_scene::format::spec::Spec;
 use stickslip_scene::solver::solver;
 
-/// Most entries that are kept of pushes, and of examinations.
+/// Maximum number of cached entries, for pushes and for examinations separately.
 const KEPT: usize = 512;
-/// Bytes from which on a solver takes much memory.
+/// A solver that takes more bytes than this is dropped when idle.
 const LARGE: f64 = 2e8;
-/// What a page says that was stopped.
-const STOPPED: &str = "stopped; :census goes on from the beginning";
-/// A place: branch, and step on its line.
+/// Last line of a page whose analysis was interrupted.
+const STOPPED: &str = "interrupted; :census starts it again";
+/// Position: branch, and step on its line.
 pub type LinePlace = (usize, usize);
 
-/// The remedies that were tried from a place, as far as they are.
+/// The remedies tried from one position so far.
 #[derive(Debug, Clone)]
 pub struct Tried {
-    /// The place that it starts from.
+    /// Position that the trials start from.
     pub place: LinePlace,
-    /// How many there are to try; `None` until that is known.
+    /// Number of remedies to try; `None` until it is known.
     pub all: Option<usize>,
-    /// The one that is being tried now.
+    /// The remedy that is running.
     pub now: String,
-    /// Done, in the order of [`remedies::sort`].
+    /// Finished trials, in the order of [`remedies::sort`].
     pub trials: Vec<Trial>,
-    /// Whether it was stopped before all were tried.
+    /// Whether the trials were interrupted before the last one.
     pub stopped: bool,
 }
 
 enum Ask {
     Pushes(LinePlace, usize, Between),
-    /// With what is known already, of an attached solver.
+    /// Strings: facts already known about an attached solver's state.
     Examination(LinePlace, Box<State>, Vec<usize>, Vec<String>),
     Remedies(Box<State>),
     Export(Export),
 }
 
-/// The two minor iterations between which a node was pushed.
+/// The two minor iterations whose difference is the push on a node.
 pub(super) enum Between {
-    /// How to come to them again.
+    /// Steps to repeat to reach them again.
     Way(Way),
-    /// What an attached solver told of them.
+    /// Both iterations as reported by an attached solver.
     Told(Iterations),
 }
 
 enum Told {
     Pushes(LinePlace, usize, Option<Vec<Push>>),
-    /// The solver was at work.
+    /// The solver was busy.
     NotNow,
-    /// The page as far as it is made, or (not `going_on`) whole.
+    /// The examination so far (`going_on`) or complete.
     Examination {
         place: LinePlace,
         nodes: Vec<usize>,
@@ -98,53 +99,53 @@ enum Told {
     Exported(Result<String, ExportError>),
 }
 
-/// What the thread works with.
+/// State of the background thread.
 struct Helper {
     model: Arc<Model>,
-    /// The scene, where a solver of ours solves it.
+    /// The scene, for our own solver.
     spec: Option<Spec>,
-    /// What the session's solver offers.
+    /// Capabilities of the session's solver.
     offers: Offers,
-    /// What stops it, for who works elsewhere.
+    /// Stop flag, for trials that run on the session's thread.
     stopping: Arc<AtomicBool>,
-    /// Made when something is asked.
+    /// Built on the first request.
     stepper: Option<Stepper>,
-    /// The problem that an attached solver told last beside the session, and of which state.
+    /// State and interface problem that an attached solver last reported.
     posed: Option<(State, Posed)>,
     /// Whether the solver takes much memory.
     large: bool,
-    /// Where the session's solver is asked for what it has at hand.
+    /// Access to the session's solver.
     lender: Lender,
 }
 
-/// The thread, and what it found.
+/// Handle of the background thread, with its results.
 #[derive(Debug)]
 pub struct Background {
     asks: Sender<Ask>,
     told: Receiver<Told>,
     stop: Arc<AtomicBool>,
-    /// Asked and not yet answered.
+    /// Requests without an answer yet.
     waiting: usize,
     pushes: HashMap<(LinePlace, usize), Option<Vec<Push>>>,
-    /// By place: the nodes that were asked for, and what was found.
+    /// By position: the requested nodes, and the result.
     examinations: HashMap<LinePlace, (Vec<usize>, Option<Examination>)>,
     exported: Option<Result<String, ExportError>>,
     tried: Option<Tried>,
     trying: bool,
-    /// Pages that are being made, or wait for it.
+    /// Examinations running or queued.
     examining: usize,
 }
 
 impl Background {
-    /// Starts the idle thread.
+    /// Starts the thread, idle.
     ///
-    /// `spec` is the scene as its author wrote it, of which a finer mesh may be tried.
-    /// `lender` takes looks at the session's own solver.
+    /// `spec` is the scene as written by its author, which a finer mesh may be generated from. `lender` gives
+    /// access to the session's solver.
     pub fn new(model: Arc<Model>, spec: Spec, lender: Lender) -> Background {
         Background::begun(model, Some(spec), Offers::all(), lender)
     }
 
-    /// The same beside a solver of another's, which alone knows what deforms.
+    /// Starts the thread for an attached solver. Only that solver knows the deformable bodies.
     pub fn beside(model: Arc<Model>, offers: Offers, lender: Lender) -> Background {
         Background::begun(model, None, offers, lender)
     }
@@ -187,38 +188,39 @@ impl Background {
         }
     }
 
-    /// Whether something is asked and not yet answered.
+    /// Whether any request is still unanswered.
     pub fn is_busy(&self) -> bool {
         self.waiting > 0
     }
 
-    /// What pushed a slave node at a place: `None` while it is not known; an inner `None` if it cannot be told.
+    /// The pushes on a slave node at a position: `None` if not computed yet, inner `None` if they cannot be
+    /// computed.
     pub fn pushes(&self, place: LinePlace, slave: usize) -> Option<Option<&[Push]>> {
         let found = self.pushes.get(&(place, slave))?;
         Some(found.as_deref())
     }
 
-    /// What is known of the problem at a place; an inner `None` while it is being found out.
+    /// The examination at a position; the inner value is `None` while it is running.
     pub fn examination(&self, place: LinePlace) -> Option<Option<&Examination>> {
         Some(self.examinations.get(&place)?.1.as_ref())
     }
 
-    /// The remedies that were tried last.
+    /// The latest remedy trials.
     pub fn tried(&self) -> Option<&Tried> {
         self.tried.as_ref()
     }
 
-    /// Whether remedies are being tried.
+    /// Whether remedy trials are running.
     pub fn is_trying(&self) -> bool {
         self.trying
     }
 
-    /// Whether a page is being made.
+    /// Whether an examination is running.
     pub fn is_examining(&self) -> bool {
         self.examining > 0
     }
 
-    /// Asks what pushed a node. One question at a time: while another waits, this one may be asked again later.
+    /// Requests the pushes on a node. Ignored while another such request is waiting; ask again later.
     pub(super) fn ask_pushes(
         &mut self,
         place: LinePlace,
@@ -233,7 +235,7 @@ impl Background {
         }
     }
 
-    /// Nobody but an attached solver knows what pushed a node.
+    /// Records that the pushes cannot be computed: only the attached solver knows them.
     pub(super) fn pushes_untold(&mut self, place: LinePlace, slave: usize) {
         self.keep_pushes(place, slave, None);
     }
@@ -245,8 +247,8 @@ impl Background {
         self.pushes.insert((place, slave), found);
     }
 
-    /// Asks for the finding at a place, with the state there: of these nodes, or (none) of what matters.
-    /// `told` is what the line tells already of an attached solver.
+    /// Requests the examination of the state at a position, for these nodes or, if there are none, for the
+    /// relevant ones. `told` contains what the line already shows about an attached solver.
     pub(super) fn ask_examination(
         &mut self,
         place: LinePlace,
@@ -267,17 +269,17 @@ impl Background {
         }
     }
 
-    /// Has a scene written.
+    /// Requests an export.
     pub(super) fn ask_export(&mut self, export: Export) {
         self.send(Ask::Export(export));
     }
 
-    /// What came of the scene that was written last; once.
+    /// Result of the latest export; returned once.
     pub(super) fn exported(&mut self) -> Option<Result<String, ExportError>> {
         self.exported.take()
     }
 
-    /// Tries all remedies from the state at a place.
+    /// Tries all remedies from the state at a position.
     pub(super) fn ask_remedies(&mut self, place: LinePlace, state: &State) {
         self.stop.store(false, Ordering::Relaxed);
         self.tried = Some(Tried {
@@ -291,19 +293,19 @@ impl Background {
         self.send(Ask::Remedies(Box::new(state.clone())));
     }
 
-    /// Stops trying remedies, for the list or for a page, after the present minor iteration, and counting states.
+    /// Stops remedy trials after the current minor iteration, and any running census.
     pub fn interrupt(&self) {
         self.stop.store(true, Ordering::Relaxed);
     }
 
     fn send(&mut self, ask: Ask) {
-        // A failing send means that the thread is gone; nothing is waited for then.
+        // If sending fails, the thread has ended and no answer will come.
         if self.asks.send(ask).is_ok() {
             self.waiting += 1;
         }
     }
 
-    /// Gathers what was found since the last call, never blocking. Returns whether there was anything.
+    /// Collects new results without blocking. Returns whether there were any.
     pub fn gather(&mut self) -> bool {
         let mut any = false;
         loop {
@@ -320,7 +322,7 @@ impl Background {
         }
     }
 
-    /// Blocks until all that was asked is answered.
+    /// Blocks until all requests are answered.
     pub fn wait(&mut self) {
         while self.waiting > 0 {
             match self.told.recv() {
@@ -330,7 +332,7 @@ impl Background {
         }
     }
 
-    /// The thread is gone: nothing is waited for.
+    /// The thread has ended: no answers will come.
     fn gone(&mut self) {
         (self.waiting, self.trying, self.examining) = (0, false, 0);
     }
@@ -348,7 +350,7 @@ impl Background {
                 found,
                 going_on,
             } => {
-                // Something else may have been asked for in the meantime.
+                // Another set of nodes may have been requested in the meantime.
                 match (found, self.examinations.get_mut(&place)) {
                     (Some(found), Some(kept)) if kept.0 == nodes => kept.1 = Some(*found),
                     (None, Some(kept)) if kept.0 == nodes => match &mut kept.1 {
@@ -395,7 +397,7 @@ impl Drop for Background {
 }
 
 impl Helper {
-    /// Answers; `None` if nobody listens any more.
+    /// Answers a request; `None` if the receiver is gone.
     fn answer(&mut self, ask: Ask, news: &Sender<Told>, stop: &AtomicBool) -> Option<()> {
         match ask {
             Ask::Pushes(place, slave, between) => {
@@ -448,24 +450,24 @@ impl Helper {
         }
     }
 
-    /// Its own solver, and the scene as written.
+    /// Our own solver, and the scene as written.
     fn solver(&mut self) -> (&mut Stepper, Option<&Spec>) {
         let model = &self.model;
         let stepper = self.stepper.get_or_insert_with(|| solver(model.clone()));
         (stepper, self.spec.as_ref())
     }
 
-    /// The interface problem that an attached solver tells of a state.
+    /// The interface problem that an attached solver reports for a state.
     fn posed(&self, state: &State) -> Result<Posed, Lost> {
         if !self.offers.problem {
             return Err(Lost::new(self.offers.lacks("its interface problem")));
         }
         let wanted = state.clone();
         let asked = self.lender.look(move |solver| solver.posed(&wanted));
-        asked.unwrap_or_else(|| Err(Lost::new("the solver is at work; :census asks again")))
+        asked.unwrap_or_else(|| Err(Lost::new("the solver is busy; :census asks again")))
     }
 
-    /// The same, and the solver stands afterwards where it stood; `None` where it is at work.
+    /// As [`Self::posed`], and returns the solver to its previous state. `None` if the solver is busy.
     fn posed_aside(&mut self, state: &State) -> Option<Result<Posed, Lost>> {
         if let Some((known, posed)) = &self.posed
             && known == state
@@ -476,7 +478,7 @@ impl Helper {
         let posed = self.lender.look(move |solver| {
             let stood = solver.state().clone();
             let posed = solver.posed(&wanted);
-            // A solver that does not find back says so when it goes on.
+            // If the solver cannot return to its state, its next step reports that.
             let _ = solver.restore(&stood);
             posed
         })?;
@@ -486,7 +488,8 @@ impl Helper {
         Some(posed)
     }
 
-    /// What is known of an attached solver's state: what its line tells, and what is found in its interface problem.
+    /// The examination of an attached solver's state: the `known` facts, then the analysis of its interface
+    /// problem.
     fn examine_attached(
         &self,
         state: &State,
@@ -498,9 +501,7 @@ impl Helper {
         let mut found = match self.posed(state) {
             Ok(posed) => attached::examine(&self.model, state, &posed, nodes, &stopped),
             Err(lost) => Examination {
-                lines: vec![format!(
-                    "Nothing can be told of the frozen problem: {lost}."
-                )],
+                lines: vec![format!("The frozen problem is not available: {lost}.")],
                 ..Examination::default()
             },
         };
@@ -508,26 +509,26 @@ impl Helper {
         let mut lines = known;
         let told: Vec<String> = match &found.census {
             Some(census) if self.offers.force => (1..=census.answers.len().min(2))
-                .map(|n| format!("not tried: the consistent state {n} as a start: :start-from {n}, its modes are sent as forces"))
+                .map(|n| format!("not tried: start from the consistent state {n} (:start-from {n} forces its modes)"))
                 .collect(),
             _ => Vec::new(),
         };
         let by_hand = self.offers.force && told.is_empty() && !lines.is_empty();
         if found.problem.is_some() {
-            lines.push("Its interface problem, gone through by Table 2:".into());
+            lines.push("Table 2 applied to its interface problem:".into());
         }
-        // What the settings of our own method do is nothing that it offers.
+        // An attached solver does not offer the settings of our own method.
         let offered = |line: &String| !line.starts_with("tried: settings.");
         lines.extend(found.lines.drain(..).filter(offered));
         lines.extend(told);
         if by_hand {
-            lines.push("not tried: one of the nodes that change forced to another mode (m)".into());
+            lines.push("not tried: force one of the changing nodes into another mode (m)".into());
         }
         found.lines = lines;
         found
     }
 
-    /// Tries what an attached solver offers, on it.
+    /// Tries the remedies that an attached solver offers, on that solver.
     fn try_attached(&self, state: &State, news: &Sender<Told>, stop: &AtomicBool) -> Option<()> {
         let stopped = || stop.load(Ordering::Relaxed);
         let found = match self.posed(state) {
@@ -541,7 +542,7 @@ impl Helper {
             let tried = self.lender.look(move |solver| {
                 let stopped = || stopping.load(Ordering::Relaxed);
                 let tried = remedies::attempt(solver, &state, None, &remedy, &stopped);
-                // Where the session stands, whatever came of the trial; a solver that does not find back says so when it goes on.
+                // Back to the session's state. If the solver cannot return to it, its next step reports that.
                 let _ = solver.restore(&state);
                 tried
             });
@@ -549,11 +550,11 @@ impl Helper {
         })
     }
 
-    /// What pushed a node: by the session's solver where that has the problem at hand, else by its own.
+    /// The pushes on a node: from the session's solver if it has the frozen problem, otherwise from our own.
     fn pushes(&mut self, slave: usize, way: Way) -> Option<Vec<Push>> {
         let way = Arc::new(way);
         let theirs = way.clone();
-        // Their solver goes the way alone; what takes time is found out here.
+        // The session's solver only repeats the steps; the expensive part runs on this thread.
         let between = self.lender.look(move |solver| {
             let stepper = solver.stepper()?;
             let at_hand = stepper.condenses() && stepper.stands_for(&theirs.state);
@@ -565,7 +566,7 @@ impl Helper {
         }
     }
 
-    /// Takes over the frozen problem of a state that the session's solver has at hand.
+    /// Copies the frozen problem of a state from the session's solver, if it has it.
     fn borrow(&mut self, state: &State) {
         let wanted = state.clone();
         let lent = self
@@ -576,7 +577,7 @@ impl Helper {
         }
     }
 
-    /// Nothing is asked for now.
+    /// Called when the queue is empty.
     fn rest(&mut self) {
         if self.large {
             self.stepper = None;
@@ -584,7 +585,7 @@ impl Helper {
     }
 }
 
-/// Finds out what there is to say of a state: of these nodes, or (none) of what matters.
+/// Examines a state, for these nodes or, if there are none, for the relevant ones.
 fn examine(
     stepper: &mut Stepper,
     spec: Option<&Spec>,
@@ -607,7 +608,7 @@ fn examine(
             state,
             spec,
             &stopped,
-            // That nobody listens any more shows at the end.
+            // A closed channel is noticed after the last part.
             &mut |part| drop(send(Some(part.clone()), true)),
         ),
         some => {
@@ -624,7 +625,7 @@ fn examine(
     send(found, false).ok()
 }
 
-/// Tries every way out of a state.
+/// Tries every remedy from a state.
 fn try_remedies(
     stepper: &mut Stepper,
     spec: Option<&Spec>,
@@ -640,7 +641,7 @@ fn try_remedies(
     })
 }
 
-/// Tries remedies until `attempt` gives none; where it gives an inner `None`, there was nothing to try.
+/// Runs trials until `attempt` returns `None`; an inner `None` means that the remedy does not apply.
 fn try_all(
     all: &[Remedy],
     news: &Sender<Told>,

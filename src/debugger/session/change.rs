@@ -1,4 +1,4 @@
-//! Interfering: interventions at the cursor, steps that are given, and settings.
+//! Changes at the cursor: interventions, given sequences of steps, and settings.
 
 use super::machine::{Reply, Session, Task};
 use super::refusal::Refusal;
@@ -14,10 +14,11 @@ use stickslip_scene::format::contact_law::FrictionSpec;
 use stickslip_scene::format::{Spec, paths};
 use stickslip_scene::shown;
 
-/// Numbers closer than this, relative to what they were found from, are the same: the rest is round-off.
+/// Relative difference below which two values are equal except for round-off.
 const SAME: f64 = 1e-12;
 
-/// A number that was found with round-off of the size of `from`: that of the scene where it is the same, and no negative one.
+/// Removes round-off of the relative size `SAME` of `from`: returns the scene's value if it is that close, and
+/// 0 instead of a tiny or negative number.
 fn told(found: f64, scene: f64, from: f64) -> f64 {
     let near = SAME * from.abs().max(scene.abs());
     match found {
@@ -28,7 +29,7 @@ fn told(found: f64, scene: f64, from: f64) -> f64 {
 }
 
 impl Session {
-    /// Changes something at the cursor; `setting` is the path and the value that it came from.
+    /// Applies an intervention at the cursor; `setting` is the path and value that it came from.
     pub(super) fn intervene(
         &mut self,
         intervention: Intervention,
@@ -69,14 +70,14 @@ impl Session {
             && branch.from < self.cursor
             && branch.parent.is_some()
         {
-            // What is done before anything is solved belongs to the same trial.
+            // Changes made before the first solve belong to the same branch.
             let label = format!("{}, {label}", branch.label);
             self.tree.rename(label, false);
         }
         Ok(Reply(told))
     }
 
-    /// Refuses another branch if the branches use their memory budget.
+    /// Refuses a new branch when the branches have used up their memory budget.
     fn check_room(&self) -> Result<(), Refusal> {
         let (taken, most) = (self.tree.kept(), self.branch_budget);
         match taken < most {
@@ -85,7 +86,7 @@ impl Session {
         }
     }
 
-    /// Takes given steps from the cursor, in a branch of their own.
+    /// Takes a sequence of steps from the cursor, in a new branch.
     pub(super) fn follow(
         &mut self,
         label: String,
@@ -101,13 +102,13 @@ impl Session {
         ))
     }
 
-    /// Starts given steps from the cursor, which is at the tip.
+    /// Starts a sequence of steps from the cursor, which is at the tip.
     pub(super) fn take_steps(&mut self, steps: Vec<Option<Intervention>>) {
         let before = self.strips()[self.cursor].clone();
         self.work(self.cursor, Task::Run, Steps::Follow { before, steps });
     }
 
-    /// The scene with what was set since.
+    /// The scene with all changes made since.
     fn with(&self, controls: &Controls) -> Spec {
         let mut spec = self.scene.spec.clone();
         spec.settings = controls.settings;
@@ -116,8 +117,8 @@ impl Session {
         spec
     }
 
-    /// The scene's friction that makes what is in force at its nodes. Where these have one cohesion and one area, what part of
-    /// the cohesion is by area is as in the scene.
+    /// The scene's friction with the values in force at its nodes. If these have one cohesion and one area, the
+    /// split of the cohesion into a part per area and a part per node is the scene's.
     fn friction_in_force(&self, controls: &Controls) -> FrictionSpec {
         let scene = self.scene.spec.friction;
         let Some(first) = controls.friction.first() else {
@@ -158,7 +159,7 @@ impl Session {
         }
     }
 
-    /// A scalar of the scene with what was set since, as a person types it.
+    /// A scalar of the scene with the changes made since, formatted as a user would type it.
     fn value_of(&self, path: &str, controls: &Controls) -> Option<String> {
         if self.frame().state.outside.is_some() {
             return None;
@@ -169,11 +170,11 @@ impl Session {
         listed.map(|listed| plain(listed.value))
     }
 
-    /// What `:set` means to an attached solver: one of its parameters, or what the debugger knows by names of its own.
+    /// The intervention of `:set` for an attached solver: one of its parameters, or a setting of the debugger.
     fn parameter(&self, path: &str, value: &str) -> Result<Intervention, Refusal> {
         let number = || {
             let number: Option<f64> = value.parse().ok();
-            number.ok_or_else(|| Refusal::Unsound(format!("{value} is no number")))
+            number.ok_or_else(|| Refusal::Unsound(format!("{value} is not a number")))
         };
         let controls = &self.frame().state.controls;
         let now = controls.friction.first().copied().unwrap_or_default();
@@ -189,10 +190,10 @@ impl Session {
                 now.cohesion,
             ))),
             ("friction.angle", _) if !self.offers.friction => {
-                Err(Refusal::Unsound(self.offers.lacks("another friction")))
+                Err(Refusal::Unsound(self.offers.lacks("a friction change")))
             }
             ("cohesion" | "friction.cohesion", _) if !self.offers.cohesion => {
-                Err(Refusal::Unsound(self.offers.lacks("another cohesion")))
+                Err(Refusal::Unsound(self.offers.lacks("a cohesion change")))
             }
             ("friction.angle", _) => Ok(Intervention::Friction(Friction {
                 angle: number()?,
@@ -215,7 +216,7 @@ impl Session {
         }
     }
 
-    /// The parameters of an attached solver, in words.
+    /// Lists the parameters of an attached solver.
     fn offered_parameters(&self) -> String {
         let names = self
             .offers
@@ -228,7 +229,7 @@ impl Session {
         }
     }
 
-    /// What `:set` means, on top of what was set before.
+    /// The intervention of `:set`, on top of earlier changes.
     pub(super) fn setting(&self, path: &str, value: &str) -> Result<Intervention, Refusal> {
         if self.frame().state.outside.is_some() {
             return self.parameter(path.trim(), value.trim());

@@ -1,55 +1,55 @@
-//! Where a session keeps what was done: in a journal, in memory until there is one, or nowhere.
+//! Keeps the journal of a session: in a file, in memory until there is one, or not at all.
 
 use crate::record::journal::{Entry, Journal, JournalError};
 use std::path::Path;
 use stickslip_scene::Scene;
 
-/// What was done, and where that is written.
+/// The entries of a session and where they are written.
 #[derive(Default)]
 pub(super) struct Diary {
     at: Kept,
-    /// What was done so far, where a journal is wanted: another file can be begun with it.
+    /// All entries so far, if a journal is kept: a second file can be started from them.
     entries: Vec<Entry>,
-    /// That the journal was lost, until it is said.
+    /// Message about a failed journal, until it is shown.
     trouble: String,
 }
 
-/// Where the journal of a session is.
+/// Destination of the journal.
 #[derive(Default)]
 enum Kept {
     #[default]
     Nowhere,
-    /// In memory only, so that it can be written yet.
+    /// In memory only; a file can still be started.
     Memory,
-    /// At the default place, once there is something to write.
+    /// At the default path, created with the first entry.
     Due,
     Open(Journal),
-    /// It could not be written, and why.
+    /// Writing failed, with the reason.
     Lost(String),
 }
 
 impl Diary {
-    /// Keeps a journal from now on.
+    /// Writes to this journal from now on.
     pub fn keep(&mut self, journal: Journal) {
         self.at = Kept::Open(journal);
     }
 
-    /// Keeps a journal at the default place, which is made when there is something to write.
+    /// Writes to the default path, created with the first entry.
     pub fn keep_at_default_place(&mut self) {
         self.at = Kept::Due;
     }
 
-    /// Keeps what is done in memory, so that a journal can be begun later.
+    /// Keeps the entries in memory, so that a journal file can be started later.
     pub fn keep_in_memory(&mut self) {
         self.at = Kept::Memory;
     }
 
-    /// Whether anything is kept, or was to be.
+    /// Whether entries are kept, in memory or in a file.
     pub fn is_kept(&self) -> bool {
         !matches!(self.at, Kept::Nowhere)
     }
 
-    /// Why there is no journal any more although one was wanted.
+    /// Why the journal failed.
     pub fn lost(&self) -> Option<&str> {
         match &self.at {
             Kept::Lost(why) => Some(why),
@@ -57,7 +57,7 @@ impl Diary {
         }
     }
 
-    /// Where the journal is, if there is one.
+    /// The path of the journal file, if there is one.
     pub fn path(&self) -> Option<&Path> {
         match &self.at {
             Kept::Open(journal) => Some(journal.path()),
@@ -65,24 +65,24 @@ impl Diary {
         }
     }
 
-    /// What was done so far.
+    /// The entries so far.
     pub fn entries(&self) -> &[Entry] {
         &self.entries
     }
 
-    /// Adds what was done without writing it: a journal has it already.
+    /// Adds an entry without writing it: the journal already contains it.
     pub fn add(&mut self, entry: Entry) {
         self.entries.push(entry);
     }
 
-    /// Puts an entry in the place of the last one.
+    /// Replaces the last entry.
     pub fn replace_last(&mut self, entry: Entry) {
         if let Some(last) = self.entries.last_mut() {
             *last = entry;
         }
     }
 
-    /// Writes the journal again if its file was deleted, and reports it.
+    /// Writes the journal again if its file was deleted, and notes that for the next reply.
     pub fn renew(&mut self, scene: &Scene) {
         let Kept::Open(journal) = &self.at else {
             return;
@@ -95,7 +95,7 @@ impl Diary {
             Ok(journal) => {
                 self.at = Kept::Open(journal);
                 self.trouble = format!(
-                    "; {} was deleted, and is written again with all {} entries",
+                    "; {} was deleted and has been rewritten with all {} entries",
                     path.display(),
                     self.entries.len()
                 );
@@ -104,13 +104,14 @@ impl Diary {
         }
     }
 
-    /// Notes what a command led to; `changes` where it changed something.
+    /// Records a completed command; `changes` is whether it changed the history.
     pub fn done(&mut self, scene: &Scene, entry: Entry, changes: bool) {
         self.entries.push(entry.clone());
         self.write(scene, |journal| journal.done(entry, changes));
     }
 
-    /// Writes to the journal, if there is one. Where that fails it ends, and the next reply says so.
+    /// Writes to the journal, if there is one. If that fails, the journal ends and the next reply reports the
+    /// error.
     pub fn write(
         &mut self,
         scene: &Scene,
@@ -119,7 +120,7 @@ impl Diary {
         if matches!(self.at, Kept::Due) {
             match Journal::create_default(scene) {
                 Ok(journal) => self.at = Kept::Open(journal),
-                Err(error) => return self.lose("there is no journal", &error),
+                Err(error) => return self.lose("the journal could not be created", &error),
             }
         }
         let Kept::Open(journal) = &mut self.at else {
@@ -133,10 +134,10 @@ impl Diary {
     fn lose(&mut self, what: &str, error: &JournalError) {
         self.at = Kept::Lost(error.to_string());
         self.trouble =
-            format!("; {what}: {error}; :journal FILE begins one with all that was done");
+            format!("; {what}: {error}; :journal FILE starts a new one with all entries");
     }
 
-    /// That the journal was lost, said once.
+    /// Returns the message about a failed journal, once.
     pub fn take_trouble(&mut self) -> String {
         std::mem::take(&mut self.trouble)
     }

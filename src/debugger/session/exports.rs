@@ -1,4 +1,4 @@
-//! Files of a state, made beside the session: pictures, the frozen problem, the core of its cycle ([`export`]).
+//! Files made from a state in the background: pictures, the frozen problem, the core of its cycle ([`export`]).
 
 use crate::explain::attached;
 use crate::explain::core::core;
@@ -19,42 +19,42 @@ use stickslip_core::step::stepper::Stepper;
 use stickslip_platform::files;
 use stickslip_scene::Scene;
 
-/// A file to be made of a state.
+/// Request for a file made from a state.
 pub struct Export {
-    /// What is written.
+    /// What to write.
     pub what: Exported,
-    /// Where to.
+    /// Destination.
     pub file: PathBuf,
-    /// Whether a file of that name may be overwritten.
+    /// Whether an existing file may be overwritten.
     pub overwrite: bool,
-    /// What the file says of where it comes from.
+    /// Where the problem comes from, as noted in the file.
     pub origin: Origin,
     /// The shown state.
     pub state: Box<State>,
-    /// What a picture shows of it besides.
+    /// Further contents of a picture.
     pub shown: Option<Box<Seen>>,
 }
 
-/// What there is to be seen of a state.
+/// The context of a state that a picture shows.
 pub struct Seen {
-    /// The scene that led there.
+    /// The scene of the run.
     pub scene: Scene,
     /// The last minor iteration.
     pub event: Option<Arc<Event>>,
-    /// The last ones.
+    /// The latest strips, oldest first.
     pub strips: Vec<Strip>,
-    /// The state in which the last major iteration began, if it is known.
+    /// The state at the start of the last major iteration, if known.
     pub last_major: Option<State>,
 }
 
-/// Makes a file of a state.
+/// Writes the requested file.
 pub(super) fn write(stepper: &mut Stepper, ask: &Export) -> Result<(), ExportError> {
     let bytes = match ask.what {
         Exported::Core => {
             let text = core_of(stepper, &ask.state, &ask.origin)?;
             return Ok(files::write(&ask.file, text, ask.overwrite)?);
         }
-        // Any name will do for it, as it always did.
+        // For compatibility, `whole` accepts any extension.
         Exported::Whole => match export::kind(&ask.file) {
             Ok(kind) if kind.may_be_frozen => shown(stepper, ask, kind)?,
             _ => shown(stepper, ask, export::kind(Path::new("a.ron"))?)?,
@@ -70,7 +70,7 @@ pub(super) fn write(stepper: &mut Stepper, ask: &Export) -> Result<(), ExportErr
     Ok(files::write_all(&whole, ask.overwrite)?)
 }
 
-/// The scene of the core of the cycle that a state runs into.
+/// The scene with the core of the cycle that a state runs into.
 fn core_of(stepper: &mut Stepper, state: &State, origin: &Origin) -> Result<String, ExportError> {
     if state.status == Status::Finished {
         return Err(ExportError::Finished);
@@ -82,7 +82,7 @@ fn core_of(stepper: &mut Stepper, state: &State, origin: &Origin) -> Result<Stri
     Ok(export::core(stepper.model(), origin, &cycle, &core)?)
 }
 
-/// What is in the files of a kind.
+/// The contents of a file of this kind.
 fn shown(stepper: &mut Stepper, ask: &Export, kind: &Kind) -> Result<Vec<Vec<u8>>, ExportError> {
     let Some(seen) = &ask.shown else {
         return Err(ExportError::Finished);
@@ -104,7 +104,8 @@ fn shown(stepper: &mut Stepper, ask: &Export, kind: &Kind) -> Result<Vec<Vec<u8>
     kind.made(&shown, stepper).ok_or(ExportError::OfJournal)?
 }
 
-/// Writes the interface problem that an attached solver tells, in the form of another program too, or its core.
+/// Writes the interface problem that an attached solver reports, or its core, possibly in another program's
+/// format.
 pub(super) fn write_posed(model: &Model, posed: &Posed, ask: &Export) -> Result<(), ExportError> {
     let solver = || attached::stepper(model, &ask.state, posed).map_err(Box::new);
     let text = match (ask.what, export::kind(&ask.file)) {
@@ -135,7 +136,7 @@ pub(super) fn write_posed(model: &Model, posed: &Posed, ask: &Export) -> Result<
     Ok(files::write(&ask.file, text, ask.overwrite)?)
 }
 
-/// Whether a file is made of the frozen interface problem.
+/// Whether the file is made from the frozen interface problem.
 pub(super) fn is_of_problem(ask: &Export) -> bool {
     let kind = export::kind(&ask.file);
     ask.what != Exported::Shown

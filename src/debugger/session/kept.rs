@@ -1,5 +1,5 @@
-//! Sessions on finished runs, to which nothing can be added: all iterations are in the tree, and all ways that an attached solver
-//! went are branches.
+//! Sessions on finished runs, which cannot be extended: all iterations are in the tree, and each path of an
+//! attached solver is a branch.
 
 use super::machine::Session;
 use crate::history::branches;
@@ -11,7 +11,8 @@ use crate::recorded::story::in_common;
 use stickslip_scene::Scene;
 
 impl Session {
-    /// The session at the start of a scene, or on a finished run, by the name of a file or of a built-in scene.
+    /// Opens a session at the start of a scene or on a finished run, given a file or the name of a built-in
+    /// scene.
     ///
     /// # Errors
     /// A message with the file and the reason.
@@ -32,7 +33,8 @@ impl Session {
         }
     }
 
-    /// The session on a CalculiX run, at the end of the first attempt that did not converge, or at the start.
+    /// The session on a CalculiX run: at the end of the first attempt that did not converge, otherwise at the
+    /// start.
     fn finished(opened: calculix::Opened) -> Session {
         let solver = Recorded::new(&opened);
         let iterations = opened.run.files.iterations.len();
@@ -45,7 +47,8 @@ impl Session {
         session
     }
 
-    /// The session at the start of the first way, with all others as branches that leave the nearest one before.
+    /// The session at the start of the first path; every other path is a branch that leaves the nearest earlier
+    /// one.
     pub fn kept(opened: Opened) -> Session {
         let mut session = Session::attached(opened.scene, Box::new(opened.past), opened.log);
         let mut done: Vec<(usize, Line)> = Vec::new();
@@ -60,7 +63,7 @@ impl Session {
         session
     }
 
-    /// Goes a way, from where it leaves those before.
+    /// Adds a path, from the point where it leaves the earlier ones.
     fn go_along(&mut self, line: &Line, done: &[(usize, Line)]) {
         let common = |(branch, before): &(usize, Line)| (in_common(line, before), *branch);
         let Some((along, branch)) = done.iter().map(common).max_by_key(|&(along, _)| along) else {
@@ -78,13 +81,13 @@ impl Session {
             Some(first) => branches::label(self.model(), first, None),
             None => "otherwise".into(),
         };
-        // What is kept was done, and can be gone along.
+        // Recorded steps never fail to run.
         if self.follow(label, rest).is_ok() {
             self.wait();
         }
     }
 
-    /// Puts the cursor on a step that there is.
+    /// Moves the cursor to an existing step.
     fn rest_at(&mut self, step: usize) {
         if self.jump(step).is_ok() {
             self.wait();

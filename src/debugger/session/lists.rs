@@ -1,4 +1,4 @@
-//! What a session keeps lists of: branches, breakpoints, watches.
+//! Commands on the session's lists: branches, breakpoints, watches.
 
 use super::machine::{Reply, Session};
 use super::refusal::Refusal;
@@ -49,7 +49,7 @@ impl Session {
         Ok(Reply(format!("this branch is {name}")))
     }
 
-    /// Compares the current branch with another, by default the one that it left.
+    /// Compares the current branch with another one, by default with its parent.
     pub(super) fn side_by_side(&self, with: Option<&str>) -> Result<Reply, Refusal> {
         let current = self.tree.current();
         let with = match with {
@@ -88,7 +88,7 @@ impl Session {
         }
     }
 
-    /// The breakpoint of a number.
+    /// Finds a breakpoint by its number.
     pub(super) fn breakpoint(&mut self, id: u32) -> Result<&mut Breakpoint, Refusal> {
         let listed = self.list_breakpoints();
         let found = self.breakpoints.iter_mut().find(|b| b.id == id);
@@ -118,7 +118,7 @@ impl Session {
         if self.watches.iter().any(|other| other.name == watch.name) {
             return Err(Refusal::Watched(watch.name));
         }
-        // Its number stands beside, with those of the others ([`Session::aside`]).
+        // The values of all watches are on the line of [`Session::aside`].
         let told = format!("watching {}", watch.name);
         self.watches.push(watch);
         Ok(Reply(told))
@@ -136,6 +136,6 @@ impl Session {
             });
         }
         self.watches.retain(|watch| watch.name != name);
-        Ok(Reply(format!("{name} is not watched any more")))
+        Ok(Reply(format!("stopped watching {name}")))
     }
 }

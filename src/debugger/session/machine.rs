@@ -1,14 +1,14 @@
-//! A debugging session: the scene, everything done so far, and a cursor in it.
+//! A debugging session: the scene, its history, and a cursor.
 //!
-//! The solver runs on a worker thread, one job at a time, so that whoever owns the session (the TUI, a test, a
-//! script) stays free to answer keys. [`Session::submit`] takes a command, [`Session::poll`] gathers what the
-//! worker has done since, [`Session::wait`] blocks until it is idle.
+//! The solver runs on a worker thread, one job at a time, so that the owner of the session (the TUI, a test, a
+//! script) can always respond to input. [`Session::submit`] takes a command, [`Session::poll`] collects results
+//! of the worker, [`Session::wait`] blocks until it is idle.
 //!
-//! The history is a [`Tree`] of branches; what is shown is a line of it, from the start to the tip of the current
-//! branch. A frame is what one minor iteration left behind, or what one intervention changed; going back moves the
-//! cursor, going forward moves it again and solves only past the line's end. An intervention before the end starts a
-//! new branch, so that nothing is lost. Frames that were thinned to save memory are computed again on the worker when
-//! the cursor goes there.
+//! The history is a [`Tree`] of branches. The session shows one line of it, from the start to the tip of the
+//! current branch. A frame is the result of one minor iteration or of one intervention. Motions move the
+//! cursor; only motions past the end of the line solve. An intervention before the end starts a new branch, so
+//! that nothing is lost. Frames that were thinned to save memory are recomputed by the worker when the cursor
+//! moves there.
 
 use super::background::Background;
 use super::diary::Diary;
@@ -40,63 +40,64 @@ use stickslip_scene::Scene;
 use stickslip_scene::gaps;
 use stickslip_scene::solver::solver;
 
-/// How long gathering may keep whoever looks at the keys besides.
+/// Maximum duration of one call of `poll`, so that the caller stays responsive.
 const SLICE: Duration = Duration::from_millis(10);
 
-/// What a command led to, as a line for the user.
+/// Result of a command, as one line for the user.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Reply(pub String);
 
 /// A debugging session.
 pub struct Session {
     pub(super) scene: Scene,
-    /// What its solver offers.
+    /// Capabilities of the solver.
     pub(super) offers: Offers,
-    /// What an attached solver says besides; `None` for one of ours.
+    /// Output of an attached solver; `None` for our own.
     log: Option<Log>,
-    /// Where it stands, as far as that is known.
+    /// What is known about the state of an attached solver.
     pub(super) stands: Stands,
-    /// What the start gaps are, and what is doubtful about them.
+    /// The start gaps, and warnings about them.
     start: (String, Vec<String>),
     pub(super) tree: Tree,
-    /// Maximum size in bytes of all branches at which another branch can begin.
+    /// No new branch once all branches together exceed this size in bytes.
     pub(super) branch_budget: usize,
     pub(super) cursor: usize,
     pub(super) worker: Worker,
     pub(super) task: Option<Task>,
     pub(super) breakpoints: Vec<Breakpoint>,
-    /// Number that the last breakpoint was given.
+    /// Number of the latest breakpoint.
     pub(super) numbered: u32,
     pub(super) watches: Vec<Watch>,
     pub(super) background: Background,
     pub(super) diary: Diary,
-    /// The command that the worker is at.
+    /// The command that the worker is executing.
     pub(super) pending: Option<Command>,
-    /// Minor iterations solved by the present command, and increments accepted among them.
+    /// Minor iterations solved by the current command, and increments accepted among them.
     pub(super) solved: u64,
     pub(super) accepted: u64,
-    /// Whether the worker had done more than could be gathered in a slice of time.
+    /// Whether the worker has more results than one `poll` could collect.
     is_behind: bool,
 }
 
-/// Where an attached solver stands.
+/// State of an attached solver.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Stands {
-    /// The place of the state that it went to last ([`stickslip_core::step::state::Outside::place`]); `None` where that is not known.
+    /// Identifier of the state that it is in ([`stickslip_core::step::state::Outside::place`]); `None` if
+    /// unknown.
     pub(super) at: Option<u64>,
-    /// Why it is gone; the next job starts it anew.
+    /// Why the connection failed; the next job starts the solver again.
     pub(super) lost: Option<String>,
-    /// What it has to do again before it goes on.
+    /// Steps it has to repeat before it can continue, as a sentence.
     pub(super) again: String,
 }
 
-/// What the worker is at.
+/// The worker's task.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Task {
-    /// New minor iterations.
+    /// New minor iterations past the tip.
     Run,
-    /// Thinned frames again: the next to come, and the one that is wanted. `sound` as long as each tells what it told
-    /// the first time.
+    /// Recomputes thinned frames: the next one, and the one wanted. `sound` is whether all of them so far equal
+    /// the originals.
     Again {
         next: usize,
         target: usize,
@@ -110,7 +111,7 @@ impl Session {
         Session::with_budget(scene, tree::BUDGET)
     }
 
-    /// A session whose whole frames take no more than so many bytes ([`tree::BUDGET`] for others).
+    /// A session whose whole frames take at most this many bytes (default [`tree::BUDGET`]).
     pub fn with_budget(scene: Scene, bytes: usize) -> Self {
         let model = Arc::new(scene.model.clone());
         let start = Stepper::new(model.clone()).state().clone();
@@ -120,12 +121,13 @@ impl Session {
         Session::begun(scene, model, start, (worker, background), bytes)
     }
 
-    /// Sets the size in bytes of all branches beyond which no branch can begin (default [`tree::BRANCH_BUDGET`]).
+    /// Sets the size in bytes of all branches above which no branch can start (default
+    /// [`tree::BRANCH_BUDGET`]).
     pub fn limit_branches(&mut self, bytes: usize) {
         self.branch_budget = bytes;
     }
 
-    /// A session with a solver of another's, at the start of the scene that it told.
+    /// A session with an attached solver, at the start of the scene that it reported.
     pub fn attached(scene: Scene, solver: Box<dyn Solver>, log: Log) -> Self {
         let (model, start) = (solver.model().clone(), solver.state().clone());
         let offers = solver.offers();
@@ -173,42 +175,42 @@ impl Session {
         }
     }
 
-    /// Keeps a journal from now on.
+    /// Writes a journal from now on.
     pub fn keep(&mut self, journal: Journal) {
         self.diary.keep(journal);
     }
 
-    /// Keeps a journal at the default place, which is made when there is something to write.
+    /// Writes a journal to the default path, created with the first entry.
     pub fn keep_at_default_place(&mut self) {
         self.diary.keep_at_default_place();
     }
 
-    /// Why there is no journal any more although one was wanted.
+    /// Why the journal failed.
     pub fn lost_journal(&self) -> Option<&str> {
         self.diary.lost()
     }
 
-    /// Where the journal is, if there is one.
+    /// The path of the journal, if there is one.
     pub fn journal(&self) -> Option<&Path> {
         self.diary.path()
     }
 
-    /// What the solver offers.
+    /// Capabilities of the solver.
     pub fn offers(&self) -> &Offers {
         &self.offers
     }
 
-    /// What an attached solver said besides, line by line; `None` for a solver of ours.
+    /// The output of an attached solver, line by line; `None` for our own.
     pub fn log(&self) -> Option<&Log> {
         self.log.as_ref()
     }
 
-    /// Why an attached solver is gone; the next step starts it anew.
+    /// Why the connection to an attached solver failed; the next step starts the solver again.
     pub fn lost(&self) -> Option<&str> {
         self.stands.lost.as_deref()
     }
 
-    /// What an attached solver does again in the running job, before it goes on; empty where that is nothing.
+    /// What an attached solver repeats in the running job before it continues; empty if nothing.
     pub fn again(&self) -> &str {
         match self.is_running() {
             true => &self.stands.again,
@@ -216,37 +218,37 @@ impl Session {
         }
     }
 
-    /// Scene as read.
+    /// The scene as read.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
-    /// The range of the start gaps of each surface, in a few words; empty where no slave node stands over a surface.
+    /// The range of the start gaps of each surface, in a few words; empty if no slave node faces a surface.
     pub fn start_gaps(&self) -> &str {
         &self.start.0
     }
 
-    /// What is doubtful about how the scene starts, the worst first.
+    /// Warnings about the start of the scene, the most severe first.
     pub fn doubts(&self) -> &[String] {
         &self.start.1
     }
 
-    /// Scene as checked.
+    /// The scene as checked.
     pub fn model(&self) -> &Model {
         self.tree.model()
     }
 
-    /// Path or built-in name that the scene came from.
+    /// File or name of the built-in scene.
     pub fn scene_name(&self) -> &str {
         &self.scene.name
     }
 
-    /// The frames of the current branch's line, oldest first; never empty. Frame 0 is the start.
+    /// The frames of the current line, oldest first; never empty. Frame 0 is the start.
     pub fn frames(&self) -> &[Frame] {
         self.tree.frames()
     }
 
-    /// The compact records of the same points: all there, whether their frames were thinned or not.
+    /// The compact records of the same frames; complete even where frames were thinned.
     pub fn strips(&self) -> &[Strip] {
         self.tree.strips()
     }
@@ -256,17 +258,17 @@ impl Session {
         &self.tree
     }
 
-    /// Index of the frame that is shown.
+    /// Index of the shown frame.
     pub fn cursor(&self) -> usize {
         self.cursor
     }
 
-    /// The frame that is shown.
+    /// The shown frame.
     pub fn frame(&self) -> &Frame {
         &self.tree.frames()[self.cursor]
     }
 
-    /// All branches, summed up.
+    /// Summaries of all branches.
     pub fn branches(&self) -> Vec<Summary> {
         verdicts::summaries(&self.tree)
     }
@@ -289,7 +291,7 @@ impl Session {
         &self.watches
     }
 
-    /// The watches and their values at the cursor; `None` if nothing was solved for one.
+    /// The watches and their values at the cursor; `None` where no value has been solved.
     pub fn watched(&self) -> Vec<(&str, Option<f64>)> {
         let value = |watch: &Watch| watch.value(self.frame());
         self.watches
@@ -298,7 +300,8 @@ impl Session {
             .collect()
     }
 
-    /// In a line: what a finished run lacks, the branch, if there are several, and the watches with their values.
+    /// One line: what a finished run lacks, the branch (if there are several), and the watches with their
+    /// values.
     pub fn aside(&self) -> String {
         let several = self.tree.branches().len() > 1;
         let branch =
@@ -322,12 +325,12 @@ impl Session {
         self.task.is_some()
     }
 
-    /// Asks a running job to stop after the present minor iteration.
+    /// Asks a running job to stop after the current minor iteration.
     pub fn interrupt(&self) {
         self.worker.interrupt();
     }
 
-    /// Carries out (or starts) a command.
+    /// Executes a command, or starts it on the worker.
     ///
     /// # Errors
     /// A message that says what is wrong and what would be right.
@@ -386,8 +389,8 @@ impl Session {
         }
     }
 
-    /// Gathers what the worker did since the last call, for a slice of time at most; a message when a job came to its end. Never
-    /// blocks.
+    /// Collects results of the worker without blocking, for at most `SLICE`. Returns a message when a job has
+    /// ended.
     pub fn poll(&mut self) -> Option<Reply> {
         let began = Instant::now();
         self.is_behind = false;
@@ -404,7 +407,7 @@ impl Session {
         None
     }
 
-    /// Whether the worker has done more than the last [`poll`](Session::poll) gathered.
+    /// Whether the worker has more results than the last [`poll`](Session::poll) collected.
     pub fn is_behind(&self) -> bool {
         self.is_behind
     }
@@ -468,12 +471,12 @@ impl Session {
                 }
                 self.stands.at = None;
                 self.stands.lost = Some(lost.to_string());
-                Some(Reply(format!("{lost}; what was done so far is kept")))
+                Some(Reply(format!("{lost}; all steps so far are kept")))
             }
             Message::Died => {
                 self.task = None;
                 Some(Reply(
-                    "the solver stopped unexpectedly; what was done so far is kept".into(),
+                    "the solver stopped unexpectedly; all steps so far are kept".into(),
                 ))
             }
         }
@@ -490,7 +493,7 @@ impl Session {
         {
             self.cursor = target;
             if !sound {
-                told += "computed again, it is not what it was, please report this; ";
+                told += "the recomputed state differs from the original (please report this bug); ";
             }
         }
         if interrupted {
@@ -499,7 +502,7 @@ impl Session {
         Reply(told + &self.told())
     }
 
-    /// Notes in the journal that a motion begins to solve.
+    /// Records in the journal that a motion starts solving.
     fn begin(&mut self, command: &Command) {
         self.diary.renew(&self.scene);
         if matches!(self.task, Some(Task::Run)) {
@@ -508,7 +511,7 @@ impl Session {
         }
     }
 
-    /// Notes in the journal what a command led to.
+    /// Records a completed command in the journal.
     fn note(&mut self, command: Command, Reply(said): Reply) -> Reply {
         self.diary.renew(&self.scene);
         if command.is_look() || !self.diary.is_kept() {
@@ -529,8 +532,8 @@ impl Session {
         Reply(said + &self.diary.take_trouble())
     }
 
-    /// Residual norms of the shown increment attempt up to the cursor: before its first major iteration (0), and
-    /// after each; of a finished run those of each iteration.
+    /// Residual norms of the shown attempt up to the cursor: before its first major iteration (0) and after
+    /// each one; for a finished run, of each iteration.
     pub fn residual_history(&self) -> Vec<(u32, Norms)> {
         let Some(event) = &self.frame().event else {
             return Vec::new();
@@ -556,7 +559,7 @@ impl Session {
         history
     }
 
-    /// A monitor against the load factor, at the end of every accepted increment up to the cursor.
+    /// A monitor over the load factor, at the end of each accepted increment up to the cursor.
     pub fn curve(&self, monitor: usize) -> Vec<[f64; 2]> {
         curve(&self.frames()[..=self.cursor], monitor)
     }

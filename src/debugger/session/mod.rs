@@ -1,11 +1,12 @@
 //! A session of the debugger, without a terminal: commands in, frames out.
 //!
-//! - [`machine`]: the state machine itself: what it holds, and how commands are begun and ended. What they do stands
-//!   beside it by subject: going through the history (`motion`), interfering (`change`), what lists are kept of (`lists`),
-//!   what is written (`writing`), what is asked beside the run (`questions`).
-//! - [`worker`]: the thread that solves; [`background`]: the one that looks closer, [`exports`]: what it makes files of.
-//! - `kept`: a session on what an attached solver did, as a file keeps it.
-//! - `diary`: where what was done is kept; [`replay`]: doing it again; [`refusal`]: why something is not done.
+//! - [`machine`]: the state machine: its data, and how commands start and end. Their effects are in one module
+//!   per subject: `motion` (through the history), `change` (interventions), `lists` (branches, breakpoints,
+//!   watches), `writing` (snapshots, journals), `questions` (background analyses).
+//! - [`worker`]: the thread that solves; [`background`]: the thread that analyses; [`exports`]: the files it
+//!   writes.
+//! - `kept`: sessions on recorded runs.
+//! - `diary`: the journal being written; [`replay`]: repeating a journal; [`refusal`]: the errors.
 
 pub mod background;
 mod change;

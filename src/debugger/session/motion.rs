@@ -1,4 +1,4 @@
-//! Going through the history: forward, back, and to a step; over what is known already, and past its end.
+//! Motions: forward, back, and to a step; over recorded steps, and past the end of the line.
 
 use super::machine::{Reply, Session, Task};
 use super::refusal::Refusal;
@@ -12,7 +12,7 @@ use stickslip_core::step::solver::GoesBack;
 use stickslip_core::step::state::{State, Status};
 
 impl Session {
-    /// Moves the cursor over what is known already, then solves on.
+    /// Moves the cursor over recorded steps, then solves.
     pub(super) fn forward(&mut self, unit: Unit, count: u32) -> Reply {
         let mut left = count;
         let (mut at, mut hits) = (self.cursor, Vec::new());
@@ -34,13 +34,14 @@ impl Session {
         Reply(self.way() + "running; Ctrl-C interrupts")
     }
 
-    /// Whether a motion by this unit ends at a point; through a finished run, at each attempt that was given up.
+    /// Whether a motion by this unit ends at a point. A run over a finished record also ends at each attempt
+    /// that was given up.
     fn ends(&self, unit: Unit, strip: &Strip) -> bool {
         let given_up = unit == Unit::Run && strip.kind == PointKind::Cut;
         unit.ends(strip.kind) || (given_up && self.model().finished.is_some())
     }
 
-    /// Starts new minor iterations from the cursor, which is at the tip.
+    /// Solves new minor iterations from the cursor, which is at the tip.
     pub(super) fn solve(&mut self, unit: Unit, count: u32, breakpoints: Vec<Breakpoint>) {
         let run = Steps::Run {
             before: self.strips()[self.cursor].clone(),
@@ -51,7 +52,7 @@ impl Session {
         self.work(self.cursor, Task::Run, run);
     }
 
-    /// Starts steps from a point of the line, to which an attached solver may have to go back first.
+    /// Starts steps from a point of the line. An attached solver may have to return there first.
     pub(super) fn work(&mut self, from: usize, task: Task, steps: Steps) {
         self.stands.again = self.back_to(from).unwrap_or_default();
         self.task = Some(task);
@@ -66,7 +67,7 @@ impl Session {
         let (mut at, mut hits) = (self.cursor, Vec::new());
         for _ in 0..count {
             if at == 0 {
-                // However much farther it was to go.
+                // The start is reached before the count is used up.
                 break;
             }
             let here = |k: usize| match k {
@@ -96,14 +97,15 @@ impl Session {
         Ok(self.go_to(step, &[]))
     }
 
-    /// Puts the cursor on a point of the line; a thinned one is computed first, from the nearest whole one before it.
+    /// Moves the cursor to a point of the line. A thinned frame is recomputed first, from the nearest whole
+    /// frame before it.
     pub(super) fn go_to(&mut self, target: usize, hits: &[u32]) -> Reply {
         let from = self.tree.whole_before(target);
         if from == target {
             self.cursor = target;
             let way = match self.back_to(target) {
                 Some(way) if self.frame().state.status != Status::Finished => {
-                    format!("; to go on from here, {way}")
+                    format!("; to continue from here, {way}")
                 }
                 _ => String::new(),
             };
@@ -122,13 +124,13 @@ impl Session {
         };
         self.work(from, task, again);
         Reply(format!(
-            "computing {} steps again; Ctrl-C interrupts",
+            "recomputing {} steps; Ctrl-C interrupts",
             target - from
         ))
     }
 
-    /// What an attached solver has to do again to come to a point of the line, before it can go on from there; `None` where it
-    /// stands there, or goes there at once.
+    /// What an attached solver has to repeat before it can continue from a point of the line; `None` if it is
+    /// there already or gets there directly.
     pub(super) fn back_to(&self, target: usize) -> Option<String> {
         self.log()?;
         let place = self.frames()[target].state.outside.as_ref()?.place;
@@ -141,21 +143,21 @@ impl Session {
             |strips: &[Strip]| strips.iter().filter(|strip| strip.kind.is_solved()).count();
         let again = |count: usize| match count {
             0 => String::new(),
-            1 => ", and does 1 iteration again".into(),
-            count => format!(", and does {count} iterations again"),
+            1 => " and repeats 1 iteration".into(),
+            count => format!(" and repeats {count} iterations"),
         };
         match self.offers.goes_back {
             _ if lost => Some(format!(
-                "the solver, which is lost, is started anew{}",
+                "the solver, whose connection was lost, restarts{}",
                 again(solved(way))
             )),
-            GoesBack::Again => Some(format!("the solver is started anew{}", again(solved(way)))),
+            GoesBack::Again => Some(format!("the solver restarts{}", again(solved(way)))),
             GoesBack::ToIncrements => {
                 let begun = way.iter().rposition(|strip| strip.kind.is_accepted());
                 match solved(&way[begun.map_or(0, |at| at + 1)..]) {
                     0 => None,
                     count => Some(format!(
-                        "the solver goes back to the start of the increment{}",
+                        "the solver returns to the start of the increment{}",
                         again(count)
                     )),
                 }
@@ -164,7 +166,7 @@ impl Session {
         }
     }
 
-    /// The same of the job that was begun, as the beginning of a reply.
+    /// What the solver of the running job has to repeat, as the beginning of a reply.
     pub(super) fn way(&self) -> String {
         match self.stands.again.as_str() {
             "" => String::new(),
@@ -172,7 +174,7 @@ impl Session {
         }
     }
 
-    /// An attached solver has come to a state.
+    /// Notes that an attached solver has reached a state.
     pub(super) fn stand_at(&mut self, state: &State) {
         self.stands.at = state.outside.as_ref().map(|outside| outside.place);
         self.stands.lost = None;
@@ -186,7 +188,7 @@ impl Session {
         }
     }
 
-    /// Which breakpoints a run stopped at, as the beginning of a reply.
+    /// The breakpoints that a run stopped at, as the beginning of a reply.
     pub(super) fn stops(&self, hits: &[u32]) -> String {
         let hit = self.breakpoints.iter().filter(|b| hits.contains(&b.id));
         let told: Vec<String> = hit

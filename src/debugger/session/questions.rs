@@ -1,4 +1,4 @@
-//! What is asked beside the run, and answered in the background.
+//! Questions about the shown state that the background thread answers.
 
 use super::background::{Background, Between};
 use super::exports::{Export, Seen};
@@ -19,28 +19,28 @@ use stickslip_core::step::state::Status;
 use stickslip_platform::files;
 
 impl Session {
-    /// What is found out beside the run.
+    /// Results of the background thread.
     pub fn background(&self) -> &Background {
         &self.background
     }
 
-    /// Gathers what was found out; whether there was anything new. Never blocks.
+    /// Collects new results of the background thread without blocking; returns whether there were any.
     pub fn gather_background(&mut self) -> bool {
         self.background.gather()
     }
 
-    /// Blocks until all that was asked is found out.
+    /// Blocks until the background thread has answered all requests.
     pub fn wait_for_background(&mut self) {
         self.background.wait();
     }
 
-    /// The place of the cursor, by which [`Background`] keeps what it found.
+    /// Position of the cursor, the key of the results in [`Background`].
     pub fn place(&self) -> (usize, usize) {
         (self.tree.current(), self.cursor)
     }
 
-    /// Asks, where it is not known yet, what pushed a slave node in the shown minor iteration, and for the diagnosis
-    /// where that closed a cycle. Answers come with [`Session::gather_background`].
+    /// Requests what is not known yet: the pushes on a slave node in the shown minor iteration and, if that
+    /// closed a cycle, the diagnosis. [`Session::gather_background`] collects the answers.
     pub fn look(&mut self, slave: usize) {
         if self.is_running() || slave >= self.model().contacts.len() {
             return;
@@ -93,8 +93,8 @@ impl Session {
         (shown.kind.is_solved() && same).then_some(before)
     }
 
-    /// Finds out why the minor iterations cycle from the shown state, or which states are consistent; of some nodes only,
-    /// where these are given.
+    /// Requests the cause of the cycle from the shown state, or else its consistent states; for these nodes
+    /// only, if any are given.
     pub(super) fn census(&mut self, nodes: &[usize]) -> Reply {
         let place = self.place();
         let known = self.known_of_attached();
@@ -105,7 +105,7 @@ impl Session {
             false => String::new(),
         };
         let state = &self.tree.frames()[self.cursor].state;
-        // It goes there to be asked, and what was changed there it is told.
+        // The solver moves to this state to report its problem, together with all changes made there.
         if self.offers.problem {
             let outside = state
                 .outside
@@ -114,10 +114,11 @@ impl Session {
             self.stands.at = outside.map(|outside| outside.place);
         }
         self.background.ask_examination(place, state, nodes, known);
-        Reply(way + "the diagnosis (d) tells what is found")
+        Reply(way + "the diagnosis (d) will show the result")
     }
 
-    /// What the line tells of an attached solver up to the cursor: how it failed, and whether its modes go round.
+    /// What the line shows about an attached solver up to the cursor: how it failed, and whether its modes
+    /// repeat.
     fn known_of_attached(&self) -> Vec<String> {
         if self.log().is_none() {
             return Vec::new();
@@ -135,14 +136,14 @@ impl Session {
         what.into_iter().chain(place).collect()
     }
 
-    /// Has a file made of the shown state; what came of it comes with [`Session::exported`].
+    /// Requests a file made from the shown state; [`Session::exported`] returns the result.
     pub(super) fn export(
         &mut self,
         what: Exported,
         file: PathBuf,
         overwrite: bool,
     ) -> Result<Reply, Refusal> {
-        // Sooner rather than later; it leaves nothing behind.
+        // Fails early if the file cannot be written, and leaves nothing behind.
         files::regular(&file)?;
         if what == Exported::Shown {
             let kind = export::kind(&file)?;
@@ -179,7 +180,7 @@ impl Session {
         Ok(Reply(told))
     }
 
-    /// What there is to be seen of the shown state.
+    /// The context of the shown state, for a picture.
     fn seen(&self) -> Seen {
         let (frames, strips) = (&self.frames()[..=self.cursor], self.strips());
         let strips = &strips[..=self.cursor];
@@ -188,7 +189,7 @@ impl Session {
             frame.is_whole() && state.next.minor == 1 && state.status == Status::Running
         };
         let last_major = frames.iter().rev().find(begins);
-        // One that was thinned has another one's major iteration before it.
+        // If the frame of its start was thinned, the whole frame found belongs to another major iteration.
         let ended = frames.last().and_then(|frame| frame.event.as_ref());
         let of_it = |frame: &&Frame| {
             let next = frame.state.next;
@@ -205,7 +206,8 @@ impl Session {
         }
     }
 
-    /// What came of the last file that [`Command::Export`](crate::record::command::Command::Export) wrote; once.
+    /// Result of the latest file written by [`Command::Export`](crate::record::command::Command::Export);
+    /// returned once.
     pub fn exported(&mut self) -> Option<Result<Reply, Refusal>> {
         Some(
             self.background
@@ -217,18 +219,18 @@ impl Session {
 
     pub(super) fn remedies(&mut self) -> Reply {
         if self.background.is_trying() {
-            return Reply("remedies are being tried; Ctrl-C stops that".into());
+            return Reply("already trying remedies; Ctrl-C interrupts".into());
         }
         let place = self.place();
         let state = &self.tree.frames()[self.cursor].state;
         self.background.ask_remedies(place, state);
-        // Every trial leads it elsewhere.
+        // Each trial moves the solver elsewhere.
         self.stands.at = None;
-        Reply("trying every remedy from here; Ctrl-C stops".into())
+        Reply("trying every remedy from here; Ctrl-C interrupts".into())
     }
 }
 
-/// Two minor iterations on the line, where all of their frames are whole.
+/// Two minor iterations of the line, if all their frames are whole.
 fn iterations(tree: &Tree, before: usize, shown: usize) -> Option<Iterations> {
     let frames = tree.frames();
     let whole = |at: usize| frames.get(at).filter(|frame| frame.is_whole());

@@ -1,4 +1,4 @@
-//! Why a session does not do what it is told, or not again what it did.
+//! Errors of a session: why it rejects a command, and how a replay departs from its journal.
 
 use crate::history::branches::NoBranch;
 use crate::record::export::shown::ExportError;
@@ -7,141 +7,142 @@ use crate::record::snapshot::SnapshotError;
 use stickslip_platform::files::FileError;
 use stickslip_scene::format::error::NotSet;
 
-/// Why a session does not carry out a command: what is wrong, and what would be right.
+/// Why a session rejects a command, with a hint at what would work.
 #[derive(Debug, thiserror::Error)]
 pub enum Refusal {
-    /// A run is on.
+    /// The solver is running.
     #[error("the solver is running; interrupt it first (Ctrl-C)")]
     Running,
-    /// There is nothing before this step.
-    #[error("this is the start")]
+    /// The cursor is at the start.
+    #[error("already at the start")]
     Start,
-    /// A step that there is not yet.
-    #[error("there is no step {step} yet; the last one is {last}")]
+    /// The step does not exist.
+    #[error("step {step} does not exist yet; the last one is {last}")]
     NoStep {
-        /// What was asked for.
+        /// Requested step.
         step: usize,
-        /// The last one.
+        /// Last step.
         last: usize,
     },
-    /// The solver does not take an intervention.
+    /// The solver rejects the intervention.
     #[error("{0}")]
     Intervention(stickslip_core::step::intervene::Refusal),
-    /// A setting that there is not, or a value that is not of its kind.
+    /// Unknown setting, or a value of the wrong type.
     #[error(transparent)]
     NotSet(#[from] NotSet),
-    /// A value of its kind that the scene cannot have.
+    /// A value of the right type that the scene cannot have.
     #[error("{0}")]
     Unsound(String),
-    /// A value that is fixed once a run has begun.
+    /// A value that is fixed once a run has started.
     #[error(
-        "{path} cannot change during a run; friction.*, settings.* and history.increment can (or start again with --set {path}={value})"
+        "{path} cannot change during a run; only friction.*, settings.* and history.increment can. Restart with --set {path}={value}"
     )]
     Unchangeable {
-        /// Its path in the scene.
+        /// Path in the scene.
         path: String,
-        /// What it was to be.
+        /// Requested value.
         value: String,
     },
-    /// An attached solver has no such parameter.
+    /// Unknown parameter of an attached solver.
     #[error("the solver has no parameter '{name}'; {known}")]
     NoParameter {
-        /// What was asked for.
+        /// Requested name.
         name: String,
-        /// Those that there are, in words.
+        /// Known parameters, in words.
         known: String,
     },
-    /// No branch is called so.
+    /// No branch with this name.
     #[error(transparent)]
     NoBranch(#[from] NoBranch),
-    /// There is one branch only.
-    #[error("there is no other branch; an intervention before the tip starts one")]
+    /// There is only one branch.
+    #[error("there is only one branch; an intervention before the tip starts another")]
     OneBranch,
-    /// The existing branches use the whole memory budget.
+    /// The branches have used up their memory budget.
     #[error(
-        "no new branch: those that there are take {} of at most {} MB; steps from the tip of a branch start none",
+        "no new branch: the existing ones take {} MB (limit {} MB); continue from the tip of a \
+         branch instead",
         taken >> 20, most >> 20
     )]
     NoRoom {
         /// Size of the branches in bytes.
         taken: usize,
-        /// Maximum size in bytes at which a branch can begin.
+        /// Maximum size in bytes at which a branch can still start.
         most: usize,
     },
-    /// A name that is empty, or not one line.
-    #[error("a branch's name is one line of text")]
+    /// An empty name, or one of several lines.
+    #[error("a branch name must be one line of text")]
     NoName,
-    /// The name of another branch.
-    #[error("another branch is called '{0}'")]
+    /// The name is taken.
+    #[error("branch name '{0}' is already in use")]
     TakenName(String),
-    /// A name that could be a number.
-    #[error("'{0}' looks like a branch's number; any other name would do")]
+    /// The name could be a number.
+    #[error("branch name '{0}' looks like a branch number; choose another")]
     NumberName(String),
-    /// Several branches could be meant.
+    /// The branch is ambiguous.
     #[error("which branch? :compare BRANCH")]
     WhichBranch,
     /// A branch compared with itself.
-    #[error("that is this branch; another one would be compared with it")]
+    #[error("this is the current branch; name another one to compare it with")]
     SameBranch,
     /// Neither branch has solved anything.
     #[error("there is nothing to compare")]
     NothingToCompare,
-    /// A breakpoint that there is not.
+    /// The breakpoint does not exist.
     #[error("there is no breakpoint {id}; {listed}")]
     NoBreakpoint {
         /// Its number.
         id: u32,
-        /// Those that there are, in words.
+        /// Existing breakpoints, in words.
         listed: String,
     },
-    /// The name of a watch that there is.
-    #[error("there is a watch '{0}' already; unwatch ends it")]
+    /// The name of the watch is taken.
+    #[error("watch '{0}' already exists; :unwatch removes it")]
     Watched(String),
-    /// There is no watch.
+    /// There are no watches.
     #[error("there are no watches; :watch adds one")]
     NoWatches,
-    /// A watch that there is not.
-    #[error("no watch is called '{name}'; there are {all}")]
+    /// The watch does not exist.
+    #[error("watch '{name}' does not exist; watches: {all}")]
     NoWatch {
         /// Its name.
         name: String,
-        /// Those that there are, in words.
+        /// Existing watches, in words.
         all: String,
     },
-    /// What the session did was not kept.
-    #[error("this session keeps no journal, and what it did is not known any more")]
+    /// The session has kept no entries.
+    #[error("this session has kept no record of its commands, so no journal can be written")]
     Forgotten,
-    /// A file could not be written.
+    /// A file cannot be written.
     #[error(transparent)]
     File(#[from] FileError),
-    /// A snapshot could not be made.
+    /// A snapshot cannot be made.
     #[error(transparent)]
     Snapshot(#[from] SnapshotError),
-    /// A journal could not be written or read.
+    /// A journal cannot be written or read.
     #[error(transparent)]
     Journal(#[from] JournalError),
-    /// A problem could not be written out.
+    /// A problem cannot be exported.
     #[error(transparent)]
     Export(#[from] ExportError),
 }
 
-/// How an entry of a journal, done again, leads elsewhere than it did.
+/// How the replay of a journal entry differs from the original.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum Departure {
-    #[error("no journal has such a command")]
+    #[error("a journal cannot contain this command")]
     NoMotion,
     #[error(transparent)]
     Refused(#[from] Refusal),
-    #[error("it solves too much for one motion")]
+    #[error("it solves too many iterations for one motion")]
     TooMuch,
-    #[error("it solves {now} minor iterations, and solved {then}")]
+    #[error("it now solves {now} minor iterations instead of {then}")]
     Solves { now: u64, then: u64 },
-    #[error("it leads to step {} of branch b{}, and led to step {} of b{}", now.1, now.0, then.1, then.0)]
+    #[error("it now ends at step {} of branch b{} instead of step {} of b{}", now.1, now.0, then.1, then.0)]
     Leads {
         /// Number of the branch, from 1, and step on its line.
         now: (usize, usize),
         then: (usize, usize),
     },
-    #[error("the state is {now}, and was {then}")]
+    #[error("the state is now {now} instead of {then}")]
     State { now: String, then: String },
 }

@@ -1,4 +1,4 @@
-//! A session made again from its journal, to the same bits.
+//! Rebuilds a session from its journal, bit by bit.
 
 use super::machine::Session;
 use super::refusal::Departure;
@@ -7,13 +7,12 @@ use crate::record::journal::{self, Entry, Journal, JournalError, Keep, Record};
 use stickslip_scene::shown;
 
 impl Session {
-    /// Does what an entry of a journal says.
+    /// Repeats one entry of a journal.
     ///
-    /// # Errors
-    /// A message where it leads elsewhere than it did.
+    /// # Errors If the result differs from the recorded one.
     fn replay(&mut self, entry: &Entry) -> Result<(), Departure> {
         match &entry.command {
-            // Those that write files must not be done on the word of a file.
+            // A journal must not be able to make the program write files.
             command if command.is_look() => return Err(Departure::NoMotion),
             command if command.is_motion() => self.travel(entry.solved, entry.cursor)?,
             command => {
@@ -35,7 +34,7 @@ impl Session {
                 then: shown::cut(&entry.digest, 40).to_string(),
             });
         }
-        // A motion is replayed as far as it went, and not as it was told.
+        // An interrupted motion is replayed up to where it stopped.
         match entry.command.is_motion() {
             true => self.diary.add(entry.clone()),
             false => self.diary.replace_last(entry.clone()),
@@ -43,7 +42,7 @@ impl Session {
         Ok(())
     }
 
-    /// Solves so many minor iterations from the tip of the branch, then goes to a step.
+    /// Solves this many minor iterations from the tip of the branch, then moves to a step.
     fn travel(&mut self, solved: u64, step: usize) -> Result<(), Departure> {
         if solved > 0 {
             self.solved = 0;
@@ -63,7 +62,7 @@ impl Session {
         Ok(())
     }
 
-    /// A command with the steps only that it took: one that was interrupted is replayed as far as it went.
+    /// The command reduced to the steps that it took, if it was interrupted.
     pub(super) fn as_far_as_done(&self, command: Command) -> Command {
         match command {
             Command::Follow { label, mut steps } => {
@@ -77,15 +76,14 @@ impl Session {
 }
 
 impl Record {
-    /// Does all of it again, on the session's worker, and proves after each entry that the state has the same bits.
+    /// Repeats all entries on the session's worker, and checks the bits of the state after each one.
     ///
-    /// # Errors
-    /// If the scene is unsound, or at the first entry that leads elsewhere.
+    /// # Errors If the scene is invalid, or at the first entry whose result differs.
     pub fn replay(&self) -> Result<Session, JournalError> {
         self.replay_in(Session::new(self.scene()?), &mut |_, _| {})
     }
 
-    /// The same in a session at the start of what the journal is of, with a look at it there, and after each entry.
+    /// Replays in a session at the start of the journal's scene. Calls `see` at the start and after each entry.
     ///
     /// # Errors
     /// As [`Record::replay`].
@@ -100,7 +98,7 @@ impl Record {
             session.replay(entry).map_err(|departure| {
                 let other = match self.header.version.as_str() {
                     env!("CARGO_PKG_VERSION") => String::new(),
-                    version => format!("; version {version} wrote the journal"),
+                    version => format!("; the journal was written by version {version}"),
                 };
                 JournalError::Differs {
                     file: self.file.clone(),
@@ -115,10 +113,9 @@ impl Record {
 }
 
 impl Keep {
-    /// Begins the journal of a session.
+    /// Starts the journal of a session.
     ///
-    /// # Errors
-    /// If the file that is asked for exists, or cannot be written.
+    /// # Errors If the named file exists or cannot be written.
     pub fn begin(&self, session: &mut Session) -> Result<(), JournalError> {
         match self {
             Keep::Nowhere => {}

@@ -1,4 +1,4 @@
-//! The thread on which a session's solver runs: one of ours, or one that is attached.
+//! The thread that runs the session's solver, our own or an attached one.
 
 use crate::history::breakpoints::{self, Breakpoint};
 use crate::history::frame::Frame;
@@ -17,64 +17,66 @@ use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::solver::{Lost, Solver};
 use stickslip_core::step::state::State;
 
-/// How long who waits for the worker sleeps between two looks: were it woken by every message, the solver would pay for
-/// that at every iteration.
+/// Sleep between two polls while waiting for the worker. Waking the waiting thread with every message would
+/// cost the solver time in each iteration.
 const NAP: Duration = Duration::from_millis(1);
-/// Most messages that wait to be gathered: a solver that is faster than who watches it waits, and takes no more memory.
+/// Maximum number of uncollected messages: a solver that is faster than its reader waits, and memory stays
+/// bounded.
 const AHEAD: usize = 1024;
 
-/// What the worker is to do.
+/// A job of the worker.
 pub enum Job {
-    /// Steps from a state.
+    /// Take steps from a state.
     Steps(Box<State>, Steps),
-    /// A look at the solver, between two other jobs.
+    /// Call a function on the solver, between two other jobs.
     Look(Look),
-    /// Nothing more: the thread ends.
+    /// End the thread.
     End,
 }
 
-/// Steps of the solver. `before` is the strip of the frame from which they set out; a step that is given is a minor iteration
-/// (`None`) or an intervention.
+/// Steps of the solver. `before` is the strip of the frame that they start from; a given step is a minor
+/// iteration (`None`) or an intervention.
 pub enum Steps {
-    /// Minor iterations until so many of a unit are complete, or a breakpoint holds, or a failure, or the end.
+    /// Minor iterations until `count` units are complete, a breakpoint is hit, a step fails, or the history
+    /// ends.
     Run {
         /// Strip of the frame that it starts from.
         before: Strip,
-        /// What is counted.
+        /// Unit counted.
         unit: Unit,
-        /// How many of it.
+        /// Number of units.
         count: u32,
-        /// Where it stops before.
+        /// Breakpoints that stop it early.
         breakpoints: Vec<Breakpoint>,
     },
-    /// Steps that are given.
+    /// A given sequence of steps.
     Follow {
         /// Strip of the frame that it starts from.
         before: Strip,
-        /// In order.
+        /// Steps in order.
         steps: Vec<Option<Intervention>>,
     },
-    /// The same steps as once before.
+    /// Steps repeated to recompute thinned frames.
     Again {
         /// The last minor iteration before them.
         event: Option<Arc<Event>>,
-        /// In order.
+        /// Steps in order.
         steps: Vec<Option<Intervention>>,
     },
 }
 
-/// What is done with the solver, and told by whoever does it. It may leave the solver at another state, since every job goes to
-/// its own first.
+/// A function called on the solver; it reports its own result. It may leave the solver in another state, since
+/// every job starts by restoring its own.
 pub type Look = Box<dyn FnOnce(&mut dyn Solver) + Send>;
 
-/// Where others may look at the worker's solver while it has nothing to do.
+/// Gives other threads access to the worker's solver while it is idle.
 pub struct Lender {
     jobs: Sender<Job>,
     busy: Arc<AtomicBool>,
 }
 
 impl Lender {
-    /// Has the solver looked at, and waits for what is seen; `None` where the solver is busy, or gone.
+    /// Calls a function on the solver and waits for the result; `None` if the solver is busy or gone.
     pub fn look<T: Send + 'static>(
         &self,
         look: impl FnOnce(&mut dyn Solver) -> T + Send + 'static,
@@ -84,7 +86,7 @@ impl Lender {
         }
         let (reply, answer) = channel();
         let look: Look = Box::new(move |solver| {
-            // Who asked waits for it.
+            // The caller is waiting, so sending succeeds.
             let _ = reply.send(look(solver));
         });
         self.jobs.send(Job::Look(look)).ok()?;
@@ -92,43 +94,43 @@ impl Lender {
     }
 }
 
-/// What the worker tells.
+/// Message from the worker.
 pub enum Message {
     /// A new minor iteration.
     Made(Box<Frame>, Box<Strip>),
     /// A new intervention.
     Changed(Box<State>, Intervention),
-    /// A step done again.
+    /// A recomputed step.
     Again(Box<State>, Option<Arc<Event>>),
-    /// The job is over; the breakpoints at which it stopped.
+    /// The job is over.
     Done {
-        /// Whether it was stopped from outside.
+        /// Whether it was interrupted.
         interrupted: bool,
-        /// Numbers of the breakpoints at which it stopped.
+        /// Numbers of the breakpoints that it stopped at.
         hits: Vec<u32>,
-        /// What the solver has to say besides.
+        /// Additional message of the solver.
         remark: Option<String>,
     },
-    /// The solver cannot go on. What was told before stands.
+    /// The solver cannot continue. Earlier messages stay valid.
     Lost(Lost),
-    /// The thread is gone.
+    /// The thread has ended.
     Died,
 }
 
-/// Handle of the thread; it ends when this is dropped, after the minor iteration at hand.
+/// Handle of the thread. When dropped, the thread ends after the current minor iteration.
 pub struct Worker {
     jobs: Sender<Job>,
     messages: Receiver<Message>,
-    /// How often the running job was asked to stop.
+    /// Number of interrupt requests for the running job.
     stop: Arc<AtomicUsize>,
-    /// Whether it is at a job that takes its time.
+    /// Whether it runs a job that may take long.
     busy: Arc<AtomicBool>,
-    /// The thread, where its end is waited for.
+    /// The thread, if its end is waited for.
     thread: Option<JoinHandle<()>>,
 }
 
 impl Worker {
-    /// Starts an idle worker with the solver that this makes on its thread.
+    /// Starts an idle worker; `make` builds the solver on the new thread.
     pub fn new(make: impl FnOnce() -> Box<dyn Solver> + Send + 'static) -> Self {
         let (jobs, orders) = channel::<Job>();
         let (news, messages) = sync_channel(AHEAD);
@@ -168,13 +170,13 @@ impl Worker {
         }
     }
 
-    /// Lets its thread end by itself when this is dropped: only what runs outside has to be ended.
+    /// Does not wait for the thread when dropped: only external programs must be ended.
     pub fn unattended(mut self) -> Worker {
         self.thread = None;
         self
     }
 
-    /// Where a look may be asked for.
+    /// Access to the solver for other threads.
     pub fn lender(&self) -> Lender {
         Lender {
             jobs: self.jobs.clone(),
@@ -186,16 +188,16 @@ impl Worker {
     pub fn start(&self, from: State, steps: Steps) {
         self.stop.store(0, Ordering::Relaxed);
         self.busy.store(true, Ordering::Relaxed);
-        // A failing send means that the thread is gone, which the next message says.
+        // If sending fails, the thread has ended; the next message reports that.
         let _ = self.jobs.send(Job::Steps(Box::new(from), steps));
     }
 
-    /// Asks the running job to stop after the present minor iteration.
+    /// Asks the running job to stop after the current minor iteration.
     pub fn interrupt(&self) {
         self.stop.fetch_add(1, Ordering::Relaxed);
     }
 
-    /// The next message; waits for it.
+    /// The next message; blocks.
     pub fn next(&self) -> Message {
         loop {
             match self.try_next() {
@@ -217,20 +219,20 @@ impl Worker {
 
 impl Drop for Worker {
     fn drop(&mut self) {
-        // As often as it takes to end what is outside.
+        // The maximum, so that an external program is ended without further requests.
         self.stop.store(usize::MAX, Ordering::Relaxed);
         if let Some(thread) = self.thread.take() {
-            // Who looks may hold another end of the channel.
+            // A `Lender` may hold another sender of this channel.
             let _ = self.jobs.send(Job::End);
-            // Nor may it wait for somebody to gather what it did.
+            // The worker must not block on a full channel.
             drop(std::mem::replace(&mut self.messages, channel().1));
-            // A thread that has panicked is gone, which is all that is wanted.
+            // If the thread panicked, it has ended, which is enough.
             let _ = thread.join();
         }
     }
 }
 
-/// Takes steps from where the solver is; `None` if nobody listens any more.
+/// Takes steps from the solver's state; `None` if the receiver is gone.
 fn take(
     solver: &mut dyn Solver,
     steps: Steps,
@@ -260,7 +262,7 @@ fn take(
     }
 }
 
-/// Goes on; `None` if nobody listens any more.
+/// Solves; `None` if the receiver is gone.
 fn run(
     solver: &mut dyn Solver,
     mut before: Strip,
@@ -275,7 +277,7 @@ fn run(
     let until = Until::end().minors(most).past_failures();
     let until = until.interrupted_by(&interrupted);
     let mut began = Instant::now();
-    // Ours say themselves that they cycle.
+    // Our own solver detects cycles itself.
     let mut watch = solver.stepper().is_none().then(rounds::Watch::default);
     let mut round = None;
     let end = drive(solver, until, |solver| {
@@ -314,7 +316,7 @@ fn run(
     .ok()
 }
 
-/// The last minor iteration, which began then, as a frame and its strip.
+/// The last minor iteration, started at `began`, as a frame and its strip.
 fn seen(solver: &mut dyn Solver, before: &Strip, began: Instant) -> (Frame, Strip) {
     let seconds = began.elapsed().as_secs_f32();
     let event = Arc::new(solver.event().clone());
@@ -338,7 +340,8 @@ fn seen(solver: &mut dyn Solver, before: &Strip, began: Instant) -> (Frame, Stri
     (frame, strip)
 }
 
-/// Takes given steps, as far as they can be taken, and sends what `message` makes of each; `None` if nobody listens any more.
+/// Takes a given sequence of steps as far as possible, and sends `message` of each; `None` if the receiver is
+/// gone.
 fn follow(
     solver: &mut dyn Solver,
     steps: Vec<Option<Intervention>>,
@@ -372,7 +375,7 @@ fn follow(
     .ok()
 }
 
-/// A step that was taken for the first time.
+/// A step taken for the first time.
 fn made(
     solver: &mut dyn Solver,
     before: &mut Strip,

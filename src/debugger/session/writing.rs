@@ -1,4 +1,4 @@
-//! What a session writes when it is told to: snapshots, and a journal in a file that is named.
+//! Files that a session writes on command: snapshots and named journals.
 
 use super::machine::{Reply, Session};
 use super::refusal::Refusal;
@@ -8,7 +8,7 @@ use std::path::PathBuf;
 use stickslip_platform::files;
 
 impl Session {
-    /// Number of minor iterations done up to the cursor, and the interventions among them.
+    /// Number of minor iterations up to the cursor, and the interventions among them.
     pub(super) fn record(&self) -> (u64, Vec<Applied>) {
         let (mut step, mut applied) = (0, Vec::new());
         for frame in &self.frames()[1..=self.cursor] {
@@ -43,7 +43,7 @@ impl Session {
         Ok(Reply(format!("wrote {}", file.display())))
     }
 
-    /// `SCENE-INC.MAJOR.MINOR.ron` in the working directory, with a number where that exists.
+    /// `SCENE-INC.MAJOR.MINOR.ron` in the working directory, numbered if that exists.
     pub(super) fn free_name(&self) -> PathBuf {
         let scene = files::stem(self.scene_name());
         let at = match &self.frame().event {
@@ -64,15 +64,18 @@ impl Session {
             .unwrap_or_else(|| name(1000))
     }
 
-    /// Begins a journal with all that was done, and goes on there; without a file, tells where it is.
+    /// Starts a journal with all entries so far and continues it; without a file, reports the path of the
+    /// current one.
     pub(super) fn begin_journal(&mut self, file: Option<PathBuf>) -> Result<Reply, Refusal> {
         let Some(file) = file else {
             return Ok(Reply(match (self.lost_journal(), self.journal()) {
-                (_, Some(path)) => format!("the journal is {}", path.display()),
+                (_, Some(path)) => format!("the journal is written to {}", path.display()),
                 (Some(why), _) => {
-                    format!("the journal is lost: {why}; :journal FILE begins one")
+                    format!(
+                        "the journal could not be written: {why}. :journal FILE starts a new one"
+                    )
                 }
-                _ => "there is no journal yet; :journal FILE begins one".into(),
+                _ => "there is no journal yet; :journal FILE starts one".into(),
             }));
         };
         if !self.diary.is_kept() && self.tree.len(self.tree.current()) > 1 {
@@ -82,7 +85,7 @@ impl Session {
         self.diary.keep(journal);
         let count = self.diary.entries().len();
         Ok(Reply(format!(
-            "the journal is {} from now on; {count} entries are in it already",
+            "the journal is now written to {}, which already contains {count} entries",
             file.display()
         )))
     }

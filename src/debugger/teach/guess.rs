@@ -1,4 +1,4 @@
-//! Free mode: what Table 2 decides stays hidden until the user has said it.
+//! Free mode: decisions of Table 2 are hidden until the user has predicted them.
 
 use super::refusal::NotNow;
 use crate::action::{Action, Whose, mode};
@@ -9,14 +9,14 @@ use crate::record::command::Command;
 use std::collections::{BTreeMap, BTreeSet};
 use stickslip_core::model::{Mode, Model};
 
-/// Predictions, right and wrong.
+/// Predictions, and which decisions are hidden.
 #[derive(Debug, Clone)]
 pub struct Guess {
     whose: Whose,
-    /// Frames up to here, and these, were seen.
+    /// Frames up to this one have been seen.
     start: usize,
     seen: BTreeSet<usize>,
-    /// The frame that predictions are about, and the nodes predicted there.
+    /// The frame being predicted, and the nodes predicted so far.
     at: usize,
     said: BTreeMap<usize, Mode>,
     /// Predictions that were right.
@@ -26,7 +26,7 @@ pub struct Guess {
 }
 
 impl Guess {
-    /// Hides what comes after this frame.
+    /// Hides decisions after this frame.
     pub fn new(whose: Whose, cursor: usize) -> Self {
         Guess {
             whose,
@@ -39,7 +39,7 @@ impl Guess {
         }
     }
 
-    /// Whether a decision is still hidden in this frame.
+    /// Whether this frame has a hidden decision.
     pub fn is_open(&self, cursor: usize, frame: &Frame) -> bool {
         let decided = frame
             .event
@@ -51,17 +51,16 @@ impl Guess {
             && !self.seen.contains(&cursor)
     }
 
-    /// Whether the decision on this slave node is hidden.
+    /// Whether the decision at this slave node is hidden.
     pub fn hides(&self, cursor: usize, frame: &Frame, slave: usize) -> bool {
         let said = self.at == cursor && self.said.contains_key(&slave);
         self.is_open(cursor, frame) && !said
     }
 
-    /// Whether an action may be done now: not forward while something is hidden. An intervention forgets what came after
-    /// it.
+    /// Checks whether an action is allowed: moving forward is not, while a decision is hidden. An intervention
+    /// discards what was known about later frames.
     ///
-    /// # Errors
-    /// A message that says what is to be predicted first.
+    /// # Errors If something has to be predicted first.
     pub fn permits(&mut self, action: &Action, cursor: usize, frame: &Frame) -> Result<(), NotNow> {
         match action {
             Action::Session(Command::Forward { .. }) if self.is_open(cursor, frame) => {
@@ -76,20 +75,20 @@ impl Guess {
         }
     }
 
-    /// An intervention in this frame: what came after it is forgotten.
+    /// Discards what was known about frames after an intervention.
     fn forget_after(&mut self, cursor: usize) {
         self.start = self.start.min(cursor);
         self.seen.retain(|frame| *frame <= cursor);
-        // What was seen before stays seen, whichever way it was.
+        // Frames seen before stay visible in any branch.
         if self.at > cursor {
             self.said.clear();
         }
     }
 
-    /// Takes a prediction of the next mode of a slave node, and tells what Table 2 did; true where they agree.
+    /// Takes a prediction of a slave node's next mode. Returns the decision in words, and whether the
+    /// prediction was right.
     ///
-    /// # Errors
-    /// Where there is nothing to predict, or the word is no mode.
+    /// # Errors If there is nothing to predict, or the word is not a mode.
     pub fn predict(
         &mut self,
         model: &Model,

@@ -1,4 +1,4 @@
-//! A lesson: read from its file, checked against its scene; and the built-in ones.
+//! Lessons: read from a file and checked against their scene; and the built-in ones.
 
 use super::quantity::{self, LessonQuantity, Template};
 use super::refusal::NoPress;
@@ -17,24 +17,24 @@ use stickslip_scene::format::{Fault, read};
 use stickslip_scene::{Scene, placed};
 use stickslip_study::Vary;
 
-/// A lesson that was read and found to fit its scene.
+/// A lesson that matches its scene.
 #[derive(Debug, Clone)]
 pub struct Lesson {
     /// Path of the file, or name of the built-in lesson.
     pub name: String,
-    /// One line that says what the lesson is about.
+    /// Title, one line.
     pub title: String,
-    /// What it teaches, in a line.
+    /// Subject, one line.
     pub about: String,
-    /// The scene that it is played on.
+    /// The scene.
     pub scene: Scene,
-    /// Its model.
+    /// The scene's model.
     pub model: Arc<Model>,
-    /// What is told, asked and done, one after the other.
+    /// The steps in order.
     pub steps: Vec<Step>,
-    /// The runs of its chart, where it has one.
+    /// The runs of its chart, if it has one.
     pub runs: Option<Arc<Runs>>,
-    /// Its file, to name lines.
+    /// The text of its file, for line numbers in errors.
     text: String,
 }
 
@@ -43,22 +43,22 @@ pub struct Lesson {
 pub enum Step {
     /// Something to read.
     Text(Template),
-    /// Something to press.
+    /// An action to perform.
     Press {
-        /// What is told before.
+        /// Text before the action.
         text: Template,
-        /// What is to be pressed.
+        /// The action.
         action: Action,
-        /// How to do that, in words.
+        /// How to perform it, in words.
         how: String,
     },
     /// A question.
     Ask(Ask),
     /// Decisions to predict.
     Predict {
-        /// What is told before.
+        /// Text before the predictions.
         text: Template,
-        /// How many must be right, one after the other.
+        /// Number of consecutive right predictions required.
         right: u32,
     },
 }
@@ -68,45 +68,45 @@ pub enum Step {
 pub struct Ask {
     /// The question.
     pub text: Template,
-    /// What is right.
+    /// The right answer.
     pub answer: Answer,
-    /// Minor iterations that it looks ahead.
+    /// Number of minor iterations that it looks ahead.
     pub ahead: u32,
-    /// What is told after a wrong answer.
+    /// Reply to a wrong answer.
     pub hint: Template,
-    /// What is told after the right one.
+    /// Reply to the right answer.
     pub then: Template,
 }
 
-/// What is asked for; nodes by slave number.
+/// The answer of a question; nodes by slave number.
 #[derive(Debug, Clone)]
 pub enum Answer {
-    /// The mode that this slave node (by number) takes next.
+    /// The next mode of this slave node.
     Mode(usize),
-    /// The cell of Table 2 that decides at this slave node.
+    /// The cell of Table 2 that applies at this slave node.
     Rule(usize),
-    /// A number, and how far off an answer may be, relatively.
+    /// A number and its relative tolerance.
     Number(LessonQuantity, f64),
-    /// One of several sentences, each with what makes it true.
+    /// One of several sentences, each with its condition.
     Choice(Vec<(Template, Truth)>),
 }
 
-/// What makes a choice right.
+/// The condition that makes a choice right.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Truth {
     /// The increment ends in a cycle.
     Cycles,
     /// The increment is accepted.
     Accepted,
-    /// So many states are consistent.
+    /// The number of consistent states.
     Answers(usize),
-    /// This slave node (by number) takes this mode next.
+    /// The next mode of this slave node.
     Becomes(usize, Mode),
-    /// The residuals end with digits that double; false: with a factor that stays.
+    /// Convergence of the residuals: quadratic, or linear if false.
     Quadratic(bool),
-    /// Every law is obeyed.
+    /// All laws are satisfied.
     Obeys,
-    /// This law is broken.
+    /// This law is violated.
     Breaks(Law),
     /// The first number is clearly less than the second.
     Less(LessonQuantity, LessonQuantity),
@@ -114,19 +114,19 @@ pub enum Truth {
     Close(LessonQuantity, LessonQuantity),
     /// The run with these settings is the cheapest of those with an error of at most this.
     Cheapest(Vec<(String, String)>, f64),
-    /// True or not, as the author says.
+    /// Right or wrong, as the author says.
     Known(bool),
 }
 
-/// Longest texts, in characters: what a screen of 80x24 has room for.
+/// Maximum length of texts in characters: what an 80x24 screen can show.
 const LONGEST_TEXT: usize = 480;
 const LONGEST_REMARK: usize = 320;
-/// Most choices, one digit each.
+/// Maximum number of choices, one digit each.
 const MOST_CHOICES: usize = 9;
-/// Longest look ahead, in minor iterations.
+/// Maximum number of minor iterations that a question looks ahead.
 const FARTHEST: u32 = 100;
 
-/// In the order in which they are to be taken.
+/// The built-in lessons in teaching order.
 const LESSONS: &[EmbeddedFile] = embedded_all![
     "../../problems/lessons/",
     ".ron",
@@ -145,18 +145,18 @@ const LESSONS: &[EmbeddedFile] = embedded_all![
     "13-two-sides",
 ];
 
-/// All built-in lessons, in the order in which they are to be taken.
+/// All built-in lessons, in teaching order.
 pub fn list() -> &'static [EmbeddedFile] {
     LESSONS
 }
 
-/// The title of a built-in lesson; empty if it cannot be read, which is a bug that the tests find.
+/// The title of a built-in lesson; empty if it cannot be read (checked by a test).
 pub fn title(lesson: &EmbeddedFile) -> String {
     let spec = read::value::<LessonSpec>(lesson.name, lesson.text, "lesson");
     spec.map(|spec| spec.title).unwrap_or_default()
 }
 
-/// The built-in lesson with a name, with or without the ending `.ron`, or with the number or the word of a name alone.
+/// Finds a built-in lesson by name, with or without `.ron`, or by the number or the word of its name alone.
 pub fn find(name: &str) -> Option<&'static EmbeddedFile> {
     let name = name.strip_suffix(".ron").unwrap_or(name);
     let called = |lesson: &&EmbeddedFile| {
@@ -167,10 +167,9 @@ pub fn find(name: &str) -> Option<&'static EmbeddedFile> {
 }
 
 impl Lesson {
-    /// Opens a lesson file, or a built-in lesson by its name; a file of that name wins.
+    /// Opens a lesson file, or a built-in lesson by name; a file takes precedence.
     ///
-    /// # Errors
-    /// If there is no such lesson, or it does not fit its scene: one message, with line and column.
+    /// # Errors If there is no such lesson, or it does not match its scene: one message, with line and column.
     pub fn open(name: &str) -> Result<Lesson, SceneError> {
         if !std::path::Path::new(name).is_file()
             && let Some(builtin) = find(name)
@@ -181,7 +180,7 @@ impl Lesson {
             if !std::path::Path::new(name).exists() {
                 let names = || LESSONS.iter().map(|lesson| lesson.name);
                 error.message = format!(
-                    "there is no such file, and no built-in lesson of that name{} (built-in: {})",
+                    "no such file or built-in lesson{} (built-in: {})",
                     did_you_mean(name, names()),
                     names().collect::<Vec<_>>().join(", ")
                 );
@@ -191,7 +190,7 @@ impl Lesson {
         Lesson::from_text(name, &text)
     }
 
-    /// Reads a lesson from a text; `name` is what messages call it.
+    /// Reads a lesson from text; `name` is its name for messages.
     ///
     /// # Errors
     /// As [`Lesson::open`].
@@ -216,14 +215,14 @@ impl Lesson {
         })
     }
 
-    /// An error about a step, with its place in the file.
+    /// An error about a step, with its location in the file.
     pub(super) fn fault(&self, step: usize, message: String) -> SceneError {
         let fault = Fault::new(at!["steps", step], message);
         placed(&self.name, &self.text, &[], fault)
     }
 }
 
-/// The scene that a lesson is about.
+/// The scene of a lesson.
 fn scene(name: &str, text: &str, spec: &LessonSpec) -> Result<Scene, SceneError> {
     let at = |path: Path, message: String| placed(name, text, &[], Fault::new(path, message));
     let mut scene = match &spec.scene {
@@ -247,7 +246,7 @@ fn runs(spec: &LessonSpec, scene: &Scene) -> Result<Option<Arc<Runs>>, Fault> {
         return Ok(None);
     }
     if matches!(spec.scene, SceneSpec::Scene(_)) {
-        let message = "a chart is measured of a scene that has a name of its own: scene: Name(…)";
+        let message = "a chart requires a named scene: scene: Name(…)";
         return Err(Fault::new(at!["chart"], message));
     }
     let over = spec.chart.iter().enumerate().map(|(index, text)| {
@@ -258,7 +257,7 @@ fn runs(spec: &LessonSpec, scene: &Scene) -> Result<Option<Arc<Runs>>, Fault> {
     Ok(Some(Arc::new(runs)))
 }
 
-/// Reads steps against a scene.
+/// Checks steps against a scene.
 struct Reader<'a> {
     scene: &'a Scene,
 }
@@ -274,7 +273,7 @@ impl Reader<'_> {
 
     fn steps(&self, spec: &LessonSpec) -> Result<Vec<Step>, Fault> {
         if spec.steps.is_empty() {
-            return Err(Fault::new(at!["steps"], "a lesson needs a step at least"));
+            return Err(Fault::new(at!["steps"], "a lesson needs at least one step"));
         }
         let steps = spec.steps.iter().enumerate();
         steps
@@ -294,7 +293,7 @@ impl Reader<'_> {
             }
             StepSpec::Predict { right: 0, .. } => Err(Fault::new(
                 path.then("right"),
-                "one right prediction at least",
+                "at least one right prediction is required",
             )),
             StepSpec::Predict { text: words, right } => Ok(Step::Predict {
                 text: text(words)?,
@@ -308,7 +307,7 @@ impl Reader<'_> {
                 then,
             } => {
                 if *ahead > FARTHEST {
-                    let message = format!("a question looks ahead by {FARTHEST} at most");
+                    let message = format!("a question can look ahead by at most {FARTHEST}");
                     return Err(Fault::new(path.then("ahead"), message));
                 }
                 let answer = self.answer(path.then("answer"), answer)?;
@@ -338,7 +337,7 @@ impl Reader<'_> {
         let message = match Template::read(text, &self.context()) {
             Ok(template) if length <= longest => return Ok(template),
             Ok(_) => format!(
-                "{length} characters are more than a small screen shows at once; make it two steps of at most {longest}"
+                "the text has {length} characters, too many for a small screen; split it into steps of at most {longest}"
             ),
             Err(why) => why.to_string(),
         };
@@ -357,17 +356,17 @@ impl Reader<'_> {
                 let quantity = LessonQuantity::read(of, &self.context())
                     .map_err(|why| Fault::new(path.then("of"), why.to_string()))?;
                 if !quantity.is_number() {
-                    return Err(Fault::new(path.then("of"), format!("{of} is no number")));
+                    return Err(Fault::new(path.then("of"), format!("{of} is not a number")));
                 }
                 if !(0.0..1.0).contains(tolerance) {
-                    let message = "a tolerance is relative: 0 for exact, 0.01 for one per cent";
+                    let message = "the tolerance is relative: 0 for exact, 0.01 for one per cent";
                     return Err(Fault::new(path.then("tolerance"), message));
                 }
                 Answer::Number(quantity, *tolerance)
             }
             AnswerSpec::Choice(choices) => {
                 if !(2..=MOST_CHOICES).contains(&choices.len()) {
-                    let message = format!("there must be 2 to {MOST_CHOICES} choices");
+                    let message = format!("a question needs 2 to {MOST_CHOICES} choices");
                     return Err(Fault::new(path, message));
                 }
                 let all = choices.iter().enumerate();
@@ -401,12 +400,7 @@ impl Reader<'_> {
                 let all = || Law::ALL.into_iter().chain(Law::OF_BONDS);
                 let law = all().find(|law| law.name() == name);
                 let names = || all().map(Law::name).collect::<Vec<_>>().join(", ");
-                let none = || {
-                    Fault::new(
-                        path,
-                        format!("the judge has no law {name:?}; it has {}", names()),
-                    )
-                };
+                let none = || Fault::new(path, format!("unknown law {name:?}; laws: {}", names()));
                 Truth::Breaks(law.ok_or_else(none)?)
             }
             When::Less(a, b) => Truth::Less(self.number(&path, a)?, self.number(&path, b)?),
@@ -424,7 +418,7 @@ impl Reader<'_> {
     }
 }
 
-/// The action that a lesson wants, and how to do it, in words.
+/// The action of a step, and how to perform it, in words.
 fn press_of(press: &str, context: &Context) -> Result<(Action, String), NoPress> {
     let press = press.trim();
     let digits = press.len() - press.trim_start_matches(|c: char| c.is_ascii_digit()).len();
@@ -438,7 +432,7 @@ fn press_of(press: &str, context: &Context) -> Result<(Action, String), NoPress>
     }
     let (word, rest) = press.split_once(' ').unwrap_or((press, ""));
     let found = action::by_name(word).map_err(|why| {
-        // To words as short as `up` almost anything is near.
+        // No suggestion for short words such as `up`: almost any name is similar.
         let names = action::ACTIONS.iter().map(|entry| entry.name);
         let names = names.filter(|name| name.len() > 3);
         NoPress::NoAction(why, did_you_mean(word, names))
@@ -451,7 +445,7 @@ fn press_of(press: &str, context: &Context) -> Result<(Action, String), NoPress>
     Ok((action, how))
 }
 
-/// The shorter way to some actions that take an argument.
+/// The shorter way to perform some actions with an argument.
 fn by_keys(action: &Action) -> String {
     match action {
         Action::Session(Command::Force { mode, hold, .. }) => {

@@ -1,4 +1,4 @@
-//! What the solver says about a state: now, some minor iterations on, or at the end of the increment.
+//! Quantities of a state: now, some minor iterations later, or at the end of the increment.
 
 use super::refusal::Unknown;
 use super::runs::Runs;
@@ -16,47 +16,45 @@ use stickslip_core::step::drive::{RunEnd, Until};
 use stickslip_core::step::event::{Event, Failure, Outcome};
 use stickslip_core::step::stepper::Stepper;
 
-/// Minor iterations after which an increment counts as endless.
+/// Number of minor iterations after which an increment counts as endless.
 const ENDLESS: u32 = 20_000;
 
-/// A frame of the history, and the scene that it belongs to.
+/// A frame of the history with its model.
 #[derive(Debug, Clone)]
 pub struct Look {
     /// The scene's model.
     pub model: Arc<Model>,
-    /// The iteration that is looked at.
+    /// The shown iteration.
     pub frame: Frame,
-    /// The runs of the lesson's chart, where it has one.
+    /// The runs of the lesson's chart, if it has one.
     pub runs: Option<Arc<Runs>>,
 }
 
-/// How an increment ends.
+/// The end of an increment.
 #[derive(Debug, Clone, PartialEq)]
 pub struct IncrementEnd {
-    /// Minor iterations to there.
+    /// Minor iterations until the end.
     pub minors: u32,
-    /// Whether it is accepted.
+    /// Whether the increment is accepted.
     pub accepted: bool,
-    /// The cycle that ends it, if one does.
+    /// The cycle that ends it, if there is one.
     pub cycle: Option<Cycle>,
-    /// Its major iterations, also those before here.
+    /// Number of major iterations of the increment, including earlier ones.
     pub majors: u32,
-    /// Relative residuals: the one that is known here, and those at the ends of the major iterations from here on.
+    /// Relative residuals: the latest one here, and those at the end of each later major iteration.
     pub residuals: Vec<f64>,
 }
 
-/// Residuals in which a rate of convergence is looked for: larger ones are far from the solution, smaller ones near the
-/// round-off.
+/// Only residuals below this are used for a rate of convergence; larger ones are far from the solution.
 const NEAR: f64 = 1e-2;
 const FAR: f64 = 1e-7;
-/// A major iteration that leaves less than this power of the residual counts as one that doubles the digits.
+/// Convergence counts as quadratic if a major iteration leaves less than this power of the residual.
 const DOUBLING: f64 = 1.5;
 
 impl IncrementEnd {
-    /// Whether the residuals near the solution fall ever faster; else by a factor that stays.
+    /// Whether the residuals near the solution converge quadratically rather than linearly.
     ///
-    /// # Errors
-    /// Where none is near.
+    /// # Errors If none are near the solution.
     pub fn is_quadratic(&self) -> Result<bool, Unknown> {
         let near = |pair: &&[f64]| (FAR..NEAR).contains(&pair[0]);
         let mut pairs = self.residuals.windows(2).filter(near).peekable();
@@ -66,10 +64,9 @@ impl IncrementEnd {
 }
 
 impl Look {
-    /// This frame, after so many minor iterations more.
+    /// The frame after this many more minor iterations.
     ///
-    /// # Errors
-    /// Where the history is done before.
+    /// # Errors If the history ends earlier.
     pub fn ahead(&self, minors: u32) -> Result<Look, Unknown> {
         let mut look = self.clone();
         if minors == 0 {
@@ -87,10 +84,9 @@ impl Look {
         Ok(look)
     }
 
-    /// How this increment ends, if nobody interferes.
+    /// How this increment ends without interventions.
     ///
-    /// # Errors
-    /// Where it does not within reason.
+    /// # Errors If it does not end within the limit.
     pub fn end(&self) -> Result<IncrementEnd, Unknown> {
         let mut stepper = self.stepper();
         let mut minors = 0;
@@ -121,10 +117,9 @@ impl Look {
         })
     }
 
-    /// What the judge found in the increment that was accepted last.
+    /// The judge's verdict on the last accepted increment.
     ///
-    /// # Errors
-    /// Where none was yet.
+    /// # Errors If no increment has been accepted.
     pub fn verdict(&self) -> Result<&Verdict, Unknown> {
         self.frame
             .state
@@ -134,19 +129,18 @@ impl Look {
             .ok_or(Unknown::NotJudged)
     }
 
-    /// The relative residual that is known last: at the end of the major iteration where it ends here, else at its start.
+    /// The latest relative residual: after the major iteration if it ended here, otherwise before it.
     ///
-    /// # Errors
-    /// Where nothing is solved yet.
+    /// # Errors If no iteration has been solved.
     pub fn residual(&self) -> Result<f64, Unknown> {
         let event = self.event()?;
         Ok(after(&event.outcome).unwrap_or(&event.before).relative)
     }
 
-    /// By which factor a sliding node's T_max comes nearer to what its pressure gives, or goes away from it, in the next solve.
+    /// The factor by which a sliding node's lagged T_max approaches the value for its pressure in the next
+    /// solve, or departs from it.
     ///
-    /// # Errors
-    /// Where it does not slide with a lagging T_max now and after the next solve.
+    /// # Errors If the node does not slide with a lagged T_max both now and after the next solve.
     pub fn lag(&self, slave: usize) -> Result<f64, Unknown> {
         let off = |look: &Look| -> Result<f64, Unknown> {
             let record = look.record(slave)?;
@@ -163,16 +157,14 @@ impl Look {
 
     /// The runs of the lesson's chart.
     ///
-    /// # Errors
-    /// Where it has none.
+    /// # Errors If the lesson has no chart.
     pub fn runs(&self) -> Result<&Runs, Unknown> {
         self.runs.as_deref().ok_or(Unknown::NoRuns)
     }
 
-    /// Consistent states of the frozen problem of this major iteration.
+    /// The number of consistent states of the frozen problem of this major iteration.
     ///
-    /// # Errors
-    /// Where the bodies cannot be condensed, or there are too many nodes for a census.
+    /// # Errors If the bodies cannot be condensed, or there are too many nodes for a census.
     pub fn answers(&self) -> Result<usize, Unknown> {
         let frozen = self.stepper().interface_problem();
         let frozen = frozen.ok_or(Unknown::NotCondensed)?;
@@ -185,37 +177,35 @@ impl Look {
         stepper
     }
 
-    /// The minor iteration that led here.
+    /// The last minor iteration.
     ///
-    /// # Errors
-    /// Where there is none.
+    /// # Errors If there is none.
     pub fn event(&self) -> Result<&Event, Unknown> {
         let event = self.frame.event.as_deref();
         event.ok_or(Unknown::Unsolved)
     }
 
-    /// What it found at a slave node.
+    /// The record of a slave node in it.
     ///
-    /// # Errors
-    /// Where there is none.
+    /// # Errors If there is none.
     pub fn record(&self, slave: usize) -> Result<&ContactRecord, Unknown> {
         let record = self.event()?.nodes.get(slave);
         record.ok_or(Unknown::Failed)
     }
 
-    /// The mode that a slave node had in it; at the start the one that it starts with.
+    /// The mode of a slave node in it; at the start, the initial mode.
     pub fn before(&self, slave: usize) -> Mode {
         let record = self.record(slave);
         record.map_or(self.next(slave), |record| record.decision.before)
     }
 
-    /// The mode that it takes next.
+    /// The next mode of a slave node.
     pub fn next(&self, slave: usize) -> Mode {
         self.frame.state.nodes[slave].mode
     }
 }
 
-/// Norms at the end of a major iteration, where an outcome is that.
+/// Norms at the end of a major iteration, if the outcome is one.
 fn after(outcome: &Outcome) -> Option<&Norms> {
     match outcome {
         Outcome::Major { after, .. }

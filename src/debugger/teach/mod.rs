@@ -1,11 +1,11 @@
-//! Guided lessons: a script over a scene, without a terminal.
+//! Guided lessons: a script for a scene, without a terminal.
 //!
-//! - [`spec`]: the file as its author writes it; [`lesson`]: read, checked against its scene, and the built-in ones.
-//! - [`quantity`]: numbers by name, for texts and questions; [`look`]: where they come from, [`runs`]:
-//!   where those of a chart do.
-//! - [`tutor`]: a lesson being taken; [`guess`]: free mode, where decisions hide until predicted; [`refusal`]: why something
-//!   is not done now.
-//! - [`play`]: a lesson played through by the program itself, to check it; [`progress`]: how far the user came, kept.
+//! - [`spec`]: the file format; [`lesson`]: lessons checked against their scene, and the built-in ones.
+//! - [`quantity`]: numbers by name, for texts and questions; [`look`]: their values in a state; [`runs`]: those
+//!   of a chart.
+//! - [`tutor`]: a lesson in progress; [`guess`]: free mode, with decisions hidden until predicted; [`refusal`]:
+//!   errors.
+//! - [`play`]: plays a lesson automatically, to check it; [`progress`]: saves the user's progress.
 
 pub mod guess;
 pub mod lesson;

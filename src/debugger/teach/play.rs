@@ -1,5 +1,4 @@
-//! A lesson played through by the program itself: the check that every step can be reached and every question has one
-//! answer.
+//! Plays a lesson automatically, to check that every step can be reached and every question has one answer.
 
 use super::lesson::{Lesson, Step};
 use super::refusal::Unplayable;
@@ -12,17 +11,17 @@ use std::sync::Arc;
 use stickslip_scene::format::SceneError;
 use stickslip_scene::number::four;
 
-/// Minor iterations within which a step of free mode must find its predictions.
+/// Maximum number of minor iterations that provide the predictions of a step.
 const MOST_STEPS: u32 = 1000;
 
 /// A question with the solver's answer and the replies, numbers filled in.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Answered {
-    /// Place of the step, from 0.
+    /// Index of the step, from 0.
     pub step: usize,
-    /// What was asked.
+    /// The question.
     pub question: String,
-    /// The right answer, as one would type it.
+    /// The right answer, as typed.
     pub answer: String,
     /// The reply to the right answer.
     pub then: String,
@@ -32,8 +31,7 @@ pub struct Answered {
 
 /// Plays a lesson with the right keys and answers.
 ///
-/// # Errors
-/// The first step that cannot be done, with its line and column.
+/// # Errors For the first step that cannot be completed, with its line and column.
 pub fn play(lesson: &Arc<Lesson>) -> Result<Vec<Answered>, SceneError> {
     let mut session = Session::new(lesson.scene.clone());
     let mut tutor = Tutor::new(lesson.clone(), session.cursor(), session.frame());
@@ -79,7 +77,7 @@ pub fn play(lesson: &Arc<Lesson>) -> Result<Vec<Answered>, SceneError> {
     Ok(answered)
 }
 
-/// Carries out what a lesson wants pressed; what concerns the screen alone needs no session.
+/// Executes the action of a step; actions of the screen need no session.
 fn perform(action: &Action, session: &mut Session) -> Result<(), Unplayable> {
     if let Action::Session(command) = action {
         session.submit(command.clone())?;
@@ -88,7 +86,7 @@ fn perform(action: &Action, session: &mut Session) -> Result<(), Unplayable> {
     Ok(())
 }
 
-/// Predicts as Table 2 decides, until that was right often enough.
+/// Predicts what Table 2 decides until enough predictions were right.
 fn predict(right: u32, tutor: &mut Tutor, session: &mut Session) -> Result<(), Unplayable> {
     let step = Action::Session(Command::Forward {
         unit: Unit::Minor,
@@ -117,7 +115,7 @@ fn predict(right: u32, tutor: &mut Tutor, session: &mut Session) -> Result<(), U
     Err(Unplayable::FewIterations(right))
 }
 
-/// An answer as the check lists it.
+/// An answer as listed by the check.
 fn readable(tutor: &Tutor, word: &str) -> String {
     match tutor.question() {
         Some(question) if question.kind == AnswerKind::Choice => {

@@ -1,4 +1,4 @@
-//! How far the user came in which lesson: a small file in RON, kept where journals are.
+//! The user's progress in the lessons, saved in a small RON file next to the journals.
 
 use super::tutor::Tutor;
 use crate::record::journal;
@@ -9,28 +9,28 @@ use stickslip_platform::files::{self, FileError};
 use stickslip_platform::input::{self, Unreadable};
 use stickslip_scene::format::notation;
 
-/// The format that this program writes, and the only one that it reads.
+/// Format version written by this program, and the only one it reads.
 pub const FORMAT: u32 = 1;
-/// More bytes than any such file has.
+/// Maximum size of the file.
 const BYTES: u64 = 1 << 20;
 
-/// How far the user came in a lesson.
+/// Progress in a lesson.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Reached {
-    /// Steps that were done, the farthest that ever was.
+    /// The largest number of steps completed so far.
     pub steps: usize,
-    /// Steps that the lesson has.
+    /// Number of steps of the lesson.
     pub of: usize,
-    /// How often it was taken to its end.
+    /// How often the lesson was finished.
     pub ended: u32,
-    /// Questions answered right at once, the best of all times that it was taken to its end.
+    /// Questions answered right at the first attempt, in the best finished run.
     pub right: u32,
-    /// Questions asked then.
+    /// Number of questions in that run.
     pub asked: u32,
 }
 
-/// How far the user came in all lessons, by their names.
+/// Progress in all lessons, by name.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Progress {
@@ -45,50 +45,49 @@ impl Default for Progress {
     }
 }
 
-/// Why progress cannot be read or kept.
+/// Why progress cannot be read or saved.
 #[derive(Debug, thiserror::Error)]
 pub enum ProgressError {
-    /// It cannot be read.
-    #[error("{}: what was done of the lessons cannot be read: {why}", file.display())]
+    /// The file cannot be read.
+    #[error("{}: lesson progress cannot be read: {why}", file.display())]
     Unread {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
-        /// Why.
+        /// Cause.
         why: Unreadable,
     },
-    /// It is no such file.
-    #[error("{}:{line}: what was done of the lessons cannot be read: {message}; delete the file to begin anew", file.display())]
+    /// The file is damaged.
+    #[error("{}:{line}: lesson progress cannot be read: {message}; delete the file to start again", file.display())]
     Damaged {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
-        /// From 1.
+        /// Line number, from 1.
         line: usize,
-        /// What is wrong there.
+        /// What is wrong.
         message: String,
     },
-    /// It is of another format than this program knows.
-    #[error("{}: it has format {found}, and this program knows only format {FORMAT}", file.display())]
+    /// Unknown format version.
+    #[error("{}: the file has format {found}, but this program reads only format {FORMAT}", file.display())]
     Format {
-        /// The file.
+        /// Path of the file.
         file: PathBuf,
-        /// Its format.
+        /// Format version of the file.
         found: u32,
     },
-    /// It cannot be written.
-    #[error("what was done of the lesson cannot be kept: {0}")]
+    /// The file cannot be written.
+    #[error("lesson progress cannot be saved: {0}")]
     Unwritten(#[from] FileError),
 }
 
-/// The file in which progress is kept; `None` where the system names no home directory.
+/// Path of the file; `None` if the system has no home directory.
 pub fn place() -> Option<PathBuf> {
     Some(journal::home().ok()?.join("lessons.ron"))
 }
 
 impl Progress {
-    /// Reads a file; where there is none, nothing was done yet.
+    /// Reads a file; a missing file means no progress.
     ///
-    /// # Errors
-    /// If it is there and cannot be read.
+    /// # Errors If the file exists and cannot be read.
     pub fn read(file: &Path) -> Result<Progress, ProgressError> {
         if !file.exists() {
             return Ok(Progress::default());
@@ -97,7 +96,7 @@ impl Progress {
             file: file.to_owned(),
             why,
         };
-        let text = input::text(file, BYTES, "delete it to begin anew").map_err(unread)?;
+        let text = input::text(file, BYTES, "delete it to start again").map_err(unread)?;
         let read: Progress = notation::read(&text).map_err(|e| ProgressError::Damaged {
             file: file.to_owned(),
             line: e.span.start.line,
@@ -112,17 +111,17 @@ impl Progress {
         }
     }
 
-    /// What was done of a lesson.
+    /// Progress in a lesson.
     pub fn of(&self, lesson: &str) -> Option<Reached> {
         self.lessons.get(lesson).copied()
     }
 
-    /// Takes in where a lesson stands. Returns whether that is farther than ever before.
+    /// Updates the progress from the state of a lesson. Returns whether anything improved.
     fn take(&mut self, tutor: &Tutor) -> bool {
         let (lesson, (right, asked)) = (tutor.lesson(), tutor.score());
         let reached = self.lessons.entry(lesson.name.clone()).or_default();
         let before = *reached;
-        // A lesson that was changed since is counted as it is now.
+        // If the number of steps has changed, the current one counts.
         if reached.of != lesson.steps.len() {
             *reached = Reached::default();
         }
@@ -130,7 +129,7 @@ impl Progress {
         reached.steps = reached.steps.max(tutor.at());
         if tutor.step().is_none() {
             reached.ended += 1;
-            // The first time there is nothing to be better than.
+            // The first result is always the best one.
             if reached.ended == 1 || right > reached.right {
                 (reached.right, reached.asked) = (right, asked);
             }
@@ -140,7 +139,7 @@ impl Progress {
 }
 
 impl Reached {
-    /// Whether the lesson was finished.
+    /// Whether the lesson has been finished.
     pub fn is_done(&self) -> bool {
         self.ended > 0
     }
@@ -155,25 +154,24 @@ impl Reached {
     }
 }
 
-/// Keeps progress while a lesson is taken.
+/// Saves progress during a lesson.
 #[derive(Debug, Clone, Default)]
 pub struct Keeper {
-    /// The file; `None` if nothing is kept.
+    /// The file; `None` if nothing is saved.
     file: Option<PathBuf>,
-    /// The lesson and its step that were kept last.
+    /// The lesson and step saved last.
     kept: Option<(String, usize)>,
 }
 
 impl Keeper {
-    /// Keeps it in this file.
+    /// Saves to this file.
     pub fn new(file: Option<PathBuf>) -> Keeper {
         Keeper { file, kept: None }
     }
 
-    /// Keeps where a lesson stands, if that is another step than before.
+    /// Saves the state of a lesson if its step has changed.
     ///
-    /// # Errors
-    /// As [`keep`]; nothing is tried any more then, since once is enough to be told.
+    /// # Errors As [`keep`]. After an error nothing more is saved, so that it is reported only once.
     pub fn follow(&mut self, tutor: &Tutor) -> Result<(), ProgressError> {
         let here = Some((tutor.lesson().name.clone(), tutor.at()));
         let Some(file) = &self.file else {
@@ -191,10 +189,10 @@ impl Keeper {
     }
 }
 
-/// Keeps where a lesson stands, if that is farther than ever before; other sessions may have written in the meantime.
+/// Saves the state of a lesson if it improved. Reads the file first, because other sessions may have changed
+/// it.
 ///
-/// # Errors
-/// If the file cannot be read or written. It is written whole, or stays as it was.
+/// # Errors If the file cannot be read or written. The file is replaced completely or stays unchanged.
 pub fn keep(file: &Path, tutor: &Tutor) -> Result<(), ProgressError> {
     let mut progress = Progress::read(file)?;
     if !progress.take(tutor) {

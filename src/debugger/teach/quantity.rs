@@ -1,12 +1,14 @@
-//! What the solver can be asked for by name: in a lesson's questions, and between braces in its texts.
+//! Quantities by name, for a lesson's questions and, in braces, its texts.
 //!
-//! Of a slave node, `NAME NODE`: `gap`, `F_n`, `F_t`, `T_max`, `slip` (numbers of the minor iteration), `lag` (the factor by
-//! which a lagging T_max comes nearer or goes away in the next one), `mode` (the one
-//! that it had), `next` (the one that it takes next), `reason` (why, in a sentence). Of the solve: `load`, `increment`
-//! (its size), `angle`, `tan` and `cohesion` (of the first slave node), `answers` (consistent states that the census
-//! finds), `minors` (minor iterations to the end of this increment), `majors` (all its major ones), `residual` (relative, known
-//! last) and `period` (of the cycle in which it ends), `verdict` (what the judge found in the last accepted increment, in a
-//! sentence). Of a run of the lesson's chart, `NAME PATH=VALUE …`: `error` (relative) and `factorizations`. Besides, `right` is the right answer of the question before, and `key ACTION` the key that does an action.
+//! At a slave node, `NAME NODE`: `gap`, `F_n`, `F_t`, `T_max`, `slip` (of the minor iteration), `lag` (the
+//! factor by which the error of a lagged T_max changes in the next one), `mode` (of this iteration), `next` (of
+//! the next one), `reason` (the decision in a sentence). Of the solve: `load`, `increment` (its size), `angle`,
+//! `tan` and `cohesion` (of the first slave node), `answers` (number of consistent states in the census),
+//! `minors` (minor iterations to the end of this increment), `majors` (all its major iterations), `residual`
+//! (the latest, relative), `period` (of the cycle that ends the increment), `verdict` (the judge's finding in
+//! the last accepted increment, in a sentence). Of a run in the lesson's chart, `NAME PATH=VALUE …`: `error`
+//! (relative) and `factorizations`. In addition, `right` is the right answer of the previous question, and `key
+//! ACTION` the key of an action.
 
 use super::look::Look;
 use super::refusal::Unknown;
@@ -17,27 +19,27 @@ use crate::explain::report;
 use crate::explain::round_off::RoundOff;
 use stickslip_scene::number::four;
 
-/// Something that the solver can tell.
+/// A quantity that the solver can provide.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LessonQuantity {
-    /// Of a slave node, by slave number.
+    /// A quantity of a slave node (by slave number).
     Of(Nodal, usize),
-    /// Of the solve.
+    /// A quantity of the solve.
     Solve(Whole),
-    /// Of the run of the lesson's chart with these settings.
+    /// A quantity of the run of the lesson's chart with these settings.
     Run(OfRun, Vec<(String, String)>),
-    /// A number that is written out.
+    /// A literal number.
     Written(f64),
     /// The right answer of the question.
     Right,
-    /// A key.
+    /// The key of an action.
     Key(&'static str),
 }
 
-/// What a slave node has.
+/// Quantities of a slave node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Nodal {
-    /// Gap, length; negative is penetration.
+    /// Gap (length), negative for penetration.
     Gap,
     /// Normal force; compression is positive.
     Fn,
@@ -47,22 +49,22 @@ pub enum Nodal {
     TMax,
     /// Slip, length.
     Slip,
-    /// By which factor the lag of T_max changes in the next solve.
+    /// Factor by which the error of a lagged T_max changes in the next solve.
     Lag,
     /// Mode of the shown iteration.
     Mode,
     /// Mode of the next iteration.
     Next,
-    /// The cell of Table 2 that fired, in words.
+    /// The cell of Table 2 that applied, in words.
     Reason,
 }
 
-/// What the solve has.
+/// Quantities of the solve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Whole {
     /// The load factor λ.
     Load,
-    /// Size of the increment, in load factors.
+    /// Size of the increment, as a load factor.
     Increment,
     /// Angle of friction, degrees.
     Angle,
@@ -72,24 +74,24 @@ pub enum Whole {
     Cohesion,
     /// Number of consistent states.
     Answers,
-    /// Minor iterations until they settle or cycle.
+    /// Minor iterations until the increment ends.
     Minors,
-    /// Iterations of one period of the cycle.
+    /// Period of the cycle.
     Period,
     /// Major iterations of this increment.
     Majors,
-    /// The residual that is known last, relative.
+    /// The latest relative residual.
     Residual,
-    /// What the judge found, in a sentence.
+    /// The judge's finding, in a sentence.
     Verdict,
 }
 
-/// What a run of a chart has.
+/// Quantities of a run in a chart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum OfRun {
-    /// How far it is from the truth, relative.
+    /// Relative error.
     Error,
-    /// What it costs.
+    /// Number of factorizations.
     Factorizations,
 }
 
@@ -128,10 +130,9 @@ stickslip_core::words! {
 }
 
 impl LessonQuantity {
-    /// Reads a quantity: `F_n beam.end`, `load`.
+    /// Parses a quantity: `F_n beam.end`, `load`.
     ///
-    /// # Errors
-    /// A message that says what is wrong and what would be right.
+    /// # Errors If the quantity or its node is unknown.
     pub fn read(text: &str, context: &Context) -> Result<LessonQuantity, Unknown> {
         let (word, rest) = text.split_once(' ').unwrap_or((text, ""));
         let rest = rest.trim();
@@ -159,10 +160,9 @@ impl LessonQuantity {
         }
     }
 
-    /// Its value, where it is a number.
+    /// Its value, if it is a number.
     ///
-    /// # Errors
-    /// A message where it is none, or where it is not known.
+    /// # Errors If it is not a number or not known.
     pub fn number(&self, look: &Look) -> Result<f64, Unknown> {
         match self {
             LessonQuantity::Of(nodal, slave) => {
@@ -191,7 +191,7 @@ impl LessonQuantity {
         }
     }
 
-    /// Whether it is a number at all.
+    /// Whether the quantity is a number.
     pub fn is_number(&self) -> bool {
         match self {
             LessonQuantity::Of(nodal, _) => {
@@ -203,8 +203,8 @@ impl LessonQuantity {
         }
     }
 
-    /// Whether the quantity needs more than the shown state: the decision, the verdict, or later iterations. Hints cannot
-    /// contain it.
+    /// Whether the quantity needs more than the shown state: the decision, the verdict, or later iterations.
+    /// Hints cannot contain it.
     fn looks_ahead(&self) -> bool {
         match self {
             LessonQuantity::Right => true,
@@ -217,7 +217,7 @@ impl LessonQuantity {
         }
     }
 
-    /// As it stands in a text; `right` is what stands for the right answer.
+    /// The quantity as text; `right` is the text of the right answer.
     fn text(&self, look: &Look, right: &str) -> Result<String, Unknown> {
         match self {
             LessonQuantity::Right => Ok(right.into()),
@@ -236,7 +236,7 @@ impl LessonQuantity {
                     .max_by(|a, b| a.amount.total_cmp(&b.amount));
                 Ok(match worst {
                     Some(finding) => judged::finding(&look.model, finding),
-                    None => "every law holds".into(),
+                    None => "all laws are satisfied".into(),
                 })
             }
             LessonQuantity::Solve(_) | LessonQuantity::Run(..) | LessonQuantity::Written(_) => {
@@ -270,10 +270,9 @@ fn whole_number(whole: Whole, look: &Look) -> Result<f64, Unknown> {
     })
 }
 
-/// A quantity, or a number as it is written.
+/// Parses a quantity or a literal number.
 ///
-/// # Errors
-/// As [`LessonQuantity::read`], and if the quantity is no number.
+/// # Errors As [`LessonQuantity::read`], and if the quantity is not a number.
 pub fn number(text: &str, context: &Context) -> Result<LessonQuantity, Unknown> {
     match text.trim().parse() {
         Ok(number) => Ok(LessonQuantity::Written(number)),
@@ -284,10 +283,9 @@ pub fn number(text: &str, context: &Context) -> Result<LessonQuantity, Unknown> 
     }
 }
 
-/// The settings of a run: `PATH=VALUE PATH=VALUE`.
+/// Parses the settings of a run: `PATH=VALUE PATH=VALUE`.
 ///
-/// # Errors
-/// If they are none.
+/// # Errors If they cannot be parsed.
 pub fn settings(text: &str) -> Result<Vec<(String, String)>, Unknown> {
     let setting = |word: &str| {
         let (path, value) = word.split_once('=')?;
@@ -308,7 +306,7 @@ fn unknown(word: &str) -> Unknown {
     }
 }
 
-/// A text with quantities in it.
+/// A text that contains quantities.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Template(Vec<Piece>);
 
@@ -319,10 +317,9 @@ enum Piece {
 }
 
 impl Template {
-    /// Reads a text; what stands between braces is a quantity. Line breaks become blanks, since the screen wraps.
+    /// Parses a text with quantities in braces. Line breaks become spaces, since the screen wraps.
     ///
-    /// # Errors
-    /// A message about the first quantity that there is not.
+    /// # Errors For the first unknown quantity.
     pub fn read(text: &str, context: &Context) -> Result<Template, Unknown> {
         let mut pieces = Vec::new();
         let words: Vec<&str> = text.split_whitespace().collect();
@@ -338,7 +335,7 @@ impl Template {
         Ok(Template(pieces))
     }
 
-    /// Whether the quantity is allowed in a hint: it must neither look ahead nor contain `asked`, the answer.
+    /// Checks that the text may be a hint: it must neither look ahead nor contain `asked`, the answer.
     ///
     /// # Errors
     /// [`Unknown::TellsAnswer`] if it is not allowed.
@@ -353,10 +350,9 @@ impl Template {
         }
     }
 
-    /// The text with its values.
+    /// The text with the current values.
     ///
-    /// # Errors
-    /// A message where one of them is not known.
+    /// # Errors If a value is not known.
     pub fn fill(&self, look: &Look, right: &str) -> Result<String, Unknown> {
         let piece = |piece: &Piece| match piece {
             Piece::Words(words) => Ok(words.clone()),

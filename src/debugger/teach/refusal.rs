@@ -1,150 +1,150 @@
-//! Why a lesson does not let something be done, and what it cannot tell.
+//! Errors of lessons: actions that are not allowed now, and unavailable quantities.
 
 use crate::action::Misread;
 use crate::session::Refusal;
 use stickslip_scene::format::error::did_you_mean;
 
-/// Why something is not done now: what the lesson, or free mode, waits for.
+/// Why an action is not allowed now.
 #[derive(Debug, thiserror::Error)]
 pub enum NotNow {
-    /// What is to be done next.
+    /// The lesson waits for another action.
     #[error("the lesson waits: {0}")]
     Waits(String),
-    /// It says more than the screen has shown.
-    #[error("the lesson says more than was shown; Space turns its page")]
+    /// The text has more pages.
+    #[error("the lesson text continues; press Space for the next page")]
     Unread,
-    /// There is nothing more to do.
-    #[error("the lesson is over; q leaves, :lesson begins another")]
+    /// The lesson has ended.
+    #[error("the lesson has ended; q quits, :lesson starts another")]
     Over,
-    /// Decisions are hidden until they are predicted.
+    /// Decisions are hidden until predicted.
     #[error("predict first: a, then f free, s sliding, x fixed (p ends predicting)")]
     PredictFirst,
     /// No decision is hidden.
-    #[error("nothing is hidden here; step on and predict what comes")]
+    #[error("no decision is hidden here; step forward and predict the next one")]
     NothingHidden,
-    /// The node whose decision is predicted already.
-    #[error("{0} is predicted already")]
+    /// The decision at this node has been predicted.
+    #[error("{0} has been predicted already")]
     Predicted(String),
-    /// The question has its answer.
-    #[error("that is answered; Space goes on")]
+    /// The question has been answered.
+    #[error("the question has been answered; press Space to continue")]
     Answered,
-    /// There is no question.
-    #[error("nothing is asked now")]
+    /// There is no open question.
+    #[error("there is no open question")]
     NothingAsked,
-    /// What was typed for a mode.
-    #[error("'{0}' is no mode; free, sliding or fixed would be")]
+    /// Not a mode.
+    #[error("invalid mode '{0}'; expected free, sliding or fixed")]
     NoMode(String),
-    /// What was typed for a choice, and how many there are.
-    #[error("'{0}' is none of 1 to {1}")]
+    /// Not a choice; and the number of choices.
+    #[error("invalid choice '{0}'; expected 1 to {1}")]
     NoOption(String, usize),
-    /// What was typed for a number.
-    #[error("'{0}' is no number; -0.05 or 2e-3 would be")]
+    /// Not a number.
+    #[error("invalid number '{0}'; expected a number such as -0.05 or 2e-3")]
     NoNumber(String),
 }
 
-/// What the solver cannot tell, or what an author asks for that there is not.
+/// Why a quantity is unavailable or a lesson is invalid.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum Unknown {
-    /// No iteration is solved yet.
-    #[error("nothing is solved yet")]
+    /// No iteration has been solved.
+    #[error("no iteration has been solved yet")]
     Unsolved,
-    /// The solve failed before.
-    #[error("the solve failed before it found this")]
+    /// The solve failed earlier.
+    #[error("the solve failed before this was known")]
     Failed,
-    /// There is no iteration after this one.
-    #[error("the history is done")]
+    /// There is no later iteration.
+    #[error("the history is complete")]
     Done,
-    /// Minor iterations that were tried.
-    #[error("the increment has no end within {0} minor iterations")]
+    /// The number of minor iterations tried.
+    #[error("the increment does not end within {0} minor iterations")]
     Endless(u32),
-    /// The bodies cannot be condensed to the interface.
+    /// The bodies cannot be condensed.
     #[error("the bodies of this state cannot be condensed")]
     NotCondensed,
-    /// Why there is no census.
+    /// There is no census.
     #[error("{0}")]
     NoCensus(stickslip_core::interface::census::TooMany),
     /// No cycle ends the increment.
     #[error("the increment does not end in a cycle")]
     NoCycle,
-    /// The lesson has no chart to ask about.
+    /// The lesson has no chart.
     #[error("this lesson has no chart: [\"PATH=A,B\"]")]
     NoRuns,
-    /// Why its chart cannot be measured.
+    /// The chart cannot be measured.
     #[error("the lesson's chart cannot be measured: {0}")]
     NoChart(String),
-    /// Settings that are not those of one run.
-    #[error("no run of the lesson's chart, or more than one, is {0}")]
+    /// The settings do not select exactly one run.
+    #[error("{0} does not select exactly one run of the lesson's chart")]
     NoRun(String),
     /// The run has no error: it failed, or it is the reference.
     #[error("this run has no error")]
     NoError,
-    /// No increment was accepted yet.
-    #[error("nothing is accepted yet that could be judged")]
+    /// No increment has been accepted.
+    #[error("no increment has been accepted yet")]
     NotJudged,
     /// The node does not slide, or T_max does not lag.
     #[error("no T_max lags here")]
     NoLag,
-    /// Too few major iterations, or none that is near the solution.
-    #[error("the increment's residuals show no rate of convergence")]
+    /// There are too few major iterations near the solution.
+    #[error("the residuals of the increment do not show a rate of convergence")]
     NoRate,
     /// There is no slave node to ask about.
     #[error("this scene has no slave nodes")]
     NoSlaves,
-    /// Words where a number belongs.
-    #[error("this is no number")]
+    /// Not a number.
+    #[error("this is not a number")]
     NoNumber,
-    /// The number is infinite, or none.
-    #[error("what is asked for is not a finite number")]
+    /// The number is not finite.
+    #[error("the quantity is not a finite number")]
     NotFinite,
-    /// Another rule than one of Table 2 decided.
-    #[error("no cell of Table 2 decided here")]
+    /// The decision does not follow Table 2.
+    #[error("no cell of Table 2 applies here")]
     NoCell,
-    /// A question without a right choice.
-    #[error("none of the choices is true")]
+    /// No choice is right.
+    #[error("none of the choices is right")]
     NoneTrue,
-    /// A question with more than one right choice.
-    #[error("more than one of the choices is true")]
+    /// Several choices are right.
+    #[error("more than one choice is right")]
     SeveralTrue,
     /// A hint that contains the answer, or a number from a later iteration.
     #[error("the hint contains the answer or looks ahead; use numbers of the shown iteration only")]
     TellsAnswer,
-    /// A brace without its end.
+    /// A brace is not closed.
     #[error("a brace {{ is not closed by }}")]
     Brace,
-    /// A quantity of a node, without the node.
-    #[error("{0} of which node? {{{0} NODE}} would be right")]
+    /// A node is missing.
+    #[error("{0} needs a node: {{{0} NODE}}")]
     WhichNode(String),
-    /// An action that no key has.
-    #[error("{0:?} is no action that has a key")]
+    /// The action has no key.
+    #[error("{0:?} is not an action with a key")]
     NoKey(String),
-    /// A quantity of the whole, with a node.
-    #[error("{0} is not of a node; {0} alone would be right")]
+    /// The quantity does not belong to a node.
+    #[error("{0} does not take a node; write {0} alone")]
     NotNodal(String),
-    /// A quantity that there is not.
-    #[error("the solver knows no {word:?}{} (it knows {})", did_you_mean(word, known.iter().copied()), known.join(", "))]
+    /// Unknown quantity.
+    #[error("unknown quantity {word:?}{} (known: {})", did_you_mean(word, known.iter().copied()), known.join(", "))]
     NoQuantity {
-        /// What was written.
+        /// The word in the file.
         word: String,
-        /// What there is.
+        /// Known quantities.
         known: Vec<&'static str>,
     },
-    /// An action that there is not.
+    /// Unknown action.
     #[error(transparent)]
     Misread(#[from] Misread),
 }
 
-/// Why what a lesson wants pressed can be neither a key nor a typed line.
+/// Why the action of a step is neither a key nor a typed line.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum NoPress {
     #[error("{0} takes no count")]
     NoCount(String),
-    #[error("no key, and {0}{1}")]
+    #[error("not a key, and {0}{1}")]
     NoAction(Misread, String),
     #[error(transparent)]
     Misread(#[from] Misread),
 }
 
-/// Why a lesson cannot be played through.
+/// Why a lesson cannot be played to its end.
 #[derive(Debug, thiserror::Error)]
 pub(super) enum Unplayable {
     #[error(transparent)]

@@ -1,4 +1,4 @@
-//! The runs of a lesson's chart: what each setting costs, and how far it is from the truth, measured once.
+//! The runs of a lesson's chart, measured once: their cost and their error.
 
 use super::refusal::Unknown;
 use std::sync::OnceLock;
@@ -7,7 +7,7 @@ use stickslip_study::chart_runs::Planned;
 use stickslip_study::precision::{self, Cost, Measure, Point, Precision};
 use stickslip_study::{Vary, Watch};
 
-/// The runs of a lesson's chart, which are measured when they are first asked for.
+/// The runs of a lesson's chart; measured on first use.
 #[derive(Debug)]
 pub struct Runs {
     scene: String,
@@ -17,7 +17,7 @@ pub struct Runs {
 }
 
 impl Runs {
-    /// The product of these settings, over a scene with others set.
+    /// All combinations of these settings, for a scene with other settings changed.
     pub fn new(scene: String, over: Vec<Vary>, set: Vec<(String, String)>) -> Runs {
         Runs {
             scene,
@@ -27,10 +27,9 @@ impl Runs {
         }
     }
 
-    /// Measures them, if that is not done yet.
+    /// Measures the runs, unless that has been done.
     ///
-    /// # Errors
-    /// If a scene of them is unsound, or the chart could not be measured.
+    /// # Errors If a scene is invalid or the chart cannot be measured.
     pub fn measure(&self) -> Result<&Precision, Unknown> {
         let measured = self.measured.get_or_init(|| {
             let mut chart = Chart::open(&self.scene, &self.over).map_err(|e| e.to_string())?;
@@ -51,10 +50,9 @@ impl Runs {
         measured.as_ref().map_err(failed)
     }
 
-    /// The one run with these settings.
+    /// The run with these settings.
     ///
-    /// # Errors
-    /// If there is none, or more than one.
+    /// # Errors If none or several match.
     pub fn of(&self, settings: &[(String, String)]) -> Result<&Point, Unknown> {
         let points = self.measure()?.points.iter();
         let mut found = points.filter(|point| {
@@ -73,7 +71,7 @@ impl Runs {
         }
     }
 
-    /// Whether this is the run with the fewest factorizations of all that are as near to the truth as is wanted.
+    /// Whether this run has the fewest factorizations of all with at most this error.
     ///
     /// # Errors
     /// As [`Runs::of`].
@@ -86,7 +84,7 @@ impl Runs {
     }
 }
 
-/// Whether a setting is the wanted one; numbers may be written as one likes.
+/// Whether a setting equals the wanted one; numbers may be written differently.
 fn same(own: &(String, String), wanted: &(String, String)) -> bool {
     let number = |text: &str| text.parse::<f64>().ok();
     let values = (number(&own.1), number(&wanted.1));

@@ -1,4 +1,4 @@
-//! A lesson as its author writes it.
+//! The file format of a lesson.
 //!
 //! ```ron
 //! (
@@ -15,7 +15,7 @@
 //! )
 //! ```
 //!
-//! Right answers do not stand here: they are what the solver then does. So are numbers in texts, see
+//! Right answers are not in the file: they are the results of the solver. So are the numbers in texts, see
 //! [`super::quantity`].
 
 use serde::Deserialize;
@@ -26,29 +26,30 @@ use stickslip_scene::format::spec::Spec;
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LessonSpec {
-    /// One line that says what the lesson is about.
+    /// Title, one line.
     pub title: String,
-    /// What it teaches, in a line.
+    /// Subject, one line.
     #[serde(default)]
     pub about: String,
-    /// The scene that it is played on.
+    /// The scene.
     pub scene: SceneSpec,
-    /// What is changed in the scene: path and value.
+    /// Changes to the scene: path and value.
     #[serde(default)]
     pub set: Vec<(String, String)>,
-    /// Settings whose product is a work-precision chart, as `:chart` takes them; for questions about `error RUN` and the like.
+    /// Settings of a work-precision chart, as for `:chart`, for questions about `error RUN` and `factorizations
+    /// RUN`.
     #[serde(default)]
     pub chart: Vec<String>,
-    /// What is told, asked and done, one after the other.
+    /// The steps in order.
     pub steps: Vec<StepSpec>,
 }
 
-/// Where a lesson's scene comes from.
+/// The scene of a lesson.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub enum SceneSpec {
-    /// A built-in scene, or a file (as seen from the lesson's).
+    /// A built-in scene, or a file (relative to the lesson's folder).
     Name(String),
-    /// A scene of the lesson's own.
+    /// A scene in the lesson's file.
     Scene(Box<Spec>),
 }
 
@@ -58,101 +59,104 @@ pub enum SceneSpec {
 pub enum StepSpec {
     /// Something to read.
     Text(String),
-    /// Something to do.
+    /// An action to perform.
     Press {
-        /// What is told before.
+        /// Text before the action.
         text: String,
-        /// A key, with a count before it or not (`s`, `3s`), or a typed line (`force beam.end sliding`).
+        /// A key, optionally with a count (`s`, `3s`), or a typed line (`force beam.end sliding`).
         press: String,
     },
     /// A question.
     Ask {
         /// The question.
         text: String,
-        /// What is right.
+        /// The right answer.
         answer: AnswerSpec,
-        /// Minor iterations that the question looks ahead: 0 asks about the one that is shown.
+        /// Number of minor iterations that the question looks ahead: 0 asks about the shown one.
         #[serde(default)]
         ahead: u32,
-        /// Help after a wrong answer, in addition to the decision's numbers. Its numbers are those of the shown iteration.
+        /// Reply to a wrong answer, in addition to the decision's numbers. Its numbers are those of the shown
+        /// iteration.
         #[serde(default)]
         hint: String,
-        /// What is said once the answer is known. Its numbers are those of the iteration asked about.
+        /// Reply to the right answer. Its numbers are those of the iteration asked about.
         #[serde(default)]
         then: String,
     },
-    /// Free mode, until so many predictions were right.
+    /// Free mode, until enough predictions were right.
     Predict {
-        /// What is told before.
+        /// Text before the predictions.
         text: String,
-        /// How many must be right, one after the other.
+        /// Number of consecutive right predictions required.
         right: u32,
     },
 }
 
-/// What is asked for; the right answer is what the solver finds.
+/// What is asked; the solver provides the right answer.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum AnswerSpec {
-    /// The mode that a slave node takes next.
+    /// The next mode of a slave node.
     Mode {
         /// Name of the slave node.
         node: String,
     },
-    /// The cell of Table 2, in the row of the node's mode, that fires.
+    /// The cell of Table 2 that applies, in the row of the node's mode.
     Rule {
         /// Name of the slave node.
         node: String,
     },
-    /// A number: one of [`super::quantity`]. The tolerance is relative; 0 wants it exact.
+    /// A number: one of [`super::quantity`]. The tolerance is relative; 0 requires the exact number.
     Number {
         /// The quantity, as in braces.
         of: String,
-        /// How far off an answer may be, relatively.
+        /// Relative tolerance.
         tolerance: f64,
     },
-    /// One of several sentences, each with what makes it true; one of them must be.
+    /// One of several sentences, each with its condition; exactly one must be right.
     Choice(Vec<(String, When)>),
 }
 
-/// What makes a choice right.
+/// The condition that makes a choice right.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum When {
-    /// The increment, run on from here, ends in a cycle.
+    /// The increment, continued from here, ends in a cycle.
     Cycles,
-    /// The increment, run on from here, is accepted.
+    /// The increment, continued from here, is accepted.
     Accepted,
-    /// The census finds so many consistent states.
+    /// Number of consistent states in the census.
     Answers(usize),
-    /// The node takes this mode next.
+    /// The next mode of a node.
     Becomes {
         /// Name of the slave node.
         node: String,
-        /// The mode that it takes.
+        /// The next mode.
         mode: Mode,
     },
-    /// The residuals of the increment, run on from here, end with a factor that stays.
+    /// Linear convergence: the residuals of the increment, continued from here, fall by a constant factor at
+    /// the end.
     Linear,
-    /// They end with ever smaller factors, the digits doubling.
+    /// Quadratic convergence: the number of correct digits doubles at the end.
     Quadratic,
-    /// The judge found every law obeyed in the increment that was accepted last.
+    /// The judge found no violation in the last accepted increment.
     Obeys,
-    /// The judge found this law broken there: penetration, gap, tension, cone, slip, touch, balance or moments.
+    /// The judge found a violation of this law there: penetration, gap, tension, cone, slip, touch, balance or
+    /// moments.
     Breaks(String),
-    /// The first number (a quantity, or written out) is less than the second by a twentieth at least.
+    /// The first number (a quantity or a literal) is less than the second by at least a twentieth.
     Less(String, String),
-    /// The numbers differ by a twentieth at most.
+    /// The numbers differ by at most a twentieth.
     Close(String, String),
-    /// Of the chart's runs whose error is at most this, that with these settings has the fewest factorizations.
+    /// The run with the fewest factorizations of those with at most this error.
     Cheapest {
         /// Settings, as `PATH=A PATH=B`.
         run: String,
-        /// The error that is wanted, relative.
+        /// Largest relative error.
         error: f64,
     },
-    /// What no solver can tell.
+    /// Always right.
     Right,
-    /// Never.
+    /// Never right.
     Wrong,
 }

@@ -1,9 +1,9 @@
-//! A lesson being taken: a state machine that knows no terminal.
+//! A lesson in progress: a state machine without a terminal.
 //!
-//! It stands at a step and waits: for a word to go on, for an action, for an answer, or for predictions. Whoever owns
-//! the session asks it before every action ([`Tutor::permits`]), tells it when that is done ([`Tutor::settled`]), and
-//! draws what it has to say ([`Tutor::page`], [`Tutor::todo`]). Right answers come from a solver of its own, which
-//! starts from the frame that is shown.
+//! At each step it waits for the user to continue, to perform an action, to answer, or to predict. The owner of
+//! the session asks it before every action ([`Tutor::permits`]), reports when the action is done
+//! ([`Tutor::settled`]), and draws its text ([`Tutor::page`], [`Tutor::todo`]). Right answers come from a
+//! separate solver, which starts from the shown frame.
 
 use super::guess::Guess;
 use super::lesson::{self, Answer, Ask, Lesson, Step, Truth};
@@ -21,46 +21,46 @@ use stickslip_core::model::Mode;
 use stickslip_core::step::state::Status;
 use stickslip_scene::number::four;
 
-/// Wrong answers after which the right one is told.
+/// Number of wrong answers after which the right one is shown.
 const TRIES: u32 = 2;
 
-/// Numbers that differ by less than this, relatively, are about the same.
+/// Relative difference below which numbers count as about the same.
 const CLOSE: f64 = 0.05;
 
-/// A lesson being taken.
+/// A lesson in progress.
 #[derive(Debug, Clone)]
 pub struct Tutor {
     lesson: Arc<Lesson>,
-    /// The step at which it stands; past the last one the lesson is over.
+    /// Index of the current step; past the last one, the lesson has ended.
     at: usize,
     text: String,
     question: Option<Question>,
     remark: Option<Remark>,
-    /// Answers and predictions given in this step.
+    /// Number of answers and predictions in this step.
     given: u32,
-    /// Whether the step is done and only waits for a word to go on.
+    /// Whether the step is done and waits for the user to continue.
     done: bool,
-    /// Whether the action that was wanted is being carried out.
+    /// Whether the action of the step is being executed.
     pending: bool,
-    /// What is wrong with the lesson itself.
+    /// A fault in the lesson itself.
     fault: Option<String>,
     guess: Option<Guess>,
-    /// Questions and predictions that were right at once, and all of them.
+    /// Number of answers and predictions right at the first attempt, and of all.
     right: u32,
     asked: u32,
 }
 
-/// A question that waits, with its answer.
+/// An open question, with its answer.
 #[derive(Debug, Clone)]
 pub struct Question {
-    /// What is typed for an answer.
+    /// How it is answered.
     pub kind: AnswerKind,
-    /// What can be chosen, where the answer is a choice.
+    /// The choices, if there are any.
     pub options: Vec<String>,
     right: Right,
     /// The decision at the node in question, if any, and whether there is friction.
     node: Option<(usize, Decision, bool)>,
-    /// Whether the user has not reached that decision yet.
+    /// Whether the decision is in a later iteration.
     is_ahead: bool,
     hint: String,
     then: String,
@@ -85,30 +85,30 @@ enum Right {
     Number { value: f64, tolerance: f64 },
 }
 
-/// What was said to the last answer.
+/// The reply to the last answer.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Remark {
-    /// What is told.
+    /// The text.
     pub text: String,
-    /// Whether it went well.
+    /// Whether the answer was right.
     pub good: bool,
 }
 
-/// A part of what the tutor says.
+/// A part of the lesson's page.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Paragraph {
     /// Something to read.
     Text(String),
-    /// A choice, by its number.
+    /// A choice, with its number.
     Option(usize, String),
-    /// What is told after a right answer.
+    /// Reply to a right answer.
     Right(String),
-    /// What is told after a wrong one.
+    /// Reply to a wrong answer.
     Wrong(String),
 }
 
 impl Tutor {
-    /// Begins a lesson; the frame is that of its scene's start.
+    /// Starts a lesson; `frame` is the start of its scene.
     pub fn new(lesson: Arc<Lesson>, cursor: usize, frame: &Frame) -> Self {
         let mut tutor = Tutor {
             lesson,
@@ -133,32 +133,32 @@ impl Tutor {
         &self.lesson
     }
 
-    /// Place of the present step, from 0; as many as there are steps when it is over.
+    /// Index of the current step, from 0; the number of steps when the lesson has ended.
     pub fn at(&self) -> usize {
         self.at
     }
 
-    /// The present step; `None` when it is over.
+    /// The current step; `None` when the lesson has ended.
     pub fn step(&self) -> Option<&Step> {
         self.lesson.steps.get(self.at)
     }
 
-    /// Questions answered right at once, and questions asked.
+    /// Number of questions answered right at the first attempt, and of all.
     pub fn score(&self) -> (u32, u32) {
         (self.right, self.asked)
     }
 
-    /// The question that waits for an answer.
+    /// The open question.
     pub fn question(&self) -> Option<&Question> {
         self.question.as_ref().filter(|_| !self.done)
     }
 
-    /// What the lesson's author did not see: a question without an answer, a number that is not known.
+    /// A fault in the lesson: a question without an answer, or an unknown number.
     pub fn fault(&self) -> Option<&str> {
         self.fault.as_deref()
     }
 
-    /// Free mode, where the step is that.
+    /// The predictions, if this is a step of free mode.
     pub fn guess(&self) -> Option<&Guess> {
         self.guess.as_ref()
     }
@@ -201,22 +201,27 @@ impl Tutor {
     fn farewell(&self) -> String {
         let score = match (self.right, self.asked) {
             (_, 0) => String::new(),
-            (right, asked) if right == asked => format!(" All {asked} answers right at once."),
-            (right, asked) => format!(" {right} of {asked} answers right at once."),
+            (right, asked) if right == asked => {
+                format!(" All {asked} answers were right at the first attempt.")
+            }
+            (right, asked) => {
+                format!(" {right} of {asked} answers were right at the first attempt.")
+            }
         };
         let names = lesson::list().iter().map(|lesson| lesson.name);
         let next = match names.skip_while(|name| *name != self.lesson.name).nth(1) {
             Some(next) => format!(" The next lesson is {next} (:lesson {next})."),
             None => String::new(),
         };
-        format!("This is the end of the lesson.{score} The scene is yours now.{next}")
+        format!(
+            "This is the end of the lesson.{score} You can continue to explore the scene.{next}"
+        )
     }
 
-    /// Whether an action may be done now; true where the lesson wants it, and [`Tutor::settled`] or
-    /// [`Tutor::failed`] must follow.
+    /// Checks whether an action is allowed now. Returns whether it is the one that the lesson waits for; then
+    /// [`Tutor::settled`] or [`Tutor::failed`] must follow.
     ///
-    /// # Errors
-    /// A message that says what the lesson waits for.
+    /// # Errors If the lesson waits for something else.
     pub fn permits(
         &mut self,
         action: &Action,
@@ -247,7 +252,7 @@ impl Tutor {
         }
     }
 
-    /// The action that was permitted is done, and this is the frame that is shown now.
+    /// Reports that the permitted action is done; `frame` is now shown.
     pub fn settled(&mut self, cursor: usize, frame: &Frame) {
         if std::mem::take(&mut self.pending) {
             self.at += 1;
@@ -255,20 +260,19 @@ impl Tutor {
         }
     }
 
-    /// The action that was permitted could not be done.
+    /// Reports that the permitted action failed.
     pub fn failed(&mut self) {
         self.pending = false;
     }
 
-    /// Whether there is nothing to do but read.
+    /// Whether the step only waits for the user to continue.
     pub fn is_read(&self) -> bool {
         self.done || matches!(self.step(), Some(Step::Text(_)))
     }
 
-    /// Goes on where there is nothing to do but read.
+    /// Continues, if the step only waits for that.
     ///
-    /// # Errors
-    /// A message that says what the lesson waits for.
+    /// # Errors If the lesson waits for something else.
     pub fn on(&mut self, cursor: usize, frame: &Frame) -> Result<(), NotNow> {
         match self.step() {
             None => Err(NotNow::Over),
@@ -283,8 +287,7 @@ impl Tutor {
 
     /// Takes an answer, or a prediction for the selected node.
     ///
-    /// # Errors
-    /// A message where nothing is asked, or the word cannot be an answer.
+    /// # Errors If there is no open question, or the word cannot be an answer.
     pub fn answer(
         &mut self,
         word: &str,
@@ -307,7 +310,7 @@ impl Tutor {
             self.done = enough || over;
             let mut text = format!("{} ({} of {wanted})", capital(&text), guess.right);
             if over && !enough {
-                text += " The history ends here, and so do the predictions.";
+                text += " The history ends here, so there are no more predictions.";
             }
             self.remark = Some(Remark { text, good });
             self.given += 1;
@@ -332,17 +335,17 @@ impl Tutor {
         Ok(())
     }
 
-    /// Whether this is what the step waits for.
+    /// Whether this is the action that the step waits for.
     pub fn wants(&self, action: &Action) -> bool {
         matches!(self.step(), Some(Step::Press { action: wanted, .. }) if action == wanted)
     }
 
-    /// Which page of the lesson is open: the step, and how many answers were given in it. Another one says something else.
+    /// Identifies the page: the step, and the number of answers given in it. The text changes with either.
     pub fn edition(&self) -> (usize, u32) {
         (self.at, self.given)
     }
 
-    /// Whether decisions must not be seen yet, at any node: a question about them is asked, or comes before the next
+    /// Whether decisions must be hidden at all nodes: a question about them is open, or comes before the next
     /// action.
     pub fn hides(&self) -> bool {
         self.asks_about(|ask| {
@@ -356,7 +359,7 @@ impl Tutor {
         })
     }
 
-    /// Whether to hide the judge's verdict, for the same reasons.
+    /// Whether the judge's verdict must be hidden, for the same reasons.
     pub fn hides_verdict(&self) -> bool {
         let judges = |(_, truth): &(_, Truth)| matches!(truth, Truth::Obeys | Truth::Breaks(_));
         self.asks_about(|ask| match &ask.answer {
@@ -365,7 +368,7 @@ impl Tutor {
         })
     }
 
-    /// Whether such a question is open, or comes before the next action.
+    /// Whether such a question is open or comes before the next action.
     fn asks_about(&self, about: impl Fn(&Ask) -> bool) -> bool {
         if self.done && self.question.is_some() {
             return false;
@@ -381,12 +384,12 @@ impl Tutor {
             .any(|step| matches!(step, Step::Ask(ask) if about(ask)))
     }
 
-    /// What the step says.
+    /// The text of the step.
     pub fn text(&self) -> &str {
         &self.text
     }
 
-    /// What is on the page.
+    /// The contents of the page.
     pub fn page(&self) -> Vec<Paragraph> {
         let mut page = vec![Paragraph::Text(self.text.clone())];
         if let Some(question) = &self.question {
@@ -404,12 +407,12 @@ impl Tutor {
 
     /// What to do next, in a few words.
     pub fn todo(&self) -> String {
-        let on = "Space goes on".to_owned();
+        let on = "Space continues".to_owned();
         match (
             self.step(),
             self.question.as_ref().map(|question| question.kind),
         ) {
-            (None, _) => "the lesson is over".into(),
+            (None, _) => "the lesson has ended".into(),
             (Some(_), _) if self.done => on,
             (Some(Step::Text(_)), _) => on,
             (Some(Step::Press { how, .. }), _) => how.clone(),
@@ -424,7 +427,7 @@ impl Tutor {
         }
     }
 
-    /// The word that answers the question right; for the program that plays a lesson through.
+    /// The right answer, as typed; used to play lessons automatically.
     pub fn solution(&self) -> Option<String> {
         self.question().map(|question| match question.right {
             Right::Mode(mode) => names::mode(mode).into(),
@@ -435,7 +438,8 @@ impl Tutor {
 }
 
 impl Question {
-    /// Gets the right answer from the solver. Texts shown before the answer are filled from the current state `now`.
+    /// Gets the right answer from the solver. Texts shown before the answer are filled from the current state
+    /// `now`.
     fn ask(ask: &Ask, now: &Look) -> Result<Question, Unknown> {
         let look = now.ahead(ask.ahead)?;
         let found = |slave: usize| -> Result<_, Unknown> {
@@ -515,7 +519,7 @@ impl Question {
                 _ => Err(NotNow::NoOption(word.into(), self.options.len())),
             },
             Right::Number { value, tolerance } => {
-                // People write a minus sign and a decimal comma as their keyboard has it.
+                // Accept typographic minus signs and decimal commas.
                 let plain = word.replace('−', "-").replace(',', ".");
                 let given: f64 = plain.parse().map_err(|_| NotNow::NoNumber(word.into()))?;
                 Ok((given - value).abs() <= tolerance * value.abs())
@@ -523,7 +527,7 @@ impl Question {
         }
     }
 
-    /// The right answer.
+    /// The right answer in words.
     fn told(&self) -> String {
         match &self.right {
             Right::Mode(mode) => names::mode(*mode).into(),
@@ -537,12 +541,12 @@ impl Question {
         format!("Right: {}", self.explained())
     }
 
-    /// The reply to a wrong answer that permits another attempt.
+    /// The reply to a wrong answer that allows another attempt.
     pub(super) fn reply_to_wrong(&self) -> String {
         format!("No. {}", self.help())
     }
 
-    /// The right answer, and why.
+    /// The right answer with the reason.
     fn explained(&self) -> String {
         let mut text = self.told() + ".";
         if let Some((_, decision, friction)) = &self.node {
@@ -558,11 +562,11 @@ impl Question {
         text
     }
 
-    /// Help without the answer: where to look, with the numbers of the decision.
+    /// A hint without the answer: the row of Table 2, and the numbers of the decision.
     fn help(&self) -> String {
         let mut text = match &self.node {
             Some((_, decision, _)) if !self.is_ahead => format!(
-                "Look at the row {} of Table 2: {}.",
+                "Look at row {} of Table 2: {}.",
                 names::mode(decision.before),
                 compared(decision)
             ),
@@ -575,14 +579,14 @@ impl Question {
         };
         text += &self.hint;
         if text.is_empty() {
-            "Once more.".into()
+            "Try again.".into()
         } else {
             text
         }
     }
 }
 
-/// Cells of Table 2 in the row of the mode before, and which of them fired.
+/// Cells of Table 2 in the row of the node's mode, and the index of the one that applied.
 fn cells(decision: &Decision) -> Result<(Vec<String>, usize), Unknown> {
     if matches!(decision.rule, Rule::Held | Rule::OffSurface) {
         return Err(Unknown::NoCell);
@@ -597,7 +601,7 @@ fn cells(decision: &Decision) -> Result<(Vec<String>, usize), Unknown> {
     Ok((options, place(decision.next)))
 }
 
-/// The one choice that is true.
+/// The only right choice.
 fn chosen(choices: &[(Template, Truth)], look: &Look) -> Result<usize, Unknown> {
     let mut right = Vec::new();
     for (index, (_, truth)) in choices.iter().enumerate() {
@@ -626,7 +630,7 @@ fn chosen(choices: &[(Template, Truth)], look: &Look) -> Result<usize, Unknown> 
     }
 }
 
-/// The inequalities that were tested, with their numbers.
+/// The inequalities tested, with their numbers.
 fn compared(decision: &Decision) -> String {
     let side = |test: &Test| {
         let sign = match test.value.partial_cmp(&test.bound) {

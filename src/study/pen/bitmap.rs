@@ -1,13 +1,13 @@
-//! Shapes as PNG: every pixel is as dark as the part of it that a shape covers.
+//! Draws shapes as PNG: the coverage of each pixel determines its colour.
 
 use super::font::{self, EM};
 use crate::drawn::{Anchor, Colour, PlotError, Shape};
 use ab_glyph::{Font, point};
 use ab_glyph_rasterizer::Rasterizer;
 
-/// Pixels for each unit of length.
+/// Pixels per unit of length.
 const SCALE: f64 = 2.0;
-/// Most pixels of a bitmap; one takes three bytes.
+/// Maximum number of pixels of a bitmap, at three bytes each.
 const MAX_PIXELS: f64 = 64e6;
 
 /// Red, green and blue of each pixel, row by row.
@@ -16,7 +16,7 @@ struct Bitmap {
     size: (u32, u32),
 }
 
-/// The shapes on a white sheet of a size.
+/// Draws shapes on a white sheet.
 ///
 /// # Errors
 /// If the sheet is too large, or the font cannot be read.
@@ -24,7 +24,7 @@ pub fn png(shapes: &[Shape], size: (f64, f64)) -> Result<Vec<u8>, PlotError> {
     let (width, height) = ((size.0 * SCALE).ceil(), (size.1 * SCALE).ceil());
     if width * height > MAX_PIXELS {
         return Err(PlotError::new(format!(
-            "it would have {width} by {height} pixels, and a bitmap has {} million at most; draw less of it, or draw it as SVG",
+            "the picture would have {width} by {height} pixels; the limit is {} million. Draw less, or use SVG",
             MAX_PIXELS / 1e6
         )));
     }
@@ -82,7 +82,7 @@ impl Bitmap {
                     Anchor::Middle => -0.5 * width,
                     Anchor::Right => -width,
                 };
-                // Letters without strokes below the line are what is centred.
+                // Text is centred on its letters without descenders.
                 let base = (0.36 * EM * size * SCALE) as f32;
                 let (x, y) = scaled(at);
                 let (column, row) = (x.round() as i64, y.round() as i64);
@@ -106,7 +106,7 @@ impl Bitmap {
         Ok(())
     }
 
-    /// Colours what polygons cover together.
+    /// Colours the area covered by any of the polygons.
     fn cover(&mut self, polygons: &[Vec<(f64, f64)>], colour: Colour) {
         let sheet = (f64::from(self.size.0), f64::from(self.size.1));
         let polygons: Vec<_> = polygons.iter().map(|p| clipped(p, sheet)).collect();
@@ -124,7 +124,7 @@ impl Bitmap {
                 let (x, y) = corners[k % corners.len()];
                 point((x - left) as f32, (y - top) as f32)
             };
-            // All turn the same way, so that what two of them cover does not cancel.
+            // All polygons get the same orientation, so that overlaps do not cancel.
             for k in 0..corners.len() {
                 match turn(corners) > 0.0 {
                     true => raster.draw_line(near(k), near(k + 1)),
@@ -138,7 +138,7 @@ impl Bitmap {
         });
     }
 
-    /// Colours a part of a pixel.
+    /// Blends a colour into a pixel.
     fn mix(&mut self, (x, y): (i64, i64), (r, g, b): Colour, part: f32) {
         let (width, height) = (i64::from(self.size.0), i64::from(self.size.1));
         if part <= 0.0 || !(0..width).contains(&x) || !(0..height).contains(&y) {
@@ -153,14 +153,14 @@ impl Bitmap {
     }
 }
 
-/// Twice the area that corners run round: its sign says which way.
+/// Twice the signed area of a polygon; the sign is its orientation.
 fn turn(corners: &[(f64, f64)]) -> f64 {
     let next = corners.iter().cycle().skip(1);
     let pairs = corners.iter().zip(next);
     pairs.map(|(a, b)| a.0 * b.1 - a.1 * b.0).sum()
 }
 
-/// Polygons that cover a line: a rectangle for each piece, and a disc at each bend.
+/// Polygons that cover a line: a rectangle per segment and a disc per corner.
 fn stroke(points: &[(f64, f64)], width: f64) -> Vec<Vec<(f64, f64)>> {
     let half = 0.5 * width.max(1.0);
     let piece = |pair: &[(f64, f64)]| {
@@ -185,7 +185,7 @@ fn stroke(points: &[(f64, f64)], width: f64) -> Vec<Vec<(f64, f64)>> {
     points.windows(2).map(piece).chain(bends).collect()
 }
 
-/// The part of a polygon that lies on a sheet (Sutherland and Hodgman).
+/// Clips a polygon to the sheet (Sutherland and Hodgman).
 fn clipped(corners: &[(f64, f64)], (width, height): (f64, f64)) -> Vec<(f64, f64)> {
     type Depth<'a> = &'a dyn Fn(&(f64, f64)) -> f64;
     let edges: [Depth; 4] = [&|p| p.0, &|p| width - p.0, &|p| p.1, &|p| height - p.1];
@@ -205,7 +205,7 @@ fn clipped(corners: &[(f64, f64)], (width, height): (f64, f64)) -> Vec<(f64, f64
         }
         left = next;
     }
-    // Round-off of the crossing points.
+    // Corrects round-off of the intersection points.
     let within = |(x, y): (f64, f64)| (x.clamp(0.0, width), y.clamp(0.0, height));
     left.into_iter().map(within).collect()
 }
@@ -214,7 +214,7 @@ fn clipped(corners: &[(f64, f64)], (width, height): (f64, f64)) -> Vec<(f64, f64
 mod tests {
     use super::*;
 
-    /// Whether each pixel of a row of columns holds ink, as runs.
+    /// The runs of columns that contain ink.
     fn strokes(bitmap: &Bitmap) -> Vec<(usize, usize)> {
         let (width, height) = (bitmap.size.0 as usize, bitmap.size.1 as usize);
         let ink = |x: usize| (0..height).any(|y| bitmap.pixels[3 * (y * width + x)] < 128);
@@ -236,7 +236,7 @@ mod tests {
     }
 
     #[test]
-    fn equal_letters_stand_at_equal_distances() {
+    fn equal_letters_have_equal_spacing() {
         let shape = Shape::Text {
             at: (5.0, 15.0),
             text: "lilililililil".to_owned(),
@@ -253,7 +253,7 @@ mod tests {
     }
 
     #[test]
-    fn a_line_is_as_wide_as_it_says_and_ends_at_the_sheet() {
+    fn lines_have_their_width_and_are_clipped_at_the_sheet() {
         let shape = Shape::Line {
             points: vec![(10.0, -1e9), (10.0, 5.0), (10.0, 1e9)],
             width: 2.0,

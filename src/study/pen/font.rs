@@ -1,13 +1,13 @@
-//! DejaVu Sans: how wide texts are, and where their glyphs stand.
+//! The font DejaVu Sans: widths of texts, and positions of their glyphs.
 
 use crate::drawn::PlotError;
 use ab_glyph::{Font, FontRef, GlyphId, PxScale, ScaleFont};
 use std::sync::OnceLock;
 
-/// Size of an em over the size of a text.
+/// Ratio of the em size to the text size.
 pub(super) const EM: f64 = 1.0 / 1.24;
 
-/// The font.
+/// The built-in font.
 pub(super) fn font() -> Result<&'static FontRef<'static>, PlotError> {
     static FONT: OnceLock<Option<FontRef<'static>>> = OnceLock::new();
     let font = FONT.get_or_init(|| FontRef::try_from_slice(dejavu::sans::regular()).ok());
@@ -15,7 +15,7 @@ pub(super) fn font() -> Result<&'static FontRef<'static>, PlotError> {
         .ok_or_else(|| PlotError::new("its font cannot be read"))
 }
 
-/// Glyphs of a text, each with the place where it begins, in pixels from the left end; and how wide all of it is.
+/// The glyphs of a text with their positions in pixels from the left end, and the total width.
 pub(super) fn glyphs(font: &FontRef, scale: PxScale, text: &str) -> (Vec<(GlyphId, f32)>, f32) {
     let scaled = font.as_scaled(scale);
     let (mut glyphs, mut x, mut before) = (Vec::new(), 0.0_f32, None);
@@ -31,7 +31,7 @@ pub(super) fn glyphs(font: &FontRef, scale: PxScale, text: &str) -> (Vec<(GlyphI
     (glyphs, x)
 }
 
-/// The scale of texts of a size, in pixels.
+/// The scale of texts of this size, in pixels.
 pub(super) fn scale(font: &FontRef, size: f64) -> PxScale {
     let units = font.units_per_em().unwrap_or(2048.0);
     PxScale::from((size * EM) as f32 * font.height_unscaled() / units)

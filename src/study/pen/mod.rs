@@ -1,6 +1,6 @@
-//! Shapes as SVG and PNG, with the same bits on every machine, because the program carries the font.
+//! Shapes as SVG and PNG, with the same bits on every machine, because the program contains the font.
 //!
-//! A build without the feature `plot` has `penless.rs` instead.
+//! Builds without the feature `plot` use `penless.rs` instead.
 
 mod bitmap;
 mod font;
@@ -11,10 +11,9 @@ pub use bitmap::png;
 pub use font::width_of;
 pub use svg::svg;
 
-/// Whether this build draws.
+/// Checks whether this build can draw.
 ///
-/// # Errors
-/// That it does not; never with the feature `plot`.
+/// # Errors If it cannot; never with the feature `plot`.
 pub fn ready() -> Result<(), PlotError> {
     Ok(())
 }

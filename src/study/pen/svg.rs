@@ -1,10 +1,10 @@
-//! Shapes as SVG.
+//! Draws shapes as SVG.
 
 use super::font::EM;
 use crate::drawn::{Anchor, Colour, PlotError, Shape};
 use std::fmt::Write;
 
-/// The shapes on a white sheet of a size.
+/// Draws shapes on a white sheet.
 ///
 /// # Errors
 /// Never.
@@ -64,7 +64,7 @@ pub fn svg(shapes: &[Shape], (width, height): (f64, f64)) -> Result<String, Plot
     Ok(text + "</svg>\n")
 }
 
-/// A length to a tenth of a pixel.
+/// Rounds a length to a tenth of a pixel.
 fn short(length: f64) -> f64 {
     // Adding 0 makes a negative zero positive.
     (length * 10.0).round() / 10.0 + 0.0

@@ -1,17 +1,18 @@
-//! A frozen interface problem written out as a scene of its own: a condensed scene
-//! ([`stickslip_scene::format::condensed`]) whose minor iterations are those of the problem.
+//! Writes a frozen interface problem as a condensed scene ([`stickslip_scene::format::condensed`]) that has the
+//! same minor iterations.
 //!
-//! With springs of stiffness k the problem's relation is `ΔF = start + R (v − ΔF / k)` ([`InterfaceResponse`]); S* moves by
-//! v + p relative to S, with what is prescribed, p. In the scene the slave node moves by u = −(v + p) over a floor at
-//! rest, under F = F₀ + ΔF. Without the springs,
+//! With springs of stiffness k the problem's relation is `ΔF = start + R (v − ΔF / k)` ([`InterfaceResponse`]);
+//! S* moves by v + p relative to S, where p is prescribed. In the scene the slave node moves by u = −(v + p)
+//! over a floor at rest, under F = F₀ + ΔF. Without the springs,
 //!
 //! ```text
 //! K (u − free) = load + F      K = −(1 + R/k)⁻¹ R      load = −(1 + R/k)⁻¹ start − F₀      free = −p
 //! u = free + W F               W = −(R⁻¹ + 1/k)        free = R⁻¹ start − W F₀ − p
 //! ```
 //!
-//! The first exists unless something is rigid, the second unless something is loose; where both do, the first is
-//! written. No file leaves here that has not been read back and stepped beside the problem ([`compared`]).
+//! The first form exists unless something is rigid, the second unless something can move freely; if both exist,
+//! the first is written. Each file is read back and compared step by step with the problem before it is
+//! returned ([`compared`]).
 
 use crate::explain::core::Core;
 use crate::explain::names;
@@ -36,103 +37,105 @@ use stickslip_scene::format::{SceneError, read};
 use stickslip_scene::siconos::Friction2d;
 use stickslip_scene::{Scene, limits};
 
-/// From this size on of the inverse (relative to the springs) that makes one of the two matrices, too many digits are
-/// lost in taking the springs out.
+/// If the inverse (relative to the springs) that yields one of the two matrices is larger than this, removing
+/// the springs loses too many digits.
 const SINGULAR: f64 = 1e9;
-/// Most minor iterations for which a file is stepped beside its problem.
+/// Maximum number of minor iterations compared between a file and its problem.
 const COMPARED: u32 = 200;
-/// Forces and lengths of the two may differ by this, relatively: what taking the springs out may cost.
+/// Largest relative difference of forces and lengths: the accuracy lost by removing the springs.
 const CLOSE: f64 = 1e-6;
-/// Width of a comment's lines.
+/// Line width of comments.
 const WIDTH: usize = 110;
 
-/// Why a problem is not written as a scene.
+/// Why a problem cannot be written as a scene.
 #[derive(Debug, thiserror::Error)]
 pub enum NoExport {
     /// The scene has no slave nodes.
-    #[error("no slave node is over a surface, so there is no interface problem")]
+    #[error("no slave node faces a surface, so there is no interface problem")]
     NoInterface,
-    /// The equations of what is left out are singular.
-    #[error("the problem of the nodes over a surface is singular")]
+    /// The equations of the remaining nodes are singular.
+    #[error("the problem of the nodes that face a surface is singular")]
     Singular,
-    /// The nodes whose forces a support carries.
+    /// Nodes whose forces are carried by a support.
     #[error(
-        "no unknown moves {0} along the surface or across it: the support carries what acts there, and no matrix says so"
+        "{0} cannot move along or across the surface: its support carries the contact force, which no matrix can represent"
     )]
     EmbeddedFile(String),
-    /// The matrix is larger than a scene file may be.
+    /// The matrix is too large for a scene file.
     #[error(
-        "the matrix of {nodes} nodes takes {mebibytes} MiB, and a scene file can have {}; a core is smaller",
+        "the matrix of {nodes} nodes takes {mebibytes} MiB, but scene files are limited to {} MiB; export the core instead",
         read::FILE_BYTES >> 20
     )]
     Large {
-        /// Nodes of the problem.
+        /// Number of nodes of the problem.
         nodes: usize,
-        /// What its matrix would take, in units of 2^20 bytes.
+        /// Size of the matrix in MiB.
         mebibytes: usize,
     },
-    /// The form of Siconos has friction coefficients only.
-    #[error("{0} has cohesion, and the form of Siconos knows none; a .ron file has it")]
+    /// A node has cohesion, but the Siconos format has only friction coefficients.
+    #[error(
+        "{0} has cohesion, which the Siconos format does not support; export a .ron file instead"
+    )]
     Cohesive(String),
-    /// Why no matrix says what the scene says.
+    /// Why neither matrix exists.
     #[error("the problem cannot be written as a matrix: {0}")]
     NoMatrix(String),
-    /// The scene cycles, and otherwise than the problem.
-    #[error("the core cycles with period {period}, and what would be written has {found}")]
+    /// The scene's cycle differs from the problem's.
+    #[error("the core cycles with period {period}, but the exported scene has {found}")]
     OtherCycle {
-        /// Iterations of one period of the problem's cycle.
+        /// Period of the problem's cycle.
         period: u32,
-        /// What the scene does.
+        /// Cycle of the scene.
         found: String,
     },
-    /// The file does not do what the problem does.
+    /// The file does not behave as the problem does.
     #[error(transparent)]
     Parted(#[from] Parted),
 }
 
-/// Where a file and the problem that it was made of part.
+/// How a file departs from its problem.
 #[derive(Debug, thiserror::Error)]
 pub enum Parted {
-    /// The file that would be written is no sound scene.
+    /// The file would not be a valid scene.
     #[error(transparent)]
     Unsound(#[from] Box<SceneError>),
-    /// There is no memory to compare.
-    #[error("no memory")]
+    /// Not enough memory to compare.
+    #[error("not enough memory")]
     Memory,
-    /// The file's history ends in this minor iteration.
-    #[error("it is done before minor iteration {0}")]
+    /// The file's history ends at this minor iteration.
+    #[error("its history ends before minor iteration {0}")]
     Done(u32),
     /// Only the problem is singular in this minor iteration.
-    #[error("minor iteration {0} is singular, and there it is not")]
+    #[error("minor iteration {0} is singular in the original only")]
     Singular(u32),
-    /// Only the file is not solved in this minor iteration.
+    /// Only the file cannot be solved in this minor iteration.
     #[error("minor iteration {0} cannot be solved")]
     Unsolved(u32),
-    /// The scene's iteration is not the problem's.
-    #[error("they part in minor iteration {minor}, by {by:.1e}")]
+    /// The file's iteration differs from the problem's.
+    #[error("they differ in minor iteration {minor}, by {by:.1e}")]
     Apart {
         /// Number of the minor iteration, from 1.
         minor: u32,
-        /// How far they are apart, relatively.
+        /// Relative difference.
         by: f64,
     },
 }
 
-/// Where a problem was frozen.
+/// Where a frozen problem comes from.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Origin {
-    /// Name of the scene, and what was changed in it: `PATH=VALUE`, or an intervention in words.
+    /// Name of the scene.
     pub scene: String,
-    /// What was done before, as one would type it.
+    /// Changes before, as typed: `PATH=VALUE`, or an intervention in words.
     pub changes: Vec<String>,
-    /// The minor iteration after which it was, or before the first.
+    /// The minor iteration after which the problem was taken, or before the first one.
     pub at: Position,
-    /// Load factor that it aims at.
+    /// Target load factor.
     pub load: f64,
 }
 
 impl Origin {
-    /// A scene as it stands, with what was set from outside.
+    /// A scene with its overrides.
     pub fn of(scene: &Scene, at: Position, load: f64) -> Self {
         Origin {
             scene: scene.name.clone(),
@@ -142,7 +145,7 @@ impl Origin {
         }
     }
 
-    /// In a sentence.
+    /// The origin in a sentence.
     pub fn words(&self) -> String {
         let with = match self.changes.as_slice() {
             [] => String::new(),
@@ -155,8 +158,7 @@ impl Origin {
 
 /// The file of a core; `cycle` is that of the whole scene.
 ///
-/// # Errors
-/// Why there is none.
+/// # Errors If it cannot be written.
 pub fn core(
     model: &Model,
     origin: &Origin,
@@ -180,10 +182,10 @@ pub fn core(
         .map(|node| named(node.slave))
         .collect();
     let head = [
-        "The core of a cycle: the fewest nodes that still cycle when all others go on for ever with what they do.".to_owned(),
+        "The core of a cycle: the smallest set of nodes that still cycles with all other modes frozen.".to_owned(),
         origin.words(),
-        format!("There {}.", report::cycle(model, cycle)),
-        format!("Here {}.", report::cycle(model, &of_core)),
+        format!("In the scene: {}.", report::cycle(model, cycle)),
+        format!("In this file: {}.", report::cycle(model, &of_core)),
     ];
     let title = format!(
         "Core of {}: {}, period {}",
@@ -195,7 +197,7 @@ pub fn core(
     match cycle_of(&text)? {
         Some(found) if same_cycle(&found, &core.cycle) => Ok(text),
         other => {
-            let found = other.map_or("none".to_owned(), |c| format!("one of period {}", c.period));
+            let found = other.map_or("no cycle".to_owned(), |c| format!("period {}", c.period));
             Err(NoExport::OtherCycle {
                 period: core.cycle.period,
                 found,
@@ -204,17 +206,16 @@ pub fn core(
     }
 }
 
-/// The nodes of a problem that a file can have: those over a surface, and with something that moves.
+/// The nodes that can be written: those that face a surface and can move.
 pub fn writable(problem: &InterfaceProblem) -> Vec<usize> {
     let can = |place: &usize| problem.nodes[*place].moves() != [false; 2];
     (0..problem.nodes.len()).filter(can).collect()
 }
 
-/// The file of a whole frozen problem, its nodes as they stand, less those that no file can have ([`writable`]): these
-/// neither push nor are pushed.
+/// The file of a whole frozen problem in its current state, without the nodes that cannot be written
+/// ([`writable`]): these do not interact with the others.
 ///
-/// # Errors
-/// Why there is none.
+/// # Errors If it cannot be written.
 pub fn whole(
     model: &Model,
     origin: &Origin,
@@ -225,7 +226,7 @@ pub fn whole(
         return Err(NoExport::NoInterface);
     }
     let mut head = vec![
-        "The frozen interface problem of a major iteration: what its minor iterations know of the bodies.".to_owned(),
+        "The frozen interface problem of a major iteration: the bodies reduced to their contact nodes.".to_owned(),
         origin.words(),
     ];
     let gone = (0..problem.nodes.len()).filter(|place| !here.contains(place));
@@ -234,7 +235,7 @@ pub fn whole(
         .collect();
     if !gone.is_empty() {
         head.push(format!(
-            "Left out, since past the ends of all surfaces, or held like what they lie on: {}.",
+            "Left out (past the ends of all surfaces, or fixed together with the surface): {}.",
             gone.join(", ")
         ));
     }
@@ -247,7 +248,7 @@ pub fn whole(
     text(model, &problem, title, head)
 }
 
-/// The file: stiffness where that exists and steps as the problem does, else compliance.
+/// The file: with the stiffness, if that exists and its steps match the problem, otherwise with the compliance.
 fn text(
     model: &Model,
     problem: &InterfaceProblem,
@@ -281,9 +282,9 @@ fn text(
     ] {
         let Some((matrix, free, loads)) = made else {
             let why = if form == "stiffness" {
-                "some motion is held rigidly"
+                "some motion is rigidly fixed"
             } else {
-                "some motion is resisted by nothing"
+                "some motion is unrestrained"
             };
             refused.push(format!("no {form}: {why}"));
             continue;
@@ -309,17 +310,17 @@ fn text(
         }
         match compared(problem, &text) {
             Ok(_) => return Ok(text),
-            Err(why) => refused.push(format!("its {form} does not step as it does: {why}")),
+            Err(why) => refused.push(format!("with the {form}, the steps differ: {why}")),
         }
     }
     Err(NoExport::NoMatrix(refused.join("; ")))
 }
 
-/// A frozen problem in the form of Siconos, its nodes as they stand, less those that no file can have ([`writable`]):
-/// `q` has the gaps, and what was slipped before, so that `u` are the gaps and the slips of the whole increment.
+/// A frozen problem in Siconos format in its current state, without the nodes that cannot be written
+/// ([`writable`]). `q` includes the gaps and the previous slip, so that `u` are the gaps and slips of the whole
+/// increment.
 ///
-/// # Errors
-/// Why there is none: that form knows a compliance only, and no cohesion.
+/// # Errors If it cannot be written: the format supports only a compliance, and no cohesion.
 pub fn siconos(model: &Model, problem: &InterfaceProblem) -> Result<Friction2d, NoExport> {
     let Total { slaves, w, q } = total(model, problem)?;
     let of = |slave: &usize| problem.nodes.iter().find(|node| node.slave == *slave);
@@ -332,21 +333,20 @@ pub fn siconos(model: &Model, problem: &InterfaceProblem) -> Result<Friction2d, 
     Ok(Friction2d { w, q, mu })
 }
 
-/// A problem in the total forces of its nodes: (gap, u) = W f + q, n and t of each after the other, with the slave's motion u
-/// along t against its master since the increment began.
+/// A problem in the total forces of its nodes: (gap, u) = W f + q, with n and t of each node in turn. u is the
+/// slave's motion along t relative to its master since the start of the increment.
 pub struct Total {
     /// Slave numbers of the nodes.
     pub slaves: Vec<usize>,
     /// W, row by row (length by force).
     pub w: Vec<Vec<f64>>,
-    /// Gaps and motions without any force (length).
+    /// Gaps and motions at zero force (length).
     pub q: Vec<f64>,
 }
 
 /// A problem in total forces.
 ///
-/// # Errors
-/// Why there is none: some motion is resisted by nothing, or a support carries what acts on a node.
+/// # Errors If some motion is unrestrained, or a support carries the contact force of a node.
 pub fn total(model: &Model, problem: &InterfaceProblem) -> Result<Total, NoExport> {
     let here = writable(problem);
     if here.is_empty() {
@@ -354,21 +354,21 @@ pub fn total(model: &Model, problem: &InterfaceProblem) -> Result<Total, NoExpor
     }
     let problem = problem.reduced(&here).ok_or(NoExport::Singular)?;
     unsupported(model, &problem)?;
-    let none = || NoExport::NoMatrix("some motion is resisted by nothing".to_owned());
+    let none = || NoExport::NoMatrix("some motion is unrestrained".to_owned());
     let (matrix, mut q, _) = compliance(&problem).ok_or_else(none)?;
     let Matrix::Compliance(w) = matrix else {
         return Err(none());
     };
     for (pair, node) in q.chunks_exact_mut(2).zip(&problem.nodes) {
         pair[0] += node.kinematics.map_or(0.0, |k| k.gap);
-        // Slip is that of the master against the slave; u is the slave's.
+        // Slip is the motion of the master relative to the slave; u is that of the slave.
         pair[1] -= node.state.slipped(&problem.settings);
     }
     let slaves = problem.nodes.iter().map(|node| node.slave).collect();
     Ok(Total { slaves, w, q })
 }
 
-/// Refuses nodes whose forces a support carries.
+/// Rejects nodes whose forces are carried by a support.
 fn unsupported(model: &Model, problem: &InterfaceProblem) -> Result<(), NoExport> {
     let carried: Vec<&str> = problem
         .nodes
@@ -382,7 +382,7 @@ fn unsupported(model: &Model, problem: &InterfaceProblem) -> Result<(), NoExport
     }
 }
 
-/// A contact as it stands.
+/// A contact in its current state.
 fn contact(problem: &InterfaceProblem, place: usize, id: &str, load: [f64; 2]) -> Contact {
     let ProblemNode {
         kinematics,
@@ -392,7 +392,7 @@ fn contact(problem: &InterfaceProblem, place: usize, id: &str, load: [f64; 2]) -
     } = problem.nodes[place];
     let touches = state.mode != Mode::Free;
     let limit = match state.mode {
-        // Where T_max follows F_n in the solve, only its sign is looked at.
+        // If the solve updates T_max with F_n, only the sign of T_max matters.
         Mode::Sliding if state.t_max == 0.0 => state.sign * f64::EPSILON * problem.force,
         Mode::Sliding => state.t_max,
         _ => 0.0,
@@ -413,7 +413,8 @@ fn contact(problem: &InterfaceProblem, place: usize, id: &str, load: [f64; 2]) -
     }
 }
 
-/// What the minor iterations look at of the settings; a cycle stops, and what concerns the bodies is left out.
+/// The settings that minor iterations depend on; a cycle stops the run, and settings for the bodies are left
+/// out.
 fn settings(of: &Settings) -> Settings {
     Settings {
         strategy: of.strategy,
@@ -428,7 +429,7 @@ fn settings(of: &Settings) -> Settings {
     }
 }
 
-/// The scene's diagonal is the length that tolerances are parts of, in the file too.
+/// Node spacing that gives the file the scene's diagonal, the reference length of the tolerances.
 fn spacing(problem: &InterfaceProblem) -> f64 {
     match problem.nodes.len() {
         1 => problem.length / 2.0,
@@ -438,7 +439,7 @@ fn spacing(problem: &InterfaceProblem) -> f64 {
 
 type Parts = (Matrix, Vec<f64>, Vec<[f64; 2]>);
 
-/// K, free and loads; `None` if something is rigid.
+/// K, free displacements and loads; `None` if something is rigid.
 fn stiffness(problem: &InterfaceProblem) -> Option<Parts> {
     let InterfaceResponse {
         stiffness: k,
@@ -450,7 +451,7 @@ fn stiffness(problem: &InterfaceProblem) -> Option<Parts> {
     (0..n).for_each(|i| matrix[i * n + i] += 1.0);
     let solved = solved(&matrix, start.iter().chain(response).copied().collect())?;
     let (c, k_columns) = solved.split_at(n);
-    // (1 + R/k)⁻¹ = 1 + K/k; without springs nothing is taken out.
+    // (1 + R/k)⁻¹ = 1 + K/k; without springs nothing has to be removed.
     let largest = k_columns.iter().fold(0.0_f64, |m, x| m.max(x.abs())) / k;
     if largest > SINGULAR {
         return None;
@@ -474,7 +475,7 @@ fn stiffness(problem: &InterfaceProblem) -> Option<Parts> {
     ))
 }
 
-/// W, free and no loads; `None` if something is loose.
+/// W and free displacements, without loads; `None` if something can move freely.
 fn compliance(problem: &InterfaceProblem) -> Option<Parts> {
     let InterfaceResponse {
         stiffness: k,
@@ -515,7 +516,7 @@ fn compliance(problem: &InterfaceProblem) -> Option<Parts> {
     ))
 }
 
-/// X of A X = B, all column by column.
+/// Solves A X = B, all stored by column.
 fn solved(a: &[f64], mut b: Vec<f64>) -> Option<Vec<f64>> {
     let n = a.len().isqrt();
     let mut dense = DenseFactors::new(n, b.len() / n).ok()?;
@@ -530,7 +531,7 @@ fn rows(n: usize, entry: impl Fn(usize, usize) -> f64) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// Ids for the nodes: their names, with - for what no id may have in it, each once.
+/// Unique ids for the nodes: their names, with - in place of characters that ids cannot have.
 fn ids(model: &Model, problem: &InterfaceProblem) -> Vec<String> {
     let mut ids: Vec<String> = Vec::new();
     for node in &problem.nodes {
@@ -554,7 +555,7 @@ fn shortened(title: &str) -> String {
     plain.take(limits::TITLE - 1).chain(['…']).collect()
 }
 
-/// A comment in lines of [`WIDTH`], broken at blanks.
+/// A comment in lines of [`WIDTH`], broken at spaces.
 fn wrapped(text: &str) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in text.split_whitespace() {
@@ -572,15 +573,14 @@ fn wrapped(text: &str) -> Vec<String> {
     lines
 }
 
-/// Steps a file beside the problem that it was made of, minor iteration by minor iteration, until the minors settle,
-/// cycle or fail. Returns the largest difference of a force or a length, relative to the problem's sizes of either.
+/// Steps a file and its problem together until the minor iterations settle, cycle or fail. Returns the largest
+/// relative difference of a force or length.
 ///
-/// # Errors
-/// Where the two part.
+/// # Errors If the two differ.
 pub fn compared(problem: &InterfaceProblem, text: &str) -> Result<f64, Parted> {
-    let scene = Scene::from_text("what would be written", text, &[]).map_err(Box::new)?;
+    let scene = Scene::from_text("exported scene", text, &[]).map_err(Box::new)?;
     let mut stepper = Stepper::new(Arc::new(scene.model));
-    // What is written knows the touching points of bonds only, not the nodes behind them.
+    // For bonds, the file contains only the contact points, not the nodes behind them.
     let mut touching = problem.clone();
     let kinematics = touching
         .nodes
@@ -645,9 +645,9 @@ fn difference(problem: &InterfaceProblem, a: &ContactRecord, b: &ContactRecord) 
     .fold(0.0, f64::max)
 }
 
-/// The cycle that a scene's first minor iterations close; `None` if they end otherwise.
+/// The cycle of the first minor iterations of a scene; `None` if they do not cycle.
 fn cycle_of(text: &str) -> Result<Option<Cycle>, Parted> {
-    let scene = Scene::from_text("what would be written", text, &[]).map_err(Box::new)?;
+    let scene = Scene::from_text("exported scene", text, &[]).map_err(Box::new)?;
     let mut stepper = Stepper::new(Arc::new(scene.model));
     while let Some(event) = stepper.step() {
         match &event.outcome {
@@ -659,7 +659,7 @@ fn cycle_of(text: &str) -> Result<Option<Cycle>, Parted> {
     Ok(None)
 }
 
-/// Same period, members and patterns, wherever in the round each begins.
+/// Whether two cycles have the same period, members and patterns, up to a shift.
 fn same_cycle(a: &Cycle, b: &Cycle) -> bool {
     let period = a.period as usize;
     let turned = |by: usize| {

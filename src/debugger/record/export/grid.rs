@@ -1,8 +1,9 @@
-//! A state as ParaView shows it (`.vtu`): the undeformed mesh, and on its nodes what moved, what is stressed and what touches.
+//! A state for ParaView (`.vtu`): the undeformed mesh with displacements, stresses and contact quantities at
+//! its nodes.
 //!
 //! | on nodes | |
 //! | --- | --- |
-//! | `node` | number of the node, from 1; its name stands in that line of `node_names` |
+//! | `node` | number of the node, from 1; its name is in that line of `node_names` |
 //! | `displacement` | x, y and 0; "Warp By Vector" shows the deformed shape |
 //! | `rotation` | of beams, anticlockwise (radians) |
 //! | `stress` | Cauchy stress of solids as VTK orders it: XX, YY, ZZ, XY, YZ, XZ ([`recovery`]) |
@@ -19,9 +20,9 @@
 //! | `stretch` | of solids: smallest principal stretch at the element's integration points |
 //! | `det_F` | of solids: smallest det F at its integration points and nodes |
 //!
-//! Where there is none of it, a number is NaN. Names stand in `node_names`, `body_names` and `surface_names`, lines of text by
-//! bytes, since readers other than VTK's know no arrays of text. Elements of beams with more than three nodes are lines from
-//! node to node, and so are surfaces.
+//! Numbers that are not defined are NaN. The names are in `node_names`, `body_names` and `surface_names`: lines
+//! of text stored as bytes, because only VTK's own reader supports arrays of text. Beam elements with more than
+//! three nodes are written as lines from node to node, and so are surfaces.
 
 use super::shown::{ExportError, Shown};
 use stickslip_core::contact::record::ContactRecord;
@@ -37,7 +38,7 @@ use stickslip_exchange::vtu::{self, Array, Grid, Values};
 const VECTOR: &[&str] = &["X", "Y", "Z"];
 const TENSOR: &[&str] = &["XX", "YY", "ZZ", "XY", "YZ", "XZ"];
 
-/// The file.
+/// The contents of the file.
 pub(super) fn vtu(shown: &Shown, _: &mut Stepper) -> Result<Vec<u8>, ExportError> {
     let (at, load) = match shown.event {
         Some(event) => (event.position, event.load_factor),
@@ -47,7 +48,7 @@ pub(super) fn vtu(shown: &Shown, _: &mut Stepper) -> Result<Vec<u8>, ExportError
     Ok(vtu::write(&grid).into_bytes())
 }
 
-/// The grid of a state; the last minor iteration, where there was one, knows the gaps.
+/// The grid of a state; gaps come from the last minor iteration, if there is one.
 pub fn grid(model: &Model, state: &State, event: Option<&Event>, at: Position, load: f64) -> Grid {
     let mut grid = Grid {
         points: model.nodes.iter().map(|node| node.at).collect(),
@@ -93,7 +94,7 @@ fn array(name: &str, components: &'static [&'static str], values: Values) -> Arr
     }
 }
 
-/// The cells of all bodies and surfaces, and whose they are.
+/// The cells of all bodies and surfaces, with their owners.
 fn cells(model: &Model, grid: &mut Grid) {
     let (mut body, mut surface, mut rigid) = (Vec::new(), Vec::new(), Vec::new());
     let mut add = |grid: &mut Grid, cell: Cell, of: [i32; 3]| {
@@ -147,7 +148,7 @@ fn cells(model: &Model, grid: &mut Grid) {
     ];
 }
 
-/// Deformation of the elements of solids, one value per cell; the cells of bodies come first, in order.
+/// Deformation of solid elements, one value per cell; the cells of bodies come first, in order.
 fn deformations(model: &Model, state: &State, grid: &mut Grid) {
     if !model.has_solids() {
         return;
@@ -183,7 +184,7 @@ fn cell_kind(kind: ElementKind) -> CellKind {
     }
 }
 
-/// The cells of a line through nodes in walking order.
+/// The cells of a line through nodes in order.
 fn lines(nodes: &[usize]) -> Vec<Cell> {
     if let &[one, middle, other] = nodes {
         return vec![Cell {
@@ -254,7 +255,7 @@ fn stresses(model: &Model, state: &State, grid: &mut Grid) {
         .push(array("stress", TENSOR, Values::Numbers(all)));
 }
 
-/// What is told of a slave node: mode, force, and F_n, F_t, T_max, gap and slip.
+/// Contact record of a slave node: mode, force, and F_n, F_t, T_max, gap and slip.
 type Told = (Mode, [f64; 2], [f64; 5]);
 
 fn contacts(model: &Model, state: &State, event: Option<&Event>, grid: &mut Grid) {
@@ -319,7 +320,7 @@ fn of_record(record: &ContactRecord) -> Option<Told> {
     Some((record.decision.before, force, values))
 }
 
-/// Before the first minor iteration no gap is known.
+/// Before the first minor iteration the gap is unknown.
 fn at_start(state: &State, place: usize) -> Option<Told> {
     let node = state.nodes.get(place)?;
     let values = [node.f_n, node.f_t, node.t_max, f64::NAN, node.slip];

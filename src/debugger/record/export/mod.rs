@@ -1,12 +1,15 @@
-//! Files made of a state, the kind by the extension: one list, [`KINDS`], and one file a kind.
+//! Files made from a state, with the kind chosen by the extension. [`KINDS`] lists the kinds; each has a
+//! module.
 //!
-//! - [`frozen`]: the core of a cycle, or the whole frozen problem, as a scene, or in the form of Siconos.
+//! - [`frozen`]: the core of a cycle or the whole frozen problem, as a scene or in Siconos format.
 //! - [`picture`]: the deformed shape with modes, forces and gaps, and the timeline, as SVG and PNG.
-//! - [`written`]: the scene itself, and the frozen problem in the forms of other programs; [`skeleton`]: a scene around a mesh.
-//! - [`grid`]: a state as ParaView shows it.
-//! - [`shown`]: what all of them are made of.
+//! - [`written`]: the scene itself, and the frozen problem in other programs' formats; [`skeleton`]: a scene
+//!   around a mesh.
+//! - [`grid`]: a state for ParaView.
+//! - [`shown`]: the input of all of them.
 //!
-//! A session as a film is made of a journal by who draws screens; the list has its name.
+//! The film of a session is made from a journal by the terminal front end; the list only contains its
+//! extension.
 
 pub mod frozen;
 pub mod grid;
@@ -26,15 +29,15 @@ use stickslip_scene::problems::market;
 
 pub use frozen::{NoExport, Origin, Parted, compared, core, whole, writable};
 
-/// The bytes of several files of a state.
+/// Function that returns the contents of several files made from a state.
 type MakeParts = fn(&Shown, &mut Stepper) -> Result<Vec<Vec<u8>>, ExportError>;
 
-/// What a kind of file is made of.
+/// What a kind of file is made from.
 #[derive(Clone, Copy)]
 pub enum MadeOf {
-    /// A state; the stepper is of the same model, and may be left anywhere.
+    /// A state. The stepper belongs to the same model and may be in any state.
     State(fn(&Shown, &mut Stepper) -> Result<Vec<u8>, ExportError>),
-    /// A state too, in several files: those that [`Kind::files`] names.
+    /// A state, in several files: those of [`Kind::files`].
     Parts(MakeParts),
     /// A whole session.
     Journal,
@@ -42,21 +45,20 @@ pub enum MadeOf {
 
 /// A kind of file.
 pub struct Kind {
-    /// How names of such files end, without the dot.
+    /// Extension without the dot.
     pub extension: &'static str,
-    /// What is in it, for messages and the manual.
+    /// Contents, for messages and the manual.
     pub what: &'static str,
-    /// Whether it can hold the scene and the frozen problem, and who wants the latter must say so.
+    /// Whether it can contain either the scene or its frozen problem. The latter must be requested.
     pub may_be_frozen: bool,
-    /// What it is made of, and by whom.
+    /// What it is made from, and the function that makes it.
     pub made_of: MadeOf,
 }
 
 impl Kind {
-    /// The files that are made where one of this kind is asked for, that one first.
+    /// The names of the files for a requested file, that one first.
     ///
-    /// # Errors
-    /// If the name will not do.
+    /// # Errors If the name is not suitable.
     pub fn files(&self, file: &Path) -> Result<Vec<PathBuf>, String> {
         match self.made_of {
             MadeOf::Parts(_) => Ok(market::parts(file)?.into()),
@@ -64,10 +66,9 @@ impl Kind {
         }
     }
 
-    /// What is in these files, of a state; `None` where they are made of something else.
+    /// The contents of these files; `None` if they are not made from a state.
     ///
-    /// # Errors
-    /// Why they cannot be made.
+    /// # Errors If they cannot be made.
     pub fn made(
         &self,
         shown: &Shown,
@@ -81,17 +82,17 @@ impl Kind {
     }
 }
 
-/// Every kind that there is.
+/// All kinds of files.
 pub const KINDS: &[Kind] = &[
     Kind {
         extension: "svg",
-        what: "the picture of a state",
+        what: "a picture of the state",
         may_be_frozen: false,
         made_of: MadeOf::State(picture::svg),
     },
     Kind {
         extension: "png",
-        what: "the same as a bitmap",
+        what: "the picture as a bitmap",
         may_be_frozen: false,
         made_of: MadeOf::State(picture::png),
     },
@@ -109,13 +110,13 @@ pub const KINDS: &[Kind] = &[
     },
     Kind {
         extension: "mtx",
-        what: "the same as matrices of the Matrix Market, in three files",
+        what: "the frozen problem as three Matrix Market files",
         may_be_frozen: true,
         made_of: MadeOf::Parts(written::mtx),
     },
     Kind {
         extension: "h5",
-        what: "the same for fclib",
+        what: "the frozen problem for fclib",
         may_be_frozen: true,
         made_of: MadeOf::State(written::h5),
     },
@@ -133,10 +134,9 @@ pub const KINDS: &[Kind] = &[
     },
 ];
 
-/// The kind that the name of a file asks for.
+/// The kind of a file, by its extension.
 ///
-/// # Errors
-/// If it ends as none of them does; the message lists them all.
+/// # Errors If the extension is unknown; the message lists all kinds.
 pub fn kind(file: &Path) -> Result<&'static Kind, ExportError> {
     let own = file.extension().unwrap_or_default();
     let found = KINDS
@@ -148,9 +148,7 @@ pub fn kind(file: &Path) -> Result<&'static Kind, ExportError> {
             .map(|k| format!(".{} ({})", k.extension, k.what));
         let known = known.collect::<Vec<_>>().join(", ");
         let file = file.display();
-        ExportError::NoFile(format!(
-            "{file}: no file of that kind is made; these are: {known}"
-        ))
+        ExportError::NoFile(format!("{file}: unknown file kind; available: {known}"))
     })
 }
 
@@ -159,7 +157,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_kind_is_known_by_its_extension_and_the_message_lists_all() {
+    fn a_kind_is_chosen_by_its_extension_and_the_error_lists_all() {
         assert_eq!(kind(Path::new("a/b.SVG")).unwrap().extension, "svg");
         for wrong in ["a.bmp", "svg", "a.", "-"] {
             let why = kind(Path::new(wrong)).err().unwrap().to_string();

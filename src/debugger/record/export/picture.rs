@@ -1,8 +1,8 @@
-//! A state as a picture for paper: the deformed shape with the nodes' modes, the masters' normals, contact forces and
-//! gaps, a table of the slave nodes, and the timeline below.
+//! A state as a picture for print: the deformed shape with modes, surface normals, contact forces and gaps, a
+//! table of slave nodes, and the timeline at the bottom.
 //!
-//! Displacements are drawn as large as they are. Forces have a scale of their own, which stands below the shape with its
-//! number. Modes are told by shapes first, and by colours that differ in grey, too.
+//! Displacements are drawn to scale. Forces have a separate scale, shown below the shape. Modes differ in the
+//! shape of their markers, and in colours that also differ in greyscale.
 
 use super::pressures::pressures;
 use super::shown::{ExportError, Shown};
@@ -26,33 +26,31 @@ use stickslip_study::sheet::{
     Anchor, BLACK, Colour, GREY, LABEL, MARGIN, PALE, SMALL, Sheet, widest,
 };
 
-/// The whole picture's width, and the height of the shape.
+/// Width of the picture, and height of the shape.
 const WIDTH: f64 = 980.0;
 const HIGH: f64 = 400.0;
 /// Length of a normal, in pixels.
 const NORMAL: f64 = 13.0;
 /// Pixels between two normals.
 const SPACING: f64 = 46.0;
-/// Least diagonal of an element whose edges are drawn, in pixels.
+/// Elements with a shorter diagonal (in pixels) are drawn without edges.
 const ELEMENT: f64 = 7.0;
-/// Slave nodes in the table, and nodes whose names or numbers stand in the shape.
+/// Maximum number of slave nodes in the table and labelled in the shape.
 const ROWS: usize = 14;
-/// Forces.
+/// Colour of forces.
 const VERMILION: Colour = (213, 94, 0);
-/// Bodies.
+/// Colour of bodies.
 const DARK: Colour = (60, 60, 60);
 
-/// The picture as SVG.
 pub(super) fn svg(shown: &Shown, _: &mut Stepper) -> Result<Vec<u8>, ExportError> {
     Ok(sheet(shown)?.svg()?.into_bytes())
 }
 
-/// The picture as PNG.
 pub(super) fn png(shown: &Shown, _: &mut Stepper) -> Result<Vec<u8>, ExportError> {
     Ok(sheet(shown)?.png()?)
 }
 
-/// The marker of a mode: a ring for free, a triangle for sliding, a square for fixed.
+/// The marker of a mode: a circle for free, a triangle for sliding, a square for fixed.
 fn marker(sheet: &mut Sheet, at: (f64, f64), mode: Mode, r: f64) {
     let kind = match mode {
         Mode::Free => 0,
@@ -85,7 +83,7 @@ fn title(shown: &Shown) -> String {
     }
 }
 
-/// Which state it is, and how it came about.
+/// The position, load and outcome of the state.
 fn caption(shown: &Shown) -> String {
     let Some(event) = shown.event else {
         return "The start, before the first minor iteration.".to_owned();
@@ -94,25 +92,20 @@ fn caption(shown: &Shown) -> String {
     let load = plain(event.load_factor);
     let what = match (&event.outcome, &shown.state.status) {
         (_, Status::Failed(_)) | (Outcome::Failed(_), _) => {
-            format!(
-                "the last state reached, the increment failed: {}",
-                shown.ended
-            )
+            format!("last state; the increment failed: {}", shown.ended)
         }
-        (Outcome::Increment { .. }, Status::Finished) => {
-            "accepted, the end of the history".to_owned()
-        }
+        (Outcome::Increment { .. }, Status::Finished) => "accepted; end of the history".to_owned(),
         (Outcome::Increment { .. }, _) => "accepted".to_owned(),
         (Outcome::Major { .. } | Outcome::Refused { .. }, _) => "not in equilibrium yet".to_owned(),
-        (Outcome::Moves(_), _) => "moves on against a drag, not in equilibrium".to_owned(),
+        (Outcome::Moves(_), _) => "moving against viscous drag; not in equilibrium".to_owned(),
         (
             Outcome::Cut { .. }
             | Outcome::Leaps { .. }
             | Outcome::Fallback { .. }
             | Outcome::Turns { .. },
             _,
-        ) => "the increment begins again".to_owned(),
-        _ => "modes or T_max change".to_owned(),
+        ) => "the increment restarts".to_owned(),
+        _ => "modes or T_max still change".to_owned(),
     };
     let more = match shown.ended.as_str() {
         "" => String::new(),
@@ -126,7 +119,7 @@ fn caption(shown: &Shown) -> String {
     }
 }
 
-/// What it was made from, and by what.
+/// The origin of the picture: scene, strategy and program.
 fn footer(shown: &Shown) -> Vec<String> {
     let mut from = format!("Scene: {}", shown.origin.scene);
     if !shown.origin.changes.is_empty() {
@@ -140,7 +133,7 @@ fn footer(shown: &Shown) -> Vec<String> {
     )]
 }
 
-/// What is drawn of a line.
+/// How a line is drawn.
 struct Pen {
     width: f64,
     colour: Colour,
@@ -186,7 +179,7 @@ fn shape(sheet: &mut Sheet, shown: &Shown, rows: &[usize]) -> Result<(), PlotErr
     legend(sheet, &window, shown, largest)?;
     if pressure > 0.0 {
         let told = format!(
-            "blue: contact pressure F_n / A by undeformed areas, largest {}",
+            "blue: contact pressure F_n / A on undeformed areas, maximum {}",
             short(pressure)
         );
         sheet.paragraph(&[told], SMALL, GREY)?;
@@ -194,7 +187,7 @@ fn shape(sheet: &mut Sheet, shown: &Shown, rows: &[usize]) -> Result<(), PlotErr
     Ok(())
 }
 
-/// Elements as they were (dashed) and as they are.
+/// Undeformed (dashed) and deformed elements.
 fn bodies(
     sheet: &mut Sheet,
     window: &Window,
@@ -238,7 +231,7 @@ fn bodies(
     }
 }
 
-/// Master surfaces, with arrows to their outward side: on the right of the walk.
+/// Master surfaces, with arrows to their outward side: on the right in the direction of travel.
 fn surfaces(
     sheet: &mut Sheet,
     window: &Window,
@@ -276,7 +269,7 @@ fn normals(
     let (x, y) = (x / length, y / length);
     while *walked < length {
         let foot = (from.0 + *walked * x, from.1 + *walked * y);
-        // Right of the walk, on paper, whose y points downwards.
+        // On the right in the direction of travel; y points down on the sheet.
         let tip = (foot.0 - NORMAL * y, foot.1 + NORMAL * x);
         sheet.arrow(foot, tip, 1.0, GREY);
         taken.take_line(foot, tip);
@@ -285,7 +278,7 @@ fn normals(
     *walked -= length;
 }
 
-/// Open gaps as lines from the node to the surface, where they are wide enough to be seen.
+/// Open gaps as lines from node to surface, if they are wide enough to see.
 fn gaps(sheet: &mut Sheet, window: &Window, shown: &Shown, now: &dyn Fn(usize) -> Point) {
     let Some(event) = shown.event else { return };
     for (contact, found) in shown.scene.model.contacts.iter().zip(&event.nodes) {
@@ -302,7 +295,7 @@ fn gaps(sheet: &mut Sheet, window: &Window, shown: &Shown, now: &dyn Fn(usize) -
     }
 }
 
-/// Room that the arrows of forces need beyond the shape: at the left, above, at the right, and below.
+/// Margins that the force arrows need outside the shape: left, top, right, bottom.
 fn room(shown: &Shown) -> [f64; 4] {
     let (largest, mut room) = (largest(shown), [0.0_f64; 4]);
     let Some(event) = shown.event.filter(|_| largest > 0.0) else {
@@ -323,7 +316,7 @@ fn size(found: &ContactRecord) -> f64 {
     found.f_n.hypot(found.f_t)
 }
 
-/// The largest contact force that is none of round-off; 0 where there is none.
+/// The largest contact force above round-off; 0 if there is none.
 fn largest(shown: &Shown) -> f64 {
     let Some(event) = shown.event else { return 0.0 };
     let round_off = RoundOff::of(&shown.scene.model, &event.before);
@@ -331,7 +324,7 @@ fn largest(shown: &Shown) -> f64 {
     sizes.filter(|f| f.is_finite()).fold(0.0, f64::max)
 }
 
-/// Contact forces on the slave nodes as arrows that end at the node; returns the largest.
+/// Contact forces on the slave nodes, as arrows that end at the node; returns the largest.
 fn forces(
     sheet: &mut Sheet,
     window: &Window,
@@ -352,7 +345,7 @@ fn forces(
         let tail = (tip.0 - along(0), tip.1 + along(1));
         let long = scale * size(found) >= 1.0;
         if long && window.holds(tip) {
-            // The head ends beside the node's marker, which lies above it.
+            // The arrow head ends next to the node's marker, which is drawn on top.
             let back = (marked + 1.5) / (scale * size(found));
             let beside = |from: f64, to: f64| to + back * (from - to);
             let shift = (beside(tail.0, tip.0) - tip.0, beside(tail.1, tip.1) - tip.1);
@@ -367,7 +360,8 @@ fn forces(
     largest
 }
 
-/// The slave nodes by the markers of their modes; those in the table with their names, or else their numbers there.
+/// Markers of the slave nodes; those in the table are labelled with their names, or with their numbers where
+/// names do not fit.
 fn slaves(
     sheet: &mut Sheet,
     window: &Window,
@@ -404,7 +398,7 @@ fn slaves(
     Ok(())
 }
 
-/// How large markers can be without covering each other.
+/// The largest marker size without overlap.
 fn radius(window: &Window, model: &Model, now: &dyn Fn(usize) -> Point) -> f64 {
     let at: Vec<(f64, f64)> = model
         .contacts
@@ -419,7 +413,7 @@ fn radius(window: &Window, model: &Model, now: &dyn Fn(usize) -> Point) -> f64 {
     (0.34 * apart).clamp(2.0, 5.0)
 }
 
-/// A line from a node to a label that does not stand beside it.
+/// A line from a node to a label that is not next to it.
 fn leader(sheet: &mut Sheet, at: (f64, f64), patch: &Patch, r: f64) {
     let near = (
         at.0.clamp(patch.from.0, patch.to.0),
@@ -430,13 +424,13 @@ fn leader(sheet: &mut Sheet, at: (f64, f64), patch: &Patch, r: f64) {
     }
 }
 
-/// The mode of the shown minor iteration; before the first one that with which the node starts.
+/// The mode in the shown minor iteration; before the first one, the initial mode.
 fn mode(shown: &Shown, slave: usize) -> Mode {
     let found = shown.event.and_then(|event| event.nodes.get(slave));
     found.map_or(shown.state.nodes[slave].mode, |found| found.decision.before)
 }
 
-/// The keys of the shape: modes, and the scales of lengths and forces with their numbers.
+/// The legend: modes, and the scales of lengths and forces.
 fn legend(
     sheet: &mut Sheet,
     window: &Window,
@@ -476,14 +470,14 @@ fn legend(
     sheet.text((x + 10.0, y), "outward side", SMALL, BLACK, Anchor::Left);
     let moved = moved(shown);
     let told = format!(
-        "Displacements to scale, the largest {}; dashed: unloaded.",
+        "Displacements to scale, maximum {}; dashed: undeformed.",
         plain_four(moved)
     );
     sheet.height = y + 1.2 * LABEL;
     sheet.paragraph(&[told], SMALL, GREY)
 }
 
-/// Four digits, as short as they are.
+/// Four significant digits, without trailing zeros.
 fn plain_four(value: f64) -> String {
     match format!("{value:.3e}").parse::<f64>() {
         Ok(rounded) => plain(rounded),
@@ -502,7 +496,7 @@ fn moved(shown: &Shown) -> f64 {
     all.fold(0.0, f64::max)
 }
 
-/// The largest of 1, 2 and 5 times a power of ten that is not above a number.
+/// The largest of 1, 2 and 5 times a power of ten that does not exceed a value.
 fn round(value: f64) -> f64 {
     if !(value > 0.0 && value.is_finite()) {
         return 0.0;
@@ -511,19 +505,19 @@ fn round(value: f64) -> f64 {
     let step = [5.0, 2.0, 1.0]
         .into_iter()
         .find(|step| step * power <= value);
-    // Written and read, so that it is the number that it says.
+    // Formatted and parsed, so that the value equals its label.
     format!("{:.0e}", step.unwrap_or(1.0) * power)
         .parse()
         .unwrap_or(value)
 }
 
-/// The numbers of some slave nodes.
+/// The table of some slave nodes.
 fn table(sheet: &mut Sheet, shown: &Shown, rows: &[usize]) -> Result<(), PlotError> {
     let Some(event) = shown.event.filter(|event| !event.nodes.is_empty()) else {
         return Ok(());
     };
     let model = &shown.scene.model;
-    /// Right ends of the columns of numbers.
+    /// Number columns with the positions of their right ends.
     const COLUMNS: [(&str, f64); 5] = [
         ("gap", 430.0),
         ("F_n", 560.0),
@@ -580,7 +574,7 @@ fn table(sheet: &mut Sheet, shown: &Shown, rows: &[usize]) -> Result<(), PlotErr
     sheet.height = y + SMALL;
     let left = model.contacts.len() - rows.len();
     if left > 0 {
-        let told = format!("and {left} slave nodes more");
+        let told = format!("and {left} more slave nodes");
         sheet.paragraph(&[told], SMALL, GREY)?;
     }
     sheet.height += 0.5 * SMALL;
@@ -592,7 +586,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn scales_are_round_numbers_below_what_there_is_room_for() {
+    fn scales_are_round_numbers_below_the_limit() {
         for (value, wanted) in [(0.37, 0.2), (5.0, 5.0), (99.0, 50.0), (1.2e-4, 1e-4)] {
             assert_eq!(round(value), wanted);
         }

@@ -6,11 +6,11 @@ use crate::explain::outline::Point;
 use crate::explain::round_off::RoundOff;
 use stickslip_study::sheet::{Colour, Sheet};
 
-/// Pressures.
+/// Colour of pressures.
 const BLUE: Colour = (86, 180, 233);
 
-/// Contact pressure along the sides of bodies whose nodes are all slaves, drawn from the nodes along the master's normal; the
-/// largest is half as long as the longest force. Returns the largest.
+/// Draws contact pressures along the sides of bodies whose nodes are all slaves, from the nodes along the
+/// master's normal; the largest has half the length of the longest force. Returns the largest.
 pub(super) fn pressures(
     sheet: &mut Sheet,
     window: &Window,

@@ -1,4 +1,4 @@
-//! What files are made of: a state, and what there is to tell of it.
+//! The input of an export: a state and its context.
 
 use super::frozen::{NoExport, Origin};
 use crate::explain::examination::Untold;
@@ -13,68 +13,68 @@ use stickslip_scene::Scene;
 use stickslip_scene::format::SceneError;
 use stickslip_study::drawn::PlotError;
 
-/// Minor iterations that a picture's timeline shows.
+/// Number of minor iterations in a picture's timeline.
 pub const COLUMNS: usize = 60;
 
-/// A state, and what there is to tell of it.
+/// A state and its context.
 pub struct Shown<'a> {
-    /// The scene that led there.
+    /// The scene of the run.
     pub scene: &'a Scene,
-    /// Where it is, and what was changed before.
+    /// The position of the state, and earlier changes.
     pub origin: &'a Origin,
     /// The state.
     pub state: &'a State,
     /// The last minor iteration; `None` at the start.
     pub event: Option<&'a Event>,
-    /// The minor iterations before and with it, the last ones at least ([`COLUMNS`]).
+    /// The strips up to this state, at least the last [`COLUMNS`].
     pub strips: &'a [Strip],
-    /// The state in which the last major iteration began; where the history is done, its problem is the one to be frozen.
+    /// The state at the start of the last major iteration; at the end of the history, its problem is exported.
     pub last_major: Option<&'a State>,
-    /// How it ended, in words, where it did not go well; else empty.
+    /// Description of the end, if the run failed; otherwise empty.
     pub ended: String,
-    /// Whether the frozen problem is wanted, where the kind leaves a choice.
+    /// Whether the frozen problem is requested, for kinds that offer a choice.
     pub frozen: bool,
 }
 
-/// Why a file was not made.
+/// Why a file cannot be exported.
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
-    /// It cannot be drawn.
+    /// The picture cannot be drawn.
     #[error(transparent)]
     Drawn(#[from] PlotError),
-    /// The history is done, and nothing is known of its last problem.
-    #[error("the history is done; nothing is solved next from here")]
+    /// The history has ended and its last problem is not known.
+    #[error("the history is complete, so there is no next problem to export")]
     Finished,
-    /// The minor iterations do not cycle here.
+    /// The minor iterations do not cycle.
     #[error("the minor iterations do not cycle from here, so there is no core")]
     NoCycle,
-    /// There is no interface problem, or too many nodes take part.
+    /// There is no interface problem, or it has too many nodes.
     #[error(transparent)]
     Untold(#[from] Untold),
-    /// No file can say what the problem says.
+    /// No file can represent the problem.
     #[error(transparent)]
     NoExport(#[from] NoExport),
-    /// No kind of file has this extension, or room for it.
+    /// The extension is unknown, or does not suit the request.
     #[error("{0}")]
     NoFile(String),
-    /// The interface problem that an attached solver tells is unsound.
+    /// An attached solver reported an invalid interface problem.
     #[error(transparent)]
     Unsound(#[from] Box<SceneError>),
-    /// An attached solver does not tell what is to be written.
+    /// An attached solver does not report the data.
     #[error(transparent)]
     Lost(#[from] Lost),
-    /// The kind is made of a journal.
+    /// This kind is made from a journal.
     #[error(
-        "a .cast is made of a journal; `stickslip export JOURNAL -o FILE` does it, and :journal tells where it is"
+        ".cast files are made from a journal: stickslip export JOURNAL -o FILE. :journal shows its path"
     )]
     OfJournal,
-    /// The file could not be written.
+    /// The file cannot be written.
     #[error(transparent)]
     File(#[from] FileError),
 }
 
-/// The interface problem that is frozen at a state: the one that is solved next, or, where nothing is, the one that was
-/// solved last; with the state that it is of.
+/// The frozen interface problem of a state, and the state it belongs to: the problem to be solved next or, at
+/// the end of the history, the last one solved.
 pub(super) fn problem<'a>(
     shown: &Shown<'a>,
     stepper: &mut Stepper,

@@ -1,8 +1,8 @@
-//! A scene around a mesh, to be edited: its bodies, every line of sides that has a name, and a guess of what touches, what is
-//! held and what is pressed.
+//! Generates a scene around a mesh, as a starting point: its bodies, all named lines of sides, and guesses for
+//! contact, supports and loads.
 //!
-//! The guess is simple. Of two lines of different bodies those touch whose nodes lie nearest, in the mean of a few; the line that
-//! lies level at the bottom of all is held, the one at the top moves down by a hundredth of the height.
+//! The guesses are simple. The contact is between the two lines of different bodies whose nodes are closest on
+//! average. The lowest horizontal line is fixed; the highest one moves down by a hundredth of the height.
 
 use stickslip_scene::Scene;
 use stickslip_scene::format::SceneError;
@@ -12,29 +12,28 @@ use stickslip_scene::shown;
 /// Id of the mesh.
 const ID: &str = "m";
 
-/// The text of a scene that imports a mesh; `scene` is the file where it will stand, `file` the mesh as that names it, and
-/// `parts` the bodies.
+/// The text of a scene that imports a mesh. `scene` is the scene's path, `file` the path of the mesh relative
+/// to it, and `parts` are the bodies.
 ///
-/// # Errors
-/// If the mesh cannot be read from there, or is unsound.
+/// # Errors If the mesh cannot be read or is invalid.
 pub fn skeleton(scene: &str, file: &str, parts: &[String]) -> Result<String, SceneError> {
     let bare = text(file, parts, &[], &Guess::default());
     let lines = Scene::from_text(scene, &bare, &[])?.names().lines(ID);
     let guessed = text(file, parts, &lines, &Guess::of(&lines));
     match Scene::from_text(scene, &guessed, &[]) {
         Ok(_) => Ok(guessed),
-        // What was guessed makes no sense, and is left to the author.
+        // The guesses are not valid; leave them to the author.
         Err(_) => Ok(text(file, parts, &lines, &Guess::default())),
     }
 }
 
-/// Lines by their places in the list.
+/// Lines, by index in the list.
 #[derive(Default)]
 struct Guess {
-    /// Slave and master.
+    /// Slave line and master line.
     contact: Option<(usize, usize)>,
     held: Option<usize>,
-    /// What moves down, and how far.
+    /// The loaded line, and its displacement downwards.
     pressed: Option<(usize, f64)>,
 }
 
@@ -78,7 +77,7 @@ impl Guess {
     }
 }
 
-/// Mean distance of a few nodes of a line from the nearest node of another.
+/// Mean distance of some nodes of a line from the nearest node of another line.
 fn mean_distance(line: &Line, other: &Line) -> f64 {
     const FEW: usize = 16;
     let few = |at: &[[f64; 2]], most: usize| -> Vec<[f64; 2]> {
@@ -105,10 +104,10 @@ fn text(file: &str, parts: &[String], lines: &[Line], guess: &Guess) -> String {
     put("(");
     put(&format!(
         "    title: {:?},",
-        format!("A mesh: {}", shown::cut(file, 80))
+        format!("Mesh: {}", shown::cut(file, 80))
     ));
     put(&format!("    nodes: [Import(id: {ID:?}, file: {file:?})],"));
-    put("    // Stand-ins, as are all numbers here: E in force by area.");
+    put("    // All numbers here are placeholders; E is a force per area.");
     put("    materials: [Elastic(id: \"material\", E: 1000, nu: 0.3)],");
     put("    bodies: [");
     for (k, part) in parts.iter().enumerate() {
@@ -120,7 +119,7 @@ fn text(file: &str, parts: &[String], lines: &[Line], guess: &Guess) -> String {
     put("    ],");
     if !lines.is_empty() {
         put(
-            "    // Lines of sides, each with its body on the left, for surfaces, slaves, supports and loads:",
+            "    // Lines for surfaces, slaves, supports and loads, each with its body on the left:",
         );
         for line in lines {
             put(&format!("    //   {}", line.words));
@@ -128,7 +127,7 @@ fn text(file: &str, parts: &[String], lines: &[Line], guess: &Guess) -> String {
     }
     match guess.contact {
         Some((slave, master)) => {
-            put("    // Guessed: the lines of two bodies that lie nearest.");
+            put("    // Guess: the closest lines of two bodies.");
             put(&format!(
                 "    surfaces: [(id: \"master\", along: {:?})],",
                 name(master)
@@ -150,7 +149,7 @@ fn text(file: &str, parts: &[String], lines: &[Line], guess: &Guess) -> String {
     put("    friction: (angle: 0),");
     match guess.held {
         Some(held) => {
-            put("    // Guessed: what lies lowest is held.");
+            put("    // Guess: the lowest line is fixed.");
             put(&format!(
                 "    supports: [(node: {:?}, fix: [x, y])],",
                 name(held)
@@ -162,7 +161,7 @@ fn text(file: &str, parts: &[String], lines: &[Line], guess: &Guess) -> String {
     }
     match guess.pressed {
         Some((pressed, far)) => {
-            put("    // Guessed: what lies highest is pressed down.");
+            put("    // Guess: the highest line is pressed down.");
             put("    loads: [");
             let line = name(pressed);
             put(&format!(
@@ -186,7 +185,7 @@ fn text(file: &str, parts: &[String], lines: &[Line], guess: &Guess) -> String {
     out
 }
 
-/// The id of a body: the name of its part as far as an id can have it.
+/// The id of a body: the name of its part, restricted to the characters of an id.
 fn body(parts: &[String], k: usize) -> String {
     let id = |part: &String| -> String {
         let usable = |c: char| {

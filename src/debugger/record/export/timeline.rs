@@ -1,4 +1,4 @@
-//! The timeline of a picture: the modes of the slave nodes in the last minor iterations, one cell each.
+//! The timeline in a picture: the modes of slave nodes in the last minor iterations, one cell each.
 
 use super::shown::COLUMNS;
 use crate::explain::names;
@@ -10,10 +10,10 @@ use stickslip_study::sheet::{Anchor, BLACK, Colour, GREY, LABEL, MARGIN, SMALL, 
 
 /// Size of a cell.
 const CELL: (f64, f64) = (14.0, 16.0);
-/// Slave nodes in the timeline.
+/// Maximum number of slave nodes in the timeline.
 const ROWS: usize = 14;
 
-/// The colour inside a mode's marker.
+/// Fill colour of a mode's marker.
 pub(super) fn colour(mode: Mode) -> Colour {
     match mode {
         Mode::Free => (255, 255, 255),
@@ -22,8 +22,8 @@ pub(super) fn colour(mode: Mode) -> Colour {
     }
 }
 
-/// The slave nodes that tell the most, in the order of the scene: those that change in the last minor iterations, then
-/// those that touch; the others only where there is room for all.
+/// The most relevant slave nodes, in the order of the scene: those that change in the last minor iterations,
+/// then those in contact; the others only if all fit.
 pub(super) fn chosen(model: &Model, strips: &[Strip], most: usize) -> Vec<usize> {
     let last = last(strips);
     let count = model.contacts.len();
@@ -54,7 +54,7 @@ fn last(strips: &[Strip]) -> Vec<&Strip> {
     solved[solved.len().saturating_sub(COLUMNS)..].to_vec()
 }
 
-/// The sign under a minor iteration with which something ends.
+/// The sign below a minor iteration that ends a major iteration or an increment.
 fn sign(kind: PointKind) -> &'static str {
     match kind {
         _ if kind.is_accepted() => "✓",
@@ -65,7 +65,7 @@ fn sign(kind: PointKind) -> &'static str {
     }
 }
 
-/// Draws it below all else.
+/// Draws the timeline at the bottom of the sheet.
 pub(super) fn draw(sheet: &mut Sheet, model: &Model, strips: &[Strip]) -> Result<(), PlotError> {
     let columns = last(strips);
     let rows = chosen(model, strips, ROWS);
@@ -119,7 +119,7 @@ pub(super) fn draw(sheet: &mut Sheet, model: &Model, strips: &[Strip]) -> Result
         }
     }
     sheet.height = below + 36.0;
-    let key = "f free, s sliding, x fixed; | a major iteration ends, ✓ accepted, ✗ failed; below: increment.major";
+    let key = "f free, s sliding, x fixed; | end of a major iteration, ✓ accepted, ✗ failed; bottom row: increment.major";
     sheet.paragraph(&[key.to_owned()], SMALL, GREY)
 }
 

@@ -1,17 +1,18 @@
-//! Where in a picture the scene is drawn, and how large.
+//! The window of a picture: where the scene is drawn, and at which scale.
 
 use crate::explain::outline::{Bounds, Point, clip};
 use stickslip_study::placing::Patch;
 
-/// Part of the window that the shape fills: forces and names need the rest.
+/// Part of the window filled by the shape; forces and names need the rest.
 const FILLED: f64 = 0.86;
 /// Length of the longest force, in pixels.
 pub(super) const FORCE: f64 = 86.0;
 
-/// The map from the scene to the sheet: equal in both directions, y upwards.
+/// The map from the scene to the sheet: the same scale in both directions, y upwards.
 pub(super) struct Window {
     patch: Patch,
-    /// The point of the scene that lies in the middle of the part without room for forces, and that middle.
+    /// The point of the scene at the centre of the drawing area without the margins for forces, and that
+    /// centre.
     middle: Point,
     centre: (f64, f64),
     /// Pixels per unit of length.
@@ -19,7 +20,7 @@ pub(super) struct Window {
 }
 
 impl Window {
-    /// The map that shows these bounds in the middle of a patch, with room at its sides.
+    /// The map that centres these bounds in a patch, with margins at its sides.
     pub fn new(bounds: &Bounds, patch: Patch, [left, up, right, down]: [f64; 4]) -> Window {
         let [width, height] = bounds.size().map(|side| side.max(1e-300));
         let inner = Patch {
@@ -36,7 +37,7 @@ impl Window {
         }
     }
 
-    /// Where a point of the scene is on the sheet.
+    /// Position on the sheet of a point of the scene.
     pub fn at(&self, point: Point) -> (f64, f64) {
         let (x, y) = self.centre;
         (
@@ -45,7 +46,7 @@ impl Window {
         )
     }
 
-    /// The pieces of a chain of lines that lie inside.
+    /// The parts of a polyline that lie inside the window.
     pub fn inside(&self, points: &[Point]) -> Vec<Vec<(f64, f64)>> {
         let (low, high) = (self.patch.from, self.patch.to);
         let mut chains: Vec<Vec<(f64, f64)>> = Vec::new();
@@ -67,7 +68,7 @@ impl Window {
         chains
     }
 
-    /// Whether a point of the sheet lies inside.
+    /// Whether a point of the sheet lies inside the window.
     pub fn holds(&self, (x, y): (f64, f64)) -> bool {
         (self.patch.from.0..=self.patch.to.0).contains(&x)
             && (self.patch.from.1..=self.patch.to.1).contains(&y)

@@ -1,4 +1,4 @@
-//! Scenes as text (`.ron`), and frozen problems in the forms of other programs: `.dat`, `.mtx`, `.h5`.
+//! Scenes as text (`.ron`), and frozen problems in other programs' formats: `.dat`, `.mtx`, `.h5`.
 
 use super::frozen::{self, Origin};
 use super::shown::{ExportError, Shown, problem};
@@ -11,7 +11,7 @@ use stickslip_scene::problems::market;
 use stickslip_scene::shown as outside;
 use stickslip_scene::siconos::{Friction2d, Storage};
 
-/// The scene, with what was set from outside; or its frozen problem, where that is wanted.
+/// The scene with all overrides, or its frozen problem if requested.
 pub(super) fn ron(shown: &Shown, stepper: &mut Stepper) -> Result<Vec<u8>, ExportError> {
     if !shown.frozen {
         return Ok(scene(shown.scene)?.into_bytes());
@@ -27,20 +27,20 @@ pub(super) fn ron(shown: &Shown, stepper: &mut Stepper) -> Result<Vec<u8>, Expor
     Ok(frozen::whole(&shown.scene.model, &origin, &problem)?.into_bytes())
 }
 
-/// The frozen problem in the form of Siconos.
+/// The frozen problem in Siconos format.
 pub(super) fn dat(shown: &Shown, stepper: &mut Stepper) -> Result<Vec<u8>, ExportError> {
     let friction = condensed(shown, stepper)?;
     Ok(friction.write(Storage::Dense).into_bytes())
 }
 
-/// The same as matrices of the Matrix Market.
+/// The frozen problem as Matrix Market files.
 pub(super) fn mtx(shown: &Shown, stepper: &mut Stepper) -> Result<Vec<Vec<u8>>, ExportError> {
     let friction = condensed(shown, stepper)?;
     let texts = market::texts(&friction, &from(shown));
     Ok(texts.map(String::into_bytes).into())
 }
 
-/// The same for fclib.
+/// The frozen problem in fclib format.
 pub(super) fn h5(shown: &Shown, stepper: &mut Stepper) -> Result<Vec<u8>, ExportError> {
     let friction = condensed(shown, stepper)?;
     fclib::write(&friction.local(), &from(shown)).map_err(|e| ExportError::NoFile(e.to_string()))
@@ -51,7 +51,7 @@ fn condensed(shown: &Shown, stepper: &mut Stepper) -> Result<Friction2d, ExportE
     Ok(frozen::siconos(&shown.scene.model, &problem)?)
 }
 
-/// Where the problem comes from, on a line.
+/// Origin of the problem, in one line.
 fn from(shown: &Shown) -> String {
     let text = format!(
         "From {}, {}",
@@ -61,11 +61,10 @@ fn from(shown: &Shown) -> String {
     outside::line(&text).into_owned()
 }
 
-/// The file of a scene: its author's where nothing was set from outside and no mesh stands in another file, else one that says
-/// the same with all of that in it.
+/// The file of a scene: the original text if there are no overrides and no external mesh, otherwise an
+/// equivalent scene that includes both.
 ///
-/// # Errors
-/// If it does not read back as the scene that it was made of.
+/// # Errors If the text does not read back as the same scene.
 pub fn scene(scene: &Scene) -> Result<String, ExportError> {
     if !scene.text.is_empty() && scene.overrides().next().is_none() && !scene.imports() {
         return Ok(scene.text.clone());
@@ -83,6 +82,8 @@ pub fn scene(scene: &Scene) -> Result<String, ExportError> {
     let read = Scene::from_text(&scene.name, &text, &[]).map_err(|e| unwritable(e.to_string()))?;
     match read.spec == scene.spec {
         true => Ok(text),
-        false => Err(unwritable("it does not read back as it is".to_owned())),
+        false => Err(unwritable(
+            "the text does not read back as the same scene".to_owned(),
+        )),
     }
 }

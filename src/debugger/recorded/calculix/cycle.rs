@@ -1,38 +1,38 @@
-//! Cycles of CalculiX's iterations, found as our own ([`stickslip_core::interface::cycle`]).
+//! Finds cycles in CalculiX's iterations, as for our own solver ([`stickslip_core::interface::cycle`]).
 //!
-//! An iteration is the same as an earlier one if it has the same contact elements, and residual and correction differ by at
-//! most the last of the four printed digits.
+//! Two iterations are equal if they have the same contact elements, and their residuals and corrections differ
+//! by at most one unit in the last of the four printed digits.
 
 use std::ops::Range;
 use stickslip_core::interface::cycle;
 use stickslip_exchange::calculix::cel::Closed;
 use stickslip_exchange::calculix::past::{Attempt, End, PastRun};
 
-/// Digits of a printed number.
+/// Number of digits printed.
 const DIGITS: i32 = 4;
-/// Numbers that differ by no more than this in their last digit are the same.
+/// Largest difference of equal numbers, in units of the last digit.
 const SAME: f64 = 1.0;
-/// Those that differ by more than this are different; between the two, an iteration may still converge.
+/// Numbers that differ by more than this are different; in between, the iteration may still be converging.
 const DIFFERENT: f64 = 10.0;
 
 /// A cycle of iterations.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Cycle {
-    /// The iterations of its first turn, by their position in the run.
+    /// Iterations of the first period, by index in the run.
     pub iterations: Range<usize>,
-    /// Slaves whose contact elements change in it, by their position in the run.
+    /// Slaves whose contact elements change, by index in the run.
     pub members: Vec<usize>,
 }
 
 impl Cycle {
-    /// Number of iterations after which it repeats, at least 2.
+    /// Period of the cycle, at least 2.
     pub fn period(&self) -> usize {
         self.iterations.len()
     }
 }
 
-/// The first cycle that closes in an attempt. Where there are no residuals, contact elements alone are compared, and only in an
-/// attempt that did not converge: on the way to a solution they may return too.
+/// The first cycle in an attempt. Without residuals, only contact elements are compared, and only in attempts
+/// that did not converge, because contact elements can also recur on the way to convergence.
 pub fn first(run: &PastRun, attempt: &Attempt) -> Option<Cycle> {
     let of = |k: usize| attempt.iterations.start + k;
     let found = (0..attempt.iterations.len()).find_map(|here| {
@@ -56,7 +56,8 @@ pub fn first(run: &PastRun, attempt: &Attempt) -> Option<Cycle> {
     })
 }
 
-/// Whether two iterations differ by more than so much in the last digit, or in contact elements; `None` where that is not told.
+/// Whether two iterations differ by more than `limit` units of the last digit, or in contact elements; `None`
+/// if unknown.
 fn differ(run: &PastRun, attempt: &Attempt, a: usize, b: usize, limit: f64) -> Option<bool> {
     let (one, other) = (&run.iterations[a], &run.iterations[b]);
     let touches = run.closed(a)? != run.closed(b)?;
@@ -72,7 +73,7 @@ fn differ(run: &PastRun, attempt: &Attempt, a: usize, b: usize, limit: f64) -> O
     }
 }
 
-/// By how much two printed numbers differ, in units of the last digit of the larger; `None` where one is no number.
+/// Difference of two printed numbers, in units of the last digit of the larger; `None` if one is NaN.
 fn apart(a: f64, b: f64) -> Option<f64> {
     if a == b {
         return Some(0.0);
@@ -80,11 +81,11 @@ fn apart(a: f64, b: f64) -> Option<f64> {
     let size = a.abs().max(b.abs());
     let unit = 10_f64.powi(size.log10().floor() as i32 + 1 - DIGITS);
     let units = (a - b).abs() / unit;
-    // Decimals are not exact in binary.
+    // Remove binary round-off of decimal fractions.
     units.is_finite().then(|| (units * 1e3).round() / 1e3)
 }
 
-/// The slaves whose contact elements are not the same in two iterations, ascending.
+/// The slaves whose contact elements differ between two iterations, in ascending order.
 pub fn changed(one: &[Closed], other: &[Closed]) -> Vec<usize> {
     let groups = |closed: &'_ [Closed]| -> Vec<(u32, Range<usize>)> {
         let mut start = 0;
@@ -119,7 +120,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn printed_numbers_are_apart_by_units_of_their_last_digit() {
+    fn distances_are_in_units_of_the_last_printed_digit() {
         for (a, b, units) in [
             (1081.0, 1082.0, Some(1.0)),
             (0.9988e2, 0.9987e2, Some(1.0)),
@@ -133,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn who_changed_is_found_whoever_is_there_only_once() {
+    fn changed_slaves_include_those_of_one_iteration_only() {
         let of = |slaves: &[(u32, u32)]| -> Vec<Closed> {
             let closed = |&(slave, master): &(u32, u32)| Closed {
                 slave,

@@ -1,6 +1,6 @@
-//! A finished CalculiX run as a read-only solver: each iteration that its files contain is one minor iteration.
+//! A finished CalculiX run as a read-only solver: each iteration in its files is one minor iteration.
 //!
-//! - [`run`]: the iterations; `cycle`: the cycles in them; [`words`]: sentences about them, and the whole run as text.
+//! - [`run`]: the iterations; `cycle`: detection of cycles; [`words`]: descriptions, and the whole run as text.
 
 mod cycle;
 pub mod run;
@@ -23,17 +23,17 @@ use stickslip_exchange::calculix::past::End;
 use stickslip_scene::Scene;
 use stickslip_scene::calculix;
 
-/// A run that was read.
+/// A run that has been read.
 pub struct Opened {
-    /// Its contacts, without geometry.
+    /// The contacts, without geometry.
     pub scene: Scene,
     /// The run.
     pub run: Arc<CalculixRun>,
-    /// What the files lack, and the run as text.
+    /// Remarks on the files, and the run as text.
     pub log: Log,
 }
 
-/// Opens a run by the name of its .cel; `None` if the name is not that of a .cel.
+/// Opens a run, given the name of its .cel; `None` for other names.
 pub fn file(name: &str) -> Option<Result<Opened, String>> {
     calculix::is_cel(name).then(|| {
         let files = calculix::read(Path::new(name))?;
@@ -90,7 +90,7 @@ pub fn open(run: CalculixRun) -> Result<Opened, String> {
         correction_limit: run::CORRECTION_LIMIT / 100.0,
     });
     let log = Log::default();
-    // The status names the run.
+    // The status line already shows the first line.
     for line in words::text(&run).lines().skip(1) {
         log.printed(line);
     }
@@ -104,7 +104,7 @@ pub fn open(run: CalculixRun) -> Result<Opened, String> {
     })
 }
 
-/// Step and increment of all increments, in order.
+/// Step and increment numbers of all increments, in order.
 fn increments(run: &CalculixRun) -> impl Iterator<Item = (u32, u32)> {
     let mut all: Vec<_> = run
         .files
@@ -116,10 +116,10 @@ fn increments(run: &CalculixRun) -> impl Iterator<Item = (u32, u32)> {
     all.into_iter()
 }
 
-/// A run as a solver that does what the run did. The place of a state is the number of iterations before it.
+/// A run as a solver that replays its iterations. A state is identified by the number of iterations before it.
 pub struct Recorded {
     run: Arc<CalculixRun>,
-    /// Number of the increment of each attempt, from 1.
+    /// Increment number of each attempt, from 1.
     increments: Vec<u32>,
     model: Arc<Model>,
     state: State,
@@ -127,7 +127,7 @@ pub struct Recorded {
 }
 
 impl Recorded {
-    /// At the start of the run.
+    /// The solver at the start of the run.
     pub fn new(opened: &Opened) -> Recorded {
         let run = opened.run.clone();
         let all: Vec<(u32, u32)> = increments(&run).collect();

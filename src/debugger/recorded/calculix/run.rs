@@ -9,54 +9,54 @@ use stickslip_exchange::calculix::past::{End, PastRun};
 /// A finished run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CalculixRun {
-    /// The .cel, as the user named it.
+    /// Path of the .cel, as typed by the user.
     pub name: String,
-    /// What the files contain.
+    /// Contents of the files.
     pub files: PastRun,
     /// The first cycle of each attempt.
     pub cycles: Vec<Option<Cycle>>,
     /// The contacts that switch, those with the most switches in one attempt first.
     pub switching: Vec<Switching>,
-    /// Attempt of every iteration.
+    /// The attempt of each iteration.
     attempts: Vec<usize>,
-    /// Most contact elements that each slave ever had at once.
+    /// The largest number of contact elements of each slave.
     most: Vec<u32>,
-    /// Position of each slave in `switching`.
+    /// Index of each slave in `switching`.
     places: Vec<Option<usize>>,
 }
 
-/// A slave in an iteration.
+/// Status of a slave in an iteration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
-    /// No file contains it.
+    /// Not in the files.
     Unknown,
-    /// It has no contact element.
+    /// No contact elements.
     Open,
-    /// It has some.
+    /// At least one contact element.
     Closed,
-    /// It has some, on other master faces than in the iteration before.
+    /// Contact elements on other master faces than in the previous iteration.
     Moved,
-    /// A slave face with fewer integration points in contact than it ever had: 1 to 9 tenths of them.
+    /// A slave face with fewer integration points in contact than its maximum: 1 to 9 tenths of it.
     Part(u8),
 }
 
-/// How often a slave switched: from one iteration of an attempt to the next it closed, opened, moved to another master face, or
-/// (a slave face) had more or fewer points in contact.
+/// How often a slave switched between consecutive iterations of an attempt: it closed, opened, moved to another
+/// master face, or (a slave face) changed its number of points in contact.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Switching {
-    /// The slave, by its position in the run.
+    /// The slave, by index in the run.
     pub slave: usize,
-    /// Attempts in which it switched, by their position in the run, with how often.
+    /// Attempts in which it switched, by index in the run, with the number of switches.
     pub attempts: Vec<(usize, usize)>,
 }
 
 impl Switching {
-    /// Switches in the whole run.
+    /// Number of switches in the whole run.
     pub fn total(&self) -> usize {
         self.attempts.iter().map(|(_, count)| count).sum()
     }
 
-    /// The first attempt with the most switches, and how many these are.
+    /// The first attempt with the most switches, and their number.
     pub fn most(&self) -> (usize, usize) {
         let first = |a: &(usize, usize), b: &(usize, usize)| a.1.cmp(&b.1).then(b.0.cmp(&a.0));
         let most = self.attempts.iter().copied().max_by(first);
@@ -64,10 +64,11 @@ impl Switching {
     }
 }
 
-/// Limit of the displacement correction (percent): CalculiX's default `C_n`.
+/// Limit of the displacement correction in percent: CalculiX's default `C_n`.
 pub const CORRECTION_LIMIT: f64 = 1.0;
 
-/// Limit of the residual (percent) by CalculiX's defaults (`*CONTROLS`: R_n = 0.005, and R_p = 0.02 after I_p = 9 iterations).
+/// Limit of the residual in percent, for CalculiX's defaults (`*CONTROLS`: R_n = 0.005, and R_p = 0.02 after
+/// I_p = 9 iterations).
 pub fn residual_limit(iteration: u32) -> f64 {
     if iteration <= 9 { 0.5 } else { 2.0 }
 }
@@ -109,18 +110,18 @@ impl CalculixRun {
         self.attempts[iteration]
     }
 
-    /// Residuals of an iteration, where a file contains them.
+    /// Residuals of an iteration, if known.
     pub fn norms(&self, iteration: usize) -> Option<Norms> {
         self.files.iterations[iteration].norms
     }
 
-    /// Number of slaves in contact in an iteration, where a file contains it.
+    /// Number of slaves in contact in an iteration, if known.
     pub fn closed(&self, iteration: usize) -> Option<usize> {
         let closed = self.files.closed(iteration)?;
         Some(closed.chunk_by(|a, b| a.slave == b.slave).count())
     }
 
-    /// The contact elements of a slave in an iteration, by master, where a file contains them.
+    /// The contact elements of a slave in an iteration, by master, if known.
     pub fn contact(&self, iteration: usize, slave: usize) -> Option<&[Closed]> {
         let closed = self.files.closed(iteration)?;
         let from = closed.partition_point(|c| (c.slave as usize) < slave);
@@ -188,14 +189,14 @@ impl CalculixRun {
         }
     }
 
-    /// Number of iterations of an attempt; the .sta counts those that the other files omit.
+    /// Number of iterations of an attempt; the .sta also counts those that the other files omit.
     pub fn iterations(&self, attempt: usize) -> usize {
         let attempt = &self.files.attempts[attempt];
         let counted = attempt.row.map(|row| row.iterations as usize);
         counted.unwrap_or(attempt.iterations.len())
     }
 
-    /// An attempt by its numbers: step.increment.attempt.
+    /// Name of an attempt: step.increment.attempt.
     pub fn attempt_name(&self, attempt: usize) -> String {
         let attempt = &self.files.attempts[attempt];
         format!("{}.{}.{}", attempt.step, attempt.increment, attempt.attempt)

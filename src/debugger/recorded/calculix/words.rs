@@ -1,4 +1,4 @@
-//! Sentences about a finished CalculiX run, and the run as text.
+//! Describes a finished CalculiX run in words.
 
 use super::run::{CORRECTION_LIMIT, CalculixRun, Status, face, residual_limit};
 use std::fmt::Write;
@@ -8,16 +8,17 @@ use stickslip_exchange::calculix::past::Beside;
 use stickslip_scene::number::plain;
 use stickslip_scene::shown::{aligned, first_of};
 
-/// What the record of a run is.
+/// Kind of the recording.
 pub const READ_ONLY: &str = "finished CalculiX run (read-only)";
-/// What the debugger says when it opens one.
+/// Hint shown when a run is opened.
 pub const GREETING: &str = "O shows the run as text; ? lists the keys";
-/// What the files do not contain.
+/// What the files do not contain, in short.
 pub const NO_MODES: &str = "stick and slip are not in the file";
-/// The same in full.
-pub const NO_MODES_IN_FULL: &str = "Stick and slip are not in CalculiX's files: a contact is closed, where it has contact elements, \
-    or open. Nor is the reason for which an attempt was given up: CalculiX prints that on its screen only.";
-/// Most members of a cycle that are named.
+/// What the files do not contain, in full.
+pub const NO_MODES_IN_FULL: &str = "CalculiX's files do not distinguish stick from slip: a \
+    contact is closed if it has contact elements, otherwise open. The reason why an attempt was \
+    given up is only in CalculiX's screen output.";
+/// Maximum number of cycle members named.
 const MOST_MEMBERS: usize = 4;
 
 /// `1 iteration`, `2 iterations`.
@@ -45,7 +46,7 @@ fn size(run: &CalculixRun) -> String {
     .join(", ")
 }
 
-/// Files that are missing, break off, or do not agree.
+/// Remarks on files that are missing, incomplete or inconsistent.
 pub fn notes(run: &CalculixRun) -> Vec<String> {
     let files = &run.files;
     let stem = run
@@ -55,25 +56,25 @@ pub fn notes(run: &CalculixRun) -> Vec<String> {
     let stopped = |end: &str, stop: Option<Stop>| {
         stop.map(|stop| match stop {
             Stop::Cut(line) => format!(
-                "{stem}.{end} breaks off in line {line}: the run was stopped while it wrote, and is shown up to there"
+                "{stem}.{end} ends within line {line}, because the run was stopped; shown up to there"
             ),
             Stop::NoRoom(line) => format!(
-                "{stem}.{end} has a number without room in line {line}, and is read up to there"
+                "{stem}.{end} has an overflowed number field in line {line}; read up to there"
             ),
         })
     };
     let beside = |end: &str, file: Beside, without: &str| match file {
-        Beside::Missing => Some(format!("{stem}.{end} is not there: {without}")),
+        Beside::Missing => Some(format!("{stem}.{end} is missing: {without}")),
         Beside::Read(stop) => stopped(end, stop),
     };
     let differs = files.differs.map(|(at, count)| {
         format!(
-            "{stem}.cel and {stem}.cvg count different numbers of contact elements in {}, first in step {}, increment {}, attempt {}, iteration {}: they may be of different runs, or *CONTACT FILE may stand in a later step only",
+            "{stem}.cel and {stem}.cvg differ in the number of contact elements in {}, first in step {}, increment {}, attempt {}, iteration {}. They may belong to different runs, or *CONTACT FILE is only in a later step",
             counted(count, "iteration"), at.step, at.increment, at.attempt, at.iteration
         )
     });
-    let sta = "times are unknown, and the end of an attempt is inferred from what follows it";
-    let cvg = "there are no residuals, and iterations that have no contact element, or keep those before, are left out";
+    let sta = "times are unknown, and how attempts ended is inferred from the next attempt";
+    let cvg = "residuals are unknown, and iterations without contact elements, or with unchanged ones, are not shown";
     let notes = [
         stopped("cel", files.cel),
         beside("sta", files.sta, sta),
@@ -92,19 +93,17 @@ pub fn attempt(run: &CalculixRun, attempt: usize) -> String {
         "cut" => {
             let next = run.files.attempts[attempt + 1].row;
             let size = next.map_or(String::new(), |row| format!(" to {}", plain(row.size)));
-            format!("not converged in {iterations}, and cut{size}")
+            format!("not converged in {iterations}; cut{size}")
         }
-        "failed" => format!("not converged in {iterations}, and the run ends there"),
-        _ => format!(
-            "{iterations}, and no file contains how it ended: the run was stopped there, or continues"
-        ),
+        "failed" => format!("not converged in {iterations}; the run ends here"),
+        _ => format!("{iterations}; end unknown: the run was stopped or is still running"),
     };
     if let Some(row) = this.row {
         let start = match row.converged {
             true => row.total_time - row.size,
             false => row.total_time,
         };
-        // The difference of two printed numbers.
+        // Remove round-off from subtracting printed numbers.
         let start = (start * 1e6).round() / 1e6;
         let _ = write!(text, "; time {} + {}", plain(start), plain(row.size));
     }
@@ -122,30 +121,30 @@ fn cycle(run: &CalculixRun, attempt: usize) -> Option<String> {
     let residuals: Vec<String> = cycle.iterations.clone().filter_map(residual).collect();
     let residuals = match residuals.is_empty() {
         true => String::new(),
-        false => format!(", residual {} % in turn", residuals.join(", ")),
+        false => format!(", residuals {} %", residuals.join(", ")),
     };
     let members = match cycle.members.is_empty() {
-        true => format!("no contact element changes in it, and {NO_MODES}"),
+        true => format!("no contact element changes; {NO_MODES}"),
         false => {
             let names = cycle.members.iter().map(|slave| run.slave(*slave));
             format!("{} change", first_of(names, MOST_MEMBERS, ", "))
         }
     };
     Some(format!(
-        "{}-cycle from iteration {number} on{residuals}; {members}",
+        "cycle of period {} from iteration {number}{residuals}; {members}",
         cycle.period()
     ))
 }
 
-/// An iteration: closed contacts, residual and correction with their limits; then its attempt.
+/// An iteration: closed contacts, residual and correction with their limits, and its attempt.
 pub fn iteration(run: &CalculixRun, iteration: usize) -> String {
     let this = &run.files.iterations[iteration];
     let mut text = match run.closed(iteration) {
         Some(closed) => format!("closed {closed} of {}", run.files.slaves.len()),
-        None => "no file contains the contacts".into(),
+        None => "contacts unknown".into(),
     };
     if this.kept {
-        text += ", held fixed";
+        text += ", contacts kept";
     }
     if let Some(norms) = this.norms {
         let _ = write!(
@@ -160,12 +159,12 @@ pub fn iteration(run: &CalculixRun, iteration: usize) -> String {
     format!("{text}. Attempt: {}", self::attempt(run, attempt))
 }
 
-/// A contact in an iteration: the master faces that it touches, with the number of integration points of a slave face; then
-/// how often it switches.
+/// A contact in an iteration: the master faces it touches (for a slave face, with the number of integration
+/// points), and how often it switches.
 pub fn contact(run: &CalculixRun, iteration: usize, slave: usize) -> String {
     let points = matches!(run.files.slaves[slave], Slave::Face(_));
     let mut text = match run.contact(iteration, slave) {
-        None => "no file contains its contact elements".to_owned(),
+        None => "contact elements unknown".to_owned(),
         Some([]) => "open".to_owned(),
         Some(closed) => {
             let face = |closed: &stickslip_exchange::calculix::cel::Closed| {
@@ -194,7 +193,7 @@ pub fn contact(run: &CalculixRun, iteration: usize, slave: usize) -> String {
     text
 }
 
-/// The letter of a contact on the timeline; of one that CalculiX held fixed a small one.
+/// The letter of a contact on the timeline; lower case if CalculiX kept the contacts fixed.
 pub fn letter(run: &CalculixRun, iteration: usize, slave: usize) -> u8 {
     let letter = match run.status(iteration, slave) {
         Status::Unknown => b'?',
@@ -209,7 +208,7 @@ pub fn letter(run: &CalculixRun, iteration: usize, slave: usize) -> u8 {
     }
 }
 
-/// The whole run as text: its attempts, their cycles, and the contacts that switch.
+/// The whole run as text: attempts, cycles, and contacts that switch.
 pub fn text(run: &CalculixRun) -> String {
     let mut text = format!("{}: {READ_ONLY}\n{}\n", run.name, size(run));
     for note in notes(run) {
@@ -222,13 +221,13 @@ pub fn text(run: &CalculixRun) -> String {
         .map(|(k, cycle)| format!("{}: {cycle}\n", run.attempt_name(k)))
         .collect();
     text += &match cycles.is_empty() {
-        true => "\nNo attempt cycles.\n".into(),
+        true => "\nNo cycles.\n".into(),
         false => format!("\nCycles\n{}", cycles.concat()),
     };
     text + &switching(run)
 }
 
-/// A row for every attempt.
+/// One row per attempt.
 fn attempts(run: &CalculixRun) -> String {
     let mut switches = vec![0; run.files.attempts.len()];
     for (attempt, count) in run.switching.iter().flat_map(|found| &found.attempts) {
@@ -278,6 +277,6 @@ fn switching(run: &CalculixRun) -> String {
             found.attempts.len().to_string(),
         ]);
     }
-    let head = "\nContacts that switch between the iterations of an attempt: how often, most in one attempt, and in how many\n";
+    let head = "\nContacts that switch between the iterations of an attempt: total, most in one attempt, number of attempts\n";
     head.to_owned() + &aligned(&rows, 1).join("\n") + "\n"
 }
