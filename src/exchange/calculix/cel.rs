@@ -393,7 +393,7 @@ mod tests {
         let after = |text: &str| refused(&format!("{NODES}{text}\n"));
         for (told, wanted) in [
             (refused("hello\n"), "1:1: this is not a CalculiX .cel"),
-            (after("*NODE"), "7:1: this is no .cel"),
+            (after("*NODE"), "7:1: this is not a CalculiX .cel"),
             (after("1, 2"), "7:1: the element has all its nodes already"),
             (
                 after("*ELEMENT,TYPE=C3D10,ELSET=contactelements_st1_in1_at1_it2"),
