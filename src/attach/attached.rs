@@ -21,7 +21,7 @@ use stickslip_debugger::recorded::fault::Fault;
 use stickslip_debugger::recorded::log::Log;
 use stickslip_debugger::recorded::orders::requests;
 use stickslip_debugger::recorded::posed::posed;
-use stickslip_debugger::recorded::told::{self, Frame, Led};
+use stickslip_debugger::recorded::told::{self, Led, WireFrame};
 use stickslip_exchange::attach::message::{self, Ended, Hello, Id, Restore};
 use stickslip_exchange::attach::{Answer, Request};
 use stickslip_scene::Scene;
@@ -324,8 +324,8 @@ impl Attached {
         self.now.state.place().filter(known).ok_or(Fault::Unknown)
     }
 
-    fn frame(&self) -> Frame<'_> {
-        Frame {
+    fn frame(&self) -> WireFrame<'_> {
+        WireFrame {
             model: &self.model,
             ids: &self.ids,
             decides: self.hello.decides,

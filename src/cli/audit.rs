@@ -5,7 +5,7 @@ use super::course::Course;
 use super::interrupt::Interrupt;
 use std::path::Path;
 use std::sync::Arc;
-use stickslip_core::contact::laws::Law;
+use stickslip_core::contact::laws::ContactLaw;
 use stickslip_core::model::Model;
 use stickslip_core::step::drive::RunEnd;
 use stickslip_core::step::event::Outcome;
@@ -102,10 +102,10 @@ fn table(name: &str, model: &Model, audit: &Audit) -> String {
         _ => format!("{name}: {increments} increments accepted, {marked} of them marked\n"),
     };
     text += "  law          worst     allowed   where\n";
-    let of_bonds = Law::OF_BONDS
+    let of_bonds = ContactLaw::OF_BONDS
         .into_iter()
         .filter(|law| audit.of(*law).is_some());
-    for law in Law::ALL.into_iter().chain(of_bonds) {
+    for law in ContactLaw::ALL.into_iter().chain(of_bonds) {
         text += &match audit.of(law) {
             None => format!("  {:<11}  -\n", law.name()),
             Some(found) => row(model, law, found),
@@ -170,7 +170,7 @@ fn place(found: &Found) -> String {
     format!("increment {} (load {})", found.increment, found.load_factor)
 }
 
-fn row(model: &Model, law: Law, found: &Found) -> String {
+fn row(model: &Model, law: ContactLaw, found: &Found) -> String {
     let node = found
         .finding
         .slave

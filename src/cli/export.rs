@@ -17,7 +17,7 @@ use stickslip_debugger::explain::{names, report};
 use stickslip_debugger::history::strip::Strip;
 use stickslip_debugger::record::export::shown::{COLUMNS, Shown};
 use stickslip_debugger::record::export::skeleton::skeleton;
-use stickslip_debugger::record::export::{self, Kind, MadeOf, Origin};
+use stickslip_debugger::record::export::{self, ExportKind, MadeOf, Origin};
 use stickslip_debugger::record::journal::Record;
 use stickslip_debugger::record::snapshot::Snapshot;
 use stickslip_exchange::fclib;
@@ -109,7 +109,7 @@ fn input_kind(input: &str) -> FileKind {
 }
 
 /// A scene that imports a mesh.
-fn around_mesh(args: &Args, kind: &Kind) -> Result<Vec<u8>, Error> {
+fn around_mesh(args: &Args, kind: &ExportKind) -> Result<Vec<u8>, Error> {
     let file = &args.input;
     let usage = |why: &str| Error::Usage(format!("{file}: {why}"));
     if kind.extension != "ron" || args.frozen {
@@ -220,7 +220,7 @@ enum Ended {
 /// The files' contents, or the exit code if there are none.
 fn state(
     args: &Args,
-    kind: &Kind,
+    kind: &ExportKind,
     interrupt: &Interrupt,
 ) -> Result<Result<Vec<Vec<u8>>, Exit>, Error> {
     let course = open(args)?;

@@ -25,7 +25,7 @@ use stickslip_debugger::explain::names;
 use stickslip_debugger::explain::page;
 use stickslip_debugger::explain::report;
 use stickslip_debugger::explain::touch::TouchWatch;
-use stickslip_debugger::history::rounds::{self, Watch};
+use stickslip_debugger::history::rounds::{self, CycleWatch};
 use stickslip_debugger::history::strip::Strip;
 use stickslip_debugger::record::snapshot::Snapshot;
 use stickslip_platform::files::Output;
@@ -219,7 +219,7 @@ struct Tally<'a> {
     /// Stability of the accepted states, if requested.
     stability: Option<Stretches>,
     /// Maximum iterations per increment of an attached solver, and the detection of repeating modes.
-    most: Option<(u64, Watch)>,
+    most: Option<(u64, CycleWatch)>,
     /// Monitors and slave-node values after the last accepted increment.
     monitors: Vec<f64>,
     slaves: Vec<ContactRecord>,
@@ -266,7 +266,7 @@ impl<'a> Run<'a> {
                     .subject
                     .solver
                     .is_named()
-                    .then(|| (args.most, Watch::default())),
+                    .then(|| (args.most, CycleWatch::default())),
                 stability: args.stability.then(Stretches::default),
                 monitors: Vec::new(),
                 slaves: Vec::new(),

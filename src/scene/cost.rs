@@ -9,7 +9,7 @@ use stickslip_core::linear::estimate::Estimate;
 use stickslip_core::model::{
     Beam, Body, BodyKind, Elastic, ElementKind, Form, Linear, Model, Solid, Surface,
 };
-use stickslip_core::model::{Solver, Update};
+use stickslip_core::model::{LinearSolver, Update};
 
 /// Size and cost of a scene. Displayed as a table, so that users can check whether the scene is what they meant.
 #[derive(Debug, Clone, PartialEq)]
@@ -306,7 +306,7 @@ fn solver_lines(model: &Model) -> Vec<String> {
         (estimate.condensed, "condensed")
     };
     let auto = match model.settings.solver {
-        Solver::Auto => " (auto)",
+        LinearSolver::Auto => " (auto)",
         _ => "",
     };
     vec![

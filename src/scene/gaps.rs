@@ -3,7 +3,7 @@
 
 use crate::pressed;
 use std::collections::HashSet;
-use stickslip_core::contact::element::Element;
+use stickslip_core::contact::element::SurfaceElement;
 use stickslip_core::contact::facing::{MOST as MOST_SURFACES, faced};
 use stickslip_core::contact::projection::{SurfacePoint, project, projection_at};
 use stickslip_core::fem::lagrange;
@@ -142,7 +142,7 @@ pub fn turned(model: &Model) -> Vec<String> {
                 let (spot, _) = (*stand)?;
                 let own = outward[contact.node]?;
                 (spot.surface == surface).then(|| {
-                    let element = Element::of(&model.surfaces[surface], spot.element);
+                    let element = SurfaceElement::of(&model.surfaces[surface], spot.element);
                     let slopes = element.shape(spot.xi).d;
                     let n = normal(element.nodes, &model.nodes, &slopes);
                     own[0] * n[0] + own[1] * n[1]

@@ -6,7 +6,7 @@
 //! rigid surface that approaches it by more than its gap.
 
 use stickslip_core::contact::projection::{project, projection_at};
-use stickslip_core::fem::deformation::{Range, SOFTENING};
+use stickslip_core::fem::deformation::{SOFTENING, StretchRange};
 use stickslip_core::model::{Body, BodyKind, Model, Solid};
 
 /// Cosine above which a surface's normal counts as along an axis.
@@ -37,7 +37,7 @@ pub fn warnings(model: &Model) -> Vec<String> {
 fn told(model: &Model, body: &Body, solid: &Solid) -> Option<String> {
     let softens = |number: &usize| {
         let elastic = &solid.materials[*number];
-        Range::of(elastic) == Range::Stretch(SOFTENING)
+        StretchRange::of(elastic) == StretchRange::Stretch(SOFTENING)
     };
     let number = (0..solid.materials.len()).find(softens)?;
     let motions = Motions::of(model);

@@ -6,7 +6,7 @@ use crossterm::event::{Event, KeyEvent};
 use ratatui::style::Modifier;
 use ratatui::text::{Line, Span};
 use std::borrow::Cow;
-use stickslip_debugger::action::{self, Context, Entry};
+use stickslip_debugger::action::{self, ActionEntry, Context};
 use stickslip_scene::shown;
 use tui_input::{Input, InputRequest, backend::crossterm::EventHandler};
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
@@ -190,7 +190,7 @@ impl CommandLine {
     }
 
     /// Describes the parameter that is being set, or lists all parameters.
-    fn parameter(&self, entry: &Entry, context: &Context) -> String {
+    fn parameter(&self, entry: &ActionEntry, context: &Context) -> String {
         let rest = self.text().trim_start().split_once(char::is_whitespace);
         match rest.and_then(|(_, rest)| action::parameter(rest, context)) {
             Some((known, _)) => {
@@ -289,7 +289,7 @@ fn completions<'a>(
 }
 
 /// The current keys of an action in brackets; empty if it has none.
-fn keys(entry: &'static Entry, context: &Context) -> String {
+fn keys(entry: &'static ActionEntry, context: &Context) -> String {
     let keys = match context.keymap {
         Some(keymap) => keymap.keys(entry).collect::<Vec<_>>().join(" "),
         None => entry.keys.join(" "),

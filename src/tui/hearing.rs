@@ -1,7 +1,7 @@
 //! Counts the warnings and errors in an attached solver's log, and announces the last new one once.
 
-use stickslip_debugger::recorded::log::How;
 use stickslip_debugger::recorded::log::Log;
+use stickslip_debugger::recorded::log::LogOrigin;
 use stickslip_exchange::attach::message::Level;
 
 /// How much of a solver's log has been counted.
@@ -25,8 +25,8 @@ impl Heard {
         let mut told = None;
         for said in log.since(self.lines) {
             match said.how {
-                How::Told(Level::Warning) => self.warnings += 1,
-                How::Told(Level::Error) => self.errors += 1,
+                LogOrigin::Told(Level::Warning) => self.warnings += 1,
+                LogOrigin::Told(Level::Error) => self.errors += 1,
                 _ => continue,
             }
             told = Some(format!("solver {}: {}", said.how.word(), said.text));

@@ -8,7 +8,7 @@ use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::solver::Offers;
 use stickslip_debugger::action::Context;
 use stickslip_debugger::explain::examination::Examination;
-use stickslip_debugger::explain::influence::Push;
+use stickslip_debugger::explain::influence::NodePush;
 use stickslip_debugger::explain::round_off::RoundOff;
 use stickslip_debugger::history::frame::Frame;
 use stickslip_debugger::history::strip::Strip;
@@ -121,7 +121,7 @@ impl<'a> View<'a> {
 
     /// The contributions of other nodes to a slave node's change in the shown minor iteration; the inner `None` if they are not
     /// known.
-    pub fn pushes(&self, slave: usize) -> Option<Option<&'a [Push]>> {
+    pub fn pushes(&self, slave: usize) -> Option<Option<&'a [NodePush]>> {
         self.background?
             .pushes((self.tree?.current(), self.cursor), slave)
     }

@@ -466,10 +466,7 @@ fn one_that_is_another_when_started_again_is_not_believed() {
             "other-scene",
             "after a restart, the solver reports a different list of contacts",
         ),
-        (
-            "other-parameters",
-            "after a restart, the solver reports",
-        ),
+        ("other-parameters", "after a restart, the solver reports"),
     ] {
         let rude = Rude::new(how);
         let mut session = rude.attach().unwrap();

@@ -9,7 +9,7 @@ use stickslip::action::{Action, Ui};
 use stickslip::model::Mode;
 use stickslip::record::command::{self, Unit};
 use stickslip::session::Session;
-use stickslip::teach::lesson::Step;
+use stickslip::teach::lesson::LessonStep;
 use stickslip::teach::progress::Progress;
 use stickslip::teach::{self, Lesson, Tutor};
 use stickslip::tui::Debugger;
@@ -42,7 +42,7 @@ fn go_on(debugger: &mut Debugger) {
     };
     let step = tutor(debugger).step().cloned().unwrap();
     match (step, tutor(debugger).solution()) {
-        (Step::Press { action, .. }, _) => match action {
+        (LessonStep::Press { action, .. }, _) => match action {
             Action::Session(command) => line(debugger, &typed(&command)),
             Action::Ui(Ui::Chart(_)) => {
                 let how = tutor(debugger).todo();
@@ -54,8 +54,8 @@ fn go_on(debugger: &mut Debugger) {
             }
             _ => debugger.type_keys("e"),
         },
-        (Step::Ask(_), Some(word)) => line(debugger, &format!("answer {word}")),
-        (Step::Predict { .. }, _) => line(debugger, "step"),
+        (LessonStep::Ask(_), Some(word)) => line(debugger, &format!("answer {word}")),
+        (LessonStep::Predict { .. }, _) => line(debugger, "step"),
         _ => debugger.type_keys("Space"),
     }
 }
@@ -69,7 +69,7 @@ fn all_that_a_lesson_says_was_shown_before_it_goes_on() {
             let (mut at, mut keys) = (usize::MAX, 0);
             loop {
                 let tutor = tutor(&debugger);
-                if matches!(tutor.step(), None | Some(Step::Predict { .. })) {
+                if matches!(tutor.step(), None | Some(LessonStep::Predict { .. })) {
                     break;
                 }
                 if tutor.at() != at {

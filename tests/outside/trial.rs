@@ -5,7 +5,7 @@ use super::judge::{Breach, Pull, Scales, Seen, judge};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use stickslip::model::Model;
-use stickslip::model::{AtLimit, Component, SlipCount, Sticking, Ties};
+use stickslip::model::{AtLimit, Component, SlipCount, Sticking, TieRule};
 use stickslip::model::{BodyKind, Form, Monitor, Watched};
 use stickslip::scene::Scene;
 use stickslip::step::event::{Failure, Outcome};
@@ -88,7 +88,7 @@ pub fn forgives(scene: &Scene) -> bool {
     let s = &scene.spec.settings;
     s.sticking == Sticking::Increments
         || s.slip == SlipCount::Major
-        || s.ties == Ties::Printed
+        || s.ties == TieRule::Printed
         || s.at_minor_limit == AtLimit::Accept
         || s.at_major_limit == AtLimit::Accept
 }

@@ -4,11 +4,11 @@ use crate::common::scene;
 use crate::program::{code, err, out, program};
 use std::path::Path;
 use std::sync::Arc;
-use stickslip::contact::laws::Law;
+use stickslip::contact::laws::ContactLaw;
 use stickslip::explain::audit::Audit;
 use stickslip::explain::remedies::{self, TrialEnd};
 use stickslip::model::Mode;
-use stickslip::model::{AtLimit, SlipCount, Sticking, Ties};
+use stickslip::model::{AtLimit, SlipCount, Sticking, TieRule};
 use stickslip::scene::{Scene, builtin};
 use stickslip::step::event::Outcome;
 use stickslip::step::intervene::Intervention;
@@ -34,7 +34,7 @@ fn leaves_the_law(scene: &Scene) -> bool {
     let s = &scene.model.settings;
     s.slip == SlipCount::Major
         || s.sticking == Sticking::Increments
-        || s.ties == Ties::Printed
+        || s.ties == TieRule::Printed
         || s.at_minor_limit == AtLimit::Accept
         || s.at_major_limit == AtLimit::Accept
 }
@@ -49,7 +49,8 @@ fn assert_clean(name: &str, audit: &Audit, may_be_marked: bool) {
         .iter()
         .flatten()
         .map(|found| found.finding);
-    let mut beyond = marked.filter(|finding| finding.is_broken() && finding.law != Law::Touch);
+    let mut beyond =
+        marked.filter(|finding| finding.is_broken() && finding.law != ContactLaw::Touch);
     assert!(
         may_be_marked || beyond.next().is_none(),
         "{name}: {beyond:?}"
@@ -64,7 +65,7 @@ fn every_accepted_increment_of_every_built_in_scene_obeys_every_law() {
         let may_be_marked = leaves_the_law(&scene);
         let audit = audit(scene);
         assert_clean(builtin.name, &audit, may_be_marked);
-        judged += u32::from(audit.of(Law::Slip).is_some());
+        judged += u32::from(audit.of(ContactLaw::Slip).is_some());
     }
     assert!(judged > 10, "nodes are pressed in most scenes: {judged}");
 }
@@ -93,7 +94,7 @@ fn the_command_prints_the_worst_of_every_law_and_ends_with_0_where_all_hold() {
     let output = program(here, &["audit", &file, snapshot]).output().unwrap();
     assert_eq!(code(&output), 0, "{}", err(&output));
     let text = out(&output);
-    for law in Law::ALL {
+    for law in ContactLaw::ALL {
         let rows = text.matches(&format!("\n  {} ", law.name())).count();
         assert_eq!(rows, 2, "{text}");
     }
@@ -166,7 +167,10 @@ fn an_audit_keeps_the_worst_of_all_increments() {
     let scene = scene("01-pinned-beam-rough-floor", &[]);
     let mut stepper = Stepper::new(Arc::new(scene.model));
     let mut audit = Audit::default();
-    let (mut worst, mut last) = ([0.0_f64; Law::ALL.len()], [0.0; Law::ALL.len()]);
+    let (mut worst, mut last) = (
+        [0.0_f64; ContactLaw::ALL.len()],
+        [0.0; ContactLaw::ALL.len()],
+    );
     while let Some(event) = stepper.step() {
         let accepted = matches!(event.outcome, Outcome::Increment { marked: None, .. });
         audit.take(&stepper);
@@ -177,7 +181,7 @@ fn an_audit_keeps_the_worst_of_all_increments() {
             worst = std::array::from_fn(|k| worst[k].max(last[k]));
         }
     }
-    let kept = Law::ALL.map(|law| audit.of(law).map_or(0.0, |found| found.finding.times()));
+    let kept = ContactLaw::ALL.map(|law| audit.of(law).map_or(0.0, |found| found.finding.times()));
     assert_eq!(kept, worst);
     assert_ne!(last, worst);
 }

@@ -2,7 +2,7 @@
 
 use crate::common::{self, Run, force, go_on, number, run, scene, table};
 use stickslip::contact::record::Forced;
-use stickslip::linear::singular::{Motion, Singular};
+use stickslip::linear::singular::{LooseMotion, Singular};
 use stickslip::model::Mode;
 use stickslip::scene::Scene;
 use stickslip::step::event::{Failure, Outcome};
@@ -30,7 +30,7 @@ fn a_pinned_beam_that_starts_free_is_told_to_turn_about_its_pin() {
     };
     assert_eq!(motions.len(), 1);
     assert_eq!(motions[0].body, "beam");
-    let Motion::Rotation([x, y]) = motions[0].motion else {
+    let LooseMotion::Rotation([x, y]) = motions[0].motion else {
         panic!("{motions:?}")
     };
     assert!(x.abs() < 1e-9 && (y - 8f64.sqrt()).abs() < 1e-9, "{x} {y}");
@@ -55,7 +55,7 @@ fn a_body_that_nothing_holds_is_named_with_each_of_its_motions() {
     let Failure::Singular(Singular::Rigid { motions }) = failure(&held) else {
         panic!("{:?}", held.failure)
     };
-    let Motion::Translation([x, y]) = motions[0].motion else {
+    let LooseMotion::Translation([x, y]) = motions[0].motion else {
         panic!("{motions:?}")
     };
     assert!((x.abs() - 1.0).abs() < 1e-9 && y.abs() < 1e-9);

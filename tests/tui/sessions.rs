@@ -434,10 +434,7 @@ fn a_session_that_was_killed_resumes_where_it_was() {
     );
     let told = String::from_utf8_lossy(&checked.stderr).into_owned();
     assert_eq!(checked.status.code(), Some(0), "{told}");
-    assert!(
-        told.contains("line 9 is incomplete"),
-        "{told}"
-    );
+    assert!(told.contains("line 9 is incomplete"), "{told}");
 
     let mut session = Start::debugger(&["resume"])
         .variable("XDG_STATE_HOME", &home)

@@ -7,7 +7,7 @@ use stickslip_core::model::{Mode, Model};
 use stickslip_debugger::explain::names;
 use stickslip_debugger::recorded::fault::Fault;
 use stickslip_debugger::recorded::judged::ALLOWED;
-use stickslip_debugger::recorded::told::Frame;
+use stickslip_debugger::recorded::told::WireFrame;
 use stickslip_scene::shown;
 
 use std::time::Instant;
@@ -151,7 +151,7 @@ fn taken_in(model: &Model, scene: &Scene, states: &[State]) -> Result<(), String
         .iter()
         .map(|contact| contact.id.clone())
         .collect();
-    let frame = Frame {
+    let frame = WireFrame {
         model,
         ids: &ids,
         decides: None,

@@ -4,7 +4,7 @@
 //! restrained ones. Internal forces are invariant under rigid motions, so their sum and the sum of their moments vanish; the same
 //! then holds for the reactions and the loads together.
 
-use crate::contact::laws::{Finding, Law, Numbers, Scales, Verdict};
+use crate::contact::laws::{ContactLaw, Finding, JudgedNumbers, Scales, Verdict};
 use crate::model::{Body, BodyKind, Model};
 
 /// Forces by degree of freedom ([`crate::model::Dofs`]), and the contact forces by node.
@@ -18,7 +18,7 @@ pub struct Forces<'a> {
     pub contact: &'a [[f64; 2]],
 }
 
-/// Adds to `verdict` the worst node of [`Law::Balance`] and the sum of [`Law::Moments`]; `now` are the positions of all nodes.
+/// Adds to `verdict` the worst node of [`ContactLaw::Balance`] and the sum of [`ContactLaw::Moments`]; `now` are the positions of all nodes.
 /// Bodies given by a matrix are not checked as a whole, because the matrix may contain supports.
 pub fn check(
     model: &Model,
@@ -54,11 +54,11 @@ pub fn check(
     }
     let slave = |node| model.contacts.iter().position(|s| s.node == node);
     verdict.add(Finding {
-        law: Law::Balance,
+        law: ContactLaw::Balance,
         slave: worst.1.and_then(slave),
         amount: worst.0,
-        allowed: scales.allowed(Law::Balance),
-        numbers: Numbers::default(),
+        allowed: scales.allowed(ContactLaw::Balance),
+        numbers: JudgedNumbers::default(),
     });
     // The matrix of a body may contain supports. If small and large displacements are mixed, there is no common shape for the
     // moments.
@@ -67,11 +67,11 @@ pub fn check(
         return;
     }
     verdict.add(Finding {
-        law: Law::Moments,
+        law: ContactLaw::Moments,
         slave: None,
         amount: total.size(scales.length, model.is_axisymmetric()) / scales.force,
-        allowed: scales.allowed(Law::Moments),
-        numbers: Numbers::default(),
+        allowed: scales.allowed(ContactLaw::Moments),
+        numbers: JudgedNumbers::default(),
     });
 }
 

@@ -8,7 +8,7 @@
 //! That is valid only for rigid surfaces, whose supports carry it; corners between other surfaces are not supported.
 
 use crate::contact::corner::{cross, dot};
-use crate::contact::element::Element;
+use crate::contact::element::SurfaceElement;
 use crate::contact::projection::{STRAIGHT, SurfacePoint, blend, length, right_of, unit};
 use crate::model::Surface;
 
@@ -44,7 +44,7 @@ pub fn find(
     spots: [SurfacePoint; 2],
     positions: &[[f64; 2]],
 ) -> Option<Crossing> {
-    let elements = spots.map(|spot| Element::of(&surfaces[spot.surface], spot.element));
+    let elements = spots.map(|spot| SurfaceElement::of(&surfaces[spot.surface], spot.element));
     let endless = spots.map(|spot| surfaces[spot.surface].endless);
     let mut xi = spots.map(|spot| spot.xi);
     let mut at = [[0.0; 2]; 2];

@@ -12,16 +12,16 @@ const BULGE: f64 = 0.5;
 
 /// An element of a master surface. Its curve is x(ξ) = Σ N_i(ξ) x_i over its nodes, −1 <= ξ <= 1.
 #[derive(Debug, Clone, Copy)]
-pub struct Element<'a> {
+pub struct SurfaceElement<'a> {
     /// The nodes that its curve depends on.
     pub nodes: &'a [usize],
     piece: Option<&'a Piece>,
 }
 
-impl<'a> Element<'a> {
+impl<'a> SurfaceElement<'a> {
     /// Element `number` of a surface.
     pub fn of(surface: &'a Surface, number: usize) -> Self {
-        Element {
+        SurfaceElement {
             nodes: &surface.elements[number],
             piece: surface.smooth.get(number),
         }
@@ -29,12 +29,12 @@ impl<'a> Element<'a> {
 
     /// The Lagrange curve through these nodes.
     pub fn lagrange(nodes: &'a [usize]) -> Self {
-        Element { nodes, piece: None }
+        SurfaceElement { nodes, piece: None }
     }
 
     /// All elements of a surface.
-    pub fn all(surface: &'a Surface) -> impl Iterator<Item = Element<'a>> {
-        (0..surface.elements.len()).map(|number| Element::of(surface, number))
+    pub fn all(surface: &'a Surface) -> impl Iterator<Item = SurfaceElement<'a>> {
+        (0..surface.elements.len()).map(|number| SurfaceElement::of(surface, number))
     }
 
     /// The functions N_i at ξ, with two derivatives.
@@ -115,16 +115,16 @@ impl<'a> Element<'a> {
 
 /// Positions of an element's nodes, looked up once for all ξ of a search. Unused entries have N_i = 0, because sums of fixed
 /// length need no loop.
-pub struct Places([[f64; 2]; MAX_NODES]);
+pub struct ElementPositions([[f64; 2]; MAX_NODES]);
 
-impl Places {
+impl ElementPositions {
     /// Looks up the positions of these nodes.
     pub fn of(nodes: &[usize], positions: &[[f64; 2]]) -> Self {
         let mut places = [[0.0; 2]; MAX_NODES];
         for (place, &n) in places.iter_mut().zip(nodes) {
             *place = positions[n];
         }
-        Places(places)
+        ElementPositions(places)
     }
 
     /// Weighted sum of the positions.
@@ -144,7 +144,8 @@ impl Places {
 /// Whether a chain is closed.
 pub fn closed(surface: &Surface) -> bool {
     let count = surface.elements.len();
-    count > 1 && Element::of(surface, 0).first() == Element::of(surface, count - 1).last()
+    count > 1
+        && SurfaceElement::of(surface, 0).first() == SurfaceElement::of(surface, count - 1).last()
 }
 
 #[cfg(test)]
@@ -156,7 +157,7 @@ mod tests {
         // The worst nodes are at the low end of the box where N_i is positive, and at the high end elsewhere.
         for m in 2..=5 {
             let nodes: Vec<usize> = (0..m).collect();
-            let [bulge, _] = Element::lagrange(&nodes).bulge([1.0; 2]);
+            let [bulge, _] = SurfaceElement::lagrange(&nodes).bulge([1.0; 2]);
             let out = |k: u32| {
                 let n = lagrange::shape(m, -1.0 + f64::from(k) * 1e-3).n;
                 n.iter().map(|n| (-n).max(0.0)).sum::<f64>()
@@ -172,8 +173,8 @@ mod tests {
     #[test]
     fn weighted_sums_match_the_nodes() {
         let (nodes, positions) = ([2, 0], [[1.0, 2.0], [9.0, 9.0], [3.0, -4.0]]);
-        let n = Element::lagrange(&nodes).shape(0.5).n;
+        let n = SurfaceElement::lagrange(&nodes).shape(0.5).n;
         let exact = [0.25 * 3.0 + 0.75 * 1.0, 0.25 * -4.0 + 0.75 * 2.0];
-        assert_eq!(Places::of(&nodes, &positions).sum(&n), exact);
+        assert_eq!(ElementPositions::of(&nodes, &positions).sum(&n), exact);
     }
 }

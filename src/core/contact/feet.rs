@@ -4,7 +4,7 @@
 //! history, so here every element is searched. With the curve x(ξ) and the point p, the derivative of half the squared distance,
 //! (x − p) · x', changes sign from minus to plus at a closest point inside an element.
 
-use crate::contact::element::{Element, Places};
+use crate::contact::element::{ElementPositions, SurfaceElement};
 use crate::contact::projection::{Bounds, SurfacePoint, blend};
 use crate::fem::lagrange::{MAX_NODES, Shape, node, shape};
 use crate::model::Surface;
@@ -70,7 +70,7 @@ pub fn find(
     let mut least = f64::INFINITY;
     for &surface in candidates {
         let chain = &surfaces[surface];
-        for (element, curve) in Element::all(chain).enumerate() {
+        for (element, curve) in SurfaceElement::all(chain).enumerate() {
             let reach = reach.min(least + slack);
             let bounds = Bounds::new(curve.nodes, positions);
             if !chain.endless && bounds.lies_beyond(curve, point, reach) {
@@ -102,13 +102,13 @@ pub fn find(
 
 /// Calls a function for every local minimum of the distance on an element.
 fn minima(
-    element: Element<'_>,
+    element: SurfaceElement<'_>,
     positions: &[[f64; 2]],
     point: [f64; 2],
     found: &mut impl FnMut(f64),
 ) {
     let (places, count) = (
-        Places::of(element.nodes, positions),
+        ElementPositions::of(element.nodes, positions),
         intervals(element.degree()),
     );
     let at = |k: usize| {
@@ -139,8 +139,8 @@ fn minima(
 /// The root of (x − p) · x' between two ξ, given with their values, where the sign changes from minus to plus: Newton's method,
 /// with bisection if a step leaves the interval.
 fn root(
-    element: Element<'_>,
-    places: &Places,
+    element: SurfaceElement<'_>,
+    places: &ElementPositions,
     point: [f64; 2],
     [(mut low, below), (mut high, above)]: [(f64, f64); 2],
 ) -> f64 {
@@ -168,20 +168,20 @@ fn root(
 }
 
 /// (x − p) · x' for these shape functions.
-fn slope(places: &Places, point: [f64; 2], s: &Shape) -> f64 {
+fn slope(places: &ElementPositions, point: [f64; 2], s: &Shape) -> f64 {
     let to = places.sum_from([-point[0], -point[1]], &s.n);
     let d = places.sum(&s.d);
     to[0] * d[0] + to[1] * d[1]
 }
 
 /// Its derivative with respect to ξ.
-fn rise(places: &Places, point: [f64; 2], s: &Shape) -> f64 {
+fn rise(places: &ElementPositions, point: [f64; 2], s: &Shape) -> f64 {
     let (x, d, dd) = (places.sum(&s.n), places.sum(&s.d), places.sum(&s.dd));
     squared(d) + (x[0] - point[0]) * dd[0] + (x[1] - point[1]) * dd[1]
 }
 
 /// ξ of the projection on the infinite straight line through an element's ends.
-fn on_line(element: Element<'_>, positions: &[[f64; 2]], point: [f64; 2]) -> f64 {
+fn on_line(element: SurfaceElement<'_>, positions: &[[f64; 2]], point: [f64; 2]) -> f64 {
     let [start, end] = [-1.0, 1.0].map(|xi| place(element, positions, xi));
     let along = [end[0] - start[0], end[1] - start[1]];
     let to = [point[0] - start[0], point[1] - start[1]];
@@ -189,17 +189,17 @@ fn on_line(element: Element<'_>, positions: &[[f64; 2]], point: [f64; 2]) -> f64
 }
 
 /// Position of a point of an element.
-pub fn place(element: Element<'_>, positions: &[[f64; 2]], xi: f64) -> [f64; 2] {
+pub fn place(element: SurfaceElement<'_>, positions: &[[f64; 2]], xi: f64) -> [f64; 2] {
     blend(element.nodes, positions, &element.shape(xi).n)
 }
 
 /// |dx/dξ| at a point of an element (length).
-pub fn speed(element: Element<'_>, positions: &[[f64; 2]], xi: f64) -> f64 {
+pub fn speed(element: SurfaceElement<'_>, positions: &[[f64; 2]], xi: f64) -> f64 {
     length(blend(element.nodes, positions, &element.slopes(xi)))
 }
 
 /// Unit tangent along the walk at a point of an element. `None` where dx/dξ = 0.
-pub fn direction(element: Element<'_>, positions: &[[f64; 2]], xi: f64) -> Option<[f64; 2]> {
+pub fn direction(element: SurfaceElement<'_>, positions: &[[f64; 2]], xi: f64) -> Option<[f64; 2]> {
     let d = blend(element.nodes, positions, &element.slopes(xi));
     let size = length(d);
     (size > 0.0).then(|| [d[0] / size, d[1] / size])
@@ -273,7 +273,7 @@ mod tests {
             "{xis:?}"
         );
         let above = all([0.3, 1.2], &half_circle, &x, 0.0);
-        let exact = place(Element::of(&half_circle[0], 0), &x, above[0].spot.xi);
+        let exact = place(SurfaceElement::of(&half_circle[0], 0), &x, above[0].spot.xi);
         assert!((above[0].distance - (1.2_f64.hypot(0.3) - 1.0)).abs() < 2e-3);
         assert_eq!(above[0].at, exact);
     }

@@ -22,13 +22,13 @@
 //! bodies reduce the accuracy of forces but not of positions.
 
 use crate::contact::corner::Side;
-use crate::contact::element::{Element, closed};
+use crate::contact::element::{SurfaceElement, closed};
 use crate::contact::facing::{MOST, faced};
 use crate::contact::feet::{self, Foot, direction, place, speed};
-use crate::contact::laws::{Finding, Law, Numbers, Scales, Verdict};
+use crate::contact::laws::{ContactLaw, Finding, JudgedNumbers, Scales, Verdict};
 use crate::contact::point_force::judged::{JudgedGives, Loaded, hand_on};
 use crate::contact::projection::SurfacePoint;
-use crate::contact::side_laws::{Amounts, Past, Touching};
+use crate::contact::side_laws::{Amounts, SideHistory, Touching};
 use crate::contact::side_laws::{beyond_border, in_corner, on_side, slip_into};
 use crate::contact::stick_point::distance;
 use crate::contact::stood::{FEW, Stood};
@@ -175,7 +175,7 @@ impl Judge {
             2.0 * near,
             &mut self.feet,
         );
-        let mut report = |law: Law, amount: f64, numbers: Numbers| {
+        let mut report = |law: ContactLaw, amount: f64, numbers: JudgedNumbers| {
             verdict.add(Finding {
                 law,
                 slave: Some(slave),
@@ -212,12 +212,12 @@ impl Judge {
                 hand_on(&seen.loaded(), slave, &foot, false, contact);
                 foot.distance.max(self.strayed(seen, slave, &foot).abs())
             });
-            report(Law::Tied, amount / length, Numbers::default());
+            report(ContactLaw::Tied, amount / length, JudgedNumbers::default());
             return;
         }
         let Some(foot) = foot else {
             if pressed {
-                report(Law::Gap, f64::INFINITY, Numbers::default());
+                report(ContactLaw::Gap, f64::INFINITY, JudgedNumbers::default());
             }
             return;
         };
@@ -226,26 +226,38 @@ impl Judge {
         let others = others.filter(|&other| other != foot.spot.surface);
         let through = through(seen, slave, others, near, &mut self.others);
         if through > near {
-            let numbers = Numbers {
+            let numbers = JudgedNumbers {
                 gap: -through,
-                ..Numbers::default()
+                ..JudgedNumbers::default()
             };
-            report(Law::Penetration, through / length, numbers);
+            report(ContactLaw::Penetration, through / length, numbers);
         }
-        let numbers = Numbers {
+        let numbers = JudgedNumbers {
             gap: gap - given,
-            ..Numbers::default()
+            ..JudgedNumbers::default()
         };
         if !pressed {
             // A spring whose force is below the force tolerance lets the node penetrate.
             let soft = bond.give()[0] * forces * seen.scales.force;
-            report(Law::Penetration, ((-gap - soft) / length).max(0.0), numbers);
+            report(
+                ContactLaw::Penetration,
+                ((-gap - soft) / length).max(0.0),
+                numbers,
+            );
             return;
         }
         let [law_of_gap, law_of_slip] = match bond.give().map(|give| give > 0.0) {
             [normal, tangential] => [
-                if normal { Law::Penalty } else { Law::Gap },
-                if tangential { Law::Stick } else { Law::Slip },
+                if normal {
+                    ContactLaw::Penalty
+                } else {
+                    ContactLaw::Gap
+                },
+                if tangential {
+                    ContactLaw::Stick
+                } else {
+                    ContactLaw::Slip
+                },
             ],
         };
         report(law_of_gap, foot.distance / length, numbers);
@@ -255,22 +267,22 @@ impl Judge {
         }
         self.find_sides(seen, slave, point, near);
         let amounts = self.least(seen, slave);
-        let numbers = Numbers {
+        let numbers = JudgedNumbers {
             gap: gap - given,
             ..amounts.numbers
         };
         for (law, amount) in [
-            (Law::Tension, amounts.tension),
-            (Law::Cone, amounts.cone),
+            (ContactLaw::Tension, amounts.tension),
+            (ContactLaw::Cone, amounts.cone),
             (law_of_slip, amounts.slip),
-            (Law::Touch, amounts.touch),
+            (ContactLaw::Touch, amounts.touch),
         ] {
             report(law, amount, numbers);
         }
         let mean = 0.5 * (seen.earlier[slave] + numbers.f_t);
         let work = mean * numbers.slip / (length * seen.scales.force);
         if amounts.touched && work > 0.0 {
-            report(Law::Work, work, numbers);
+            report(ContactLaw::Work, work, numbers);
         }
     }
 
@@ -316,7 +328,7 @@ impl Judge {
                     xi: end,
                     ..foot.spot
                 };
-                let element = Element::of(&seen.surfaces[border.surface], border.element);
+                let element = SurfaceElement::of(&seen.surfaces[border.surface], border.element);
                 let at = place(element, seen.now, end);
                 let there = size([point[0] - at[0], point[1] - at[1]]) <= near;
                 there
@@ -340,10 +352,10 @@ impl Judge {
         }
         for k in 0..self.sides.len() {
             let this = self.sides[k];
-            if let Past::Open(_) | Past::Elsewhere = this.past
+            if let SideHistory::Open(_) | SideHistory::Elsewhere = this.past
                 && let Some(slip) = slip_into(seen.surfaces, &self.sides, &this, near)
             {
-                self.sides[k].past = Past::Touched(slip);
+                self.sides[k].past = SideHistory::Touched(slip);
             }
         }
     }
@@ -406,7 +418,7 @@ fn end_at(seen: &Seen, point: [f64; 2], spot: SurfacePoint, near: f64) -> Option
     let surface = &seen.surfaces[spot.surface];
     let ends = [-1.0, 1.0].into_iter().filter(|_| !surface.endless);
     ends.filter(|&xi| {
-        let at = place(Element::of(surface, spot.element), seen.now, xi);
+        let at = place(SurfaceElement::of(surface, spot.element), seen.now, xi);
         size([point[0] - at[0], point[1] - at[1]]) <= near
     })
     .find(|&xi| beyond_border(seen.surfaces, SurfacePoint { xi, ..spot }).is_none())
@@ -422,7 +434,7 @@ fn touching(
     near: f64,
 ) -> Option<Touching> {
     let surface = &seen.surfaces[spot.surface];
-    let tangent = direction(Element::of(surface, spot.element), seen.now, spot.xi)?;
+    let tangent = direction(SurfaceElement::of(surface, spot.element), seen.now, spot.xi)?;
     let tangent = gives.turned(&seen.loaded(), slave, spot, tangent);
     let friction = &seen.friction[slave];
     let elastic = match seen.contacts[slave].bond.give()[1] {
@@ -438,7 +450,7 @@ fn touching(
         if give == 0.0 {
             return way;
         }
-        let element = Element::of(surface, foot.spot.element);
+        let element = SurfaceElement::of(surface, foot.spot.element);
         let [now, before] = [seen.now, seen.before].map(|at| speed(element, at, foot.spot.xi));
         let stretched = give * seen.earlier[slave].abs() * (now / before - 1.0).abs();
         way.signum() * (way.abs() - stretched).max(0.0)
@@ -447,11 +459,13 @@ fn touching(
     let was = seen.was(slave);
     let past = match here {
         Some(foot) if is_past_end_at(foot, was, seen.surfaces, seen.before, near) => {
-            Past::Elsewhere
+            SideHistory::Elsewhere
         }
-        Some(foot) if foot.distance <= near => Past::Touched(beyond_stretch(way(foot), foot)),
-        Some(foot) => Past::Open(way(foot)),
-        None => Past::Elsewhere,
+        Some(foot) if foot.distance <= near => {
+            SideHistory::Touched(beyond_stretch(way(foot), foot))
+        }
+        Some(foot) => SideHistory::Open(way(foot)),
+        None => SideHistory::Elsewhere,
     };
     Some(Touching {
         spot,
@@ -478,7 +492,7 @@ fn outward(foot: &Foot, surfaces: &[Surface], positions: &[[f64; 2]]) -> [f64; 2
 /// Sum of the outward normals of the sides at a closest point.
 fn outward_at(foot: &Foot, surfaces: &[Surface], positions: &[[f64; 2]]) -> [f64; 2] {
     let normal = |spot: SurfacePoint| {
-        let element = Element::of(&surfaces[spot.surface], spot.element);
+        let element = SurfaceElement::of(&surfaces[spot.surface], spot.element);
         let t = direction(element, positions, spot.xi);
         t.map_or([0.0; 2], |t| [t[1], -t[0]])
     };
@@ -531,7 +545,7 @@ fn is_past_end_at(
         return false;
     }
     let to = [point[0] - foot.at[0], point[1] - foot.at[1]];
-    let t = direction(Element::of(chain, element), positions, xi).unwrap_or([0.0; 2]);
+    let t = direction(SurfaceElement::of(chain, element), positions, xi).unwrap_or([0.0; 2]);
     xi * dot(to, t) > near
 }
 

@@ -25,9 +25,11 @@ impl Scales {
     }
 
     /// Tolerance of a law.
-    pub fn allowed(&self, law: Law) -> f64 {
+    pub fn allowed(&self, law: ContactLaw) -> f64 {
         match law {
-            Law::Penetration | Law::Gap | Law::Penalty | Law::Tied => self.lengths,
+            ContactLaw::Penetration | ContactLaw::Gap | ContactLaw::Penalty | ContactLaw::Tied => {
+                self.lengths
+            }
             _ => self.forces,
         }
     }
@@ -36,7 +38,7 @@ impl Scales {
 /// A law.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Law {
+pub enum ContactLaw {
     /// g >= 0: no slave node is inside a master (length).
     Penetration,
     /// A force acts only where nodes touch: F = 0 or g = 0 (length).
@@ -65,25 +67,26 @@ pub enum Law {
     Stick,
 }
 
-impl Law {
+impl ContactLaw {
     /// The laws that apply to every accepted state.
-    pub const ALL: [Law; 8] = [
-        Law::Penetration,
-        Law::Gap,
-        Law::Tension,
-        Law::Cone,
-        Law::Slip,
-        Law::Touch,
-        Law::Balance,
-        Law::Moments,
+    pub const ALL: [ContactLaw; 8] = [
+        ContactLaw::Penetration,
+        ContactLaw::Gap,
+        ContactLaw::Tension,
+        ContactLaw::Cone,
+        ContactLaw::Slip,
+        ContactLaw::Touch,
+        ContactLaw::Balance,
+        ContactLaw::Moments,
     ];
 
     /// The laws of bonds other than hard contact.
-    pub const OF_BONDS: [Law; 3] = [Law::Penalty, Law::Tied, Law::Stick];
+    pub const OF_BONDS: [ContactLaw; 3] =
+        [ContactLaw::Penalty, ContactLaw::Tied, ContactLaw::Stick];
 }
 
 crate::words! {
-    Law, name:
+    ContactLaw, name:
     Penetration "penetration",
     Gap "gap",
     Tension "tension",
@@ -102,7 +105,7 @@ crate::words! {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Finding {
     /// The law.
-    pub law: Law,
+    pub law: ContactLaw,
     /// Slave number. `None` if the finding concerns the whole scene, or a node that is not a slave.
     pub slave: Option<usize>,
     /// Amount of the violation, relative to [`Scales::length`] or [`Scales::force`]; infinite if a force acts where no contact is
@@ -111,12 +114,12 @@ pub struct Finding {
     /// The tolerance of `amount`.
     pub allowed: f64,
     /// Gap, forces and slip of the node; zeros if there is no slave.
-    pub numbers: Numbers,
+    pub numbers: JudgedNumbers,
 }
 
 /// Data of a node.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-pub struct Numbers {
+pub struct JudgedNumbers {
     /// Distance from the surface (length); negative is penetration.
     pub gap: f64,
     /// Force on the node along the normal; compression positive.
@@ -132,9 +135,9 @@ pub struct Numbers {
 /// Findings for a state; initially empty.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Verdict {
-    /// The worst place for every law, in the order of [`Law::ALL`]. `None` if the law did not apply.
+    /// The worst place for every law, in the order of [`ContactLaw::ALL`]. `None` if the law did not apply.
     pub worst: [Option<Finding>; 8],
-    /// The same for [`Law::OF_BONDS`].
+    /// The same for [`ContactLaw::OF_BONDS`].
     #[serde(default, skip_serializing_if = "is_nothing")]
     pub bonds: [Option<Finding>; 3],
     /// The node at which friction did the most positive work. `None` if there is no such node.
@@ -149,10 +152,10 @@ impl Verdict {
     /// Records `finding` if it is worse than the previous one for its law.
     pub fn add(&mut self, finding: Finding) {
         let worst = match finding.law {
-            Law::Work => &mut self.work,
-            Law::Penalty => &mut self.bonds[0],
-            Law::Tied => &mut self.bonds[1],
-            Law::Stick => &mut self.bonds[2],
+            ContactLaw::Work => &mut self.work,
+            ContactLaw::Penalty => &mut self.bonds[0],
+            ContactLaw::Tied => &mut self.bonds[1],
+            ContactLaw::Stick => &mut self.bonds[2],
             law => &mut self.worst[law as usize],
         };
         if worst.is_none_or(|w| finding.amount > w.amount || finding.amount.is_nan()) {
@@ -161,7 +164,7 @@ impl Verdict {
     }
 
     /// The worst place for a law. `None` if it did not apply.
-    pub fn of(&self, law: Law) -> Option<Finding> {
+    pub fn of(&self, law: ContactLaw) -> Option<Finding> {
         let mut all = self.findings().chain(&self.work);
         all.find(|found| found.law == law).copied()
     }

@@ -5,7 +5,7 @@
 //! contact. Frame: the outward normal n is on the right of the walk along the chain, and t is n turned 90 degrees anticlockwise,
 //! so t points along the walk. The gap is (x_S − x_S*) · n; negative is penetration.
 
-use crate::contact::element::{Element, Places};
+use crate::contact::element::{ElementPositions, SurfaceElement};
 use crate::fem::lagrange::MAX_NODES;
 use crate::model::Surface;
 
@@ -115,7 +115,7 @@ pub fn closest_point(
         None => nearest_node(slave, surfaces, candidates, positions) * (1.0 + NEARLY),
     };
     for &surface in candidates {
-        for (element, curve) in Element::all(&surfaces[surface]).enumerate() {
+        for (element, curve) in SurfaceElement::all(&surfaces[surface]).enumerate() {
             // Before the first element is found, every element up to the slave node would be closer than the previous one.
             if best.is_none()
                 && !surfaces[surface].endless
@@ -155,8 +155,8 @@ pub fn sharpen(
     if surface.endless || spot.xi.abs() == 1.0 {
         return spot;
     }
-    let element = Element::of(surface, spot.element);
-    let places = Places::of(element.nodes, positions);
+    let element = SurfaceElement::of(surface, spot.element);
+    let places = ElementPositions::of(element.nodes, positions);
     let xi = descend(element, &places, slave, spot.xi);
     match (xi - spot.xi).abs() <= NEXT_TO {
         true => SurfacePoint { xi, ..spot },
@@ -199,7 +199,7 @@ fn consider(
     best: &mut Option<Best>,
 ) {
     let surface = &surfaces[spot.surface];
-    let element = Element::of(surface, spot.element);
+    let element = SurfaceElement::of(surface, spot.element);
     let own = Bounds::new(element.nodes, positions);
     if let Some(best) = best
         && !surface.endless
@@ -302,8 +302,11 @@ pub fn projection_at(
     slave: [f64; 2],
 ) -> Projection {
     let surface = &surfaces[spot.surface];
-    let element = Element::of(surface, spot.element);
-    let (places, s) = (Places::of(element.nodes, positions), element.shape(spot.xi));
+    let element = SurfaceElement::of(surface, spot.element);
+    let (places, s) = (
+        ElementPositions::of(element.nodes, positions),
+        element.shape(spot.xi),
+    );
     let (foot, slope) = (places.sum(&s.n), places.sum(&s.d));
     let normal = normal_at(surface, spot, positions, slope);
     let gap = (slave[0] - foot[0]) * normal[0] + (slave[1] - foot[1]) * normal[1];
@@ -364,15 +367,15 @@ pub fn beside(surface: &Surface, border: SurfacePoint, ahead: bool) -> SurfacePo
 
 /// dx/dξ at ξ of an element.
 fn slope_at(surface: &Surface, element: usize, xi: f64, positions: &[[f64; 2]]) -> [f64; 2] {
-    let element = Element::of(surface, element);
+    let element = SurfaceElement::of(surface, element);
     blend(element.nodes, positions, &element.slopes(xi))
 }
 
 /// The element that meets that of the surface point there, and ξ on it. `None` inside an element, and at an end of the chain.
 pub(super) fn neighbour(surface: &Surface, spot: SurfacePoint) -> Option<(usize, f64)> {
     let count = surface.elements.len();
-    let own = Element::of(surface, spot.element);
-    let at = |other: usize| Element::of(surface, other);
+    let own = SurfaceElement::of(surface, spot.element);
+    let at = |other: usize| SurfaceElement::of(surface, other);
     let (other, xi, node, met) = if spot.xi == 1.0 {
         let other = (spot.element + 1) % count;
         (other, -1.0, own.last(), at(other).first())
@@ -394,7 +397,7 @@ fn past_end(
     if surface.endless || spot.xi.abs() < 1.0 || neighbour(surface, spot).is_some() {
         return false;
     }
-    let element = Element::of(surface, spot.element);
+    let element = SurfaceElement::of(surface, spot.element);
     let (nodes, s) = (element.nodes, element.shape(spot.xi));
     let (foot, slope) = (blend(nodes, positions, &s.n), blend(nodes, positions, &s.d));
     let beyond = spot.xi * ((slave[0] - foot[0]) * slope[0] + (slave[1] - foot[1]) * slope[1]);
@@ -402,7 +405,11 @@ fn past_end(
 }
 
 /// Distance to the closest point of the infinite straight line through a 2-node element, and its unbounded coordinate.
-fn closest_of_line(element: Element<'_>, positions: &[[f64; 2]], slave: [f64; 2]) -> (f64, f64) {
+fn closest_of_line(
+    element: SurfaceElement<'_>,
+    positions: &[[f64; 2]],
+    slave: [f64; 2],
+) -> (f64, f64) {
     let at = |xi: f64| blend(element.nodes, positions, &element.shape(xi).n);
     let (start, end) = (at(-1.0), at(1.0));
     let (along, to) = (
@@ -417,12 +424,12 @@ fn closest_of_line(element: Element<'_>, positions: &[[f64; 2]], slave: [f64; 2]
 
 /// Distance to the closest point of an element, and its coordinate; `guess` is a coordinate that may be close.
 fn closest(
-    element: Element<'_>,
+    element: SurfaceElement<'_>,
     positions: &[[f64; 2]],
     slave: [f64; 2],
     guess: Option<f64>,
 ) -> (f64, f64) {
-    let places = Places::of(element.nodes, positions);
+    let places = ElementPositions::of(element.nodes, positions);
     let squared = |n: &[f64; MAX_NODES]| {
         let to = away(slave, places.sum(n));
         to[0] * to[0] + to[1] * to[1]
@@ -454,7 +461,12 @@ fn closest(
 
 /// Newton's method for (x_S − x) · x' = 0 within |ξ| ≤ 1; Gauss-Newton if the second derivative of the squared distance is small
 /// or negative, x'·x' − (x_S − x)·x'' <= 0.1 x'·x'. `places` are the positions of the curve's nodes.
-fn descend(element: Element<'_>, places: &Places, slave: [f64; 2], start: f64) -> f64 {
+fn descend(
+    element: SurfaceElement<'_>,
+    places: &ElementPositions,
+    slave: [f64; 2],
+    start: f64,
+) -> f64 {
     let mut xi = start;
     for _ in 0..50 {
         let s = element.shape(xi);
@@ -539,7 +551,7 @@ impl Bounds {
     }
 
     /// Whether the whole element with these node bounds is further from a point than `distance`.
-    pub fn lies_beyond(&self, element: Element<'_>, point: [f64; 2], distance: f64) -> bool {
+    pub fn lies_beyond(&self, element: SurfaceElement<'_>, point: [f64; 2], distance: f64) -> bool {
         let bulge = element.bulge(self.sides());
         let outside = |k: usize| {
             let out = (self.low[k] - point[k]).max(point[k] - self.high[k]) - bulge[k];

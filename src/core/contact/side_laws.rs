@@ -2,8 +2,8 @@
 
 use crate::contact::corner::{Side, beyond_corner, beyond_slid, beyond_vertex};
 use crate::contact::corner::{cross, dot, half_angle};
-use crate::contact::element::Element;
-use crate::contact::laws::{Numbers, Scales};
+use crate::contact::element::SurfaceElement;
+use crate::contact::laws::{JudgedNumbers, Scales};
 use crate::contact::projection::SurfacePoint;
 use crate::model::Surface;
 
@@ -15,12 +15,12 @@ pub(super) struct Touching {
     pub tangent: [f64; 2],
     /// ξ (±1) if the node is at an end of the chain.
     pub end: Option<f64>,
-    pub past: Past,
+    pub past: SideHistory,
 }
 
 /// Contact of a node with this side in the last accepted state.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Past {
+pub(super) enum SideHistory {
     /// The node touched the side; its slip along t since then (length).
     Touched(f64),
     /// The node was open; the motion of its closest point along t since then (length).
@@ -38,7 +38,7 @@ pub(super) struct Amounts {
     pub touch: f64,
     /// Whether the node also touched in the last accepted state.
     pub touched: bool,
-    pub numbers: Numbers,
+    pub numbers: JudgedNumbers,
 }
 
 impl Amounts {
@@ -59,8 +59,10 @@ pub(super) fn slip_into(
         .iter()
         .filter(|other| other.spot.surface != this.spot.surface);
     others.find_map(|other| match other.past {
-        Past::Touched(slip) if comes_first(surfaces, other, this) => (slip > near).then_some(slip),
-        Past::Touched(slip) => (slip < -near).then_some(slip),
+        SideHistory::Touched(slip) if comes_first(surfaces, other, this) => {
+            (slip > near).then_some(slip)
+        }
+        SideHistory::Touched(slip) => (slip < -near).then_some(slip),
         _ => None,
     })
 }
@@ -68,7 +70,7 @@ pub(super) fn slip_into(
 /// Evaluates the laws on a single side.
 pub(super) fn on_side(scales: &Scales, force: [f64; 2], at: &Touching) -> Amounts {
     let numbers = numbers(force, at);
-    let Numbers {
+    let JudgedNumbers {
         f_n,
         f_t,
         limit,
@@ -82,28 +84,28 @@ pub(super) fn on_side(scales: &Scales, force: [f64; 2], at: &Touching) -> Amount
         tension: (-f_n).max(0.0) / scales.force,
         cone: (f_t.abs() - limit).max(0.0) / scales.force,
         slip: match at.past {
-            Past::Touched(_) if slips => (limit + against).max(0.0) / scales.force,
+            SideHistory::Touched(_) if slips => (limit + against).max(0.0) / scales.force,
             _ => 0.0,
         },
         touch: match at.past {
-            Past::Open(_) if slips && at_limit => against.max(0.0) / scales.force,
+            SideHistory::Open(_) if slips && at_limit => against.max(0.0) / scales.force,
             _ => 0.0,
         },
-        touched: matches!(at.past, Past::Touched(_)),
+        touched: matches!(at.past, SideHistory::Touched(_)),
         numbers,
     }
 }
 
-fn numbers(force: [f64; 2], at: &Touching) -> Numbers {
+fn numbers(force: [f64; 2], at: &Touching) -> JudgedNumbers {
     let f_n = dot(force, at.side.normal);
-    Numbers {
+    JudgedNumbers {
         gap: 0.0,
         f_n,
         f_t: dot(force, at.tangent),
         limit: at.side.coefficient * f_n.max(0.0) + at.side.cohesion,
         slip: match at.past {
-            Past::Touched(slip) | Past::Open(slip) => slip,
-            Past::Elsewhere => 0.0,
+            SideHistory::Touched(slip) | SideHistory::Open(slip) => slip,
+            SideHistory::Elsewhere => 0.0,
         },
     }
 }
@@ -124,7 +126,7 @@ pub(super) fn in_corner(
     if half_angle(before.tangent, behind.tangent) <= 0.0 {
         let beyond = beyond_vertex(force, &before.side, &behind.side);
         let numbers = numbers(force, before);
-        let slid = matches!(before.past, Past::Touched(slip) if slip.abs() > near);
+        let slid = matches!(before.past, SideHistory::Touched(slip) if slip.abs() > near);
         return Amounts {
             tension: beyond.tension / scales.force,
             cone: beyond.cone / scales.force,
@@ -173,8 +175,7 @@ fn comes_first(surfaces: &[Surface], one: &Touching, other: &Touching) -> bool {
 /// Direction (±1, along t) in which a node has slid since the last accepted state to the point where two sides meet: along t on
 /// the first side, against t on the second. `None` if it did not slide there.
 fn came_along(before: &Touching, behind: &Touching, near: f64) -> Option<f64> {
-    let slid =
-        |side: &Touching, sign: f64| matches!(side.past, Past::Touched(slip) if sign * slip > near);
+    let slid = |side: &Touching, sign: f64| matches!(side.past, SideHistory::Touched(slip) if sign * slip > near);
     if slid(before, 1.0) {
         Some(1.0)
     } else if slid(behind, -1.0) {
@@ -192,8 +193,8 @@ pub(super) fn beyond_border(surfaces: &[Surface], border: SurfacePoint) -> Optio
     let step = if ahead { 1 } else { count - 1 };
     let element = (border.element + step) % count;
     let (own, other) = (
-        Element::of(surface, border.element),
-        Element::of(surface, element),
+        SurfaceElement::of(surface, border.element),
+        SurfaceElement::of(surface, element),
     );
     let (mine, its) = if ahead {
         (own.last(), other.first())

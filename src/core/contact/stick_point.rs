@@ -14,7 +14,7 @@
 //!
 //! Drift has the sign of slip, u_tS* − u_tS, and is what sticking must undo (Table 1).
 
-use crate::contact::element::{Element, Places, closed};
+use crate::contact::element::{ElementPositions, SurfaceElement, closed};
 use crate::contact::projection::{
     Projection, SurfacePoint, has_kink, length as span, project, tangent,
 };
@@ -75,7 +75,7 @@ pub fn distance(
     if from.element == to.element || !closed(surface) {
         return open;
     }
-    let whole: f64 = Element::all(surface)
+    let whole: f64 = SurfaceElement::all(surface)
         .map(|element| length(element, -1.0, 1.0, positions))
         .sum();
     let other = open - whole.copysign(open);
@@ -89,7 +89,7 @@ pub fn distance(
 /// The same for `from.element <= to.element`.
 fn walk(surface: &Surface, from: SurfacePoint, to: SurfacePoint, positions: &[[f64; 2]]) -> f64 {
     let part = |element: usize, from: f64, to: f64| {
-        length(Element::of(surface, element), from, to, positions)
+        length(SurfaceElement::of(surface, element), from, to, positions)
     };
     if from.element == to.element {
         return part(from.element, from.xi, to.xi);
@@ -103,12 +103,12 @@ fn walk(surface: &Surface, from: SurfacePoint, to: SurfacePoint, positions: &[[f
 }
 
 /// Length of an element's curve between two ξ; negative backwards.
-fn length(element: Element<'_>, from: f64, to: f64, positions: &[[f64; 2]]) -> f64 {
+fn length(element: SurfaceElement<'_>, from: f64, to: f64, positions: &[[f64; 2]]) -> f64 {
     if from == to {
         return 0.0;
     }
     let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-    let places = Places::of(element.nodes, positions);
+    let places = ElementPositions::of(element.nodes, positions);
     let slopes = element.slopes_at(POINTS.map(|(x, _)| middle + half * x));
     let speeds = slopes.iter().map(|slopes| span(places.sum(slopes)));
     let sum: f64 = speeds.zip(POINTS).map(|(speed, (_, w))| w * speed).sum();

@@ -20,7 +20,7 @@ use crate::model::{Friction, Mode};
 
 /// The component of the motion of S* relative to S in an equation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Motion {
+pub enum RelativeMotion {
     /// Nothing.
     None,
     /// The normal component Δu_nS* − Δu_nS, with the factor one.
@@ -33,7 +33,7 @@ pub enum Motion {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Equation {
     /// The component of the relative motion in the equation.
-    pub motion: Motion,
+    pub motion: RelativeMotion,
     /// Factor of ΔF_n.
     pub d_n: f64,
     /// Factor of ΔF_t.
@@ -44,7 +44,7 @@ pub struct Equation {
 
 /// Data of a slave node for its equations, from major iteration k−1 and the previous minor iteration.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Known {
+pub struct SlipDirection {
     /// Gap g^(k−1), length.
     pub gap: f64,
     /// Ratio ρ of tangential to normal travel, if the node touched in this major iteration; else 0.
@@ -76,18 +76,18 @@ pub enum FrictionBound {
 }
 
 /// Table 1's equations of a node in a mode: normal, then tangential.
-pub fn equations(mode: Mode, known: &Known) -> [Equation; 2] {
+pub fn equations(mode: Mode, known: &SlipDirection) -> [Equation; 2] {
     #[cfg(mutants)]
     let known = &crate::mutants::pick(
         "sticking-keeps-the-slip",
         *known,
-        Known {
+        SlipDirection {
             slip: 0.0,
             ..*known
         },
     );
     let normal = Equation {
-        motion: Motion::Normal,
+        motion: RelativeMotion::Normal,
         d_n: 0.0,
         d_t: 0.0,
         value: known.gap,
@@ -96,7 +96,7 @@ pub fn equations(mode: Mode, known: &Known) -> [Equation; 2] {
         Mode::Fixed => [
             normal,
             Equation {
-                motion: Motion::Tangential,
+                motion: RelativeMotion::Tangential,
                 d_n: 0.0,
                 d_t: 0.0,
                 value: known.gap * known.ratio - known.slip,
@@ -111,7 +111,7 @@ pub fn equations(mode: Mode, known: &Known) -> [Equation; 2] {
 /// (Δu_tS* − Δu_tS) = T_max − F_t. When the major iterations have converged, the motion is zero, and this is Table 1's equation.
 pub fn braked(sliding: Equation, stiffness: f64) -> Equation {
     Equation {
-        motion: Motion::Tangential,
+        motion: RelativeMotion::Tangential,
         d_n: -sliding.d_n / stiffness,
         d_t: -sliding.d_t / stiffness,
         value: -sliding.value / stiffness,
@@ -121,14 +121,14 @@ pub fn braked(sliding: Equation, stiffness: f64) -> Equation {
 /// The equation d_n ΔF_n + d_t ΔF_t = −`force`, which makes a total force component zero.
 pub fn gone(d_n: f64, d_t: f64, force: f64) -> Equation {
     Equation {
-        motion: Motion::None,
+        motion: RelativeMotion::None,
         d_n,
         d_t,
         value: -force,
     }
 }
 
-fn sliding(known: &Known) -> Equation {
+fn sliding(known: &SlipDirection) -> Equation {
     let (d_n, value) = match known.limit {
         FrictionBound::Lagged(t_max) => (0.0, t_max - known.f_t),
         FrictionBound::Consistent {
@@ -141,7 +141,7 @@ fn sliding(known: &Known) -> Equation {
         ),
     };
     Equation {
-        motion: Motion::None,
+        motion: RelativeMotion::None,
         d_n,
         d_t: 1.0,
         value,
@@ -181,7 +181,7 @@ pub fn direction(f_t: f64, tiny_force: f64, slip: f64, tiny_slip: f64, had: f64)
 mod tests {
     use super::*;
 
-    const KNOWN: Known = Known {
+    const KNOWN: SlipDirection = SlipDirection {
         gap: -0.2,
         ratio: 1.5,
         slip: 0.0,
@@ -193,10 +193,13 @@ mod tests {
     #[test]
     fn the_equations_are_those_of_table_1() {
         let [n, t] = equations(Mode::Fixed, &KNOWN);
-        assert_eq!((n.motion, n.value), (Motion::Normal, -0.2));
-        assert_eq!((t.motion, t.value), (Motion::Tangential, -0.2 * 1.5));
+        assert_eq!((n.motion, n.value), (RelativeMotion::Normal, -0.2));
+        assert_eq!(
+            (t.motion, t.value),
+            (RelativeMotion::Tangential, -0.2 * 1.5)
+        );
         let [n, t] = equations(Mode::Sliding, &KNOWN);
-        assert_eq!((n.motion, n.value), (Motion::Normal, -0.2));
+        assert_eq!((n.motion, n.value), (RelativeMotion::Normal, -0.2));
         assert_eq!((t.d_n, t.d_t, t.value), (0.0, 1.0, -1.7 + 1.0));
         let [n, t] = equations(Mode::Free, &KNOWN);
         assert_eq!((n.d_n, n.d_t, n.value), (1.0, 0.0, -3.0));
@@ -210,7 +213,7 @@ mod tests {
             coefficient: 0.5,
             cohesion: 0.1,
         };
-        let [_, t] = equations(Mode::Sliding, &Known { limit, ..KNOWN });
+        let [_, t] = equations(Mode::Sliding, &SlipDirection { limit, ..KNOWN });
         let d_f_n = 0.7;
         let d_f_t = (t.value - t.d_n * d_f_n) / t.d_t;
         assert!((KNOWN.f_t + d_f_t + (0.5 * (KNOWN.f_n + d_f_n) + 0.1)).abs() < 1e-15);

@@ -1,6 +1,6 @@
 //! Tests of smooth chains: positions, slopes and normals, the distance from a circle, and the distribution of a force.
 
-use crate::contact::element::{Element, closed};
+use crate::contact::element::{SurfaceElement, closed};
 use crate::contact::projection::{project, projection_at, tangent};
 use crate::contact::smooth::smooth;
 use crate::fem::lagrange::MAX_NODES;
@@ -32,7 +32,7 @@ fn chain(places: &[[f64; 2]], round: bool) -> Surface {
     surface
 }
 
-fn sum(element: Element<'_>, shares: &[f64], places: &[[f64; 2]]) -> [f64; 2] {
+fn sum(element: SurfaceElement<'_>, shares: &[f64], places: &[[f64; 2]]) -> [f64; 2] {
     [0, 1].map(|axis| {
         let parts = element.nodes.iter().zip(shares);
         parts.map(|(&n, share)| share * places[n][axis]).sum()
@@ -82,7 +82,7 @@ fn a_piece_blends_the_parabolas_through_its_ends_and_one_neighbour() {
             (k..k + 3).map(part).sum::<f64>()
         })
     };
-    for (k, element) in Element::all(&surface).enumerate() {
+    for (k, element) in SurfaceElement::all(&surface).enumerate() {
         for t in [0.0, 0.21, 0.5, 0.9, 1.0] {
             let s = knots[k] + t * (knots[k + 1] - knots[k]);
             let (before, behind) = (parabola(k as isize - 1, s), parabola(k as isize, s));
@@ -100,7 +100,7 @@ fn node_weights_sum_to_one_and_their_derivatives_are_correct() {
     for (places, round) in [(uneven(), false), (uneven(), true), (circle(3, 1.0), true)] {
         let surface = chain(&places, round);
         assert_eq!(closed(&surface), round);
-        for element in Element::all(&surface) {
+        for element in SurfaceElement::all(&surface) {
             for xi in [-1.0, -0.3, 0.2, 1.0] {
                 let (s, h) = (element.shape(xi), 1e-5);
                 assert!((s.n.iter().sum::<f64>() - 1.0).abs() < 1e-15);
@@ -128,8 +128,8 @@ fn the_normal_is_continuous_at_nodes_of_a_deformed_chain() {
         let count = surface.elements.len();
         for k in 0..count - usize::from(!round) {
             let (one, next) = (
-                Element::of(&surface, k),
-                Element::of(&surface, (k + 1) % count),
+                SurfaceElement::of(&surface, k),
+                SurfaceElement::of(&surface, (k + 1) % count),
             );
             assert_eq!(one.last(), next.first());
             let before = sum(one, &one.shape(1.0).d, &bent);

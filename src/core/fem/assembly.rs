@@ -19,7 +19,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// An element with its positions in the system.
-struct Placed {
+struct AssembledElement {
     element: Box<dyn Element>,
     /// Degrees of freedom of the scene, in the element's order.
     dofs: Vec<usize>,
@@ -33,9 +33,9 @@ struct Placed {
 
 /// All elements of all bodies.
 pub struct Assembly {
-    elements: Vec<Placed>,
+    elements: Vec<AssembledElement>,
     /// Bodies given by a matrix.
-    matrices: Vec<matrix::Element>,
+    matrices: Vec<matrix::MatrixElement>,
     /// Whether only the upper half of the stiffness is assembled.
     half: bool,
     /// Number of history variables of the elements added so far.
@@ -61,13 +61,13 @@ struct Room {
 struct Group {
     elements: Range<usize>,
     /// First degree of freedom, entry and equation of the group.
-    first: Places,
+    first: ScatterMap,
     room: Room,
 }
 
 /// Start indices of degrees of freedom, entries of the stiffness, and equations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-struct Places {
+struct ScatterMap {
     dof: usize,
     slot: usize,
     equation: usize,
@@ -75,7 +75,7 @@ struct Places {
 
 /// Sums, from given start indices on.
 struct Sums<'a> {
-    first: Places,
+    first: ScatterMap,
     out: Assembled<'a>,
 }
 
@@ -121,7 +121,7 @@ impl Assembly {
                 BodyKind::Solid(solid) => assembly.add_solid(model, solid),
                 BodyKind::Truss(truss) => assembly.add_truss(model, truss),
                 BodyKind::Linear(linear) => {
-                    let element = matrix::Element::new(&model.dofs, body, linear);
+                    let element = matrix::MatrixElement::new(&model.dofs, body, linear);
                     assembly.matrices.push(element);
                 }
             }
@@ -137,7 +137,7 @@ impl Assembly {
         };
         for (e, nodes) in beam.elements.iter().enumerate() {
             let positions: Vec<[f64; 2]> = nodes.iter().map(|&n| model.nodes[n].at).collect();
-            let element = beam::Element::new(&positions, section);
+            let element = beam::BeamElement::new(&positions, section);
             let mut dofs = dofs_of(model, nodes, 3);
             if let Some(first) = beam.first_shear {
                 let points = element.gauss_points();
@@ -164,9 +164,10 @@ impl Assembly {
 
     fn add_truss(&mut self, model: &Model, truss: &Truss) {
         for bar in truss.bars.iter().filter(|bar| bar.len() == 2) {
-            let element = truss::Element::new([0, 1].map(|k| model.nodes[bar[k]].at), truss.ea);
+            let element =
+                truss::TrussElement::new([0, 1].map(|k| model.nodes[bar[k]].at), truss.ea);
             let element: Box<dyn Element> = if truss.small {
-                Box::new(small::Element::new(&element))
+                Box::new(small::SmallStrainElement::new(&element))
             } else {
                 Box::new(element)
             };
@@ -181,7 +182,7 @@ impl Assembly {
         self.room.hold(dofs.len());
         let most = self.memory.len().max(remembered);
         self.memory.resize(most, 0.0);
-        self.elements.push(Placed {
+        self.elements.push(AssembledElement {
             element,
             dofs,
             slots: Vec::new(),
@@ -233,7 +234,7 @@ impl Assembly {
     fn whole(&self) -> Group {
         Group {
             elements: 0..self.elements.len(),
-            first: Places::default(),
+            first: ScatterMap::default(),
             room: self.room.clone(),
         }
     }
@@ -260,7 +261,7 @@ impl Assembly {
                 }
                 groups.push(Group {
                     elements: k..k,
-                    first: Places {
+                    first: ScatterMap {
                         dof: if k == 0 { 0 } else { least },
                         slot: pattern.block_start(start),
                         equation: start,
@@ -276,7 +277,7 @@ impl Assembly {
             (at, reach) = (part, reach.max(placed.dofs.iter().max()? + 1));
         }
         // Entries without an element belong to the first group.
-        groups.first_mut()?.first = Places::default();
+        groups.first_mut()?.first = ScatterMap::default();
         Some(groups)
     }
 
@@ -286,7 +287,7 @@ impl Assembly {
         out.size.fill(0.0);
         out.values.fill(0.0);
         out.coupling.fill(0.0);
-        let work = Work {
+        let work = AssemblyWork {
             executor: &*self.executor,
             elements: &self.elements,
             half: self.half,
@@ -294,7 +295,7 @@ impl Assembly {
             moved,
         };
         let sums = Sums {
-            first: Places::default(),
+            first: ScatterMap::default(),
             out: Assembled {
                 force: &mut *out.force,
                 size: &mut *out.size,
@@ -382,15 +383,15 @@ impl Assembly {
 
 /// Input of an assembly.
 #[derive(Clone, Copy)]
-struct Work<'a> {
+struct AssemblyWork<'a> {
     executor: &'a dyn Executor,
-    elements: &'a [Placed],
+    elements: &'a [AssembledElement],
     half: bool,
     dofs: &'a Dofs,
     moved: Moved<'a>,
 }
 
-impl Work<'_> {
+impl AssemblyWork<'_> {
     /// Assembles these groups.
     fn all(self, groups: &mut [Group], mut sums: Sums<'_>) {
         match groups {
@@ -457,7 +458,7 @@ impl Sums<'_> {
     }
 
     /// Splits the sums at given start indices.
-    fn split_at(&mut self, at: Places) -> (Sums<'_>, Sums<'_>) {
+    fn split_at(&mut self, at: ScatterMap) -> (Sums<'_>, Sums<'_>) {
         let first = self.first;
         let out = &mut self.out;
         let force = out.force.split_at_mut(at.dof - first.dof);
@@ -511,7 +512,7 @@ fn dofs_of(model: &Model, nodes: &[usize], count: usize) -> Vec<usize> {
     nodes.iter().flat_map(of_node).collect()
 }
 
-impl Placed {
+impl AssembledElement {
     fn bind(&mut self, dofs: &Dofs, pattern: &Pattern, half: bool) {
         let equation = |d: &usize| dofs.equation[*d];
         let n = self.dofs.len();

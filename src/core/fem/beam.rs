@@ -31,7 +31,7 @@ pub struct Section {
 
 /// Constant data of an element: shape functions and weights at its Gauss points.
 #[derive(Debug, Clone)]
-pub struct Element {
+pub struct BeamElement {
     nodes: usize,
     section: Section,
     points: Vec<GaussPoint>,
@@ -58,7 +58,7 @@ pub struct SectionState {
     pub force: Vector3<f64>,
 }
 
-impl Element {
+impl BeamElement {
     /// An element on these reference positions (2 to 9 of them).
     pub fn new(positions: &[[f64; 2]], section: Section) -> Self {
         let m = positions.len();
@@ -77,7 +77,7 @@ impl Element {
                 }
             })
             .collect();
-        Element {
+        BeamElement {
             nodes: m,
             section,
             points,
@@ -179,7 +179,7 @@ impl Element {
     }
 }
 
-impl element::Element for Element {
+impl element::Element for BeamElement {
     fn dofs(&self) -> usize {
         3 * self.nodes
             + if self.section.ga.is_none() {
@@ -271,7 +271,7 @@ mod tests {
 
     #[test]
     fn small_strains_of_a_stiff_beam_are_free_of_cancellation() {
-        let element = Element::new(&[[0.0, 0.0], [1.0, 0.0]], SECTION);
+        let element = BeamElement::new(&[[0.0, 0.0], [1.0, 0.0]], SECTION);
         let state = element.section_state(0, &[0.0, 0.0, 0.0, 1e-18, 0.0, 0.0]);
         assert_eq!(state.strain.x, 1e-18);
     }

@@ -46,17 +46,17 @@ fn made<const N: usize, const P: usize>(
         });
     };
     let made: Box<dyn Element> = if material.plane == Plane::Axisymmetric {
-        Box::new(isoparametric::Element::<N, P, true>::new(
+        Box::new(isoparametric::ContinuumElement::<N, P, true>::new(
             rule, at, material, update,
         ))
     } else {
-        Box::new(isoparametric::Element::<N, P, false>::new(
+        Box::new(isoparametric::ContinuumElement::<N, P, false>::new(
             rule, at, material, update,
         ))
     };
     match update {
         Update::Total | Update::Updated => made,
-        Update::Small => Box::new(small::Element::new(&*made)),
+        Update::Small => Box::new(small::SmallStrainElement::new(&*made)),
     }
 }
 
@@ -104,12 +104,14 @@ fn states_by<const N: usize, const P: usize>(
     };
     let points = rule.iter().enumerate();
     if material.plane == Plane::Axisymmetric {
-        let element = isoparametric::Element::<N, P, true>::new(rule, at, material, update);
+        let element =
+            isoparametric::ContinuumElement::<N, P, true>::new(rule, at, material, update);
         points
             .map(|(p, parent)| (parent.at, element.point_state(past, u, p)))
             .collect()
     } else {
-        let element = isoparametric::Element::<N, P, false>::new(rule, at, material, update);
+        let element =
+            isoparametric::ContinuumElement::<N, P, false>::new(rule, at, material, update);
         points
             .map(|(p, parent)| (parent.at, element.point_state(past, u, p)))
             .collect()

@@ -64,7 +64,7 @@ impl Deformation {
 
 /// Range of validity of a material law.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Range {
+pub enum StretchRange {
     /// Lower bound of the principal stretches.
     Stretch(f64),
     /// Upper bound of det F.
@@ -73,24 +73,24 @@ pub enum Range {
     Unlimited,
 }
 
-impl Range {
+impl StretchRange {
     /// The range of a material's law.
-    pub fn of(elastic: &Elastic) -> Range {
+    pub fn of(elastic: &Elastic) -> StretchRange {
         match (elastic.update, elastic.law) {
-            (Update::Total, Law::Svk) => Range::Stretch(SOFTENING),
-            (Update::Total, Law::NeoHookean) => Range::Volume(E),
-            (Update::Small, _) => Range::Stretch(SMALL),
-            (Update::Updated, _) => Range::Unlimited,
+            (Update::Total, Law::Svk) => StretchRange::Stretch(SOFTENING),
+            (Update::Total, Law::NeoHookean) => StretchRange::Volume(E),
+            (Update::Small, _) => StretchRange::Stretch(SMALL),
+            (Update::Updated, _) => StretchRange::Unlimited,
         }
     }
 
     /// Fraction of the range that a point uses; more than 1 outside the range.
     fn used(self, point: &PointDeformation) -> f64 {
         match self {
-            Range::Stretch(least) if point.stretch > 0.0 => least / point.stretch,
-            Range::Stretch(_) => f64::INFINITY,
-            Range::Volume(most) => point.determinant / most,
-            Range::Unlimited => 0.0,
+            StretchRange::Stretch(least) if point.stretch > 0.0 => least / point.stretch,
+            StretchRange::Stretch(_) => f64::INFINITY,
+            StretchRange::Volume(most) => point.determinant / most,
+            StretchRange::Unlimited => 0.0,
         }
     }
 }
@@ -114,7 +114,7 @@ pub fn deformation(model: &Model, u: &[f64]) -> Option<Deformation> {
         if is_less(point.stretch, worst.smallest.stretch) {
             worst.smallest = point;
         }
-        let uses = Range::of(elastic).used(&point);
+        let uses = StretchRange::of(elastic).used(&point);
         if uses > used {
             (used, worst.outside) = (uses, Some(point));
         }

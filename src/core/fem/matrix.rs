@@ -16,7 +16,7 @@ use crate::model::{Body, Dofs, Form, Linear};
 const NOWHERE: u32 = u32::MAX;
 
 /// The matrix, in degrees of freedom of the scene.
-pub struct Element {
+pub struct MatrixElement {
     /// Degree of freedom of each row, and the end of its entries; they start at the end of the previous row.
     rows: Vec<(usize, usize)>,
     /// Degree of freedom of each entry's column.
@@ -26,11 +26,11 @@ pub struct Element {
     slots: Vec<u32>,
 }
 
-impl Element {
+impl MatrixElement {
     /// The matrix of a body of the scene.
     pub fn new(dofs: &Dofs, body: &Body, linear: &Linear) -> Self {
         let place = |k: usize| dofs.first[body.nodes[k / 2]] + k % 2;
-        let mut element = Element {
+        let mut element = MatrixElement {
             rows: Vec::new(),
             columns: Vec::new(),
             values: Vec::new(),

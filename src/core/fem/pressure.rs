@@ -18,11 +18,11 @@ use std::f64::consts::TAU;
 
 /// All pressures of a scene, face by face.
 pub struct Pressures {
-    faces: Vec<Placed>,
+    faces: Vec<PressedElement>,
 }
 
 /// A face with its positions in the system.
-struct Placed {
+struct PressedElement {
     /// Undeformed positions of its nodes.
     at: Vec<[f64; 2]>,
     /// Degrees of freedom, x and y of each node.
@@ -44,7 +44,7 @@ impl Pressures {
         let of = |(pressure, face): (usize, &PressedFace)| {
             let m = face.nodes.len();
             let xy = |&n: &usize| [model.dofs.first[n], model.dofs.first[n] + 1];
-            Placed {
+            PressedElement {
                 at: face.nodes.iter().map(|&n| model.nodes[n].at).collect(),
                 dofs: face.nodes.iter().flat_map(xy).collect(),
                 thickness: face.thickness,
@@ -136,12 +136,12 @@ impl Pressures {
 }
 
 /// Geometry of a face at a point.
-struct Along {
+struct FaceDerivative {
     slope: [f64; 2],
     width: f64,
 }
 
-impl Placed {
+impl PressedElement {
     /// Positions of the nodes at displacements u.
     fn now(&self, u: &[f64]) -> [[f64; 2]; MAX_NODES] {
         let mut now = [[0.0; 2]; MAX_NODES];
@@ -156,11 +156,11 @@ impl Placed {
         now: &[[f64; 2]; MAX_NODES],
         n: &[f64; MAX_NODES],
         d: &[f64; MAX_NODES],
-    ) -> Along {
+    ) -> FaceDerivative {
         let sum = |w: &[f64; MAX_NODES], k: usize| -> f64 {
             w.iter().zip(now).map(|(w, x)| w * x[k]).sum()
         };
-        Along {
+        FaceDerivative {
             slope: [sum(d, 0), sum(d, 1)],
             width: self.thickness.unwrap_or_else(|| TAU * sum(n, 0)),
         }
@@ -171,7 +171,7 @@ impl Placed {
         let (now, m) = (self.now(u), self.at.len());
         let widening = if self.thickness.is_some() { 0.0 } else { TAU };
         for (weight, n, d) in &self.points {
-            let Along { slope, width } = self.along(&now, n, d);
+            let FaceDerivative { slope, width } = self.along(&now, n, d);
             for i in 0..m {
                 let share = size * weight * n[i];
                 for j in 0..m {
@@ -207,7 +207,7 @@ mod tests {
     fn face(m: usize, thickness: Option<f64>) -> Pressures {
         let at = (0..m).map(|i| [2.0 + 0.7 * i as f64, 0.1 * (i * i) as f64 - 0.3]);
         Pressures {
-            faces: vec![Placed {
+            faces: vec![PressedElement {
                 at: at.collect(),
                 dofs: (0..2 * m).collect(),
                 thickness,

@@ -6,13 +6,13 @@
 use super::element::{self, Past};
 
 /// An element linearised at the undeformed state.
-pub struct Element {
+pub struct SmallStrainElement {
     dofs: usize,
     /// K, row by row; `None` if the original element has no response there.
     stiffness: Option<Box<[f64]>>,
 }
 
-impl Element {
+impl SmallStrainElement {
     /// Linearises `of` at the undeformed state.
     pub fn new(of: &dyn element::Element) -> Self {
         let dofs = of.dofs();
@@ -25,14 +25,14 @@ impl Element {
         };
         let answers = of.add(&past, &rest, &mut force, &mut stiffness);
         of.mirror(&mut stiffness);
-        Element {
+        SmallStrainElement {
             dofs,
             stiffness: answers.then(|| stiffness.into_boxed_slice()),
         }
     }
 }
 
-impl element::Element for Element {
+impl element::Element for SmallStrainElement {
     fn dofs(&self) -> usize {
         self.dofs
     }

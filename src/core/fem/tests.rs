@@ -67,11 +67,11 @@ fn choices() -> Vec<(Law, Plane, Update)> {
 
 fn bar(small: bool) -> Specimen {
     let at = [[0.3, -0.2], [1.5, 0.7]];
-    let element = truss::Element::new(at, 100.0);
+    let element = truss::TrussElement::new(at, 100.0);
     Specimen {
         name: format!("bar, small: {small}"),
         element: if small {
-            Box::new(small::Element::new(&element))
+            Box::new(small::SmallStrainElement::new(&element))
         } else {
             Box::new(element)
         },
@@ -92,7 +92,7 @@ fn beam(m: usize, ga: Option<f64>) -> Specimen {
     };
     Specimen {
         name: format!("beam of {m} nodes, GA {ga:?}"),
-        element: Box::new(beam::Element::new(&at, section)),
+        element: Box::new(beam::BeamElement::new(&at, section)),
         at,
         per_node: 3,
         stiffness: 100.0,

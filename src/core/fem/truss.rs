@@ -10,19 +10,19 @@ use super::element::{self, Past};
 
 /// A bar.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Element {
+pub struct TrussElement {
     at: [[f64; 2]; 2],
     ea: f64,
 }
 
-impl Element {
+impl TrussElement {
     /// A bar between these undeformed positions, with the stiffness EA (force).
     pub fn new(at: [[f64; 2]; 2], ea: f64) -> Self {
-        Element { at, ea }
+        TrussElement { at, ea }
     }
 }
 
-impl element::Element for Element {
+impl element::Element for TrussElement {
     fn dofs(&self) -> usize {
         4
     }

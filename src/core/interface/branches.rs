@@ -63,7 +63,7 @@ pub fn left(problem: &InterfaceProblem, budget: usize, stop: &dyn Fn() -> bool) 
 }
 
 /// Linear data of a node.
-struct Node {
+struct BranchNode {
     coefficient: f64,
     cohesion: f64,
     /// Whether its normal and its tangential motion contain an unknown.
@@ -80,7 +80,7 @@ struct Node {
 struct Branches<'a> {
     /// F_n, F_t, gap and slip of each node in units of force and length: coefficients and a constant.
     numbers: Vec<[Vec<f64>; 4]>,
-    nodes: Vec<Node>,
+    nodes: Vec<BranchNode>,
     forms: Forms,
     /// Whether the energy is convex.
     convex: bool,
@@ -108,7 +108,7 @@ impl<'a> Branches<'a> {
     fn new(problem: &InterfaceProblem, budget: usize, stop: &'a dyn Fn() -> bool) -> Option<Self> {
         let numbers = numbers(problem);
         let energy = Energy::of(&numbers, problem.relation.count());
-        let nodes: Vec<Node> = problem
+        let nodes: Vec<BranchNode> = problem
             .nodes
             .iter()
             .zip(&numbers)
@@ -124,7 +124,7 @@ impl<'a> Branches<'a> {
                 let limit = pressed + cohesion;
                 let rest = limit + f_t[1].abs().max(f_t[0].abs());
                 let rest = [0.0, rest.min(2.0 * limit)];
-                Node {
+                BranchNode {
                     coefficient,
                     cohesion,
                     moves: node.moves(),

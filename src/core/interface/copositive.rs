@@ -52,7 +52,7 @@ const ROOM: usize = 7;
 pub struct Copositive {
     /// In the problem's units of force and length.
     tableau: Tableau,
-    nodes: Vec<Held>,
+    nodes: Vec<HeldComponent>,
     /// Node and kind of every variable.
     owners: Vec<(usize, usize)>,
     force: f64,
@@ -61,7 +61,7 @@ pub struct Copositive {
 
 /// Start of a node's variables.
 #[derive(Debug, Clone, Copy)]
-enum Held {
+enum HeldComponent {
     /// No contact force is possible, or there is no surface: its motions are unconstrained.
     No,
     /// It has F_n and the gap.
@@ -110,8 +110,8 @@ impl Copositive {
             if !rough(place) {
                 basis.push(path.loose(place, |column| columns.add_motion(t, length, column)));
                 path.nodes.push(match presses {
-                    Some(_) => Held::Smooth(first),
-                    None => Held::No,
+                    Some(_) => HeldComponent::Smooth(first),
+                    None => HeldComponent::No,
                 });
                 continue;
             }
@@ -142,7 +142,7 @@ impl Copositive {
             path.add(place, ROOM, |column| column[room] = 1.0);
             rhs[room] = cohesion / force;
             basis.extend([first + PLUS_REST, first + MINUS_REST, first + ROOM]);
-            path.nodes.push(Held::Rough(first));
+            path.nodes.push(HeldComponent::Rough(first));
         }
         let shift = SHIFT * SHIFT_FALLS.powi(number as i32);
         let begin = Begin {
@@ -220,10 +220,12 @@ impl Copositive {
     /// Mode of a node in the current basis. A node whose friction has not reached a bound sticks.
     pub fn assumed(&self, place: usize) -> Assumed {
         let first = match self.nodes[place] {
-            Held::No => return Assumed::Free,
-            Held::Smooth(first) if self.tableau.is_basic(first + FORCE) => return Assumed::Plus,
-            Held::Smooth(_) => return Assumed::Free,
-            Held::Rough(first) => first,
+            HeldComponent::No => return Assumed::Free,
+            HeldComponent::Smooth(first) if self.tableau.is_basic(first + FORCE) => {
+                return Assumed::Plus;
+            }
+            HeldComponent::Smooth(_) => return Assumed::Free,
+            HeldComponent::Rough(first) => first,
         };
         let basic = |kind| self.tableau.is_basic(first + kind);
         if !basic(FORCE) {
@@ -241,14 +243,14 @@ impl Copositive {
     pub fn numbers(&self, place: usize) -> [f64; 4] {
         let of = |variable: usize| self.tableau.of(variable);
         match self.nodes[place] {
-            Held::No => [0.0, 0.0, f64::INFINITY, 0.0],
-            Held::Smooth(first) => [
+            HeldComponent::No => [0.0, 0.0, f64::INFINITY, 0.0],
+            HeldComponent::Smooth(first) => [
                 self.force * of(first + FORCE),
                 0.0,
                 self.length * of(first + GAP),
                 0.0,
             ],
-            Held::Rough(first) => [
+            HeldComponent::Rough(first) => [
                 self.force * of(first + FORCE),
                 self.force * (of(first + PLUS) - of(first + MINUS)),
                 self.length * of(first + GAP),

@@ -72,7 +72,7 @@ fn moves_alike(problem: &InterfaceProblem, a: &Consistent, b: &Consistent) -> bo
 
 /// How a node's force can vary.
 #[derive(Debug, Clone, Copy)]
-enum Way {
+enum FamilyDirection {
     /// Only F_n: without friction, or a support carries F_t.
     Normal(usize),
     /// F_n together with F_t = ± tan φ F_n + c.
@@ -89,7 +89,7 @@ struct Around<'a> {
     /// F_n and F_t of the mean state.
     force: Vec<[f64; 2]>,
     /// The touching nodes with variable forces.
-    ways: Vec<(usize, Way)>,
+    ways: Vec<(usize, FamilyDirection)>,
     /// Columns: directions. Rows: components, in the order of `ways`.
     directions: DMatrix<f64>,
 }
@@ -122,14 +122,14 @@ impl<'a> Around<'a> {
             let unit = |k: usize| vec![(2 * place + k, 1.0)];
             let way = if node.friction.is_smooth() || !tangential {
                 columns.push(unit(0));
-                Way::Normal(first)
+                FamilyDirection::Normal(first)
             } else if at.slip.abs() > SAME * problem.length {
                 let slope = tangent * at.slip.signum();
                 columns.push(vec![(2 * place, 1.0), (2 * place + 1, slope)]);
-                Way::Limit(first, slope)
+                FamilyDirection::Limit(first, slope)
             } else {
                 columns.extend([unit(0), unit(1)]);
-                Way::Both(first)
+                FamilyDirection::Both(first)
             };
             ways.push((place, way));
         }
@@ -176,7 +176,7 @@ impl<'a> Around<'a> {
         }
         let mut bounded: Vec<usize> = asked.iter().map(|(form, _)| *form).collect();
         for (place, way) in &self.ways {
-            if let Way::Both(_) = way {
+            if let FamilyDirection::Both(_) = way {
                 let friction = &self.problem.nodes[*place].friction;
                 let cohesion = friction.cohesion / self.unit;
                 let [f_n, f_t] = self.of_node(*place, *way);
@@ -234,7 +234,7 @@ impl<'a> Around<'a> {
     }
 
     /// F_n and F_t of a node: one coefficient per direction, and the constant.
-    fn of_node(&self, place: usize, way: Way) -> [Vec<f64>; 2] {
+    fn of_node(&self, place: usize, way: FamilyDirection) -> [Vec<f64>; 2] {
         let size = self.directions.ncols();
         let [f_n, f_t] = self.force[place];
         let form = |row: Option<(usize, f64)>, constant: f64| -> Vec<f64> {
@@ -242,9 +242,13 @@ impl<'a> Around<'a> {
             (0..size).map(of).chain([constant]).collect()
         };
         match way {
-            Way::Normal(row) => [form(Some((row, 1.0)), f_n), form(None, f_t)],
-            Way::Limit(row, slope) => [form(Some((row, 1.0)), f_n), form(Some((row, slope)), f_t)],
-            Way::Both(row) => [form(Some((row, 1.0)), f_n), form(Some((row + 1, 1.0)), f_t)],
+            FamilyDirection::Normal(row) => [form(Some((row, 1.0)), f_n), form(None, f_t)],
+            FamilyDirection::Limit(row, slope) => {
+                [form(Some((row, 1.0)), f_n), form(Some((row, slope)), f_t)]
+            }
+            FamilyDirection::Both(row) => {
+                [form(Some((row, 1.0)), f_n), form(Some((row + 1, 1.0)), f_t)]
+            }
         }
     }
 }

@@ -10,7 +10,7 @@
 //! for the gap, the relative motion v = Δu_S* − Δu_S and the slip. In the problem of forces and motions at the interface, v = −W
 //! F + …, this adds c to the diagonal of W. All mode decisions use S': here `gap` and `motion` are those of S'.
 
-use crate::contact::table1::{Equation, Motion};
+use crate::contact::table1::{Equation, RelativeMotion};
 use crate::model::Bond;
 use serde::{Deserialize, Serialize};
 
@@ -45,12 +45,12 @@ impl NodeKinematics {
 /// c ΔF.
 pub fn through(row: Equation, give: [f64; 2]) -> Equation {
     match row.motion {
-        Motion::None => row,
-        Motion::Normal => Equation {
+        RelativeMotion::None => row,
+        RelativeMotion::Normal => Equation {
             d_n: row.d_n - give[0],
             ..row
         },
-        Motion::Tangential => Equation {
+        RelativeMotion::Tangential => Equation {
             d_t: row.d_t - give[1],
             ..row
         },

@@ -7,7 +7,7 @@
 //! modes and measures how far the solution is from obeying this law; [`crate::interface::census`] tries all combinations.
 
 use crate::contact::state::ContactState;
-use crate::contact::table1::{Equation, FrictionBound, Known};
+use crate::contact::table1::{Equation, FrictionBound, SlipDirection};
 use crate::contact::table2::Ties;
 use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
 use crate::interface::response::InterfaceResponse;
@@ -120,7 +120,7 @@ impl ProblemNode {
 
     /// Table 1's equations of an assumption, normal and tangential; T_max follows F_n in them.
     pub fn equations(&self, assumed: Assumed, settings: &Settings) -> [Equation; 2] {
-        let known = Known {
+        let known = SlipDirection {
             gap: self.kinematics.map_or(0.0, |k| k.gap),
             ratio: 0.0,
             slip: self.state.slipped(settings),
@@ -215,7 +215,7 @@ impl InterfaceProblem {
         Ties {
             force: self.settings.tolerance * force,
             length: self.settings.tolerance * self.length,
-            keep: self.settings.ties == model::Ties::Keep,
+            keep: self.settings.ties == model::TieRule::Keep,
         }
     }
 

@@ -8,7 +8,7 @@
 //!
 //! For infinite k, z is the motion itself. Springs with finite k make the response exist if only contact supports a body.
 
-use crate::contact::table1::{Equation, Motion};
+use crate::contact::table1::{Equation, RelativeMotion};
 use serde::{Deserialize, Serialize};
 
 /// Response of the condensed bodies' interface; normal and tangential components of each slave node in turn.
@@ -41,9 +41,9 @@ impl InterfaceResponse {
     ) -> f64 {
         let count = self.count();
         let moving = match row.motion {
-            Motion::None => None,
-            Motion::Normal => Some(0),
-            Motion::Tangential => Some(1),
+            RelativeMotion::None => None,
+            RelativeMotion::Normal => Some(0),
+            RelativeMotion::Tangential => Some(1),
         };
         // Substituting motion = z + ΔF / k gives these factors of ΔF.
         let mut factor = [row.d_n, row.d_t];

@@ -1,7 +1,7 @@
 //! Table 1's equations of a node, modified where supports carry a force.
 
 use crate::contact::state::ContactState;
-use crate::contact::table1::{Equation, FrictionBound, Known, braked, equations, gone};
+use crate::contact::table1::{Equation, FrictionBound, SlipDirection, braked, equations, gone};
 use crate::interface::kinematics::NodeKinematics;
 use crate::model::{BoundUpdate, Friction, Mode, Settings};
 
@@ -23,7 +23,7 @@ pub fn rows(
             cohesion: friction.cohesion,
         },
     };
-    let known = Known {
+    let known = SlipDirection {
         gap: kinematics.map_or(0.0, |k| k.gap),
         ratio: node.ratio,
         slip: match kinematics {
@@ -43,7 +43,7 @@ pub fn rows(
 }
 
 /// Table 1's equations, with zero force for components carried by supports.
-pub fn supported(mode: Mode, known: &Known, moves: [bool; 2]) -> [Equation; 2] {
+pub fn supported(mode: Mode, known: &SlipDirection, moves: [bool; 2]) -> [Equation; 2] {
     let [mut normal, mut tangential] = equations(mode, known);
     let carried = carried(mode, moves);
     if carried[0] {

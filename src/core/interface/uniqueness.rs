@@ -84,7 +84,7 @@ pub enum Inapplicable {
 
 /// Applies the criterion to a problem. It takes a few dense factorizations of the interface's size.
 pub fn uniqueness(problem: &InterfaceProblem) -> Uniqueness {
-    let compliance = match Compliance::of(problem) {
+    let compliance = match CompliancePart::of(problem) {
         Ok(compliance) => compliance,
         Err(why @ Inapplicable::Cohesion(_)) => return Uniqueness::Not(why),
         Err(why) => return Uniqueness::Not(semidefinite(problem).unwrap_or(why)),
@@ -109,7 +109,7 @@ fn semidefinite(problem: &InterfaceProblem) -> Option<Inapplicable> {
 
 /// tan φ √cond W with the largest tan φ: below 1, states are unique. `None` if there is no definite compliance.
 pub fn plain(problem: &InterfaceProblem) -> Option<f64> {
-    let compliance = Compliance::of(problem).ok()?;
+    let compliance = CompliancePart::of(problem).ok()?;
     let (size, w) = (compliance.size, &compliance.matrix);
     let largest = power(size, |x| times(w, size, x));
     let mut factors = DenseFactors::new(size, 1).ok()?;
@@ -125,7 +125,7 @@ pub fn plain(problem: &InterfaceProblem) -> Option<f64> {
 }
 
 /// W of the components that can vary, scaled to a mean diagonal of one.
-struct Compliance {
+struct CompliancePart {
     size: usize,
     /// Its symmetric part, column-major.
     matrix: Vec<f64>,
@@ -138,8 +138,8 @@ struct Compliance {
     carried: bool,
 }
 
-impl Compliance {
-    fn of(problem: &InterfaceProblem) -> Result<Compliance, Inapplicable> {
+impl CompliancePart {
+    fn of(problem: &InterfaceProblem) -> Result<CompliancePart, Inapplicable> {
         let relation = &problem.relation;
         let count = relation.count();
         let mut kept = Vec::new();
@@ -194,7 +194,7 @@ impl Compliance {
         }
         rows.iter_mut().for_each(|x| *x /= mean);
         let both = |k: usize| (rows[k] + rows[k % size * size + k / size]) / 2.0;
-        let compliance = Compliance {
+        let compliance = CompliancePart {
             size,
             matrix: (0..size * size).map(both).collect(),
             rows,
@@ -319,7 +319,7 @@ impl Compliance {
     }
 }
 
-impl Compliance {
+impl CompliancePart {
     /// Whether a symmetric matrix is positive definite by more than round-off, which is subtracted before a Cholesky
     /// factorization.
     fn is_definite(&self, matrix: &[f64]) -> bool {

@@ -64,7 +64,7 @@ fn orthonormal(still: &mut Vec<Vec<f64>>) {
 
 /// Restricts the motionless forces to those that satisfy a bound, keeping them orthonormal: a Householder reflection concentrates
 /// the bound's component in the last one, which is removed.
-fn keep(bound: &Bound, still: &mut Vec<Vec<f64>>) {
+fn keep(bound: &VertexBound, still: &mut Vec<Vec<f64>>) {
     let mut mirror: Vec<f64> = still.iter().map(|along| bound.of(along)).collect();
     let size = dot(&mirror, &mirror).sqrt();
     let Some(last) = mirror.last_mut() else {
@@ -102,7 +102,7 @@ pub fn vertices(problem: &InterfaceProblem, nodes: &mut [(Assumed, [f64; 4])]) {
 }
 
 /// The first cone edge that the forces reach.
-struct Bound {
+struct VertexBound {
     place: usize,
     step: f64,
     then: Assumed,
@@ -112,17 +112,17 @@ struct Bound {
     open: bool,
 }
 
-impl Bound {
+impl VertexBound {
     fn of(&self, along: &[f64]) -> f64 {
         self.factors[0] * along[2 * self.place] + self.factors[1] * along[2 * self.place + 1]
     }
 }
 
 /// The first edge along d or −d. `None` if there is none.
-fn nearest(problem: &InterfaceProblem, nodes: &[Held], along: &[f64]) -> Option<Bound> {
-    let mut found: Option<Bound> = None;
+fn nearest(problem: &InterfaceProblem, nodes: &[Held], along: &[f64]) -> Option<VertexBound> {
+    let mut found: Option<VertexBound> = None;
     let mut look = |place: usize, then: Assumed, factors: [f64; 2], left: f64| {
-        let bound = Bound {
+        let bound = VertexBound {
             place,
             step: 0.0,
             then,
@@ -139,7 +139,7 @@ fn nearest(problem: &InterfaceProblem, nodes: &[Held], along: &[f64]) -> Option<
             .as_ref()
             .is_none_or(|best| step.abs() < best.step.abs())
         {
-            found = Some(Bound { step, ..bound });
+            found = Some(VertexBound { step, ..bound });
         }
     };
     for (place, (does, [f_n, f_t])) in nodes.iter().enumerate() {

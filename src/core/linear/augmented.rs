@@ -4,7 +4,7 @@ use super::partners::{partners_motion, place_partners};
 use super::source::{At, Solved};
 use super::system::{System, dot};
 use crate::contact::state::ContactState;
-use crate::contact::table1::{Equation, Motion};
+use crate::contact::table1::{Equation, RelativeMotion};
 use crate::interface::kinematics::through;
 use crate::model::Model;
 
@@ -91,9 +91,9 @@ impl System {
         self.values[interface.block[2 * k]] = row.d_n;
         self.values[interface.block[2 * k + 1]] = row.d_t;
         let component = match row.motion {
-            Motion::None => None,
-            Motion::Normal => Some(0),
-            Motion::Tangential => Some(1),
+            RelativeMotion::None => None,
+            RelativeMotion::Normal => Some(0),
+            RelativeMotion::Tangential => Some(1),
         };
         for (i, link) in interface.links.iter().enumerate() {
             let Some(slots) = link.slots else { continue };
@@ -147,13 +147,13 @@ impl System {
 pub(super) fn springs(give: f64) -> [Equation; 2] {
     [
         Equation {
-            motion: Motion::Normal,
+            motion: RelativeMotion::Normal,
             d_n: give,
             d_t: 0.0,
             value: 0.0,
         },
         Equation {
-            motion: Motion::Tangential,
+            motion: RelativeMotion::Tangential,
             d_n: 0.0,
             d_t: give,
             value: 0.0,

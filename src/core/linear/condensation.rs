@@ -18,7 +18,7 @@
 //! the touching point.
 //!
 //! If all bodies are solids, no bond has a compliance, and every slave node can move in both directions and belongs to no master,
-//! no springs are needed ([`Way::Direct`]). With the frames F and the weights M of the master nodes in S*, v = F (M u_m − u_s),
+//! no springs are needed ([`CondensationPath::Direct`]). With the frames F and the weights M of the master nodes in S*, v = F (M u_m − u_s),
 //! so v can replace the slave nodes' displacements,
 //!
 //! ```text
@@ -40,7 +40,7 @@ const SMALL: usize = 1000;
 
 /// Method for computing the interface response.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Way {
+enum CondensationPath {
     /// With springs between slave nodes and masters.
     Springs,
     /// With relative motions instead of the slave nodes' displacements, which are the last unknowns.
@@ -52,7 +52,7 @@ pub struct Condensation {
     pattern: Arc<Pattern>,
     parts: Vec<Part>,
     executor: Arc<dyn Executor>,
-    way: Way,
+    way: CondensationPath,
     /// Index among the interface's unknowns, by equation.
     number: Vec<Option<usize>>,
     /// Equations of the interface's unknowns.
@@ -66,9 +66,9 @@ pub struct Condensation {
     dense: DenseFactors,
     /// Out-of-balance force of all equations.
     residual: Vec<f64>,
-    /// u_c at z = 0; with [`Way::Direct`], r', then u_m at v = 0.
+    /// u_c at z = 0; with [`CondensationPath::Direct`], r', then u_m at v = 0.
     start: Vec<f64>,
-    /// Derivative of u_c with respect to z; with [`Way::Direct`], of u_m with respect to −v.
+    /// Derivative of u_c with respect to z; with [`CondensationPath::Direct`], of u_m with respect to −v.
     motions: Vec<f64>,
     /// u_c of the last solve.
     moved: Vec<f64>,
@@ -105,8 +105,8 @@ impl Condensation {
         entries.retain(|(row, column)| row <= column);
         let pattern = Arc::new(Pattern::new(n, entries));
         let (way, equations) = match direct_equations(model) {
-            Some(equations) => (Way::Direct, equations),
-            None => (Way::Springs, interface_equations(model)),
+            Some(equations) => (CondensationPath::Direct, equations),
+            None => (CondensationPath::Springs, interface_equations(model)),
         };
         let mut number = vec![None; n];
         for (k, &equation) in equations.iter().enumerate() {
@@ -114,8 +114,8 @@ impl Condensation {
         }
         let (c, z) = (equations.len(), 2 * model.contacts.len());
         let solved = match way {
-            Way::Springs => c,
-            Way::Direct => c - z,
+            CondensationPath::Springs => c,
+            CondensationPath::Direct => c - z,
         };
         Ok(Condensation {
             way,
@@ -183,7 +183,7 @@ impl Condensation {
                 self.start[i] = *load;
             }
         }
-        if self.way == Way::Direct {
+        if self.way == CondensationPath::Direct {
             return self.relate(interfaces, frames, out);
         }
         self.assemble(interfaces, frames, k);
@@ -392,20 +392,24 @@ impl Condensation {
         x: &mut [f64],
     ) -> Result<(), SolveError> {
         match self.way {
-            Way::Springs => self.moved.copy_from_slice(&self.start),
-            Way::Direct => self.move_masters(gaps),
+            CondensationPath::Springs => self.moved.copy_from_slice(&self.start),
+            CondensationPath::Direct => self.move_masters(gaps),
         }
-        let sign = if self.way == Way::Direct { -1.0 } else { 1.0 };
+        let sign = if self.way == CondensationPath::Direct {
+            -1.0
+        } else {
+            1.0
+        };
         let count = match self.way {
-            Way::Springs => self.equations.len(),
-            Way::Direct => self.equations.len() - gaps.len(),
+            CondensationPath::Springs => self.equations.len(),
+            CondensationPath::Direct => self.equations.len() - gaps.len(),
         };
         for (column, gap) in self.motions.chunks_exact(count.max(1)).zip(gaps) {
             for (moved, motion) in self.moved.iter_mut().zip(column) {
                 *moved += sign * motion * gap;
             }
         }
-        if self.way == Way::Direct {
+        if self.way == CondensationPath::Direct {
             self.move_slaves(gaps, interfaces, frames);
         }
         let (residual, known) = (&self.residual, &self.moved);
@@ -534,7 +538,7 @@ fn along(direction: [f64; 2], x: f64, y: f64) -> f64 {
     direction[0] * x + direction[1] * y
 }
 
-/// The interface's equations for [`Way::Direct`]: the masters' first, then x and y of every slave node. `None` if some body is
+/// The interface's equations for [`CondensationPath::Direct`]: the masters' first, then x and y of every slave node. `None` if some body is
 /// not a solid, a bond has a compliance, or a slave node cannot move in both directions, belongs to a master, or is listed twice.
 fn direct_equations(model: &Model) -> Option<Vec<usize>> {
     let solid = |body: &Body| matches!(body.kind, BodyKind::Solid(_));

@@ -5,7 +5,7 @@
 //! dense system for z with two unknowns per slave node, independent of the size of the bodies. If k is infinite, z is the motion
 //! itself: motions prescribed by Table 1 are known, and only the other motions are unknowns.
 
-use crate::contact::table1::{Equation, Motion};
+use crate::contact::table1::{Equation, RelativeMotion};
 use crate::interface::response::InterfaceResponse;
 use crate::linalg::{DenseFactors, SolveError};
 
@@ -99,7 +99,7 @@ impl Condensed {
             return;
         }
         // A motion equation belongs to the component with the same index.
-        if row.motion == Motion::None {
+        if row.motion == RelativeMotion::None {
             self.rows.push((slave, *row));
             self.unknown.push(2 * slave + k);
             self.gaps[2 * slave + k] = 0.0;

@@ -13,7 +13,7 @@
 //! the condensed stiffness needs c³ / 3 operations, the compliance m³ / 3 + m² z, and each minor iteration z³ / 3. All constants
 //! are measured (README).
 
-use crate::model::{Body, BodyKind, Form, Linear, Model, Solver};
+use crate::model::{Body, BodyKind, Form, Linear, LinearSolver, Model};
 use std::fmt;
 
 /// Bytes per gigabyte in settings and messages.
@@ -141,7 +141,7 @@ impl Estimate {
     }
 
     /// Cost and name of a solver.
-    pub fn with(&self, solver: Solver) -> (Effort, &'static str) {
+    pub fn with(&self, solver: LinearSolver) -> (Effort, &'static str) {
         if self.is_condensed(solver) {
             (self.condensed, "condensed")
         } else {
@@ -150,21 +150,21 @@ impl Estimate {
     }
 
     /// Whether a solver uses condensation.
-    pub fn is_condensed(&self, solver: Solver) -> bool {
+    pub fn is_condensed(&self, solver: LinearSolver) -> bool {
         match solver {
-            Solver::Auto => self.condenses,
-            Solver::Augmented => false,
-            Solver::Condensed => true,
+            LinearSolver::Auto => self.condenses,
+            LinearSolver::Augmented => false,
+            LinearSolver::Condensed => true,
         }
     }
 
     /// Why a scene does not fit into memory with a solver; `None` if it does.
-    pub fn too_large(&self, solver: Solver) -> Option<TooLarge> {
+    pub fn too_large(&self, solver: LinearSolver) -> Option<TooLarge> {
         let (effort, name) = self.with(solver);
         let other = match solver {
-            Solver::Condensed => Some(("augmented", self.augmented.bytes)),
-            Solver::Augmented => Some(("condensed", self.condensed.bytes)),
-            Solver::Auto => None,
+            LinearSolver::Condensed => Some(("augmented", self.augmented.bytes)),
+            LinearSolver::Augmented => Some(("condensed", self.condensed.bytes)),
+            LinearSolver::Auto => None,
         };
         (effort.bytes > self.budget).then_some(TooLarge {
             bytes: effort.bytes,

@@ -1,7 +1,7 @@
 //! Point forces of all contacts on elements with local flexibility ([`crate::contact::point_force`]), including their
 //! interaction.
 
-use crate::contact::element::Element;
+use crate::contact::element::SurfaceElement;
 use crate::contact::point_force::{self, Others, Pair, tilt, turned};
 use crate::contact::projection::{SurfacePoint, projection_at};
 use crate::contact::state::ContactState;
@@ -43,7 +43,7 @@ impl Press {
             return None;
         }
         let over = projection_at(&model.surfaces, spot, positions, positions[slave.node]);
-        let degree = Element::of(surface, spot.element).degree();
+        let degree = SurfaceElement::of(surface, spot.element).degree();
         let f_n = if node.mode == Mode::Free {
             0.0
         } else {

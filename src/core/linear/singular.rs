@@ -31,12 +31,12 @@ pub struct RigidMotion {
     /// Name of the body.
     pub body: String,
     /// The motion.
-    pub motion: Motion,
+    pub motion: LooseMotion,
 }
 
 /// A rigid motion of the plane.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub enum Motion {
+pub enum LooseMotion {
     /// Along this unit vector.
     Translation([f64; 2]),
     /// About this point.
@@ -217,10 +217,10 @@ impl Frame<'_> {
                 let (x, y, turn) = (v[3 * b], v[3 * b + 1], v[3 * b + 2] / self.model.length);
                 let center = self.center(b);
                 let motion = if (turn * self.model.length).abs() > ZERO * size {
-                    Motion::Rotation([center[0] - y / turn, center[1] + x / turn])
+                    LooseMotion::Rotation([center[0] - y / turn, center[1] + x / turn])
                 } else {
                     let length = x.hypot(y);
-                    Motion::Translation([x / length, y / length])
+                    LooseMotion::Translation([x / length, y / length])
                 };
                 RigidMotion {
                     body: self.model.bodies[b].name.clone(),

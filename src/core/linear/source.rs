@@ -5,7 +5,7 @@
 //! the source receives the forces, moves its bodies, projects the slave nodes on their surfaces, and linearises again. Anything
 //! that implements this trait can be stepped.
 
-use crate::contact::laws::{Finding, Law, Numbers, Scales, Verdict};
+use crate::contact::laws::{ContactLaw, Finding, JudgedNumbers, Scales, Verdict};
 use crate::contact::projection::SurfacePoint;
 use crate::contact::state::{ContactState, in_mode, largest_drift};
 use crate::fem::deformation::Deformation;
@@ -403,7 +403,7 @@ pub trait Source: Send {
                     slave: Some(k),
                     amount,
                     allowed: scales.allowed(law),
-                    numbers: Numbers {
+                    numbers: JudgedNumbers {
                         gap: over.gap,
                         slip: -slip.unwrap_or(0.0),
                         limit: at.friction[k].coefficient() * state.f_n + at.friction[k].cohesion,
@@ -414,11 +414,11 @@ pub trait Source: Send {
             }
         }
         verdict.add(Finding {
-            law: Law::Balance,
+            law: ContactLaw::Balance,
             slave: None,
             amount: after.relative,
-            allowed: scales.allowed(Law::Balance),
-            numbers: Numbers::default(),
+            allowed: scales.allowed(ContactLaw::Balance),
+            numbers: JudgedNumbers::default(),
         });
         verdict
     }
@@ -485,21 +485,24 @@ fn against(
     gap: f64,
     slip: Option<f64>,
     scales: &Scales,
-) -> Vec<(Law, f64)> {
+) -> Vec<(ContactLaw, f64)> {
     let (length, force) = (scales.length, scales.force);
     let pressed = state.f_n.hypot(state.f_t) > scales.forces * force;
     if !pressed {
-        return vec![(Law::Penetration, (-gap / length).max(0.0))];
+        return vec![(ContactLaw::Penetration, (-gap / length).max(0.0))];
     }
     let bound = friction.coefficient() * state.f_n + friction.cohesion;
     let mut laws = vec![
-        (Law::Gap, gap.abs() / length),
-        (Law::Tension, (-state.f_n / force).max(0.0)),
-        (Law::Cone, ((state.f_t.abs() - bound) / force).max(0.0)),
+        (ContactLaw::Gap, gap.abs() / length),
+        (ContactLaw::Tension, (-state.f_n / force).max(0.0)),
+        (
+            ContactLaw::Cone,
+            ((state.f_t.abs() - bound) / force).max(0.0),
+        ),
     ];
     if let Some(slip) = slip.filter(|slip| slip.abs() > scales.near()) {
         let short = bound - slip.signum() * state.f_t;
-        laws.push((Law::Slip, (short / force).max(0.0)));
+        laws.push((ContactLaw::Slip, (short / force).max(0.0)));
     }
     laws
 }

@@ -33,8 +33,8 @@ pub use friction::{Friction, InitialState, Mode};
 pub use load::{Factor, Jumps, Load, Prescribed, PressedFace, Pressure, least, on_leg};
 pub use mesh::{ElementKind, boundary};
 pub use settings::{
-    AtCycle, AtLimit, BoundUpdate, Geometry, InitialGaps, PointForce, Refactor, ResidualMethod,
-    Search, Settings, SlipCount, Solver, Sticking, Strategy, Ties, Touch,
+    AtCycle, AtLimit, BoundUpdate, Geometry, InitialGaps, LinearSolver, PointForce, Refactor,
+    ResidualMethod, SearchMode, Settings, SlipCount, Sticking, Strategy, TieRule, Touch,
 };
 
 /// A checked scene.

@@ -13,7 +13,7 @@ documented! {
         /// How the total force on a slave node is computed after a major iteration. Default: stress.
         pub residual: ResidualMethod,
         /// The system that the minor iterations solve. Default: auto.
-        pub solver: Solver,
+        pub solver: LinearSolver,
         /// How often the stiffness of the bodies is computed and factored. Default: each.
         #[serde(skip_serializing_if = "Refactor::is_default")]
         pub factor: Refactor,
@@ -31,7 +31,7 @@ documented! {
         /// Stick point of a node that touches within an increment. Default: auto.
         pub touch: Touch,
         /// How ties in Table 2 are resolved. Default: keep.
-        pub ties: Ties,
+        pub ties: TieRule,
         /// Maximum number of minor iterations per major iteration. Default: 100.
         pub minors: u32,
         /// Maximum number of major iterations per increment. Default: 60.
@@ -49,8 +49,8 @@ documented! {
         #[serde(skip_serializing_if = "is_default_limit_load")]
         pub limit_load: f64,
         /// Whether the strategy `ladder` searches for a way out where an increment fails. Default: auto.
-        #[serde(skip_serializing_if = "Search::is_default")]
-        pub search: Search,
+        #[serde(skip_serializing_if = "SearchMode::is_default")]
+        pub search: SearchMode,
         /// Maximum number of factorizations that a run spends on such searches. Default: 5000.
         #[serde(skip_serializing_if = "is_default_search_limit")]
         pub search_limit: u32,
@@ -71,7 +71,7 @@ impl Default for Settings {
         Settings {
             strategy: Strategy::default(),
             residual: ResidualMethod::default(),
-            solver: Solver::default(),
+            solver: LinearSolver::default(),
             factor: Refactor::default(),
             geometry: Geometry::default(),
             point_force: PointForce::default(),
@@ -79,7 +79,7 @@ impl Default for Settings {
             slip: SlipCount::default(),
             sticking: Sticking::default(),
             touch: Touch::default(),
-            ties: Ties::default(),
+            ties: TieRule::default(),
             minors: 100,
             majors: 60,
             at_minor_limit: AtLimit::default(),
@@ -87,7 +87,7 @@ impl Default for Settings {
             at_major_limit: AtLimit::default(),
             tolerance: 1e-11,
             limit_load: LIMIT_LOAD,
-            search: Search::default(),
+            search: SearchMode::default(),
             search_limit: SEARCH_LIMIT,
             initial_gaps: InitialGaps::default(),
             adjust_gap: 0.0,
@@ -220,7 +220,7 @@ documented! {
     /// The system that the minor iterations solve; the results agree to round-off.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
     #[serde(rename_all = "lowercase")]
-    pub enum Solver {
+    pub enum LinearSolver {
         /// `condensed` if the bodies have many times more unknowns than the interface and it is cheaper, else `augmented`; the
         /// other one if only that fits into memory.
         #[default]
@@ -237,7 +237,7 @@ documented! {
     /// Whether to search for a way out where an increment fails.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
     #[serde(rename_all = "lowercase")]
-    pub enum Search {
+    pub enum SearchMode {
         /// After the strategies and the other parts of the increment: nodes that touch at the start are held, the increment is cut
         /// below its least size, and where equilibrium ends the nodes move damped to the next one, which is marked.
         #[default]
@@ -247,10 +247,10 @@ documented! {
     }
 }
 
-impl Search {
+impl SearchMode {
     /// Whether it is the default.
     pub fn is_default(&self) -> bool {
-        *self == Search::default()
+        *self == SearchMode::default()
     }
 }
 
@@ -357,7 +357,7 @@ documented! {
     /// How ties in Table 2 are resolved.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
     #[serde(rename_all = "lowercase")]
-    pub enum Ties {
+    pub enum TieRule {
         /// Within the tolerance, a tie keeps the current mode.
         #[default]
         Keep,

@@ -10,7 +10,7 @@ use crate::linear::singular::Singular;
 use crate::linear::source::Solved;
 use crate::model::{AtLimit, Friction, Mode, Refactor, ResidualMethod, SlipCount, Sticking};
 use crate::step::event::{Failure, Outcome};
-use crate::step::major_history::{MajorCycle, Scales};
+use crate::step::major_history::{MajorCycle, RepeatScales};
 use crate::step::recovery::PATIENCE;
 use crate::step::stepper::Stepper;
 use std::sync::Arc;
@@ -200,7 +200,7 @@ impl Stepper {
 
     /// Whether the next major iteration starts from where an earlier one of this increment did.
     fn find_major_cycle(&mut self) -> Option<MajorCycle> {
-        let scales = Scales {
+        let scales = RepeatScales {
             force: self.force_scale(),
             length: self.model.length,
         };

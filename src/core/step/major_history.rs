@@ -16,12 +16,12 @@ const DIFFERENT: f64 = 1e-7;
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct MajorHistory {
     /// One entry a slave node, iteration after iteration.
-    entries: Vec<Entry>,
+    entries: Vec<MajorEntry>,
 }
 
 /// What one slave node takes into a major iteration.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-struct Entry {
+struct MajorEntry {
     mode: Mode,
     spot: Option<SurfacePoint>,
     f_n: f64,
@@ -52,16 +52,16 @@ pub struct Stop {
 
 /// Sizes of forces and lengths.
 #[derive(Debug, Clone, Copy)]
-pub struct Scales {
+pub struct RepeatScales {
     /// Size of the forces.
     pub force: f64,
     /// Size of the lengths.
     pub length: f64,
 }
 
-impl Entry {
+impl MajorEntry {
     fn of(node: &ContactState, at: [f64; 2]) -> Self {
-        Entry {
+        MajorEntry {
             at,
             mode: node.mode,
             spot: node.spot,
@@ -78,7 +78,7 @@ impl Entry {
     }
 
     /// Whether both stop at the same and their numbers differ by less than `limit`, in units of the scales.
-    fn within(&self, other: &Entry, scales: Scales, limit: f64) -> bool {
+    fn within(&self, other: &MajorEntry, scales: RepeatScales, limit: f64) -> bool {
         let along = match (self.spot, other.spot) {
             (Some(a), Some(b)) => (a.xi - b.xi).abs(),
             _ => 0.0,
@@ -106,12 +106,12 @@ impl MajorHistory {
     pub fn push(&mut self, nodes: &[ContactState], positions: impl Iterator<Item = [f64; 2]>) {
         let nodes = nodes.iter().zip(positions);
         self.entries
-            .extend(nodes.map(|(node, at)| Entry::of(node, at)));
+            .extend(nodes.map(|(node, at)| MajorEntry::of(node, at)));
     }
 
     /// The cycle that is closed where the last of the remembered iterations, the major iteration `major`, starts from
     /// the same as an earlier one, having been elsewhere in between.
-    pub fn cycle(&self, slaves: usize, major: u32, scales: Scales) -> Option<MajorCycle> {
+    pub fn cycle(&self, slaves: usize, major: u32, scales: RepeatScales) -> Option<MajorCycle> {
         let width = slaves.max(1);
         let count = self.entries.len() / width;
         let of = |k: usize| &self.entries[k * width..(k + 1) * width];
@@ -143,7 +143,7 @@ mod tests {
     use crate::contact::state::ContactState;
 
     const HERE: [[f64; 2]; 1] = [[0.0; 2]];
-    const ONE: Scales = Scales {
+    const ONE: RepeatScales = RepeatScales {
         force: 1.0,
         length: 1.0,
     };

@@ -94,7 +94,7 @@ impl Stepper {
         Ties {
             force: tolerance * self.force_scale(),
             length: tolerance * self.model.length,
-            keep: settings.ties == model::Ties::Keep,
+            keep: settings.ties == model::TieRule::Keep,
         }
     }
 

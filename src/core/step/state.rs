@@ -117,7 +117,7 @@ pub struct Outside {
     pub largest_force: f64,
 }
 
-/// What the search for ways out has done in a run ([`crate::model::Search`]).
+/// What the search for ways out has done in a run ([`crate::model::SearchMode`]).
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Searches {
     /// Major iterations spent.

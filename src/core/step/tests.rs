@@ -2,12 +2,12 @@
 
 use super::drive::{RunEnd, Until};
 use super::stepper::Stepper;
-use crate::contact::laws::Law;
+use crate::contact::laws::ContactLaw;
 use crate::interface::census::census;
 use crate::linear::constant::Constant;
 use crate::model::{
-    Body, BodyKind, Contact, Dofs, Form, Friction, Linear, Load, Mode, Model, Node, Settings,
-    Solver, Strategy, Surface,
+    Body, BodyKind, Contact, Dofs, Form, Friction, Linear, LinearSolver, Load, Mode, Model, Node,
+    Settings, Strategy, Surface,
 };
 use std::convert::Infallible;
 use std::ops::ControlFlow;
@@ -118,7 +118,7 @@ fn what_constant_interfaces_end_in_is_a_state_that_the_census_finds() {
 }
 
 /// A node on two springs in the corner of a floor and a wall: one contact with each.
-fn cornered(solver: Solver, pressed: [f64; 2]) -> Stepper {
+fn cornered(solver: LinearSolver, pressed: [f64; 2]) -> Stepper {
     let at = [[1.0, 1.0], [2.0, 0.0], [0.0, 0.0], [0.0, 2.0]];
     let names = ["ball", "floor.1", "corner", "wall.2"];
     let nodes = names.iter().zip(at).map(|(name, at)| Node {
@@ -200,7 +200,7 @@ fn cornered(solver: Solver, pressed: [f64; 2]) -> Stepper {
 
 #[test]
 fn a_slave_node_can_have_two_contacts_at_once() {
-    for solver in [Solver::Augmented, Solver::Condensed] {
+    for solver in [LinearSolver::Augmented, LinearSolver::Condensed] {
         let mut stepper = cornered(solver, [1.0, 1.2]);
         assert_eq!(to_the_end(&mut stepper), RunEnd::Finished, "{solver:?}");
         let state = stepper.state();
@@ -211,13 +211,13 @@ fn a_slave_node_can_have_two_contacts_at_once() {
         assert!((state.u[0] + 1.0).abs() < 1e-12 && (state.u[1] + 1.0).abs() < 1e-12);
         let verdict = state.start.verdict.unwrap();
         assert_eq!(verdict.broken().count(), 0, "{verdict:?}");
-        assert!(verdict.worst[Law::Balance as usize].is_some());
+        assert!(verdict.worst[ContactLaw::Balance as usize].is_some());
     }
 }
 
 #[test]
 fn of_two_contacts_at_a_node_one_can_be_closed_and_the_other_open() {
-    let mut stepper = cornered(Solver::Auto, [0.5, 1.2]);
+    let mut stepper = cornered(LinearSolver::Auto, [0.5, 1.2]);
     assert_eq!(to_the_end(&mut stepper), RunEnd::Finished);
     let state = stepper.state();
     assert!((state.nodes[0].f_n - 8.0).abs() < 1e-9 && state.nodes[1].mode == Mode::Free);

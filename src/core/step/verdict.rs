@@ -9,13 +9,13 @@
 //! A state with an inverted element (det F ≤ 0 at an integration point or a node of a solid) is always rejected: the increment
 //! is cut, and fails if it cannot be cut. Other interpretations of the contact status are not tried for such a state.
 
-use crate::contact::laws::{Finding, Law, Verdict};
+use crate::contact::laws::{ContactLaw, Finding, Verdict};
 use crate::contact::record::Forced;
 use crate::contact::state::ContactState;
 use crate::fem::deformation::PointDeformation;
 use crate::linear::norms::Norms;
 use crate::linear::source::Source;
-use crate::model::{SlipCount, Sticking, Ties};
+use crate::model::{SlipCount, Sticking, TieRule};
 use crate::step::event::{Failure, Outcome};
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
@@ -60,7 +60,7 @@ impl Stepper {
         }
         match self.cut(&why) {
             Some(cut) => cut,
-            None if worst.law == Law::Touch => self.land(after, verdict, Some(worst)),
+            None if worst.law == ContactLaw::Touch => self.land(after, verdict, Some(worst)),
             None => self.fall_back(&why).unwrap_or_else(|| {
                 self.next_major();
                 Outcome::Failed(why)
@@ -90,7 +90,7 @@ impl Stepper {
         self.state.unsettled > 0
             || settings.slip == SlipCount::Major
             || settings.sticking == Sticking::Increments
-            || settings.ties == Ties::Printed
+            || settings.ties == TieRule::Printed
             || self.state.nodes.iter().any(held)
     }
 
@@ -117,8 +117,8 @@ pub(super) fn range_left(source: &dyn Source, state: &State) -> Option<PointDefo
 }
 
 /// Whether a law is about the net slip of a node.
-fn is_slip(law: Law) -> bool {
-    matches!(law, Law::Slip | Law::Stick)
+fn is_slip(law: ContactLaw) -> bool {
+    matches!(law, ContactLaw::Slip | ContactLaw::Stick)
 }
 
 /// The worst of the laws that are broken: slip before all others, since that can be repaired, and the touch of an open
@@ -126,7 +126,7 @@ fn is_slip(law: Law) -> bool {
 fn worst_of(verdict: &Verdict) -> Option<Finding> {
     let rank = |finding: &Finding| match finding.law {
         law if is_slip(law) => 2,
-        Law::Touch => 0,
+        ContactLaw::Touch => 0,
         _ => 1,
     };
     let worse = |a: &&Finding, b: &&Finding| {

@@ -8,9 +8,9 @@ use crate::interface::problem::{Assumed, NodeAnswer};
 use crate::model::BoundUpdate;
 
 /// All combinations of modes of the nodes that can touch.
-pub struct Census;
+pub struct CensusStrategy;
 
-impl Method for Census {
+impl Method for CensusStrategy {
     fn bound(&self, _wanted: BoundUpdate) -> BoundUpdate {
         BoundUpdate::Consistent
     }
@@ -20,7 +20,7 @@ impl Method for Census {
     }
 }
 
-impl Search for Census {
+impl Search for CensusStrategy {
     /// Proposes solution number `asked.start`.
     fn propose(&self, asked: Asked<'_>) -> Result<Proposal, NoProposal> {
         let problem = (asked.problem)().ok_or(NotFound::NotCondensed)?;

@@ -12,19 +12,19 @@ use crate::interface::vertex::vertices;
 use crate::model::BoundUpdate;
 
 /// Pivoting from all nodes free, with the friction force split into two parts.
-pub struct Copositive;
+pub struct CopositiveStrategy;
 
 /// Pivots per minor iteration on a long path.
 const STRIDE: usize = 50;
 
 /// A path, its start, and the number of minor iterations done.
-struct Path {
+struct CopositivePath {
     pivoting: Pivoting,
     start: usize,
     step: usize,
 }
 
-impl Path {
+impl CopositivePath {
     /// Performs the pivots of a minor iteration.
     fn go(&mut self) {
         let most = match self.step < self.pivoting.rows() {
@@ -36,7 +36,7 @@ impl Path {
     }
 }
 
-impl Method for Copositive {
+impl Method for CopositiveStrategy {
     fn bound(&self, _wanted: BoundUpdate) -> BoundUpdate {
         BoundUpdate::Consistent
     }
@@ -46,7 +46,7 @@ impl Method for Copositive {
     }
 }
 
-impl Search for Copositive {
+impl Search for CopositiveStrategy {
     /// One step of the path; if it has ended on a ray, continues with the next start.
     fn propose(&self, mut asked: Asked<'_>) -> Result<Proposal, NoProposal> {
         if asked.start >= STARTS {
@@ -56,7 +56,7 @@ impl Search for Copositive {
             });
         }
         let kept = asked.kept.take().and_then(|kept| kept.downcast().ok());
-        let mut path: Box<Path> = match kept {
+        let mut path: Box<CopositivePath> = match kept {
             Some(path) if path_is_at(&path, &asked) => path,
             _ => Box::new(path(&mut asked)?),
         };
@@ -96,14 +96,14 @@ impl Search for Copositive {
     }
 }
 
-fn path_is_at(path: &Path, asked: &Asked<'_>) -> bool {
+fn path_is_at(path: &CopositivePath, asked: &Asked<'_>) -> bool {
     (path.start, path.step) == (asked.start, asked.step)
 }
 
 /// The path after the pivots done so far.
-fn path(asked: &mut Asked<'_>) -> Result<Path, NotFound> {
+fn path(asked: &mut Asked<'_>) -> Result<CopositivePath, NotFound> {
     let problem = (asked.problem)().ok_or(NotFound::NotCondensed)?;
-    let mut path = Path {
+    let mut path = CopositivePath {
         pivoting: Pivoting::new(&problem, asked.start).ok_or(NotFound::NoStart)?,
         start: asked.start,
         step: 0,

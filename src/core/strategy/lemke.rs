@@ -7,16 +7,16 @@ use crate::interface::method::{Asked, Method, NoProposal, NotFound, Proposal, Se
 use crate::model::BoundUpdate;
 
 /// Pivoting from several starts.
-pub struct Lemke;
+pub struct LemkeStrategy;
 
 /// A tableau, the start that it came from, and the pivots done.
-struct Path {
+struct LemkePath {
     tableau: Tableau,
     start: usize,
     step: usize,
 }
 
-impl Method for Lemke {
+impl Method for LemkeStrategy {
     fn bound(&self, _wanted: BoundUpdate) -> BoundUpdate {
         BoundUpdate::Consistent
     }
@@ -26,11 +26,11 @@ impl Method for Lemke {
     }
 }
 
-impl Search for Lemke {
+impl Search for LemkeStrategy {
     /// One pivot; if a path has ended on a ray, continues with the next start.
     fn propose(&self, mut asked: Asked<'_>) -> Result<Proposal, NoProposal> {
         let kept = asked.kept.take().and_then(|kept| kept.downcast().ok());
-        let mut path: Box<Path> = match kept {
+        let mut path: Box<LemkePath> = match kept {
             Some(path) if is_at(&path, &asked) => path,
             _ => Box::new(path(&mut asked)?),
         };
@@ -67,12 +67,12 @@ impl Search for Lemke {
     }
 }
 
-fn is_at(path: &Path, asked: &Asked<'_>) -> bool {
+fn is_at(path: &LemkePath, asked: &Asked<'_>) -> bool {
     (path.start, path.step) == (asked.start, asked.step)
 }
 
 /// The tableau after the pivots done so far, for a start or the next one with a regular basis.
-fn path(asked: &mut Asked<'_>) -> Result<Path, NotFound> {
+fn path(asked: &mut Asked<'_>) -> Result<LemkePath, NotFound> {
     let problem = (asked.problem)().ok_or(NotFound::NotCondensed)?;
     let mut starts = (asked.start..STARTS).filter_map(|number| {
         let tableau = Tableau::new(&problem, asked.brought, number)?;
@@ -89,7 +89,7 @@ fn path(asked: &mut Asked<'_>) -> Result<Path, NotFound> {
     for _ in 0..step {
         tableau.pivot();
     }
-    Ok(Path {
+    Ok(LemkePath {
         tableau,
         start,
         step,

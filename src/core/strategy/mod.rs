@@ -46,9 +46,9 @@ pub fn method(strategy: Strategy) -> &'static dyn Method {
         Strategy::SlidingLeast => &least::SlidingLeast,
         Strategy::Block => &block::Block,
         Strategy::Newton => &newton::Newton,
-        Strategy::Lemke => &lemke::Lemke,
-        Strategy::Census => &census::Census,
-        Strategy::Copositive => &copositive::Copositive,
+        Strategy::Lemke => &lemke::LemkeStrategy,
+        Strategy::Census => &census::CensusStrategy,
+        Strategy::Copositive => &copositive::CopositiveStrategy,
         Strategy::GaussSeidel => &gauss_seidel::GaussSeidel,
     }
 }

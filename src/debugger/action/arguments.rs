@@ -4,7 +4,7 @@ use super::context::{Context, any_or_exact, chosen, exact, find, model, several}
 use super::meaning::{Action, ChartOf, Colours, Copied, Filter, Question, Sort, Ui, Whose};
 use super::misread::Misread;
 use super::parameters::{parameter, set_paths};
-use super::table::{Entry, Verb};
+use super::table::{ActionEntry, Verb};
 use crate::history::breakpoints::Condition;
 use crate::history::watches::{Watch, WatchQuantity};
 use crate::record::command::{Command, Exported, To};
@@ -26,7 +26,7 @@ pub fn parse(line: &str, context: &Context) -> Result<Action, Misread> {
     context.entry(word)?.act(rest.trim(), context)
 }
 
-impl Entry {
+impl ActionEntry {
     /// The action of this entry with these arguments.
     pub fn act(&self, rest: &str, context: &Context) -> Result<Action, Misread> {
         if rest.chars().count() > LONGEST_REST {

@@ -5,7 +5,7 @@ use super::context::{Context, names};
 use super::meaning::{Colours, Copied, Filter, Sort, Whose};
 use super::parameters::{parameter_lines, set_paths};
 use super::paths::beginning_with;
-use super::table::{ACTIONS, Entry, Verb, by_name};
+use super::table::{ACTIONS, ActionEntry, Verb, by_name};
 use crate::history::tree::Tree;
 use crate::history::watches::WatchQuantity;
 use stickslip_core::model::Mode;
@@ -47,11 +47,11 @@ pub fn takes_path(name: &str) -> bool {
 }
 
 /// Whether the action takes nodes separated by commas.
-fn is_list(entry: Option<&Entry>) -> bool {
+fn is_list(entry: Option<&ActionEntry>) -> bool {
     entry.is_some_and(|entry| entry.verb == Verb::Census)
 }
 
-impl Entry {
+impl ActionEntry {
     /// Whether everything after the name is one argument that can be completed.
     fn takes_rest(&self) -> bool {
         matches!(

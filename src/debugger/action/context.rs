@@ -2,7 +2,7 @@
 
 use super::keymap::Keymap;
 use super::misread::Misread;
-use super::table::{Entry, begun, by_name};
+use super::table::{ActionEntry, begun, by_name};
 use crate::history::tree::Tree;
 use stickslip_core::interface::census::MOST;
 use stickslip_core::model::Model;
@@ -36,7 +36,7 @@ pub struct Context<'a> {
 
 impl Context<'_> {
     /// Finds an entry by name, one-letter key, or unique prefix.
-    pub fn entry(&self, word: &str) -> Result<&'static Entry, Misread> {
+    pub fn entry(&self, word: &str) -> Result<&'static ActionEntry, Misread> {
         let key = (word.chars().count() == 1).then_some(word);
         match (self.keymap, key) {
             (Some(keymap), Some(key)) => match keymap.by_key(key) {

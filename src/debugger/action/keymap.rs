@@ -8,7 +8,7 @@
 //! }
 //! ```
 
-use super::table::{ACTIONS, Entry, Group, by_key};
+use super::table::{ACTIONS, ActionEntry, Group, by_key};
 use serde::de::{Deserialize, Deserializer, MapAccess, Visitor};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -50,22 +50,22 @@ pub struct Keymap {
 }
 
 /// The entries of the file, in order.
-struct Written(Vec<(String, Vec<String>)>);
+struct WrittenKeys(Vec<(String, Vec<String>)>);
 
-impl<'de> Deserialize<'de> for Written {
+impl<'de> Deserialize<'de> for WrittenKeys {
     fn deserialize<D: Deserializer<'de>>(reader: D) -> Result<Self, D::Error> {
         struct Pairs;
         impl<'de> Visitor<'de> for Pairs {
-            type Value = Written;
+            type Value = WrittenKeys;
             fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
                 f.write_str("a map from actions to keys, { \"step\": [\"s\"], ... }")
             }
-            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Written, A::Error> {
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<WrittenKeys, A::Error> {
                 let mut pairs = Vec::new();
                 while let Some(pair) = map.next_entry()? {
                     pairs.push(pair);
                 }
-                Ok(Written(pairs))
+                Ok(WrittenKeys(pairs))
             }
         }
         reader.deserialize_map(Pairs)
@@ -77,7 +77,7 @@ impl Keymap {
     ///
     /// # Errors If the text cannot be parsed, an action or key is unknown, or two actions share a key.
     pub fn read(file: &str, text: &str) -> Result<Keymap, SceneError> {
-        let Written(written) = read::value(file, text, "list of keys")?;
+        let WrittenKeys(written) = read::value(file, text, "list of keys")?;
         let wrong = |byte: usize, path: &Path, message: String| SceneError {
             file: file.to_owned(),
             at: Some(line_and_column(text, byte)),
@@ -149,7 +149,7 @@ impl Keymap {
     }
 
     /// The keys of an action.
-    pub fn keys<'a>(&'a self, entry: &'a Entry) -> impl Iterator<Item = &'a str> {
+    pub fn keys<'a>(&'a self, entry: &'a ActionEntry) -> impl Iterator<Item = &'a str> {
         let changed = self.changed.get(entry.name);
         let own = entry
             .keys
@@ -160,8 +160,8 @@ impl Keymap {
     }
 
     /// The action of a key.
-    pub fn by_key(&self, key: &str) -> Option<&'static Entry> {
-        let changed = |entry: &&Entry| self.changed.contains_key(entry.name);
+    pub fn by_key(&self, key: &str) -> Option<&'static ActionEntry> {
+        let changed = |entry: &&ActionEntry| self.changed.contains_key(entry.name);
         let moved = || {
             let names = self.changed.iter();
             let mut names = names.filter(|(_, keys)| keys.iter().any(|own| own == key));
@@ -179,7 +179,7 @@ impl Keymap {
     /// All actions that have or can have a key, with their current keys, in the format of the file: a heading
     /// and lines for each group.
     pub fn listed(&self) -> Vec<(Group, Vec<String>)> {
-        let line = |entry: &Entry| {
+        let line = |entry: &ActionEntry| {
             let keys: Vec<String> = self.keys(entry).map(|key| format!("{key:?}")).collect();
             let mark = match self.changed.contains_key(entry.name) {
                 true => "   // changed",

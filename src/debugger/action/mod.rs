@@ -1,7 +1,7 @@
 //! Actions: everything a user can do, by name, by key or as a typed line.
 //!
 //! An action is either a [`Command`](crate::record::command::Command) for the session or a [`Ui`] action of the
-//! terminal. Key presses and typed lines both end in [`Entry::act`], so that every key has a name. An action
+//! terminal. Key presses and typed lines both end in [`ActionEntry::act`], so that every key has a name. An action
 //! with a missing argument asks for it ([`Ui::Ask`]).
 //!
 //! - [`meaning`]: the types of actions; [`table`]: all actions by name; [`context`]: what their arguments refer
@@ -36,4 +36,4 @@ pub use meaning::{
 };
 pub use misread::Misread;
 pub use parameters::{parameter, present};
-pub use table::{ACTIONS, Entry, Group, by_key, by_name, markdown};
+pub use table::{ACTIONS, ActionEntry, Group, by_key, by_name, markdown};

@@ -3,7 +3,7 @@
 
 use super::context::Context;
 use super::meaning::{Action, ChartOf, Page, Question, Ui};
-use super::table::{Entry, Verb};
+use super::table::{ActionEntry, Verb};
 use crate::record::command::{Command, Exported};
 use crate::record::export;
 use stickslip_core::model::{Friction, Mode};
@@ -153,7 +153,7 @@ impl Need {
     }
 }
 
-impl Entry {
+impl ActionEntry {
     /// Whether the current solver supports this action, without arguments.
     ///
     /// # Errors The reason why not.

@@ -38,7 +38,7 @@ stickslip_core::words! {
 
 /// An action: its name, its keys and its help.
 #[derive(Debug)]
-pub struct Entry {
+pub struct ActionEntry {
     /// Name, as typed.
     pub name: &'static str,
     /// Arguments as shown in help; those in brackets are optional.
@@ -118,8 +118,8 @@ const fn entry(
     label: &'static str,
     help: &'static str,
     verb: Verb,
-) -> Entry {
-    Entry {
+) -> ActionEntry {
+    ActionEntry {
         name,
         arguments,
         keys,
@@ -132,7 +132,7 @@ const fn entry(
 
 /// All actions.
 #[rustfmt::skip]
-pub const ACTIONS: &[Entry] = &[
+pub const ACTIONS: &[ActionEntry] = &[
     entry(Group::Go, "step", "[COUNT]", &["s", "F11"], "step", "Go forward by one minor iteration", Verb::Forward(Unit::Minor)),
     entry(Group::Go, "next", "[COUNT]", &["n", "F10"], "next", "Go to the end of this major iteration", Verb::Forward(Unit::Major)),
     entry(Group::Go, "finish", "[COUNT]", &["f", "Shift-F11"], "finish", "Go to the end of this increment", Verb::Forward(Unit::Increment)),
@@ -228,7 +228,7 @@ pub const ACTIONS: &[Entry] = &[
 ];
 
 /// The entry of a key.
-pub fn by_key(key: &str) -> Option<&'static Entry> {
+pub fn by_key(key: &str) -> Option<&'static ActionEntry> {
     ACTIONS.iter().find(|entry| entry.keys.contains(&key))
 }
 
@@ -236,7 +236,7 @@ pub fn by_key(key: &str) -> Option<&'static Entry> {
 const LONGEST_NAME: usize = 40;
 
 /// Finds an entry by name, one-letter key, or unique prefix.
-pub fn by_name(word: &str) -> Result<&'static Entry, Misread> {
+pub fn by_name(word: &str) -> Result<&'static ActionEntry, Misread> {
     if word.chars().count() > LONGEST_NAME {
         return Err(Misread::LongName);
     }
@@ -252,7 +252,7 @@ pub fn by_name(word: &str) -> Result<&'static Entry, Misread> {
 }
 
 /// The only entry whose name begins with a word.
-pub(super) fn begun(word: &str) -> Result<&'static Entry, Misread> {
+pub(super) fn begun(word: &str) -> Result<&'static ActionEntry, Misread> {
     let found: Vec<_> = ACTIONS
         .iter()
         .filter(|entry| begins(entry.name, word))
@@ -277,7 +277,7 @@ fn begins(name: &str, word: &str) -> bool {
     }
 }
 
-impl Entry {
+impl ActionEntry {
     /// Whether digits before the key are a count.
     pub fn takes_count(&self) -> bool {
         self.arguments == "[COUNT]"

@@ -4,7 +4,7 @@
 //! A remedy is shown as advice only if it helped in a trial. Remedies that need a person are listed as not
 //! tried.
 
-use super::remedy::{Kind, Remedy};
+use super::remedy::{Remedy, RemedyKind};
 use stickslip_core::linear::singular::Singular;
 use stickslip_core::model::{
     AtCycle, BoundUpdate, Geometry, InitialGaps, Jumps, Mode, Model, ResidualMethod, Strategy,
@@ -48,7 +48,7 @@ pub fn advice(model: &Model, state: &State, failure: &Failure) -> Vec<Advice> {
     let finer = refines(failure).then_some(Advice::Finer);
     let gaps = [InitialGaps::Ramp, InitialGaps::Adjust]
         .into_iter()
-        .filter_map(|gaps| Remedy::of(Kind::Gaps(gaps), model, state))
+        .filter_map(|gaps| Remedy::of(RemedyKind::Gaps(gaps), model, state))
         .map(Advice::Remedy);
     let rest: Vec<Advice> = match scene_first {
         true => by_hand.chain(remedies).collect(),
@@ -69,20 +69,20 @@ fn refines(failure: &Failure) -> bool {
 }
 
 /// What can be tried, in order of preference; those without effect are removed later.
-fn kinds(state: &State, failure: &Failure) -> Vec<Kind> {
+fn kinds(state: &State, failure: &Failure) -> Vec<RemedyKind> {
     let settings = &state.controls.settings;
     let climbs = settings.strategy == Strategy::Ladder;
     // The ladder has tried smaller increments itself.
-    let parts: &[Kind] = match climbs {
-        true => &[Kind::Part(0.37), Kind::Part(0.1)],
+    let parts: &[RemedyKind] = match climbs {
+        true => &[RemedyKind::Part(0.37), RemedyKind::Part(0.1)],
         false => &[
-            Kind::Strategy(Strategy::Ladder),
-            Kind::Part(0.5),
-            Kind::Part(0.1),
+            RemedyKind::Strategy(Strategy::Ladder),
+            RemedyKind::Part(0.5),
+            RemedyKind::Part(0.1),
         ],
     };
     let mut all = Vec::new();
-    let mut add = |wanted: bool, kinds: &[Kind]| {
+    let mut add = |wanted: bool, kinds: &[RemedyKind]| {
         if wanted {
             all.extend_from_slice(kinds);
         }
@@ -91,34 +91,37 @@ fn kinds(state: &State, failure: &Failure) -> Vec<Kind> {
     let frozen = settings.geometry == Geometry::Frozen;
     match failure {
         Failure::Cycle(_) => {
-            add(!climbs, &[Kind::Strategy(Strategy::Ladder)]);
-            add(lags, &[Kind::ConsistentLimit]);
-            add(settings.at_cycle != AtCycle::Damp, &[Kind::Damp]);
-            add(true, &[Kind::Part(0.5), Kind::Part(0.1)]);
+            add(!climbs, &[RemedyKind::Strategy(Strategy::Ladder)]);
+            add(lags, &[RemedyKind::ConsistentLimit]);
+            add(settings.at_cycle != AtCycle::Damp, &[RemedyKind::Damp]);
+            add(true, &[RemedyKind::Part(0.5), RemedyKind::Part(0.1)]);
         }
         Failure::MinorLimit { .. } => {
-            add(lags, &[Kind::ConsistentLimit]);
-            add(true, &[Kind::MoreMinors]);
+            add(lags, &[RemedyKind::ConsistentLimit]);
+            add(true, &[RemedyKind::MoreMinors]);
             add(true, parts);
         }
         Failure::MajorCycle(_) => {
-            add(frozen, &[Kind::ConsistentGeometry]);
+            add(frozen, &[RemedyKind::ConsistentGeometry]);
             add(true, parts);
-            add(true, &[Kind::TouchAtStart]);
+            add(true, &[RemedyKind::TouchAtStart]);
         }
         Failure::MajorLimit { .. } => {
-            add(frozen, &[Kind::ConsistentGeometry]);
+            add(frozen, &[RemedyKind::ConsistentGeometry]);
             let accumulates = settings.residual == ResidualMethod::Accumulate;
-            add(accumulates, &[Kind::OtherResidual]);
-            add(true, &[Kind::MoreMajors]);
+            add(accumulates, &[RemedyKind::OtherResidual]);
+            add(true, &[RemedyKind::MoreMajors]);
             add(true, parts);
         }
         Failure::Singular(Singular::Rigid { .. }) => {
             add(
                 true,
-                &[Kind::Start(Mode::Fixed), Kind::Start(Mode::Sliding)],
+                &[
+                    RemedyKind::Start(Mode::Fixed),
+                    RemedyKind::Start(Mode::Sliding),
+                ],
             );
-            add(!climbs, &[Kind::Strategy(Strategy::Ladder)]);
+            add(!climbs, &[RemedyKind::Strategy(Strategy::Ladder)]);
         }
         Failure::Singular(Singular::Unexplained) | Failure::Diverged { .. } => {
             add(true, parts);
@@ -130,11 +133,14 @@ fn kinds(state: &State, failure: &Failure) -> Vec<Kind> {
                 parts,
             );
             let others = [Strategy::Newton, Strategy::Block];
-            add(climbs, &others.map(Kind::Strategy));
+            add(climbs, &others.map(RemedyKind::Strategy));
         }
         Failure::Refused(_) => {
             add(true, parts);
-            add(true, &[Kind::TouchAtStart, Kind::ConsistentLimit]);
+            add(
+                true,
+                &[RemedyKind::TouchAtStart, RemedyKind::ConsistentLimit],
+            );
         }
         Failure::NoAnswer { .. }
         | Failure::Leapt { .. }

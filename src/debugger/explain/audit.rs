@@ -5,9 +5,9 @@
 //! master surfaces cannot show: nodes of a master inside a slave's body, and increments in which friction
 //! produced work.
 
-use stickslip_core::contact::element::Element;
+use stickslip_core::contact::element::SurfaceElement;
 use stickslip_core::contact::feet::place;
-use stickslip_core::contact::laws::{Finding, Law};
+use stickslip_core::contact::laws::{ContactLaw, Finding};
 use stickslip_core::fem::deformation::{PointDeformation, deformation};
 use stickslip_core::model::Model;
 use stickslip_core::model::{BodyKind, Solid};
@@ -61,8 +61,8 @@ pub struct Audit {
     pub increments: u32,
     /// Number of increments accepted with a mark.
     pub marked: u32,
-    /// The worst finding for each law over all unmarked increments, in the order of [`Law::ALL`] and then
-    /// [`Law::OF_BONDS`].
+    /// The worst finding for each law over all unmarked increments, in the order of [`ContactLaw::ALL`] and then
+    /// [`ContactLaw::OF_BONDS`].
     pub worst: [Option<Found>; 11],
     /// The same for marked increments.
     pub worst_marked: [Option<Found>; 11],
@@ -139,7 +139,7 @@ impl Audit {
     }
 
     /// The worst finding for a law in unmarked increments.
-    pub fn of(&self, law: Law) -> Option<&Found> {
+    pub fn of(&self, law: ContactLaw) -> Option<&Found> {
         let mut all = self.worst.iter().flatten();
         all.find(|found| found.finding.law == law)
     }
@@ -200,7 +200,7 @@ fn deepest(model: &Model, u: &[f64]) -> Option<(usize, usize, f64)> {
 fn outline(solid: &Solid, now: &[[f64; 2]]) -> Vec<[[f64; 2]; 2]> {
     let at = |k: usize| -1.0 + 2.0 * k as f64 / POINTS as f64;
     let lines = solid.edges.iter().flat_map(|nodes| {
-        let edge = Element::lagrange(nodes);
+        let edge = SurfaceElement::lagrange(nodes);
         (0..POINTS).map(move |k| [at(k), at(k + 1)].map(|xi| place(edge, now, xi)))
     });
     lines.collect()

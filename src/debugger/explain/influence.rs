@@ -7,7 +7,7 @@
 //! change.
 
 use stickslip_core::contact::state::ContactState;
-use stickslip_core::contact::table1::{Equation, Motion};
+use stickslip_core::contact::table1::{Equation, RelativeMotion};
 use stickslip_core::interface::kinematics::NodeIncrement;
 use stickslip_core::interface::problem::InterfaceProblem;
 use stickslip_core::interface::rows;
@@ -102,16 +102,16 @@ pub(super) fn spread(
 /// The left side of an equation, at a node with these values.
 pub(super) fn left_side(row: &Equation, given: &NodeIncrement) -> f64 {
     let motion = match row.motion {
-        Motion::None => 0.0,
-        Motion::Normal => given.motion[0],
-        Motion::Tangential => given.motion[1],
+        RelativeMotion::None => 0.0,
+        RelativeMotion::Normal => given.motion[0],
+        RelativeMotion::Tangential => given.motion[1],
     };
     motion + row.d_n * given.force[0] + row.d_t * given.force[1]
 }
 
 /// Effect of one node's change on the selected node.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Push {
+pub struct NodePush {
     /// Slave number of the node that changed.
     pub slave: usize,
     /// Its modes in the previous iteration and in this one.
@@ -121,7 +121,7 @@ pub struct Push {
 }
 
 /// How to reach the shown iteration: from a state, by recorded steps.
-pub struct Way {
+pub struct PushPath {
     /// The state after the steps.
     pub state: Box<State>,
     /// Minor iterations (`None`) and interventions, up to the state that the shown iteration started from.
@@ -137,12 +137,12 @@ pub struct Between {
 }
 
 /// The pushes on a node in the iteration after the steps; `None` if unknown.
-pub fn pushes(stepper: &mut Stepper, slave: usize, way: &Way) -> Option<Vec<Push>> {
+pub fn pushes(stepper: &mut Stepper, slave: usize, way: &PushPath) -> Option<Vec<NodePush>> {
     pushed(&between(stepper, way)?, slave)
 }
 
 /// Repeats the steps and the iteration after them.
-pub fn between(stepper: &mut Stepper, way: &Way) -> Option<Between> {
+pub fn between(stepper: &mut Stepper, way: &PushPath) -> Option<Between> {
     stepper.restore(&way.state);
     let mut before: Vec<ContactState> = Vec::new();
     for (place, step) in way.steps.iter().enumerate() {
@@ -161,12 +161,12 @@ pub fn between(stepper: &mut Stepper, way: &Way) -> Option<Between> {
 }
 
 /// The pushes on a node between two minor iterations.
-pub fn pushed(Between { problem, before }: &Between, slave: usize) -> Option<Vec<Push>> {
+pub fn pushed(Between { problem, before }: &Between, slave: usize) -> Option<Vec<NodePush>> {
     let after = problem.states();
     let target = problem.nodes.iter().position(|node| node.slave == slave)?;
     let of = |node: usize| problem.nodes[node].slave;
     let found = influences(problem, &pick(problem, before), &after, &[target])?;
-    let push = |influence: Influence| Push {
+    let push = |influence: Influence| NodePush {
         slave: of(influence.from),
         modes: [before[of(influence.from)].mode, after[influence.from].mode],
         influence,

@@ -1,13 +1,13 @@
 //! Describes the judge's findings: the law, the node, the amount.
 
 use crate::explain::names::slave;
-use stickslip_core::contact::laws::{Finding, Law, Numbers};
+use stickslip_core::contact::laws::{ContactLaw, Finding, JudgedNumbers};
 use stickslip_core::model::Model;
 use stickslip_scene::number::four;
 
 /// A finding, as part of a sentence.
 pub fn finding(model: &Model, finding: &Finding) -> String {
-    let Numbers {
+    let JudgedNumbers {
         gap,
         f_n,
         f_t,
@@ -16,44 +16,44 @@ pub fn finding(model: &Model, finding: &Finding) -> String {
     } = finding.numbers;
     let node = finding.slave.map_or("a node", |s| slave(model, s));
     let told = match finding.law {
-        Law::Penetration => format!("{node} penetrates its surface by {:.3e}", -gap),
-        Law::Gap if finding.amount.is_infinite() => {
+        ContactLaw::Penetration => format!("{node} penetrates its surface by {:.3e}", -gap),
+        ContactLaw::Gap if finding.amount.is_infinite() => {
             format!("{node} carries a force without facing a surface")
         }
-        Law::Gap => format!("{node} carries a force across a gap of {:.3e}", gap.abs()),
-        Law::Tension => format!("the surface pulls {node}: F_n {f_n:.6e}"),
-        Law::Cone => format!(
+        ContactLaw::Gap => format!("{node} carries a force across a gap of {:.3e}", gap.abs()),
+        ContactLaw::Tension => format!("the surface pulls {node}: F_n {f_n:.6e}"),
+        ContactLaw::Cone => format!(
             "F_t at {node} exceeds the friction limit of the node or of its corner (F_t \
              {f_t:.6e}, limit {limit:.6e})"
         ),
-        Law::Slip if f_t * slip > 0.0 => format!(
+        ContactLaw::Slip if f_t * slip > 0.0 => format!(
             "friction drives the slip of {node} instead of opposing it (slip {slip:.6e}, F_t {f_t:.6e})"
         ),
-        Law::Slip => format!(
+        ContactLaw::Slip => format!(
             "{node} slipped by {slip:.6e} with friction below its limit (F_t {f_t:.6e}, limit \
              {limit:.6e})"
         ),
-        Law::Touch => format!(
+        ContactLaw::Touch => format!(
             "friction drives {node}, wherever it made contact: since the last increment, in \
              which it was open, its projection moved by {slip:.6e} along t (F_t {f_t:.6e})"
         ),
-        Law::Work => {
+        ContactLaw::Work => {
             format!("friction produced work at {node} (slip {slip:.6e}, final F_t {f_t:.6e})")
         }
-        Law::Penalty if finding.amount.is_infinite() => {
+        ContactLaw::Penalty if finding.amount.is_infinite() => {
             format!("{node} carries a force without facing a surface")
         }
-        Law::Penalty => format!(
+        ContactLaw::Penalty => format!(
             "{node} penetrates its surface by {:.6e}, which does not match its penalty law for F_n {f_n:.6e}",
             -gap
         ),
-        Law::Tied => format!("{node} has left the point of the surface that it is tied to"),
-        Law::Stick => format!(
+        ContactLaw::Tied => format!("{node} has left the point of the surface that it is tied to"),
+        ContactLaw::Stick => format!(
             "{node} slipped by {slip:.6e} beyond its elastic slip with friction below its limit \
              (F_t {f_t:.6e}, limit {limit:.6e})"
         ),
-        Law::Balance => format!("the forces on {node} are not in balance"),
-        Law::Moments => "loads and reactions are not in balance".into(),
+        ContactLaw::Balance => format!("the forces on {node} are not in balance"),
+        ContactLaw::Moments => "loads and reactions are not in balance".into(),
     };
     format!("{told} ({}: {:.1e})", finding.law.name(), finding.amount)
 }
@@ -64,7 +64,7 @@ pub fn place(model: &Model, places: &[[f64; 2]], finding: &Finding) -> String {
         return "in the scene as a whole".into();
     };
     let [x, y] = places[contact.node].map(four);
-    let Numbers {
+    let JudgedNumbers {
         gap,
         f_n,
         f_t,

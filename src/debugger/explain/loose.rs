@@ -5,7 +5,7 @@ use super::names::slave;
 use std::collections::HashSet;
 use stickslip_core::contact::projection::{Projection, projection_at, tangent};
 use stickslip_core::fem::pressure::Pressures;
-use stickslip_core::linear::singular::{Motion, RigidMotion, Singular};
+use stickslip_core::linear::singular::{LooseMotion, RigidMotion, Singular};
 use stickslip_core::model::{Factor, Mode, Model};
 use stickslip_core::step::state::State;
 use stickslip_core::step::stepper::Stepper;
@@ -37,7 +37,7 @@ pub(super) struct Moving<'a> {
     body: usize,
     /// Numbers of its nodes.
     nodes: HashSet<usize>,
-    motion: Motion,
+    motion: LooseMotion,
     sign: f64,
 }
 
@@ -96,8 +96,8 @@ impl<'a> Moving<'a> {
     /// Velocity of a point of the body: for a translation by a unit vector, or a rotation at rate one.
     fn velocity(&self, at: [f64; 2]) -> [f64; 2] {
         let v = match self.motion {
-            Motion::Translation(along) => along,
-            Motion::Rotation(about) => [about[1] - at[1], at[0] - about[0]],
+            LooseMotion::Translation(along) => along,
+            LooseMotion::Rotation(about) => [about[1] - at[1], at[0] - about[0]],
         };
         v.map(|x| self.sign * x)
     }
@@ -115,7 +115,7 @@ impl<'a> Moving<'a> {
             let v = self.velocity(self.places[node]);
             let rate = match (load.dof - dofs.first[node], self.motion) {
                 (axis @ 0..=1, _) => v[axis],
-                (_, Motion::Rotation(_)) => self.sign,
+                (_, LooseMotion::Rotation(_)) => self.sign,
                 _ => 0.0,
             };
             Some(load.value * load.scale.at(state.load_factor) * rate)
@@ -135,11 +135,11 @@ impl<'a> Moving<'a> {
     fn pushed(&self, state: &State) -> String {
         let power = self.power(state);
         let moves = match self.motion {
-            Motion::Translation([x, y]) => {
+            LooseMotion::Translation([x, y]) => {
                 let [x, y] = [x, y].map(|x| four(self.sign * x));
                 format!("moves along ({x}, {y})")
             }
-            Motion::Rotation([x, y]) => {
+            LooseMotion::Rotation([x, y]) => {
                 let way = if self.sign > 0.0 {
                     "anticlockwise"
                 } else {
@@ -150,8 +150,8 @@ impl<'a> Moving<'a> {
         };
         let loads = match (power > 0.0, self.motion) {
             (false, _) => "no load acts in this direction, and none could be carried".to_owned(),
-            (true, Motion::Translation(_)) => format!("the loads push with {}", four(power)),
-            (true, Motion::Rotation(_)) => {
+            (true, LooseMotion::Translation(_)) => format!("the loads push with {}", four(power)),
+            (true, LooseMotion::Rotation(_)) => {
                 format!("the loads turn it with moment {}", four(power))
             }
         };
@@ -253,11 +253,11 @@ impl<'a> Moving<'a> {
             );
         }
         let support = match self.motion {
-            Motion::Translation([x, y]) => {
+            LooseMotion::Translation([x, y]) => {
                 let axis = if x.abs() >= y.abs() { "x" } else { "y" };
                 format!("a support of one of its nodes in {axis}")
             }
-            Motion::Rotation(_) => "a support of one of its nodes away from that point".into(),
+            LooseMotion::Rotation(_) => "a support of one of its nodes away from that point".into(),
         };
         if sliding.is_empty() {
             return format!("what would stop it: {support}; this motion closes no contact");

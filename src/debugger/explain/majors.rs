@@ -4,7 +4,7 @@
 use super::attempt::{Attempt, Major};
 use super::names::{mode, slave};
 use super::report::place;
-use stickslip_core::contact::element::Element;
+use stickslip_core::contact::element::SurfaceElement;
 use stickslip_core::model::{Geometry, Mode, Model, ResidualMethod, Settings};
 use stickslip_core::step::major_history::{MajorCycle, Stop};
 use stickslip_core::step::state::State;
@@ -40,7 +40,7 @@ impl Kink {
         let curve = |(surface, element): (usize, usize)| {
             let surface = model.surfaces.get(surface)?;
             let kinked = surface.smooth.is_empty() && element < surface.elements.len();
-            kinked.then(|| Element::of(surface, element))
+            kinked.then(|| SurfaceElement::of(surface, element))
         };
         let (one, other) = (curve(a)?, curve(b)?);
         let (before, after) = match () {
@@ -73,7 +73,7 @@ impl Kink {
 }
 
 /// dx/dξ of an element at ξ.
-fn slope(element: Element<'_>, places: &[[f64; 2]], xi: f64) -> [f64; 2] {
+fn slope(element: SurfaceElement<'_>, places: &[[f64; 2]], xi: f64) -> [f64; 2] {
     let shape = element.shape(xi);
     let mut slope = [0.0; 2];
     for (&node, d) in element.nodes.iter().zip(shape.d) {

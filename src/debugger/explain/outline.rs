@@ -1,7 +1,7 @@
 //! The shape of a state as lines, for all front ends that draw it: node positions, curves of elements, the
 //! visible extent, and clipping.
 
-use stickslip_core::contact::element::Element;
+use stickslip_core::contact::element::SurfaceElement;
 use stickslip_core::fem::lagrange;
 use stickslip_core::model::Model;
 
@@ -32,7 +32,7 @@ pub fn curve(nodes: &[Point]) -> Vec<Point> {
 }
 
 /// The points whose Lagrange curve is that of a master element; `place` gives the positions of nodes.
-pub fn element(element: Element<'_>, place: impl Fn(usize) -> Point) -> Vec<Point> {
+pub fn element(element: SurfaceElement<'_>, place: impl Fn(usize) -> Point) -> Vec<Point> {
     let nodes: Vec<Point> = element.nodes.iter().map(|&node| place(node)).collect();
     if !element.is_smooth() {
         return nodes;

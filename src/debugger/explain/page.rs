@@ -18,7 +18,7 @@ use super::majors;
 use super::names;
 use super::reach::reach;
 use super::remedies::{self, Trial, TrialEnd, attempt};
-use super::remedy::{How, Kind, Remedy};
+use super::remedy::{How, Remedy, RemedyKind};
 use super::report::{describe_failure, sound};
 use super::strain::MaterialCause;
 use stickslip_core::linear::norms::Norms;
@@ -60,7 +60,7 @@ pub fn page(
             }
         });
     };
-    let mut page = Page::of(stepper, state, failure, stop);
+    let mut page = PageBuilder::of(stepper, state, failure, stop);
     tell(&page.shown("trying remedies …"));
     let remedies = page.remedies(stepper.model(), state, failure);
     for remedy in &remedies {
@@ -98,7 +98,7 @@ pub fn facts(
     failure: &Failure,
     stop: &dyn Fn() -> bool,
 ) -> Vec<String> {
-    let page = Page::of(stepper, state, failure, stop);
+    let page = PageBuilder::of(stepper, state, failure, stop);
     let mut lines = page.facts;
     lines.extend(page.found.lines);
     lines.extend(limit_load(stepper, state, failure, stop));
@@ -106,7 +106,7 @@ pub fn facts(
 }
 
 /// The page in progress.
-struct Page {
+struct PageBuilder {
     what: Vec<String>,
     /// Where and why.
     facts: Vec<String>,
@@ -121,14 +121,14 @@ struct Page {
     found: Examination,
 }
 
-impl Page {
+impl PageBuilder {
     fn of(
         stepper: &mut Stepper,
         state: &State,
         failure: &Failure,
         stop: &dyn Fn() -> bool,
-    ) -> Page {
-        let mut page = Page {
+    ) -> PageBuilder {
+        let mut page = PageBuilder {
             what: Vec::new(),
             facts: Vec::new(),
             by_hand: Vec::new(),
@@ -140,7 +140,7 @@ impl Page {
         let cause = MaterialCause::of(stepper.model(), state, failure);
         let certain = cause.filter(MaterialCause::is_certain);
         let words = |cause: MaterialCause| cause.words(stepper.model());
-        let overlap = Remedy::of(Kind::Gaps(InitialGaps::Ramp), stepper.model(), state);
+        let overlap = Remedy::of(RemedyKind::Gaps(InitialGaps::Ramp), stepper.model(), state);
         page.facts.extend(overlap.map(|_| OVERLAP.to_owned()));
         page.facts.extend(certain.map(words));
         let possible = cause.filter(|cause| !cause.is_certain()).map(words);
@@ -330,7 +330,7 @@ impl Page {
             advice(model, state, failure)
                 .into_iter()
                 .filter_map(|piece| match piece {
-                    Advice::Remedy(remedy) if remedy.kind != Kind::Law => Some(remedy),
+                    Advice::Remedy(remedy) if remedy.kind != RemedyKind::Law => Some(remedy),
                     Advice::Remedy(_) | Advice::ByHand(_) | Advice::Finer => None,
                 }),
         );

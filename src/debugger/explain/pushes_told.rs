@@ -10,11 +10,11 @@
 //! bounds have changed between them.
 
 use super::attached;
-use super::influence::{Push, left_side, spread};
+use super::influence::{NodePush, left_side, spread};
 use nalgebra::DVector;
 use std::sync::Arc;
 use stickslip_core::contact::record::ContactRecord;
-use stickslip_core::contact::table1::{Equation, Motion};
+use stickslip_core::contact::table1::{Equation, RelativeMotion};
 use stickslip_core::interface::kinematics::NodeIncrement;
 use stickslip_core::interface::trials::Trials;
 use stickslip_core::model::{BoundUpdate, Mode, Model};
@@ -50,14 +50,14 @@ pub fn pushes(
     iterations: &Iterations,
     posed: &Posed,
     slave: usize,
-) -> Option<Vec<Push>> {
+) -> Option<Vec<NodePush>> {
     let Some(target) = posed.contacts.iter().position(|&known| known == slave) else {
         // Contacts outside the problem are not affected by those in it.
         return Some(Vec::new());
     };
     let [before, after] = &iterations.found;
-    let earlier = Told::new(posed, &before.nodes)?;
-    let later = Told::new(posed, &after.nodes)?;
+    let earlier = ReportedPushes::new(posed, &before.nodes)?;
+    let later = ReportedPushes::new(posed, &after.nodes)?;
     let (_, mut stepper) = attached::stepper(model, &iterations.start, posed).ok()?;
     let mut problem = stepper.interface_problem()?;
     if earlier.follows_law(posed) && later.follows_law(posed) {
@@ -75,8 +75,8 @@ pub fn pushes(
     let change = |place: usize, row: &Equation| {
         let change = left_side(row, &later.given(place)) - left_side(row, &earlier.given(place));
         let scale = match row.motion {
-            Motion::None => problem.force,
-            Motion::Normal | Motion::Tangential => problem.length,
+            RelativeMotion::None => problem.force,
+            RelativeMotion::Normal | RelativeMotion::Tangential => problem.length,
         };
         let [then, now] = modes(place);
         if then != now {
@@ -86,13 +86,13 @@ pub fn pushes(
             return 0.0;
         }
         // With the same mode, only the bound can have changed.
-        is_explained &= then == Mode::Sliding && row.motion == Motion::None;
+        is_explained &= then == Mode::Sliding && row.motion == RelativeMotion::None;
         change
     };
     let mut trials = Trials::new(&problem)?;
     trials.given(&states)?;
     let found = spread(&mut trials, &states, &[target], change)?;
-    let push = |influence: super::influence::Influence| Push {
+    let push = |influence: super::influence::Influence| NodePush {
         slave: posed.contacts[influence.from],
         modes: modes(influence.from),
         influence,
@@ -101,7 +101,7 @@ pub fn pushes(
 }
 
 /// The reported numbers of an iteration for the problem's contacts.
-struct Told {
+struct ReportedPushes {
     modes: Vec<Mode>,
     /// f_n and f_t of each.
     forces: DVector<f64>,
@@ -109,9 +109,9 @@ struct Told {
     motion: DVector<f64>,
 }
 
-impl Told {
+impl ReportedPushes {
     /// `None` if forces were not reported, or the problem gives other gaps.
-    fn new(posed: &Posed, nodes: &[ContactRecord]) -> Option<Told> {
+    fn new(posed: &Posed, nodes: &[ContactRecord]) -> Option<ReportedPushes> {
         let records = posed.contacts.iter().map(|&slave| nodes.get(slave));
         let records: Vec<&ContactRecord> = records.collect::<Option<_>>()?;
         let forces = records.iter().flat_map(|record| [record.f_n, record.f_t]);
@@ -123,7 +123,7 @@ impl Told {
             (record.gap - motion[2 * place]).abs() > SAME * scale
         };
         let sound = forces.iter().all(|force| force.is_finite());
-        (sound && !records.iter().enumerate().any(other)).then(|| Told {
+        (sound && !records.iter().enumerate().any(other)).then(|| ReportedPushes {
             modes: records
                 .iter()
                 .map(|record| record.decision.before)

@@ -5,12 +5,12 @@
 
 use super::advice::{Advice, advice};
 use super::examination::{Examination, frozen};
-use super::remedy::{How, Kind, Remedy};
+use super::remedy::{How, Remedy, RemedyKind};
 use super::restart;
 use std::cmp::Ordering;
 use std::ops::ControlFlow;
 use std::time::Instant;
-use stickslip_core::contact::laws::Law;
+use stickslip_core::contact::laws::ContactLaw;
 use stickslip_core::contact::record::{ContactRecord, Forced};
 use stickslip_core::interface::method::NotFound;
 use stickslip_core::linear::norms::Norms;
@@ -39,7 +39,7 @@ pub enum TrialEnd {
     /// The failed load was accepted.
     Converged,
     /// A state was accepted that violates this law, because of held modes or settings.
-    Against(Law),
+    Against(ContactLaw),
     /// It failed.
     Failed(Failure),
     /// The budget is used up.
@@ -107,26 +107,26 @@ impl Trial {
 }
 
 /// All kinds of remedies, in the order in which they are tried.
-const KINDS: [Kind; 19] = [
-    Kind::Strategy(Strategy::Sliding),
-    Kind::Strategy(Strategy::Least),
-    Kind::Strategy(Strategy::SlidingLeast),
-    Kind::Strategy(Strategy::Block),
-    Kind::Strategy(Strategy::Newton),
-    Kind::Strategy(Strategy::Lemke),
-    Kind::Strategy(Strategy::Ladder),
-    Kind::ConsistentLimit,
-    Kind::ConsistentGeometry,
-    Kind::OtherResidual,
-    Kind::OtherSticking,
-    Kind::TouchAtStart,
-    Kind::Damp,
-    Kind::Part(0.5),
-    Kind::Part(0.37),
-    Kind::Part(0.1),
-    Kind::Start(Mode::Fixed),
-    Kind::Start(Mode::Sliding),
-    Kind::Hysteresis,
+const KINDS: [RemedyKind; 19] = [
+    RemedyKind::Strategy(Strategy::Sliding),
+    RemedyKind::Strategy(Strategy::Least),
+    RemedyKind::Strategy(Strategy::SlidingLeast),
+    RemedyKind::Strategy(Strategy::Block),
+    RemedyKind::Strategy(Strategy::Newton),
+    RemedyKind::Strategy(Strategy::Lemke),
+    RemedyKind::Strategy(Strategy::Ladder),
+    RemedyKind::ConsistentLimit,
+    RemedyKind::ConsistentGeometry,
+    RemedyKind::OtherResidual,
+    RemedyKind::OtherSticking,
+    RemedyKind::TouchAtStart,
+    RemedyKind::Damp,
+    RemedyKind::Part(0.5),
+    RemedyKind::Part(0.37),
+    RemedyKind::Part(0.1),
+    RemedyKind::Start(Mode::Fixed),
+    RemedyKind::Start(Mode::Sliding),
+    RemedyKind::Hysteresis,
 ];
 
 /// All remedies that apply to a state: the consistent states, those for its failure, and all others. The search
@@ -167,7 +167,7 @@ pub fn all(
 
 /// Remedies that an attached solver supports: initial modes, and possibly another increment size.
 pub fn offered(model: &Model, state: &State, offers: &Offers, found: &Examination) -> Vec<Remedy> {
-    let parts = [Kind::Part(0.5), Kind::Part(0.1)];
+    let parts = [RemedyKind::Part(0.5), RemedyKind::Part(0.1)];
     let parts = parts
         .into_iter()
         .filter_map(|kind| Remedy::of(kind, model, state));
@@ -259,7 +259,7 @@ pub fn attempt(
                     let against = marked.as_ref().map(|found| TrialEnd::Against(found.law));
                     return ControlFlow::Break(against.unwrap_or(TrialEnd::Converged));
                 }
-                Outcome::Minor if remedy.kind == Kind::Hysteresis => {
+                Outcome::Minor if remedy.kind == RemedyKind::Hysteresis => {
                     changes = hysteresis(stepper, event);
                 }
                 _ => {}
@@ -345,16 +345,16 @@ fn scale_of(
 /// The judge's findings in the last accepted state.
 fn left(stepper: &Stepper, event: &Event, after: &Norms) -> Left {
     let verdict = stepper.state().start.verdict.as_ref();
-    let amount = |law: Law| {
+    let amount = |law: ContactLaw| {
         let found = verdict.and_then(|verdict| verdict.of(law));
         let amount = found.map_or(0.0, |found| found.amount);
         if amount < ROUND_OFF { 0.0 } else { amount }
     };
-    let gap = amount(Law::Gap)
-        .max(amount(Law::Penalty))
-        .max(amount(Law::Tied));
-    let inside = amount(Law::Penetration).max(gap);
-    let (tension, shear) = (amount(Law::Tension), amount(Law::Cone));
+    let gap = amount(ContactLaw::Gap)
+        .max(amount(ContactLaw::Penalty))
+        .max(amount(ContactLaw::Tied));
+    let inside = amount(ContactLaw::Penetration).max(gap);
+    let (tension, shear) = (amount(ContactLaw::Tension), amount(ContactLaw::Cone));
     let decisions = event.nodes.iter().map(|record| &record.decision);
     Left {
         penetration: inside * stepper.model().length,

@@ -24,7 +24,7 @@ const MORE: u32 = 10;
 
 /// Kind of remedy.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Kind {
+pub enum RemedyKind {
     /// Start from the consistent state with this number in the census.
     Answer(usize),
     /// Another strategy.
@@ -96,7 +96,7 @@ impl How {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Remedy {
     /// What kind it is.
-    pub kind: Kind,
+    pub kind: RemedyKind,
     /// Short name, also used for its branch.
     pub label: String,
     /// What to type to apply it.
@@ -118,7 +118,7 @@ impl Remedy {
             })
             .collect();
         (!first.is_empty()).then(|| Remedy {
-            kind: Kind::Start(mode),
+            kind: RemedyKind::Start(mode),
             label: format!("start contacts {}", names::mode(mode)),
             how: How::Listed,
             first,
@@ -126,7 +126,7 @@ impl Remedy {
     }
 
     /// The remedy of a kind at a state; `None` if it would change nothing or does not apply.
-    pub fn of(kind: Kind, model: &Model, state: &State) -> Option<Remedy> {
+    pub fn of(kind: RemedyKind, model: &Model, state: &State) -> Option<Remedy> {
         let remedy = |label: &str, how: How, first: Vec<Intervention>| Remedy {
             kind,
             label: label.to_owned(),
@@ -134,8 +134,8 @@ impl Remedy {
             first,
         };
         match kind {
-            Kind::Answer(_) | Kind::Law => None,
-            Kind::Gaps(gaps) => {
+            RemedyKind::Answer(_) | RemedyKind::Law => None,
+            RemedyKind::Gaps(gaps) => {
                 // Only the first increment starts with the overlap.
                 let starts = state.next.increment == 1;
                 let keeps = model.settings.initial_gaps == InitialGaps::Keep;
@@ -150,8 +150,8 @@ impl Remedy {
                 // If a surface has the wrong orientation, all nodes are inside.
                 (overlaps && turned(model).is_empty()).then(|| remedy(label, how, Vec::new()))
             }
-            Kind::Hysteresis => Some(remedy("hysteresis of 1e-3", How::Listed, Vec::new())),
-            Kind::Part(part) => {
+            RemedyKind::Hysteresis => Some(remedy("hysteresis of 1e-3", How::Listed, Vec::new())),
+            RemedyKind::Part(part) => {
                 let size = state.controls.increment * part;
                 let label = match part {
                     0.5 => "half the increment".to_owned(),
@@ -165,7 +165,7 @@ impl Remedy {
                 };
                 Some(remedy(&label, how, first))
             }
-            Kind::Start(mode) => {
+            RemedyKind::Start(mode) => {
                 let first = starts(model, state, mode);
                 let label = format!("start contacts {}", names::mode(mode));
                 (!first.is_empty()).then(|| remedy(&label, How::Listed, first))
@@ -197,7 +197,7 @@ impl Remedy {
         };
         let label = changes.first().map(told)?;
         let law = Remedy {
-            kind: Kind::Law,
+            kind: RemedyKind::Law,
             label,
             how: How::Restart(changes),
             first: Vec::new(),
@@ -216,7 +216,7 @@ impl Remedy {
             let some: Vec<String> = starts.iter().take(SHOWN).map(name).collect();
             let more = if starts.len() > SHOWN { ", …" } else { "" };
             Some(Remedy {
-                kind: Kind::Answer(number),
+                kind: RemedyKind::Answer(number),
                 label: format!("state {}: {}{more}", number + 1, some.join(", ")),
                 how: How::StartFrom(number),
                 first: vec![Intervention::Assume(starts)],
@@ -227,9 +227,12 @@ impl Remedy {
 }
 
 /// Changes the settings for a kind; returns label, path and value.
-fn change(kind: Kind, settings: &mut Settings) -> Option<(&'static str, &'static str, String)> {
+fn change(
+    kind: RemedyKind,
+    settings: &mut Settings,
+) -> Option<(&'static str, &'static str, String)> {
     let told = match kind {
-        Kind::Strategy(strategy) => {
+        RemedyKind::Strategy(strategy) => {
             settings.strategy = strategy;
             let label = match strategy {
                 Strategy::Ladder => "the ladder of strategies",
@@ -246,16 +249,16 @@ fn change(kind: Kind, settings: &mut Settings) -> Option<(&'static str, &'static
             };
             (label, "settings.strategy", strategy.name().to_owned())
         }
-        Kind::ConsistentLimit => {
+        RemedyKind::ConsistentLimit => {
             settings.t_max = BoundUpdate::Consistent;
             ("t_max consistent", "settings.t_max", "consistent".into())
         }
-        Kind::ConsistentGeometry => {
+        RemedyKind::ConsistentGeometry => {
             settings.geometry = Geometry::Consistent;
             let value = "consistent".into();
             ("geometry consistent", "settings.geometry", value)
         }
-        Kind::OtherResidual => {
+        RemedyKind::OtherResidual => {
             let (method, label, value) = match settings.residual {
                 ResidualMethod::Stress => {
                     let method = ResidualMethod::Accumulate;
@@ -266,7 +269,7 @@ fn change(kind: Kind, settings: &mut Settings) -> Option<(&'static str, &'static
             settings.residual = method;
             (label, "settings.residual", value.into())
         }
-        Kind::OtherSticking => {
+        RemedyKind::OtherSticking => {
             let (sticking, label, value) = match settings.sticking {
                 Sticking::Anchored => {
                     let sticking = Sticking::Increments;
@@ -277,30 +280,30 @@ fn change(kind: Kind, settings: &mut Settings) -> Option<(&'static str, &'static
             settings.sticking = sticking;
             (label, "settings.sticking", value.into())
         }
-        Kind::TouchAtStart => {
+        RemedyKind::TouchAtStart => {
             settings.touch = Touch::Start;
             ("touch at the start", "settings.touch", "start".into())
         }
-        Kind::Damp => {
+        RemedyKind::Damp => {
             settings.at_cycle = AtCycle::Damp;
             ("at_cycle damp", "settings.at_cycle", "damp".into())
         }
-        Kind::MoreMinors => {
+        RemedyKind::MoreMinors => {
             settings.minors = settings.minors.saturating_mul(MORE);
             let value = settings.minors.to_string();
             ("10 times the minor limit", "settings.minors", value)
         }
-        Kind::MoreMajors => {
+        RemedyKind::MoreMajors => {
             settings.majors = settings.majors.saturating_mul(MORE);
             let value = settings.majors.to_string();
             ("10 times the major limit", "settings.majors", value)
         }
-        Kind::Answer(_)
-        | Kind::Part(_)
-        | Kind::Start(_)
-        | Kind::Hysteresis
-        | Kind::Gaps(_)
-        | Kind::Law => return None,
+        RemedyKind::Answer(_)
+        | RemedyKind::Part(_)
+        | RemedyKind::Start(_)
+        | RemedyKind::Hysteresis
+        | RemedyKind::Gaps(_)
+        | RemedyKind::Law => return None,
     };
     Some(told)
 }

@@ -11,7 +11,7 @@ use stickslip_core::interface::census;
 use stickslip_core::interface::method::NotFound;
 use stickslip_core::interface::minor_history::Cycle;
 use stickslip_core::linear::norms::Norms;
-use stickslip_core::linear::singular::{Motion, RigidMotion, Singular};
+use stickslip_core::linear::singular::{LooseMotion, RigidMotion, Singular};
 use stickslip_core::model::{Mode, Model};
 use stickslip_core::step::event::{Event, Failure, Moves, Outcome, Position, Slow};
 use stickslip_core::step::intervene::Intervention;
@@ -555,14 +555,14 @@ fn not_found(why: NotFound) -> String {
 fn motion(rigid: &RigidMotion) -> String {
     let body = &rigid.body;
     match rigid.motion {
-        Motion::Translation([x, y]) => {
+        LooseMotion::Translation([x, y]) => {
             format!(
                 "body {body} can move along ({}, {})",
                 rounded(x),
                 rounded(y)
             )
         }
-        Motion::Rotation([x, y]) => {
+        LooseMotion::Rotation([x, y]) => {
             format!(
                 "body {body} can rotate about ({}, {})",
                 rounded(x),

@@ -1,7 +1,7 @@
 //! Describes solids outside the range of their material law: the element, its deformation, and a suitable law
 //! ([`stickslip_core::fem::deformation`]).
 
-use stickslip_core::fem::deformation::{Deformation, PointDeformation, Range, deformation};
+use stickslip_core::fem::deformation::{Deformation, PointDeformation, StretchRange, deformation};
 use stickslip_core::model::{BodyKind, Elastic, Law, Model, Update};
 use stickslip_core::step::event::Failure;
 use stickslip_core::step::state::State;
@@ -49,32 +49,36 @@ pub fn outside(model: &Model, point: &PointDeformation) -> String {
         "{} is {}: {}",
         place(model, point),
         match range(model, point) {
-            Range::Volume(_) => format!("swollen to det F = {}", four(point.determinant)),
+            StretchRange::Volume(_) => format!("swollen to det F = {}", four(point.determinant)),
             _ => format!("compressed to a stretch of {stretch}"),
         },
         limit(model, point)
     )
 }
 
-fn range(model: &Model, point: &PointDeformation) -> Range {
-    material(model, point).map_or(Range::Unlimited, |(elastic, _)| Range::of(elastic))
+fn range(model: &Model, point: &PointDeformation) -> StretchRange {
+    material(model, point).map_or(StretchRange::Unlimited, |(elastic, _)| {
+        StretchRange::of(elastic)
+    })
 }
 
 /// Describes the range of an element's law and the behaviour outside.
 pub fn limit(model: &Model, point: &PointDeformation) -> String {
     match (range(model, point), material(model, point)) {
-        (Range::Stretch(least), Some((elastic, _))) if elastic.update == Update::Small => format!(
-            "below {} linear elasticity (update: small) neglects more than 5 % of the strain",
-            four(least)
-        ),
-        (Range::Stretch(least), _) => format!(
+        (StretchRange::Stretch(least), Some((elastic, _))) if elastic.update == Update::Small => {
+            format!(
+                "below {} linear elasticity (update: small) neglects more than 5 % of the strain",
+                four(least)
+            )
+        }
+        (StretchRange::Stretch(least), _) => format!(
             "St Venant-Kirchhoff (law: svk) softens below {} under compression",
             four(least)
         ),
-        (Range::Volume(most), _) => {
+        (StretchRange::Volume(most), _) => {
             format!("law: neohookean may soften beyond det F = {}", four(most))
         }
-        (Range::Unlimited, _) => "its stress update has no limit".into(),
+        (StretchRange::Unlimited, _) => "its stress update has no limit".into(),
     }
 }
 

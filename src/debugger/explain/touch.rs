@@ -42,7 +42,7 @@ struct Decided {
 
 /// Result of an increment with `touch: start`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Difference {
+pub struct TouchDifference {
     /// The increment.
     pub increment: u32,
     /// The largest difference of a force on a slave node, relative to the largest such force; `None` if the increment does
@@ -96,7 +96,7 @@ impl TouchWatch {
     }
 
     /// Solves the recorded increment again; `None` if no node touched, or if the forces agree.
-    pub fn measure(&self, model: &Arc<Model>) -> Option<Difference> {
+    pub fn measure(&self, model: &Arc<Model>) -> Option<TouchDifference> {
         let decided = self.decided.as_ref()?;
         let mut stepper = Stepper::new(model.clone());
         stepper.restore(&decided.start);
@@ -115,7 +115,7 @@ impl TouchWatch {
         let same = accepted && stepper.event().load_factor == decided.load;
         let difference = same.then(|| difference(&decided.forces, &forces(stepper.state())));
         let told = difference.is_none_or(|difference| difference > TOLD);
-        told.then_some(Difference {
+        told.then_some(TouchDifference {
             increment: decided.increment,
             forces: difference,
         })
@@ -139,7 +139,7 @@ fn difference(ours: &[[f64; 2]], theirs: &[[f64; 2]]) -> f64 {
     apart.fold(0.0, f64::max) / largest.max(f64::MIN_POSITIVE)
 }
 
-impl Difference {
+impl TouchDifference {
     /// Describes the difference and how to avoid it.
     pub fn words(&self) -> String {
         let start = "touch: start (one implicit step of Coulomb's law)";

@@ -21,13 +21,13 @@ const NAMED: usize = 6;
 
 /// Detects, iteration by iteration, when the modes of an attached solver start to repeat.
 #[derive(Debug, Default)]
-pub struct Watch {
+pub struct CycleWatch {
     recent: VecDeque<Strip>,
     /// Whether they repeated at the last iteration.
     round: bool,
 }
 
-impl Watch {
+impl CycleWatch {
     /// Adds an iteration. Returns a cycle when it is first detected.
     pub fn see(&mut self, strip: &Strip) -> Option<Rounds> {
         if self.recent.len() == 2 * LONGEST + 2 {

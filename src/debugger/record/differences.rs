@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 use std::fmt::{self, Debug};
 use stickslip_core::contact::table2::Rule;
 use stickslip_core::linear::norms::Norms;
-use stickslip_core::linear::singular::{Motion, Singular};
+use stickslip_core::linear::singular::{LooseMotion, Singular};
 use stickslip_core::step::event::Failure;
 use stickslip_core::step::state::Status;
 use stickslip_scene::Scene;
@@ -314,9 +314,9 @@ fn status(status: &Status) -> String {
         }
         Failure::OverConstrained { slave, .. } => Failure::OverConstrained { slave, gap: 0.0 },
         Failure::Singular(Singular::Rigid { motions }) => {
-            let motion = |m: &Motion| match m {
-                Motion::Translation(_) => "moves",
-                Motion::Rotation(_) => "turns",
+            let motion = |m: &LooseMotion| match m {
+                LooseMotion::Translation(_) => "moves",
+                LooseMotion::Rotation(_) => "turns",
             };
             let all: Vec<String> = motions
                 .iter()

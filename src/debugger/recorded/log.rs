@@ -20,14 +20,14 @@ const MOST_CHARS: usize = 2_000;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Said {
     /// Source of the line.
-    pub how: How,
+    pub how: LogOrigin,
     /// The line, safe to print to a terminal.
     pub text: String,
 }
 
 /// Source of a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum How {
+pub enum LogOrigin {
     /// Standard error of the solver.
     Printed,
     /// A message of the solver.
@@ -36,15 +36,15 @@ pub enum How {
     Noted,
 }
 
-impl How {
+impl LogOrigin {
     /// The word for the source on the page `:log`.
     pub fn word(self) -> &'static str {
         match self {
-            How::Printed => "stderr",
-            How::Told(Level::Info) => "info",
-            How::Told(Level::Warning) => "warning",
-            How::Told(Level::Error) => "error",
-            How::Noted => "note",
+            LogOrigin::Printed => "stderr",
+            LogOrigin::Told(Level::Info) => "info",
+            LogOrigin::Told(Level::Warning) => "warning",
+            LogOrigin::Told(Level::Error) => "error",
+            LogOrigin::Noted => "note",
         }
     }
 }
@@ -89,7 +89,7 @@ impl Log {
     pub fn printed(&self, line: &str) {
         self.with(|inner| {
             inner.write(Side::Logged, line);
-            inner.push(How::Printed, line);
+            inner.push(LogOrigin::Printed, line);
         });
     }
 
@@ -97,7 +97,7 @@ impl Log {
     pub fn told(&self, level: Level, text: &str) {
         self.with(|inner| {
             text.lines()
-                .for_each(|line| inner.push(How::Told(level), line))
+                .for_each(|line| inner.push(LogOrigin::Told(level), line))
         });
     }
 
@@ -105,7 +105,7 @@ impl Log {
     pub fn noted(&self, text: &str) {
         self.with(|inner| {
             inner.write(Side::Noted, text);
-            inner.push(How::Noted, text);
+            inner.push(LogOrigin::Noted, text);
         });
     }
 
@@ -142,7 +142,7 @@ impl Log {
         self.with(|inner| {
             let mut lines = inner.lines.iter().rev();
             let printed =
-                lines.find(|said| said.how == How::Printed && !said.text.trim().is_empty());
+                lines.find(|said| said.how == LogOrigin::Printed && !said.text.trim().is_empty());
             printed.map(|said| said.text.trim().to_owned())
         })
     }
@@ -159,7 +159,7 @@ impl Log {
 }
 
 impl Inner {
-    fn push(&mut self, how: How, line: &str) {
+    fn push(&mut self, how: LogOrigin, line: &str) {
         if self.lines.len() == MOST_LINES {
             self.lines.pop_front();
         }

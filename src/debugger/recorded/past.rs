@@ -6,7 +6,7 @@
 use super::fault::Fault;
 use super::log::Log;
 use super::orders;
-use super::told::{self, Frame, Led};
+use super::told::{self, Led, WireFrame};
 use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
@@ -80,7 +80,7 @@ pub fn file(name: &str) -> Option<Result<Opened, SceneError>> {
 pub fn open(name: &str, text: &str) -> Result<Opened, SceneError> {
     let kept = Kept::read(text).map_err(|broken| read::of_file(name, broken))?;
     let log = Log::default();
-    let mut reader = Reader::new();
+    let mut reader = ExchangeReader::new();
     for (number, line) in kept.iter().enumerate() {
         let broken = |broken: Broken| {
             let column = broken.at.map_or(1, |(_, column)| column + 2);
@@ -105,7 +105,7 @@ pub fn open(name: &str, text: &str) -> Result<Opened, SceneError> {
             },
         }
     }
-    let Reader {
+    let ExchangeReader {
         met: Some(met),
         places,
         ..
@@ -139,7 +139,7 @@ pub fn open(name: &str, text: &str) -> Result<Opened, SceneError> {
 }
 
 /// State of the reader.
-struct Reader {
+struct ExchangeReader {
     hello: Option<Hello>,
     met: Option<Met>,
     places: Places<Option<Led>>,
@@ -159,9 +159,9 @@ struct Met {
     start: Led,
 }
 
-impl Reader {
-    fn new() -> Reader {
-        Reader {
+impl ExchangeReader {
+    fn new() -> ExchangeReader {
+        ExchangeReader {
             hello: None,
             met: None,
             places: Places::new(None),
@@ -237,7 +237,7 @@ impl Reader {
             // It was accepted in the original session.
             let _ = from.intervene(&met.scene.model, intervention);
         }
-        let frame = Frame {
+        let frame = WireFrame {
             model: &met.scene.model,
             ids: &met.ids,
             decides: met.hello.decides,

@@ -9,7 +9,7 @@ pub enum Recording {
     /// The stored exchange with an attached solver.
     Exchange(Box<past::Opened>),
     /// A CalculiX run.
-    Calculix(Box<calculix::Opened>),
+    Calculix(Box<calculix::OpenedRun>),
 }
 
 impl Recording {

@@ -1,6 +1,6 @@
 //! A stored exchange as text: iterations, interventions, and cycles.
 
-use super::log::How;
+use super::log::LogOrigin;
 use super::past::{Line, Opened};
 use crate::explain::{names, report};
 use crate::history::rounds::{Rounds, rounds, words};
@@ -127,7 +127,7 @@ fn cycle(model: &Model, strips: &[Strip]) -> String {
 /// The last warnings and errors, and the last remark.
 fn said(opened: &Opened) -> String {
     let (_, lines) = opened.log.lines();
-    let grave = |how: How| matches!(how, How::Told(Level::Warning | Level::Error));
+    let grave = |how: LogOrigin| matches!(how, LogOrigin::Told(Level::Warning | Level::Error));
     let all: Vec<String> = lines
         .iter()
         .filter(|said| grave(said.how))
@@ -138,7 +138,7 @@ fn said(opened: &Opened) -> String {
         let _ = writeln!(text, "\nWarnings and errors: {}", all.len());
         text += &all[all.len().saturating_sub(TOLD)..].concat();
     }
-    if let Some(last) = lines.iter().rev().find(|said| said.how == How::Noted) {
+    if let Some(last) = lines.iter().rev().find(|said| said.how == LogOrigin::Noted) {
         let _ = writeln!(text, "\nLast remark: {}", last.text);
     }
     text

@@ -34,7 +34,7 @@ const UNIT: f64 = 1e-3;
 const MOST_WORDS: usize = 400;
 
 /// The context in which messages are converted.
-pub struct Frame<'a> {
+pub struct WireFrame<'a> {
     /// The scene.
     pub model: &'a Model,
     /// The solver's ids of the contacts.
@@ -84,7 +84,7 @@ fn unfit<T>(why: impl Into<String>) -> Result<T, Fault> {
     })
 }
 
-impl Frame<'_> {
+impl WireFrame<'_> {
     /// Converts a state message about the iteration that started from `from`.
     ///
     /// # Errors [`Fault::Unfit`] if the message does not match the scene.

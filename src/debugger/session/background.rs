@@ -18,7 +18,7 @@ use super::exports::{Export, is_of_problem, write, write_posed};
 use super::worker::Lender;
 use crate::explain::attached;
 use crate::explain::examination::{Examination, examine_nodes};
-use crate::explain::influence::{Push, Way, between, pushed, pushes};
+use crate::explain::influence::{NodePush, PushPath, between, pushed, pushes};
 use crate::explain::page::page;
 use crate::explain::pushes_told::{self, Iterations};
 use crate::explain::remedies::{self, Trial};
@@ -61,8 +61,8 @@ pub struct Tried {
     pub stopped: bool,
 }
 
-enum Ask {
-    Pushes(LinePlace, usize, Between),
+enum BackgroundRequest {
+    Pushes(LinePlace, usize, BetweenRuns),
     /// Strings: facts already known about an attached solver's state.
     Examination(LinePlace, Box<State>, Vec<usize>, Vec<String>),
     Remedies(Box<State>),
@@ -70,15 +70,15 @@ enum Ask {
 }
 
 /// The two minor iterations whose difference is the push on a node.
-pub(super) enum Between {
+pub(super) enum BetweenRuns {
     /// Steps to repeat to reach them again.
-    Way(Way),
+    Path(PushPath),
     /// Both iterations as reported by an attached solver.
-    Told(Iterations),
+    Reported(Iterations),
 }
 
-enum Told {
-    Pushes(LinePlace, usize, Option<Vec<Push>>),
+enum BackgroundReply {
+    Pushes(LinePlace, usize, Option<Vec<NodePush>>),
     /// The solver was busy.
     NotNow,
     /// The examination so far (`going_on`) or complete.
@@ -121,12 +121,12 @@ struct Helper {
 /// Handle of the background thread, with its results.
 #[derive(Debug)]
 pub struct Background {
-    asks: Sender<Ask>,
-    told: Receiver<Told>,
+    asks: Sender<BackgroundRequest>,
+    told: Receiver<BackgroundReply>,
     stop: Arc<AtomicBool>,
     /// Requests without an answer yet.
     waiting: usize,
-    pushes: HashMap<(LinePlace, usize), Option<Vec<Push>>>,
+    pushes: HashMap<(LinePlace, usize), Option<Vec<NodePush>>>,
     /// By position: the requested nodes, and the result.
     examinations: HashMap<LinePlace, (Vec<usize>, Option<Examination>)>,
     exported: Option<Result<String, ExportError>>,
@@ -151,7 +151,7 @@ impl Background {
     }
 
     fn begun(model: Arc<Model>, spec: Option<Spec>, offers: Offers, lender: Lender) -> Background {
-        let (asks, orders) = channel::<Ask>();
+        let (asks, orders) = channel::<BackgroundRequest>();
         let (news, told) = channel();
         let stop = Arc::new(AtomicBool::new(false));
         let flag = stop.clone();
@@ -195,7 +195,7 @@ impl Background {
 
     /// The pushes on a slave node at a position: `None` if not computed yet, inner `None` if they cannot be
     /// computed.
-    pub fn pushes(&self, place: LinePlace, slave: usize) -> Option<Option<&[Push]>> {
+    pub fn pushes(&self, place: LinePlace, slave: usize) -> Option<Option<&[NodePush]>> {
         let found = self.pushes.get(&(place, slave))?;
         Some(found.as_deref())
     }
@@ -225,13 +225,13 @@ impl Background {
         &mut self,
         place: LinePlace,
         slave: usize,
-        between: impl FnOnce() -> Option<Between>,
+        between: impl FnOnce() -> Option<BetweenRuns>,
     ) {
         if self.waiting == 0
             && !self.pushes.contains_key(&(place, slave))
             && let Some(between) = between()
         {
-            self.send(Ask::Pushes(place, slave, between));
+            self.send(BackgroundRequest::Pushes(place, slave, between));
         }
     }
 
@@ -240,7 +240,7 @@ impl Background {
         self.keep_pushes(place, slave, None);
     }
 
-    fn keep_pushes(&mut self, place: LinePlace, slave: usize, found: Option<Vec<Push>>) {
+    fn keep_pushes(&mut self, place: LinePlace, slave: usize, found: Option<Vec<NodePush>>) {
         if self.pushes.len() >= KEPT {
             self.pushes.clear();
         }
@@ -265,13 +265,18 @@ impl Background {
             let state = Box::new(state.clone());
             self.stop.store(false, Ordering::Relaxed);
             self.examining += 1;
-            self.send(Ask::Examination(place, state, nodes.to_vec(), told));
+            self.send(BackgroundRequest::Examination(
+                place,
+                state,
+                nodes.to_vec(),
+                told,
+            ));
         }
     }
 
     /// Requests an export.
     pub(super) fn ask_export(&mut self, export: Export) {
-        self.send(Ask::Export(export));
+        self.send(BackgroundRequest::Export(export));
     }
 
     /// Result of the latest export; returned once.
@@ -290,7 +295,7 @@ impl Background {
             stopped: false,
         });
         self.trying = true;
-        self.send(Ask::Remedies(Box::new(state.clone())));
+        self.send(BackgroundRequest::Remedies(Box::new(state.clone())));
     }
 
     /// Stops remedy trials after the current minor iteration, and any running census.
@@ -298,7 +303,7 @@ impl Background {
         self.stop.store(true, Ordering::Relaxed);
     }
 
-    fn send(&mut self, ask: Ask) {
+    fn send(&mut self, ask: BackgroundRequest) {
         // If sending fails, the thread has ended and no answer will come.
         if self.asks.send(ask).is_ok() {
             self.waiting += 1;
@@ -337,14 +342,14 @@ impl Background {
         (self.waiting, self.trying, self.examining) = (0, false, 0);
     }
 
-    fn take(&mut self, told: Told) {
+    fn take(&mut self, told: BackgroundReply) {
         match told {
-            Told::Pushes(place, slave, found) => {
+            BackgroundReply::Pushes(place, slave, found) => {
                 self.keep_pushes(place, slave, found);
                 self.waiting -= 1;
             }
-            Told::NotNow => self.waiting -= 1,
-            Told::Examination {
+            BackgroundReply::NotNow => self.waiting -= 1,
+            BackgroundReply::Examination {
                 place,
                 nodes,
                 found,
@@ -364,22 +369,22 @@ impl Background {
                 self.examining -= usize::from(!going_on);
                 self.waiting -= usize::from(!going_on);
             }
-            Told::Exported(result) => {
+            BackgroundReply::Exported(result) => {
                 self.exported = Some(result);
                 self.waiting -= 1;
             }
-            Told::Trying { all, now } => {
+            BackgroundReply::Trying { all, now } => {
                 if let Some(tried) = &mut self.tried {
                     (tried.all, tried.now) = (Some(all), now);
                 }
             }
-            Told::Tried(trial) => {
+            BackgroundReply::Tried(trial) => {
                 if let Some(tried) = &mut self.tried {
                     tried.trials.push(*trial);
                     remedies::sort(&mut tried.trials);
                 }
             }
-            Told::Done { stopped } => {
+            BackgroundReply::Done { stopped } => {
                 if let Some(tried) = &mut self.tried {
                     tried.stopped = stopped;
                 }
@@ -398,25 +403,32 @@ impl Drop for Background {
 
 impl Helper {
     /// Answers a request; `None` if the receiver is gone.
-    fn answer(&mut self, ask: Ask, news: &Sender<Told>, stop: &AtomicBool) -> Option<()> {
+    fn answer(
+        &mut self,
+        ask: BackgroundRequest,
+        news: &Sender<BackgroundReply>,
+        stop: &AtomicBool,
+    ) -> Option<()> {
         match ask {
-            Ask::Pushes(place, slave, between) => {
+            BackgroundRequest::Pushes(place, slave, between) => {
                 let found = match between {
-                    Between::Way(way) => Some(self.pushes(slave, way)),
-                    Between::Told(iterations) => {
+                    BetweenRuns::Path(way) => Some(self.pushes(slave, way)),
+                    BetweenRuns::Reported(iterations) => {
                         let posed = self.posed_aside(&iterations.start);
                         posed.map(|posed| {
                             pushes_told::pushes(&self.model, &iterations, &posed.ok()?, slave)
                         })
                     }
                 };
-                let told = found.map_or(Told::NotNow, |found| Told::Pushes(place, slave, found));
+                let told = found.map_or(BackgroundReply::NotNow, |found| {
+                    BackgroundReply::Pushes(place, slave, found)
+                });
                 news.send(told).ok()
             }
-            Ask::Examination(place, state, nodes, known) if self.spec.is_none() => {
+            BackgroundRequest::Examination(place, state, nodes, known) if self.spec.is_none() => {
                 let found = self.examine_attached(&state, &nodes, known, stop);
                 let found = (!stop.load(Ordering::Relaxed)).then(|| Box::new(found));
-                news.send(Told::Examination {
+                news.send(BackgroundReply::Examination {
                     place,
                     nodes,
                     found,
@@ -424,26 +436,28 @@ impl Helper {
                 })
                 .ok()
             }
-            Ask::Examination(place, state, nodes, _) => {
+            BackgroundRequest::Examination(place, state, nodes, _) => {
                 self.borrow(&state);
                 let (stepper, spec) = self.solver();
                 examine(stepper, spec, (place, &state, nodes), news, stop)
             }
-            Ask::Export(ask) if self.spec.is_none() && is_of_problem(&ask) => {
+            BackgroundRequest::Export(ask) if self.spec.is_none() && is_of_problem(&ask) => {
                 let done = self
                     .posed(&ask.state)
                     .map_err(ExportError::from)
                     .and_then(|posed| write_posed(&self.model, &posed, &ask));
                 let told = done.map(|()| format!("wrote {}", ask.file.display()));
-                news.send(Told::Exported(told)).ok()
+                news.send(BackgroundReply::Exported(told)).ok()
             }
-            Ask::Export(ask) => {
+            BackgroundRequest::Export(ask) => {
                 let done = write(self.solver().0, &ask);
                 let told = done.map(|()| format!("wrote {}", ask.file.display()));
-                news.send(Told::Exported(told)).ok()
+                news.send(BackgroundReply::Exported(told)).ok()
             }
-            Ask::Remedies(state) if self.spec.is_none() => self.try_attached(&state, news, stop),
-            Ask::Remedies(state) => {
+            BackgroundRequest::Remedies(state) if self.spec.is_none() => {
+                self.try_attached(&state, news, stop)
+            }
+            BackgroundRequest::Remedies(state) => {
                 let (stepper, spec) = self.solver();
                 try_remedies(stepper, spec, &state, news, stop)
             }
@@ -529,7 +543,12 @@ impl Helper {
     }
 
     /// Tries the remedies that an attached solver offers, on that solver.
-    fn try_attached(&self, state: &State, news: &Sender<Told>, stop: &AtomicBool) -> Option<()> {
+    fn try_attached(
+        &self,
+        state: &State,
+        news: &Sender<BackgroundReply>,
+        stop: &AtomicBool,
+    ) -> Option<()> {
         let stopped = || stop.load(Ordering::Relaxed);
         let found = match self.posed(state) {
             Ok(posed) => attached::examine(&self.model, state, &posed, &[], &stopped),
@@ -551,7 +570,7 @@ impl Helper {
     }
 
     /// The pushes on a node: from the session's solver if it has the frozen problem, otherwise from our own.
-    fn pushes(&mut self, slave: usize, way: Way) -> Option<Vec<Push>> {
+    fn pushes(&mut self, slave: usize, way: PushPath) -> Option<Vec<NodePush>> {
         let way = Arc::new(way);
         let theirs = way.clone();
         // The session's solver only repeats the steps; the expensive part runs on this thread.
@@ -590,12 +609,12 @@ fn examine(
     stepper: &mut Stepper,
     spec: Option<&Spec>,
     (place, state, nodes): (LinePlace, &State, Vec<usize>),
-    news: &Sender<Told>,
+    news: &Sender<BackgroundReply>,
     stop: &AtomicBool,
 ) -> Option<()> {
     let stopped = || stop.load(Ordering::Relaxed);
     let send = |found: Option<Examination>, going_on: bool| {
-        news.send(Told::Examination {
+        news.send(BackgroundReply::Examination {
             place,
             nodes: nodes.clone(),
             found: found.map(Box::new),
@@ -630,7 +649,7 @@ fn try_remedies(
     stepper: &mut Stepper,
     spec: Option<&Spec>,
     state: &State,
-    news: &Sender<Told>,
+    news: &Sender<BackgroundReply>,
     stop: &AtomicBool,
 ) -> Option<()> {
     let stopped = || stop.load(Ordering::Relaxed);
@@ -644,15 +663,15 @@ fn try_remedies(
 /// Runs trials until `attempt` returns `None`; an inner `None` means that the remedy does not apply.
 fn try_all(
     all: &[Remedy],
-    news: &Sender<Told>,
+    news: &Sender<BackgroundReply>,
     mut attempt: impl FnMut(&Remedy) -> Option<Option<Trial>>,
 ) -> Option<()> {
     let mut stopped = false;
     for remedy in all {
         let (all, now) = (all.len(), remedy.label.clone());
-        news.send(Told::Trying { all, now }).ok()?;
+        news.send(BackgroundReply::Trying { all, now }).ok()?;
         match attempt(remedy) {
-            Some(Some(trial)) => news.send(Told::Tried(Box::new(trial))).ok()?,
+            Some(Some(trial)) => news.send(BackgroundReply::Tried(Box::new(trial))).ok()?,
             Some(None) => {}
             None => {
                 stopped = true;
@@ -660,5 +679,5 @@ fn try_all(
             }
         }
     }
-    news.send(Told::Done { stopped }).ok()
+    news.send(BackgroundReply::Done { stopped }).ok()
 }

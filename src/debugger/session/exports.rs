@@ -8,7 +8,7 @@ use crate::explain::report;
 use crate::history::strip::Strip;
 use crate::record::command::Exported;
 use crate::record::export::shown::{ExportError, Shown};
-use crate::record::export::{self, Kind, Origin};
+use crate::record::export::{self, ExportKind, Origin};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stickslip_core::model::Model;
@@ -83,7 +83,11 @@ fn core_of(stepper: &mut Stepper, state: &State, origin: &Origin) -> Result<Stri
 }
 
 /// The contents of a file of this kind.
-fn shown(stepper: &mut Stepper, ask: &Export, kind: &Kind) -> Result<Vec<Vec<u8>>, ExportError> {
+fn shown(
+    stepper: &mut Stepper,
+    ask: &Export,
+    kind: &ExportKind,
+) -> Result<Vec<Vec<u8>>, ExportError> {
     let Some(seen) = &ask.shown else {
         return Err(ExportError::Finished);
     };

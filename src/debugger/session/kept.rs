@@ -4,7 +4,7 @@
 use super::machine::Session;
 use crate::history::branches;
 use crate::history::strip::{PointKind, Strip};
-use crate::recorded::calculix::{self, Recorded};
+use crate::recorded::calculix::{self, RecordedRun};
 use crate::recorded::past::{Line, Opened};
 use crate::recorded::recording::Recording;
 use crate::recorded::story::in_common;
@@ -35,8 +35,8 @@ impl Session {
 
     /// The session on a CalculiX run: at the end of the first attempt that did not converge, otherwise at the
     /// start.
-    fn finished(opened: calculix::Opened) -> Session {
-        let solver = Recorded::new(&opened);
+    fn finished(opened: calculix::OpenedRun) -> Session {
+        let solver = RecordedRun::new(&opened);
         let iterations = opened.run.files.iterations.len();
         let mut session = Session::attached(opened.scene, Box::new(solver), opened.log);
         session.take_steps(vec![None; iterations]);

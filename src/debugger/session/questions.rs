@@ -1,10 +1,10 @@
 //! Questions about the shown state that the background thread answers.
 
-use super::background::{Background, Between};
+use super::background::{Background, BetweenRuns};
 use super::exports::{Export, Seen};
 use super::machine::{Reply, Session};
 use super::refusal::Refusal;
-use crate::explain::influence::Way;
+use crate::explain::influence::PushPath;
 use crate::explain::pushes_told::{self, Iterations};
 use crate::explain::report;
 use crate::history::frame::Frame;
@@ -61,12 +61,12 @@ impl Session {
         }
         self.background.ask_pushes(place, slave, || {
             if is_attached {
-                return iterations(tree, before, cursor).map(Between::Told);
+                return iterations(tree, before, cursor).map(BetweenRuns::Reported);
             }
             let from = tree.whole_before(before - 1);
             let frames = &tree.frames()[from..cursor];
             let steps = frames[1..].iter().map(|frame| frame.intervention.clone());
-            Some(Between::Way(Way {
+            Some(BetweenRuns::Path(PushPath {
                 state: Box::new(frames[0].state.clone()),
                 steps: steps.collect(),
                 before: before - from - 1,

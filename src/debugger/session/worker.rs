@@ -278,7 +278,7 @@ fn run(
     let until = until.interrupted_by(&interrupted);
     let mut began = Instant::now();
     // Our own solver detects cycles itself.
-    let mut watch = solver.stepper().is_none().then(rounds::Watch::default);
+    let mut watch = solver.stepper().is_none().then(rounds::CycleWatch::default);
     let mut round = None;
     let end = drive(solver, until, |solver| {
         let (frame, strip) = seen(solver, &before, began);

@@ -7,7 +7,7 @@ use super::spec::{AnswerSpec, LessonSpec, SceneSpec, StepSpec, When};
 use crate::action::{self, Action, Context};
 use crate::record::command::Command;
 use std::sync::Arc;
-use stickslip_core::contact::laws::Law;
+use stickslip_core::contact::laws::ContactLaw;
 use stickslip_core::model::{Mode, Model};
 use stickslip_scene::embedded::EmbeddedFile;
 use stickslip_scene::embedded_all;
@@ -31,7 +31,7 @@ pub struct Lesson {
     /// The scene's model.
     pub model: Arc<Model>,
     /// The steps in order.
-    pub steps: Vec<Step>,
+    pub steps: Vec<LessonStep>,
     /// The runs of its chart, if it has one.
     pub runs: Option<Arc<Runs>>,
     /// The text of its file, for line numbers in errors.
@@ -40,7 +40,7 @@ pub struct Lesson {
 
 /// A step of a lesson.
 #[derive(Debug, Clone)]
-pub enum Step {
+pub enum LessonStep {
     /// Something to read.
     Text(Template),
     /// An action to perform.
@@ -107,7 +107,7 @@ pub enum Truth {
     /// All laws are satisfied.
     Obeys,
     /// This law is violated.
-    Breaks(Law),
+    Breaks(ContactLaw),
     /// The first number is clearly less than the second.
     Less(LessonQuantity, LessonQuantity),
     /// The numbers are about the same.
@@ -198,7 +198,7 @@ impl Lesson {
         let spec: LessonSpec = read::value(name, text, "lesson")
             .map_err(|error| read::or_mistaken(error, name, text, FileKind::Lesson))?;
         let scene = scene(name, text, &spec)?;
-        let reader = Reader { scene: &scene };
+        let reader = LessonReader { scene: &scene };
         let steps = reader
             .steps(&spec)
             .map_err(|fault| placed(name, text, &[], fault))?;
@@ -258,11 +258,11 @@ fn runs(spec: &LessonSpec, scene: &Scene) -> Result<Option<Arc<Runs>>, Fault> {
 }
 
 /// Checks steps against a scene.
-struct Reader<'a> {
+struct LessonReader<'a> {
     scene: &'a Scene,
 }
 
-impl Reader<'_> {
+impl LessonReader<'_> {
     fn context(&self) -> Context<'_> {
         Context {
             model: Some(&self.scene.model),
@@ -271,7 +271,7 @@ impl Reader<'_> {
         }
     }
 
-    fn steps(&self, spec: &LessonSpec) -> Result<Vec<Step>, Fault> {
+    fn steps(&self, spec: &LessonSpec) -> Result<Vec<LessonStep>, Fault> {
         if spec.steps.is_empty() {
             return Err(Fault::new(at!["steps"], "a lesson needs at least one step"));
         }
@@ -281,21 +281,23 @@ impl Reader<'_> {
             .collect()
     }
 
-    fn step(&self, path: Path, step: &StepSpec) -> Result<Step, Fault> {
+    fn step(&self, path: Path, step: &StepSpec) -> Result<LessonStep, Fault> {
         let text = |text: &str| self.template(path.then("text"), text, LONGEST_TEXT);
         match step {
-            StepSpec::Text(text) => Ok(Step::Text(self.template(path, text, LONGEST_TEXT)?)),
+            StepSpec::Text(text) => {
+                Ok(LessonStep::Text(self.template(path, text, LONGEST_TEXT)?))
+            }
             StepSpec::Press { text: words, press } => {
                 let (action, how) = press_of(press, &self.context())
                     .map_err(|why| Fault::new(path.then("press"), why.to_string()))?;
                 let text = text(words)?;
-                Ok(Step::Press { text, action, how })
+                Ok(LessonStep::Press { text, action, how })
             }
             StepSpec::Predict { right: 0, .. } => Err(Fault::new(
                 path.then("right"),
                 "at least one right prediction is required",
             )),
-            StepSpec::Predict { text: words, right } => Ok(Step::Predict {
+            StepSpec::Predict { text: words, right } => Ok(LessonStep::Predict {
                 text: text(words)?,
                 right: *right,
             }),
@@ -318,7 +320,7 @@ impl Reader<'_> {
                 };
                 hint.check_hint(asked)
                     .map_err(|why| Fault::new(path.then("hint"), why.to_string()))?;
-                Ok(Step::Ask(Ask {
+                Ok(LessonStep::Ask(Ask {
                     text: text(words)?,
                     answer,
                     ahead: *ahead,
@@ -397,9 +399,9 @@ impl Reader<'_> {
             When::Quadratic => Truth::Quadratic(true),
             When::Obeys => Truth::Obeys,
             When::Breaks(name) => {
-                let all = || Law::ALL.into_iter().chain(Law::OF_BONDS);
+                let all = || ContactLaw::ALL.into_iter().chain(ContactLaw::OF_BONDS);
                 let law = all().find(|law| law.name() == name);
-                let names = || all().map(Law::name).collect::<Vec<_>>().join(", ");
+                let names = || all().map(ContactLaw::name).collect::<Vec<_>>().join(", ");
                 let none = || Fault::new(path, format!("unknown law {name:?}; laws: {}", names()));
                 Truth::Breaks(law.ok_or_else(none)?)
             }

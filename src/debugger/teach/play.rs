@@ -1,8 +1,8 @@
 //! Plays a lesson automatically, to check that every step can be reached and every question has one answer.
 
-use super::lesson::{Lesson, Step};
+use super::lesson::{Lesson, LessonStep};
 use super::refusal::Unplayable;
-use super::tutor::{AnswerKind, Question, Tutor};
+use super::tutor::{AnswerKind, Tutor, TutorQuestion};
 use crate::action::Action;
 use crate::explain::names;
 use crate::record::command::{Command, Unit};
@@ -43,8 +43,8 @@ pub fn play(lesson: &Arc<Lesson>) -> Result<Vec<Answered>, SceneError> {
             return Err(lesson.fault(at, message.to_owned()));
         }
         match step {
-            Step::Text(_) => {}
-            Step::Press { action, .. } => {
+            LessonStep::Text(_) => {}
+            LessonStep::Press { action, .. } => {
                 tutor
                     .permits(action, session.cursor(), session.frame())
                     .map_err(|why| fault(why.into()))?;
@@ -52,21 +52,21 @@ pub fn play(lesson: &Arc<Lesson>) -> Result<Vec<Answered>, SceneError> {
                 tutor.settled(session.cursor(), session.frame());
                 continue;
             }
-            Step::Ask(_) => {
+            LessonStep::Ask(_) => {
                 let word = tutor.solution().unwrap_or_default();
                 let question = tutor.question();
                 answered.push(Answered {
                     step: at,
                     question: tutor.text().to_owned(),
                     answer: readable(&tutor, &word),
-                    then: question.map_or(String::new(), Question::reply_to_right),
-                    hint: question.map_or(String::new(), Question::reply_to_wrong),
+                    then: question.map_or(String::new(), TutorQuestion::reply_to_right),
+                    hint: question.map_or(String::new(), TutorQuestion::reply_to_wrong),
                 });
                 tutor
                     .answer(&word, 0, session.cursor(), session.frame())
                     .map_err(|why| fault(why.into()))?;
             }
-            Step::Predict { right, .. } => {
+            LessonStep::Predict { right, .. } => {
                 predict(*right, &mut tutor, &mut session).map_err(fault)?
             }
         }

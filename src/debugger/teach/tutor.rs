@@ -6,7 +6,7 @@
 //! separate solver, which starts from the shown frame.
 
 use super::guess::Guess;
-use super::lesson::{self, Answer, Ask, Lesson, Step, Truth};
+use super::lesson::{self, Answer, Ask, Lesson, LessonStep, Truth};
 use super::look::Look;
 use super::quantity::Template;
 use super::refusal::{NotNow, Unknown};
@@ -34,7 +34,7 @@ pub struct Tutor {
     /// Index of the current step; past the last one, the lesson has ended.
     at: usize,
     text: String,
-    question: Option<Question>,
+    question: Option<TutorQuestion>,
     remark: Option<Remark>,
     /// Number of answers and predictions in this step.
     given: u32,
@@ -52,7 +52,7 @@ pub struct Tutor {
 
 /// An open question, with its answer.
 #[derive(Debug, Clone)]
-pub struct Question {
+pub struct TutorQuestion {
     /// How it is answered.
     pub kind: AnswerKind,
     /// The choices, if there are any.
@@ -139,7 +139,7 @@ impl Tutor {
     }
 
     /// The current step; `None` when the lesson has ended.
-    pub fn step(&self) -> Option<&Step> {
+    pub fn step(&self) -> Option<&LessonStep> {
         self.lesson.steps.get(self.at)
     }
 
@@ -149,7 +149,7 @@ impl Tutor {
     }
 
     /// The open question.
-    pub fn question(&self) -> Option<&Question> {
+    pub fn question(&self) -> Option<&TutorQuestion> {
         self.question.as_ref().filter(|_| !self.done)
     }
 
@@ -178,15 +178,17 @@ impl Tutor {
         };
         let (text, question) = match lesson.steps.get(self.at) {
             None => return self.text = self.farewell(),
-            Some(Step::Text(text) | Step::Press { text, .. }) => (text, None),
-            Some(Step::Predict { text, .. }) => {
+            Some(LessonStep::Text(text) | LessonStep::Press { text, .. }) => (text, None),
+            Some(LessonStep::Predict { text, .. }) => {
                 self.guess = Some(Guess::new(Whose::Selected, cursor));
                 (text, None)
             }
-            Some(Step::Ask(ask)) => (&ask.text, Some(ask)),
+            Some(LessonStep::Ask(ask)) => (&ask.text, Some(ask)),
         };
         let filled = text.fill(&look, "…");
-        let question = question.map(|ask| Question::ask(ask, &look)).transpose();
+        let question = question
+            .map(|ask| TutorQuestion::ask(ask, &look))
+            .transpose();
         match (filled, question) {
             (Ok(text), Ok(question)) => (self.text, self.question) = (text, question),
             (Err(why), _) | (_, Err(why)) => {
@@ -230,7 +232,7 @@ impl Tutor {
     ) -> Result<bool, NotNow> {
         match self.step() {
             None => return Ok(false),
-            Some(Step::Press { action: wanted, .. }) if action == wanted && !self.pending => {
+            Some(LessonStep::Press { action: wanted, .. }) if action == wanted && !self.pending => {
                 self.pending = true;
                 return Ok(true);
             }
@@ -244,7 +246,7 @@ impl Tutor {
             (Command::Snapshot { .. } | Command::Export { .. } | Command::Journal(_), _) => {
                 Ok(false)
             }
-            (_, Some(Step::Predict { .. })) if moves && !self.done => match &mut self.guess {
+            (_, Some(LessonStep::Predict { .. })) if moves && !self.done => match &mut self.guess {
                 Some(guess) => guess.permits(action, cursor, frame).map(|()| false),
                 None => Ok(false),
             },
@@ -267,7 +269,7 @@ impl Tutor {
 
     /// Whether the step only waits for the user to continue.
     pub fn is_read(&self) -> bool {
-        self.done || matches!(self.step(), Some(Step::Text(_)))
+        self.done || matches!(self.step(), Some(LessonStep::Text(_)))
     }
 
     /// Continues, if the step only waits for that.
@@ -301,7 +303,7 @@ impl Tutor {
             self.asked += 1;
             self.right += u32::from(good);
             let wanted = match self.lesson.steps.get(self.at) {
-                Some(Step::Predict { right, .. }) => *right,
+                Some(LessonStep::Predict { right, .. }) => *right,
                 _ => 0,
             };
             let enough = guess.right >= wanted;
@@ -337,7 +339,7 @@ impl Tutor {
 
     /// Whether this is the action that the step waits for.
     pub fn wants(&self, action: &Action) -> bool {
-        matches!(self.step(), Some(Step::Press { action: wanted, .. }) if action == wanted)
+        matches!(self.step(), Some(LessonStep::Press { action: wanted, .. }) if action == wanted)
     }
 
     /// Identifies the page: the step, and the number of answers given in it. The text changes with either.
@@ -374,14 +376,14 @@ impl Tutor {
             return false;
         }
         let begin = match self.step() {
-            Some(Step::Press { .. }) if self.pending => self.at + 1,
-            Some(Step::Press { .. } | Step::Predict { .. }) | None => return false,
+            Some(LessonStep::Press { .. }) if self.pending => self.at + 1,
+            Some(LessonStep::Press { .. } | LessonStep::Predict { .. }) | None => return false,
             Some(_) => self.at,
         };
         self.lesson.steps[begin..]
             .iter()
-            .take_while(|step| matches!(step, Step::Text(_) | Step::Ask(_)))
-            .any(|step| matches!(step, Step::Ask(ask) if about(ask)))
+            .take_while(|step| matches!(step, LessonStep::Text(_) | LessonStep::Ask(_)))
+            .any(|step| matches!(step, LessonStep::Ask(ask) if about(ask)))
     }
 
     /// The text of the step.
@@ -414,16 +416,18 @@ impl Tutor {
         ) {
             (None, _) => "the lesson has ended".into(),
             (Some(_), _) if self.done => on,
-            (Some(Step::Text(_)), _) => on,
-            (Some(Step::Press { how, .. }), _) => how.clone(),
-            (Some(Step::Predict { .. }), _) => {
+            (Some(LessonStep::Text(_)), _) => on,
+            (Some(LessonStep::Press { how, .. }), _) => how.clone(),
+            (Some(LessonStep::Predict { .. }), _) => {
                 "s steps; then a, and f free, s sliding, x fixed".into()
             }
-            (Some(Step::Ask(_)), Some(AnswerKind::Mode)) => {
+            (Some(LessonStep::Ask(_)), Some(AnswerKind::Mode)) => {
                 "answer: a, then f free, s sliding, x fixed".into()
             }
-            (Some(Step::Ask(_)), Some(AnswerKind::Choice)) => "answer: a, then the number".into(),
-            (Some(Step::Ask(_)), _) => "answer: a, then a number and Enter".into(),
+            (Some(LessonStep::Ask(_)), Some(AnswerKind::Choice)) => {
+                "answer: a, then the number".into()
+            }
+            (Some(LessonStep::Ask(_)), _) => "answer: a, then a number and Enter".into(),
         }
     }
 
@@ -437,10 +441,10 @@ impl Tutor {
     }
 }
 
-impl Question {
+impl TutorQuestion {
     /// Gets the right answer from the solver. Texts shown before the answer are filled from the current state
     /// `now`.
-    fn ask(ask: &Ask, now: &Look) -> Result<Question, Unknown> {
+    fn ask(ask: &Ask, now: &Look) -> Result<TutorQuestion, Unknown> {
         let look = now.ahead(ask.ahead)?;
         let found = |slave: usize| -> Result<_, Unknown> {
             let record = look.record(slave)?;
@@ -490,7 +494,7 @@ impl Question {
                 )
             }
         };
-        let mut question = Question {
+        let mut question = TutorQuestion {
             kind,
             options,
             right,

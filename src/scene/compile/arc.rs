@@ -4,7 +4,7 @@ use super::super::nodes::Names;
 use crate::format::error::{Fault, Path, at, some_of};
 use crate::format::spec::Spec;
 use stickslip_core::model::{
-    ArcLength, Bound, Contact, Control, InitialGaps, Measured, Monitor, Solver, Watched,
+    ArcLength, Bound, Contact, Control, InitialGaps, LinearSolver, Measured, Monitor, Watched,
 };
 
 /// Resolves `history.arc`, and rejects invalid settings.
@@ -65,7 +65,7 @@ pub(super) fn arc(
 /// Rejects settings that do not work with an unknown load factor.
 fn follows(spec: &Spec) -> Result<(), Fault> {
     let settings = at!["settings"];
-    if spec.settings.solver == Solver::Augmented {
+    if spec.settings.solver == LinearSolver::Augmented {
         let message = "control: arc needs the condensed interface: set solver to auto or condensed";
         return Err(Fault::new(settings.then("solver"), message));
     }

@@ -9,7 +9,7 @@
 
 use crate::format::condensed::{Contact, Matrix, Problem};
 use crate::limits;
-use stickslip_core::model::{Friction, InitialState, Mode, Settings, Solver};
+use stickslip_core::model::{Friction, InitialState, LinearSolver, Mode, Settings};
 use stickslip_exchange::problem::{self, Local};
 use stickslip_exchange::siconos;
 pub use stickslip_exchange::siconos::Storage;
@@ -194,7 +194,7 @@ fn friction(mu: f64) -> Friction {
 /// W is usually sparse, and condensation has nothing to eliminate.
 pub(super) fn settings() -> Settings {
     Settings {
-        solver: Solver::Augmented,
+        solver: LinearSolver::Augmented,
         ..Settings::default()
     }
 }

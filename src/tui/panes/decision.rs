@@ -12,9 +12,9 @@ use ratatui::text::{Line, Span};
 use stickslip_core::contact::record::{ContactRecord, Forced, SideForce};
 use stickslip_core::contact::table2::{Decision, Rule, Test, Tested};
 use stickslip_core::model::Mode;
-use stickslip_core::model::Ties;
+use stickslip_core::model::TieRule;
 use stickslip_debugger::explain::bond;
-use stickslip_debugger::explain::influence::Push;
+use stickslip_debugger::explain::influence::NodePush;
 use stickslip_debugger::explain::names::{self, MODES, TABLE_2};
 use stickslip_debugger::explain::pushes_told;
 use stickslip_debugger::explain::report;
@@ -147,7 +147,7 @@ fn pushes(
         })];
     };
     let tested = tested(&record.decision);
-    let of = |push: &Push| match tested {
+    let of = |push: &NodePush| match tested {
         Tested::Gap => push.influence.gap,
         Tested::NormalForce | Tested::Pressure | Tested::Cover | Tested::Change | Tested::Own => {
             push.influence.f_n
@@ -163,7 +163,7 @@ fn pushes(
         Tested::ShearForce | Tested::LeastFriction | Tested::Drag => "ΔF_t",
         Tested::Slip | Tested::Room => "Δslip",
     };
-    let mut found: Vec<&Push> = found.iter().filter(|push| of(push) != 0.0).collect();
+    let mut found: Vec<&NodePush> = found.iter().filter(|push| of(push) != 0.0).collect();
     found.sort_by(|a, b| of(b).abs().total_cmp(&of(a).abs()));
     let together: f64 = found.iter().map(|push| of(push)).sum();
     let mut lines = vec![heading("Who pushed it since the previous minor iteration")];
@@ -191,7 +191,7 @@ fn signed(value: f64) -> String {
 }
 
 /// Describes a mode change.
-fn deed(push: &Push, view: &View) -> String {
+fn deed(push: &NodePush, view: &View) -> String {
     let name = view.slave(push.slave);
     match push.modes {
         [a, b] if a == b => format!("the new T_max of {name}"),
@@ -641,8 +641,8 @@ fn words(record: Option<&ContactRecord>, slave: usize, view: &View) -> String {
         matches!(decision.rule, Rule::SlidingStays | Rule::SlidingPasses) && record.t_max == 0.0;
     if !frictionless && decision.tests.iter().flatten().any(|test| test.tie) {
         text += match view.frame().state.controls.settings.ties {
-            Ties::Keep => " A tie keeps the mode.",
-            Ties::Printed => " An exact tie, decided by the table as printed.",
+            TieRule::Keep => " A tie keeps the mode.",
+            TieRule::Printed => " An exact tie, decided by the table as printed.",
         };
     }
     if view.t_max_moves(slave) {

@@ -8,7 +8,7 @@ use crate::view::View;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
-use stickslip_debugger::action::{ACTIONS, Entry, Group};
+use stickslip_debugger::action::{ACTIONS, ActionEntry, Group};
 use unicode_width::UnicodeWidthStr;
 
 /// Actions that the footer shows at any width.
@@ -196,9 +196,9 @@ fn hint(key: &str, label: &str, theme: &Theme) -> [Span<'static>; 2] {
 fn table_keys(app: &App, view: Option<&View>, places: &Places, room: usize) -> Line<'static> {
     let teaches = app.lesson.is_some() || app.guess.is_some();
     // An action without a key is left out; it can still be typed by name.
-    let key = |entry: &'static Entry| app.keymap.keys(entry).next().map(str::to_owned);
+    let key = |entry: &'static ActionEntry| app.keymap.keys(entry).next().map(str::to_owned);
     let context = app.context(view, &[]);
-    let labelled: Vec<(&Entry, String, String)> = ACTIONS
+    let labelled: Vec<(&ActionEntry, String, String)> = ACTIONS
         .iter()
         .filter(|entry| !entry.label.is_empty() && (teaches || entry.group != Group::Learn))
         .filter_map(|entry| {
@@ -209,7 +209,7 @@ fn table_keys(app: &App, view: Option<&View>, places: &Places, room: usize) -> L
             Some((entry, key(entry)?, label))
         })
         .collect();
-    let needed = |entry: &Entry| is_always(entry) || entry.group == Group::Learn;
+    let needed = |entry: &ActionEntry| is_always(entry) || entry.group == Group::Learn;
     let hints = labelled
         .into_iter()
         .map(|(entry, key, label)| (needed(entry), key, label));
@@ -217,7 +217,7 @@ fn table_keys(app: &App, view: Option<&View>, places: &Places, room: usize) -> L
 }
 
 /// Whether the footer always shows an action.
-fn is_always(entry: &Entry) -> bool {
+fn is_always(entry: &ActionEntry) -> bool {
     ALWAYS.contains(&entry.name)
 }
 
@@ -243,7 +243,7 @@ fn fitted(hints: &[(bool, String, String)], room: usize, theme: &Theme) -> Line<
 }
 
 /// Label of an action; for Tab, the page number if panes are shown one at a time.
-fn label(entry: &Entry, app: &App, places: &Places) -> String {
+fn label(entry: &ActionEntry, app: &App, places: &Places) -> String {
     if entry.name == "pane" && places.paged {
         let page = Pane::ALL
             .iter()

@@ -16,7 +16,7 @@ use ratatui::text::{Line, Span};
 use ratatui::widgets::Widget;
 use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_4;
-use stickslip_core::contact::element::Element;
+use stickslip_core::contact::element::SurfaceElement;
 use stickslip_core::contact::projection::tangent;
 use stickslip_core::fem::deformation::{PointDeformation, deformation};
 use stickslip_core::fem::lagrange;
@@ -281,7 +281,7 @@ fn mean(nodes: &[usize], view: &View) -> Point {
 fn surfaces(canvas: &mut Canvas, window: &Window, app: &App, view: &View) {
     let style = app.theme.text;
     let mut walked = SPACING;
-    for element in view.model.surfaces.iter().flat_map(Element::all) {
+    for element in view.model.surfaces.iter().flat_map(SurfaceElement::all) {
         let nodes = outline::element(element, |node| view.place(node));
         draw_curve(canvas, window, &nodes, style);
         // Short elements share one normal.

@@ -12,7 +12,7 @@ use ratatui::text::Line;
 use stickslip_core::step::intervene::Value;
 use stickslip_core::step::solver::Parameter;
 use stickslip_debugger::action::present;
-use stickslip_debugger::recorded::log::How;
+use stickslip_debugger::recorded::log::LogOrigin;
 use stickslip_exchange::attach::message::Level;
 use stickslip_manual::search::Search;
 use stickslip_scene::number;
@@ -172,7 +172,9 @@ fn rows(page: Page, width: usize, view: Option<&View>) -> Vec<Row> {
 
 /// The text of a finished run; sentences wrap, tables do not.
 fn printed(lines: Vec<stickslip_debugger::recorded::log::Said>, width: usize) -> Vec<Row> {
-    let printed = lines.into_iter().filter(|said| said.how == How::Printed);
+    let printed = lines
+        .into_iter()
+        .filter(|said| said.how == LogOrigin::Printed);
     let wrapped = printed.flat_map(|said| match said.text.contains("  ") {
         true => vec![said.text],
         false => paint::wrap(&said.text, width.saturating_sub(2)),
@@ -201,10 +203,10 @@ fn said((first, lines): (usize, Vec<stickslip_debugger::recorded::log::Said>)) -
     rows.extend(lines.into_iter().map(|said| Row {
         text: format!("{:<HOW$} {}", said.how.word(), said.text),
         style: match said.how {
-            How::Told(Level::Error) => |theme| theme.bad,
-            How::Told(Level::Warning) => |theme| theme.warning,
-            How::Told(Level::Info) | How::Printed => |theme| theme.text,
-            How::Noted => |theme| theme.faint,
+            LogOrigin::Told(Level::Error) => |theme| theme.bad,
+            LogOrigin::Told(Level::Warning) => |theme| theme.warning,
+            LogOrigin::Told(Level::Info) | LogOrigin::Printed => |theme| theme.text,
+            LogOrigin::Noted => |theme| theme.faint,
         },
     }));
     rows

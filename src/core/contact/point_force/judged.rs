@@ -4,7 +4,7 @@
 //! inner product of the two remainders. The closed forms of [`super::Pair`] are not used, so this is an independent check of
 //! them.
 
-use crate::contact::element::{Element, Places};
+use crate::contact::element::{ElementPositions, SurfaceElement};
 use crate::contact::facing::{MOST, faced};
 use crate::contact::feet::{self, Foot};
 use crate::contact::point_force;
@@ -40,7 +40,7 @@ const ROUNDS: usize = 8;
 
 /// A slave node over an element with local flexibility.
 #[derive(Debug, Clone, Copy)]
-struct Press {
+struct JudgedForce {
     slave: usize,
     spot: SurfacePoint,
     give: PointGive,
@@ -65,7 +65,7 @@ struct Line {
 #[derive(Debug)]
 pub struct JudgedGives {
     rule: Vec<(f64, f64)>,
-    presses: Vec<Press>,
+    presses: Vec<JudgedForce>,
 }
 
 impl JudgedGives {
@@ -95,10 +95,10 @@ impl JudgedGives {
                 let surface = &seen.surfaces[foot.spot.surface];
                 let give = point_force::of(surface, foot.spot)?;
                 let line = Line::new(seen, foot.spot, at)?;
-                let degree = Element::of(surface, foot.spot.element).degree();
+                let degree = SurfaceElement::of(surface, foot.spot.element).degree();
                 let [c, s] = line.normal;
                 let force = [c * force[0] + s * force[1], c * force[1] - s * force[0]];
-                Some(Press {
+                Some(JudgedForce {
                     slave,
                     spot: foot.spot,
                     give,
@@ -125,7 +125,7 @@ impl JudgedGives {
 
     /// Σ c_j F_j and Σ ∂c_j/∂ξ F_j (length) at the point of a press, over all forces on the element. If `own` is given, it replaces the
     /// force of this press.
-    fn sums(&self, at: &Press, own: Option<f64>) -> (f64, f64) {
+    fn sums(&self, at: &JudgedForce, own: Option<f64>) -> (f64, f64) {
         let element = |spot: &SurfacePoint| (spot.surface, spot.element);
         let mut sums = (0.0, 0.0);
         let mut add = |other: &Projected, force: f64| {
@@ -173,8 +173,8 @@ impl JudgedGives {
         let (Some(give), Some(line)) = (point_force::of(surface, spot), line) else {
             return tangent;
         };
-        let degree = Element::of(surface, spot.element).degree();
-        let there = Press {
+        let degree = SurfaceElement::of(surface, spot.element).degree();
+        let there = JudgedForce {
             spot,
             give,
             projected: Projected::new(&self.rule, degree, spot.xi),
@@ -191,8 +191,11 @@ impl JudgedGives {
 
 impl Line {
     fn new(seen: &Loaded<'_>, spot: SurfacePoint, point: [f64; 2]) -> Option<Line> {
-        let element = Element::of(&seen.surfaces[spot.surface], spot.element);
-        let (places, s) = (Places::of(element.nodes, seen.now), element.shape(spot.xi));
+        let element = SurfaceElement::of(&seen.surfaces[spot.surface], spot.element);
+        let (places, s) = (
+            ElementPositions::of(element.nodes, seen.now),
+            element.shape(spot.xi),
+        );
         let [x, d, dd] = [&s.n, &s.d, &s.dd].map(|weights| places.sum(weights));
         let m = d[0] * d[0] + d[1] * d[1];
         let away = (point[0] - x[0]) * dd[0] + (point[1] - x[1]) * dd[1];
@@ -315,11 +318,14 @@ pub fn hand_on(
     contact: &mut [[f64; 2]],
 ) {
     let (node, force) = (seen.contacts[slave].node, seen.forces[slave]);
-    let element = Element::of(&seen.surfaces[foot.spot.surface], foot.spot.element);
+    let element = SurfaceElement::of(&seen.surfaces[foot.spot.surface], foot.spot.element);
     let s = element.shape(foot.spot.xi);
     let mut moment = [0.0; 2];
     if lever && foot.spot.xi.abs() < 1.0 {
-        let (places, at) = (Places::of(element.nodes, seen.now), seen.point(slave));
+        let (places, at) = (
+            ElementPositions::of(element.nodes, seen.now),
+            seen.point(slave),
+        );
         let [x, d] = [&s.n, &s.d].map(|weights| places.sum(weights));
         let m = d[0] * d[0] + d[1] * d[1];
         let across = [d[1], -d[0]];

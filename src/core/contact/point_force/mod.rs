@@ -33,7 +33,7 @@ mod tests;
 pub use linearised::{Linearised, Others, Over, linearise, tilt, turned};
 pub use pair::Pair;
 
-use crate::contact::element::Element;
+use crate::contact::element::SurfaceElement;
 use crate::contact::projection::{Projection, SurfacePoint, tangent};
 use crate::model::{PointGive, Surface};
 
@@ -48,7 +48,7 @@ pub fn normal(surface: &Surface, spot: SurfacePoint, over: &Projection, f_n: f64
     let (Some(give), Some(lever)) = (of(surface, spot), over.lever()) else {
         return over.normal;
     };
-    let degree = Element::of(surface, spot.element).degree();
+    let degree = SurfaceElement::of(surface, spot.element).degree();
     let own = Pair::new(&give, degree, spot.xi, spot.xi);
     turned(over.normal, tilt(&own, lever, f_n, &Others::default()))
 }
@@ -58,7 +58,7 @@ pub fn turned_end(surface: &Surface, end: SurfacePoint, slope: [f64; 2], f_n: f6
     let Some(give) = of(surface, end).filter(|_| f_n > 0.0) else {
         return slope;
     };
-    let degree = Element::of(surface, end.element).degree();
+    let degree = SurfaceElement::of(surface, end.element).degree();
     let size = (slope[0] * slope[0] + slope[1] * slope[1]).sqrt();
     let own = Pair::new(&give, degree, end.xi, end.xi);
     let a = tilt(&own, 1.0 / size, f_n, &Others::default());

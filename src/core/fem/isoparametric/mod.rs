@@ -42,7 +42,7 @@ const FLAT: f64 = 1e-9;
 
 /// An element with N nodes and P points, of a plane body or (`HOOP`) a body of revolution: its undeformed shape and its material.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Element<const N: usize, const P: usize, const HOOP: bool> {
+pub struct ContinuumElement<const N: usize, const P: usize, const HOOP: bool> {
     at: [[f64; 2]; N],
     rule: &'static [Parent<N>; P],
     material: Material,
@@ -168,7 +168,7 @@ fn pairs<const N: usize>(u: &[f64]) -> [[f64; 2]; N] {
     pairs
 }
 
-impl<const N: usize, const P: usize, const HOOP: bool> Element<N, P, HOOP> {
+impl<const N: usize, const P: usize, const HOOP: bool> ContinuumElement<N, P, HOOP> {
     /// An element on these undeformed positions, integrated by this rule.
     pub fn new(
         rule: &'static [Parent<N>; P],
@@ -176,7 +176,7 @@ impl<const N: usize, const P: usize, const HOOP: bool> Element<N, P, HOOP> {
         material: Material,
         update: Update,
     ) -> Self {
-        Element {
+        ContinuumElement {
             points: Box::new(std::array::from_fn(|p| gradients(&rule[p], &at))),
             at,
             rule,
@@ -328,7 +328,9 @@ impl<const N: usize, const P: usize, const HOOP: bool> Element<N, P, HOOP> {
     }
 }
 
-impl<const N: usize, const P: usize, const HOOP: bool> element::Element for Element<N, P, HOOP> {
+impl<const N: usize, const P: usize, const HOOP: bool> element::Element
+    for ContinuumElement<N, P, HOOP>
+{
     fn dofs(&self) -> usize {
         2 * N
     }

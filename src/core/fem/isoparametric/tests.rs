@@ -10,7 +10,7 @@ use crate::model::Plane;
 const NODES: usize = 8;
 const DOFS: usize = 2 * NODES;
 const POINTS: usize = 9;
-type Quad = Element<NODES, POINTS, false>;
+type Quad = ContinuumElement<NODES, POINTS, false>;
 
 fn elastic(law: Law, plane: Plane, update: Update) -> Elastic {
     Elastic {
@@ -47,7 +47,7 @@ const AT: [[f64; 2]; NODES] = [
 ];
 
 fn element(elastic: &Elastic) -> Quad {
-    Element::new(&quad8::RULE, AT, Material::new(elastic), elastic.update)
+    ContinuumElement::new(&quad8::RULE, AT, Material::new(elastic), elastic.update)
 }
 
 fn noise(k: usize, size: f64) -> f64 {

@@ -20,7 +20,7 @@
 use super::motion::Motion;
 use super::retry::{Effect, Recovery, Retry};
 use super::stalled::Stalled;
-use crate::contact::laws::{Finding, Law, Verdict};
+use crate::contact::laws::{ContactLaw, Finding, Verdict};
 use crate::linear::norms::Norms;
 use crate::step::event::{Failure, Moves, Outcome, Slow};
 use crate::step::jump::Landing;
@@ -130,7 +130,7 @@ impl Stepper {
         };
         let moved = self.source.moved(&self.state.u, &self.state.start.u);
         let stride = STRIDE * self.model.length;
-        let slow = match worst.filter(|found| found.law != Law::Touch) {
+        let slow = match worst.filter(|found| found.law != ContactLaw::Touch) {
             Some(found) => Some(Slow::Failed(Failure::Refused(found))),
             None if moved > stride => Some(Slow::Far { motion: moved }),
             None if self.source.stability(&self.state.at()).is_unstable() => Some(Slow::Unstable),

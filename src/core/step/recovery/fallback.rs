@@ -75,7 +75,7 @@ crate::words! {
 }
 
 impl Fallback {
-    /// Whether it is part of the search ([`crate::model::Search`]).
+    /// Whether it is part of the search ([`crate::model::SearchMode`]).
     pub(in crate::step) fn searches(self) -> bool {
         matches!(
             self,

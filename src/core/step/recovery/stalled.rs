@@ -4,7 +4,7 @@ use super::fallback::{DEEPER, Fallback};
 use crate::contact::state::ContactState;
 use crate::linear::singular::Singular;
 use crate::linear::source::Source;
-use crate::model::{BodyKind, Factor, Jumps, Mode, Model, Search};
+use crate::model::{BodyKind, Factor, Jumps, Mode, Model, SearchMode};
 use crate::step::event::Failure;
 use crate::step::state::State;
 
@@ -60,7 +60,7 @@ impl Stalled<'_> {
     /// Whether the search may go on.
     pub fn searches(&self) -> bool {
         let settings = &self.state.controls.settings;
-        settings.search == Search::Auto && self.state.searched.spent < settings.search_limit
+        settings.search == SearchMode::Auto && self.state.searched.spent < settings.search_limit
     }
 
     /// Whether nothing holds a body at the start of the history, and a free node touches there without a gap.

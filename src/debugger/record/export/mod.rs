@@ -37,14 +37,14 @@ type MakeParts = fn(&Shown, &mut Stepper) -> Result<Vec<Vec<u8>>, ExportError>;
 pub enum MadeOf {
     /// A state. The stepper belongs to the same model and may be in any state.
     State(fn(&Shown, &mut Stepper) -> Result<Vec<u8>, ExportError>),
-    /// A state, in several files: those of [`Kind::files`].
+    /// A state, in several files: those of [`ExportKind::files`].
     Parts(MakeParts),
     /// A whole session.
     Journal,
 }
 
 /// A kind of file.
-pub struct Kind {
+pub struct ExportKind {
     /// Extension without the dot.
     pub extension: &'static str,
     /// Contents, for messages and the manual.
@@ -55,7 +55,7 @@ pub struct Kind {
     pub made_of: MadeOf,
 }
 
-impl Kind {
+impl ExportKind {
     /// The names of the files for a requested file, that one first.
     ///
     /// # Errors If the name is not suitable.
@@ -83,50 +83,50 @@ impl Kind {
 }
 
 /// All kinds of files.
-pub const KINDS: &[Kind] = &[
-    Kind {
+pub const KINDS: &[ExportKind] = &[
+    ExportKind {
         extension: "svg",
         what: "a picture of the state",
         may_be_frozen: false,
         made_of: MadeOf::State(picture::svg),
     },
-    Kind {
+    ExportKind {
         extension: "png",
         what: "the picture as a bitmap",
         may_be_frozen: false,
         made_of: MadeOf::State(picture::png),
     },
-    Kind {
+    ExportKind {
         extension: "ron",
         what: "the scene, or its frozen interface problem",
         may_be_frozen: true,
         made_of: MadeOf::State(written::ron),
     },
-    Kind {
+    ExportKind {
         extension: "dat",
         what: "the frozen interface problem for Siconos",
         may_be_frozen: true,
         made_of: MadeOf::State(written::dat),
     },
-    Kind {
+    ExportKind {
         extension: "mtx",
         what: "the frozen problem as three Matrix Market files",
         may_be_frozen: true,
         made_of: MadeOf::Parts(written::mtx),
     },
-    Kind {
+    ExportKind {
         extension: "h5",
         what: "the frozen problem for fclib",
         may_be_frozen: true,
         made_of: MadeOf::State(written::h5),
     },
-    Kind {
+    ExportKind {
         extension: "vtu",
         what: "the state for ParaView",
         may_be_frozen: false,
         made_of: MadeOf::State(grid::vtu),
     },
-    Kind {
+    ExportKind {
         extension: "cast",
         what: "a journal as a film for asciinema",
         may_be_frozen: false,
@@ -137,7 +137,7 @@ pub const KINDS: &[Kind] = &[
 /// The kind of a file, by its extension.
 ///
 /// # Errors If the extension is unknown; the message lists all kinds.
-pub fn kind(file: &Path) -> Result<&'static Kind, ExportError> {
+pub fn kind(file: &Path) -> Result<&'static ExportKind, ExportError> {
     let own = file.extension().unwrap_or_default();
     let found = KINDS
         .iter()

@@ -11,7 +11,7 @@ use super::window::{FORCE, Window};
 use crate::explain::names;
 use crate::explain::outline::{self, Bounds, Point, curve, extent};
 use crate::explain::round_off::RoundOff;
-use stickslip_core::contact::element::Element;
+use stickslip_core::contact::element::SurfaceElement;
 use stickslip_core::contact::projection::tangent;
 use stickslip_core::contact::record::ContactRecord;
 use stickslip_core::model::{BodyKind, Mode, Model, SolidElement};
@@ -241,7 +241,7 @@ fn surfaces(
 ) {
     for surface in &model.surfaces {
         let mut walked = 0.5 * SPACING;
-        for element in Element::all(surface) {
+        for element in SurfaceElement::all(surface) {
             let points = outline::element(element, now);
             stroke(sheet, window, &points, &pen(2.6, BLACK));
             for chain in window.inside(&curve(&points)) {

@@ -17,19 +17,19 @@ const ID: &str = "m";
 ///
 /// # Errors If the mesh cannot be read or is invalid.
 pub fn skeleton(scene: &str, file: &str, parts: &[String]) -> Result<String, SceneError> {
-    let bare = text(file, parts, &[], &Guess::default());
+    let bare = text(file, parts, &[], &OutlineGuess::default());
     let lines = Scene::from_text(scene, &bare, &[])?.names().lines(ID);
-    let guessed = text(file, parts, &lines, &Guess::of(&lines));
+    let guessed = text(file, parts, &lines, &OutlineGuess::of(&lines));
     match Scene::from_text(scene, &guessed, &[]) {
         Ok(_) => Ok(guessed),
         // The guesses are not valid; leave them to the author.
-        Err(_) => Ok(text(file, parts, &lines, &Guess::default())),
+        Err(_) => Ok(text(file, parts, &lines, &OutlineGuess::default())),
     }
 }
 
 /// Lines, by index in the list.
 #[derive(Default)]
-struct Guess {
+struct OutlineGuess {
     /// Slave line and master line.
     contact: Option<(usize, usize)>,
     held: Option<usize>,
@@ -37,8 +37,8 @@ struct Guess {
     pressed: Option<(usize, f64)>,
 }
 
-impl Guess {
-    fn of(lines: &[Line]) -> Guess {
+impl OutlineGuess {
+    fn of(lines: &[Line]) -> OutlineGuess {
         let ends = |axis: usize| {
             let all = || lines.iter().flat_map(|line| &line.at).map(|at| at[axis]);
             (
@@ -67,7 +67,7 @@ impl Guess {
                 }
             }
         }
-        Guess {
+        OutlineGuess {
             contact: best.map(|(_, a, b)| (a, b)),
             held: level(low).filter(|_| height > 0.0),
             pressed: level(high)
@@ -94,7 +94,7 @@ fn mean_distance(line: &Line, other: &Line) -> f64 {
     own.iter().map(nearest).sum::<f64>() / own.len().max(1) as f64
 }
 
-fn text(file: &str, parts: &[String], lines: &[Line], guess: &Guess) -> String {
+fn text(file: &str, parts: &[String], lines: &[Line], guess: &OutlineGuess) -> String {
     let mut out = String::new();
     let mut put = |line: &str| {
         out += line;

@@ -24,7 +24,7 @@ use stickslip_scene::Scene;
 use stickslip_scene::calculix;
 
 /// A run that has been read.
-pub struct Opened {
+pub struct OpenedRun {
     /// The contacts, without geometry.
     pub scene: Scene,
     /// The run.
@@ -34,7 +34,7 @@ pub struct Opened {
 }
 
 /// Opens a run, given the name of its .cel; `None` for other names.
-pub fn file(name: &str) -> Option<Result<Opened, String>> {
+pub fn file(name: &str) -> Option<Result<OpenedRun, String>> {
     calculix::is_cel(name).then(|| {
         let files = calculix::read(Path::new(name))?;
         open(CalculixRun::new(name, files))
@@ -45,7 +45,7 @@ pub fn file(name: &str) -> Option<Result<Opened, String>> {
 ///
 /// # Errors
 /// If it has too many contacts.
-pub fn open(run: CalculixRun) -> Result<Opened, String> {
+pub fn open(run: CalculixRun) -> Result<OpenedRun, String> {
     let slaves = 0..run.files.slaves.len();
     let contact = |slave: usize| message::Contact {
         id: Id::Number(slave as i64),
@@ -97,7 +97,7 @@ pub fn open(run: CalculixRun) -> Result<Opened, String> {
     for note in words::notes(&run) {
         log.told(Level::Warning, &note);
     }
-    Ok(Opened {
+    Ok(OpenedRun {
         scene,
         run: Arc::new(run),
         log,
@@ -117,7 +117,7 @@ fn increments(run: &CalculixRun) -> impl Iterator<Item = (u32, u32)> {
 }
 
 /// A run as a solver that replays its iterations. A state is identified by the number of iterations before it.
-pub struct Recorded {
+pub struct RecordedRun {
     run: Arc<CalculixRun>,
     /// Increment number of each attempt, from 1.
     increments: Vec<u32>,
@@ -126,16 +126,16 @@ pub struct Recorded {
     event: Event,
 }
 
-impl Recorded {
+impl RecordedRun {
     /// The solver at the start of the run.
-    pub fn new(opened: &Opened) -> Recorded {
+    pub fn new(opened: &OpenedRun) -> RecordedRun {
         let run = opened.run.clone();
         let all: Vec<(u32, u32)> = increments(&run).collect();
         let number = |a: &stickslip_exchange::calculix::past::Attempt| {
             all.partition_point(|increment| *increment <= (a.step, a.increment)) as u32
         };
         let model = Arc::new(opened.scene.model.clone());
-        Recorded {
+        RecordedRun {
             increments: run.files.attempts.iter().map(number).collect(),
             state: State::outside_start(&model),
             event: Event::nothing_yet(&model),
@@ -238,7 +238,7 @@ impl Recorded {
     }
 }
 
-impl Solver for Recorded {
+impl Solver for RecordedRun {
     fn model(&self) -> &Arc<Model> {
         &self.model
     }

@@ -7,8 +7,8 @@ use super::{Choice, Described, Scalar, ScalarPlace, Visit, field_of, one_of, typ
 use stickslip_core::model::documented::text;
 use stickslip_core::model::{
     AtCycle, AtLimit, Axis, BoundUpdate, Component, Control, ElementKind, Friction, Geometry,
-    InitialGaps, InitialState, Jumps, Law, Mode, Plane, PointForce, Refactor, ResidualMethod,
-    Search, Settings, SlipCount, Solver, Sticking, Strategy, Ties, Touch, Update,
+    InitialGaps, InitialState, Jumps, Law, LinearSolver, Mode, Plane, PointForce, Refactor,
+    ResidualMethod, SearchMode, Settings, SlipCount, Sticking, Strategy, TieRule, Touch, Update,
 };
 
 macro_rules! fields {
@@ -130,13 +130,13 @@ words!(
     Plane,
     PointForce,
     Refactor,
-    Search,
+    SearchMode,
     ResidualMethod,
     SlipCount,
-    Solver,
+    LinearSolver,
     Sticking,
     Strategy,
-    Ties,
+    TieRule,
     Touch,
     Update,
 );
