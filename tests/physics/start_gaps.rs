@@ -142,7 +142,7 @@ fn a_strip_on_a_floor_that_is_drawn_the_other_way_round_is_warned_of() {
     let turned = scene(strip, &[("surfaces.floor.reverse", "true")]);
     let told = warnings(&turned.model);
     assert!(
-        told[0].contains("looks away from all its slave nodes"),
+        told[0].contains("faces away from all its slave nodes"),
         "{told:?}"
     );
     assert!(told[0].contains("reverse"), "{told:?}");

@@ -219,7 +219,7 @@ fn orders_in_files_and_their_names_are_shown_on_the_screen_and_not_obeyed() {
         "A\\u{1b}]0;PWN\\u{7}B",
     );
     session.see("read\\u{202e}\\u{1b}]0;PWN\\u{7}\\u{9b}31mme");
-    session.type_and_see(":open x\u{202e}y\r", "there is no such file");
+    session.type_and_see(":open x\u{202e}y\r", "no such file or built-in scene");
     let seen = Arc::clone(&session.seen);
     session.quit();
     let raw = String::from_utf8_lossy(&seen.lock().unwrap().raw).into_owned();

@@ -172,7 +172,7 @@ described! {
             /// Curved sides; the interior is blended from all four sides. Default: none.
             #[serde(default)]
             sides: Sides,
-            /// Rotation and translation applied to the finished block, including its curved sides. Default: as it lies.
+            /// Rotation and translation applied to the finished block, including its curved sides. Default: no change.
             #[serde(default)]
             place: Place,
         },
@@ -269,13 +269,13 @@ described! {
     #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
     #[serde(deny_unknown_fields, default)]
     pub struct Sides {
-        /// The side from the first to the second corner; straight if omitted.
+        /// Shape of the bottom side; straight if omitted.
         pub bottom: Option<Side>,
-        /// The side from the second to the third corner; straight if omitted.
+        /// Shape of the right side; straight if omitted.
         pub right: Option<Side>,
-        /// The side from the third to the fourth corner; straight if omitted.
+        /// Shape of the top side; straight if omitted.
         pub top: Option<Side>,
-        /// The side from the fourth to the first corner; straight if omitted.
+        /// Shape of the left side; straight if omitted.
         pub left: Option<Side>,
     }
 }
