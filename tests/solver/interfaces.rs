@@ -236,7 +236,7 @@ fn a_problem_in_space_is_refused_with_a_sentence() {
     let told = match fclib::ready() {
         Ok(()) => "invalid HDF5 file",
         Err(_) => {
-            "this build does not support fclib (HDF5) files; use cargo install stickslip --features fclib"
+            "this build has no fclib (HDF5) support; cargo install stickslip --features fclib"
         }
     };
     let refusal = refusal(&folder, &hdf);

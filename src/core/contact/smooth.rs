@@ -14,10 +14,10 @@
 //! nodes, so the last piece is this parabola; a chain of two nodes is straight.
 //!
 //! The knots are constant, so a point of the curve is a fixed weighted mean of up to four node positions: Σ N_i x_i, where the
-//! N_i sum to one. Hence the curve rotates and moves with its nodes, a piece behaves like an element with shape functions, and a force on it
-//! is distributed over the four nodes such that force and moment are preserved. x' is continuous, and x'' jumps at the nodes. The
-//! distance from a smooth curve through the nodes is O(h³), and from a circle with evenly spaced nodes 3h⁴/128 radii, where h is
-//! the angle between two nodes.
+//! N_i sum to one. Hence the curve rotates and moves with its nodes, a piece behaves like an element with shape functions, and a
+//! force on it is distributed over the four nodes such that force and moment are preserved. x' is continuous, and x'' jumps at
+//! the nodes. The distance from a smooth curve through the nodes is O(h³), and from a circle with evenly spaced nodes 3h⁴/128
+//! radii, where h is the angle between two nodes.
 //!
 //! The curve has no corners: sharp turns of the chain are rounded. A real corner requires two surfaces.
 

@@ -221,8 +221,8 @@ impl Ground<'_> {
         slopes_at_border(surface, border, self.positions, turned)
     }
 
-    /// Half the angle (radians) of a corner ([`corner::half_angle`]): positive if it is concave, negative at a convex vertex. The kink that
-    /// F_n causes in elements with local flexibility is subtracted.
+    /// Half the angle (radians) of a corner ([`corner::half_angle`]): positive if it is concave, negative at a convex vertex. The
+    /// kink that F_n causes in elements with local flexibility is subtracted.
     fn half_angle(&self, border: SurfacePoint, f_n: f64) -> Option<f64> {
         let [before, behind] = self.sides(border, f_n)?;
         Some(corner::half_angle(before, behind))

@@ -8,13 +8,14 @@
 //! 0 <= λ                                              tan φ F_n + c − β+ − β− >= 0,       F_t = β+ − β−
 //! ```
 //!
-//! and without friction only the first line. With all nodes free at the start, the matrix M of this problem gives
-//! zᵀ M z = Fᵀ W F + tan φ F_n λ, which is never negative for z >= 0 if the compliance W has no negative eigenvalue: M is copositive. Lemke's
-//! path can then end on a ray only if forces within the friction cones that cause no motion (W F = 0) extract energy from the
-//! free motion q (Fᵀ q < 0). In a structure W = H M⁻¹ Hᵀ without initial gaps, q is in the range of H and no such forces exist: a
-//! solution exists, and the path ends there (Anitescu and Potra, Nonlinear Dynamics 14, 1997). The path may be long, and depends
-//! on how much the covering variable relaxes each row; therefore several starts are used. The form of [`crate::interface::lemke`]
-//! has half as many rows but is not copositive.
+//! and without friction only the first line. With all nodes free at the start, the matrix M of this problem gives zᵀ
+//! M z = Fᵀ W F + tan φ F_n λ, which is never negative for z >= 0 if the compliance W has no negative eigenvalue: M
+//! is copositive. Lemke's path can then end on a ray only if forces within the friction cones that cause no motion (W
+//! F = 0) extract energy from the free motion q (Fᵀ q < 0). In a structure W = H M⁻¹ Hᵀ without initial gaps, q is in
+//! the range of H and no such forces exist: a solution exists, and the path ends there (Anitescu and Potra, Nonlinear
+//! Dynamics 14, 1997). The path may be long, and depends on how much the covering variable relaxes each row;
+//! therefore several starts are used. The form of [`crate::interface::lemke`] has half as many rows but is not
+//! copositive.
 
 use crate::contact::table2::Tested;
 use crate::interface::problem::{Assumed, InterfaceProblem};

@@ -38,8 +38,8 @@ pub struct Partner {
     pub force_slope: f64,
     /// Index of the entry (normal row, normal column of the other contact).
     pub block: usize,
-    /// Indices of the entries (normal row, other link), (link, normal column of the other), and (link, other link), row by row; `None`
-    /// where a degree of freedom has no equation.
+    /// Indices of the entries (normal row, other link), (link, normal column of the other), and (link, other link), row by row;
+    /// `None` where a degree of freedom has no equation.
     pub row: Vec<Option<usize>>,
     pub column: Vec<Option<usize>>,
     pub pairs: Vec<Option<usize>>,

@@ -34,7 +34,8 @@ const DENSE: f64 = 12e9;
 const MESH_ENTRIES: f64 = 10.0;
 const MESH_OPERATIONS: f64 = 21.0;
 const LU_ENTRIES: f64 = 6.0;
-/// Operations of a stability check divided by c³, for c remaining unknowns: products of conditions and stiffness, and a factorization.
+/// Operations of a stability check divided by c³, for c remaining unknowns: products of conditions and stiffness, and a
+/// factorization.
 const LOOK: f64 = 4.0;
 /// Bytes per unknown, including its share of elements, pattern and stiffness, and per entry of a given matrix.
 const UNKNOWN: f64 = 2500.0;

@@ -1,7 +1,8 @@
-//! Contacts on elements with local flexibility in the whole system: linearisation, and coupling of the contacts on the same element.
+//! Contacts on elements with local flexibility in the whole system: linearisation, and coupling of the contacts on the same
+//! element.
 //!
-//! With c_ij and X_j of [`crate::contact::point_force`], contact j adds c_ij ΔF_j + ∂c_ij/∂ξ_j F_j X_j Δu to the normal row of i, and
-//! rotates the force of i by ∂c_ij/∂ξ_i ΔF_j + ∂²c_ij/∂ξ_i∂ξ_j F_j X_j Δu.
+//! With c_ij and X_j of [`crate::contact::point_force`], contact j adds c_ij ΔF_j + ∂c_ij/∂ξ_j F_j X_j Δu to the normal row of i,
+//! and rotates the force of i by ∂c_ij/∂ξ_i ΔF_j + ∂²c_ij/∂ξ_i∂ξ_j F_j X_j Δu.
 
 use super::coupling::{Interface, Partner};
 use super::point_forces::{PointForces, Press};
@@ -75,7 +76,8 @@ pub fn join_partners(
     }
 }
 
-/// Adds the coupling of contact `s` with the other contacts on its element to the column and, if `motion` is set, to the normal row.
+/// Adds the coupling of contact `s` with the other contacts on its element to the column and, if `motion` is set, to the normal
+/// row.
 pub fn place_partners(interfaces: &[Interface], values: &mut [f64], s: usize, motion: bool) {
     let Some(point) = interfaces[s].point.first() else {
         return;
@@ -101,8 +103,8 @@ pub fn place_partners(interfaces: &[Interface], values: &mut [f64], s: usize, mo
     }
 }
 
-/// Contribution of the other contacts on the element to the normal motion of a contact (length), computed after the solution from the
-/// increments of the degrees of freedom and of the forces.
+/// Contribution of the other contacts on the element to the normal motion of a contact (length), computed after the solution from
+/// the increments of the degrees of freedom and of the forces.
 pub fn partners_motion(
     interfaces: &[Interface],
     s: usize,

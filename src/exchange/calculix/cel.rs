@@ -394,7 +394,7 @@ mod tests {
         for (told, wanted) in [
             (refused("hello\n"), "1:1: this is not a CalculiX .cel"),
             (after("*NODE"), "7:1: this is not a CalculiX .cel"),
-            (after("1, 2"), "7:1: the element has all its nodes already"),
+            (after("1, 2"), "7:1: the element already has all its nodes"),
             (
                 after("*ELEMENT,TYPE=C3D10,ELSET=contactelements_st1_in1_at1_it2"),
                 "7:10: contact elements must be of type C3D4, C3D6 or C3D8",

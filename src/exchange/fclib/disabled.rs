@@ -29,6 +29,6 @@ pub fn write(_: &Local, _: &str) -> Result<Vec<u8>, Broken> {
 
 fn not_built() -> Broken {
     Broken::whole(
-        "this build does not support fclib (HDF5) files; use cargo install stickslip --features fclib",
+        "this build has no fclib (HDF5) support; cargo install stickslip --features fclib",
     )
 }

@@ -5,8 +5,8 @@ use std::ops::{Add, Div, Mul, Sub};
 
 /// Maximum number of degrees of freedom of a slave node and the nodes of its master element.
 pub const DOFS: usize = 2 * (MAX_NODES + 1);
-/// Number of variables of a dual number: the degrees of freedom, the two force components, and the slope Σ ∂c_j/∂ξ F_j due to the other
-/// forces on the element.
+/// Number of variables of a dual number: the degrees of freedom, the two force components, and the slope Σ ∂c_j/∂ξ F_j due to the
+/// other forces on the element.
 pub const VARIABLES: usize = DOFS + 3;
 
 /// A value with its derivatives with respect to all variables.

@@ -123,8 +123,8 @@ impl JudgedGives {
         }
     }
 
-    /// Σ c_j F_j and Σ ∂c_j/∂ξ F_j (length) at the point of a press, over all forces on the element. If `own` is given, it replaces the
-    /// force of this press.
+    /// Σ c_j F_j and Σ ∂c_j/∂ξ F_j (length) at the point of a press, over all forces on the element. If `own` is given, it
+    /// replaces the force of this press.
     fn sums(&self, at: &JudgedForce, own: Option<f64>) -> (f64, f64) {
         let element = |spot: &SurfacePoint| (spot.surface, spot.element);
         let mut sums = (0.0, 0.0);
@@ -243,7 +243,8 @@ fn pair(rule: &[(f64, f64)], give: &PointGive, one: &Projected, two: &Projected)
     )
 }
 
-/// Legendre coefficients of the projected step at ξ (`step`) and of its projected integral (`hat`), with derivatives with respect to ξ.
+/// Legendre coefficients of the projected step at ξ (`step`) and of its projected integral (`hat`), with derivatives with respect
+/// to ξ.
 #[derive(Debug, Clone, Copy)]
 struct Projected {
     degree: usize,

@@ -1,8 +1,8 @@
 //! Local deflection and rotation under a point force that the polynomials of a beam element do not represent.
 //!
-//! A force F on a beam with shear stiffness GA causes a step F/GA in the shear strain γ, hence a kink in the axis where it acts, and a
-//! kink in the bending moment. An element of degree p with the reduced Gauss rule represents the projections of both onto polynomials of
-//! degree p − 1. With P_k the Legendre polynomials, L the undeformed length, ξ in [−1, 1] and Π the projection,
+//! A force F on a beam with shear stiffness GA causes a step F/GA in the shear strain γ, hence a kink in the axis where it acts,
+//! and a kink in the bending moment. An element of degree p with the reduced Gauss rule represents the projections of both onto
+//! polynomials of degree p − 1. With P_k the Legendre polynomials, L the undeformed length, ξ in [−1, 1] and Π the projection,
 //!
 //! ```text
 //! sgn(η−ξ) = Σ a_k(ξ) P_k(η),   a_0 = −ξ,        a_k = P_{k−1} − P_{k+1}
@@ -18,10 +18,10 @@
 //!      + L³/(32 EI) [∫ |η−ξ_i| |η−ξ_j| dη       − Σ_{k<p−1} 2/(2k+1) b_k(ξ_i) b_k(ξ_j) − 2/(2p−1) m(ξ_i) m(ξ_j)]
 //! ```
 //!
-//! The second line applies for p >= 3, where the end displacements of the element are exact for any load between the ends; it is dropped
-//! for p < 3. Both contact terms follow from this potential: the surface lies c F deeper (g_i + Σ c_ij F_j = 0), and the force rotates by
-//! tan α = F_i⁻¹ ∂/∂s (its energy). For shear alone α = −(F/2GA) P_{p−1} P_p: the force is perpendicular to the mean of the two tangents at
-//! the kink. At ξ = ±1 c vanishes. The derivation is on the manual's page `theory`.
+//! The second line applies for p >= 3, where the end displacements of the element are exact for any load between the ends; it is
+//! dropped for p < 3. Both contact terms follow from this potential: the surface lies c F deeper (g_i + Σ c_ij F_j = 0), and the
+//! force rotates by tan α = F_i⁻¹ ∂/∂s (its energy). For shear alone α = −(F/2GA) P_{p−1} P_p: the force is perpendicular to the
+//! mean of the two tangents at the kink. At ξ = ±1 c vanishes. The derivation is on the manual's page `theory`.
 
 mod dual;
 pub mod judged;

@@ -171,8 +171,8 @@ fn the_linearised_contact_is_the_derivative_of_its_gap_and_forces() {
     }
 }
 
-/// With F instead of F_n as the unknown, the matrix derives from a potential: the force column equals the gap row, and the stiffness is
-/// symmetric.
+/// With F instead of F_n as the unknown, the matrix derives from a potential: the force column equals the gap row, and the
+/// stiffness is symmetric.
 #[test]
 fn without_friction_there_is_one_potential() {
     let x = bent(5, -0.03);
