@@ -124,6 +124,7 @@ impl Stepper {
             SubIncrement::whole(&self.model, start.place(), increment)
         };
         self.state.fallback = None;
+        self.state.searched.origin = None;
         let rest = self.state.sub_increment.next();
         self.state.sub_increment = rest.unwrap_or_else(whole);
         if rest.is_none() {

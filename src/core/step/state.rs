@@ -118,12 +118,15 @@ pub struct Outside {
 }
 
 /// What the search for ways out has done in a run ([`crate::model::SearchMode`]).
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Searches {
     /// Major iterations spent.
     pub spent: u32,
     /// Load factor of the equilibrium from which the last damped motion began.
     pub released: Option<f64>,
+    /// That equilibrium, while the motion goes on.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub origin: Option<Arc<IncrementStart>>,
 }
 
 impl Searches {

@@ -143,7 +143,8 @@ impl Stepper {
                     steps: motion.steps,
                 },
             };
-            return self.slow_down(slow).unwrap_or(Outcome::Failed(why));
+            let slower = self.slow_down(slow);
+            return slower.unwrap_or_else(|| self.end_motion(why));
         }
         if motion.coming_to_rest {
             // The other branch has a pace of its own.
@@ -156,18 +157,21 @@ impl Stepper {
             };
             return self.accept(after, verdict, landing);
         }
-        let (searched, limit) = (
-            self.state.searched,
-            self.state.controls.settings.search_limit,
-        );
-        let spent = self.state.fallback.is_some() && searched.spent >= limit;
+        let limit = self.state.controls.settings.search_limit;
+        let spent = self.state.fallback.is_some() && self.state.searched.spent >= limit;
         if spent || motion.steps + 1 >= MOST_STEPS || motion.drag < SOFTEST * motion.stiffness {
             self.next_major();
-            return Outcome::Failed(Failure::Restless {
+            return self.end_motion(Failure::Restless {
                 steps: motion.steps,
             });
         }
         self.step_on(motion, moved, stride, verdict)
+    }
+
+    /// The motion has failed: a search goes back to where it began.
+    fn end_motion(&mut self, why: Failure) -> Outcome {
+        let back = self.fall_back(&why);
+        back.unwrap_or(Outcome::Failed(why))
     }
 
     /// Makes the end of a step the start of the next one.

@@ -69,10 +69,7 @@ impl Fallback {
     fn helps(self, why: &Failure, stalled: &Stalled<'_>) -> bool {
         let state = stalled.state;
         if self == Fallback::Back {
-            // After a damped motion there is no way back.
-            return state
-                .fallback
-                .is_some_and(|route| route.by != Fallback::Release);
+            return state.fallback.is_some();
         }
         if self.searches() && !stalled.searches() {
             return false;

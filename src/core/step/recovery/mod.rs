@@ -162,6 +162,11 @@ impl Stepper {
                 state.fallback = Some(fallback);
             }
         }
+        if by == Some(Fallback::Back)
+            && let Some(origin) = self.state.searched.origin.take()
+        {
+            (self.state.start, self.state.motion) = (origin, None);
+        }
         if by == Some(Fallback::Touching) {
             self.hold_touching();
         }
@@ -175,6 +180,7 @@ impl Stepper {
             }
             Some(Fallback::Release) => {
                 self.state.searched.released = Some(self.state.start.load_factor);
+                self.state.searched.origin = Some(self.state.start.clone());
                 self.release(part)?;
             }
             _ => {}

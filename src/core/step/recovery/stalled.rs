@@ -57,10 +57,13 @@ impl Stalled<'_> {
         self.model.jumps == Jumps::Dynamic && self.source.damps()
     }
 
-    /// Whether the search may go on.
+    /// Whether the search may go on: not if jumps end the history, and not where all bodies are given by numbers.
     pub fn searches(&self) -> bool {
         let settings = &self.state.controls.settings;
-        settings.search == SearchMode::Auto && self.state.searched.spent < settings.search_limit
+        settings.search == SearchMode::Auto
+            && self.state.searched.spent < settings.search_limit
+            && self.model.jumps != Jumps::Stop
+            && !self.is_given()
     }
 
     /// Whether nothing holds a body at the start of the history, and a free node touches there without a gap.
@@ -90,7 +93,6 @@ impl Stalled<'_> {
     pub fn can_release(&self) -> bool {
         let start = self.state.start.load_factor;
         self.source.damps()
-            && self.model.jumps != Jumps::Stop
             && self.state.start.verdict.is_some()
             && self.state.searched.released != Some(start)
     }
