@@ -48,7 +48,7 @@
 //! assert_eq!(state.nodes[0].mode, Mode::Sliding);
 //! assert!((state.nodes[0].f_n - f_n).abs() < 1e-9);
 //! assert!((state.u[0] - (push - friction) / spring).abs() < 1e-9);
-//! # Ok::<(), stickslip_core::model::ModelError>(())
+//! # Ok::<(), stickslip_core::builder::ModelError>(())
 //! ```
 //!
 //! A scene file is a shorter way to a model; the package `stickslip` reads those. Its examples show how to step a scene,
@@ -63,6 +63,7 @@
 //! - [`executor`]: work on bodies side by side, by whoever has threads to give.
 //! - [`linalg`]: patterns, factors, checked solves; a package of its own.
 //! - [`model`]: what is solved, as plain data: nodes, bodies, surfaces, contacts, loads, settings.
+//! - [`builder`]: builds a model in code.
 //! - [`fem`]: an element is a small file here: a kind of continuum element has places, shape functions and a rule
 //!   ([`fem::kinds`]), and [`fem::isoparametric`] the formulation of all; others give internal forces and their tangent themselves
 //!   ([`fem::element`]). [`fem::assembly`] adds the elements of all bodies up, [`fem::recovery`] gives stresses for output.
@@ -88,6 +89,7 @@
 
 mod words;
 
+pub mod builder;
 pub mod contact;
 pub mod executor;
 pub mod fem;

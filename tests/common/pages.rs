@@ -150,10 +150,13 @@ fn packages() -> String {
     }
     let row = |(folder, about, used): &(String, String, Vec<String>)| {
         let used: Vec<String> = used.iter().map(|name| format!("`{name}`")).collect();
-        format!("| `{folder}` | {about} | {} |\n", used.join(", "))
+        let uses = match used.is_empty() {
+            true => String::new(),
+            false => format!(" Uses {}.", used.join(", ")),
+        };
+        format!("- `{folder}`: {about}.{uses}\n")
     };
-    let head = "| folder of `src` | what it contains | uses |\n|---|---|---|\n".to_owned();
-    head + &ordered.iter().map(row).collect::<String>()
+    ordered.iter().map(row).collect()
 }
 
 /// The list of modules at the head of a package's `lib.rs`, from the top down.

@@ -11,7 +11,6 @@
 pub mod documented;
 
 mod body;
-mod builder;
 mod contact;
 mod control;
 mod dofs;
@@ -25,7 +24,6 @@ use serde::{Deserialize, Serialize};
 pub use body::{
     Beam, Body, BodyKind, Elastic, Form, Law, Linear, Plane, Solid, SolidElement, Truss, Update,
 };
-pub use builder::{ModelBuilder, ModelError};
 pub use contact::{Bond, Contact, Facing, Piece, PointGive, STENCIL, Surface};
 pub use control::{ArcLength, Bound, Control, Measured};
 pub use dofs::{Axis, Component, Dofs};

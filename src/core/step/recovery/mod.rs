@@ -170,20 +170,18 @@ impl Stepper {
         if by == Some(Fallback::Touching) {
             self.hold_touching();
         }
-        self.restart(part);
         if by.is_some_and(Fallback::searches) {
             self.state.searched.spent += 1;
         }
-        match by {
-            Some(Fallback::Held) => {
-                self.state.brake = Some(Brake::new(self.source.spring()));
-            }
-            Some(Fallback::Release) => {
-                self.state.searched.released = Some(self.state.start.load_factor);
-                self.state.searched.origin = Some(self.state.start.clone());
-                self.release(part)?;
-            }
-            _ => {}
+        if by == Some(Fallback::Release) {
+            self.state.searched.released = Some(self.state.start.load_factor);
+            self.state.searched.origin = Some(self.state.start.clone());
+            self.release(part)?;
+        } else {
+            self.restart(part);
+        }
+        if by == Some(Fallback::Held) {
+            self.state.brake = Some(Brake::new(self.source.spring()));
         }
         Some(outcome)
     }

@@ -1,11 +1,9 @@
 //! Builds a [`Model`] in code, without a scene file.
 
-use super::body::{Body, BodyKind};
-use super::contact::{Contact, Surface};
-use super::dofs::{Component, Dofs};
-use super::load::{Factor, Load, Prescribed};
-use super::settings::Settings;
-use super::{Model, Monitor, Node, diagonal};
+use crate::model::{
+    Body, BodyKind, Component, Contact, Dofs, Factor, Load, Model, Monitor, Node, Prescribed,
+    Settings, Surface, diagonal,
+};
 use std::collections::BTreeSet;
 
 /// A [`Model`] in the making: the methods that add something return its number.
