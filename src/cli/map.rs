@@ -10,7 +10,7 @@ use stickslip_core::model::{BoundUpdate, Strategy};
 use stickslip_core::strategy::method;
 use stickslip_scene::builtin;
 use stickslip_scene::shown::aligned;
-use stickslip_study::map::{self, Cell, Map};
+use stickslip_study::map::{self, MapCell, Map};
 use stickslip_study::plan::{MOST_CASES, product};
 use stickslip_study::random::{self, NODES, Population};
 use stickslip_study::survey::{self, Survey};

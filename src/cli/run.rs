@@ -94,7 +94,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     interrupt.count(&asks);
     solver.heed(asks);
     // Opened before the solve, so that its results can be written.
-    let mut outputs = Outputs::open(args, &scene)?;
+    let mut outputs = RunOutputs::open(args, &scene)?;
     if !args.quiet {
         for warning in gaps::warnings(&scene.model) {
             tell(&format!("warning: {warning}"));
@@ -114,15 +114,15 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
 }
 
 /// The output files of a run.
-struct Outputs {
+struct RunOutputs {
     csv: Option<Sink>,
     trace: Option<Sink>,
     snapshot: Option<Output>,
     grids: Option<Grids>,
 }
 
-impl Outputs {
-    fn open(args: &Args, scene: &Scene) -> Result<Outputs, Error> {
+impl RunOutputs {
+    fn open(args: &Args, scene: &Scene) -> Result<RunOutputs, Error> {
         let snapshot = args.snapshot.as_ref().map(|path| path.to_string_lossy());
         distinct(&[
             ("--csv", args.csv.as_deref()),
@@ -135,7 +135,7 @@ impl Outputs {
         };
         let output = |path: &PathBuf| Output::create(path, args.force);
         let grids = |folder: &PathBuf| Grids::open(folder, &scene.name, args.each, args.force);
-        Ok(Outputs {
+        Ok(RunOutputs {
             csv: sink(&args.csv)?,
             trace: sink(&args.trace)?,
             snapshot: args.snapshot.as_ref().map(output).transpose()?,
@@ -275,7 +275,7 @@ impl<'a> Run<'a> {
         }
     }
 
-    fn go(&mut self, outputs: &mut Outputs, interrupt: &Interrupt) -> Result<Ended, Error> {
+    fn go(&mut self, outputs: &mut RunOutputs, interrupt: &Interrupt) -> Result<Ended, Error> {
         let Run { solver, tally } = self;
         let solver = &mut **solver;
         let stability = tally.stability.is_some();
@@ -470,7 +470,7 @@ impl<'a> Run<'a> {
 
 impl Tally<'_> {
     /// Records and reports a minor iteration.
-    fn see(&mut self, solver: &mut dyn Solver, outputs: &mut Outputs) -> Result<Sent, Error> {
+    fn see(&mut self, solver: &mut dyn Solver, outputs: &mut RunOutputs) -> Result<Sent, Error> {
         if let Some((grids, stepper)) = outputs.grids.as_mut().zip(solver.stepper()) {
             grids.see(stepper)?;
         }
@@ -524,7 +524,7 @@ impl Tally<'_> {
         ))
     }
 
-    fn accept(&mut self, solver: &mut dyn Solver, outputs: &mut Outputs) -> Result<Sent, Error> {
+    fn accept(&mut self, solver: &mut dyn Solver, outputs: &mut RunOutputs) -> Result<Sent, Error> {
         self.monitors.clear();
         solver.monitors(&mut self.monitors);
         let stability = self.stability.is_some().then(|| match solver.stepper() {

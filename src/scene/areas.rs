@@ -21,7 +21,7 @@ const NONE: f64 = 1e-9;
 
 /// A side of a body with its material, which determines the width across the plane.
 #[derive(Debug, Clone, Copy)]
-struct Side<'a> {
+struct AreaSide<'a> {
     nodes: &'a [usize],
     made_of: Option<&'a Elastic>,
 }
@@ -34,7 +34,7 @@ pub(super) fn tributary(
     pair_of: &[Option<usize>],
     gives: impl Fn(usize) -> bool,
 ) -> Vec<Option<f64>> {
-    let sides: Vec<Side<'_>> = bodies.iter().flat_map(sides).collect();
+    let sides: Vec<AreaSide<'_>> = bodies.iter().flat_map(sides).collect();
     let mut areas = vec![None; nodes.len()];
     let mut add = |node: usize, area: f64| *areas[node].get_or_insert(0.0) += area;
     for side in &sides {
@@ -63,7 +63,7 @@ pub(super) fn tributary(
 
 /// Moves the area of a node on the axis to the next node of its side. Its ring has no length, so no pressure acts on it;
 /// and if the surface is dented at that end, its normal deviates from the axis by the symmetry error of the elements.
-fn off_axis(side: &Side<'_>, nodes: &[Node], shares: &mut [f64]) {
+fn off_axis(side: &AreaSide<'_>, nodes: &[Node], shares: &mut [f64]) {
     let Some(made_of) = side.made_of else {
         return;
     };
@@ -82,7 +82,7 @@ fn off_axis(side: &Side<'_>, nodes: &[Node], shares: &mut [f64]) {
 }
 
 /// The sides of a body.
-fn sides(body: &Body) -> Vec<Side<'_>> {
+fn sides(body: &Body) -> Vec<AreaSide<'_>> {
     let materials = match &body.kind {
         BodyKind::Beam(beam) => vec![None; beam.elements.len()],
         BodyKind::Solid(solid) => materials(solid),
@@ -90,7 +90,7 @@ fn sides(body: &Body) -> Vec<Side<'_>> {
     };
     let lines = body.kind.lines().iter().zip(materials);
     lines
-        .map(|(nodes, made_of)| Side { nodes, made_of })
+        .map(|(nodes, made_of)| AreaSide { nodes, made_of })
         .collect()
 }
 
@@ -124,7 +124,7 @@ fn materials(solid: &Solid) -> Vec<Option<&Elastic>> {
 
 /// The area of each node of a side. Lagrange polynomials of high order have negative integrals; in that case each node gets the
 /// part of the side closest to it.
-fn shares(side: &Side<'_>, nodes: &[Node]) -> Vec<f64> {
+fn shares(side: &AreaSide<'_>, nodes: &[Node]) -> Vec<f64> {
     let count = side.nodes.len();
     let by_shape = integrals(side, nodes, -1.0, 1.0);
     let whole: f64 = by_shape.iter().sum();
@@ -142,7 +142,7 @@ fn shares(side: &Side<'_>, nodes: &[Node]) -> Vec<f64> {
 }
 
 /// ∫ N_i w |dx/dξ| dξ over a part of a side.
-fn integrals(side: &Side<'_>, nodes: &[Node], from: f64, to: f64) -> Vec<f64> {
+fn integrals(side: &AreaSide<'_>, nodes: &[Node], from: f64, to: f64) -> Vec<f64> {
     let count = side.nodes.len();
     let mut sums = vec![0.0; count];
     for (x, weight) in gauss(count + 2) {

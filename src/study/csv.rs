@@ -137,13 +137,13 @@ pub fn comments<'a>(lines: impl IntoIterator<Item = &'a String>) -> String {
 pub(super) struct Table<'a> {
     file: &'a str,
     text: &'a str,
-    header: Row,
+    header: CsvRow,
     /// The rows below the header, each with any number of fields.
-    pub(super) rows: Vec<Row>,
+    pub(super) rows: Vec<CsvRow>,
 }
 
 /// A row of a [`Table`].
-pub(super) struct Row {
+pub(super) struct CsvRow {
     pub(super) fields: csv::StringRecord,
     /// Byte offset of its line.
     start: usize,
@@ -174,7 +174,7 @@ impl<'a> Table<'a> {
             }
             let start = fields.position().map_or(0, |at| at.byte() as usize);
             let start = start + skipped(&text[start..]);
-            rows.push(Row { fields, start });
+            rows.push(CsvRow { fields, start });
         }
         if rows.is_empty() {
             return Err(wrong("there is no header".into()));
@@ -205,7 +205,7 @@ impl<'a> Table<'a> {
     }
 
     /// Rejects a row whose number of fields differs from the header's.
-    pub(super) fn check(&self, row: &Row) -> Result<(), TableError> {
+    pub(super) fn check(&self, row: &CsvRow) -> Result<(), TableError> {
         let (has, wants) = (row.fields.len(), self.header.fields.len());
         if has == wants {
             return Ok(());
@@ -220,7 +220,7 @@ impl<'a> Table<'a> {
     }
 
     /// An error at a field (from 0) of a row.
-    pub(super) fn wrong(&self, row: &Row, field: usize, message: String) -> TableError {
+    pub(super) fn wrong(&self, row: &CsvRow, field: usize, message: String) -> TableError {
         TableError::Wrong {
             file: self.file.to_owned(),
             line: 1 + self.text[..row.start].matches('\n').count(),
@@ -229,7 +229,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    fn line(&self, row: &Row) -> &'a str {
+    fn line(&self, row: &CsvRow) -> &'a str {
         self.text[row.start..].lines().next().unwrap_or_default()
     }
 }

@@ -17,7 +17,7 @@ const MARKERS: usize = 12;
 
 /// Curves over two axes.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Chart {
+pub struct CurveChart {
     /// Above it.
     pub title: String,
     /// Horizontal axis.
@@ -70,7 +70,7 @@ impl CurveEnd {
     }
 }
 
-impl Chart {
+impl CurveChart {
     /// The chart as a drawing.
     ///
     /// # Errors

@@ -1,6 +1,6 @@
 //! The results of a study as curves, like the paper's figures.
 
-use super::curves::{Axis, Chart, Curve, CurveEnd};
+use super::curves::{Axis, CurveChart, Curve, CurveEnd};
 use super::monitor_kind::{MonitorKind, kind};
 use super::origin;
 use super::plan::{Case, Plan};
@@ -9,7 +9,7 @@ use super::result::{CaseEnd, Run};
 use stickslip_scene::number::six;
 
 /// The chart of a study: a curve per run, over the plan's axes.
-pub fn chart(plan: &Plan, runs: &[Run]) -> Chart {
+pub fn chart(plan: &Plan, runs: &[Run]) -> CurveChart {
     let names = short_names(&plan.columns);
     let curves = plan
         .cases
@@ -31,7 +31,7 @@ pub fn chart(plan: &Plan, runs: &[Run]) -> Chart {
             },
         })
         .collect();
-    Chart {
+    CurveChart {
         title: plan.title.clone(),
         x: axis(plan, &plan.x),
         y: axis(plan, &plan.y),

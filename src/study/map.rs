@@ -64,7 +64,7 @@ pub struct Seen {
 
 /// A cell of a map.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Cell {
+pub struct MapCell {
     /// The result of the run.
     pub ended: Ended,
     /// Its verdict.
@@ -84,7 +84,7 @@ pub struct Map {
     /// Larger differences mean a wrong branch.
     pub tolerance: f64,
     /// One entry per case of the plan; `None` if interrupted before.
-    pub cells: Vec<Option<Cell>>,
+    pub cells: Vec<Option<MapCell>>,
 }
 
 /// A grid of cells: the last column of the plan is horizontal, the one before it vertical.
@@ -169,7 +169,7 @@ impl Ended {
     }
 }
 
-impl Cell {
+impl MapCell {
     /// The glyph of the cell; with the period for a cycle, and the letter of the reason for a failure. A run
     /// that jumped has `↯` after it.
     pub fn label(&self) -> String {
@@ -220,7 +220,7 @@ impl Map {
                 members.iter().for_each(|&k| references[k] = reference);
             }
         }
-        let cell = |k: usize| -> Option<Cell> {
+        let cell = |k: usize| -> Option<MapCell> {
             let own = ended[k].as_ref()?;
             let compared =
                 references[k].and_then(|r: usize| Some((r, own.difference(ended[r].as_ref()?))));
@@ -229,7 +229,7 @@ impl Map {
                 (None, Some((_, difference))) if difference > tolerance => RunVerdict::Wrong,
                 (None, _) => RunVerdict::Right,
             };
-            Some(Cell {
+            Some(MapCell {
                 verdict,
                 reference: compared.filter(|_| own.failed.is_none()),
                 ended: own.clone(),

@@ -304,7 +304,7 @@ fn compare(
         .iter()
         .map(|m| m.point.failed.is_none().then(|| curve(m)))
         .collect();
-    let common = |row: &&reference::Point| {
+    let common = |row: &&reference::ReferencePoint| {
         let mut whole = curves.iter().flatten();
         whole.all(|curve| curve.at(row.leg, row.load).is_some())
     };

@@ -197,7 +197,7 @@ impl Study {
     /// # Errors
     /// If it cannot be read, with line and column.
     pub fn from_text(name: &str, text: &str) -> Result<Study, SceneError> {
-        let mut file: File =
+        let mut file: StudyFile =
             parse(name, text).map_err(|error| or_mistaken(error, name, text, FileKind::Study))?;
         if file.scene.is_some() && !file.scenes.is_empty() {
             let twice = "a study needs either scene or scenes, not both";
@@ -242,7 +242,7 @@ impl Study {
 /// The fields of the file.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct File {
+struct StudyFile {
     title: String,
     #[serde(default)]
     about: String,

@@ -23,12 +23,12 @@ pub struct Reference {
     /// Names of its columns.
     pub monitors: Vec<String>,
     /// Its rows in the order of the path.
-    pub rows: Vec<Point>,
+    pub rows: Vec<ReferencePoint>,
 }
 
 /// Values at one load.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Point {
+pub struct ReferencePoint {
     /// Leg of the load path, from 0.
     pub leg: usize,
     /// The load factor λ.
@@ -90,7 +90,7 @@ impl Reference {
         let columns: Vec<usize> = (0..heads.len())
             .filter(|&k| !words.contains(&heads[k]))
             .collect();
-        let mut rows: Vec<Point> = Vec::new();
+        let mut rows: Vec<ReferencePoint> = Vec::new();
         let mut legs = Legs::new(path);
         for row in &table.rows {
             table.check(row)?;
@@ -111,7 +111,7 @@ impl Reference {
                 .iter()
                 .map(|&k| number(k))
                 .collect::<Result<_, _>>()?;
-            rows.push(Point {
+            rows.push(ReferencePoint {
                 leg,
                 load: at,
                 values,
@@ -130,7 +130,7 @@ impl Reference {
     /// A run as the reference for others.
     pub fn of(run: &Run, source: String, path: &[f64]) -> Reference {
         let mut legs = Legs::new(path);
-        let row = |row: &super::Row| Point {
+        let row = |row: &super::Row| ReferencePoint {
             leg: legs.of(row.load),
             load: row.load,
             values: row.monitors.clone(),
@@ -143,13 +143,13 @@ impl Reference {
     }
 
     /// The row at a load on a leg.
-    pub fn at(&self, leg: usize, load: f64) -> Option<&Point> {
+    pub fn at(&self, leg: usize, load: f64) -> Option<&ReferencePoint> {
         let size = self
             .rows
             .iter()
             .map(|row| row.load.abs())
             .fold(0.0, f64::max);
-        let here = |row: &&Point| row.leg == leg && (row.load - load).abs() <= SAME_LOAD * size;
+        let here = |row: &&ReferencePoint| row.leg == leg && (row.load - load).abs() <= SAME_LOAD * size;
         self.rows.iter().find(here)
     }
 }

@@ -66,7 +66,7 @@ pub enum Overlay {
     /// A work-precision chart.
     Chart(Box<ChartPage>),
     /// The log or the parameters of an attached solver.
-    Solver(solver::Reader),
+    Solver(solver::SolverReader),
     /// A line being typed.
     Line(CommandLine),
     /// Waits for the mode of the selected node.
@@ -537,10 +537,10 @@ impl App {
                     true => solver::Page::Run,
                     false => solver::Page::Log,
                 };
-                self.overlay = Overlay::Solver(solver::Reader::new(page));
+                self.overlay = Overlay::Solver(solver::SolverReader::new(page));
             }
             Ui::Parameters => {
-                self.overlay = Overlay::Solver(solver::Reader::new(solver::Page::Parameters));
+                self.overlay = Overlay::Solver(solver::SolverReader::new(solver::Page::Parameters));
             }
             Ui::Help => self.overlay = Overlay::Help(Help::new(Listing::Actions)),
             Ui::Keys => self.overlay = Overlay::Help(Help::new(Listing::Keys)),

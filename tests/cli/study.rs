@@ -284,7 +284,7 @@ fn charts_with_little_or_nothing_or_much_in_them_are_drawn() {
         points: points.to_vec(),
         end: curves::CurveEnd::Failed("why".into()),
     };
-    let mut chart = curves::Chart {
+    let mut chart = curves::CurveChart {
         title: "A title that is too long for one line ".repeat(9),
         x: axis(true),
         y: axis(false),

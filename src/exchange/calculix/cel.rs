@@ -13,7 +13,7 @@
 //! iteration, independent of the number of integration points.
 
 use super::Stop;
-use super::lines::{Field, Line, Lines};
+use super::lines::{Field, ResultLine, Lines};
 use crate::broken::Broken;
 use std::collections::HashMap;
 use std::io::BufRead;
@@ -109,7 +109,7 @@ struct Reading {
 }
 
 impl Reading {
-    fn header(&mut self, line: Line) -> Result<(), Broken> {
+    fn header(&mut self, line: ResultLine) -> Result<(), Broken> {
         if self.open.is_some() {
             let message = format!(
                 "a new element begins, but the previous one has only {} numbers",
@@ -136,7 +136,7 @@ impl Reading {
         Ok(())
     }
 
-    fn data(&mut self, line: Line) -> Result<(), Broken> {
+    fn data(&mut self, line: ResultLine) -> Result<(), Broken> {
         for field in line.fields() {
             let nodes = match (self.open, self.now) {
                 (Some(_), Some((_, nodes))) => nodes,

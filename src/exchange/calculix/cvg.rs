@@ -6,7 +6,7 @@
 
 use super::Table;
 use super::cel::At;
-use super::lines::{Field, Line, table};
+use super::lines::{Field, ResultLine, table};
 use crate::broken::Broken;
 use std::io::BufRead;
 
@@ -31,7 +31,7 @@ pub struct Norms {
 /// If it is not such a file, or a row is invalid.
 pub fn read(from: impl BufRead) -> Result<Table<(At, Norms)>, Broken> {
     let mut rows = Vec::new();
-    let take = |line: Line, fields: &[Field]| {
+    let take = |line: ResultLine, fields: &[Field]| {
         let &[
             step,
             increment,

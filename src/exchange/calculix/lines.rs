@@ -19,7 +19,7 @@ pub(super) struct Lines<R> {
 
 /// A line.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Line<'a> {
+pub(super) struct ResultLine<'a> {
     /// Line number, from 1.
     pub number: usize,
     /// Content without the line end.
@@ -41,7 +41,7 @@ impl<R: BufRead> Lines<R> {
     ///
     /// # Errors
     /// If it cannot be read, or is longer than any line of such a file.
-    pub fn next(&mut self) -> Result<Option<Line<'_>>, Broken> {
+    pub fn next(&mut self) -> Result<Option<ResultLine<'_>>, Broken> {
         self.bytes.clear();
         self.number += 1;
         let most = MOST as u64 + 1;
@@ -62,7 +62,7 @@ impl<R: BufRead> Lines<R> {
         }
         let end = self.bytes.len() - usize::from(whole);
         let bytes = &self.bytes[..end];
-        Ok(Some(Line {
+        Ok(Some(ResultLine {
             number: self.number,
             bytes: bytes.strip_suffix(b"\r").unwrap_or(bytes),
             whole,
@@ -73,13 +73,13 @@ impl<R: BufRead> Lines<R> {
 /// A field of a line: its first byte, from 1, and its content.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Field<'a> {
-    line: Line<'a>,
+    line: ResultLine<'a>,
     start: usize,
     /// Content.
     pub bytes: &'a [u8],
 }
 
-impl<'a> Line<'a> {
+impl<'a> ResultLine<'a> {
     /// The nonempty fields.
     pub fn fields(self) -> impl Iterator<Item = Field<'a>> {
         let parts = |byte: &u8| byte.is_ascii_whitespace() || *byte == b',';
@@ -173,7 +173,7 @@ pub(super) fn table(
     from: impl BufRead,
     title: &str,
     what: &str,
-    mut take: impl FnMut(Line, &[Field]) -> Result<(), Broken>,
+    mut take: impl FnMut(ResultLine, &[Field]) -> Result<(), Broken>,
 ) -> Result<Option<Stop>, Broken> {
     let mut lines = Lines::new(from);
     let mut headings = true;
@@ -240,7 +240,7 @@ mod tests {
     #[test]
     fn field_columns_count_characters() {
         let text = " 12 ,ü, x".as_bytes();
-        let line = Line {
+        let line = ResultLine {
             number: 3,
             bytes: text,
             whole: true,

@@ -4,7 +4,7 @@
 //! attempt that did not converge, the times are those at its start.
 
 use super::Table;
-use super::lines::{Field, Line, table};
+use super::lines::{Field, ResultLine, table};
 use crate::broken::Broken;
 use std::io::BufRead;
 
@@ -35,7 +35,7 @@ pub struct Ended {
 /// If it is not such a file, or a row is invalid.
 pub fn read(from: impl BufRead) -> Result<Table<Ended>, Broken> {
     let mut rows = Vec::new();
-    let take = |line: Line, fields: &[Field]| {
+    let take = |line: ResultLine, fields: &[Field]| {
         let &[step, increment, attempt, iterations, total, of_step, size] = fields else {
             return Err(line.ends_early(format!(
                 "a row must have 7 columns; this one has {}",

@@ -4,7 +4,7 @@ use crate::broken::Broken;
 
 /// Number format of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Form {
+pub(super) enum CursorForm {
     Text,
     /// Binary, big-endian if `big`.
     Binary {
@@ -17,7 +17,7 @@ pub(super) struct Cursor<'a> {
     next: usize,
     /// Start of the last item read.
     last: usize,
-    pub form: Form,
+    pub form: CursorForm,
 }
 
 impl<'a> Cursor<'a> {
@@ -26,7 +26,7 @@ impl<'a> Cursor<'a> {
             bytes,
             next: 0,
             last: 0,
-            form: Form::Text,
+            form: CursorForm::Text,
         }
     }
 
@@ -38,7 +38,7 @@ impl<'a> Cursor<'a> {
     /// An error at a byte; in a text file with line and column.
     pub fn fault(&self, byte: usize, message: impl Into<String>) -> Broken {
         let message = message.into();
-        if self.form != Form::Text {
+        if self.form != CursorForm::Text {
             return Broken::whole(format!("byte {byte}: {message}"));
         }
         let before = &self.bytes[..byte.min(self.bytes.len())];
@@ -93,8 +93,8 @@ impl<'a> Cursor<'a> {
     /// A count or a tag.
     pub fn size(&mut self, what: &str) -> Result<u64, Broken> {
         match self.form {
-            Form::Text => self.parsed(what, "a nonnegative whole number"),
-            Form::Binary { big } => {
+            CursorForm::Text => self.parsed(what, "a nonnegative whole number"),
+            CursorForm::Binary { big } => {
                 let bytes = self.take(what)?;
                 Ok(if big {
                     u64::from_be_bytes(bytes)
@@ -108,8 +108,8 @@ impl<'a> Cursor<'a> {
     /// A signed 32-bit number.
     pub fn int(&mut self, what: &str) -> Result<i64, Broken> {
         match self.form {
-            Form::Text => self.parsed(what, "a whole number"),
-            Form::Binary { big } => {
+            CursorForm::Text => self.parsed(what, "a whole number"),
+            CursorForm::Binary { big } => {
                 let bytes = self.take(what)?;
                 let value = if big {
                     i32::from_be_bytes(bytes)
@@ -124,8 +124,8 @@ impl<'a> Cursor<'a> {
     /// A finite coordinate.
     pub fn float(&mut self, what: &str) -> Result<f64, Broken> {
         let value = match self.form {
-            Form::Text => self.parsed(what, "a number")?,
-            Form::Binary { big } => {
+            CursorForm::Text => self.parsed(what, "a number")?,
+            CursorForm::Binary { big } => {
                 let bytes = self.take(what)?;
                 if big {
                     f64::from_be_bytes(bytes)
@@ -149,8 +149,8 @@ impl<'a> Cursor<'a> {
     pub fn count(&self, count: u64, numbers: usize, what: &str) -> Result<usize, Broken> {
         let least = match self.form {
             // One digit and a space.
-            Form::Text => 2,
-            Form::Binary { .. } => 4,
+            CursorForm::Text => 2,
+            CursorForm::Binary { .. } => 4,
         };
         // The last number of a text need not be followed by a space.
         let room = (self.bytes.len() + 1 - self.next) / (least * numbers.max(1));

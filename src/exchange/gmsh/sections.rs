@@ -1,6 +1,6 @@
 //! The sections of a file of any version.
 
-use super::cursor::{Cursor, Form};
+use super::cursor::{Cursor, CursorForm};
 use super::raw::Raw;
 use super::{v2, v4};
 use crate::broken::Broken;
@@ -117,12 +117,12 @@ fn head(cursor: &mut Cursor<'_>) -> Result<Version, Broken> {
             return Err(cursor.wrong(format!("numbers of {size} bytes are not supported, only 8")));
         }
         cursor.line();
-        cursor.form = Form::Binary { big: false };
+        cursor.form = CursorForm::Binary { big: false };
         let one = cursor.int("the number 1")?;
         match one {
             1 => {}
             // The bytes of 1 in reverse order.
-            0x0100_0000 => cursor.form = Form::Binary { big: true },
+            0x0100_0000 => cursor.form = CursorForm::Binary { big: true },
             _ => {
                 return Err(cursor.wrong("the byte-order mark is not 1 in either byte order"));
             }

@@ -1,6 +1,6 @@
 //! Nodes and elements of version 2.2: one by one, each element with its groups.
 
-use super::cursor::{Cursor, Form};
+use super::cursor::{Cursor, CursorForm};
 use super::elements::{RawCell, RawNode, kind};
 use super::raw::Raw;
 use crate::broken::Broken;
@@ -30,7 +30,7 @@ pub(super) fn elements(cursor: &mut Cursor<'_>, raw: &mut Raw) -> Result<(), Bro
     let mut left = count;
     while left > 0 {
         let mut first = None;
-        if cursor.form == Form::Text {
+        if cursor.form == CursorForm::Text {
             cursor.int("the number of an element")?;
             first = Some(cursor.last());
         }
@@ -86,7 +86,7 @@ pub(super) fn elements(cursor: &mut Cursor<'_>, raw: &mut Raw) -> Result<(), Bro
 fn announced(cursor: &mut Cursor<'_>, numbers: usize, what: &str) -> Result<usize, Broken> {
     let count = cursor.number("a count", "a nonnegative whole number")?;
     let count = cursor.count(count, numbers, what)?;
-    if cursor.form != Form::Text {
+    if cursor.form != CursorForm::Text {
         cursor.line();
     }
     Ok(count)

@@ -8,7 +8,7 @@
 //!
 //! Case and spaces within words do not matter, as in CalculiX. Parameters continue on the next line after a trailing comma.
 
-use super::source::{Fault, Line, Place, plain};
+use super::source::{Fault, SourceLine, Place, plain};
 
 /// A keyword with its parameters and data.
 #[derive(Debug)]
@@ -19,7 +19,7 @@ pub(super) struct Card<'t> {
     pub shown: String,
     pub place: Place,
     parameters: Vec<Parameter>,
-    pub lines: Vec<Line<'t>>,
+    pub lines: Vec<SourceLine<'t>>,
 }
 
 #[derive(Debug, Clone)]
@@ -33,14 +33,14 @@ pub(super) struct Parameter {
 
 /// A word of a data line.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Cell<'t> {
+pub(super) struct CardCell<'t> {
     pub text: &'t str,
-    line: Line<'t>,
+    line: SourceLine<'t>,
     byte: usize,
 }
 
 /// The cards of a deck.
-pub(super) fn cards<'t>(lines: impl Iterator<Item = Line<'t>>) -> Result<Vec<Card<'t>>, Fault> {
+pub(super) fn cards<'t>(lines: impl Iterator<Item = SourceLine<'t>>) -> Result<Vec<Card<'t>>, Fault> {
     let mut cards: Vec<Card<'t>> = Vec::new();
     let mut open = false;
     for line in lines {
@@ -72,7 +72,7 @@ pub(super) fn cards<'t>(lines: impl Iterator<Item = Line<'t>>) -> Result<Vec<Car
 
 impl<'t> Card<'t> {
     /// A card without its data, and whether its parameters continue on the next line.
-    fn begin(line: Line<'t>) -> Result<(Card<'t>, bool), Fault> {
+    fn begin(line: SourceLine<'t>) -> Result<(Card<'t>, bool), Fault> {
         let star = line.text.find('*').unwrap_or(0);
         let end = line.text.find(',').unwrap_or(line.text.len());
         let word = line.text.get(star + 1..end).unwrap_or_default().trim();
@@ -176,7 +176,7 @@ impl<'t> Card<'t> {
     }
 
     /// The only data line.
-    pub fn one_line(&self, what: &str) -> Result<Vec<Cell<'t>>, Fault> {
+    pub fn one_line(&self, what: &str) -> Result<Vec<CardCell<'t>>, Fault> {
         match self.lines.as_slice() {
             [line] => Ok(cells(*line)),
             [] => Err(self.wrong(format!("a line with {what} is missing"))),
@@ -202,12 +202,12 @@ impl<'t> Card<'t> {
     }
 
     /// The words of all lines.
-    pub fn cells(&self) -> impl Iterator<Item = Cell<'t>> {
+    pub fn cells(&self) -> impl Iterator<Item = CardCell<'t>> {
         self.lines.iter().flat_map(|line| cells(*line))
     }
 }
 
-fn parameters_of(line: Line<'_>, from: usize) -> Result<(Vec<Parameter>, bool), Fault> {
+fn parameters_of(line: SourceLine<'_>, from: usize) -> Result<(Vec<Parameter>, bool), Fault> {
     let mut parameters = Vec::new();
     let mut open = true;
     let mut byte = from;
@@ -236,12 +236,12 @@ fn parameters_of(line: Line<'_>, from: usize) -> Result<(Vec<Parameter>, bool), 
 }
 
 /// The words of a line; text after the last comma counts only if it is not empty.
-pub(super) fn cells(line: Line<'_>) -> Vec<Cell<'_>> {
+pub(super) fn cells(line: SourceLine<'_>) -> Vec<CardCell<'_>> {
     let mut found = Vec::new();
     let mut byte = 0;
     for part in line.text.split(',') {
         let blanks = part.len() - part.trim_start().len();
-        found.push(Cell {
+        found.push(CardCell {
             text: part.trim(),
             line,
             byte: byte + blanks,
@@ -254,7 +254,7 @@ pub(super) fn cells(line: Line<'_>) -> Vec<Cell<'_>> {
     found
 }
 
-impl Cell<'_> {
+impl CardCell<'_> {
     pub fn place(&self) -> Place {
         self.line.place(self.byte)
     }
@@ -289,7 +289,7 @@ impl Cell<'_> {
 }
 
 /// The number at an index of a line; 0 if omitted.
-pub(super) fn number_or_zero(cells: &[Cell<'_>], at: usize, what: &str) -> Result<f64, Fault> {
+pub(super) fn number_or_zero(cells: &[CardCell<'_>], at: usize, what: &str) -> Result<f64, Fault> {
     match cells.get(at).filter(|cell| !cell.text.is_empty()) {
         Some(cell) => cell.number(what),
         None => Ok(0.0),

@@ -1,6 +1,6 @@
 //! Nodes, elements, sets and surfaces of a deck.
 
-use super::cards::{Card, Cell, cells, short};
+use super::cards::{Card, CardCell, cells, short};
 use super::deck::{Deck, Element, ElementType, Faces, Family, Node, Set, Surface};
 use super::source::{Fault, Place, plain};
 use crate::mesh::CellKind;
@@ -40,8 +40,8 @@ pub(super) fn read(card: &Card<'_>, deck: &mut Deck, names: &mut Names) -> Resul
     match card.key.as_str() {
         "NODE" => nodes(card, deck, names)?,
         "ELEMENT" => elements(card, deck, names)?,
-        "NSET" => set(card, deck, names, Kind::Nodes)?,
-        "ELSET" => set(card, deck, names, Kind::Elements)?,
+        "NSET" => set(card, deck, names, MeshKind::Nodes)?,
+        "ELSET" => set(card, deck, names, MeshKind::Elements)?,
         "SURFACE" => surface(card, deck, names)?,
         _ => return Ok(false),
     }
@@ -66,7 +66,7 @@ fn nodes(card: &Card<'_>, deck: &mut Deck, names: &mut Names) -> Result<(), Faul
             );
         }
         if z != 0.0 {
-            let at = cells.get(3).map_or(label.place(), Cell::place);
+            let at = cells.get(3).map_or(label.place(), CardCell::place);
             return Err(Fault::new(
                 at,
                 format!("node {number} is at z = {z:?}; only z = 0 is supported"),
@@ -86,7 +86,7 @@ fn nodes(card: &Card<'_>, deck: &mut Deck, names: &mut Names) -> Result<(), Faul
         card,
         deck,
         names,
-        Kind::Nodes,
+        MeshKind::Nodes,
         "NSET",
         (first..deck.nodes.len()).collect(),
     )
@@ -483,7 +483,7 @@ fn sides(card: &Card<'_>, deck: &Deck, names: &Names) -> Result<Vec<(usize, usiz
                 first.wrong("the side is missing; write the element and the side, e.g. \"12, S2\"")
             );
         };
-        for element in members_of(first, deck, names, Kind::Elements)? {
+        for element in members_of(first, deck, names, MeshKind::Elements)? {
             sides.push((element, side_of(label, 'S', &deck.elements[element])?));
         }
         if sides.len() > MEMBERS {
@@ -494,7 +494,7 @@ fn sides(card: &Card<'_>, deck: &Deck, names: &Names) -> Result<Vec<(usize, usiz
 }
 
 /// Index of a side of an element, given by a letter and its number from 1.
-pub(super) fn side_of(cell: &Cell<'_>, letter: char, element: &Element) -> Result<usize, Fault> {
+pub(super) fn side_of(cell: &CardCell<'_>, letter: char, element: &Element) -> Result<usize, Fault> {
     let most = match element.kind.cell {
         CellKind::Triangle3 | CellKind::Triangle6 => 3,
         CellKind::Quad4 | CellKind::Quad8 => 4,

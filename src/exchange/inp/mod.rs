@@ -30,7 +30,7 @@ use source::{Fault, Sources};
 /// Whether a text could be a deck: its first line that is neither blank nor a comment begins with a star.
 pub fn is_one(text: &str) -> bool {
     let lines = text.lines().enumerate();
-    let mut lines = lines.map(|(k, text)| source::Line {
+    let mut lines = lines.map(|(k, text)| source::SourceLine {
         text,
         file: 0,
         number: k + 1,
@@ -70,7 +70,7 @@ fn whole(sources: &Sources) -> Result<Deck, Fault> {
         known(card, &mut deck)?;
     }
     let mut names = Names::default();
-    let (mut properties, mut steps) = (property::Open::default(), step::Open::default());
+    let (mut properties, mut steps) = (property::Open::default(), step::OpenStep::default());
     for card in &cards {
         mesh::read(card, &mut deck, &mut names)?;
     }

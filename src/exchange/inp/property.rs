@@ -1,10 +1,10 @@
 //! Materials, sections, amplitudes and contact definitions of a deck.
 
-use super::cards::{Card, Cell, cells, number_or_zero, short};
+use super::cards::{Card, CardCell, cells, number_or_zero, short};
 use super::deck::{
     Adjust, Amplitude, Deck, Faces, Family, Form, Interaction, Material, Normal, Pair, Section, Tie,
 };
-use super::mesh::{Kind, Names, set_of, surface_of};
+use super::mesh::{MeshKind, Names, set_of, surface_of};
 use super::source::{Fault, Place};
 
 /// The card to which subsequent cards belong.
@@ -386,7 +386,7 @@ fn beam_section(card: &Card<'_>, deck: &mut Deck, names: &Names) -> Result<(), F
 
 /// The slave and the master named on a line.
 fn two_surfaces(
-    line: super::source::Line<'_>,
+    line: super::source::SourceLine<'_>,
     deck: &Deck,
     names: &Names,
 ) -> Result<(usize, usize), Fault> {

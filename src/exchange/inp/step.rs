@@ -1,15 +1,15 @@
 //! The steps of a deck: increments, supports, loads.
 
-use super::cards::{Card, Cell, cells, number_or_zero, short};
+use super::cards::{Card, CardCell, cells, number_or_zero, short};
 use super::deck::{
     Deck, Direction, Element, Faces, Family, Pressure, Step, Time, Value, Volume, Weight,
 };
-use super::mesh::{Kind, Names, members_of, set_of, side_of, surface_of};
-use super::source::{Fault, Line, Place, plain};
+use super::mesh::{MeshKind, Names, members_of, set_of, side_of, surface_of};
+use super::source::{Fault, SourceLine, Place, plain};
 
 /// State of reading the steps.
 #[derive(Debug, Default)]
-pub(super) struct Open {
+pub(super) struct OpenStep {
     step: Option<Step>,
     has_time: bool,
     /// NLGEOM stays on in later steps until it is switched off.
@@ -21,7 +21,7 @@ pub(super) fn read(
     card: &Card<'_>,
     deck: &mut Deck,
     names: &mut Names,
-    open: &mut Open,
+    open: &mut OpenStep,
 ) -> Result<bool, Fault> {
     match card.key.as_str() {
         "STEP" => begin(card, deck, open)?,
@@ -38,7 +38,7 @@ pub(super) fn read(
 }
 
 /// Rejects a deck without steps or with an unfinished step.
-pub(super) fn finish(deck: &Deck, open: &Open, last: Place) -> Result<(), Fault> {
+pub(super) fn finish(deck: &Deck, open: &OpenStep, last: Place) -> Result<(), Fault> {
     match &open.step {
         Some(step) => Err(Fault::new(
             step.place,
@@ -53,14 +53,14 @@ pub(super) fn finish(deck: &Deck, open: &Open, last: Place) -> Result<(), Fault>
 }
 
 /// Rejects model definitions after the first step.
-pub(super) fn before(card: &Card<'_>, open: &Open) -> Result<(), Fault> {
+pub(super) fn before(card: &Card<'_>, open: &OpenStep) -> Result<(), Fault> {
     match open.step {
         None => Ok(()),
         Some(_) => Err(card.wrong("it belongs to the model and must come before the first *STEP")),
     }
 }
 
-fn begin(card: &Card<'_>, deck: &mut Deck, open: &mut Open) -> Result<(), Fault> {
+fn begin(card: &Card<'_>, deck: &mut Deck, open: &mut OpenStep) -> Result<(), Fault> {
     card.only(&[
         "NLGEOM",
         "INC",
@@ -103,7 +103,7 @@ fn begin(card: &Card<'_>, deck: &mut Deck, open: &mut Open) -> Result<(), Fault>
     Ok(())
 }
 
-fn end(card: &Card<'_>, deck: &mut Deck, open: &mut Open) -> Result<(), Fault> {
+fn end(card: &Card<'_>, deck: &mut Deck, open: &mut OpenStep) -> Result<(), Fault> {
     card.only(&[])?;
     card.no_lines()?;
     match open.step.take() {
@@ -118,13 +118,13 @@ fn end(card: &Card<'_>, deck: &mut Deck, open: &mut Open) -> Result<(), Fault> {
     }
 }
 
-fn in_step<'a>(card: &Card<'_>, open: &'a mut Open) -> Result<&'a mut Step, Fault> {
+fn in_step<'a>(card: &Card<'_>, open: &'a mut OpenStep) -> Result<&'a mut Step, Fault> {
     open.step
         .as_mut()
         .ok_or_else(|| card.wrong("it belongs to a step; *STEP must come first"))
 }
 
-fn time(card: &Card<'_>, deck: &mut Deck, open: &mut Open) -> Result<(), Fault> {
+fn time(card: &Card<'_>, deck: &mut Deck, open: &mut OpenStep) -> Result<(), Fault> {
     card.only(&["DIRECT", "SOLVER", "TIMERESET", "STABILIZE"])?;
     if card.has("STABILIZE") {
         return Err(Fault::new(
@@ -195,7 +195,7 @@ fn print(card: &Card<'_>, deck: &mut Deck, names: &Names) -> Result<(), Fault> {
     let Some(name) = card.value("NSET")? else {
         return Ok(());
     };
-    let set = set_of(name, card.place_of("NSET"), names, Kind::Nodes)?;
+    let set = set_of(name, card.place_of("NSET"), names, MeshKind::Nodes)?;
     let wanted = card.cells().any(|cell| plain(cell.text) == "U");
     if wanted && !deck.printed.contains(&set) {
         deck.printed.push(set);
@@ -226,7 +226,7 @@ fn boundary(
     card: &Card<'_>,
     deck: &mut Deck,
     names: &mut Names,
-    open: &mut Open,
+    open: &mut OpenStep,
 ) -> Result<(), Fault> {
     card.only(&["OP", "AMPLITUDE", "TYPE"])?;
     card.choice("TYPE", &["DISPLACEMENT"])?;
@@ -241,7 +241,7 @@ fn boundary(
             continue;
         };
         let (from, to, value) = directions(first, &words)?;
-        let nodes = members_of(first, deck, names, Kind::Nodes)?;
+        let nodes = members_of(first, deck, names, MeshKind::Nodes)?;
         let last = words.last().unwrap_or(first);
         let mut read = Vec::new();
         for direction in from..=to {
@@ -293,7 +293,7 @@ fn boundary(
 }
 
 /// First and last direction of a line of `*BOUNDARY`, and its value.
-fn directions(first: &Cell<'_>, words: &[Cell<'_>]) -> Result<(u64, u64, f64), Fault> {
+fn directions(first: &CardCell<'_>, words: &[CardCell<'_>]) -> Result<(u64, u64, f64), Fault> {
     let Some(second) = words.get(1) else {
         return Err(first.wrong("the restrained directions are missing after the node or set"));
     };
@@ -328,7 +328,7 @@ fn force(
     card: &Card<'_>,
     deck: &mut Deck,
     names: &mut Names,
-    open: &mut Open,
+    open: &mut OpenStep,
 ) -> Result<(), Fault> {
     card.only(&["OP", "AMPLITUDE"])?;
     let amplitude = amplitude(card, deck)?;
@@ -355,7 +355,7 @@ fn force(
                 )));
             }
         };
-        let nodes = members_of(first, deck, names, Kind::Nodes)?;
+        let nodes = members_of(first, deck, names, MeshKind::Nodes)?;
         names.count(nodes.len(), first.place())?;
         step.forces.extend(nodes.into_iter().map(|node| Value {
             node,
@@ -368,7 +368,7 @@ fn force(
     Ok(())
 }
 
-fn load(card: &Card<'_>, deck: &mut Deck, names: &mut Names, open: &mut Open) -> Result<(), Fault> {
+fn load(card: &Card<'_>, deck: &mut Deck, names: &mut Names, open: &mut OpenStep) -> Result<(), Fault> {
     card.only(&["OP", "AMPLITUDE"])?;
     let amplitude = amplitude(card, deck)?;
     let new = is_new(card)?;
@@ -382,7 +382,7 @@ fn load(card: &Card<'_>, deck: &mut Deck, names: &mut Names, open: &mut Open) ->
                 "an element or a set, a load name and its size were expected",
             ));
         };
-        let elements = members_of(first, deck, names, Kind::Elements)?;
+        let elements = members_of(first, deck, names, MeshKind::Elements)?;
         names.count(elements.len(), first.place())?;
         let kind = plain(label.text);
         let volume = volume(&kind, label, rest)?;
@@ -408,7 +408,7 @@ fn load(card: &Card<'_>, deck: &mut Deck, names: &mut Names, open: &mut Open) ->
 }
 
 /// The side that a load of `*DLOAD` acts on.
-fn pressed(label: &Cell<'_>, kind: &str, element: &Element) -> Result<usize, Fault> {
+fn pressed(label: &CardCell<'_>, kind: &str, element: &Element) -> Result<usize, Fault> {
     let digits = kind.strip_prefix('P').unwrap_or_default();
     let numbered = !digits.is_empty() && digits.chars().all(|c| c.is_ascii_digit());
     match numbered && element.kind.family != Family::Beam {
@@ -422,7 +422,7 @@ fn pressed(label: &Cell<'_>, kind: &str, element: &Element) -> Result<usize, Fau
 }
 
 /// The only remaining number of a line.
-fn one(before: &Cell<'_>, rest: &[Cell<'_>], what: &str) -> Result<f64, Fault> {
+fn one(before: &CardCell<'_>, rest: &[CardCell<'_>], what: &str) -> Result<f64, Fault> {
     match rest {
         [cell] => cell.number(what),
         [] => Err(before.wrong(format!("{what} is missing"))),
@@ -430,7 +430,7 @@ fn one(before: &Cell<'_>, rest: &[Cell<'_>], what: &str) -> Result<f64, Fault> {
     }
 }
 
-fn volume(kind: &str, label: &Cell<'_>, rest: &[Cell<'_>]) -> Result<Option<Volume>, Fault> {
+fn volume(kind: &str, label: &CardCell<'_>, rest: &[CardCell<'_>]) -> Result<Option<Volume>, Fault> {
     match kind {
         "BX" => Ok(Some(Volume::Force([
             one(label, rest, "the force per volume")?,
@@ -468,7 +468,7 @@ fn surface_load(
     card: &Card<'_>,
     deck: &mut Deck,
     names: &mut Names,
-    open: &mut Open,
+    open: &mut OpenStep,
 ) -> Result<(), Fault> {
     card.only(&["OP", "AMPLITUDE"])?;
     let amplitude = amplitude(card, deck)?;
@@ -501,7 +501,7 @@ struct Pressed {
     value: f64,
 }
 
-fn pressed_surface(line: Line<'_>, deck: &Deck, names: &Names) -> Result<Pressed, Fault> {
+fn pressed_surface(line: SourceLine<'_>, deck: &Deck, names: &Names) -> Result<Pressed, Fault> {
     let words = cells(line);
     let [first, label, size] = words.as_slice() else {
         return Err(Fault::new(

@@ -1,6 +1,6 @@
 //! Nodes, elements, materials and sections of a deck.
 
-use super::{Fault, MESH, Made};
+use super::{DeckFault, MESH, Made};
 use crate::format::error::at;
 use crate::format::given::Cells;
 use crate::format::spec::{BodySpec, Material, Nodes};
@@ -17,7 +17,7 @@ type Part = (usize, Family, usize);
 
 impl Made<'_> {
     /// Creates the mesh, its bodies and their materials.
-    pub(super) fn bodies(&mut self, nlgeom: bool) -> Result<(), Fault> {
+    pub(super) fn bodies(&mut self, nlgeom: bool) -> Result<(), DeckFault> {
         let section_of = self.sections()?;
         let material = |&section: &usize| self.deck.sections[section].material;
         self.material_of = section_of.iter().map(material).collect();
@@ -30,7 +30,7 @@ impl Made<'_> {
                 .first()
                 .map(|e| e.place)
                 .unwrap_or_default();
-            return Err(Fault::new(
+            return Err(DeckFault::new(
                 place,
                 "the deck has no continuum elements (CPE, CPS, CAX); at least one is needed",
             ));
@@ -40,7 +40,7 @@ impl Made<'_> {
     }
 
     /// The section of each element.
-    fn sections(&self) -> Result<Vec<usize>, Fault> {
+    fn sections(&self) -> Result<Vec<usize>, DeckFault> {
         let mut section_of = vec![None; self.deck.elements.len()];
         for (k, section) in self.deck.sections.iter().enumerate() {
             let members = &self.deck.element_sets[section.set].members;
@@ -55,7 +55,7 @@ impl Made<'_> {
                     "element {} has no section; *SOLID SECTION or *BEAM SECTION must name its set",
                     element.label
                 );
-                Fault::new(element.place, message)
+                DeckFault::new(element.place, message)
             })
         };
         both.map(known).collect()
@@ -63,7 +63,7 @@ impl Made<'_> {
 
     /// The continuum elements of each body, in deck order.
     fn parts(&self, section_of: &[usize]) -> BTreeMap<Part, Vec<usize>> {
-        let mut groups = Groups::of(self.deck.nodes.len());
+        let mut groups = DeckGroups::of(self.deck.nodes.len());
         let solids = || {
             self.deck
                 .elements
@@ -94,7 +94,7 @@ impl Made<'_> {
         &mut self,
         parts: &BTreeMap<Part, Vec<usize>>,
         nlgeom: bool,
-    ) -> Result<Vec<Cells>, Fault> {
+    ) -> Result<Vec<Cells>, DeckFault> {
         let deck = self.deck;
         let mut cells = Vec::new();
         for (&(section, family, _), elements) in parts {
@@ -167,7 +167,7 @@ impl Made<'_> {
         section: &Section,
         family: Family,
         nlgeom: bool,
-    ) -> Result<String, Fault> {
+    ) -> Result<String, DeckFault> {
         let (name, young, poisson) = self.elastic(section)?;
         let thickness = match (section.form, family) {
             (Form::Solid { thickness }, Family::PlaneStrain | Family::PlaneStress) => thickness,
@@ -211,11 +211,11 @@ impl Made<'_> {
     }
 
     /// Name, Young's modulus and Poisson's ratio of a section's material.
-    fn elastic(&self, section: &Section) -> Result<(String, f64, f64), Fault> {
+    fn elastic(&self, section: &Section) -> Result<(String, f64, f64), DeckFault> {
         let material = &self.deck.materials[section.material];
         match material.elastic {
             Some((young, poisson)) => Ok((material.name.clone(), young, poisson)),
-            None => Err(Fault::new(
+            None => Err(DeckFault::new(
                 material.place,
                 format!("the material {} is not *ELASTIC", material.name),
             )),
@@ -223,7 +223,7 @@ impl Made<'_> {
     }
 
     /// Beams: connected elements with the same section form one beam.
-    fn beams(&mut self, section_of: &[usize], nlgeom: bool) -> Result<(), Fault> {
+    fn beams(&mut self, section_of: &[usize], nlgeom: bool) -> Result<(), DeckFault> {
         let deck = self.deck;
         let mut chains: Vec<(usize, CellKind, Vec<usize>)> = Vec::new();
         for (element, &section) in deck.elements.iter().zip(section_of) {
@@ -253,10 +253,10 @@ impl Made<'_> {
         Ok(())
     }
 
-    fn beam(&mut self, section: &Section, kind: CellKind, nodes: &[usize]) -> Result<(), Fault> {
+    fn beam(&mut self, section: &Section, kind: CellKind, nodes: &[usize]) -> Result<(), DeckFault> {
         let (name, young, poisson) = self.elastic(section)?;
         let Form::Rectangle { width, height } = section.form else {
-            return Err(Fault::new(section.place, "a beam needs a *BEAM SECTION"));
+            return Err(DeckFault::new(section.place, "a beam needs a *BEAM SECTION"));
         };
         let area = width * height;
         let wanted = |id: String| Material::Section {
@@ -297,11 +297,11 @@ fn kind_of(kind: ElementType) -> ElementKind {
 }
 
 /// Groups of connected nodes.
-pub(super) struct Groups(Vec<usize>);
+pub(super) struct DeckGroups(Vec<usize>);
 
-impl Groups {
+impl DeckGroups {
     pub fn of(nodes: usize) -> Self {
-        Groups((0..nodes).collect())
+        DeckGroups((0..nodes).collect())
     }
 
     /// The representative of a node's group: its smallest node.

@@ -1,8 +1,8 @@
 //! Contact pairs and ties of a deck.
 
 use super::super::corners::{self, CORNER};
-use super::bodies::Groups;
-use super::{Fault, MESH, Made};
+use super::bodies::DeckGroups;
+use super::{DeckFault, MESH, Made};
 use crate::format::contact_law::{ContactLaw, FrictionSpec};
 use crate::format::error::at;
 use crate::format::given::SideSet;
@@ -24,7 +24,7 @@ struct Laws {
 }
 
 /// A contact pair or a tie.
-struct Touching {
+struct DeckContact {
     /// The slave surface.
     name: String,
     slaves: Vec<usize>,
@@ -36,7 +36,7 @@ struct Touching {
 }
 
 impl Made<'_> {
-    pub(super) fn contacts(&mut self) -> Result<(), Fault> {
+    pub(super) fn contacts(&mut self) -> Result<(), DeckFault> {
         let mut all = Vec::new();
         for pair in &self.deck.pairs {
             let interaction = &self.deck.interactions[pair.interaction];
@@ -58,7 +58,7 @@ impl Made<'_> {
                     "SMALL SLIDING is ignored: the projection of a slave node on its master is computed in each iteration",
                 );
             }
-            all.push(Touching {
+            all.push(DeckContact {
                 name: self.deck.surfaces[pair.slave].name.clone(),
                 slaves: self.slaves_of(pair.slave),
                 master: pair.master,
@@ -73,7 +73,7 @@ impl Made<'_> {
         }
         for tie in &self.deck.ties {
             let slaves = self.near(tie)?;
-            all.push(Touching {
+            all.push(DeckContact {
                 name: self.deck.surfaces[tie.slave].name.clone(),
                 slaves,
                 master: tie.master,
@@ -119,7 +119,7 @@ impl Made<'_> {
     }
 
     /// The master surfaces as lines of sides, with the ids of their connected parts.
-    fn masters(&mut self, all: &[Touching]) -> BTreeMap<usize, Vec<String>> {
+    fn masters(&mut self, all: &[DeckContact]) -> BTreeMap<usize, Vec<String>> {
         let deck = self.deck;
         let mut made = BTreeMap::new();
         for touching in all {

@@ -1,7 +1,7 @@
 //! Supports, prescribed displacements, loads, increments and output requests of a deck.
 
 use super::curves::{Clock, Given, curve, scaled};
-use super::{Fault, MESH, Made};
+use super::{DeckFault, MESH, Made};
 use crate::format::error::at;
 use crate::format::given::NodeSet;
 use crate::format::spec::{LoadSpec, MonitorSpec, Nodes, Quantity, SupportSpec};
@@ -44,7 +44,7 @@ fn bits(points: &[(f64, f64)]) -> Vec<u64> {
 }
 
 impl Made<'_> {
-    pub(super) fn loads(&mut self, clock: &Clock) -> Result<(), Fault> {
+    pub(super) fn loads(&mut self, clock: &Clock) -> Result<(), DeckFault> {
         self.motions(clock)?;
         self.forces(clock)?;
         self.pressures(clock);
@@ -100,7 +100,7 @@ impl Made<'_> {
         on_beam
     }
 
-    fn motions(&mut self, clock: &Clock) -> Result<(), Fault> {
+    fn motions(&mut self, clock: &Clock) -> Result<(), DeckFault> {
         let mut courses =
             self.courses(|step| listed(&step.motions), |step| step.new_motions, false);
         let mut from_model: BTreeMap<(usize, Direction), Place> = BTreeMap::new();
@@ -124,7 +124,7 @@ impl Made<'_> {
                 .0
                 .push(component(direction));
         };
-        let mut moved: Vec<Moved> = Vec::new();
+        let mut moved: Vec<DeckMotion> = Vec::new();
         let mut known: HashMap<(Direction, Vec<u64>), usize> = HashMap::new();
         for (target, place) in from_model
             .iter()
@@ -142,7 +142,7 @@ impl Made<'_> {
                 .entry((direction, bits(&points)))
                 .or_insert(moved.len());
             if group == moved.len() {
-                moved.push(Moved {
+                moved.push(DeckMotion {
                     nodes: Vec::new(),
                     direction,
                     value,
@@ -173,7 +173,7 @@ impl Made<'_> {
         target: &(usize, Direction),
         course: Option<&Course>,
         from_model: bool,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), DeckFault> {
         let label = self.deck.nodes[target.0].label;
         let direction = component(target.1);
         let given = |k: usize| course.is_some_and(|course| !course.given[k].values.is_empty());
@@ -190,14 +190,14 @@ impl Made<'_> {
                 let message = format!(
                     "OP=NEW frees the {direction} of node {label} in this step; a prescribed direction must stay prescribed in all steps"
                 );
-                return Err(Fault::new(step.place, message));
+                return Err(DeckFault::new(step.place, message));
             }
             if given(k) && k > 0 && !from_model && !(0..k).any(given) {
                 let place = course.map_or(step.place, |course| course.place);
                 let message = format!(
                     "the {direction} of node {label} is free in earlier steps; a prescribed direction must be prescribed from the first step on"
                 );
-                return Err(Fault::new(place, message));
+                return Err(DeckFault::new(place, message));
             }
         }
         Ok(())
@@ -254,19 +254,19 @@ impl Made<'_> {
         whole
     }
 
-    fn forces(&mut self, clock: &Clock) -> Result<(), Fault> {
+    fn forces(&mut self, clock: &Clock) -> Result<(), DeckFault> {
         let courses = self.courses(|step| listed(&step.forces), |step| step.new_forces, true);
         let on_beam = self.is_beam_node();
         for ((node, direction), course) in courses {
             let label = self.deck.nodes[node].label;
             if !self.used[node] {
-                return Err(Fault::new(
+                return Err(DeckFault::new(
                     course.place,
                     format!("node {label} belongs to no element, so a force there has no effect"),
                 ));
             }
             if direction == Direction::Rotation && !on_beam[node] {
-                return Err(Fault::new(
+                return Err(DeckFault::new(
                     course.place,
                     format!("node {label} is not on a beam, so it cannot carry a moment"),
                 ));
@@ -361,7 +361,7 @@ impl Made<'_> {
     }
 
     /// Volume forces, one load per component and body.
-    fn weights(&mut self, clock: &Clock) -> Result<(), Fault> {
+    fn weights(&mut self, clock: &Clock) -> Result<(), DeckFault> {
         let deck = self.deck;
         let listed = |step: &Step| {
             let parts = step.weights.iter().flat_map(|weight| {
@@ -390,7 +390,7 @@ impl Made<'_> {
                 match self.body_of[element] {
                     Some(_) => continue,
                     None => {
-                        return Err(Fault::new(
+                        return Err(DeckFault::new(
                             course.place,
                             format!("element {label} is a beam; only continua have weight here"),
                         ));
@@ -409,7 +409,7 @@ impl Made<'_> {
                 let message = format!(
                     "the load acts on {count} of the {members} connected elements of {on}; it must act on all of them"
                 );
-                return Err(Fault::new(place, message));
+                return Err(DeckFault::new(place, message));
             }
             let density = match is_weight {
                 false => 1.0,
@@ -428,12 +428,12 @@ impl Made<'_> {
     }
 
     /// Density of the material of a body.
-    fn density(&self, body: usize, place: Place) -> Result<f64, Fault> {
+    fn density(&self, body: usize, place: Place) -> Result<f64, DeckFault> {
         let element = self.body_of.iter().position(|of| *of == Some(body));
         let material = element.map(|element| &self.deck.materials[self.material_of[element]]);
         material
             .and_then(|material| material.density)
-            .ok_or_else(|| Fault::new(place, "the material has weight, but no *DENSITY"))
+            .ok_or_else(|| DeckFault::new(place, "the material has weight, but no *DENSITY"))
     }
 
     /// The increments, and the path of the load factor.
@@ -513,7 +513,7 @@ impl Made<'_> {
 }
 
 /// Nodes with the same prescribed displacement.
-struct Moved {
+struct DeckMotion {
     nodes: Vec<usize>,
     direction: Direction,
     value: f64,

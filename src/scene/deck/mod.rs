@@ -96,14 +96,14 @@ impl Origin {
 
 /// A semantic error in a deck.
 #[derive(Debug)]
-struct Fault {
+struct DeckFault {
     place: Place,
     message: String,
 }
 
-impl Fault {
+impl DeckFault {
     fn new(place: Place, message: impl Into<String>) -> Self {
-        Fault {
+        DeckFault {
             place,
             message: message.into(),
         }
@@ -191,7 +191,7 @@ pub(super) fn is_called_so(name: &str) -> bool {
 }
 
 /// Converts a deck to a scene.
-fn scene(name: &str, deck: &Deck) -> Result<Read, Fault> {
+fn scene(name: &str, deck: &Deck) -> Result<Read, DeckFault> {
     let mut made = Made::new(name, deck);
     let nlgeom = one_geometry(deck)?;
     made.bodies(nlgeom)?;
@@ -203,11 +203,11 @@ fn scene(name: &str, deck: &Deck) -> Result<Read, Fault> {
 }
 
 /// Whether strains are large; must be the same in all steps.
-fn one_geometry(deck: &Deck) -> Result<bool, Fault> {
+fn one_geometry(deck: &Deck) -> Result<bool, DeckFault> {
     let first = deck.steps.first().is_some_and(|step| step.nlgeom);
     match deck.steps.iter().find(|step| step.nlgeom != first) {
         None => Ok(first),
-        Some(step) => Err(Fault::new(
+        Some(step) => Err(DeckFault::new(
             step.place,
             "NLGEOM must be set in all steps or in none: the strain measure cannot change between steps",
         )),

@@ -5,7 +5,7 @@ use super::super::geometry::Folds;
 use super::super::limits;
 use super::elements::{Element, check_doubled, check_orders, sound};
 use super::sides::{Faces, line};
-use super::{Entry, EntryKind, Names};
+use super::{NameEntry, EntryKind, Names};
 use crate::format::error::{Fault, Path, at, quoted};
 use crate::format::given::{Cells, NodeSet, SideSet};
 use crate::format::spec::Nodes;
@@ -35,13 +35,13 @@ impl Names {
         let mut entries = Vec::new();
         for (part, members) in parts {
             let elements: Vec<Element> = members.iter().map(|&k| made[k].clone()).collect();
-            let mut entry = Entry::new(at, &own(part), nodes_of(&elements), EntryKind::Part);
+            let mut entry = NameEntry::new(at, &own(part), nodes_of(&elements), EntryKind::Part);
             entry.elements = elements;
             entries.push(entry);
         }
         for (k, set) in sets.iter().enumerate() {
             let nodes = mesh.set(&here.then("sets").then(k), set)?;
-            entries.push(Entry::new(at, &own(&set.name), nodes, EntryKind::Set));
+            entries.push(NameEntry::new(at, &own(&set.name), nodes, EntryKind::Set));
         }
         let mut numbered = Vec::with_capacity(sides.len());
         for (k, set) in sides.iter().enumerate() {
@@ -57,12 +57,12 @@ impl Names {
         for ((path, numbered), set) in numbered.iter().zip(sides) {
             let line = line(path, &self.nodes, &faces, numbered)?;
             let kind = EntryKind::Sides(line.per_element());
-            let mut entry = Entry::new(at, &own(&set.name), line.nodes(), kind);
+            let mut entry = NameEntry::new(at, &own(&set.name), line.nodes(), kind);
             entry.line = line;
             entries.push(entry);
         }
         let all = (first..self.nodes.len()).collect();
-        let mut whole = Entry::new(at, id, all, EntryKind::Given);
+        let mut whole = NameEntry::new(at, id, all, EntryKind::Given);
         whole.elements = made;
         whole.labels = mesh.labels;
         self.add(whole);

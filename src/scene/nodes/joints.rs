@@ -1,7 +1,7 @@
 //! Meshes of several blocks: joins edges and merges their nodes.
 
 use super::super::geometry::distance;
-use super::{Entry, EntryKind, Names};
+use super::{NameEntry, EntryKind, Names};
 use crate::format::error::{Fault, Path, at};
 use crate::format::spec::Nodes;
 use std::collections::HashSet;
@@ -64,7 +64,7 @@ impl Names {
     }
 
     /// An edge of one of these blocks.
-    fn edge(&self, here: &Path, name: &str, parts: &[usize]) -> Result<&Entry, Fault> {
+    fn edge(&self, here: &Path, name: &str, parts: &[usize]) -> Result<&NameEntry, Fault> {
         let fault = |message| Fault::new(here.clone(), message);
         let edge = self.chain(name).map_err(fault)?;
         let owner = parts.iter().any(|&k| self.entries[k].at == edge.at);
@@ -81,11 +81,11 @@ impl Names {
     fn joint(
         &self,
         here: &Path,
-        a: &Entry,
-        b: &Entry,
+        a: &NameEntry,
+        b: &NameEntry,
         tolerance: f64,
     ) -> Result<Vec<(usize, usize)>, Fault> {
-        let per = |edge: &Entry| edge.kind.per_element().unwrap_or(2);
+        let per = |edge: &NameEntry| edge.kind.per_element().unwrap_or(2);
         if per(a) != per(b) {
             let message = format!(
                 "{:?} has {} nodes per side and {:?} has {}; joined blocks need elements with the same number",
@@ -96,7 +96,7 @@ impl Names {
             );
             return Err(Fault::new(here.clone(), message));
         }
-        let elements = |edge: &Entry| edge.nodes.len() / (per(edge) - 1);
+        let elements = |edge: &NameEntry| edge.nodes.len() / (per(edge) - 1);
         if a.nodes.len() != b.nodes.len() {
             let message = format!(
                 "{:?} has {} elements and {:?} has {}; joined edges need the same number",

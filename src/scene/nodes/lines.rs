@@ -2,7 +2,7 @@
 
 use super::super::geometry::distance;
 use super::given::nodes_of;
-use super::{Entry, EntryKind, Names};
+use super::{NameEntry, EntryKind, Names};
 
 /// A line of sides.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,7 +26,7 @@ impl Names {
             .entries
             .iter()
             .filter(|entry| entry.kind == EntryKind::Given);
-        let note = |mesh: &Entry| {
+        let note = |mesh: &NameEntry| {
             let idle = mesh.nodes.len() - nodes_of(&mesh.elements).len();
             let idle = (idle > 0).then(|| {
                 format!(
@@ -47,14 +47,14 @@ impl Names {
             return Vec::new();
         };
         let own = || self.entries.iter().filter(|entry| entry.at == mesh.at);
-        let has_all = |part: &&Entry, line: &Entry| {
+        let has_all = |part: &&NameEntry, line: &NameEntry| {
             part.kind == EntryKind::Part
                 && line
                     .nodes
                     .iter()
                     .all(|n| part.nodes.binary_search(n).is_ok())
         };
-        let line = |entry: &Entry| {
+        let line = |entry: &NameEntry| {
             let part = own()
                 .find(|part| has_all(part, entry))
                 .map(|part| part.id.clone());

@@ -1,7 +1,7 @@
 //! Finds nodes, chains and meshes by name, and writes the messages for unknown names.
 
 use super::given::nodes_of;
-use super::{Entry, EntryKind, Mesh, Names};
+use super::{NameEntry, EntryKind, Mesh, Names};
 use crate::format::error::{did_you_mean, quoted, some_of};
 use crate::shown::first_of;
 
@@ -44,7 +44,7 @@ impl Names {
     }
 
     /// The chain with an id.
-    pub(crate) fn chain(&self, id: &str) -> Result<&Entry, String> {
+    pub(crate) fn chain(&self, id: &str) -> Result<&NameEntry, String> {
         if let Some(&k) = self.index.get(id) {
             let entry = &self.entries[k];
             return match entry.kind {
@@ -96,7 +96,7 @@ impl Names {
     /// A message that lists the existing meshes.
     pub(crate) fn mesh(&self, id: &str) -> Result<Mesh, String> {
         let meshes = || {
-            let is_mesh = |e: &&Entry| {
+            let is_mesh = |e: &&NameEntry| {
                 matches!(
                     e.kind,
                     EntryKind::Block(_) | EntryKind::Mesh | EntryKind::Given | EntryKind::Part
@@ -112,7 +112,7 @@ impl Names {
                 some_of(meshes())
             ));
         };
-        let blocks: Vec<&Entry> = match entry.kind {
+        let blocks: Vec<&NameEntry> = match entry.kind {
             EntryKind::Block(_) => vec![entry],
             EntryKind::Mesh => entry.parts.iter().map(|&k| &self.entries[k]).collect(),
             EntryKind::Given | EntryKind::Part if !entry.elements.is_empty() => {
@@ -166,7 +166,7 @@ impl Names {
     /// Index of the block with an id among the entries.
     pub(super) fn block(&self, id: &str) -> Result<usize, String> {
         let blocks = || {
-            let is_block = |e: &&Entry| matches!(e.kind, EntryKind::Block(_));
+            let is_block = |e: &&NameEntry| matches!(e.kind, EntryKind::Block(_));
             self.entries.iter().filter(is_block).map(|e| e.id.as_str())
         };
         let found = self.index.get(id).copied();
@@ -182,7 +182,7 @@ impl Names {
             })
     }
 
-    fn split(&self, name: &str) -> Result<(&Entry, Selector), String> {
+    fn split(&self, name: &str) -> Result<(&NameEntry, Selector), String> {
         if self.entry_of(name).is_none() {
             // Problems written by earlier versions use beam-5 for beam.5.
             let other = |from: char, to: &str| {
@@ -223,7 +223,7 @@ impl Names {
     }
 
     /// The entry that a name starts with (an edge takes precedence over its block), and the rest of the name.
-    fn entry_of<'n>(&self, name: &'n str) -> Option<(&Entry, &'n str)> {
+    fn entry_of<'n>(&self, name: &'n str) -> Option<(&NameEntry, &'n str)> {
         let cut_from = |start: usize| {
             let rest = name.get(start..).unwrap_or_default();
             rest.find(['.', '@']).map_or(name.len(), |k| start + k)
@@ -241,7 +241,7 @@ impl Names {
         found(second).or_else(|| found(first))
     }
 
-    fn selected(&self, name: &str, selector: &str, entry: &Entry) -> Result<Selector, String> {
+    fn selected(&self, name: &str, selector: &str, entry: &NameEntry) -> Result<Selector, String> {
         let count = entry.nodes.len();
         let is_chain = entry.kind.per_element().is_some();
         if entry.kind == EntryKind::Given && selector != "all" {
@@ -271,7 +271,7 @@ impl Names {
     fn unknown(&self, name: &str) -> String {
         let mut known = Vec::new();
         let mut shown = Vec::new();
-        for Entry {
+        for NameEntry {
             id,
             nodes,
             kind,
@@ -338,7 +338,7 @@ impl EntryKind {
     }
 }
 
-impl Entry {
+impl NameEntry {
     /// Index of the node of a given mesh with a label.
     fn labelled(&self, label: usize) -> Result<usize, String> {
         self.labels.binary_search(&label).map_err(|place| {

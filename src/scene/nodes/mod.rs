@@ -21,20 +21,20 @@ use checks::{check_ids, check_total};
 use elements::Element;
 use stickslip_core::model::{ElementKind, Node};
 
-use sides::Line as Sides;
+use sides::SideLine as Sides;
 use std::collections::HashMap;
 
 /// All nodes of a scene, with all their names.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Names {
     pub(crate) nodes: Vec<Node>,
-    entries: Vec<Entry>,
+    entries: Vec<NameEntry>,
     index: HashMap<String, usize>,
 }
 
 /// The result of one entry of the scene's `nodes`.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Entry {
+pub(crate) struct NameEntry {
     id: String,
     /// Node numbers in order.
     pub nodes: Vec<usize>,
@@ -102,7 +102,7 @@ impl Names {
     /// Names for single nodes, each under its own name.
     pub(crate) fn single(nodes: &[Node]) -> Names {
         let entry =
-            |(k, node): (usize, &Node)| Entry::new(k, &node.name, vec![k], EntryKind::Single);
+            |(k, node): (usize, &Node)| NameEntry::new(k, &node.name, vec![k], EntryKind::Single);
         let named = |(k, node): (usize, &Node)| (node.name.clone(), k);
         Names {
             nodes: nodes.to_vec(),
@@ -112,9 +112,9 @@ impl Names {
     }
 }
 
-impl Entry {
-    fn new(at: usize, id: &str, nodes: Vec<usize>, kind: EntryKind) -> Entry {
-        Entry {
+impl NameEntry {
+    fn new(at: usize, id: &str, nodes: Vec<usize>, kind: EntryKind) -> NameEntry {
+        NameEntry {
             id: id.to_owned(),
             nodes,
             kind,
@@ -192,7 +192,7 @@ impl Names {
     }
 
     /// The entries: single nodes, chains, blocks, their edges, and meshes.
-    pub(crate) fn entries(&self) -> &[Entry] {
+    pub(crate) fn entries(&self) -> &[NameEntry] {
         &self.entries
     }
 
@@ -202,10 +202,10 @@ impl Names {
     }
 
     fn enter(&mut self, at: usize, id: &str, nodes: Vec<usize>, kind: EntryKind) {
-        self.add(Entry::new(at, id, nodes, kind));
+        self.add(NameEntry::new(at, id, nodes, kind));
     }
 
-    fn add(&mut self, entry: Entry) {
+    fn add(&mut self, entry: NameEntry) {
         self.index.insert(entry.id.clone(), self.entries.len());
         self.entries.push(entry);
     }

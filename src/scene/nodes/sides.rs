@@ -8,14 +8,14 @@ use stickslip_core::model::Node;
 
 /// Sides in walking order.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(crate) struct Line {
+pub(crate) struct SideLine {
     /// Connected pieces, each as its sides from start to end.
     pub pieces: Vec<Vec<Vec<usize>>>,
     /// Whether a side lies between two elements, so that there is no outward side.
     pub inside: bool,
 }
 
-impl Line {
+impl SideLine {
     /// The nodes in walking order, each once.
     pub fn nodes(&self) -> Vec<usize> {
         let mut seen = HashSet::new();
@@ -102,7 +102,7 @@ pub(super) fn line(
     nodes: &[Node],
     faces: &Faces,
     sides: &[Vec<usize>],
-) -> Result<Line, Fault> {
+) -> Result<SideLine, Fault> {
     if sides.is_empty() {
         return Err(Fault::new(here.clone(), "there are no sides"));
     }
@@ -164,7 +164,7 @@ pub(super) fn line(
         let message = format!("the side {} is listed twice", named(nodes, &made[k]));
         return Err(Fault::new(here.then(k), message));
     }
-    Ok(Line {
+    Ok(SideLine {
         pieces: pieces(&made),
         inside,
     })

@@ -23,15 +23,15 @@ use stickslip_platform::input;
 const PARTS: [&str; 3] = ["q", "mu", "f"];
 
 /// The file names of a problem.
-struct Names {
+struct MarketNames {
     folder: PathBuf,
     /// The part before `_W.mtx`.
     stem: String,
     stiffness: bool,
 }
 
-impl Names {
-    fn of(file: &Path) -> Result<Names, String> {
+impl MarketNames {
+    fn of(file: &Path) -> Result<MarketNames, String> {
         let stem = file.file_stem().unwrap_or_default().to_string_lossy();
         let wrong = |part: &&&str| stem.ends_with(&format!("_{part}"));
         if let Some(part) = PARTS.iter().find(wrong) {
@@ -41,7 +41,7 @@ impl Names {
             ));
         }
         let plain = stem.strip_suffix("_W").or_else(|| stem.strip_suffix("_K"));
-        Ok(Names {
+        Ok(MarketNames {
             folder: file.parent().unwrap_or(Path::new("")).to_owned(),
             stiffness: stem.ends_with("_K"),
             stem: plain.unwrap_or(&stem).to_owned(),
@@ -59,7 +59,7 @@ impl Names {
 /// If one of the files has errors or is missing.
 pub fn read(file: &str, text: &str, memory: Option<f64>) -> Result<Problem, SceneError> {
     let whole = |why: String| SceneError::whole(file, why);
-    let names = Names::of(Path::new(file)).map_err(whole)?;
+    let names = MarketNames::of(Path::new(file)).map_err(whole)?;
     let matrix = matrix_market::read(text).map_err(|broken| read::of_file(file, broken))?;
     let size = matrix.rows;
     if size == 0 || size != matrix.columns || !size.is_multiple_of(2) {
@@ -105,7 +105,7 @@ pub fn read(file: &str, text: &str, memory: Option<f64>) -> Result<Problem, Scen
 }
 
 /// The numbers in a file next to the matrix; `None` if it does not exist.
-fn column(names: &Names, part: &str, size: usize) -> Result<Option<Vec<f64>>, SceneError> {
+fn column(names: &MarketNames, part: &str, size: usize) -> Result<Option<Vec<f64>>, SceneError> {
     let path = names.part(part);
     if !path.exists() {
         return Ok(None);
@@ -135,7 +135,7 @@ fn column(names: &Names, part: &str, size: usize) -> Result<Option<Vec<f64>>, Sc
 /// # Errors
 /// If the name is that of a stiffness or of another file of a problem.
 pub fn parts(file: &Path) -> Result<[PathBuf; 3], String> {
-    let names = Names::of(file)?;
+    let names = MarketNames::of(file)?;
     if names.stiffness {
         return Err(format!(
             "the matrix is a compliance, but {} would be read as a stiffness; end the name with _W.mtx",
@@ -163,7 +163,7 @@ mod tests {
 
     #[test]
     fn the_matrix_name_determines_its_kind_and_the_other_files() {
-        let of = |name: &str| Names::of(Path::new(name)).map(|n| (n.part("q"), n.stiffness));
+        let of = |name: &str| MarketNames::of(Path::new(name)).map(|n| (n.part("q"), n.stiffness));
         assert_eq!(of("a/b_W.mtx"), Ok((PathBuf::from("a/b_q.mtx"), false)));
         assert_eq!(of("b_K.mtx"), Ok((PathBuf::from("b_q.mtx"), true)));
         assert_eq!(of("b.mtx"), Ok((PathBuf::from("b_q.mtx"), false)));

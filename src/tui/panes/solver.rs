@@ -37,7 +37,7 @@ pub enum Page {
 
 /// An open page.
 #[derive(Debug, Clone)]
-pub struct Reader {
+pub struct SolverReader {
     /// The page.
     pub page: Page,
     /// The first visible row, from 0; `None` follows the end of a growing page and shows the top of others.
@@ -54,10 +54,10 @@ struct Row {
     style: fn(&Theme) -> Style,
 }
 
-impl Reader {
+impl SolverReader {
     /// Opens a page: the log at its end, others at the top.
-    pub fn new(page: Page) -> Reader {
-        Reader {
+    pub fn new(page: Page) -> SolverReader {
+        SolverReader {
             page,
             top: None,
             aside: 0,
@@ -113,7 +113,7 @@ impl Reader {
 }
 
 /// Draws the page.
-pub fn draw(buffer: &mut Buffer, area: Rect, reader: &Reader, view: Option<&View>, theme: &Theme) {
+pub fn draw(buffer: &mut Buffer, area: Rect, reader: &SolverReader, view: Option<&View>, theme: &Theme) {
     let width = usize::from(area.width.saturating_sub(2));
     let rows = rows(reader.page, width, view);
     let height = usize::from(area.height.saturating_sub(2));
