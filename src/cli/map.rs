@@ -10,7 +10,7 @@ use stickslip_core::model::{BoundUpdate, Strategy};
 use stickslip_core::strategy::method;
 use stickslip_scene::builtin;
 use stickslip_scene::shown::aligned;
-use stickslip_study::map::{self, MapCell, Map};
+use stickslip_study::map::{self, Map, MapCell};
 use stickslip_study::plan::{MOST_CASES, product};
 use stickslip_study::random::{self, NODES, Population};
 use stickslip_study::survey::{self, Survey};
@@ -202,7 +202,11 @@ fn map_lines(map: &Map) -> Vec<String> {
         table[0].extend(panel.columns.iter().cloned());
         for (name, cells) in panel.rows.iter().zip(&panel.cells) {
             let mut row = vec![name.clone()];
-            let label = |k: &usize| map.cells[*k].as_ref().map_or("?".to_owned(), Cell::label);
+            let label = |k: &usize| {
+                map.cells[*k]
+                    .as_ref()
+                    .map_or("?".to_owned(), MapCell::label)
+            };
             row.extend(cells.iter().map(label));
             // Scenes with individual settings may have fewer columns.
             row.resize(panel.columns.len() + 1, String::new());

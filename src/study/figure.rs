@@ -1,6 +1,6 @@
 //! The results of a study as curves, like the paper's figures.
 
-use super::curves::{Axis, CurveChart, Curve, CurveEnd};
+use super::curves::{Axis, Curve, CurveChart, CurveEnd};
 use super::monitor_kind::{MonitorKind, kind};
 use super::origin;
 use super::plan::{Case, Plan};

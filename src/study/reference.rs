@@ -149,7 +149,8 @@ impl Reference {
             .iter()
             .map(|row| row.load.abs())
             .fold(0.0, f64::max);
-        let here = |row: &&ReferencePoint| row.leg == leg && (row.load - load).abs() <= SAME_LOAD * size;
+        let here =
+            |row: &&ReferencePoint| row.leg == leg && (row.load - load).abs() <= SAME_LOAD * size;
         self.rows.iter().find(here)
     }
 }

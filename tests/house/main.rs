@@ -5,6 +5,7 @@
 
 mod imports;
 mod mutants;
+mod words;
 
 use imports::{Package, Sources, Ties, circles};
 use std::collections::{BTreeMap, BTreeSet};

@@ -13,7 +13,7 @@
 //! iteration, independent of the number of integration points.
 
 use super::Stop;
-use super::lines::{Field, ResultLine, Lines};
+use super::lines::{Field, Lines, ResultLine};
 use crate::broken::Broken;
 use std::collections::HashMap;
 use std::io::BufRead;
@@ -247,7 +247,7 @@ fn corners(mut face: [u32; 4]) -> [u32; 4] {
 }
 
 /// Parses a header: position in the run, and number of nodes of the element.
-fn header(line: Line) -> Result<(At, usize), Broken> {
+fn header(line: ResultLine) -> Result<(At, usize), Broken> {
     let mut fields = line.fields();
     let first = fields.next().ok_or_else(|| line.ends_early(NO_CEL))?;
     if !first.bytes.eq_ignore_ascii_case(b"*ELEMENT") {

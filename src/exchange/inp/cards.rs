@@ -8,7 +8,7 @@
 //!
 //! Case and spaces within words do not matter, as in CalculiX. Parameters continue on the next line after a trailing comma.
 
-use super::source::{Fault, SourceLine, Place, plain};
+use super::source::{Fault, Place, SourceLine, plain};
 
 /// A keyword with its parameters and data.
 #[derive(Debug)]
@@ -40,7 +40,9 @@ pub(super) struct CardCell<'t> {
 }
 
 /// The cards of a deck.
-pub(super) fn cards<'t>(lines: impl Iterator<Item = SourceLine<'t>>) -> Result<Vec<Card<'t>>, Fault> {
+pub(super) fn cards<'t>(
+    lines: impl Iterator<Item = SourceLine<'t>>,
+) -> Result<Vec<Card<'t>>, Fault> {
     let mut cards: Vec<Card<'t>> = Vec::new();
     let mut open = false;
     for line in lines {

@@ -160,7 +160,7 @@ fn elements(card: &Card<'_>, deck: &mut Deck, names: &mut Names) -> Result<(), F
         card,
         deck,
         names,
-        Kind::Elements,
+        MeshKind::Elements,
         "ELSET",
         (first..deck.elements.len()).collect(),
     )
@@ -239,24 +239,24 @@ fn element_type(name: &str) -> Result<ElementType, String> {
 
 /// Kind of a set's members.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Kind {
+pub(super) enum MeshKind {
     Nodes,
     Elements,
 }
 
-impl Kind {
+impl MeshKind {
     fn word(self) -> &'static str {
         match self {
-            Kind::Nodes => "node",
-            Kind::Elements => "element",
+            MeshKind::Nodes => "node",
+            MeshKind::Elements => "element",
         }
     }
 }
 
-fn set(card: &Card<'_>, deck: &mut Deck, names: &mut Names, kind: Kind) -> Result<(), Fault> {
+fn set(card: &Card<'_>, deck: &mut Deck, names: &mut Names, kind: MeshKind) -> Result<(), Fault> {
     let parameter = match kind {
-        Kind::Nodes => "NSET",
-        Kind::Elements => "ELSET",
+        MeshKind::Nodes => "NSET",
+        MeshKind::Elements => "ELSET",
     };
     card.only(&[parameter, "GENERATE", "UNSORTED", "INTERNAL"])?;
     card.required(parameter)?;
@@ -282,9 +282,9 @@ fn set(card: &Card<'_>, deck: &mut Deck, names: &mut Names, kind: Kind) -> Resul
 
 /// Members generated from a first to a last number.
 fn generated(
-    words: &[Cell<'_>],
+    words: &[CardCell<'_>],
     names: &Names,
-    kind: Kind,
+    kind: MeshKind,
     members: &mut Vec<usize>,
 ) -> Result<(), Fault> {
     let Some(first) = words.first() else {
@@ -310,8 +310,8 @@ fn generated(
         );
     }
     let labels = match kind {
-        Kind::Nodes => &names.nodes,
-        Kind::Elements => &names.elements,
+        MeshKind::Nodes => &names.nodes,
+        MeshKind::Elements => &names.elements,
     };
     let within = labels
         .range(from..=to)
@@ -325,15 +325,15 @@ fn generated(
 
 /// Members that a word of a list refers to: one node or element by number, or a set by name.
 pub(super) fn members_of(
-    cell: &Cell<'_>,
+    cell: &CardCell<'_>,
     deck: &Deck,
     names: &Names,
-    kind: Kind,
+    kind: MeshKind,
 ) -> Result<Vec<usize>, Fault> {
     let word = kind.word();
     let (labels, sets, all) = match kind {
-        Kind::Nodes => (&names.nodes, &names.node_sets, &deck.node_sets),
-        Kind::Elements => (&names.elements, &names.element_sets, &deck.element_sets),
+        MeshKind::Nodes => (&names.nodes, &names.node_sets, &deck.node_sets),
+        MeshKind::Elements => (&names.elements, &names.element_sets, &deck.element_sets),
     };
     if let Ok(label) = cell.text.parse::<u64>() {
         let position = labels.get(&label).copied();
@@ -351,10 +351,15 @@ pub(super) fn members_of(
 }
 
 /// Index of a set by name.
-pub(super) fn set_of(name: &str, place: Place, names: &Names, kind: Kind) -> Result<usize, Fault> {
+pub(super) fn set_of(
+    name: &str,
+    place: Place,
+    names: &Names,
+    kind: MeshKind,
+) -> Result<usize, Fault> {
     let sets = match kind {
-        Kind::Nodes => &names.node_sets,
-        Kind::Elements => &names.element_sets,
+        MeshKind::Nodes => &names.node_sets,
+        MeshKind::Elements => &names.element_sets,
     };
     let known = sets.get(name).copied();
     known.ok_or_else(|| {
@@ -366,7 +371,7 @@ pub(super) fn set_of(name: &str, place: Place, names: &Names, kind: Kind) -> Res
 }
 
 /// Index of a surface by name.
-pub(super) fn surface_of(cell: &Cell<'_>, names: &Names) -> Result<usize, Fault> {
+pub(super) fn surface_of(cell: &CardCell<'_>, names: &Names) -> Result<usize, Fault> {
     let name = plain(cell.text);
     let known = names.surfaces.get(&name).copied();
     known.ok_or_else(|| {
@@ -382,7 +387,7 @@ fn add(
     card: &Card<'_>,
     deck: &mut Deck,
     names: &mut Names,
-    kind: Kind,
+    kind: MeshKind,
     parameter: &str,
     members: Vec<usize>,
 ) -> Result<(), Fault> {
@@ -400,8 +405,8 @@ fn add(
         ));
     }
     let (sets, all) = match kind {
-        Kind::Nodes => (&mut names.node_sets, &mut deck.node_sets),
-        Kind::Elements => (&mut names.element_sets, &mut deck.element_sets),
+        MeshKind::Nodes => (&mut names.node_sets, &mut deck.node_sets),
+        MeshKind::Elements => (&mut names.element_sets, &mut deck.element_sets),
     };
     let set = *sets.entry(name.to_owned()).or_insert_with(|| {
         all.push(Set {
@@ -428,7 +433,7 @@ fn surface(card: &Card<'_>, deck: &mut Deck, names: &mut Names) -> Result<(), Fa
             let mut members = Vec::new();
             for line in &card.lines {
                 if let Some(cell) = cells(*line).first() {
-                    members.extend(members_of(cell, deck, names, Kind::Nodes)?);
+                    members.extend(members_of(cell, deck, names, MeshKind::Nodes)?);
                     if members.len() > MEMBERS {
                         return Err(
                             cell.wrong(format!("a surface has more than {MEMBERS} members"))
@@ -494,7 +499,11 @@ fn sides(card: &Card<'_>, deck: &Deck, names: &Names) -> Result<Vec<(usize, usiz
 }
 
 /// Index of a side of an element, given by a letter and its number from 1.
-pub(super) fn side_of(cell: &CardCell<'_>, letter: char, element: &Element) -> Result<usize, Fault> {
+pub(super) fn side_of(
+    cell: &CardCell<'_>,
+    letter: char,
+    element: &Element,
+) -> Result<usize, Fault> {
     let most = match element.kind.cell {
         CellKind::Triangle3 | CellKind::Triangle6 => 3,
         CellKind::Quad4 | CellKind::Quad8 => 4,

@@ -235,7 +235,7 @@ fn behavior(card: &Card<'_>, deck: &mut Deck, open: &Open) -> Result<(), Fault> 
     Ok(())
 }
 
-fn positive(cell: &Cell<'_>, what: &str) -> Result<f64, Fault> {
+fn positive(cell: &CardCell<'_>, what: &str) -> Result<f64, Fault> {
     let value = cell.number(what)?;
     match value > 0.0 {
         true => Ok(value),
@@ -291,7 +291,7 @@ fn section_set(card: &Card<'_>, names: &Names) -> Result<usize, Fault> {
         card.required("ELSET")?,
         card.place_of("ELSET"),
         names,
-        Kind::Elements,
+        MeshKind::Elements,
     )
 }
 
@@ -455,7 +455,7 @@ fn adjusted(value: &str, place: Place, names: &Names) -> Result<Adjust, Fault> {
             place,
             format!("ADJUST={within:?}; it must be a nonnegative distance, or a set"),
         )),
-        Err(_) => Ok(Adjust::Set(set_of(value, place, names, Kind::Nodes)?)),
+        Err(_) => Ok(Adjust::Set(set_of(value, place, names, MeshKind::Nodes)?)),
     }
 }
 

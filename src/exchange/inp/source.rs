@@ -56,14 +56,14 @@ pub(super) struct Sources {
 
 /// A line of a deck.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Line<'t> {
+pub(super) struct SourceLine<'t> {
     pub text: &'t str,
     pub file: usize,
     /// From 1.
     pub number: usize,
 }
 
-impl Line<'_> {
+impl SourceLine<'_> {
     /// The location of a byte of the line.
     pub fn place(&self, byte: usize) -> Place {
         let before = self.text.get(..byte).unwrap_or(self.text);
@@ -180,14 +180,14 @@ impl Sources {
     }
 
     /// All lines in reading order.
-    pub fn lines(&self) -> impl Iterator<Item = Line<'_>> {
+    pub fn lines(&self) -> impl Iterator<Item = SourceLine<'_>> {
         self.pieces.iter().flat_map(|(file, first, bytes)| {
             let text = self
                 .texts
                 .get(*file)
                 .and_then(|text| text.get(bytes.clone()));
             let lines = text.unwrap_or_default().lines().enumerate();
-            lines.map(move |(k, text)| Line {
+            lines.map(move |(k, text)| SourceLine {
                 text,
                 file: *file,
                 number: first + k + 1,
@@ -219,7 +219,7 @@ fn inclusions(file: usize, text: &str) -> Vec<Inclusion> {
         let end = begin + line.len();
         let (keyword, rest) = line.split_once(',').unwrap_or((line, ""));
         if plain(keyword) == "*INCLUDE" {
-            let whole = Line {
+            let whole = SourceLine {
                 text: line,
                 file,
                 number: k + 1,

@@ -5,7 +5,7 @@ use super::deck::{
     Deck, Direction, Element, Faces, Family, Pressure, Step, Time, Value, Volume, Weight,
 };
 use super::mesh::{MeshKind, Names, members_of, set_of, side_of, surface_of};
-use super::source::{Fault, SourceLine, Place, plain};
+use super::source::{Fault, Place, SourceLine, plain};
 
 /// State of reading the steps.
 #[derive(Debug, Default)]
@@ -368,7 +368,12 @@ fn force(
     Ok(())
 }
 
-fn load(card: &Card<'_>, deck: &mut Deck, names: &mut Names, open: &mut OpenStep) -> Result<(), Fault> {
+fn load(
+    card: &Card<'_>,
+    deck: &mut Deck,
+    names: &mut Names,
+    open: &mut OpenStep,
+) -> Result<(), Fault> {
     card.only(&["OP", "AMPLITUDE"])?;
     let amplitude = amplitude(card, deck)?;
     let new = is_new(card)?;
@@ -430,7 +435,11 @@ fn one(before: &CardCell<'_>, rest: &[CardCell<'_>], what: &str) -> Result<f64, 
     }
 }
 
-fn volume(kind: &str, label: &CardCell<'_>, rest: &[CardCell<'_>]) -> Result<Option<Volume>, Fault> {
+fn volume(
+    kind: &str,
+    label: &CardCell<'_>,
+    rest: &[CardCell<'_>],
+) -> Result<Option<Volume>, Fault> {
     match kind {
         "BX" => Ok(Some(Volume::Force([
             one(label, rest, "the force per volume")?,

@@ -4,7 +4,7 @@ use super::super::curves::point;
 use super::super::geometry;
 use super::super::limits;
 use super::super::nodes::checks::unique;
-use super::super::nodes::{NameEntry, Mesh, Names};
+use super::super::nodes::{Mesh, NameEntry, Names};
 use super::linear;
 use crate::format::error::{Fault, Path, at, did_you_mean, quoted, some_of};
 use crate::format::spec::{BodySpec, Material, Point, Region, Spec};

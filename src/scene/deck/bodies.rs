@@ -253,10 +253,18 @@ impl Made<'_> {
         Ok(())
     }
 
-    fn beam(&mut self, section: &Section, kind: CellKind, nodes: &[usize]) -> Result<(), DeckFault> {
+    fn beam(
+        &mut self,
+        section: &Section,
+        kind: CellKind,
+        nodes: &[usize],
+    ) -> Result<(), DeckFault> {
         let (name, young, poisson) = self.elastic(section)?;
         let Form::Rectangle { width, height } = section.form else {
-            return Err(DeckFault::new(section.place, "a beam needs a *BEAM SECTION"));
+            return Err(DeckFault::new(
+                section.place,
+                "a beam needs a *BEAM SECTION",
+            ));
         };
         let area = width * height;
         let wanted = |id: String| Material::Section {

@@ -166,8 +166,8 @@ impl Made<'_> {
     }
 
     /// Whether to smooth a master surface without real corners: its slave nodes have a compliant law, and it can deform.
-    fn is_made_smooth(&self, master: usize, sides: &[(usize, usize)], all: &[Touching]) -> bool {
-        let gives = |touching: &Touching| {
+    fn is_made_smooth(&self, master: usize, sides: &[(usize, usize)], all: &[DeckContact]) -> bool {
+        let gives = |touching: &DeckContact| {
             let penalty = matches!(touching.laws.law, ContactLaw::Penalty { .. });
             touching.master == master && (penalty || touching.laws.stick.is_some())
         };
@@ -197,7 +197,7 @@ impl Made<'_> {
     }
 
     /// Whether all slave nodes of a master are on continua, which have an outward side.
-    fn have_outsides(&self, master: usize, all: &[Touching]) -> bool {
+    fn have_outsides(&self, master: usize, all: &[DeckContact]) -> bool {
         let continua = self.deck.elements.iter();
         let continua = continua.filter(|element| element.kind.family != Family::Beam);
         let on: HashSet<usize> = continua.flat_map(|e| e.nodes.iter().copied()).collect();
@@ -219,7 +219,7 @@ impl Made<'_> {
             let next = number.len();
             number.entry(*node).or_insert(next);
         }
-        let mut groups = Groups::of(number.len());
+        let mut groups = DeckGroups::of(number.len());
         for side in &sides {
             side.windows(2)
                 .for_each(|pair| groups.join(number[&pair[0]], number[&pair[1]]));
@@ -253,9 +253,9 @@ impl Made<'_> {
     /// Slave nodes grouped by candidate surfaces and law.
     fn groups(
         &mut self,
-        all: &[Touching],
+        all: &[DeckContact],
         surfaces: &BTreeMap<usize, Vec<String>>,
-    ) -> Result<(), Fault> {
+    ) -> Result<(), DeckFault> {
         let mut of_node: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (k, touching) in all.iter().enumerate() {
             let rigid = self
@@ -299,11 +299,11 @@ impl Made<'_> {
 
     fn group_of(
         &mut self,
-        all: &[Touching],
+        all: &[DeckContact],
         surfaces: &BTreeMap<usize, Vec<String>>,
         touched: &[usize],
         nodes: &[usize],
-    ) -> Result<(), Fault> {
+    ) -> Result<(), DeckFault> {
         let Some(first) = touched.first().map(|&k| &all[k]) else {
             return Ok(());
         };
@@ -316,7 +316,7 @@ impl Made<'_> {
             let message = format!(
                 "node {label} is a slave of another pair with a different law; a node can have only one law"
             );
-            return Err(Fault::new(other.place, message));
+            return Err(DeckFault::new(other.place, message));
         }
         let masters: BTreeSet<usize> = touched.iter().map(|&k| all[k].master).collect();
         let on: Vec<String> = masters
@@ -353,13 +353,13 @@ impl Made<'_> {
     }
 
     /// Initial gap adjustment: one choice for the whole scene.
-    fn adjusted(&mut self) -> Result<(), Fault> {
+    fn adjusted(&mut self) -> Result<(), DeckFault> {
         let pairs = &self.deck.pairs;
         let Some(first) = pairs.first() else {
             return Ok(());
         };
         if let Some(other) = pairs.iter().find(|pair| pair.adjust != first.adjust) {
-            return Err(Fault::new(
+            return Err(DeckFault::new(
                 other.place,
                 "ADJUST must be the same for all pairs: initial gaps are adjusted in the whole scene or not at all",
             ));
@@ -379,7 +379,7 @@ impl Made<'_> {
                         "ADJUST names a set without the slave node {}; move either all slave nodes, or those within a distance",
                         self.deck.nodes[node].label
                     );
-                    return Err(Fault::new(first.place, message));
+                    return Err(DeckFault::new(first.place, message));
                 }
                 self.size()
             }
@@ -403,7 +403,7 @@ impl Made<'_> {
     }
 
     /// The nodes of a tie that are close enough to the master.
-    fn near(&mut self, tie: &Tie) -> Result<Vec<usize>, Fault> {
+    fn near(&mut self, tie: &Tie) -> Result<Vec<usize>, DeckFault> {
         let at = |node: &usize| self.deck.nodes[*node].at;
         let Faces::Elements(sides) = &self.deck.surfaces[tie.master].of else {
             return Ok(Vec::new());
@@ -431,7 +431,7 @@ impl Made<'_> {
         };
         let near: Vec<usize> = slaves.iter().copied().filter(is_near).collect();
         if near.is_empty() {
-            return Err(Fault::new(
+            return Err(DeckFault::new(
                 tie.place,
                 format!(
                     "no node of the first surface is within {tolerance:.3e} of the second; see POSITION TOLERANCE"

@@ -5,7 +5,7 @@ use super::super::geometry::Folds;
 use super::super::limits;
 use super::elements::{Element, check_doubled, check_orders, sound};
 use super::sides::{Faces, line};
-use super::{NameEntry, EntryKind, Names};
+use super::{EntryKind, NameEntry, Names};
 use crate::format::error::{Fault, Path, at, quoted};
 use crate::format::given::{Cells, NodeSet, SideSet};
 use crate::format::spec::Nodes;

@@ -1,7 +1,7 @@
 //! Meshes of several blocks: joins edges and merges their nodes.
 
 use super::super::geometry::distance;
-use super::{NameEntry, EntryKind, Names};
+use super::{EntryKind, NameEntry, Names};
 use crate::format::error::{Fault, Path, at};
 use crate::format::spec::Nodes;
 use std::collections::HashSet;

@@ -2,7 +2,7 @@
 
 use super::super::geometry::distance;
 use super::given::nodes_of;
-use super::{NameEntry, EntryKind, Names};
+use super::{EntryKind, NameEntry, Names};
 
 /// A line of sides.
 #[derive(Debug, Clone, PartialEq)]

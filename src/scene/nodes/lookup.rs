@@ -1,7 +1,7 @@
 //! Finds nodes, chains and meshes by name, and writes the messages for unknown names.
 
 use super::given::nodes_of;
-use super::{NameEntry, EntryKind, Mesh, Names};
+use super::{EntryKind, Mesh, NameEntry, Names};
 use crate::format::error::{did_you_mean, quoted, some_of};
 use crate::shown::first_of;
 

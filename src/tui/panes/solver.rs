@@ -113,7 +113,13 @@ impl SolverReader {
 }
 
 /// Draws the page.
-pub fn draw(buffer: &mut Buffer, area: Rect, reader: &SolverReader, view: Option<&View>, theme: &Theme) {
+pub fn draw(
+    buffer: &mut Buffer,
+    area: Rect,
+    reader: &SolverReader,
+    view: Option<&View>,
+    theme: &Theme,
+) {
     let width = usize::from(area.width.saturating_sub(2));
     let rows = rows(reader.page, width, view);
     let height = usize::from(area.height.saturating_sub(2));

@@ -6,7 +6,7 @@
 
 use stickslip_scene::Scene;
 use stickslip_scene::format::SceneError;
-use stickslip_scene::nodes::lines::ResultLine;
+use stickslip_scene::nodes::lines::Line;
 use stickslip_scene::shown;
 
 /// Id of the mesh.
@@ -38,7 +38,7 @@ struct OutlineGuess {
 }
 
 impl OutlineGuess {
-    fn of(lines: &[ResultLine]) -> OutlineGuess {
+    fn of(lines: &[Line]) -> OutlineGuess {
         let ends = |axis: usize| {
             let all = || lines.iter().flat_map(|line| &line.at).map(|at| at[axis]);
             (
@@ -78,7 +78,7 @@ impl OutlineGuess {
 }
 
 /// Mean distance of some nodes of a line from the nearest node of another line.
-fn mean_distance(line: &ResultLine, other: &ResultLine) -> f64 {
+fn mean_distance(line: &Line, other: &Line) -> f64 {
     const FEW: usize = 16;
     let few = |at: &[[f64; 2]], most: usize| -> Vec<[f64; 2]> {
         at.iter()
@@ -94,7 +94,7 @@ fn mean_distance(line: &ResultLine, other: &ResultLine) -> f64 {
     own.iter().map(nearest).sum::<f64>() / own.len().max(1) as f64
 }
 
-fn text(file: &str, parts: &[String], lines: &[ResultLine], guess: &OutlineGuess) -> String {
+fn text(file: &str, parts: &[String], lines: &[Line], guess: &OutlineGuess) -> String {
     let mut out = String::new();
     let mut put = |line: &str| {
         out += line;
