@@ -1,13 +1,13 @@
 //! stickslip-core: the two-level iteration for contact and friction of El-Sawy & Moore (1996), as a resumable stepper.
 //!
-//! A call of [`Stepper::step`] does one minor iteration and returns what it did as an [`Event`]: every number that was
-//! compared, every mode that changed, and why. Between two calls a program may look at everything, change the modes of
-//! nodes ([`Stepper::intervene`]), keep the [`State`] and come back to it. The package reads no files, writes nothing, and
-//! starts no threads.
+//! A call of [`Stepper::step`] does one minor iteration and returns an [`Event`] that describes it: every number that was
+//! compared, every mode that changed, and why. Between two calls a program may read everything, change the modes of nodes
+//! ([`Stepper::intervene`]), and save the [`State`] to return to it later. The package reads and writes no files and starts no
+//! threads.
 //!
 //! # Example
 //!
-//! A node on two springs is pressed onto a rough floor and pushed along it. The floor is one endless line, walked from right
+//! A node on two springs is pressed onto a rough floor and pushed along it. The floor is a single endless line, walked from right
 //! to left, since the outward side is on the right of the walk.
 //!
 //! ```
@@ -51,39 +51,40 @@
 //! # Ok::<(), stickslip_core::builder::ModelError>(())
 //! ```
 //!
-//! A scene file is a shorter way to a model; the package `stickslip` reads those. Its examples show how to step a scene,
-//! how to pose an interface problem without bodies, how to write a strategy, how to force a mode, and how to run a study
+//! A scene file is a shorter way to define a model; the package `stickslip` reads scene files. Its examples show how to step a
+//! scene, how to set up an interface problem without bodies, how to write a strategy, how to force a mode, and how to run a study
 //! (`tests/examples` in its sources).
 //!
 //! # Modules
 //!
 //! Each takes only from those above it:
 //!
-//! - [`words`](macro@words): words for the variants of an enum, each written once.
-//! - [`executor`]: work on bodies side by side, by whoever has threads to give.
-//! - [`linalg`]: patterns, factors, checked solves; a package of its own.
-//! - [`model`]: what is solved, as plain data: nodes, bodies, surfaces, contacts, loads, settings.
+//! - [`words`](macro@words): names of the variants of an enum, each written once.
+//! - [`executor`]: parallel work on bodies, on threads that the caller provides.
+//! - [`linalg`]: sparsity patterns, factors, checked solves; a separate package.
+//! - [`model`]: the problem as plain data: nodes, bodies, surfaces, contacts, loads, settings.
 //! - [`builder`]: builds a model in code.
-//! - [`fem`]: an element is a small file here: a kind of continuum element has places, shape functions and a rule
-//!   ([`fem::kinds`]), and [`fem::isoparametric`] the formulation of all; others give internal forces and their tangent themselves
-//!   ([`fem::element`]). [`fem::assembly`] adds the elements of all bodies up, [`fem::recovery`] gives stresses for output.
-//! - [`contact`]: one slave node: projection on its surface, Table 1's equations, Table 2's decision, and the judge of the
-//!   laws that every accepted state obeys.
-//! - [`interface`]: the interface problem of a major iteration, by itself: geometry and stiffness frozen, no bodies.
-//! - [`strategy`]: the strategies, one file each. A strategy is a [`Method`]: it says which mode a node takes next, which
-//!   nodes may change at once, or what all nodes do together. Whatever it leaves out is done as in Table 2.
-//! - [`linear`]: the linearised equations. [`linear::source::Source`] is the seam: what the stepper needs of what deforms.
-//!   It linearises at a state, solves for the modes of the nodes, takes the forces back, and says where the nodes are then.
-//!   [`linear::bodies`] is the source of our own bodies and [`linear::constant`] one of constant matrices; a source of
-//!   your own goes into [`Stepper::with_source`].
-//! - [`step`]: increments, major and minor iterations: the algorithm box. [`Solver`] is the seam above it: what a debugger steps.
+//! - [`fem`]: finite elements, one small file per kind. A continuum element defines its nodes, shape functions and integration
+//!   rule ([`fem::kinds`]), and [`fem::isoparametric`] the formulation they share; other elements return internal forces and
+//!   their tangent themselves ([`fem::element`]). [`fem::assembly`] assembles the elements of all bodies, [`fem::recovery`]
+//!   computes stresses for output.
+//! - [`contact`]: one slave node: projection on its surface, the equations of Table 1, the decision of Table 2, and the judge,
+//!   which checks every accepted state against the contact laws.
+//! - [`interface`]: the interface problem of a major iteration: geometry and stiffness frozen, no bodies.
+//! - [`strategy`]: the strategies, one per file. A strategy is a [`Method`]: it decides which mode a node takes next, which nodes
+//!   may change at once, or what all nodes do together. The default of each decision is that of Table 2.
+//! - [`linear`]: the linearised equations. [`linear::source::Source`] is the interface between the stepper and the deforming
+//!   bodies: it linearises at a state, solves for the modes of the nodes, updates the forces, and returns the new positions of
+//!   the nodes. [`linear::bodies`] is the source for bodies of this package, [`linear::constant`] one with constant matrices;
+//!   pass a custom source to [`Stepper::with_source`].
+//! - [`step`]: increments, major and minor iterations: the algorithm box. [`Solver`] is the interface that a debugger steps.
 //!
 //! # Conventions
 //!
 //! Units are the user's: any consistent set of force and length; angles of friction are in degrees, rotations in radians.
 //! The outward normal n of a surface is on the right of its walk, and t is n turned 90 degrees anticlockwise. Forces on a
 //! slave node are F_n along n, where compression is positive, and F_t along t. A gap is positive where the node is outside.
-//! Slip is u_tS* − u_tS: how far the point of the surface has gone ahead of the node.
+//! Slip is u_tS* − u_tS: how far the point of the surface has moved ahead of the node.
 
 #![forbid(unsafe_code)]
 

@@ -1,18 +1,18 @@
-//! Arc length: an increment goes a given way along the path of equilibrium, and the load factor is an unknown.
+//! Arc length: an increment covers a given length of the equilibrium path, with the load factor as an unknown.
 //!
 //! ```text
-//! tangent    the motion for the modes and the stiffness at the start, that goes on in the direction of the increment before
-//! majors     residual at the load factor reached so far; c · Δu = s holds it to the way that the increment has to go
+//! tangent    the motion for the modes and the stiffness at the start, in the direction of the previous increment
+//! majors     residual at the load factor reached so far; the constraint c · Δu = s fixes the length s that is left
 //! ```
 //!
-//! c is the tangent (all increments end on the plane normal to it, a way s ahead: Riks 1979), one displacement, or the slip
-//! of one contact. The tangent's sign is that of its inner product with the increment before, and at the start of a leg that
-//! of the load towards the leg's corner; no determinant is looked at, so that limit points, where load and tangent turn, and
-//! turning points, where the displacement does, are points like others.
+//! c is the tangent (all increments end on the plane normal to it, at a distance s ahead: Riks 1979), one displacement, or the
+//! slip of one contact. The sign of the tangent is that of its inner product with the previous increment, or, at the start of a
+//! leg, that of the load towards the leg's corner. No determinant is used, so limit points, where load and tangent reverse, and
+//! turning points, where the displacement reverses, need no special treatment.
 //!
-//! Where a converged state is beyond the leg's corner, or a bound of the history, the increment goes on with that as its
-//! constraint, and ends exactly there. The next size follows from the number of major iterations; what fails is cut, or begins again behind
-//! the corner of the path that it started at ([`crate::step::recovery::path_corner`]).
+//! If a converged state is beyond the leg's corner, or beyond a bound of the history, the increment continues with that as its
+//! constraint and ends exactly there. The next size follows from the number of major iterations. A failed increment is cut, or
+//! restarted behind the corner of the path at its start ([`crate::step::recovery::path_corner`]).
 
 use crate::contact::laws::{Finding, Verdict};
 use crate::contact::state::ContactState;
@@ -27,26 +27,26 @@ use crate::step::stepper::Stepper;
 use crate::step::way::{Aim, Change, ROUNDING, farthest};
 use std::sync::Arc;
 
-/// A step that goes back the way of the one before, up to this angle (cosine of its supplement), doubles back.
+/// A step doubles back if its angle to the reverse of the previous step has at least this cosine.
 const BACK: f64 = 0.999;
-/// Motions below this part of the scene's length are none: round-off makes as much of them.
+/// Motions below this fraction of the scene's length count as zero: round-off can be as large.
 const NOTHING: f64 = 1e-9;
-/// The next increment is at least and at most this many times the last.
+/// Minimum and maximum ratio of the size of the next increment to the last.
 const CHANGE: [f64; 2] = [0.5, 2.0];
 
-/// A place on the way between two states at which an increment has to end.
+/// A point between two states at which an increment has to end.
 struct Goal {
     aim: Aim,
-    /// Part of the way at which it lies.
+    /// Its fraction of the distance between them.
     part: f64,
 }
 
 impl Stepper {
-    /// Finds the tangent at the start of an increment, and with it what binds the increment. Under load control, and where the
-    /// tangent is known, there is nothing to do.
+    /// Computes the tangent at the start of an increment, and with it the constraint of the increment. Does nothing under load
+    /// control, or if the tangent is known.
     ///
     /// # Errors
-    /// Why there is no tangent, or none that goes anywhere.
+    /// If there is no tangent, or the tangent is zero.
     pub(super) fn find_tangent(&mut self) -> Result<(), Failure> {
         if self.state.way.as_ref().is_none_or(|way| way.known) {
             return Ok(());
@@ -74,7 +74,7 @@ impl Stepper {
         }
     }
 
-    /// Takes a tangent, of any size, with the slips of the contacts and the next corner along it, and sets out.
+    /// Stores a tangent of any size, with the slips of the contacts and the next corner along it, and starts the increment.
     fn take_tangent(
         &mut self,
         motion: &[f64],
@@ -117,7 +117,7 @@ impl Stepper {
         Ok(())
     }
 
-    /// Takes the load factor that the last solve found, with its displacements, into the state.
+    /// Stores the load factor of the last solve, with its displacements, in the state.
     pub(super) fn take_load(&mut self) {
         let state = &mut self.state;
         let Some(way) = &mut state.way else { return };
@@ -129,7 +129,8 @@ impl Stepper {
         (state.last_target, state.target, state.load_factor) = (reached, reached, reached);
     }
 
-    /// Goes on from a converged state that is beyond where the increment has to end. `None` where it is not.
+    /// Continues from a converged state beyond the end of the increment, with that end as the constraint. `None` if it is not
+    /// beyond.
     pub(super) fn turn_to_goal(&mut self, after: Norms) -> Option<Outcome> {
         let goal = self.goal_passed()?;
         self.aim_at(goal.aim);
@@ -138,7 +139,7 @@ impl Stepper {
         Some(Outcome::Major { after, settled })
     }
 
-    /// Accepts a state that the judge finds right, or cuts an increment that jumps or doubles back.
+    /// Accepts a state that passes the judge; cuts an increment that jumps or doubles back.
     pub(super) fn land_on_way(
         &mut self,
         after: Norms,
@@ -182,7 +183,7 @@ impl Stepper {
         self.accept(after, verdict, landing)
     }
 
-    /// Whether the state lies on the way that the increment before came, or behind its own start.
+    /// Whether the state is on the path of the previous increment, or behind the start of this one.
     fn doubles_back(&self) -> bool {
         let state = &self.state;
         let Some(way) = &state.way else { return false };
@@ -201,7 +202,7 @@ impl Stepper {
         goes_back(moved, &way.last) && load * way.last_load <= 0.0
     }
 
-    /// The corner or bound that the increment has passed first.
+    /// The first corner or bound that the increment has passed.
     fn goal_passed(&self) -> Option<Goal> {
         let (state, model) = (&self.state, &self.model);
         let way = state.way.as_ref()?;
@@ -238,7 +239,7 @@ impl Stepper {
         };
     }
 
-    /// Takes an increment that is about to be accepted into the way: what it went, and the size of the next. Returns whether
+    /// Updates the arc data with an increment that is about to be accepted: its length, and the size of the next. Returns whether
     /// the history ends at a bound.
     pub(super) fn go_along(&mut self, leg: usize) -> bool {
         let (model, state) = (self.model.clone(), &mut self.state);
@@ -295,7 +296,7 @@ impl Stepper {
 }
 
 impl State {
-    /// Sets out along the path from the start of the present increment.
+    /// Starts along the path from the start of the current increment.
     pub(super) fn set_out(&mut self) {
         let start = self.start.clone();
         let Some(way) = &mut self.way else { return };
@@ -306,7 +307,7 @@ impl State {
         self.change_modes();
     }
 
-    /// Gives contacts the modes behind the corner, if the present increment starts there.
+    /// Gives contacts the modes behind the corner, if the current increment starts there.
     pub(super) fn change_modes(&mut self) {
         if let Some(way) = &self.way {
             way.change(&mut self.nodes, &self.controls.friction);
@@ -314,7 +315,7 @@ impl State {
     }
 }
 
-/// Whether displacements go against the last ones, within the angle of [`BACK`].
+/// Whether displacements oppose the last ones, within the angle of [`BACK`].
 fn goes_back(moved: impl Iterator<Item = f64>, last: &[f64]) -> bool {
     let (mut product, mut here, mut there) = (0.0, 0.0, 0.0);
     for (now, &then) in moved.zip(last).filter(|(_, then)| **then != 0.0) {
@@ -323,7 +324,7 @@ fn goes_back(moved: impl Iterator<Item = f64>, last: &[f64]) -> bool {
     here > 0.0 && product < -BACK * (here * there).sqrt()
 }
 
-/// A motion of all degrees of freedom without what is no displacement: rotations, and forces that are unknowns.
+/// The displacements of a motion of all degrees of freedom: without rotations and unknown forces.
 fn displacements(model: &Model, motion: &[f64]) -> Vec<f64> {
     let mut kept = vec![0.0; motion.len()];
     for &first in &model.dofs.first {

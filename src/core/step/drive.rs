@@ -1,4 +1,4 @@
-//! Driving a solver: the one loop over minor iterations, and how it ended.
+//! Runs a solver: the loop over minor iterations, and how it ended.
 
 use crate::step::event::{Failure, Outcome};
 use crate::step::solver::{Lost, Solver};
@@ -6,19 +6,19 @@ use crate::step::stepper::Stepper;
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 
-/// How far a drive goes at most. It always ends with the history, and unless told otherwise at the first failure.
+/// Limits of a run. A run always ends with the history, and by default at the first failure.
 #[derive(Clone, Copy)]
 pub struct Until<'a> {
-    /// Most minor iterations.
+    /// Maximum number of minor iterations.
     minors: u64,
-    /// Whether it goes on from a failed state, as a user does.
+    /// Whether to continue from a failed state.
     past_failures: bool,
-    /// Asked before every minor iteration.
+    /// Called before every minor iteration; `true` stops the run.
     interrupted: &'a dyn Fn() -> bool,
 }
 
 impl<'a> Until<'a> {
-    /// To the end of the history, or its first failure.
+    /// Runs to the end of the history, or to its first failure.
     pub fn end() -> Self {
         Until {
             minors: u64::MAX,
@@ -27,12 +27,12 @@ impl<'a> Until<'a> {
         }
     }
 
-    /// So many minor iterations at most.
+    /// Limits the number of minor iterations.
     pub fn minors(self, minors: u64) -> Self {
         Until { minors, ..self }
     }
 
-    /// Not ended by failures.
+    /// Continues after failures.
     pub fn past_failures(self) -> Self {
         Until {
             past_failures: true,
@@ -40,7 +40,7 @@ impl<'a> Until<'a> {
         }
     }
 
-    /// Until this says so; it is asked before every minor iteration.
+    /// Stops as soon as this returns true; it is called before every minor iteration.
     pub fn interrupted_by(self, interrupted: &'a dyn Fn() -> bool) -> Self {
         Until {
             interrupted,
@@ -49,14 +49,14 @@ impl<'a> Until<'a> {
     }
 }
 
-/// How a drive ended.
+/// How a run ended.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RunEnd<S> {
     /// The history is done.
     Finished,
     /// The increment failed.
     Failed(Failure),
-    /// The minor iterations that it had are used up.
+    /// The limit of minor iterations was reached.
     Spent,
     /// It was interrupted.
     Interrupted,
@@ -64,10 +64,10 @@ pub enum RunEnd<S> {
     Stopped(S),
 }
 
-/// Steps until the end, with the observer looking (and, if it wants, intervening) after every minor iteration.
+/// Steps until the end, and calls the observer, which may intervene, after every minor iteration.
 ///
 /// # Errors
-/// [`Lost`] where the solver cannot go on.
+/// [`Lost`] if the solver cannot continue.
 pub fn drive<T: Solver + ?Sized, S>(
     solver: &mut T,
     until: Until<'_>,
@@ -104,7 +104,7 @@ fn drive_by<T: Solver + ?Sized, S, E>(
 }
 
 impl Stepper {
-    /// Steps until the end, with the observer looking (and, if it wants, intervening) after every minor iteration.
+    /// Steps until the end, and calls the observer, which may intervene, after every minor iteration.
     pub fn drive<S>(
         &mut self,
         until: Until<'_>,

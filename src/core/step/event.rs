@@ -1,4 +1,4 @@
-//! What one minor iteration did, typed.
+//! Typed record of one minor iteration.
 
 use crate::contact::laws::Finding;
 use crate::contact::record::ContactRecord;
@@ -17,14 +17,14 @@ use crate::step::way::{Change, ROUNDING, farthest};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Where the solver is. All counts start at 1.
+/// Position of the solver. All counts start at 1.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize, Deserialize,
 )]
 pub struct Position {
     /// Increment.
     pub increment: u32,
-    /// How often this increment was started (with another size).
+    /// Number of the attempt at this increment, each with another size.
     #[serde(default = "one")]
     pub attempt: u32,
     /// Major iteration of the attempt.
@@ -39,36 +39,36 @@ fn one() -> u32 {
     1
 }
 
-/// What one minor iteration did.
+/// Record of one minor iteration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Event {
-    /// The minor iteration.
+    /// Position of the minor iteration.
     pub position: Position,
     /// Load factor at the end of this increment.
     pub load_factor: f64,
-    /// Arc from the start of the history to that of this increment, and where it was accepted to its end. `None` under load
-    /// control.
+    /// Arc length from the start of the history to the start of this increment, or to its end once it is accepted. `None` under
+    /// load control.
     pub arc: Option<f64>,
-    /// Drag of the damped motion of which this is a part (force by length); 0 where there is none.
+    /// Drag of the damped motion that this step belongs to (force per length); 0 if there is none.
     pub drag: f64,
-    /// One record a slave node, in the order of the scene.
+    /// One record per slave node, in the order of the scene.
     pub nodes: Vec<ContactRecord>,
-    /// Residual at the start of this major iteration, about which the minor iterations are linearised.
+    /// Residual at the start of this major iteration, where the minor iterations are linearised.
     pub before: Norms,
-    /// An attached solver's own words; empty for a solver of our own.
+    /// Texts of an attached solver; empty for the built-in solver.
     pub words: Arc<Words>,
-    /// What follows from it.
+    /// Result of the iteration.
     pub outcome: Outcome,
 }
 
-/// What a solver of another program reports in its own words. An empty list has no entry for any contact.
+/// Texts reported by an attached solver. An empty list has no entry for any contact.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Words {
-    /// The iteration as a whole, in place of its changes of modes; may be empty.
+    /// The iteration as a whole, shown instead of its mode changes; may be empty.
     pub iteration: String,
-    /// Each contact: why it takes its next mode, or its status.
+    /// For each contact: its status, or why it takes its next mode.
     pub contacts: Vec<String>,
-    /// Status of each contact as an ASCII letter for the timeline, where it is not a mode.
+    /// Status of each contact as an ASCII letter for the timeline, if it is not a mode.
     pub letters: Vec<u8>,
 }
 
@@ -89,7 +89,7 @@ impl Event {
 }
 
 impl Event {
-    /// Whether a history along the path ends here at the maximum arc length, before its last corner.
+    /// Whether a history along the path ends here because of the maximum arc length, before its last corner.
     pub fn is_cut_short(&self, model: &Model) -> bool {
         let last = matches!(self.outcome, Outcome::Increment { last: true, .. });
         let bound = farthest(model) * (1.0 - ROUNDING);
@@ -98,76 +98,76 @@ impl Event {
     }
 }
 
-/// What follows.
+/// Result of a minor iteration.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Outcome {
-    /// Modes or T_max changed: another minor iteration.
+    /// Modes or T_max changed: another minor iteration follows.
     Minor,
-    /// The minor iterations cycle, and the settings want this major iteration damped: it starts its minor iterations
-    /// again, aiming at this load factor.
+    /// The minor iterations cycle, and the settings damp this major iteration: its minor iterations restart with this load factor
+    /// as their target.
     Damped {
         /// The cycle.
         cycle: Cycle,
-        /// Load factor that is aimed at.
+        /// Target load factor.
         target: f64,
     },
-    /// The strategy cannot go on, and the ladder's next one leads this major iteration from its start on.
+    /// The strategy cannot continue; the next strategy of the ladder restarts this major iteration.
     Climbed {
-        /// What the last strategy failed of.
+        /// Why the previous strategy failed.
         why: Failure,
         /// The next strategy.
         to: Strategy,
     },
-    /// The increment failed, and is started again with this size.
+    /// The increment failed and is restarted with this size.
     Cut {
-        /// What it failed of.
+        /// Cause of the failure.
         why: Failure,
-        /// Size of the part that is tried (load factor; along the path in what is measured).
+        /// Size of the part that is tried (load factor; along the path, in the measured quantity).
         size: f64,
     },
-    /// The halves of an increment that may jump failed: it is started again, and taken whole, which is this size.
+    /// The halves of an increment that may jump failed: the whole increment is taken, which has this size.
     Leaps {
-        /// What its halves failed of.
+        /// Why its halves failed.
         why: Failure,
         /// Size of the whole (load factor).
         size: f64,
     },
-    /// Along the path: the increment failed at a corner of it, and is started again behind that (`step::recovery::path_corner`).
+    /// Along the path: the increment failed at a corner of the path and is restarted behind it (`step::recovery::path_corner`).
     Turns {
-        /// What it failed of.
+        /// Cause of the failure.
         why: Failure,
-        /// The contacts that take another mode there.
+        /// Contacts that take another mode there.
         changes: Arc<Vec<Change>>,
     },
-    /// Sliding is held back ([`crate::step::recovery::proximal`]), and is so more from here on; the major iteration starts again.
+    /// Sliding is held back ([`crate::step::recovery::proximal`]), more strongly from here on; the major iteration restarts.
     HeldBack {
-        /// What its minor iterations failed of. `None` where they settled, and a node slid too far or against its force.
+        /// Why its minor iterations failed. `None` if they converged, and a node slid too far or against its force.
         why: Option<Failure>,
-        /// Stiffness that holds sliding back from now on (force by length).
+        /// Stiffness that holds sliding back from now on (force per length).
         stiffness: f64,
     },
-    /// A damped motion past a limit point begins, has made a step, or makes one again.
+    /// A damped motion past a limit point begins, has completed a step, or repeats one.
     Moves(Moves),
-    /// The halves of an increment failed: it is started again on a way round.
+    /// The halves of an increment failed: it is restarted with a fallback.
     Fallback {
-        /// What was tried last failed of.
+        /// Why the last attempt failed.
         why: Failure,
-        /// The way that is tried now.
+        /// Fallback that is tried now.
         by: Fallback,
         /// Size of the part that is tried (load factor).
         size: f64,
     },
-    /// The minor iterations are done, but equilibrium is not reached: another major iteration.
+    /// The minor iterations converged, but equilibrium is not reached: another major iteration follows.
     Major {
         /// Norms at the end of this major iteration.
         after: Norms,
-        /// False if the limit of minor iterations was accepted instead.
+        /// False if the limit of minor iterations was reached and accepted instead.
         settled: bool,
     },
-    /// The increment would be done, but the judge found that a node's net slip is against Coulomb's law: another major
-    /// iteration, and from here on net slip counts.
+    /// The increment would be accepted, but the judge found that a node's net slip violates Coulomb's law: another major
+    /// iteration follows, and net slip counts from here on.
     Refused {
-        /// The law that is broken, and where.
+        /// Law that is violated, and where.
         why: Finding,
         /// Norms at the end of this major iteration.
         after: Norms,
@@ -176,16 +176,16 @@ pub enum Outcome {
     Increment {
         /// Norms at its end.
         after: Norms,
-        /// Number of loops of minor or major iterations that ended at their limit, which was accepted.
+        /// Number of loops of minor or major iterations whose limit was reached and accepted.
         unsettled: u32,
-        /// The law that is broken although the increment is accepted; `None` if all laws hold.
+        /// Law that is violated although the increment is accepted; `None` if all laws hold.
         marked: Option<Finding>,
         /// Whether the increment leaves the branch of stable equilibrium on which it started: it ends on another branch or in an
         /// unstable state.
         jumped: bool,
         /// Loss of stability: set if the end state is unstable and the start state was not known to be unstable.
         unstable: Option<StabilityLoss>,
-        /// The damped motion that it ends, if any.
+        /// The damped motion that it completes, if any.
         motion: Option<Motion>,
         /// Worst point at which a solid leaves the range of its law in this increment. `None` if all points are inside, or if a
         /// point was outside before.
@@ -198,7 +198,7 @@ pub enum Outcome {
 }
 
 impl Outcome {
-    /// An increment that is accepted, and what is left in it.
+    /// An accepted increment without reservations.
     pub fn accepted(after: Norms, last: bool) -> Outcome {
         Outcome::Increment {
             after,
@@ -212,7 +212,7 @@ impl Outcome {
         }
     }
 
-    /// Whether a major iteration ends here, settled or not.
+    /// Whether a major iteration ends here, converged or not.
     pub fn ends_major(&self) -> bool {
         !matches!(
             self,
@@ -224,54 +224,54 @@ impl Outcome {
     }
 }
 
-/// What a damped motion does.
+/// Progress of a damped motion.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Moves {
-    /// It begins: there is no equilibrium near the last one any more.
+    /// It begins: there is no longer an equilibrium near the last one.
     LetsGo {
-        /// What the smallest increment failed of.
+        /// Why the smallest increment failed.
         why: Failure,
         /// Load factor of the last equilibrium.
         load: f64,
     },
-    /// A step of it is done.
+    /// A step is completed.
     Step {
         /// Largest displacement in the step (length).
         motion: f64,
-        /// Its number, from 1.
+        /// Step number, from 1.
         number: u32,
     },
-    /// A step is tried again, slower; or coming to rest was too early, and the motion goes on.
+    /// A step is repeated more slowly, or an attempt at rest was premature and the motion continues.
     Slower(Slow),
 }
 
-/// Why a step of a damped motion is not taken.
+/// Why a step of a damped motion is rejected.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Slow {
     /// It failed.
     Failed(Failure),
-    /// It goes further than a step may.
+    /// It moves further than a step may.
     Far {
         /// Its largest displacement (length).
         motion: f64,
     },
-    /// Its end is unstable, so that the motion goes elsewhere.
+    /// Its end is unstable, so it does not follow the motion.
     Unstable,
 }
 
-/// Why an increment failed. The state is that in which it failed; stepping on from it is allowed.
+/// Why an increment failed. The state is the failed one; stepping may continue from it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Failure {
-    /// The minor iterations returned to a state in which they had been: they will cycle for ever.
+    /// The minor iterations returned to an earlier state: they repeat endlessly.
     Cycle(Cycle),
-    /// The minor iterations did not settle within their limit.
+    /// The minor iterations did not converge within their limit.
     MinorLimit {
         /// The limit.
         limit: u32,
-        /// Slave numbers of the nodes that still changed in the last one.
+        /// Slave numbers of the nodes that still changed in the last iteration.
         changing: Vec<usize>,
     },
-    /// No equilibrium within the limit of major iterations.
+    /// No equilibrium was found within the limit of major iterations.
     MajorLimit {
         /// The limit.
         limit: u32,
@@ -281,61 +281,61 @@ pub enum Failure {
         #[serde(default)]
         interface: f64,
     },
-    /// The major iterations returned to where they had been: they will cycle for ever.
+    /// The major iterations returned to an earlier state: they repeat endlessly.
     MajorCycle(MajorCycle),
     /// The equations have no unique solution.
     Singular(Singular),
-    /// The round-off of the stiffest forces is too large against the loads, so that a residual says nothing.
+    /// The round-off of the stiffest forces is too large relative to the loads: the residual is meaningless.
     RoundOff {
         /// Round-off over loads, more than [`Norms::LOUDEST`].
         noise: f64,
     },
-    /// Along the path: the increment would go back the way that it came.
+    /// Along the path: the increment would return along the path that it came from.
     DoubledBack,
-    /// Along the path: what is measured does not move while the load does, so that no size can be given to it; or the source
-    /// cannot solve for the load factor ([`crate::linear::source::Source::follows_paths`]).
+    /// Along the path: the measured quantity does not change while the load does, so that no step size can be defined; or the
+    /// source cannot solve for the load factor ([`crate::linear::source::Source::follows_paths`]).
     Unmoved,
-    /// The increment moved beyond what its tangent and the increments before it predict: it may have jumped to another
-    /// branch of equilibrium.
+    /// The increment moved further than its tangent and the previous increments predict: it may have jumped to another branch of
+    /// equilibrium.
     Leapt {
-        /// How far it moved (length).
+        /// Motion (length).
         motion: f64,
-        /// How far it was predicted to move (length).
+        /// Predicted motion (length).
         predicted: f64,
         /// Kind of instability: set if the end state is unstable and the start state was not known to be unstable.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         unstable: Option<Stability>,
     },
-    /// A damped motion past a limit point came to no rest.
+    /// A damped motion past a limit point does not end at rest.
     Restless {
-        /// Steps that it made.
+        /// Number of steps.
         steps: u32,
     },
-    /// The residual or the displacements grew out of all bounds.
+    /// The residual or the displacements grew without bound.
     Diverged {
         /// Residual relative to the forces.
         relative: f64,
     },
-    /// No assumption of what the nodes do is consistent; all were tried.
+    /// No combination of modes is consistent; all were tried.
     NoAnswer {
-        /// What the strategy failed of that the major iteration began with. `None` if no other was tried.
+        /// Why the first strategy of the major iteration failed. `None` if no other was tried.
         first: Option<Box<Failure>>,
-        /// Number of assumptions.
+        /// Number of combinations.
         tried: usize,
     },
-    /// No rung of the ladder found a consistent state, and not all assumptions could be tried.
+    /// No strategy of the ladder found a consistent state, and not all combinations could be tried.
     LadderEnded {
-        /// What the strategy failed of that the major iteration began with.
+        /// Why the first strategy of the major iteration failed.
         first: Box<Failure>,
-        /// What the last rung failed of.
+        /// Why the last strategy failed.
         last: Box<Failure>,
-        /// Whether the increment was not cut, since at any part of its load the problem is the same.
+        /// Whether the increment was not cut because the problem is the same at any part of its load.
         #[serde(default)]
         scales: bool,
     },
-    /// Pivoting, or the census, found no consistent state, which does not prove that there is none.
+    /// Pivoting or the census found no consistent state, which does not prove that none exists.
     NotFound(NotFound),
-    /// Converged, but against a law of contact or balance.
+    /// Converged, but a law of contact or balance is violated.
     Refused(Finding),
     /// An element of a solid is inverted: det F is not positive at one of its points.
     Inverted(PointDeformation),
@@ -356,11 +356,11 @@ pub enum Failure {
         /// Gap that stays (length).
         gap: f64,
     },
-    /// An attached solver said so.
+    /// Failure reported by an attached solver.
     Reported {
-        /// Its words; may be empty.
+        /// Text from the solver; may be empty.
         reason: String,
-        /// Residual at the end, relative to the forces, where it said that.
+        /// Residual at the end, relative to the forces, if the solver reported it.
         #[serde(default)]
         relative: Option<f64>,
     },

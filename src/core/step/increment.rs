@@ -1,4 +1,4 @@
-//! Increments: accepted, started again, or damped.
+//! Accepts, restarts or damps increments.
 
 use crate::contact::laws::Verdict;
 use crate::linear::norms::Norms;
@@ -11,11 +11,11 @@ use crate::step::sub_increment::SubIncrement;
 use crate::step::verdict::range_left;
 use std::sync::Arc;
 
-/// A major iteration is not damped below this part of its load.
+/// Minimum fraction of its load to which a major iteration is damped.
 const SMALLEST_PART: f64 = 1e-6;
 
 impl Stepper {
-    /// Starts the increment again, up to the end of this part.
+    /// Restarts the increment, up to the end of this part.
     pub(super) fn restart(&mut self, part: SubIncrement) {
         self.state.sub_increment = part;
         self.drop_factors();
@@ -23,7 +23,7 @@ impl Stepper {
         self.forget_workspace();
     }
 
-    /// Starts the minor iterations of this major one again, with half the load; false if too little is left of it.
+    /// Restarts the minor iterations of this major iteration with half the load; false if the remaining load is too small.
     pub(super) fn damp(&mut self) -> bool {
         if self.state.way.is_some() {
             return false;
@@ -39,7 +39,7 @@ impl Stepper {
         true
     }
 
-    /// Makes the present state the start of the next increment.
+    /// Makes the current state the start of the next increment.
     pub(super) fn accept(&mut self, after: Norms, verdict: Verdict, landing: Landing) -> Outcome {
         let unsettled = self.state.unsettled;
         let leg = self.leg_reached();
@@ -73,7 +73,7 @@ impl Stepper {
         }
     }
 
-    /// Makes the present displacements and contacts those that are accepted.
+    /// Stores the current displacements and contacts as the accepted ones.
     pub(super) fn renew_start(&mut self, verdict: Verdict) {
         let start = Arc::make_mut(&mut self.state.start);
         start.verdict = Some(verdict);
@@ -83,7 +83,7 @@ impl Stepper {
         start.nodes.clone_from(&self.state.nodes);
     }
 
-    /// Slip is counted from here on, and stick points are those of the accepted state.
+    /// Resets slip, and moves stick points to the accepted state.
     pub(super) fn settle_contacts(&mut self) {
         for (node, slave) in self.state.nodes.iter_mut().zip(&self.model.contacts) {
             (node.slip, node.left, node.kept) = (0.0, None, false);
@@ -98,7 +98,7 @@ impl Stepper {
         }
     }
 
-    /// The leg of the path that the load factor has come to.
+    /// Leg of the path that the load factor has reached.
     fn leg_reached(&self) -> usize {
         let (path, mut leg) = (&self.model.path, self.state.start.leg);
         while leg + 1 < path.len() && self.state.load_factor == path[leg + 1] {
@@ -107,7 +107,7 @@ impl Stepper {
         leg
     }
 
-    /// Goes on with the increments that the scene lists for a leg of the path.
+    /// Sets the increment size that the scene lists for a leg of the path.
     fn take_size(&mut self, leg: usize) {
         let controls = Arc::make_mut(&mut self.state.controls);
         controls.increment = self.model.on_leg(leg);
@@ -115,7 +115,7 @@ impl Stepper {
     }
 
     fn next_increment(&mut self) {
-        // The stiffness that the next increment starts with is that of its own start.
+        // The next increment starts with the stiffness at its own start.
         let taken_here = self.drop_factors();
         let next = &mut self.state.next;
         (next.increment, next.attempt) = (next.increment + 1, 1);

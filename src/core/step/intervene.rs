@@ -1,4 +1,4 @@
-//! What a user does to a run: force a mode, change the increment, friction or settings.
+//! Applies what a user changes in a run: modes, the increment, friction or settings.
 
 use crate::contact::record::Forced;
 use crate::contact::state::ContactState;
@@ -14,13 +14,12 @@ use std::sync::Arc;
 pub use crate::step::intervention::{Intervention, Refusal, Start, Value};
 
 impl State {
-    /// Applies an intervention. The position stays, except that a new increment size starts the present increment
-    /// again.
+    /// Applies an intervention. The position stays, except that a new increment size restarts the current increment.
     ///
     /// # Errors
-    /// A message for values that make no sense, and when the history is done.
+    /// If a value is invalid, or the history is finished.
     pub fn intervene(&mut self, model: &Model, intervention: &Intervention) -> Result<(), Refusal> {
-        // An attached solver may go on from its end; ours has nothing left to solve.
+        // An attached solver may continue after its end; ours has nothing left to solve.
         if self.status == Status::Finished && self.outside.is_none() {
             return Err(Refusal::Done);
         }
@@ -60,21 +59,21 @@ impl State {
         Ok(())
     }
 
-    /// Forgets what went into the minor iterations so far.
+    /// Clears the record of the minor iterations.
     pub(super) fn forget_minors(&mut self) {
         if !self.minor_history.is_empty() {
             Arc::make_mut(&mut self.minor_history).clear();
         }
     }
 
-    /// Forgets what went into the major iterations so far.
+    /// Clears the record of the major iterations.
     pub(super) fn forget_majors(&mut self) {
         if !self.major_history.is_empty() {
             Arc::make_mut(&mut self.major_history).clear();
         }
     }
 
-    /// Sets out on the increment that follows `start`.
+    /// Starts the increment that follows `start`.
     pub(super) fn begin(&mut self) {
         (self.next.major, self.next.minor) = (1, 1);
         (self.minors, self.unsettled, self.correction) = (0, 0, 0.0);
@@ -128,7 +127,7 @@ impl State {
         Ok(())
     }
 
-    /// Replaces the friction of all slave nodes, one entry each.
+    /// Replaces the friction of all slave nodes, one entry per node.
     fn set_friction(&mut self, all: &[Friction]) -> Result<(), Refusal> {
         let sound = |friction: &Friction| {
             (0.0..90.0).contains(&friction.angle)
@@ -196,8 +195,8 @@ impl State {
         Ok(())
     }
 
-    /// The state in which the present attempt of the increment began. What was changed by hand since then is not in it,
-    /// except modes that are held.
+    /// The state in which the current attempt at the increment began, without later changes by the user, except modes that are
+    /// held.
     pub fn attempt_again(&self) -> State {
         let mut again = self.clone();
         again.start_again();
@@ -205,7 +204,7 @@ impl State {
         again
     }
 
-    /// Starts the present increment again, from its start to the end of the present piece.
+    /// Restarts the current increment, from its start to the end of the current part.
     pub(super) fn start_again(&mut self) {
         self.u = self.start.u.clone();
         for (node, start) in self.nodes.iter_mut().zip(&self.start.nodes) {

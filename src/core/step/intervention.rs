@@ -1,10 +1,10 @@
-//! What a user may change in a run, as plain data; [`super::intervene`] does it.
+//! What a user can change in a run, as plain data; applied by [`super::intervene`].
 
 use crate::linear::estimate::TooLarge;
 use crate::model::{Friction, Mode, Settings};
 use serde::{Deserialize, Serialize};
 
-/// A change from outside; recorded in snapshots and replayed from them.
+/// A change made by the user; recorded in snapshots and replayed from them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Intervention {
     /// Force a slave node (by slave number) into a mode: for the next minor iteration, or until released.
@@ -16,25 +16,25 @@ pub enum Intervention {
         /// Whether it is held until released.
         hold: bool,
     },
-    /// Start several slave nodes at once from a state that is known: each in a mode, for the next minor iteration.
+    /// Start several slave nodes from a known state, each in a mode, for the next minor iteration.
     Assume(Vec<Start>),
-    /// Give a slave node back to Table 2.
+    /// Return a slave node to the control of Table 2.
     Release {
         /// Slave number.
         slave: usize,
     },
-    /// Change the increment size and start the present increment again. Where the scene lists increments of each leg of the
-    /// path, the next leg begins with its own.
+    /// Change the increment size and restart the current increment. If the scene lists an increment for each leg of the path, the
+    /// next leg begins with its own.
     Increment(f64),
     /// Replace the friction of every slave node.
     Friction(Friction),
-    /// Replace the friction of each slave node by its own, in the order of the scene.
+    /// Replace the friction of each slave node separately, in the order of the scene.
     Frictions(Vec<Friction>),
     /// Replace the settings.
     Settings(Settings),
     /// Change a parameter of an attached solver.
     Parameter {
-        /// Its name.
+        /// Parameter name.
         name: String,
         /// Its value.
         value: Value,
@@ -44,11 +44,11 @@ pub enum Intervention {
 /// Value of a parameter.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Value {
-    /// A number, whole or not.
+    /// A number, integer or not.
     Number(f64),
     /// True or false.
     Flag(bool),
-    /// A text.
+    /// A string.
     Text(String),
 }
 
@@ -62,52 +62,52 @@ impl std::fmt::Display for Value {
     }
 }
 
-/// Why an intervention is refused; the state stays as it was.
+/// Why an intervention is refused; the state is not changed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum Refusal {
-    /// There is nothing left to change.
+    /// The history is finished.
     #[error("the history is done; step back first")]
     Done,
     /// No contact has this number.
-    #[error("there are {count} slave nodes, numbered from 0; {slave} is none")]
+    #[error("slave node {slave} does not exist: the {count} slave nodes are numbered from 0")]
     NoContact {
-        /// The number that was asked for.
+        /// Requested number.
         slave: usize,
-        /// How many there are.
+        /// Number of contacts.
         count: usize,
     },
     /// A contact without a surface can only be free.
-    #[error("the node is past the end of its surface: it has nothing to touch")]
+    #[error("the node is beyond the end of its surface and can only be free")]
     OffSurface,
-    /// A tied contact is fixed for ever.
+    /// A tied contact is always fixed.
     #[error("the node is tied to its surface: it is always fixed")]
     Tied,
-    /// A friction out of bounds.
-    #[error("a friction angle is at least 0 and less than 90 degrees, a cohesion not negative")]
+    /// Friction out of range.
+    #[error("friction angle must be at least 0 and less than 90 degrees, cohesion at least 0")]
     Friction,
     /// Settings that apply only when the scene is opened, because they fix the initial gaps and the surfaces.
     #[error(
-        "initial_gaps, adjust_gap and point_force are settled when a scene is opened: set them in its file, or with --set"
+        "initial_gaps, adjust_gap and point_force apply only when a scene is opened: set them in its file or with --set"
     )]
     StartGaps,
-    /// A limit of no iterations.
-    #[error("limits of iterations are at least 1")]
+    /// A limit of zero iterations.
+    #[error("iteration limits must be at least 1")]
     Limits,
-    /// An increment that is no positive number.
-    #[error("an increment is a positive number, not {0}")]
+    /// An increment that is not a positive number.
+    #[error("increment must be a positive number, not {0}")]
     Increment(f64),
-    /// The solver that was asked for does not fit the memory.
+    /// The requested linear solver does not fit into memory.
     #[error(transparent)]
     TooLarge(TooLarge),
     /// Only attached solvers have parameters.
-    #[error("no solver is attached that has a parameter '{0}'")]
+    #[error("no attached solver has a parameter '{0}'")]
     NoParameter(String),
-    /// An attached solver does not offer it.
+    /// The attached solver does not offer the intervention.
     #[error("{0}")]
     NotOffered(String),
 }
 
-/// Where a slave node is to start from in the next minor iteration, known from elsewhere.
+/// Known state from which a slave node starts the next minor iteration.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Start {
     /// Slave number.

@@ -1,5 +1,5 @@
-//! Jumps: where the loads pass a limit point, the increment that does so ends on another branch of equilibrium, far from where
-//! it began, and nothing in that state says so.
+//! Jumps: an increment that passes a limit point ends on another branch of equilibrium, far from its start, and its end state
+//! alone does not reveal it.
 //!
 //! A jump is a motion that does not shrink as the increment is halved. An increment is suspected if it moves more than expected
 //! ([`crate::step::pace`]) or ends in an unstable state ([`crate::step::watch`]); the ladder then tries its halves, down to the
@@ -8,11 +8,11 @@
 //! than the fourth root is a jump, and the increment is accepted and marked. Motions due to a change of modes, to a node that
 //! opens, slides or touches, or to the onset of a load do shrink. If increments are not cut, suspected increments are marked.
 //!
-//! A way round ([`crate::step::recovery::fallback`]) must not jump: what lies on another branch is no answer to halves that fail, and where a
-//! structure lets go may not depend on the increment.
+//! A fallback ([`crate::step::recovery::fallback`]) must not jump: a state on another branch does not replace halves that failed,
+//! and the load at which a structure jumps must not depend on the increment.
 //!
-//! Near a limit point the halves may have no end at all, where the whole increment has one beyond. Where they fail, the suspected
-//! increment is taken whole after all, and is a jump if it still moves beyond what is expected.
+//! Near a limit point the halves may have no equilibrium although the whole increment has one beyond it. If the halves fail, the
+//! suspected increment is taken as a whole, and is a jump if it still moves more than expected.
 
 use crate::contact::laws::{Finding, Verdict};
 use crate::linear::norms::Norms;
@@ -25,7 +25,7 @@ use crate::step::stepper::Stepper;
 use crate::step::watch::{FAR, StabilityLoss};
 use crate::strategy;
 
-/// Motions below this part of the scene's length are no jumps: round-off makes as much of them.
+/// Motions below this fraction of the scene's length are not jumps: round-off can be as large.
 const NOTHING: f64 = 1e-9;
 
 /// Reservations with which a state is accepted.

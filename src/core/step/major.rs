@@ -1,5 +1,4 @@
-//! The end of a major iteration: displacements and forces are taken back, the geometry is renewed, and the question is
-//! whether the increment is done.
+//! The end of a major iteration: updates displacements, forces and geometry, and checks whether the increment has converged.
 
 use crate::contact::corner::least_friction;
 use crate::contact::record::ContactRecord;
@@ -15,23 +14,22 @@ use crate::step::recovery::PATIENCE;
 use crate::step::stepper::Stepper;
 use std::sync::Arc;
 
-/// A displacement this many times the scene's length is divergence.
+/// A displacement larger than this multiple of the scene's length is divergence.
 const DIVERGED: f64 = 1e4;
-/// Where round-off keeps the residual above the tolerance, displacements must have come to rest within this part of
-/// the length instead.
+/// If round-off keeps the residual above the tolerance, displacements must change by less than this fraction of the length.
 const STILL: f64 = 1e-8;
-/// With old factors, displacements are near enough within this part of the length, whatever the tolerance.
+/// With old factors, displacements have converged within this fraction of the length, whatever the tolerance.
 const NEAR: f64 = 1e-10;
-/// Part of the out-of-balance force that a major iteration may leave with old factors before they are renewed.
+/// Fraction of the out-of-balance force that a major iteration with old factors may leave before the factors are renewed.
 const ENOUGH: f64 = 0.1;
 /// First major iteration from which an inverted element is refused: earlier iterations may overshoot and recover.
 const OVERSHOOT: u32 = 8;
-/// Times the major iterations that keep its size after which an increment along the path is lost.
+/// An increment along the path fails after this multiple of the major iterations that keep its size.
 const LOST: u32 = 2;
 
 impl Stepper {
-    /// Updates displacements and forces, renews the geometry, and asks whether the increment is done. `settled` is false
-    /// where the limit of minor iterations was accepted.
+    /// Updates displacements and forces, renews the geometry, and checks whether the increment has converged. `settled` is false
+    /// if the limit of minor iterations was accepted instead.
     pub(super) fn end_major(&mut self, settled: bool) -> Outcome {
         let held = self.hold();
         let before = self.state.correction;
@@ -70,7 +68,7 @@ impl Stepper {
         let most = self.most_majors(braked);
         let at_limit = self.state.next.major.is_multiple_of(most);
         let drowned = after.noise > Norms::LOUDEST;
-        // What still moves by more than the scene's length is lost, however loud its round-off.
+        // A motion larger than the scene's length has diverged, however large its round-off.
         let still = after.correction < 1.0;
         if settled && balanced && !drowned && !self.is_carried(&after) {
             return self.finish(after);
@@ -113,16 +111,16 @@ impl Stepper {
         Outcome::Major { after, settled }
     }
 
-    /// Whether the settings want old factors kept where they serve. They serve where the load is given, and nothing is damped.
+    /// Whether the settings keep old factors where they help: under load control, without damping.
     fn keeps_factors(&self) -> bool {
         let state = &self.state;
         let loaded = state.way.is_none() && state.motion.is_none();
-        // A pressure that follows its faces has a stiffness that goes with the load.
+        // The stiffness of a pressure that follows its faces changes with the load.
         let dead = self.model.pressures.is_empty();
         loaded && dead && state.controls.settings.factor == Refactor::Needed
     }
 
-    /// Lets the next major iteration go on with the stiffness in use, where the settings want that.
+    /// Reuses the current stiffness in the next major iteration, if the settings allow it.
     fn keep_factors(&mut self) {
         if !self.keeps_factors() {
             self.drop_factors();
@@ -133,7 +131,7 @@ impl Stepper {
         }
     }
 
-    /// Has the stiffness taken anew; returns whether that in use was that of the present displacements.
+    /// Has the stiffness recomputed; returns whether the current one was that of the current displacements.
     pub(super) fn drop_factors(&mut self) -> bool {
         match self.state.factored.take() {
             Some(about) => {
@@ -144,23 +142,23 @@ impl Stepper {
         }
     }
 
-    /// Whether the displacements have still to go no more than the tolerance of what the increment has moved. With old factors
-    /// they come nearer step by step, and in soft directions small forces do not tell how far they are; the ratio of the last
-    /// correction to that `before` does.
+    /// Whether the remaining error of the displacements is at most the tolerance times the motion of the increment. With old
+    /// factors the displacements converge linearly, and in soft directions small forces do not bound the error; the ratio of the
+    /// last correction to the one `before` does.
     fn is_near(&self, before: f64) -> bool {
         let (state, last) = (&self.state, self.state.correction);
         if state.factored.is_none() || last == 0.0 {
             return true;
         }
-        // What goes slowly shows late in their ratio.
+        // Slow convergence shows late in this ratio.
         let ratio = (last / before).clamp(ENOUGH, 0.5);
         let left = last * ratio / (1.0 - ratio);
         let moved = self.source.moved(&state.u, &state.start.u) / self.model.length;
         left <= (state.controls.settings.tolerance * moved).max(NEAR)
     }
 
-    /// Has the stiffness taken anew where that in use has left more than [`ENOUGH`] of the force that there was to balance, or of
-    /// the last correction: the next major iteration would leave as much.
+    /// Has the stiffness recomputed if the current one has left more than [`ENOUGH`] of the out-of-balance force, or of the last
+    /// correction: the next major iteration would leave as much.
     fn renew_factors(&mut self, asked: f64, before: f64, after: &Norms) {
         let slow = before > 0.0 && after.correction > ENOUGH * before;
         let little = slow || after.relative > ENOUGH * asked;
@@ -169,8 +167,8 @@ impl Stepper {
         }
     }
 
-    /// After how many major iterations an increment fails. Along the path, one that takes long has lost the way: what it
-    /// comes to in the end may be on another branch.
+    /// Number of major iterations after which an increment fails. Along the path, a slow increment has lost the path: it may
+    /// converge to another branch.
     fn most_majors(&self, braked: bool) -> u32 {
         let majors = self.state.controls.settings.majors;
         match (braked, &self.state.way) {
@@ -180,7 +178,7 @@ impl Stepper {
         }
     }
 
-    /// Whether forces and interface conditions are met at the whole load of the increment.
+    /// Whether forces and interface conditions are satisfied at the full load of the increment.
     fn is_balanced(&self, after: &Norms) -> bool {
         let tolerance = self.state.controls.settings.tolerance;
         let exact = after.relative <= tolerance;
@@ -189,7 +187,7 @@ impl Stepper {
             && after.interface <= after.limit.max(tolerance)
     }
 
-    /// Goes on with the first minor iteration of another major one.
+    /// Starts the first minor iteration of another major iteration.
     pub(super) fn next_major(&mut self) {
         if self.state.fallback.is_some_and(|route| route.by.searches()) {
             self.state.searched.spent += 1;
@@ -198,7 +196,7 @@ impl Stepper {
         self.state.next.minor = 1;
     }
 
-    /// Whether the next major iteration starts from where an earlier one of this increment did.
+    /// Finds a cycle: whether the next major iteration starts from the same state as an earlier one of this increment.
     fn find_major_cycle(&mut self) -> Option<MajorCycle> {
         let scales = RepeatScales {
             force: self.force_scale(),
@@ -212,7 +210,7 @@ impl Stepper {
         history.cycle(contacts, major, scales)
     }
 
-    /// Takes displacements and forces of the last minor iteration into the state, and linearises about that.
+    /// Updates the state with displacements and forces of the last minor iteration, and linearises there.
     fn update(&mut self) {
         self.measured = false;
         self.state.last_target = self.state.target;
@@ -248,8 +246,8 @@ impl Stepper {
         self.source.turn(&self.state.at());
     }
 
-    /// Takes a contact's forces and slip of the last minor iteration; one that has touched is stuck where its path pierced
-    /// the surface.
+    /// Stores a contact's forces and slip of the last minor iteration; a node that has touched sticks where its path crossed the
+    /// surface.
     ///
     /// T_max stays that of the last minor iteration: forces from stresses carry the whole error of the linearisation,
     /// which can exceed F_n itself, and a first trial with such a T_max opens contacts that are closed.
@@ -279,9 +277,9 @@ impl Stepper {
         node.travel = 0.0;
     }
 
-    /// Finds anew where every contact stands.
+    /// Finds the position of every contact on its surface.
     pub(super) fn follow(&mut self) {
-        // Where slip is counted anew in every major iteration, so is what to stick to.
+        // If slip is counted from each major iteration, the stick point is renewed as well.
         let settings = self.state.settings();
         let anew = settings.slip == SlipCount::Major && settings.sticking == Sticking::Anchored;
         let (u, friction) = (&self.state.u, &self.state.controls.friction);

@@ -1,5 +1,5 @@
-//! Cycles of major iterations: a node that passes to and fro between two elements, or modes that come and go with the
-//! geometry, so that no number of major iterations ends the increment.
+//! Cycles of major iterations: a node that alternates between two elements, or modes that change back and forth with the
+//! geometry, so that the increment never converges.
 
 use crate::contact::projection::SurfacePoint;
 use crate::contact::state::ContactState;
@@ -7,55 +7,55 @@ use crate::interface::cycle;
 use crate::model::Mode;
 use serde::{Deserialize, Serialize};
 
-/// Numbers of two major iterations that differ by less than this, relatively, are the same.
+/// Numbers of two major iterations with a smaller relative difference are equal.
 const REPEATED: f64 = 1e-10;
-/// Those that differ by more than this, relatively, are different: between the two, an iteration may still converge.
+/// Numbers with a larger relative difference are different; between the two limits, the iteration may still converge.
 const DIFFERENT: f64 = 1e-7;
 
-/// What the slave nodes took into every major iteration of the present increment.
+/// State of the slave nodes at the start of every major iteration of the current increment.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct MajorHistory {
-    /// One entry a slave node, iteration after iteration.
+    /// One entry per slave node, iteration after iteration.
     entries: Vec<MajorEntry>,
 }
 
-/// What one slave node takes into a major iteration.
+/// State of one slave node at the start of a major iteration.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 struct MajorEntry {
     mode: Mode,
     spot: Option<SurfacePoint>,
     f_n: f64,
     f_t: f64,
-    /// Its position.
+    /// Position of the node.
     at: [f64; 2],
 }
 
 /// A cycle of major iterations.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MajorCycle {
-    /// Major iteration from which on it repeats.
+    /// Major iteration from which it repeats.
     pub start: u32,
-    /// Number of major iterations after which it repeats, at least 2.
+    /// Period in major iterations, at least 2.
     pub period: u32,
-    /// Contact nodes (by slave number) that change in it, with what each takes into every iteration of one period.
+    /// Contact nodes (by slave number) that change within the cycle, with the stops of each during one period.
     pub members: Vec<(usize, Vec<Stop>)>,
 }
 
-/// Mode of a slave node, and the master element (surface, element) that S* is on.
+/// Mode of a slave node, and the master element (surface, element) of S*.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Stop {
     /// Mode.
     pub mode: Mode,
-    /// Numbers of surface and element. `None` past the ends of all surfaces.
+    /// Numbers of surface and element. `None` beyond the ends of all surfaces.
     pub element: Option<(usize, usize)>,
 }
 
-/// Sizes of forces and lengths.
+/// Scales of forces and lengths.
 #[derive(Debug, Clone, Copy)]
 pub struct RepeatScales {
-    /// Size of the forces.
+    /// Force scale.
     pub force: f64,
-    /// Size of the lengths.
+    /// Length scale.
     pub length: f64,
 }
 
@@ -77,7 +77,7 @@ impl MajorEntry {
         }
     }
 
-    /// Whether both stop at the same and their numbers differ by less than `limit`, in units of the scales.
+    /// Whether the stops are equal and the numbers differ by less than `limit`, in units of the scales.
     fn within(&self, other: &MajorEntry, scales: RepeatScales, limit: f64) -> bool {
         let along = match (self.spot, other.spot) {
             (Some(a), Some(b)) => (a.xi - b.xi).abs(),
@@ -92,25 +92,25 @@ impl MajorEntry {
 }
 
 impl MajorHistory {
-    /// Forgets everything, keeping its memory.
+    /// Removes all entries, but keeps the memory.
     pub fn clear(&mut self) {
         self.entries.clear();
     }
 
-    /// Whether nothing is remembered.
+    /// Whether no iteration is recorded.
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty()
     }
 
-    /// Remembers what goes into the next major iteration, with the positions of the slave nodes.
+    /// Records the start of the next major iteration, with the positions of the slave nodes.
     pub fn push(&mut self, nodes: &[ContactState], positions: impl Iterator<Item = [f64; 2]>) {
         let nodes = nodes.iter().zip(positions);
         self.entries
             .extend(nodes.map(|(node, at)| MajorEntry::of(node, at)));
     }
 
-    /// The cycle that is closed where the last of the remembered iterations, the major iteration `major`, starts from
-    /// the same as an earlier one, having been elsewhere in between.
+    /// The cycle that ends if the last recorded iteration, the major iteration `major`, starts from the same state as an earlier
+    /// one, with a different state in between.
     pub fn cycle(&self, slaves: usize, major: u32, scales: RepeatScales) -> Option<MajorCycle> {
         let width = slaves.max(1);
         let count = self.entries.len() / width;
@@ -173,7 +173,7 @@ mod tests {
         }
     }
 
-    /// Two nodes: the first is shaken for a while and then stays, the second goes round elements and modes.
+    /// Two nodes: the first moves for a while and then rests, the second cycles through elements and modes.
     fn planted(transient: usize, period: usize, k: usize) -> Vec<ContactState> {
         let along = 0.1 * transient.saturating_sub(k) as f64;
         let mut two = nodes(along, 7);

@@ -1,4 +1,4 @@
-//! A minor iteration: is there a solution, do the modes hold, and have modes and T_max settled?
+//! A minor iteration: solves, checks the modes, and detects convergence of modes and T_max.
 
 use crate::contact::record::ContactRecord;
 use crate::contact::table2::Ties;
@@ -14,26 +14,26 @@ use crate::step::event::{Failure, Outcome};
 use crate::step::stepper::Stepper;
 use std::sync::Arc;
 
-/// Two states of a minor loop whose numbers differ by less than this, relatively, are the same. It is far below any
-/// tolerance, so that T_max that converges slowly has settled before two rounds look alike.
+/// Two states of a minor loop with a smaller relative difference are equal. The limit is far below any tolerance, so that a
+/// slowly converging T_max settles before two rounds look alike.
 const REPEATED: f64 = 1e-14;
-/// Forces this many times larger than the interface's stiffness over the scene's length are no forces.
+/// Forces larger than this multiple of the interface's stiffness times the scene's length are unbounded.
 const UNBOUNDED: f64 = 1e10;
-/// Minor iterations after which a cycle is looked for into which T_max spirals slowly; also at the settings' limit.
+/// Number of minor iterations after which a cycle with a slowly converging T_max is searched for; also done at the settings' limit.
 const LOOK: u32 = 100;
-/// Iterations that are looked ahead for it, and most nodes with which that takes no time to speak of.
+/// Number of iterations computed ahead for this search, and maximum number of nodes for which its cost is negligible.
 const AHEAD: usize = 600;
 const MOST_AHEAD: usize = 40;
-/// Rounds that all changes at once may go on without getting fewer.
+/// Maximum number of rounds of simultaneous changes without a decrease of their number.
 const PATIENCE: u32 = 10;
 
 impl Stepper {
-    /// Notes what goes into this minor iteration, to recognise a cycle.
+    /// Records the start of this minor iteration, to detect a cycle.
     pub(super) fn remember(&mut self) {
         Arc::make_mut(&mut self.state.minor_history).push(&self.state.nodes);
     }
 
-    /// Why a solve gave no answer, or none that means anything.
+    /// Why a solve has no solution, or no meaningful one.
     pub(super) fn unsolvable(&self, solved: Solved) -> Option<Failure> {
         let singular = match solved {
             Solved::Well => None,
@@ -47,7 +47,7 @@ impl Stepper {
             .or_else(|| self.over_constrained())
     }
 
-    /// Which motions nothing resists, for the modes of this minor iteration.
+    /// Motions without any resistance, for the modes of this minor iteration.
     pub(super) fn explain(&self) -> Singular {
         self.source.explain(&self.state.nodes)
     }
@@ -69,7 +69,7 @@ impl Stepper {
             })
     }
 
-    /// Whether the last solve gave forces out of all proportion: those of a singular system, kept finite by round-off.
+    /// Whether the last solve returned excessive forces: those of a singular system, kept finite by round-off.
     pub(super) fn is_unbounded(&self) -> bool {
         let natural = self.source.spring() * self.model.length;
         (0..self.state.nodes.len()).any(|contact| {
@@ -78,8 +78,8 @@ impl Stepper {
         })
     }
 
-    /// What failed before a ladder found a state in which nothing is pressed: where the equations were singular, such a
-    /// state holds nothing that was loose.
+    /// Failure before a ladder found a state without contact pressure: if the equations were singular, such a state does not
+    /// support the loose bodies.
     pub(super) fn unsupported(&self) -> Option<Failure> {
         let first = self.state.search.first.as_deref()?;
         let force = self.ties().force;
@@ -106,7 +106,7 @@ impl Stepper {
         ROUND_OFF * f64::EPSILON * reach / self.model.length
     }
 
-    /// Size of forces: where displacements are prescribed, none may act before the first solve but at the interface.
+    /// Force scale: with prescribed displacements, only the interface may carry forces before the first solve.
     pub(super) fn force_scale(&self) -> f64 {
         let nodes = self.state.nodes.iter().enumerate();
         nodes.fold(self.norms.scale, |scale, (contact, node)| {
@@ -117,7 +117,7 @@ impl Stepper {
         })
     }
 
-    /// Checks every contact's mode and records it; true where modes and T_max have settled.
+    /// Checks and records the mode of every contact; true if modes and T_max have converged.
     ///
     /// Leaves the modes of the next minor iteration in the state.
     pub(super) fn check(&mut self) -> bool {
@@ -156,13 +156,13 @@ impl Stepper {
         settled
     }
 
-    /// Whether all changes at once have gone on for long without getting fewer.
+    /// Whether simultaneous changes have continued for long without becoming fewer.
     fn is_stalled(&self) -> bool {
         self.state.search.rounds > PATIENCE
     }
 
-    /// Counts the rounds since fewer nodes changed than ever before in this major iteration. What went before a change
-    /// of pace tells nothing of cycles.
+    /// Counts the rounds since the minimum number of changing nodes in this major iteration. Rounds before a change of pace do
+    /// not indicate cycles.
     fn count_changes(&mut self) {
         let all = self.event.nodes.iter();
         let changing = all.filter(|record| record.decision.changes()).count();
@@ -178,7 +178,7 @@ impl Stepper {
         }
     }
 
-    /// The minor loop has not settled: look for a cycle and at the limit, and count on.
+    /// The minor loop has not converged: looks for a cycle, checks the limit, and counts on.
     pub(super) fn go_on(&mut self) -> Outcome {
         let settings = self.state.settings();
         let method = self.method();
@@ -218,7 +218,7 @@ impl Stepper {
         Outcome::Minor
     }
 
-    /// Contacts whose mode or T_max still changed in the last minor iteration.
+    /// Contacts whose mode or T_max changed in the last minor iteration.
     fn changing(&self) -> Vec<usize> {
         let force = self.ties().force;
         let moves =
@@ -227,7 +227,7 @@ impl Stepper {
         records.filter(|(_, r)| moves(r)).map(|(s, _)| s).collect()
     }
 
-    /// Whether the next minor iteration starts from where an earlier one of this major did.
+    /// Finds a cycle: whether the next minor iteration starts from the same state as an earlier one of this major iteration.
     fn find_cycle(&self) -> Option<Cycle> {
         let force = REPEATED * self.force_scale();
         let (state, minor) = (&self.state, self.state.next.minor);
@@ -236,7 +236,7 @@ impl Stepper {
             .cycle(&state.nodes, minor, force, REPEATED)
     }
 
-    /// The cycle of modes that goes round for ever while T_max still spirals in: certain, since T_max goes linearly.
+    /// Finds a cycle of modes that repeats endlessly while T_max still converges; this is certain, since T_max changes linearly.
     fn find_spiral(&mut self) -> Option<Cycle> {
         let count = self.state.nodes.len();
         if count > MOST_AHEAD {
@@ -246,7 +246,7 @@ impl Stepper {
         let found = spiral(&problem, &*self.method(), AHEAD)?;
         let period = found.period as usize;
         let history = &self.state.minor_history;
-        // What iteration `back` before the next one does in the round: rounds end `start` iterations from now.
+        // Phase in the cycle of the iteration `back` before the next one: rounds end `start` iterations from now.
         let phase = |back: usize| (2 * period - back - found.start as usize % period) % period;
         let patterns = || problem.nodes.iter().zip(&found.modes);
         let went_round = (1..=period).all(|back| {

@@ -1,16 +1,16 @@
 //! The two-level solver as a stepper: one call, one minor iteration, one event.
 //!
-//! - [`stepper`]: the algorithm box; [`state`]: plain data from which everything goes on; [`event`]: what a minor
-//!   iteration did, typed.
-//! - `minor`, `major`, `increment`: the three levels; `search`: what happens where the modes do not settle.
-//! - [`sub_increment`]: increments whole and cut; `jump`: those that end on another branch of equilibrium; `verdict`: what
-//!   becomes of a state that the judge refuses.
-//! - [`recovery`]: how an increment that failed is tried again, one file for each way.
-//! - `arc`: increments of arc length, the load factor an unknown; [`way`]: how far they have come.
+//! - [`stepper`]: the algorithm box; [`state`]: the plain data that determine all later iterations; [`event`]: typed record of a
+//!   minor iteration.
+//! - `minor`, `major`, `increment`: the three levels; `search`: next strategies, if the modes do not converge.
+//! - [`sub_increment`]: whole and cut increments; `jump`: increments that end on another branch of equilibrium; `verdict`:
+//!   handles states that the judge refuses.
+//! - [`recovery`]: retries of failed increments, one method per file.
+//! - `arc`: arc-length increments, with the load factor as an unknown; [`way`]: their data.
 //! - [`major_history`]: cycles of major iterations.
-//! - [`solver`]: the seam above the stepper, for whatever else can be stepped; `outside`: states of such a solver;
-//!   [`places`]: the tree of those that it has had.
-//! - [`drive`]: the one loop over minor iterations; [`intervene`]: what a user changes in between, which is an [`intervention`].
+//! - [`solver`]: the interface of everything that can be stepped; `outside`: states of attached solvers; [`places`]: the tree of
+//!   these states.
+//! - [`drive`]: the loop over minor iterations; [`intervene`]: applies an [`intervention`] of the user.
 
 mod arc;
 pub mod drive;

@@ -1,4 +1,4 @@
-//! States of solvers that keep what they go on from themselves: what a debugger shows of them, from one event to the next.
+//! States of solvers that store their own data: what a debugger shows of them, updated from event to event.
 
 use crate::contact::projection::SurfacePoint;
 use crate::contact::record::{ContactRecord, Forced};
@@ -11,7 +11,7 @@ use crate::step::state::{IncrementStart, Outside, State, Status};
 use std::sync::Arc;
 
 impl Outside {
-    /// At a place, with nothing changed there yet.
+    /// At a place, without changes since.
     pub fn at(&self, place: u64) -> Outside {
         Outside {
             place,
@@ -23,7 +23,7 @@ impl Outside {
 }
 
 impl State {
-    /// The start of a solver that keeps what it goes on from itself: place 0, every node over its first surface.
+    /// Start of a solver that stores its own data: place 0, every node over its first surface.
     pub fn outside_start(model: &Model) -> State {
         let mut state = State::at_start(model, vec![0.0; model.dofs.len()], Vec::new());
         state.way = None;
@@ -43,18 +43,18 @@ impl State {
         state
     }
 
-    /// The number of the place at which such a solver is; `None` for one of ours.
+    /// Number of the place of an attached solver; `None` for the built-in solver.
     pub fn place(&self) -> Option<u64> {
         self.outside.as_ref().map(|outside| outside.place)
     }
 
-    /// What was changed since it came there.
+    /// Changes since it reached that place.
     pub fn asked(&self) -> &[Intervention] {
         self.outside.as_ref().map_or(&[], |outside| &outside.asked)
     }
 
-    /// Goes on to where an event led, at a place of this number: modes and numbers of the contacts, the next iteration, the start
-    /// of an increment where one was accepted. Displacements (`u`) are whoever calls's, before.
+    /// Moves to the result of an event, at the place with this number: updates modes and numbers of the contacts, the next
+    /// iteration, and the start of the increment if one was accepted. The caller sets the displacements (`u`) first.
     pub fn follow(&mut self, event: &Event, place: u64) {
         self.minors = self.minors.saturating_add(1);
         for (node, record) in self.nodes.iter_mut().zip(&event.nodes) {
@@ -90,7 +90,7 @@ impl State {
     }
 }
 
-/// The iteration that follows one with this outcome.
+/// Position of the iteration after one with this outcome.
 fn after(at: Position, outcome: &Outcome) -> Position {
     let next = |count: u32| count.saturating_add(1);
     match outcome {
@@ -117,7 +117,7 @@ fn after(at: Position, outcome: &Outcome) -> Position {
             minor: 1,
             ..at
         },
-        // Nothing follows.
+        // The history is finished.
         Outcome::Increment { last: true, .. } => at,
         Outcome::Increment { .. } => Position {
             increment: next(at.increment),
@@ -129,7 +129,7 @@ fn after(at: Position, outcome: &Outcome) -> Position {
 }
 
 impl ContactState {
-    /// Takes over what an iteration found. A mode that was forced for that iteration is not forced any more.
+    /// Stores the results of an iteration. A mode forced for that iteration is released.
     fn renew(&mut self, record: &ContactRecord) {
         self.mode = record.decision.next;
         if let Forced::Once(_) = self.forced {
@@ -147,8 +147,8 @@ impl ContactState {
 }
 
 impl ContactRecord {
-    /// What a solver of another's found at a node that solved in one mode and goes on in another, by rules of its own: no force
-    /// and no slip, an infinite gap, the upward normal, until they are filled in.
+    /// Record of an attached solver for a node that solved in one mode and continues in another, by its own rules: no force and
+    /// no slip, an infinite gap and the upward normal, until they are filled in.
     pub fn of_modes(before: Mode, next: Mode, node: &ContactState) -> ContactRecord {
         ContactRecord {
             decision: Decision {

@@ -1,4 +1,4 @@
-//! How fast a scene moves, and by that which increments are suspected to have jumped.
+//! Measures how fast a scene moves, to detect increments that may have jumped.
 //!
 //! A pace applies to a direction of loading. Over a span of the load factor, load k changes by Δ_k, relative to its largest value.
 //! Two spans have the same direction if their vectors Δ are parallel; the expected motion is then proportional to |Δ|. At a corner
@@ -14,10 +14,10 @@ use crate::model::{Factor, Model};
 use crate::step::sub_increment::SubIncrement;
 use serde::{Deserialize, Serialize};
 
-/// How many times what is expected an increment may move without being suspected.
+/// Maximum ratio of the motion of an increment to the expected motion, beyond which it is suspected.
 pub const RATIO: f64 = 4.0;
 
-/// The same where the halves of a suspected increment have failed: there is less doubt.
+/// The same if the halves of a suspected increment have failed: there is less doubt.
 const RATIO_OVER: f64 = 2.0;
 /// Maximum ratio of the motion of an increment whose tangent does not hold to the motion of the previous increment.
 const FASTER: f64 = 2.5;
@@ -28,10 +28,10 @@ const PARALLEL: f64 = 0.999;
 /// Rates of loading that differ by less than this fraction count as equal.
 const SAME: f64 = 1e-9;
 
-/// What is known of how fast the scene moves.
+/// Record of how fast the scene moves.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Pace {
-    /// Largest displacement of the present attempt's first major iteration.
+    /// Largest displacement of the first major iteration of the current attempt.
     pub predicted: f64,
     /// Sum of the largest displacements of the later major iterations (length).
     #[serde(default, skip_serializing_if = "is_zero")]
@@ -45,13 +45,13 @@ pub struct Pace {
     /// Load factors at the start and end of the last accepted increment.
     #[serde(default, skip_serializing_if = "is_at_zero")]
     pub span: [f64; 2],
-    /// The increment that is suspected, of which the present one is a part.
+    /// The suspected increment that the current one is a part of.
     pub suspect: Option<Suspect>,
-    /// Whether its halves have failed, so that it is not cut for being suspected any more.
+    /// Whether its halves have failed, so that it is no longer cut on suspicion.
     pub over: bool,
 }
 
-/// An increment that moved beyond what was expected.
+/// An increment that moved more than expected.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Suspect {
     /// Its largest displacement.
@@ -136,7 +136,8 @@ impl Expected {
             .map_or(self.tangent, |[fastest, _]| self.tangent.min(fastest))
     }
 
-    /// Whether a motion (length) exceeds the expected motion. `cuts` is whether increments are cut, so that halves can confirm a jump.
+    /// Whether a motion (length) exceeds the expected motion. `cuts`: whether increments are cut, so that halves can confirm a
+    /// jump.
     pub(super) fn is_exceeded(&self, motion: f64, cuts: bool) -> bool {
         let expected = if cuts { self.least() } else { self.tangent };
         let faster = FASTER * self.ratio / RATIO;
@@ -146,7 +147,7 @@ impl Expected {
 }
 
 impl Suspect {
-    /// Whether a part of it has moved so far that this is a jump.
+    /// Whether the motion of a part of it is large enough for a jump.
     pub(super) fn jumps(&self, motion: f64, size: f64) -> bool {
         motion > self.motion * (size / self.size).sqrt().sqrt()
     }

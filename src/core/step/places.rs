@@ -1,13 +1,13 @@
-//! The tree of the states that a solver of another's has had, for whoever keeps what the solver goes on from: [`Places`].
+//! Tree of the states of an attached solver, for programs that store what the solver continues from: [`Places`].
 //!
-//! A place is what one iteration led to. It has a number, [`Outside::place`], the place that it came from, and what was changed
-//! there before the iteration; the same change at the same place leads to the same place. Place 0 is the start.
+//! A place is the result of one iteration. It has a number, [`Outside::place`], the place before that iteration, and the changes
+//! made there; the same changes at the same place give the same place. Place 0 is the start.
 //!
 //! [`Outside::place`]: super::state::Outside::place
 
 use crate::step::intervention::Intervention;
 
-/// The places of a solver, each with what is kept of it.
+/// The places of a solver, each with its stored data.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Places<T> {
     all: Vec<Place<T>>,
@@ -21,7 +21,7 @@ struct Place<T> {
 }
 
 impl<T> Places<T> {
-    /// The start alone.
+    /// Only the start.
     pub fn new(start: T) -> Self {
         Places {
             all: vec![Place {
@@ -36,35 +36,35 @@ impl<T> Places<T> {
         self.all.get(usize::try_from(place).ok()?)
     }
 
-    /// What is kept of a place; `None` where there is no such place.
+    /// Data of a place; `None` if the place does not exist.
     pub fn get(&self, place: u64) -> Option<&T> {
         Some(&self.place(place)?.kept)
     }
 
-    /// The same, to be changed.
+    /// Mutable data of a place.
     pub fn get_mut(&mut self, place: u64) -> Option<&mut T> {
         let place = self.all.get_mut(usize::try_from(place).ok()?)?;
         Some(&mut place.kept)
     }
 
-    /// What is kept of all places, by number.
+    /// Data of all places, by number.
     pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut T> {
         self.all.iter_mut().map(|place| &mut place.kept)
     }
 
-    /// The place that one came from, and what was changed there before; `None` at the start.
+    /// The previous place, and the changes made there; `None` at the start.
     pub fn from(&self, place: u64) -> Option<(u64, &[Intervention])> {
         let (from, asked) = self.place(place)?.from.as_ref()?;
         Some((*from, asked))
     }
 
-    /// The place that an iteration led to from another, after these changes; `None` where it was not done yet.
+    /// The place that an iteration reached from another after these changes; `None` if it was not done yet.
     pub fn follows(&self, from: u64, asked: &[Intervention]) -> Option<u64> {
         let mut places = self.place(from)?.led_to.iter().copied();
         places.find(|&place| self.from(place).is_some_and(|(_, before)| before == asked))
     }
 
-    /// A new place, that an iteration led to from another after these changes: its number.
+    /// Adds the place that an iteration reached from another after these changes, and returns its number.
     pub fn add(&mut self, from: u64, asked: Vec<Intervention>, kept: T) -> u64 {
         let place = self.all.len() as u64;
         if let Some(from) = self.all.get_mut(from as usize) {
@@ -78,7 +78,7 @@ impl<T> Places<T> {
         place
     }
 
-    /// The places from one back to the start, itself first.
+    /// The places from this one back to the start, including both.
     pub fn back(&self, place: u64) -> impl Iterator<Item = u64> {
         std::iter::successors(Some(place), |&place| Some(self.from(place)?.0))
     }
@@ -88,14 +88,14 @@ impl<T> Places<T> {
         self.back(place).count() - 1
     }
 
-    /// The places from which nothing followed, but for the start, in the order in which they were reached.
+    /// The places without successors, except the start, in the order in which they were reached.
     pub fn ends(&self) -> impl Iterator<Item = u64> {
         let numbered = self.all.iter().zip(0_u64..).skip(1);
         let ends = numbered.filter(|(place, _)| place.led_to.is_empty());
         ends.map(|(_, number)| number)
     }
 
-    /// What leads from the start to a place: an iteration (`None`), or a change.
+    /// The steps from the start to a place: iterations (`None`) and changes.
     pub fn steps(&self, place: u64) -> Vec<Option<Intervention>> {
         let mut steps = Vec::new();
         for place in self.back(place) {

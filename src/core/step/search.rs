@@ -1,4 +1,4 @@
-//! What happens where the modes do not settle: the next strategy of the ladder, or a search over all nodes.
+//! Handles modes that do not converge: the next strategy of the ladder, or a search over all nodes.
 
 use crate::contact::record::{ContactRecord, Forced};
 use crate::contact::state::ContactState;
@@ -16,8 +16,8 @@ use crate::step::stepper::Stepper;
 use crate::strategy;
 
 impl Stepper {
-    /// The strategy cannot go on: the ladder's next one takes over, from where the major iteration began. Where there is
-    /// none, the increment fails.
+    /// The strategy cannot continue: the next one of the ladder restarts the major iteration. If there is none, the increment
+    /// fails.
     pub(super) fn escalate(&mut self, why: Failure) -> Outcome {
         let searches = self.method().search().is_some();
         if searches && self.state.search.searched == Searched::Not {
@@ -34,7 +34,7 @@ impl Stepper {
         self.begin_again();
         let search = &mut self.state.search;
         let first = search.first.get_or_insert_with(|| Box::new(why.clone()));
-        // A census that has tried all leaves nothing to find.
+        // A census that has tried every combination leaves nothing to find.
         let proven = matches!(why, Failure::NoAnswer { .. });
         let contacts = self.state.nodes.len();
         let mut next = strategy::next_rung(chosen, search.rung, contacts);
@@ -43,7 +43,7 @@ impl Stepper {
         {
             next = strategy::next_rung(chosen, rung, contacts);
         }
-        // The searches know nothing of what holds sliding back.
+        // The searches do not support held-back sliding.
         let braked = self.state.brake.is_some();
         let next = next.filter(|(_, to)| !(braked && strategy::method(*to).search().is_some()));
         if let Some((rung, to)) = next
@@ -62,7 +62,7 @@ impl Stepper {
         self.fail(ended(*first, why))
     }
 
-    /// Gives the contacts what they brought into the present major iteration.
+    /// Restores the contacts to the start of the current major iteration.
     pub(super) fn begin_again(&mut self) {
         self.take_back();
         self.state.forget_minors();
@@ -78,7 +78,7 @@ impl Stepper {
         }
     }
 
-    /// The modes that were tried do not hold: the next start of a search over all nodes, or its next answer.
+    /// The modes that were tried are not consistent: the next start of a search over all nodes, or its next solution.
     pub(super) fn begin_search(&mut self) -> Outcome {
         let search = &mut self.state.search;
         let start = match search.searched {
@@ -98,7 +98,7 @@ impl Stepper {
         Outcome::Minor
     }
 
-    /// The start and the step of the search over all nodes that this minor iteration belongs to.
+    /// Start and step of the search over all nodes to which this minor iteration belongs.
     pub(super) fn searching(&self) -> Option<(usize, usize)> {
         self.method().search()?;
         match self.state.search.searched {
@@ -140,7 +140,7 @@ impl Stepper {
         }
     }
 
-    /// Records what a search has the contacts do, and leaves it in the state.
+    /// Records the modes that a search proposes for the contacts, and stores them in the state.
     fn take(&mut self, proposal: &Proposal) -> Outcome {
         self.state.search.searched = proposal.next;
         let (model, mut nodes) = (self.model.clone(), proposal.nodes.iter());
@@ -167,7 +167,7 @@ impl Stepper {
         Outcome::Minor
     }
 
-    /// What the contacts that are not tied brought into the present major iteration.
+    /// Modes and T_max of the contacts that are not tied, at the start of the current major iteration.
     fn brought(&self) -> Vec<Assumed> {
         let first = self.state.minor_history.first(self.state.nodes.len());
         let of = |(input, slave): (&Input, &Contact)| {
@@ -180,7 +180,7 @@ impl Stepper {
             .collect()
     }
 
-    /// Records a tied contact, of which a search knows nothing: its forces come with the next solve.
+    /// Records a tied contact, which searches ignore: its forces follow from the next solve.
     fn stay_tied(&mut self, contact: usize) {
         let (node, over) = (&self.state.nodes[contact], self.source.kinematics(contact));
         self.event.nodes.push(ContactRecord {
@@ -260,7 +260,7 @@ impl Stepper {
     }
 }
 
-/// What a ladder failed of whose first rung failed of `first` and whose last of `last`.
+/// The failure of a ladder whose first strategy failed with `first` and whose last with `last`.
 fn ended(first: Failure, last: Failure) -> Failure {
     match (first, last) {
         (

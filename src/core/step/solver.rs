@@ -1,17 +1,18 @@
-//! The seam above the stepper: what a debugger needs of whatever it steps.
+//! The interface that a debugger steps.
 //!
-//! [`Stepper`] is one such solver. Another may be a program of its own that is spoken with, or an iteration written in Rust:
-//! whoever owns a [`State`] and an [`Event`], renews both at every iteration, and finds its way back to a state that it had. A
-//! debugger looks at nothing else, so that timeline, breakpoints, branches and records work for all of them.
+//! [`Stepper`] is one such solver. Others are external programs, attached through a protocol, or iterations written in Rust:
+//! anything that owns a [`State`] and an [`Event`], updates both at every iteration, and can return to an earlier state. A
+//! debugger reads nothing else, so timeline, breakpoints, branches and records work for all of them.
 //!
-//! A solver whose iterations depend on the numbers of the [`State`] alone goes back by taking up another one. One that has more
-//! to go on from keeps that itself, in [`Places`] or in a program of its own: its states carry a number for it
-//! ([`Outside::place`]) and what the user changed since ([`Outside::asked`]), and it hears of the changes when it goes on from there.
+//! A solver whose iterations depend only on the numbers of the [`State`] goes back by restoring a state. A solver that needs more
+//! data stores them itself, in [`Places`] or in an external program: its states contain the number of the stored data
+//! ([`Outside::place`]) and the changes made by the user since ([`Outside::asked`]), which it receives when it continues from
+//! there.
 //!
 //! # Example
 //!
 //! A node on a spring of stiffness 10 hangs 0.1 above a floor and is pressed on it in two increments of 2; it opens or closes
-//! until its mode fits. All that it needs is the state.
+//! until its mode is consistent. The state is all the data it needs.
 //!
 //! ```
 //! use std::sync::Arc;
@@ -115,16 +116,16 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use std::sync::atomic::AtomicUsize;
 
-/// A solver that cannot go on: it is gone, or does not do what it should. What it did before stands.
+/// A solver that cannot continue: it has exited, or violates its interface. Its earlier iterations remain valid.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{reason}")]
 pub struct Lost {
-    /// What happened, and what would be right.
+    /// What happened, and what was expected.
     pub reason: String,
 }
 
 impl Lost {
-    /// With what happened.
+    /// With the reason.
     pub fn new(reason: impl Into<String>) -> Self {
         Lost {
             reason: reason.into(),
@@ -132,74 +133,74 @@ impl Lost {
     }
 }
 
-/// What can be stepped.
+/// A solver that can be stepped.
 pub trait Solver: Send {
     /// The scene.
     fn model(&self) -> &Arc<Model>;
 
-    /// Where the solver is.
+    /// Current state of the solver.
     fn state(&self) -> &State;
 
     /// The last minor iteration.
     fn event(&self) -> &Event;
 
-    /// One minor iteration; `false` where the history is done, and nothing was solved. Its event and its state are renewed.
+    /// Does one minor iteration and updates event and state; `false` if the history is finished and nothing was solved.
     ///
     /// # Errors
-    /// [`Lost`] where it cannot; state and event are those before.
+    /// [`Lost`] if it cannot continue; state and event are unchanged.
     fn step(&mut self) -> Result<bool, Lost>;
 
-    /// Goes to a state that it has had, with what was changed there.
+    /// Returns to an earlier state, with the changes made there.
     ///
     /// # Errors
-    /// [`Lost`] where it does not find its way back.
+    /// [`Lost`] if it cannot return to that state.
     fn restore(&mut self, state: &State) -> Result<(), Lost>;
 
-    /// Applies what the user wants changed.
+    /// Applies a change made by the user.
     ///
     /// # Errors
-    /// Where it makes no sense, or is not offered.
+    /// If the change is invalid or not offered.
     fn intervene(&mut self, intervention: &Intervention) -> Result<(), Refusal>;
 
-    /// Values of the scene's monitors at the end of an increment that was just accepted, appended to `out`; none where the scene
-    /// has none.
+    /// Appends the values of the scene's monitors at the end of an increment that was just accepted to `out`; nothing if the
+    /// scene has none.
     fn monitors(&mut self, _out: &mut Vec<f64>) {}
 
-    /// What it offers to whoever debugs it.
+    /// Capabilities offered to a debugger.
     fn offers(&self) -> Offers {
         Offers::default()
     }
 
-    /// The interface problem of a state with everything else frozen, where it can be asked for.
+    /// The interface problem of a state with everything else frozen, if the solver offers it.
     ///
     /// # Errors
-    /// Why it cannot be told.
+    /// Why it is not available.
     fn posed(&mut self, _state: &State) -> Result<Posed, Lost> {
         Err(Lost::new("the solver does not offer its interface problem"))
     }
 
-    /// The stepper that it is, where it is one of ours.
+    /// The built-in stepper, if the solver is one.
     fn stepper(&mut self) -> Option<&mut Stepper> {
         None
     }
 
-    /// Takes what counts how often the user has asked the iteration at hand to end. Who cannot end one, ends after it.
+    /// Installs the counter of the user's interrupt requests. A solver that cannot interrupt an iteration stops after it.
     fn heed(&mut self, _asks: Arc<AtomicUsize>) {}
 
-    /// What the user should know of how it came to where it is; once.
+    /// A notice for the user about how the current state was reached; returned once.
     fn remark(&mut self) -> Option<String> {
         None
     }
 }
 
-/// What a solver offers to whoever debugs it; the default offers nothing.
+/// Capabilities of a solver offered to a debugger; none by default.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Offers {
-    /// What the solver is called; empty for one of ours.
+    /// Name of the solver; empty for the built-in one.
     pub name: String,
-    /// Its version, as it tells it; may be empty.
+    /// Version reported by the solver; may be empty.
     pub version: String,
-    /// What is read-only, where only the record of a run is left; `None` for a solver that can be stepped.
+    /// Kind of read-only record, if only the record of a run exists; `None` for a solver that can be stepped.
     pub past: Option<&'static str>,
     /// Modes can be forced for one iteration.
     pub force: bool,
@@ -213,16 +214,16 @@ pub struct Offers {
     pub cohesion: bool,
     /// Settings of the two-level method can be changed.
     pub settings: bool,
-    /// How it goes back.
+    /// How the solver returns to earlier states.
     pub goes_back: GoesBack,
-    /// Its frozen interface problem can be asked for ([`Solver::posed`]).
+    /// Its frozen interface problem is available ([`Solver::posed`]).
     pub problem: bool,
-    /// What else can be changed.
+    /// Other parameters that can be changed.
     pub parameters: Vec<Parameter>,
 }
 
 impl Offers {
-    /// All that a stepper of ours does.
+    /// Everything that the built-in stepper offers.
     pub fn all() -> Offers {
         Offers {
             name: String::new(),
@@ -240,10 +241,10 @@ impl Offers {
         }
     }
 
-    /// Whether it takes an intervention.
+    /// Checks whether an intervention is accepted.
     ///
     /// # Errors
-    /// [`Refusal::NotOffered`] with what it does not offer, or what is wrong with a parameter's value.
+    /// [`Refusal::NotOffered`] with the missing capability, or with the error in a parameter's value.
     pub fn check(&self, intervention: &Intervention) -> Result<(), Refusal> {
         let (offered, what) = match intervention {
             Intervention::Force { hold: false, .. } | Intervention::Assume(_) => {
@@ -268,7 +269,7 @@ impl Offers {
         }
     }
 
-    /// The increment that the solver begins with, where it can be changed.
+    /// Initial increment of the solver, if it can be changed.
     pub fn begins_with(&self) -> Option<f64> {
         let increment = self
             .parameters
@@ -280,7 +281,7 @@ impl Offers {
         }
     }
 
-    /// That something is not offered.
+    /// Message that something is not offered.
     pub fn lacks(&self, what: &str) -> String {
         let name = &self.name;
         match self.past {
@@ -290,56 +291,56 @@ impl Offers {
     }
 }
 
-/// How a solver goes back to a state that it has had.
+/// How a solver returns to an earlier state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum GoesBack {
-    /// By starting anew, and doing everything again.
+    /// By restarting and repeating everything.
     #[default]
     Again,
-    /// To the start of an increment, from where it does the rest again.
+    /// To the start of an increment, from which it repeats the rest.
     ToIncrements,
     /// To any state.
     ToAny,
 }
 
-/// Something that can be changed in an attached solver during a run.
+/// A parameter that can be changed in an attached solver during a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Parameter {
-    /// Its name.
+    /// Parameter name.
     pub name: String,
-    /// What it is at the start.
+    /// Initial value.
     pub value: Value,
-    /// What values it takes.
+    /// Accepted values.
     pub range: Range,
-    /// What it does, in a line; may be empty.
+    /// One-line description; may be empty.
     pub about: String,
 }
 
-/// What values a parameter takes.
+/// Accepted values of a parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Range {
-    /// Numbers between two bounds, whole ones or all.
+    /// Numbers between two bounds, integers only or any.
     Numbers {
-        /// The least.
+        /// Minimum.
         least: f64,
-        /// The most.
+        /// Maximum.
         most: f64,
-        /// Whether they are whole.
+        /// Whether only integers are accepted.
         whole: bool,
     },
     /// True or false.
     Flag,
-    /// One of these texts.
+    /// One of these strings.
     Choice(Vec<String>),
-    /// Any text.
+    /// Any string.
     Text,
 }
 
 impl Parameter {
-    /// Whether it takes a value.
+    /// Checks whether a value is accepted.
     ///
     /// # Errors
-    /// What it takes.
+    /// Which values are accepted.
     pub fn check(&self, value: &Value) -> Result<(), Refusal> {
         let takes = match (&self.range, value) {
             (&Range::Numbers { least, most, whole }, Value::Number(x)) => {
@@ -359,8 +360,8 @@ impl Parameter {
         }
     }
 
-    /// What it is in a state: what it was set to, or else what it began with. Three names have a meaning, and stand in the state
-    /// under it: increment, friction (mu) and cohesion of all contacts.
+    /// Value in a state: the last value set, or else the initial one. Three names have a meaning, and the state stores their
+    /// values: increment, friction (mu) and cohesion of all contacts.
     pub fn now(&self, model: &Model, state: &State) -> Value {
         let controls = &state.controls;
         let contacts = controls.friction.first().zip(model.contacts.first());
@@ -381,10 +382,10 @@ impl Parameter {
         }
     }
 
-    /// The value that a word means.
+    /// Parses a value.
     ///
     /// # Errors
-    /// What it takes.
+    /// Which values are accepted.
     pub fn read(&self, word: &str) -> Result<Value, Refusal> {
         let text = || Value::Text(word.to_owned());
         let value = match self.range {
@@ -416,7 +417,7 @@ impl std::fmt::Display for Range {
     }
 }
 
-/// A frozen interface problem as an attached solver tells it: with the total forces f = (f_n, f_t) of the listed contacts at the
+/// Frozen interface problem reported by an attached solver: with the total forces f = (f_n, f_t) of the listed contacts at the
 /// end of the increment,
 ///
 /// ```text
@@ -428,21 +429,21 @@ impl std::fmt::Display for Range {
 pub struct Posed {
     /// Contact numbers, in the order of the pairs.
     pub contacts: Vec<usize>,
-    /// What the matrix is.
+    /// Kind of the matrix.
     pub form: PosedForm,
-    /// Rows, 2n of 2n numbers.
+    /// Rows: 2n rows of 2n numbers.
     pub matrix: Vec<Vec<f64>>,
     /// Gap and motion without any force (length), 2n numbers.
     pub q: Vec<f64>,
-    /// Load, 2n numbers (force): with a stiffness, f = K ((gap, u) − q) − load, so that nothing but the contacts need hold the
-    /// bodies.
+    /// Load, 2n numbers (force): with a stiffness, f = K ((gap, u) − q) − load, so that the bodies may be supported by the
+    /// contacts alone.
     pub load: Vec<f64>,
     /// Friction of each contact.
     pub friction: Vec<Friction>,
 }
 
 impl Posed {
-    /// Gap and motion u of each contact under total forces (length); `None` where K has no inverse.
+    /// Gap and motion u of each contact under total forces (length); `None` if K is singular.
     pub fn motion(&self, forces: &DVector<f64>) -> Option<DVector<f64>> {
         let size = self.q.len();
         let matrix = DMatrix::from_fn(size, size, |i, j| self.matrix[i][j]);
@@ -457,13 +458,13 @@ impl Posed {
     }
 }
 
-/// What the matrix of a [`Posed`] problem is.
+/// Kind of the matrix of a [`Posed`] problem.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum PosedForm {
-    /// W (length by force).
+    /// W (length per force).
     Compliance,
-    /// K (force by length).
+    /// K (force per length).
     Stiffness,
 }
 

@@ -1,7 +1,7 @@
-//! Everything that the next minor iteration depends on, as plain data.
+//! The data that determine the next minor iteration.
 //!
-//! A state is cheap to clone, since what changes seldom is shared; restoring one and going on gives the same bits as
-//! never having left. What can be computed again from it (geometry, stiffness, factors) is not in it.
+//! A state is cheap to clone, since data that rarely change are shared. A run continued from a restored state is bit-identical to
+//! an uninterrupted one. Data that can be recomputed (geometry, stiffness, factors) are not stored.
 
 use crate::contact::laws::Verdict;
 use crate::contact::state::ContactState;
@@ -26,173 +26,173 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// The solver between two minor iterations.
+/// State of the solver between two minor iterations.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct State {
-    /// The minor iteration that comes next.
+    /// Position of the next minor iteration.
     pub next: Position,
-    /// Load factor at the end of the present increment.
+    /// Load factor at the end of the current increment.
     pub load_factor: f64,
-    /// Values of all degrees of freedom ([`crate::model::Dofs`]) at the start of the present major iteration.
+    /// Values of all degrees of freedom ([`crate::model::Dofs`]) at the start of the current major iteration.
     pub u: Arc<Vec<f64>>,
-    /// The interface, one entry a slave node.
+    /// The interface, one entry per slave node.
     pub nodes: Vec<ContactState>,
-    /// Where the present increment started.
+    /// State at the start of the current increment.
     pub start: Arc<IncrementStart>,
-    /// What the user can turn during a run.
+    /// Values that the user can change during a run.
     pub controls: Arc<Controls>,
-    /// What went into the minor iterations of the present major one so far, to recognise a cycle.
+    /// Starts of the minor iterations of the current major iteration, to detect a cycle.
     #[serde(rename = "trail")]
     pub minor_history: Arc<MinorHistory>,
-    /// What went into the major iterations of the present increment so far, to recognise a cycle of theirs.
+    /// Starts of the major iterations of the current increment, to detect a cycle.
     #[serde(rename = "rounds")]
     pub major_history: Arc<MajorHistory>,
-    /// Load factor that the present major iteration aims at: `load_factor`, unless it was damped.
+    /// Target load factor of the current major iteration: `load_factor`, unless it was damped.
     #[serde(rename = "aim")]
     pub target: f64,
-    /// Load factor that the last major iteration aimed at; at first the one at the start of the increment.
+    /// Target load factor of the last major iteration; initially the one at the start of the increment.
     #[serde(rename = "reached")]
     pub last_target: f64,
-    /// How far the strategy has come in the present increment.
+    /// Progress of the strategy in the current increment.
     pub search: Progress,
-    /// The part of an increment that is aimed at.
+    /// The part of an increment that is being solved.
     #[serde(rename = "piece")]
     pub sub_increment: SubIncrement,
     /// Number of cuts of the current whole increment because of a slave node, by node; empty before the first such cut.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub cuts: BTreeMap<usize, u32>,
-    /// Minor iterations done in the present increment attempt.
+    /// Minor iterations done in the current attempt at the increment.
     pub minors: u32,
-    /// Loops of the present attempt that were ended by a limit and accepted.
+    /// Loops of the current attempt whose limit was reached and accepted.
     pub unsettled: u32,
-    /// Whether nodes that touched when the increment started keep their anchors from there: the judge has refused a state of
-    /// the present attempt ([`crate::contact::judge`]).
+    /// Whether nodes that touched when the increment started keep their anchors from there: the judge has refused a state of the
+    /// current attempt ([`crate::contact::judge`]).
     #[serde(default)]
     pub net: bool,
     /// Largest displacement change in the last major iteration over the length scale.
     pub correction: f64,
-    /// Displacements about which the bodies' stiffness in use was taken; `None` for those of the present major iteration
+    /// Displacements at which the current stiffness of the bodies was computed; `None` for those of the current major iteration
     /// ([`crate::model::Refactor`]).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub factored: Option<Arc<Vec<f64>>>,
-    /// How fast the scene moves.
+    /// Record of how fast the scene moves.
     #[serde(default)]
     pub pace: Pace,
-    /// Stability of the accepted states, as far as checked.
+    /// Stability of the accepted states that were checked.
     #[serde(default, skip_serializing_if = "StabilityWatch::is_new")]
     pub watch: StabilityWatch,
-    /// How sliding is held back in the present attempt ([`crate::step::recovery::proximal`]). `None` where it is not.
+    /// How sliding is held back in the current attempt ([`crate::step::recovery::proximal`]). `None` if it is not.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub brake: Option<Brake>,
-    /// How far the way along the path has come. `None` under load control.
+    /// Arc-length data of the path. `None` under load control.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub way: Option<Box<Way>>,
-    /// The damped motion past a limit point that is under way; every step of it is an attempt of the increment.
+    /// Damped motion past a limit point that is in progress; each of its steps is an attempt at the increment.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion: Option<Motion>,
     /// The fallback that is tried if the halves of the increment have failed.
     #[serde(rename = "detour", default, skip_serializing_if = "Option::is_none")]
     pub fallback: Option<FallbackState>,
-    /// What searches have done so far.
+    /// Record of the searches done so far.
     #[serde(default, skip_serializing_if = "Searches::is_new")]
     pub searched: Searches,
-    /// Where an attached solver is, which keeps what it goes on from itself. `None` for a solver of our own.
+    /// Position of an attached solver, which stores its own data. `None` for the built-in solver.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub outside: Option<Box<Outside>>,
-    /// Whether and how it can go on.
+    /// Whether and how the solver can continue.
     pub status: Status,
 }
 
-/// Where an attached solver is, and what it is to be told before its next iteration.
+/// Position of an attached solver, and the changes to send before its next iteration.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Outside {
-    /// The number under which the state that it goes on from is known; 0 is the start.
+    /// Number of the state from which it continues; 0 is the start.
     pub place: u64,
-    /// What was changed since, in order.
+    /// Changes since then, in order.
     pub asked: Vec<Intervention>,
-    /// What its parameters were set to up to here, by name, where that is not what it began with.
+    /// Parameters that differ from their initial values, by name.
     pub set: Vec<(String, Value)>,
     /// Largest contact force up to this state. Replay recomputes it, so it is not stored.
     #[serde(skip)]
     pub largest_force: f64,
 }
 
-/// What the search for ways out has done in a run ([`crate::model::SearchMode`]).
+/// Record of the search for recoveries in a run ([`crate::model::SearchMode`]).
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Searches {
     /// Major iterations spent.
     pub spent: u32,
     /// Load factor of the equilibrium from which the last damped motion began.
     pub released: Option<f64>,
-    /// That equilibrium, while the motion goes on.
+    /// That equilibrium, while the motion is in progress.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub origin: Option<Arc<IncrementStart>>,
 }
 
 impl Searches {
-    /// Whether nothing was searched yet.
+    /// Whether no search was done yet.
     pub fn is_new(&self) -> bool {
         *self == Searches::default()
     }
 }
 
-/// Whether the solver can go on.
+/// Whether the solver can continue.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Status {
     /// In the middle of an increment, or before one.
     Running,
-    /// The last minor iteration made the increment fail; stepping on is allowed.
+    /// The increment failed in the last minor iteration; stepping may continue.
     Failed(Failure),
-    /// The history is done.
+    /// The history is finished.
     Finished,
 }
 
-/// The last accepted state, from which an increment can be tried again.
+/// The last accepted state, from which an increment can be retried.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct IncrementStart {
-    /// Load factor there.
+    /// Load factor of the state.
     pub load_factor: f64,
-    /// Leg of the path on which the present increment lies: from corner `leg` to corner `leg + 1`.
+    /// Leg of the path that contains the current increment: from corner `leg` to corner `leg + 1`.
     pub leg: usize,
     /// Values of all degrees of freedom.
     pub u: Arc<Vec<f64>>,
-    /// The interface, one entry a slave node.
+    /// The interface, one entry per slave node.
     pub nodes: Vec<ContactState>,
-    /// What the elements remember of it ([`crate::fem::assembly::Assembly::advance`]); zeros before the first increment.
+    /// Internal variables of the elements ([`crate::fem::assembly::Assembly::advance`]); zeros before the first increment.
     pub history: Vec<f64>,
-    /// What the judge found when it was accepted. `None` before the first increment.
+    /// Verdict of the judge when the state was accepted. `None` before the first increment.
     #[serde(default)]
     pub verdict: Option<Verdict>,
 }
 
-/// How far the strategy has come ([`crate::strategy`]).
+/// Progress of the strategy ([`crate::strategy`]).
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Progress {
-    /// The rung of the ladder that the increment has come to.
+    /// Current rung of the ladder in this increment.
     pub rung: usize,
-    /// What the first rung failed of in the present major iteration.
+    /// Why the first rung failed in the current major iteration.
     pub first: Option<Box<Failure>>,
-    /// Fewest nodes that changed at once in the present major iteration.
+    /// Minimum number of nodes that changed at once in the current major iteration.
     pub fewest: Option<usize>,
-    /// Minor iterations since then.
+    /// Minor iterations since that minimum.
     pub rounds: u32,
-    /// How far the search over all nodes has come in the present major iteration.
+    /// Progress of the search over all nodes in the current major iteration.
     #[serde(rename = "pivoting")]
     pub searched: Searched,
-    /// How many of the states that it found were not confirmed.
+    /// Number of states found by it that were not confirmed.
     pub unconfirmed: usize,
 }
 
-/// What the user can turn during a run.
+/// Values that the user can change during a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Controls {
-    /// Increment of the load factor. Where each leg of the path has its own, the next leg begins with that.
+    /// Increment of the load factor. If each leg of the path has its own, the next leg begins with that.
     pub increment: f64,
-    /// Size below which an increment that fails is not cut.
+    /// Size below which a failed increment is not cut.
     pub least: f64,
     /// Friction of each slave node.
     pub friction: Vec<Friction>,
-    /// The settings as the user has them.
+    /// The settings chosen by the user.
     pub settings: Settings,
 }
 
@@ -204,13 +204,13 @@ impl IncrementStart {
 }
 
 impl State {
-    /// Our own bodies before their first increment.
+    /// State of built-in bodies before their first increment.
     pub fn new(model: &Model) -> Self {
         let (u, history) = (vec![0.0; model.dofs.len()], vec![0.0; history_len(model)]);
         State::at_start(model, u, history)
     }
 
-    /// A scene before its first increment, with a source's unknowns and what its elements remember.
+    /// State of a scene before its first increment, with a source's unknowns and the internal variables of its elements.
     pub fn at_start(model: &Model, u: Vec<f64>, history: Vec<f64>) -> Self {
         let u = Arc::new(u);
         let nodes: Vec<ContactState> = model
@@ -274,8 +274,7 @@ impl State {
         state
     }
 
-    /// The settings in force: the strategy is what the ladder has come to, T_max enters as it wants, and a fallback changes
-    /// what it is to change.
+    /// The settings in force: with the strategy of the current rung, its update of T_max, and the changes of a fallback.
     pub fn settings(&self) -> Settings {
         let rung = self.search.rung;
         let mut settings = strategy::in_force(&self.controls.settings, rung);
@@ -298,12 +297,12 @@ impl State {
         }
     }
 
-    /// Arc from the start of the history to that of the present increment. `None` under load control.
+    /// Arc length from the start of the history to the current increment. `None` under load control.
     pub fn arc(&self) -> Option<f64> {
         self.way.as_ref().map(|way| way.length)
     }
 
-    /// Whether a source linearises about another state as about this one: they differ by no more than minor iterations change.
+    /// Whether a source has the same linearisation at another state: the states differ only by what minor iterations change.
     pub(super) fn is_linearised_as(&self, other: &State) -> bool {
         let same = |a: &Arc<Vec<f64>>, b: &Arc<Vec<f64>>| Arc::ptr_eq(a, b) || a == b;
         let stands = |(node, other): (&ContactState, &ContactState)| {
@@ -334,7 +333,7 @@ impl State {
             && self.nodes.iter().zip(&other.nodes).all(stands)
     }
 
-    /// What a source may look at.
+    /// The part of the state that a source may read.
     pub fn at(&self) -> At<'_> {
         At {
             u: &self.u,

@@ -1,15 +1,15 @@
 //! The two-level iteration (increments > major > minor) as a state machine: one call, one minor iteration.
 //!
 //! ```text
-//! increment   the load factor moves on
+//! increment   the load factor advances
 //!   major     geometry, stiffness and residual are renewed and frozen          Source::linearise
-//!     minor   solve for the assumed modes, check them by Table 2, assume anew   Stepper::step
-//!   until modes and T_max have settled; then displacements and forces are updated
+//!     minor   solve for the assumed modes, check them by Table 2, update them    Stepper::step
+//!   until modes and T_max have converged; then displacements and forces are updated
 //! until residual and interface conditions are within the tolerance; then the increment is accepted
 //! ```
 //!
-//! The rooms around this box: `minor` solves and checks, `search` is what happens where the modes do not settle, `major`
-//! takes the forces back, `verdict` and `jump` say whether a converged state is accepted, `increment` accepts it or cuts.
+//! The modules around this box: `minor` solves and checks, `search` handles modes that do not converge, `major` updates the
+//! forces, `verdict` and `jump` decide whether a converged state is accepted, `increment` accepts it or cuts.
 
 use crate::contact::record::ContactRecord;
 use crate::contact::state::ContactState;
@@ -32,54 +32,54 @@ use crate::strategy::{self, AnyMethod};
 use std::any::Any;
 use std::sync::Arc;
 
-/// The solver: a state, and the workspace that is made from it.
+/// The solver: a state, and the workspace computed from it.
 pub struct Stepper {
     pub(super) model: Arc<Model>,
     pub(super) state: State,
     pub(super) source: Box<dyn Source>,
-    /// Whether `source` is linearised about `state`.
+    /// Whether `source` is linearised at `state`.
     pub(super) linearised: bool,
-    /// Whether the last linearisation is about the displacements of `state`, so that what is watched can be read off it.
+    /// Whether the last linearisation is at the displacements of `state`, so that monitors can be read from it.
     pub(super) measured: bool,
     /// Norms of the last linearisation.
     pub(super) norms: Norms,
-    /// What a search over all nodes keeps from one proposal to the next.
+    /// Data that a search over all nodes keeps between proposals.
     pub(super) kept: Option<Box<dyn Any + Send>>,
-    /// Room for the displacements about which a stiffness is taken.
+    /// Buffer for the displacements at which a stiffness is computed.
     pub(super) room: Option<Arc<Vec<f64>>>,
-    /// What another solver had at hand.
+    /// Frozen problem borrowed from another stepper of the same scene.
     borrowed: Option<Box<Lent>>,
-    /// What the contacts came with into the present minor iteration, where only one of them may change.
+    /// Contacts at the start of the current minor iteration, if only one of them may change.
     pub(super) before: Vec<ContactState>,
     pub(super) event: Event,
-    /// What it does without.
+    /// The recovery or strategy that is disabled.
     pub(super) left_out: Option<LeftOut>,
-    /// The strategy in place of Table 2.
+    /// The strategy used instead of Table 2.
     custom: Option<Arc<dyn Method>>,
 }
 
-/// What one solver lends another of the same scene.
+/// Frozen problem that one stepper lends to another of the same scene.
 pub struct Lent {
     state: State,
     problem: InterfaceProblem,
-    /// The cycle that the minor iterations run into from the state.
+    /// The cycle that the minor iterations from this state run into.
     cycle: Option<Cycle>,
 }
 
 impl Stepper {
-    /// A solver of our own bodies at the start of a scene's history.
+    /// A stepper of built-in bodies at the start of a scene's history.
     pub fn new(model: Arc<Model>) -> Self {
         let bodies = Bodies::new(model.clone());
         Stepper::with_source(model, Box::new(bodies))
     }
 
-    /// The same, whose bodies this executor works on side by side.
+    /// The same, with an executor that works on the bodies in parallel.
     pub fn with_executor(model: Arc<Model>, executor: Arc<dyn Executor>) -> Self {
         let bodies = Bodies::with_executor(model.clone(), executor);
         Stepper::with_source(model, Box::new(bodies))
     }
 
-    /// A solver at the start of a history, of whatever deforms under the model's contacts.
+    /// A stepper at the start of a history, for any source of deformation under the model's contacts.
     pub fn with_source(model: Arc<Model>, source: Box<dyn Source>) -> Self {
         let mut stepper = Stepper {
             state: State::at_start(&model, source.start(), source.history()),
@@ -100,7 +100,7 @@ impl Stepper {
         stepper
     }
 
-    /// Uses a strategy from outside this package in place of Table 2, and chooses it. No other strategy follows where it fails.
+    /// Selects a strategy from outside this package instead of Table 2. If it fails, no other strategy follows.
     pub fn with_strategy(mut self, strategy: Arc<dyn Method>) -> Self {
         let settings = &mut Arc::make_mut(&mut self.state.controls).settings;
         settings.strategy = Strategy::Table2;
@@ -117,9 +117,9 @@ impl Stepper {
         }
     }
 
-    /// Goes to the start of the history of a model that differs from its own in friction, loads, history and settings alone,
-    /// with the workspace that it has; what follows has the same bits as with a new solver. False, and nothing is changed,
-    /// for any other model, and with a source that cannot ([`Source::renew`]).
+    /// Restarts at the beginning of the history of a model that differs only in friction, loads, history and settings, and reuses
+    /// the workspace; the results are bit-identical to those of a new stepper. Returns false and changes nothing for any other
+    /// model, or if the source does not support this ([`Source::renew`]).
     pub fn renew(&mut self, model: &Arc<Model>) -> bool {
         if !self.source.renew(model) {
             return false;
@@ -135,7 +135,7 @@ impl Stepper {
         true
     }
 
-    /// Finds where the contacts stand at the start.
+    /// Finds the positions of the contacts on their surfaces at the start.
     fn begin(&mut self) {
         self.follow();
         self.source.place_stick_points(&mut self.state.nodes);
@@ -146,9 +146,9 @@ impl Stepper {
         self.state.start = Arc::new(start);
     }
 
-    /// One minor iteration. `None` when the history is done.
+    /// Does one minor iteration. `None` if the history is finished.
     ///
-    /// After a failure the next call goes on from the failed state, as a user does who has changed something.
+    /// After a failure the next call continues from the failed state, for instance after a change by the user.
     pub fn step(&mut self) -> Option<&Event> {
         if self.state.status == Status::Finished {
             return None;
@@ -169,7 +169,7 @@ impl Stepper {
         Some(&self.event)
     }
 
-    /// The algorithm box: one minor iteration, and what follows from it.
+    /// The algorithm box: one minor iteration, and its outcome.
     fn iterate(&mut self) -> Outcome {
         match self.iterate_minor() {
             Some(outcome) => outcome,
@@ -177,7 +177,7 @@ impl Stepper {
         }
     }
 
-    /// One minor iteration; `None` where modes and T_max have settled, which ends the major one.
+    /// One minor iteration; `None` if modes and T_max have converged, which ends the major iteration.
     fn iterate_minor(&mut self) -> Option<Outcome> {
         if !self.linearise() {
             return Some(self.fail(Failure::Singular(Singular::Unexplained)));
@@ -207,8 +207,8 @@ impl Stepper {
         self.unsupported().map(|first| self.fail(first))
     }
 
-    /// The cycle that the minor iterations of the present major one run into from here; `None` where they settle, or end some
-    /// other way. It ends where it began.
+    /// Looks ahead for a cycle of the minor iterations of the current major iteration; `None` if they converge or end in another
+    /// way. The state is restored.
     pub fn cycle_ahead(&mut self) -> Option<Cycle> {
         if let Some(lent) = self
             .borrowed
@@ -241,14 +241,14 @@ impl Stepper {
         &self.model
     }
 
-    /// Where the solver is.
+    /// Current state of the solver.
     pub fn state(&self) -> &State {
         &self.state
     }
 
-    /// Goes to a state of the same scene; what follows has the same bits as the first time.
+    /// Restores a state of the same scene; the iterations from there are bit-identical to the first time.
     ///
-    /// Within a major iteration it costs nothing: the linearisation and its factors stand.
+    /// Within a major iteration this is free: the linearisation and its factors remain valid.
     pub fn restore(&mut self, state: &State) {
         let stands = self.stands_for(state);
         self.state.clone_from(state);
@@ -259,7 +259,7 @@ impl Stepper {
         (self.linearised, self.measured) = (stands && kept, stands && kept);
     }
 
-    /// Applies what the user wants changed.
+    /// Applies a change made by the user.
     ///
     /// # Errors
     /// Those of [`State::intervene`].
@@ -272,7 +272,7 @@ impl Stepper {
         done
     }
 
-    /// Norms of the present state, about which the next minor iteration is linearised; `None` where it cannot be.
+    /// Norms of the current state, where the next minor iteration is linearised; `None` if it cannot be linearised.
     pub fn norms(&mut self) -> Option<Norms> {
         if !self.linearise() {
             return None;
@@ -286,7 +286,7 @@ impl Stepper {
         self.source.condenses(&self.state.controls.settings)
     }
 
-    /// The interface problem of the present major iteration; `None` where the bodies cannot be condensed.
+    /// The interface problem of the current major iteration; `None` if the bodies cannot be condensed.
     pub fn interface_problem(&mut self) -> Option<InterfaceProblem> {
         if let Some(problem) = self.borrowed() {
             return Some(problem);
@@ -297,8 +297,8 @@ impl Stepper {
         self.source.problem(&self.state.at()).ok()
     }
 
-    /// What there is to know of a state's frozen problem, where it is at hand: the bodies are condensed, and within the same
-    /// major iteration. It goes to that state.
+    /// Restores a state and lends its frozen problem, if it is available: if the bodies are condensed, and within the same major
+    /// iteration.
     pub fn lend(&mut self, state: &State) -> Option<Lent> {
         let at_hand = self.condenses() && self.stands_for(state);
         at_hand.then(|| self.restore(state))?;
@@ -309,12 +309,12 @@ impl Stepper {
         })
     }
 
-    /// Takes what another solver of the same scene has at hand, so that it need not be found again within its major iteration.
+    /// Borrows a frozen problem from another stepper of the same scene, so that it is not recomputed within its major iteration.
     pub fn borrow(&mut self, lent: Lent) {
         self.borrowed = Some(Box::new(lent));
     }
 
-    /// What was borrowed, for the present state.
+    /// The borrowed problem, if it belongs to the current state.
     fn borrowed(&self) -> Option<InterfaceProblem> {
         let lent = self.borrowed.as_ref()?;
         if !lent.state.is_linearised_as(&self.state) {
@@ -330,13 +330,13 @@ impl Stepper {
         Some(problem)
     }
 
-    /// Whether linearisation and factors are those of a state.
+    /// Whether linearisation and factors belong to a state.
     pub fn stands_for(&self, state: &State) -> bool {
         self.linearised && self.state.is_linearised_as(state)
     }
 
-    /// How a contact stands over its surface at the start of the present major iteration; `None` where it has no surface,
-    /// or where nothing can be linearised.
+    /// Kinematics of a contact on its surface at the start of the current major iteration; `None` if it has no surface or the
+    /// state cannot be linearised.
     pub fn kinematics(&mut self, contact: usize) -> Option<NodeKinematics> {
         if !self.linearise() {
             return None;
@@ -344,13 +344,13 @@ impl Stepper {
         self.source.kinematics(contact)
     }
 
-    /// Which motions nothing resists while the contacts, where they are now, have the modes of these.
+    /// Motions without any resistance for the modes of these contacts, at the current positions.
     pub fn loose(&self, contacts: &[ContactState]) -> Singular {
         self.source.explain(contacts)
     }
 
-    /// Values of the scene's monitors at the start of the present major iteration (after an accepted increment: at
-    /// its end), appended to `out`.
+    /// Appends the values of the scene's monitors at the start of the current major iteration (after an accepted increment: at
+    /// its end) to `out`.
     pub fn monitors(&mut self, out: &mut Vec<f64>) {
         if !self.measured {
             self.linearise();
@@ -360,8 +360,8 @@ impl Stepper {
         out.extend(monitors.map(|monitor| self.source.monitor(&monitor.of, &at)));
     }
 
-    /// Stability of the state at the start of the present major iteration (after an accepted increment: at its end), with the
-    /// modes that its nodes have. It costs a factorization, and changes nothing.
+    /// Stability of the state at the start of the current major iteration (after an accepted increment: at its end), with the
+    /// current modes of its nodes. It costs a factorization and changes nothing.
     pub fn stability(&mut self) -> Stability {
         if !self.linearise() {
             return Stability::NotKnown;
@@ -369,12 +369,12 @@ impl Stepper {
         self.source.stability(&self.state.at())
     }
 
-    /// What has been assembled and factored so far.
+    /// Counts of the assemblies and factorizations so far.
     pub fn work(&self) -> Work {
         self.source.work()
     }
 
-    /// Linearises about the present state, unless that is done; false where it cannot be.
+    /// Linearises at the current state, unless that is done; false if it cannot be linearised.
     pub(super) fn linearise(&mut self) -> bool {
         if !self.linearised {
             let at = self.state.at();
@@ -385,13 +385,13 @@ impl Stepper {
         self.linearised
     }
 
-    /// What was made from another state is of no use any more.
+    /// Discards data computed from another state.
     pub(super) fn forget_workspace(&mut self) {
         (self.linearised, self.measured) = (false, false);
         self.kept = None;
     }
 
-    /// What the last minor iteration found at a contact.
+    /// Record of a contact in the last minor iteration.
     pub(super) fn record(&self, contact: usize) -> &ContactRecord {
         &self.event.nodes[contact]
     }

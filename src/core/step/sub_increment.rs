@@ -1,21 +1,21 @@
-//! Increments along the path of the load factor, whole or cut: into halves, or once by the golden section.
+//! Increments of the load factor along the path, whole or cut: into halves, or once by the golden section.
 
 use crate::model::Model;
 use serde::{Deserialize, Serialize};
 
-/// An increment, or what it was cut to: a part of it, halved some times.
+/// An increment, or a part of it after cuts into halves.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct SubIncrement {
     /// Load factor at the start of the whole increment.
     pub from: f64,
     /// Load factor at its end.
     pub to: f64,
-    /// How often it was halved.
+    /// Number of times it was halved.
     pub cut: u32,
     /// Which of the 2^cut parts this is, from 0.
     pub part: u32,
-    /// Load factor at the end of the increment of which this is the first part, cut off by the golden section. `None` if it
-    /// is none.
+    /// Load factor at the end of the increment of which this is the first part, cut off by the golden section. `None` if it is
+    /// not such a part.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rest: Option<f64>,
 }
@@ -35,7 +35,7 @@ impl SubIncrement {
         }
     }
 
-    /// All that is left of the whole increment from a load factor on, in one piece.
+    /// The rest of the whole increment from a load factor on, in one piece.
     pub fn rest(self, from: f64) -> Self {
         SubIncrement {
             from,
@@ -69,7 +69,7 @@ impl SubIncrement {
         }
     }
 
-    /// The first part of its golden section; the other one follows when this is done.
+    /// The first part of its golden section; the other one follows.
     pub fn section(self) -> Self {
         SubIncrement {
             to: self.from + SECTION * (self.to - self.from),
@@ -101,7 +101,7 @@ impl SubIncrement {
         }
     }
 
-    /// The piece after it, as large as the halves allow. `None` when the whole increment is done.
+    /// The next part, as large as the halves allow. `None` if the whole increment is done.
     pub fn next(mut self) -> Option<Self> {
         #[cfg(mutants)]
         if crate::mutants::is_active("cut-leaves-the-rest-out") {
@@ -125,7 +125,7 @@ impl SubIncrement {
     }
 }
 
-/// The load factor one increment further along the path; the end of the leg where it is that close.
+/// The load factor one increment further along the path; the end of the leg if that is close.
 fn next_load_factor(path: &[f64], (from, leg): (f64, usize), increment: f64) -> f64 {
     let target = path[leg + 1];
     let left = target - from;
@@ -135,7 +135,7 @@ fn next_load_factor(path: &[f64], (from, leg): (f64, usize), increment: f64) -> 
     tidy(from + increment * left.signum(), path)
 }
 
-/// MajorHistory off what summing decimal increments leaves behind, so that 0.07 is not 0.07000000000000002.
+/// Rounds off the error of summing decimal increments, so that 0.07 is not 0.07000000000000002.
 fn tidy(load_factor: f64, path: &[f64]) -> f64 {
     let size = path.iter().fold(load_factor.abs(), |m, p| m.max(p.abs()));
     let unit = 10f64.powi(13 - size.log10().ceil() as i32);
@@ -203,7 +203,7 @@ mod tests {
         assert!((ends[0] - 0.5 * (0.3125 + golden)).abs() < 1e-15);
         assert!((ends[1] - golden).abs() < 1e-15);
         assert_eq!(ends[2], 0.5);
-        // A section of what follows ends where that ends, too.
+        // A section of the remaining part ends where that part ends.
         assert_eq!(left.section().section().rest, Some(0.5));
     }
 }

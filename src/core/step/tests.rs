@@ -1,4 +1,4 @@
-//! The stepper over other sources than scenes: constant interfaces, and a slave node with two contacts.
+//! Tests of the stepper with sources other than scenes: constant interfaces, and a slave node with two contacts.
 
 use super::drive::{RunEnd, Until};
 use super::stepper::Stepper;
@@ -24,7 +24,7 @@ fn rough(angle: f64) -> Friction {
     }
 }
 
-/// One contact: K = diag(k_n, k_t), the load presses by 3 and drags by `drag`.
+/// One contact: K = diag(k_n, k_t), with a normal load of 3 and a tangential load of `drag`.
 fn one(drag: f64) -> Stepper {
     let interface = Constant::try_new(
         vec![10.0, 0.0, 0.0, 5.0],
@@ -48,7 +48,7 @@ fn a_constant_interface_of_one_contact_is_the_closed_form() {
     assert!((contact.f_n - 2.0).abs() < 1e-10 && (w[0] + 0.1).abs() < 1e-12);
     assert!((contact.f_t + mu * 2.0).abs() < 1e-10, "{contact:?}");
     assert!((w[1] - (2.0 - 2.0 * mu) / 5.0).abs() < 1e-10);
-    // Half an increment's drag before it touches is what it slips; with none it sticks where it touched.
+    // Half the increment's drag before it touches gives its slip; without slip it sticks where it touched.
     let mut sticks = one(0.0);
     assert_eq!(to_the_end(&mut sticks), RunEnd::Finished);
     let contact = &sticks.state().nodes[0];
@@ -56,7 +56,7 @@ fn a_constant_interface_of_one_contact_is_the_closed_form() {
     assert!((contact.f_n - 2.0).abs() < 1e-10 && contact.f_t.abs() < 1e-12);
 }
 
-/// Numbers of no order between −1 and 1.
+/// Pseudo-random numbers between −1 and 1.
 fn random(seed: u64) -> impl FnMut() -> f64 {
     let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(1);
     move || {
@@ -67,7 +67,7 @@ fn random(seed: u64) -> impl FnMut() -> f64 {
     }
 }
 
-/// Three contacts on a body that couples them, pressed and dragged at random.
+/// Three contacts on a body that couples them, with random loads.
 fn coupled(seed: u64) -> Constant {
     let mut next = random(seed);
     let (contacts, size) = (3, 6);
@@ -135,7 +135,7 @@ fn cornered(solver: LinearSolver, pressed: [f64; 2]) -> Stepper {
             bars: Vec::new(),
         }),
     };
-    // Outside is on the right of the walk: above the floor walked towards −x, and beside the wall walked upwards.
+    // Outside is on the right of the walk: above the floor walked towards −x, and next to the wall walked upwards.
     let surface = |name: &str, nodes: [usize; 2]| Surface {
         name: name.into(),
         elements: vec![nodes.to_vec()],
@@ -204,7 +204,7 @@ fn a_slave_node_can_have_two_contacts_at_once() {
         let mut stepper = cornered(solver, [1.0, 1.2]);
         assert_eq!(to_the_end(&mut stepper), RunEnd::Finished, "{solver:?}");
         let state = stepper.state();
-        // 1 down and 1 to the left take 10 of each load; what is left presses.
+        // Displacements of 1 down and 1 to the left take 10 of each load; the rest is contact pressure.
         let [floor, wall] = [&state.nodes[0], &state.nodes[1]];
         assert!((floor.f_n - 8.0).abs() < 1e-9, "{solver:?} {floor:?}");
         assert!((wall.f_n - 5.0).abs() < 1e-9, "{solver:?} {wall:?}");

@@ -1,10 +1,10 @@
-//! The judge is asked before an increment is accepted, and what becomes of a state that it refuses.
+//! Asks the judge before an increment is accepted, and handles states that it refuses.
 //!
-//! A first refusal for slip is repaired: the nodes that touched when the increment started get back the anchors that they had
-//! then, also those that are open, and the increment goes on with the true net slip. A second refusal, or one for
-//! another law, cuts the increment, since smaller ones tell a node that truly left and came back from one that only
-//! seemed to. Where it cannot be cut, it fails. What the user asked for is marked and never refused: held modes, readings
-//! of the paper that leave the law, and limits that are to be accepted.
+//! A first refusal for slip is repaired: the nodes that touched when the increment started, including those that are open now,
+//! get back their anchors from that time, and the increment continues with the true net slip. A second refusal, or one for
+//! another law, cuts the increment: smaller increments distinguish a node that truly opened and closed again from one that only
+//! seemed to. If it cannot be cut, it fails. Violations that the user asked for are marked and never refused: held modes,
+//! interpretations of the paper that violate the law, and limits that are to be accepted.
 //!
 //! A state with an inverted element (det F ≤ 0 at an integration point or a node of a solid) is always rejected: the increment
 //! is cut, and fails if it cannot be cut. Other interpretations of the contact status are not tried for such a state.
@@ -21,7 +21,7 @@ use crate::step::state::State;
 use crate::step::stepper::Stepper;
 
 impl Stepper {
-    /// Accepts a converged state, or does with it what the judge makes necessary.
+    /// Accepts a converged state, or handles its refusal by the judge.
     pub(super) fn finish(&mut self, after: Norms) -> Outcome {
         if let Some(on) = self.turn_to_goal(after) {
             return on;
@@ -83,7 +83,7 @@ impl Stepper {
         self.fail(Failure::Inverted(point))
     }
 
-    /// Whether states against a law are accepted, since the user asked for what leads to them.
+    /// Whether states that violate a law are accepted, since the user asked for what causes them.
     fn only_marks(&self) -> bool {
         let settings = &self.state.controls.settings;
         let held = |node: &ContactState| matches!(node.forced, Forced::Held(_));
@@ -94,8 +94,8 @@ impl Stepper {
             || self.state.nodes.iter().any(held)
     }
 
-    /// Gives the nodes that touched when the increment started their anchors back, for the rest of the attempt, and goes on
-    /// with another major iteration.
+    /// Restores the anchors of the nodes that touched when the increment started, for the rest of the attempt, and continues with
+    /// another major iteration.
     fn count_net_slip(&mut self) {
         let start = self.state.start.clone();
         let tolerance = self.state.controls.settings.tolerance;
@@ -116,13 +116,13 @@ pub(super) fn range_left(source: &dyn Source, state: &State) -> Option<PointDefo
     outside(&state.u).filter(|_| outside(&state.start.u).is_none())
 }
 
-/// Whether a law is about the net slip of a node.
+/// Whether a law concerns the net slip of a node.
 fn is_slip(law: ContactLaw) -> bool {
     matches!(law, ContactLaw::Slip | ContactLaw::Stick)
 }
 
-/// The worst of the laws that are broken: slip before all others, since that can be repaired, and the touch of an open
-/// node last, since that may be nothing.
+/// The worst violation of a law: slip first, since it can be repaired, and the touch of an open node last, since it may be
+/// harmless.
 fn worst_of(verdict: &Verdict) -> Option<Finding> {
     let rank = |finding: &Finding| match finding.law {
         law if is_slip(law) => 2,

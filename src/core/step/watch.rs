@@ -19,7 +19,7 @@ pub const SHARE: f64 = 0.05;
 /// An increment that moves by more than this fraction of the scene's length may have passed a limit point.
 pub(super) const FAR: f64 = 0.03;
 
-/// Stability of the accepted states, as far as checked.
+/// Stability of the accepted states that were checked.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct StabilityWatch {
     /// Major iterations of the increments accepted since the last check.
@@ -97,7 +97,7 @@ mod tests {
         assert_eq!(looks, 6, "18 of 400 major iterations");
         assert!(
             watch.is_due(60, 3.0),
-            "one that is dear itself is always looked at"
+            "an expensive increment is always checked"
         );
     }
 }

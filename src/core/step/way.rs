@@ -1,4 +1,4 @@
-//! How far a history along the path of equilibrium has come, as plain data (`arc` says how it goes on).
+//! Progress of a history along the equilibrium path, as plain data; `arc` advances it.
 
 use crate::contact::state::ContactState;
 use crate::contact::table1::t_max;
@@ -7,58 +7,58 @@ use crate::model::{ArcLength, Friction, Measured, Mode, Model};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// How far the way along the path has come, and what the present increment is bound by.
+/// Progress along the path, and the constraint of the current increment.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Way {
-    /// Arc from the start of the history to that of the present increment (in what is measured).
+    /// Arc length from the start of the history to the current increment (in the measured quantity).
     pub length: f64,
-    /// Size of the present increment; 0 before the first tangent.
+    /// Size of the current increment; 0 before the first tangent.
     pub step: f64,
     /// Size of the first increment.
     pub first: f64,
-    /// What is given a size.
+    /// The quantity that measures increments.
     pub measured: Measured,
     /// Direction of the load factor towards the leg's corner: −1 or 1.
     pub ahead: f64,
-    /// What the present increment is bound by.
+    /// Constraint of the current increment.
     pub aim: Aim,
-    /// What is left of that for the next major iteration.
+    /// Distance that the next major iteration has to cover.
     pub left: f64,
-    /// Whether the tangent of the present increment is known.
+    /// Whether the tangent of the current increment is known.
     pub known: bool,
-    /// Direction in which what is measured goes: −1 or 1.
+    /// Direction in which the measured quantity changes: −1 or 1.
     pub sign: f64,
     /// Weights of the plane normal to the tangent, by degree of freedom: their sum over a motion is its size.
     pub row: Arc<Vec<f64>>,
-    /// Displacements of the increment before, as weights; empty at the start of a leg.
+    /// Displacements of the previous increment, as weights; empty at the start of a leg.
     pub last: Arc<Vec<f64>>,
-    /// Change of the load factor in it.
+    /// Change of the load factor in the previous increment.
     pub last_load: f64,
-    /// The contacts that come first to the end of their mode along the tangent (`step::recovery::path_corner`).
+    /// The contacts whose modes end first along the tangent (`step::recovery::path_corner`).
     #[serde(default)]
     pub next: Arc<Vec<Change>>,
-    /// Arc from the start of the increment to there.
+    /// Arc length from the start of the increment to the ends of their modes.
     #[serde(default)]
     pub next_at: f64,
-    /// The contacts that changed first in the present attempt.
+    /// The contacts that changed first in the current attempt.
     #[serde(default)]
     pub seen: Arc<Vec<Change>>,
-    /// Slips of the sliding contacts in the increment before, 0 of the others (length).
+    /// Slips of the sliding contacts in the previous increment, 0 for the others (length).
     #[serde(default)]
     pub slips: Arc<Vec<f64>>,
-    /// Whether the present increment starts with the modes of `next`.
+    /// Whether the current increment starts with the modes of `next`.
     #[serde(default)]
     pub turned: bool,
 }
 
-/// A contact takes another mode at a corner of the path.
+/// Change of a contact's mode at a corner of the path.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Change {
-    /// Its number.
+    /// Contact number.
     pub contact: usize,
-    /// The mode it had.
+    /// Mode before the corner.
     pub from: Mode,
-    /// The mode that it takes.
+    /// Mode after the corner.
     pub to: Mode,
     /// Direction of its tangential force (−1, 0 or 1).
     pub sign: f64,
@@ -69,14 +69,14 @@ pub struct Change {
     pub through: bool,
 }
 
-/// What binds an increment.
+/// Constraint of an increment.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Aim {
-    /// The tangent is to be found.
+    /// None yet: the tangent has to be found.
     Tangent,
     /// The plane normal to the tangent.
     Plane,
-    /// A degree of freedom comes to a value.
+    /// A degree of freedom reaches a value.
     Dof {
         /// Its number.
         dof: usize,
@@ -85,7 +85,7 @@ pub enum Aim {
     },
     /// The slip of a contact.
     Slip(usize),
-    /// The load factor comes to a value.
+    /// The load factor reaches a value.
     Load(f64),
 }
 
@@ -99,7 +99,7 @@ pub(super) fn farthest(model: &Model) -> f64 {
 }
 
 impl Way {
-    /// Before the first increment.
+    /// State before the first increment.
     pub fn new(model: &Model) -> Self {
         Way {
             length: 0.0,
@@ -122,7 +122,7 @@ impl Way {
         }
     }
 
-    /// The equation that the next solve obeys.
+    /// Constraint equation of the next solve.
     pub(super) fn along(&self) -> Along<'_> {
         let step = self.left;
         match self.aim {
@@ -141,7 +141,7 @@ impl Way {
         }
     }
 
-    /// Sets out on an increment, or on another attempt at it, from displacements `start`; `increment` is that of the load
+    /// Starts an increment, or another attempt at it, from displacements `start`; `increment` is the increment of the load
     /// factor.
     pub(super) fn begin(&mut self, start: &[f64], increment: f64) {
         if !self.seen.is_empty() {
@@ -167,7 +167,7 @@ impl Way {
         };
     }
 
-    /// What is left of the present constraint once displacements are `u`.
+    /// Remaining distance of the current constraint at displacements `u`.
     pub(super) fn remaining(&self, u: &[f64], start: &[f64]) -> f64 {
         match self.aim {
             Aim::Plane => self.step - self.gone(u, start),
@@ -190,13 +190,13 @@ impl Way {
         true
     }
 
-    /// Way from the start along the tangent.
+    /// Distance from the start along the tangent.
     pub(super) fn gone(&self, u: &[f64], start: &[f64]) -> f64 {
         let moved = u.iter().zip(start).map(|(u, start)| u - start);
         self.row.iter().zip(moved).map(|(c, moved)| c * moved).sum()
     }
 
-    /// Gives contacts the modes behind the corner, if the present increment starts there.
+    /// Gives contacts the modes behind the corner, if the current increment starts there.
     pub(super) fn change(&self, nodes: &mut [ContactState], friction: &[Friction]) {
         for change in self.next.iter().filter(|_| self.turned) {
             let node = &mut nodes[change.contact];
@@ -209,7 +209,7 @@ impl Way {
         }
     }
 
-    /// Notes where the next corner lies, along the motion whose size in what is measured is `size`.
+    /// Records where the next corner lies, along a motion with this `size` in the measured quantity.
     pub(super) fn expect(&mut self, (at, changes): (f64, Vec<Change>), size: f64) {
         self.next_at = at * size;
         self.next = Arc::new(changes);

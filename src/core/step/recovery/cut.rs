@@ -8,7 +8,7 @@ use crate::step::event::{Failure, Outcome};
 use crate::step::way::ROUNDING;
 use crate::strategy;
 
-/// Half the increment, unless it is at its smallest, or the strategy does not cut.
+/// Half the increment, unless it is the smallest or the strategy does not cut.
 pub(super) struct Halve;
 
 impl Recovery for Halve {
@@ -36,7 +36,7 @@ impl Recovery for Halve {
     }
 }
 
-/// Along the path: half the arc, or the arc to the next corner, whatever the strategy. The size is the control's own.
+/// Along the path: half the arc, or the arc to the next corner, for every strategy. The arc control sets the size.
 pub(super) struct ShorterArc;
 
 impl Recovery for ShorterArc {

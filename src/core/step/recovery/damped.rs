@@ -1,21 +1,22 @@
 //! Damped motion past a limit point (`history.jumps: dynamic`): from the last equilibrium to the next stable one.
 //!
-//! Where the increment fails that is as small as `settings.limit_load` allows, the loads stay, and what is out of balance moves
-//! the nodes against a viscosity c that all displacements have alike (rotations and forces follow without):
+//! If an increment fails that is as small as `settings.limit_load` allows, the loads are kept constant, and the out-of-balance
+//! force moves the nodes against a viscosity c, equal for all displacements (rotations and unknown forces follow without
+//! viscosity):
 //!
 //! ```text
 //! c u̇ = R(u),      backward Euler:   R(u_k) − (c / Δt) (u_k − u_k−1) = 0
 //! ```
 //!
-//! Each step is an increment of its own, with Table 1 and 2, judge and strategies, with c / Δt, the *drag*, on the diagonal of the
-//! tangent; its end is where friction holds on to next. c only sets the unit of time and is one: what is chosen is the drag.
-//! It begins at the interface's stiffness, is divided by up to [`FASTER`] after a step that went little, and multiplied
-//! by that where a step fails, goes further than [`STRIDE`], or ends where even the drag does not make it stable, since a
-//! backward Euler step then goes to another root than the motion does.
+//! Each step is an increment with Tables 1 and 2, judge and strategies, and with c / Δt, the *drag*, on the diagonal of the
+//! tangent; friction continues from the end of each step. c only sets the unit of time and is 1; the drag is what is chosen. It
+//! starts at the interface's stiffness and is divided by up to [`FASTER`] after a short step. It is multiplied by [`FASTER`] if a
+//! step fails, moves further than [`STRIDE`], or ends in a state that is unstable even with the drag, since a backward Euler step
+//! then reaches another root than the motion does.
 //!
-//! Where steps have become small though the drag is, the drag is left out. If that ends in a stable equilibrium within a
-//! stride, it is accepted, marked as a jump; else the motion goes on. Viscosity only ever takes work, Σ (c / Δt) |Δu|²; it is
-//! summed up and told.
+//! If steps are small although the drag is small, the drag is removed. If the result is a stable equilibrium within a stride, it
+//! is accepted and marked as a jump; otherwise the motion continues. Viscosity only dissipates work, Σ (c / Δt) |Δu|²; the sum is
+//! reported.
 
 use super::motion::Motion;
 use super::retry::{Effect, Recovery, Retry};
@@ -31,26 +32,26 @@ use crate::step::sub_increment::SubIncrement;
 use crate::step::watch::StabilityWatch;
 use std::sync::Arc;
 
-/// Furthest that a step goes, over the scene's length.
+/// Maximum displacement of a step, relative to the scene's length.
 const STRIDE: f64 = 0.01;
-/// A step that goes less than this part of a stride may be followed by a faster one.
+/// A step shorter than this fraction of a stride may be followed by a faster one.
 const SHORT: f64 = 0.25;
-/// By how much the drag changes.
+/// Factor by which the drag changes.
 const FASTER: f64 = 4.0;
-/// A motion that is below this part of a stride in a step, while the drag is below this part of the stiffness, may be at rest.
+/// The motion may be at rest if a step is below this fraction of a stride and the drag is below this fraction of the stiffness.
 const RESTING: f64 = 0.01;
-/// By how much the drag must have fallen before rest is tried for again.
+/// Factor by which the drag must have fallen before rest is tried again.
 const AGAIN: f64 = 64.0;
-/// Largest drag, over the stiffness: a step that fails with it does not fail of going too far.
+/// Maximum drag over stiffness: a step that fails with it does not fail because it moves too far.
 const STIFFEST: f64 = 1e9;
-/// Smallest drag, over the stiffness: nodes that still do not rest without it never will.
+/// Minimum drag over stiffness: nodes that still move at this drag will never rest.
 const SOFTEST: f64 = 1e-12;
-/// A motion shorter than this part of the scene's length is no jump: the increment failed of something else than a limit point.
+/// A motion below this fraction of the scene's length is not a jump: the increment failed for a reason other than a limit point.
 const JUMP: f64 = 1e-3;
-/// Most steps of a motion.
+/// Maximum number of steps of a motion.
 const MOST_STEPS: u32 = 5000;
 
-/// A damped motion from the last equilibrium: the smallest increment has failed.
+/// Starts a damped motion from the last equilibrium after the smallest increment has failed.
 pub(super) struct Release;
 
 impl Recovery for Release {
@@ -69,7 +70,7 @@ impl Recovery for Release {
     }
 }
 
-/// A slower step of the damped motion.
+/// Repeats a step of the damped motion more slowly.
 pub(super) struct Slower;
 
 impl Recovery for Slower {
@@ -82,7 +83,7 @@ impl Recovery for Slower {
     }
 }
 
-/// The step again with more drag; coming to rest was too early.
+/// Repeats the step with more drag, or continues the motion after a premature attempt at rest.
 fn slower(slow: Slow, stalled: &Stalled<'_>) -> Option<Retry> {
     let mut motion = stalled.state.motion?;
     if motion.coming_to_rest {
@@ -100,7 +101,7 @@ fn slower(slow: Slow, stalled: &Stalled<'_>) -> Option<Retry> {
 }
 
 impl Stepper {
-    /// Prepares a damped motion from the last equilibrium, the loads as they are. `None` where nothing can be linearised there.
+    /// Prepares a damped motion from the last equilibrium, with constant loads. `None` if the state there cannot be linearised.
     pub(super) fn release(&mut self, part: SubIncrement) -> Option<()> {
         self.restart(part);
         if !self.linearise() {
@@ -112,13 +113,13 @@ impl Stepper {
         Some(())
     }
 
-    /// Takes a step again, slower. `None` where it is as slow as can be.
+    /// Repeats a step more slowly. `None` if the maximum drag is reached.
     fn slow_down(&mut self, slow: Slow) -> Option<Outcome> {
         let retry = slower(slow, &self.stalled())?;
         self.try_again(retry)
     }
 
-    /// A step has converged, and the judge has nothing against it that could be repaired.
+    /// Ends a converged step without violations that could be repaired.
     pub(in crate::step) fn end_step(
         &mut self,
         after: Norms,
@@ -147,7 +148,7 @@ impl Stepper {
             return slower.unwrap_or_else(|| self.end_motion(why));
         }
         if motion.coming_to_rest {
-            // The other branch has a pace of its own.
+            // The other branch has a different pace.
             self.state.pace = Pace::default();
             let jumped = motion.travelled + moved > JUMP * self.model.length;
             self.state.watch = StabilityWatch::default();
@@ -168,7 +169,7 @@ impl Stepper {
         self.step_on(motion, moved, stride, verdict)
     }
 
-    /// The motion has failed: a search goes back to where it began.
+    /// Ends a failed motion: a search returns to its start.
     fn end_motion(&mut self, why: Failure) -> Outcome {
         let back = self.fall_back(&why);
         back.unwrap_or(Outcome::Failed(why))

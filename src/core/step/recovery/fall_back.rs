@@ -1,4 +1,4 @@
-//! When a fallback is taken, and for which part of the increment.
+//! Decides when a fallback is used, and for which part of the increment.
 
 use super::fallback::{DEEPER, Fallback, FallbackState};
 use super::retry::{Effect, Recovery, Retry};
@@ -64,8 +64,8 @@ fn last_half(state: &State) -> SubIncrement {
 }
 
 impl Fallback {
-    /// Whether it may help after this failure. Where all bodies are given by numbers it is the interface problem itself that fails, of
-    /// which the ladder has tried all that it knows; there sliding can be held back at most.
+    /// Whether the fallback may help after this failure. If all bodies are given as matrices, the interface problem itself fails,
+    /// and the ladder has already tried every strategy; at most, sliding can be held back.
     fn helps(self, why: &Failure, stalled: &Stalled<'_>) -> bool {
         let state = stalled.state;
         if self == Fallback::Back {
@@ -84,7 +84,7 @@ impl Fallback {
             Fallback::Held => stalled.can_hold(why),
             Fallback::Section => {
                 let rest = last_half(state).rest(state.start.load_factor);
-                // What the scene names as the least is one; else the section may be finer than a 64th.
+                // The least increment of the scene applies if it is set; otherwise the section may be smaller than 1/64.
                 let least = stalled.model.least;
                 !stalled.is_given() && least.is_none_or(|least| rest.section().size() >= least)
             }
@@ -92,7 +92,7 @@ impl Fallback {
         }
     }
 
-    /// Whether it changes these settings.
+    /// Whether the fallback changes these settings.
     fn changes(self, chosen: &Settings) -> bool {
         let first = strategy::in_force(chosen, 0);
         self.in_force(first, 0) != first

@@ -1,31 +1,32 @@
-//! Fallbacks: other ways to take an increment whose halves have all failed.
+//! Fallbacks: other ways to solve an increment if all its halves have failed.
 //!
-//! Halves meet the same places again: a kink that the whole increment lands on is met by its halves, too. What fails with one
-//! interpretation of T_max, or of where a node touches, need not fail with another; all are interpretations of the same laws, and the
-//! judge checks the result. So the increment, from the last accepted state on, is tried
+//! Halving meets the same points again: a kink at the end of the whole increment is also the end of one of its halves. An
+//! increment that fails with one interpretation of T_max, or of the point of contact, may succeed with another; all are
+//! interpretations of the same laws, and the judge checks the result. So the increment is tried from the last accepted state
 //!
-//! 1. in two parts that are no halves: first the smaller part of the golden section, which no sum of halves meets;
+//! 1. in two unequal parts: first the smaller part of the golden section, which no sum of halves equals;
 //! 2. with T_max in the equations ([`crate::model::BoundUpdate::Consistent`]) from the first rung on;
-//! 3. with nodes that touch held at the foot of where they were ([`crate::model::Touch::Start`]);
+//! 3. with touching nodes held at the projections of their start positions ([`crate::model::Touch::Start`]);
 //! 4. with Newton's method on the first rung;
 //! 5. with sliding held back ([`super::proximal`]): this one may end on another branch of equilibrium, marked.
 //!
-//! Where `settings.search` allows it, the search goes on:
+//! If `settings.search` allows it, the search continues:
 //!
-//! 6. with parts down to a 4096th of the least increment;
-//! 7. with the loads of the last equilibrium, from which the nodes move damped to the next one ([`super::damped`]), which is marked.
+//! 6. with parts down to 1/4096 of the least increment;
+//! 7. with the loads of the last equilibrium, from which a damped motion leads to the next one ([`super::damped`]), which is
+//!    marked.
 //!
-//! Before all others, where nothing holds a body at the start of the history, nodes that touch without a gap start fixed.
+//! Before all others, if a body is unsupported at the start of the history, nodes that touch without a gap start fixed.
 //!
-//! Each is cut into halves as before, and is in force until a part of the increment is accepted. If none helps, the last half is tried
-//! once more without a fallback, so that the failed state is the one that the failure describes.
+//! Each fallback is cut into halves as before and stays in force until a part of the increment is accepted. If none helps, the
+//! last half is repeated without a fallback, so that the failed state matches the reported failure.
 
 use crate::model::{BoundUpdate, Settings, Strategy, Touch};
 use crate::step::sub_increment::SubIncrement;
 use crate::strategy;
 use serde::{Deserialize, Serialize};
 
-/// How far below the least increment the search cuts.
+/// Factor by which the search cuts below the least increment.
 pub(super) const DEEPER: f64 = 4096.0;
 
 /// A fallback.
@@ -34,13 +35,13 @@ pub(super) const DEEPER: f64 = 4096.0;
 pub enum Fallback {
     /// Nodes that touch at the start of the history, without a gap, start fixed.
     Touching,
-    /// First the smaller part of its golden section.
+    /// The smaller part of the golden section first.
     Section,
-    /// T_max in the equations from the first rung on.
+    /// T_max in the equations from the first strategy on.
     Consistent,
-    /// Nodes that touch are held at the foot of where they were.
+    /// Touching nodes are held at the projections of their start positions.
     Start,
-    /// Newton's method on the first rung.
+    /// Newton's method as the first strategy.
     Newton,
     /// Sliding is held back ([`super::proximal`]).
     Held,
@@ -48,16 +49,16 @@ pub enum Fallback {
     Deeper,
     /// A damped motion from the last equilibrium.
     Release,
-    /// The last half again, as it was: nothing else helped.
+    /// The last half without a fallback: nothing else helped.
     Back,
 }
 
 /// The fallback that is in force.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct FallbackState {
-    /// Which.
+    /// Kind of fallback.
     pub by: Fallback,
-    /// The last half that failed without any.
+    /// The last half that failed without a fallback.
     pub from: SubIncrement,
 }
 
@@ -75,7 +76,7 @@ crate::words! {
 }
 
 impl Fallback {
-    /// Whether it is part of the search ([`crate::model::SearchMode`]).
+    /// Whether it belongs to the search ([`crate::model::SearchMode`]).
     pub(in crate::step) fn searches(self) -> bool {
         matches!(
             self,
@@ -83,7 +84,7 @@ impl Fallback {
         )
     }
 
-    /// What it makes of the settings in force on a rung.
+    /// The settings in force on a rung of the ladder with this fallback.
     pub(in crate::step) fn in_force(self, mut settings: Settings, rung: usize) -> Settings {
         match self {
             Fallback::Touching

@@ -1,8 +1,8 @@
-//! A recovery or a strategy that a stepper does without, to find out whether a scene needs it.
+//! Runs without one recovery or strategy, to find out whether a scene needs it.
 
 use crate::model::Strategy;
 
-/// What a stepper must do without.
+/// The recovery or strategy that a stepper does not use.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum LeftOut {
     /// A recovery, by name ([`super::names`]).

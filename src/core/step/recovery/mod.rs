@@ -1,20 +1,22 @@
-//! Recoveries: how an increment that failed is tried again.
+//! Recoveries: ways to retry a failed increment.
 //!
-//! A recovery looks at a failure and at the state in which it happened, and proposes how to start the increment again, or nothing. These
-//! are all of them; the first that proposes something is taken.
+//! A recovery examines a failure and the failed state, and may propose how to restart the increment. They are asked in this
+//! order; the first proposal is used.
 //!
 //! ```text
 //! damped motion        Slower      the step again, with more viscosity
 //! along a path         Turn        behind the corner of the path at which the increment starts
-//!                      ShorterArc  half the arc, or the way to the next corner
-//!                      TurnAtLast  at the least arc: behind the corner at which contacts changed first
+//!                      ShorterArc  half the arc, or the arc to the next corner
+//!                      TurnAtLast  at the minimum arc: behind the first corner where contacts changed
 //! at a given load      Halve       half the increment
-//!                      Whole       halves that were to tell whether it jumps have failed: the whole increment after all
-//!                      Release     the loads stay, and the nodes move damped to the next equilibrium
-//! then, at any size    Fallback    other parts, other interpretations of the laws, sliding held back, and the search ([`fallback`])
+//!                      Whole       the whole increment, if the halves that check it for a jump have failed
+//!                      Release     constant loads: a damped motion to the next equilibrium
+//! then, at any size    Fallback    other parts, other interpretations of the laws, sliding held back, and the search
+//! ([`fallback`])
 //! ```
 //!
-//! A node that makes more than 300 parts of a whole increment fail ends this: its state does not depend on the size.
+//! The increment fails if a node causes the failure of more than 300 of its parts: the state of that node does not depend on the
+//! size.
 
 mod cut;
 mod damped;
@@ -65,14 +67,14 @@ const FALLBACKS: [&dyn Recovery; 9] = [
     &Fallback::Back,
 ];
 
-/// Names of all recoveries, in the order in which they are asked.
+/// Names of all recoveries, in the order in which they are tried.
 pub fn names() -> impl Iterator<Item = &'static str> {
     let lists: [&[&dyn Recovery]; 4] = [&MOVING, &ALONG, &LOADED, &FALLBACKS];
     lists.into_iter().flatten().map(|recovery| recovery.name())
 }
 
 impl Stepper {
-    /// Goes on without a recovery or a strategy, to find out whether a scene needs it. It is no part of the state.
+    /// Disables a recovery or a strategy, to find out whether a scene needs it. This is not part of the state.
     pub fn leave_out(&mut self, left_out: LeftOut) {
         self.left_out = Some(left_out);
     }
@@ -88,7 +90,7 @@ impl Stepper {
         }
     }
 
-    /// Starts the increment again if a recovery applies; else it fails.
+    /// Restarts the increment if a recovery applies; otherwise it fails.
     pub(super) fn fail(&mut self, mut why: Failure) -> Outcome {
         if let Failure::LadderEnded { scales, .. } = &mut why {
             *scales = self.stalled().scales();
@@ -112,7 +114,7 @@ impl Stepper {
         })
     }
 
-    /// Starts the increment again with another size. `None` if no recovery for that applies.
+    /// Restarts the increment with another size. `None` if no recovery applies.
     pub(super) fn cut(&mut self, why: &Failure) -> Option<Outcome> {
         let recoveries: &[&dyn Recovery] = match &self.state {
             State {
@@ -124,7 +126,7 @@ impl Stepper {
         self.recover(recoveries, why)
     }
 
-    /// Starts the increment again on the next fallback. `None` if none applies.
+    /// Restarts the increment with the next fallback. `None` if none applies.
     pub(super) fn fall_back(&mut self, why: &Failure) -> Option<Outcome> {
         self.recover(&FALLBACKS, why)
     }
@@ -138,7 +140,7 @@ impl Stepper {
         })
     }
 
-    /// Starts the increment again. `None` if a damped motion cannot start.
+    /// Restarts the increment. `None` if a damped motion cannot start.
     pub(super) fn try_again(&mut self, retry: Retry) -> Option<Outcome> {
         let Retry {
             part,

@@ -1,30 +1,30 @@
-//! What a damped motion from one equilibrium to the next carries from step to step (`step::damped`).
+//! Data of a damped motion from one equilibrium to the next, kept from step to step (`step::damped`).
 
 use serde::{Deserialize, Serialize};
 
-/// A damped motion under way.
+/// A damped motion in progress.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Motion {
     /// Load factor of the last equilibrium.
     pub from: f64,
-    /// Stiffness of the interface where it began, by which drags are measured (force by length).
+    /// Stiffness of the interface at its start, the reference for drags (force per length).
     pub stiffness: f64,
-    /// Viscosity of a displacement over the time step: c / Δt (force by length).
+    /// Viscosity of a displacement divided by the time step: c / Δt (force per length).
     pub drag: f64,
-    /// Steps that are done.
+    /// Number of completed steps.
     pub steps: u32,
     /// Sum of the largest displacements of these steps (length).
     pub travelled: f64,
-    /// Work that the viscosity has taken in them (force times length), never negative.
+    /// Work dissipated by viscosity in these steps (force times length), never negative.
     pub dissipated: f64,
-    /// Whether the present attempt is the one without drag that is to end in equilibrium.
+    /// Whether the current attempt is the one without drag that should end in equilibrium.
     pub coming_to_rest: bool,
-    /// Drag at which that was last tried; infinite before.
+    /// Drag at the last such attempt; infinite before the first.
     pub tried: f64,
 }
 
 impl Motion {
-    /// A motion that begins.
+    /// A motion at its start.
     pub fn new(from: f64, stiffness: f64) -> Self {
         Motion {
             from,
@@ -38,7 +38,7 @@ impl Motion {
         }
     }
 
-    /// The drag in force; `None` where equilibrium is sought.
+    /// Current drag; `None` during an attempt to reach equilibrium.
     pub fn drag(&self) -> Option<f64> {
         (!self.coming_to_rest).then_some(self.drag)
     }

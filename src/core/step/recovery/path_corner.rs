@@ -1,27 +1,27 @@
-//! Corners of the path of equilibrium: where a contact comes to the end of its mode, and the path goes on in the next one.
+//! Corners of the equilibrium path: points where the mode of a contact ends, and the path continues in the next mode.
 //!
 //! Between two changes of mode the path is smooth; at a change its tangent turns. If it turns by more than a right angle, no
-//! state lies on the plane ahead of the old tangent, however small the increment. Along the old tangent, with rates ', the end
-//! of a mode is at the least s >= 0 with
+//! state lies on the plane ahead of the old tangent, however small the increment. Along the old tangent, with rates ', a mode
+//! ends at the least s >= 0 with
 //!
 //! ```text
 //! fixed     F_n + s F_n' = 0: opens,    |F_t + s F_t'| = tan φ (F_n + s F_n') + c: slides
 //! sliding   F_n + s F_n' = 0: opens,    sgn(T_max) slip' < 0: sticks, at s = 0,
-//!           s |slip'| = room to a concave corner: is held there
+//!           s |slip'| = distance to a concave corner: is held there
 //! free      g + s g' = 0: touches
 //! ```
 //!
-//! The contacts whose end comes first change, and the increment starts again with the tangent in the new modes. Its sign is not
-//! that of an inner product here, but that with which the changed contacts obey Table 2:
+//! The contacts whose modes end first change, and the increment restarts with the tangent in the new modes. Its sign does not
+//! follow from an inner product here: it is the sign for which the changed contacts obey Table 2:
 //!
 //! ```text
 //! slides    F_t slip' > 0               opens     g' > 0
 //! sticks    sgn(F_t) F_t' < tan φ F_n'    touches   F_n' > 0
-//! is held   sgn(F_t) F_t' > tan(φ − h) F_n', with h half the corner's angle: beyond the cone of the side that it came from
+//! is held   sgn(F_t) F_t' > tan(φ − h) F_n', with h half the corner's angle: outside the friction cone of the side it came from
 //! ```
 //!
-//! This is what pivoting methods do at the end of an edge of a piecewise linear path (Eaves 1972). Where the contacts that
-//! change together do not agree on a sign, the path does not go on in these modes.
+//! Pivoting methods do the same at the end of an edge of a piecewise linear path (Eaves 1972). If the contacts that change
+//! together do not agree on a sign, the path does not continue in these modes.
 
 use super::retry::{Effect, Recovery, Retry};
 use super::stalled::Stalled;
@@ -36,18 +36,18 @@ use crate::step::stepper::Stepper;
 use crate::step::way::{Change, Way};
 use std::sync::Arc;
 
-/// Ends of modes that are closer than this part of their way come together.
+/// Ends of modes coincide if their distances differ by less than this fraction.
 const TOGETHER: f64 = 1e-6;
-/// A slip comes to an end, and turns round, by way of rates below this part of the last one.
+/// A slip stops and reverses after its rate has fallen below this fraction of the last one.
 const REVERSAL: f64 = 0.5;
-/// A corner closer than this part of an increment's size is where it starts.
+/// An increment starts at a corner that is closer than this fraction of its size.
 const AT_START: f64 = 0.02;
-/// An increment that cannot be cut any more may have its corner this many times its size ahead.
+/// If an increment can no longer be cut, its corner may be this multiple of its size ahead.
 const AHEAD: f64 = 2.0;
-/// An increment that is cut to end before a corner goes this part of the way there.
+/// An increment that is cut to end before a corner covers this fraction of the distance.
 const BEFORE: f64 = 0.99;
 
-/// The rates at one contact along a tangent, of whatever size.
+/// Rates at one contact along a tangent of any size.
 #[derive(Debug, Clone, Copy)]
 struct Rates {
     f_n: f64,
@@ -80,9 +80,10 @@ impl Rates {
 }
 
 impl Stepper {
-    /// Direction in which the path goes on along a tangent (−1 or 1) that was solved for so that its inner product with the
-    /// increment before is positive, and is as that with itself. Where all sliding contacts would slide against their friction
-    /// then, and no slower than they slid before, that increment was no measure: it went round a corner. They slide on.
+    /// Direction in which the path continues along a tangent (−1 or 1). The tangent was solved for a positive inner product with
+    /// the previous increment, and that direction is used. If then all sliding contacts would slide against their friction, and
+    /// no slower than before, the previous increment is no reference, since it passed a corner: the direction is the one in which
+    /// they continue to slide.
     pub(in crate::step) fn onwards(&self, given: &[NodeIncrement]) -> f64 {
         let nodes = &self.state.nodes;
         let slips = self.state.way.as_ref().map(|way| way.slips.clone());
@@ -97,8 +98,8 @@ impl Stepper {
         if any && sliding.all(turns) { -1.0 } else { 1.0 }
     }
 
-    /// The contacts that come first to the end of their mode along the tangent that was just solved for, and how many times
-    /// the solved motion that is away. The path goes on in the direction `sign` of the solve. Empty where none does.
+    /// The contacts whose modes end first along the tangent that was just solved for, and their distance as a multiple of the
+    /// solved motion. The path continues in the direction `sign` of the solution. Empty if no mode ends.
     pub(in crate::step) fn next_changes(&self, sign: f64) -> (f64, Vec<Change>) {
         let state = &self.state;
         let mut first = (f64::INFINITY, Vec::new());
@@ -139,16 +140,16 @@ impl Stepper {
         first
     }
 
-    /// The tangent behind the corner, in the modes that the state has: a motion of all degrees of freedom, of any size, and
-    /// the slip of each contact in it.
+    /// The tangent behind the corner, in the modes of the state: a motion of all degrees of freedom, of any size, and the slip of
+    /// each contact in it.
     ///
     /// # Errors
-    /// Why there is none.
+    /// If there is no such tangent.
     pub(in crate::step) fn tangent_behind(&mut self) -> Result<(Vec<f64>, Vec<f64>), Failure> {
         if !self.enter_corners() {
             return Err(Failure::DoubledBack);
         }
-        // The start lies before the corner, so that a solve also goes there: two differ by the tangent.
+        // The start lies before the corner, so a solve includes the motion to it: two solves differ by the tangent.
         let (mut motion, given) = self.solve_tangent()?;
         if let Some(way) = &mut self.state.way {
             way.left = 0.0;
@@ -172,7 +173,7 @@ impl Stepper {
                 agreeing(change, rates[contact], friction, corner)
             });
             let mut signs = signs.filter(|sign| *sign != 0.0);
-            // What goes on as before goes on ahead.
+            // Contacts that do not change continue ahead.
             let first = signs.next().unwrap_or(1.0);
             signs.all(|sign| sign == first).then_some(first)
         });
@@ -184,10 +185,10 @@ impl Stepper {
         Ok((motion, slips.collect()))
     }
 
-    /// One solve of the tangent's equations: the motion of all degrees of freedom, and what every contact does.
+    /// One solve of the tangent's equations: the motion of all degrees of freedom, and the increment of every contact.
     ///
     /// # Errors
-    /// That they have no solution.
+    /// If they have no solution.
     pub(in crate::step) fn solve_tangent(
         &mut self,
     ) -> Result<(Vec<f64>, Vec<NodeIncrement>), Failure> {
@@ -206,9 +207,9 @@ impl Stepper {
         Ok((motion, contacts.map(|k| self.source.increment(k)).collect()))
     }
 
-    /// Lets contacts that slide out of a place where two sides meet stand on the side along which they do, and holds in a
-    /// concave corner those that slide into one, or that stick at one and would slide by the friction of one side; false where
-    /// nothing can be linearised then. A contact that goes `through` such a corner slides out of it at once.
+    /// Places contacts that slide out of a corner between two sides on the side along which they slide. Holds contacts in a
+    /// concave corner if they slide into it, or if they stick there and would slide by the friction of one side. Returns false if
+    /// the state cannot be linearised then. A contact that goes `through` such a corner slides out of it at once.
     fn enter_corners(&mut self) -> bool {
         let changes = self.state.way.as_ref();
         let mut changes = changes.map_or_else(Vec::new, |way| way.next.to_vec());
@@ -221,7 +222,7 @@ impl Stepper {
         }
         let passes = changes.iter().any(|change| change.through);
         if passes {
-            // The way out depends on the new mode.
+            // The direction out of the corner depends on the new mode.
             self.state.change_modes();
             self.linearised = false;
         }
@@ -260,7 +261,7 @@ impl Stepper {
         self.linearise()
     }
 
-    /// Notes which contacts were the first to change their modes in the present increment.
+    /// Records which contacts changed their modes first in the current increment.
     pub(in crate::step) fn note_changes(&mut self) {
         let Some(way) = &mut self.state.way else {
             return;
@@ -285,9 +286,9 @@ impl Stepper {
         }
     }
 
-    /// Whether a contact that changed at the corner has not kept to it; or, in an increment that starts at none, one has come
-    /// to stick that slides along the tangent. At every state of sliding there is a second way on: back with the load, where all
-    /// contacts stick. That is not the path.
+    /// Whether a contact that changed at the corner has changed back; or, in an increment that does not start at a corner,
+    /// whether a contact that slides along the tangent now sticks. Every state of sliding has a second solution, unloading, where
+    /// all contacts stick. That is not the path.
     pub(in crate::step) fn turned_back(&self) -> bool {
         let nodes = &self.state.nodes;
         let Some(way) = &self.state.way else {
@@ -302,7 +303,7 @@ impl Stepper {
     }
 }
 
-/// Behind the corner of the path at which the increment starts.
+/// Restart behind the corner of the path at which the increment starts.
 pub(super) struct Turn;
 
 impl Recovery for Turn {
@@ -315,7 +316,7 @@ impl Recovery for Turn {
     }
 }
 
-/// At the least arc: behind the corner just ahead, or that at which contacts changed first.
+/// At the minimum arc: restart behind the corner just ahead, or the one where contacts changed first.
 pub(super) struct TurnAtLast;
 
 impl Recovery for TurnAtLast {
@@ -328,8 +329,8 @@ impl Recovery for TurnAtLast {
     }
 }
 
-/// Starts the increment again behind a corner that lies at most this part of its size ahead. `None` where there is no such corner, or
-/// where that was what failed.
+/// Restarts the increment behind a corner that lies at most this fraction of its size ahead. `None` if there is no such corner,
+/// or if that restart was what failed.
 fn turn(why: &Failure, stalled: &Stalled<'_>, reach: f64, seen: bool) -> Option<Retry> {
     let mut way = stalled.state.way.clone().filter(|way| way.known)?;
     if !stalled.size_helps(why) || way.turned && !way.pass_through() {
@@ -351,7 +352,7 @@ fn turn(why: &Failure, stalled: &Stalled<'_>, reach: f64, seen: bool) -> Option<
     })
 }
 
-/// The size that an increment is cut to: to end before the next corner where that lies within it, else half.
+/// Size to which an increment is cut: up to the next corner if that lies within it, otherwise half.
 pub(in crate::step) fn smaller_arc(way: &Way) -> f64 {
     let to = BEFORE * way.next_at;
     let ahead = !way.next.is_empty() && !way.turned && to < BEFORE * BEFORE * way.step;
@@ -362,10 +363,10 @@ pub(in crate::step) fn smaller_arc(way: &Way) -> f64 {
     }
 }
 
-/// The direction of the tangent, of which `rates` are given, in which a contact obeys Table 2 after it has changed (−1 or 1;
-/// 0 if it does in both).
+/// Direction of the tangent with these `rates` in which a contact obeys Table 2 after its change (−1 or 1; 0 if it does in both).
 fn agreeing(change: &Change, rates: Rates, friction: &Friction, corner: Option<f64>) -> f64 {
-    // About the mean normal of a corner the bound of the side that the contact came from is that much less.
+    // About the mean normal of a corner, the friction angle of the side that the contact came from is reduced by half the
+    // corner's angle.
     let turned = corner.filter(|_| change.held).unwrap_or_default();
     let bound = (friction.angle.to_radians() - turned).tan() * rates.f_n;
     let beyond = change.sign * rates.f_t - bound;
@@ -380,8 +381,8 @@ fn agreeing(change: &Change, rates: Rates, friction: &Friction, corner: Option<f
     if margin == 0.0 { 0.0 } else { margin.signum() }
 }
 
-/// How many times the motion with these rates is away in which a node comes to the end of its mode, with the mode and the
-/// direction of the tangential force after it. `None` if it never does.
+/// Distance to the end of a node's mode, as a multiple of the motion with these rates, with the next mode and the direction of
+/// the tangential force in it. `None` if the mode does not end.
 fn end_of_mode(
     node: &ContactState,
     gap: f64,
@@ -389,7 +390,7 @@ fn end_of_mode(
     rates: Rates,
     friction: &Friction,
 ) -> Option<(f64, Mode, f64)> {
-    // Where a + s b comes down to 0; at once if it is there already.
+    // Where a + s b falls to 0; at once if it is 0 already.
     let falls = |a: f64, b: f64| (b < 0.0).then(|| (-a / b).max(0.0));
     let first = |all: [Option<(f64, Mode, f64)>; 3]| {
         let all = all.into_iter().flatten();
@@ -454,7 +455,7 @@ mod tests {
             let end = end_of_mode(&node(mode, f_n, f_t), gap, None, rates, &friction);
             end.map(|(at, to, sign)| ((1e9 * at).round() / 1e9, to, sign))
         };
-        // 2 − s = 0 comes after 1 + s = (2 − s) + 0.5.
+        // The root of 2 − s is beyond that of 1 + s = (2 − s) + 0.5.
         let sheared = end(Mode::Fixed, 2.0, 1.0, 0.0, rates(-1.0, 1.0, 0.0, 0.0));
         assert_eq!(sheared, Some((0.75, Mode::Sliding, 1.0)));
         let opened = end(Mode::Fixed, 2.0, 0.0, 0.0, rates(-8.0, 0.0, 0.0, 0.0));

@@ -1,4 +1,4 @@
-//! A recovery, and what it proposes.
+//! The trait of recoveries, and their proposals.
 
 use super::fallback::FallbackState;
 use super::motion::Motion;
@@ -7,34 +7,34 @@ use crate::step::event::{Failure, Outcome};
 use crate::step::sub_increment::SubIncrement;
 use crate::step::way::Way;
 
-/// One way to start an increment again.
+/// One way to restart an increment.
 pub(super) trait Recovery: Sync {
     /// Its name, for [`crate::step::stepper::Stepper::leave_out`].
     fn name(&self) -> &'static str;
 
-    /// What to try after the failure `why`. `None` if this recovery does not apply, or has been tried.
+    /// What to try after the failure `why`. `None` if this recovery does not apply or has been tried.
     fn propose(&self, why: &Failure, stalled: &Stalled<'_>) -> Option<Retry>;
 }
 
-/// How to start an increment again.
+/// How to restart an increment.
 pub(in crate::step) struct Retry {
-    /// The part of it that is tried.
+    /// The part of the increment that is tried.
     pub(super) part: SubIncrement,
-    /// What it changes in the state.
+    /// The change of the state.
     pub(super) effect: Effect,
-    /// What is reported.
+    /// The reported outcome.
     pub(super) outcome: Outcome,
 }
 
-/// What a recovery changes in the state.
+/// Change of the state by a recovery.
 pub(super) enum Effect {
-    /// One more cut, because of this slave node if any.
+    /// One more cut, attributed to this slave node, if any.
     Cut(Option<usize>),
     /// The arc and the corner of the path.
     Path(Box<Way>),
     /// The increment is accepted although it jumps.
     Whole,
-    /// The loads stay, and a damped motion begins.
+    /// The loads are kept constant, and a damped motion begins.
     Release,
     /// Another drag of the damped motion.
     Motion(Motion),

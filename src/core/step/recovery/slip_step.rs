@@ -1,4 +1,4 @@
-//! Major iterations in which sliding is held back ([`super::proximal`]), and which of them are taken back.
+//! Major iterations in which sliding is held back ([`super::proximal`]), and which of them are undone.
 
 use super::proximal::Brake;
 use crate::linear::norms::Norms;
@@ -7,30 +7,30 @@ use crate::step::event::{Failure, Outcome};
 use crate::step::state::{Progress, State};
 use crate::step::stepper::Stepper;
 
-/// Slip in one major iteration beyond which it is taken back, relative to the scene's length.
+/// Slip in one major iteration beyond which it is undone, relative to the scene's length.
 const FAR: f64 = 0.02;
-/// Part of its work before that a step may have turned round after it.
+/// Maximum reversed work after a step, as a fraction of the work before it.
 const TURNED: f64 = 0.5;
-/// Error of the interface conditions (relative) below which nothing is carried any more.
+/// Error of the interface conditions (relative) below which the held-back sliding carries no force.
 const EXACT: f64 = 1e-9;
-/// Times the settings' major iterations that an increment may take which is held back.
+/// Factor on the settings' limit of major iterations for an increment in which sliding is held back.
 pub(in crate::step) const PATIENCE: u32 = 5;
 
-/// A major iteration that may have to be taken back.
+/// A major iteration that may have to be undone.
 pub(in crate::step) struct Held {
-    /// Where it began.
+    /// State at its start.
     state: Box<State>,
-    /// What held it back.
+    /// Brake in force during it.
     brake: Brake,
-    /// Slips of the sliding contacts, 0 of the others (length).
+    /// Slips of the sliding contacts, 0 for the others (length).
     slips: Vec<f64>,
-    /// Σ δ d before it (force by length).
+    /// Σ δ d before it (force times length).
     work: f64,
 }
 
 impl Stepper {
-    /// The modes of a major iteration do not settle: it begins again with a greater κ, with which they do in the end. `None`
-    /// where sliding is not held back, or κ does not help any more.
+    /// The modes of a major iteration do not converge: restarts it with a larger κ, with which they converge eventually. `None`
+    /// if sliding is not held back, or if a larger κ no longer helps.
     pub(in crate::step) fn hold_harder(&mut self, why: &Failure) -> Option<Outcome> {
         let brake = self.state.brake.as_mut()?;
         if !brake.tighten() {
@@ -45,13 +45,13 @@ impl Stepper {
         })
     }
 
-    /// Whether what holds sliding back still carries a part of the friction that the judge would miss.
+    /// Whether the brake still carries a part of the friction, which the judge would report as missing.
     pub(in crate::step) fn is_carried(&self, after: &Norms) -> bool {
         let holds = |brake: Brake| brake.stiffness > 0.0;
         self.state.brake.is_some_and(holds) && after.interface > EXACT
     }
 
-    /// What a major iteration is about to do, where sliding is held back.
+    /// Records a major iteration before it is done, if sliding is held back.
     pub(in crate::step) fn hold(&self) -> Option<Held> {
         self.state.brake.map(|brake| {
             let (mut work, mut slips) = (0.0, Vec::new());
@@ -75,7 +75,7 @@ impl Stepper {
         })
     }
 
-    /// Takes a major iteration back that went too far or the wrong way. Else κ falls for the next one.
+    /// Undoes a major iteration that moved too far or in the wrong direction. Otherwise decreases κ for the next one.
     pub(in crate::step) fn hold_back(&mut self, held: Held) -> Option<Outcome> {
         let Held {
             state,
@@ -87,7 +87,7 @@ impl Stepper {
         let after: f64 = (slips.iter().zip(&self.state.nodes))
             .map(|(slip, node)| slip * (node.f_t - node.t_max))
             .sum();
-        // The first major iteration brings the load in, which drives nodes by itself.
+        // The first major iteration applies the load, which drives nodes by itself.
         let loads = state.next.major == 1;
         let way: f64 = slips.iter().map(|slip| slip.abs()).sum();
         let tiny = self.state.controls.settings.tolerance * self.force_scale() * way;

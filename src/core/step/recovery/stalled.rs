@@ -1,4 +1,4 @@
-//! What recoveries ask about a failed increment.
+//! The conditions that recoveries check on a failed increment.
 
 use super::fallback::{DEEPER, Fallback};
 use crate::contact::state::ContactState;
@@ -8,9 +8,9 @@ use crate::model::{BodyKind, Factor, Jumps, Mode, Model, SearchMode};
 use crate::step::event::Failure;
 use crate::step::state::State;
 
-/// Smallest part of an increment that halves can be.
+/// Minimum size of a half, as a fraction of the whole increment.
 const SMALLEST_HALF: f64 = 1e-9;
-/// Largest gap of a node that touches at the start, over the scene's length.
+/// Maximum gap of a node that counts as touching at the start, over the scene's length.
 const TOUCHING: f64 = 1e-9;
 
 /// A failed increment.
@@ -21,7 +21,7 @@ pub(in crate::step) struct Stalled<'a> {
 }
 
 impl Stalled<'_> {
-    /// Whether an increment that failed so may succeed with another size.
+    /// Whether an increment with this failure may succeed with another size.
     pub fn size_helps(&self, why: &Failure) -> bool {
         match why {
             Failure::OverConstrained { .. } | Failure::RoundOff { .. } => false,
@@ -31,7 +31,7 @@ impl Stalled<'_> {
         }
     }
 
-    /// Size below which an increment is not cut: where a damped motion follows, that which the limit load is found to.
+    /// Size below which an increment is not cut; before a damped motion, the accuracy of the limit load.
     pub fn least(&self) -> f64 {
         let controls = &self.state.controls;
         if self
@@ -45,19 +45,19 @@ impl Stalled<'_> {
             return controls.least;
         }
         let largest = self.model.path.iter().fold(0.0_f64, |m, p| m.max(p.abs()));
-        // The smallest half is less than twice the least.
+        // The smallest half is less than twice the minimum.
         let wanted = controls.settings.limit_load * largest / 2.0;
         // Halves are counted in 32 bits.
         let whole = (self.state.sub_increment.to - self.state.sub_increment.from).abs();
         wanted.max(whole * SMALLEST_HALF).min(controls.least)
     }
 
-    /// Whether the scene wants damped motions, and what deforms can make them.
+    /// Whether the scene requests damped motions and its source supports them.
     pub fn can_move(&self) -> bool {
         self.model.jumps == Jumps::Dynamic && self.source.damps()
     }
 
-    /// Whether the search may go on: not if jumps end the history, and not where all bodies are given by numbers.
+    /// Whether the search may continue: not if jumps end the history, or if all bodies are given as matrices.
     pub fn searches(&self) -> bool {
         let settings = &self.state.controls.settings;
         settings.search == SearchMode::Auto
@@ -66,7 +66,7 @@ impl Stalled<'_> {
             && !self.is_given()
     }
 
-    /// Whether nothing holds a body at the start of the history, and a free node touches there without a gap.
+    /// Whether a body is unsupported at the start of the history, and a free node touches there without a gap.
     pub fn can_touch(&self, why: &Failure) -> bool {
         let loose = match why {
             Failure::Singular(_) => true,
@@ -97,7 +97,7 @@ impl Stalled<'_> {
             && self.state.searched.released != Some(start)
     }
 
-    /// Whether an increment that failed so may succeed where sliding is held back.
+    /// Whether an increment with this failure may succeed if sliding is held back.
     pub fn can_hold(&self, why: &Failure) -> bool {
         let helps = matches!(
             why,
@@ -117,19 +117,19 @@ impl Stalled<'_> {
             && self.model.jumps != Jumps::Stop
     }
 
-    /// Whether a failure by round-off is one of what ran away: it drowns in that before it is out of all bounds.
+    /// Whether a round-off failure is due to divergence: round-off then dominates before the bounds of divergence are exceeded.
     pub fn drowned(&self, why: &Failure) -> bool {
         matches!(why, Failure::RoundOff { .. }) && self.state.next.major > 2
     }
 
-    /// Whether all bodies are given by numbers.
+    /// Whether all bodies are given as matrices.
     pub fn is_given(&self) -> bool {
         let mut bodies = self.model.bodies.iter();
         bodies.all(|body| matches!(body.kind, BodyKind::Linear(_)))
     }
 
-    /// Whether the problem at a part of the load is the same in every way: matrices without gaps, cohesion and prescribed
-    /// motions, loaded in proportion for the first time. Motions and forces scale then, and modes are the same.
+    /// Whether the problem is the same at any part of the load: matrices without gaps, cohesion or prescribed motions, loaded in
+    /// proportion for the first time. Motions and forces then scale with the load, and the modes are the same.
     pub fn scales(&self) -> bool {
         let (model, start) = (self.model, &self.state.start);
         let matrices = !model.bodies.is_empty()
@@ -167,7 +167,7 @@ impl Stalled<'_> {
             && (0..model.contacts.len()).all(closed)
     }
 
-    /// Whether nothing holds a body in the modes that the increment starts with, whatever its size.
+    /// Whether a body is unsupported in the modes at the start of the increment, whatever its size.
     fn starts_loose(&self) -> bool {
         let found = self.source.explain(&self.state.start.nodes);
         matches!(found, Singular::Rigid { .. })

@@ -1,5 +1,5 @@
-//! The whole increment after all: halves were to tell whether it jumps to another branch ([`crate::step::jump`]), and have failed. Near a
-//! limit point they may have no equilibrium, where the whole increment has one beyond.
+//! Takes the whole increment if the halves that check it for a jump to another branch ([`crate::step::jump`]) have failed. Near a
+//! limit point the halves may have no equilibrium although the whole increment has one beyond it.
 
 use super::retry::{Effect, Recovery, Retry};
 use super::stalled::Stalled;
