@@ -188,7 +188,7 @@ fn a_chart_is_measured_by_any_monitor_contact_forces_included() {
     let none = by(&["no_such"]);
     assert_eq!(code(&none), 2);
     assert!(
-        err(&none).contains("no no_such") && err(&none).contains("u_x"),
+        err(&none).contains("no monitor no_such") && err(&none).contains("u_x"),
         "{}",
         err(&none)
     );

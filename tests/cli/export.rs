@@ -61,7 +61,7 @@ fn a_picture_says_which_state_it_is_of_whether_the_scene_converges_or_fails() {
     assert!(err(&output).contains("this is the state that is exported"));
     let svg = texts(&read(here, "failed.svg"));
     assert!(
-        svg.contains("increment 1, major 1, minor 2, load 0.05: last state; the increment failed: contact modes repeat with period 2"),
+        svg.contains("increment 1, major 1, minor 2, load 0.05: last state; the increment failed: cycle of period 2"),
         "{svg}"
     );
     assert!(svg.contains("✗") && svg.contains("beam.5"), "{svg}");

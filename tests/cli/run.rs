@@ -119,7 +119,7 @@ fn a_cycle_ends_with_3_and_is_told_with_place_nodes_and_the_command_that_tries_r
     let told = err(&output);
     for part in [
         "increment 3 (load 0.06), major 1, minor 2",
-        "repeat with period 2",
+        "cycle of period 2",
         "beam.5 free → fixed",
         "load 0.04",
         "`stickslip remedies osc-inclined-cantilever --set history.increment=0.02` tries",

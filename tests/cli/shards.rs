@@ -224,7 +224,7 @@ fn logs_of_something_else_are_refused_with_the_reason() {
     .unwrap();
     let told = err(&merged(here, MAP, &["b.log".to_owned()], &[]));
     assert!(
-        told.starts_with("b.log:1:1: it is of another revision"),
+        told.starts_with("b.log:1:1: written by another revision"),
         "{told}"
     );
     // Another value of a cell.

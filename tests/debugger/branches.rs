@@ -186,7 +186,7 @@ fn branches_are_renamed_and_wrong_names_are_told() {
         assert!(said.contains(told), "{said}");
     }
     let said = refused(&mut session, Command::Branch(To::Named("nowhere".into())));
-    assert!(said.contains("there are b1: start, b2: way out"), "{said}");
+    assert!(said.contains("branches: b1: start, b2: way out"), "{said}");
     branch(&mut session, "sta");
     branch(&mut session, "b2: way out");
     assert_eq!(session.tree().current(), 1);

@@ -355,7 +355,7 @@ fn the_command_writes_a_core_whole_once_and_says_where_there_is_none() {
         out
     );
     let (code, _, err) = ran(&["run", "core.ron"]);
-    assert!(code == 3 && err.contains("4-cycle"), "{err}");
+    assert!(code == 3 && err.contains("cycle of period 4"), "{err}");
     let (code, _, err) = ran(&["core", "osc-touch2", "-o", "core.ron"]);
     assert!(code == 2 && err.contains("--force"), "{err}");
     assert_eq!(
@@ -399,7 +399,7 @@ fn the_debugger_writes_cores_whole_problems_and_what_an_extension_says() {
     };
     // From the start, too, since the minor iterations run into the cycle.
     let core = write(&mut session, Exported::Core, "early.ron").unwrap();
-    assert!(core.contains("Here the modes 2-cycle"), "{core}");
+    assert!(core.contains("In this file: cycle of period 2"), "{core}");
     let again = write(&mut session, Exported::Core, "early.ron").unwrap_err();
     assert!(again.contains("exists already"), "{again}");
     let run = Command::Forward {
@@ -414,7 +414,7 @@ fn the_debugger_writes_cores_whole_problems_and_what_an_extension_says() {
     // By the extension: a picture of the state, the scene, and the problem for another program.
     let bytes = write(&mut session, Exported::Shown, "shown.svg").unwrap();
     assert!(
-        bytes.contains("the increment failed: contact modes repeat with period 6"),
+        bytes.contains("the increment failed: cycle of period 6"),
         "{bytes}"
     );
     let scene_file = write(&mut session, Exported::Shown, "scene.ron").unwrap();

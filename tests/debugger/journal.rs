@@ -409,7 +409,7 @@ fn resume_and_story_on_the_command_line_end_as_they_should() {
             &["resume", "--check", other.to_str().expect("a name")],
         ),
         1,
-        "other:5: replayed, it is not",
+        "other:5: the replay differs",
     );
     std::fs::write(&other, changed(&path, 5, |_| "(".into())).expect("written");
     ends(

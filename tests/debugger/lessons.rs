@@ -347,10 +347,7 @@ fn keys_and_typed_lines_are_the_same_to_a_lesson() {
         assert_eq!(tutor(&debugger).at(), 8, "{keys}");
         debugger.type_keys("s a s Space c Space");
         let end = debugger.text(120, 40);
-        assert!(
-            end.contains("All 5 answers were right at the first attempt."),
-            "{end}"
-        );
+        assert!(end.contains("All 5 answers were right at the"), "{end}");
         // From here on nothing is forbidden.
         debugger.type_keys("S S");
         assert!(debugger.text(120, 40).contains("steps"));
@@ -431,7 +428,7 @@ fn broken_lessons_are_told_with_their_place() {
         ),
         (
             r#"Ask(text: "x", answer: Number(of: "load", tolerance: 2.0))"#,
-            "a tolerance is relative",
+            "the tolerance is relative",
         ),
         (
             r#"Ask(text: "x", answer: Choice([("a", Right)]))"#,

@@ -263,7 +263,7 @@ fn only_the_known_format_is_read_whatever_else_is_in_the_file() {
         "(format: 9, whatever: [(1, 2)], steps: \"x\")",
     ] {
         let error = Snapshot::from_text("a.ron", text).unwrap_err();
-        assert!(error.to_string().contains("knows only format 1"), "{error}");
+        assert!(error.to_string().contains("reads only format 1"), "{error}");
     }
     let error = Snapshot::from_text("a.ron", "(\n  format: 1,\n  steps: -1,\n)").unwrap_err();
     assert!(error.to_string().starts_with("a.ron:"), "{error}");

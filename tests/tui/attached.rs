@@ -221,7 +221,7 @@ fn what_is_not_offered_is_grey_everywhere_and_its_key_gives_the_reason_and_does_
             "export --frozen a.ron",
             "does not offer its interface problem",
         ),
-        ("export a.ron", "the scene is the solver's own"),
+        ("export a.ron", "the scene is known only to the solver"),
         ("chart", "scenes that stickslip solves itself"),
         ("set settings.minors 3", "does not offer settings"),
         (
@@ -292,7 +292,7 @@ fn a_solver_of_our_own_has_no_log_and_no_parameters() {
     let mut debugger = Debugger::new(Theme::mono(), Vec::new(), Some(session));
     for keys in ["O", ": l o g Enter", ": p a r a m Enter"] {
         debugger.type_keys(keys);
-        holds(&debugger, "this is our own solver");
+        holds(&debugger, "only attached solvers");
     }
     debugger.type_keys("m");
     holds(&debugger, "a capital holds it until M releases");
@@ -499,7 +499,7 @@ fn parameters_are_completed_set_and_listed_with_what_they_are_now() {
     debugger.type_keys(":");
     debugger.type_text("set law p");
     debugger.type_keys("Tab Enter");
-    assert_eq!(debugger.app.message.text, "law is penalty from now on");
+    assert_eq!(debugger.app.message.text, "law set to penalty");
     debugger.type_keys(":");
     debugger.type_text("set law newton");
     debugger.type_keys("Enter");

@@ -60,7 +60,7 @@ fn without_colour_the_weights_carry_everything() {
             .contains(Modifier::REVERSED)
     );
     assert!(
-        find(&screen, "beam.2 fixed →")
+        find(&screen, "beam.2 fixed → sliding ")
             .modifier
             .contains(Modifier::REVERSED),
         "the selected row"
@@ -87,7 +87,7 @@ fn a_tie_is_told_from_a_near_tie() {
         "{screen}"
     );
     assert!(
-        screen.contains("a tie, by 0 force") && screen.contains("A tie keeps the"),
+        screen.contains("a tie, by 0 force") && screen.contains("keeps the mode."),
         "{screen}"
     );
     assert!(screen.contains(" 1-2e-10 "), "{screen}");
@@ -193,7 +193,7 @@ fn outcomes_have_a_glyph_and_a_sentence() {
     };
     assert_eq!(
         say(Outcome::Failed(Failure::Cycle(cycle))),
-        " ✗ contact modes repeat with period 2 from minor 2: beam.5 free → fixed → …"
+        " ✗ cycle of period 2 from minor 2: beam.5 free → fixed → …"
     );
 }
 
@@ -268,7 +268,11 @@ fn the_table_sorts_and_filters_and_the_selection_stays_on_its_node() {
     press(&mut app, &view, "Enter :");
     type_text(&mut app, &view, "sort lucky");
     press(&mut app, &view, "Enter");
-    assert!(app.message.text.contains("none of scene, margin, gap"));
+    assert!(
+        app.message
+            .text
+            .contains("expected one of: scene, margin, gap")
+    );
     // What has no margin and no gap is last either way.
     frames[1].event = None;
     let view = self::view(&model, &frames);

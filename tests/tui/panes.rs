@@ -217,7 +217,7 @@ fn remedies_are_measured_and_the_chosen_one_is_done_again_in_a_branch_of_its_own
         let found = trials.find(|trial| trial.label.starts_with(label));
         found.unwrap_or_else(|| panic!("{label}")).end.clone()
     };
-    assert_eq!(ends("answer 1: beam.5 sliding"), TrialEnd::Converged);
+    assert_eq!(ends("state 1: beam.5 sliding"), TrialEnd::Converged);
     for label in [
         "enter contact as sliding",
         "enter as sliding, one chan",

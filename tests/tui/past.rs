@@ -76,7 +76,10 @@ fn that_stick_and_slip_are_not_in_the_file_is_on_every_screen_and_first_in_the_h
         assert!(one_line(&shown).contains(words::NO_MODES), "{shown}");
         debugger.type_keys("?");
         let help = debugger.text(width, height);
-        assert!(help.contains("Stick and slip are not in"), "{help}");
+        assert!(
+            help.contains("CalculiX's files do not distinguish"),
+            "{help}"
+        );
     }
 }
 

@@ -435,7 +435,7 @@ fn a_session_that_was_killed_resumes_where_it_was() {
     let told = String::from_utf8_lossy(&checked.stderr).into_owned();
     assert_eq!(checked.status.code(), Some(0), "{told}");
     assert!(
-        told.contains("equal to the last bit; line 9 was only begun"),
+        told.contains("equal to the last bit; line 9 is incomplete"),
         "{told}"
     );
 
@@ -504,7 +504,7 @@ fn no_journal_is_kept_where_none_is_wanted_or_nothing_is_done() {
     assert!(file.exists());
     session.quit();
     let mut session = Start::debugger(&[FLOOR, "--journal", name]).go();
-    session.see("the file exists already");
+    session.see("the file already exists");
     assert_eq!(session.end().exit_code(), 2);
 }
 
@@ -594,7 +594,7 @@ fn colours(style: &str) -> bool {
 fn drawn(start: Start) -> Vec<u8> {
     let mut session = start.go();
     session.see("nothing is solved yet");
-    session.type_and_see("c", "2-cycle");
+    session.type_and_see("c", "period 2");
     session.type_and_see("m", "mode of beam.5:");
     session.type_and_see("S", "◆ 1 held");
     session.type_and_see("c", "the history is complete");

@@ -203,7 +203,7 @@ pub const ACTIONS: &[Entry] = &[
     entry(Group::Look, "copy", "[WHAT]", &["Y"], "", "Copy the selection to the clipboard: a row, a value, a command; or name it: row, command, keys, gap, f_n, …", Verb::Copy),
 
     entry(Group::Learn, "lesson", "[NAME]", &["L"], "", "Start a guided lesson: a file, or a built-in one", Verb::Lesson),
-    entry(Group::Learn, "on", "", &["Space"], "proceed", "Continue the lesson: more of its text, then the next step", Verb::Do(Ui::On)),
+    entry(Group::Learn, "on", "", &["Space"], "more", "Continue the lesson: more of its text, then the next step", Verb::Do(Ui::On)),
     entry(Group::Learn, "reread", "", &["Backspace"], "", "Show the lesson text again from the top", Verb::Do(Ui::Reread)),
     entry(Group::Learn, "answer", "[WORD]", &["a"], "answer", "Answer the lesson's question, or predict the selected node's next mode", Verb::Answer),
     entry(Group::Learn, "predict", "[WHOSE]", &["p"], "", "Hide decisions until predicted: any one (selected), every changed one, or off", Verb::Predict),

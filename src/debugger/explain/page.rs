@@ -161,7 +161,7 @@ impl Page {
             match failure {
                 // The members are described one by one below.
                 Failure::MajorCycle(round) => format!(
-                    "major iterations repeat with period {} from major {}; {} nodes take part",
+                    "major iterations cycle with period {} from major {}; {} nodes take part",
                     round.period,
                     round.start,
                     round.members.len()

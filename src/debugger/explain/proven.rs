@@ -1,5 +1,5 @@
-//! What the matrix of a frozen problem proves: that there is at most one consistent state, and where T_max
-//! tends while the modes repeat.
+//! What the matrix of a frozen problem proves: that there is at most one consistent state, and the limit of
+//! T_max while the modes repeat.
 
 use stickslip_core::interface::census::{Census, MOST_SEARCHED};
 use stickslip_core::interface::family::{Family, families};

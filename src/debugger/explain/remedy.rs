@@ -119,7 +119,7 @@ impl Remedy {
             .collect();
         (!first.is_empty()).then(|| Remedy {
             kind: Kind::Start(mode),
-            label: format!("start nodes in contact {}", names::mode(mode)),
+            label: format!("start contacts {}", names::mode(mode)),
             how: How::Listed,
             first,
         })
@@ -167,7 +167,7 @@ impl Remedy {
             }
             Kind::Start(mode) => {
                 let first = starts(model, state, mode);
-                let label = format!("start nodes in contact {}", names::mode(mode));
+                let label = format!("start contacts {}", names::mode(mode));
                 (!first.is_empty()).then(|| remedy(&label, How::Listed, first))
             }
             _ => {
@@ -217,7 +217,7 @@ impl Remedy {
             let more = if starts.len() > SHOWN { ", …" } else { "" };
             Some(Remedy {
                 kind: Kind::Answer(number),
-                label: format!("consistent state {}: {}{more}", number + 1, some.join(", ")),
+                label: format!("state {}: {}{more}", number + 1, some.join(", ")),
                 how: How::StartFrom(number),
                 first: vec![Intervention::Assume(starts)],
             })

@@ -142,7 +142,7 @@ pub fn outcome(model: &Model, event: &Event) -> String {
             {
                 format!("{at}: no mode changes")
             }
-            "" => format!("{at}: modes settled, T_max still changes"),
+            "" => format!("{at}: modes settled, T_max changes"),
             changes => format!("{at}: {changes}"),
         },
         Outcome::Damped {
@@ -628,7 +628,7 @@ pub fn major_cycle(model: &Model, round: &MajorCycle) -> String {
         }
     };
     format!(
-        "major iterations repeat with period {} from major {}: {}",
+        "major iterations cycle with period {} from major {}: {}",
         round.period,
         round.start,
         some(round.members.iter().map(member).collect(), "; ")
@@ -678,7 +678,7 @@ pub fn cycle(model: &Model, cycle: &Cycle) -> String {
         _ => told.extend(following.into_iter().map(member)),
     }
     format!(
-        "contact modes repeat with period {} from minor {}: {}",
+        "cycle of period {} from minor {}: {}",
         cycle.period,
         cycle.start,
         told.join("; ")

@@ -146,7 +146,7 @@ pub fn words(model: &Model, rounds: &Rounds, tells_since: bool) -> String {
             };
             let told: Vec<String> = members.iter().take(NAMED).map(member).collect();
             format!(
-                "contact modes repeat with period {period}{since}: {}{}",
+                "cycle of period {period}{since}: {}{}",
                 told.join("; "),
                 more(members.len())
             )

@@ -184,8 +184,8 @@ pub fn core(
     let head = [
         "The core of a cycle: the smallest set of nodes that still cycles with all other modes frozen.".to_owned(),
         origin.words(),
-        format!("In the scene, {}.", report::cycle(model, cycle)),
-        format!("In this file, {}.", report::cycle(model, &of_core)),
+        format!("In the scene: {}.", report::cycle(model, cycle)),
+        format!("In this file: {}.", report::cycle(model, &of_core)),
     ];
     let title = format!(
         "Core of {}: {}, period {}",

@@ -17,7 +17,7 @@ pub const NO_MODES: &str = "stick and slip are not in the file";
 /// What the files do not contain, in full.
 pub const NO_MODES_IN_FULL: &str = "CalculiX's files do not distinguish stick from slip: a \
     contact is closed if it has contact elements, otherwise open. The reason why an attempt was \
-    given up is only on CalculiX's screen output.";
+    given up is only in CalculiX's screen output.";
 /// Maximum number of cycle members named.
 const MOST_MEMBERS: usize = 4;
 
@@ -96,7 +96,7 @@ pub fn attempt(run: &CalculixRun, attempt: usize) -> String {
             format!("not converged in {iterations}; cut{size}")
         }
         "failed" => format!("not converged in {iterations}; the run ends here"),
-        _ => format!("{iterations}; end unknown: the run was stopped here or is still running"),
+        _ => format!("{iterations}; end unknown: the run was stopped or is still running"),
     };
     if let Some(row) = this.row {
         let start = match row.converged {
@@ -121,7 +121,7 @@ fn cycle(run: &CalculixRun, attempt: usize) -> Option<String> {
     let residuals: Vec<String> = cycle.iterations.clone().filter_map(residual).collect();
     let residuals = match residuals.is_empty() {
         true => String::new(),
-        false => format!(", residual repeats {} %", residuals.join(", ")),
+        false => format!(", residuals {} %", residuals.join(", ")),
     };
     let members = match cycle.members.is_empty() {
         true => format!("no contact element changes; {NO_MODES}"),
