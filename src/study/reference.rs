@@ -219,7 +219,7 @@ mod tests {
     fn errors_have_a_line_number() {
         for (text, part) in [
             ("", "no header"),
-            ("a,b\n", "x:1:1: the header has no column load"),
+            ("a,b\n", "x:1:1: the header needs a column load"),
             ("\u{feff}# c\nload,u\n1, a\n", "x:3:3: \"a\" under u"),
             ("load,u\n", "no rows"),
             ("# c\nload,u\n1\n", "x:3:1: the row has 1 fields"),

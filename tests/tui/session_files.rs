@@ -89,7 +89,8 @@ fn a_journal_that_outgrows_the_disk_says_so_and_keeps_what_is_whole() {
     let mut session = Start::program("sh", &["-c", &line]).go();
     session.see("nothing is solved yet");
     for k in 0..80 {
-        session.keys(if k % 2 == 0 { "s" } else { "S" });
+        let (key, shown) = [("s", "free → fixed"), ("S", "at the start")][k % 2];
+        session.type_and_see(key, shown);
         if session.text().contains("no journal") {
             break;
         }

@@ -51,7 +51,7 @@ documented! {
         /// Whether the strategy `ladder` searches for a way out where an increment fails. Default: auto.
         #[serde(skip_serializing_if = "SearchMode::is_default")]
         pub search: SearchMode,
-        /// Maximum number of factorizations that a run spends on such searches. Default: 5000.
+        /// Maximum number of factorizations that a run spends on such searches. Default: 1000.
         #[serde(skip_serializing_if = "is_default_search_limit")]
         pub search_limit: u32,
         /// What becomes of gaps that are there before the first increment. Default: keep.
@@ -104,7 +104,7 @@ fn is_default_limit_load(value: &f64) -> bool {
 }
 
 /// Maximum number of factorizations of searches, unless the scene sets it.
-const SEARCH_LIMIT: u32 = 5000;
+const SEARCH_LIMIT: u32 = 1000;
 
 fn is_default_search_limit(value: &u32) -> bool {
     *value == SEARCH_LIMIT
