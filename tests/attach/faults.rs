@@ -179,7 +179,7 @@ const AFTER: &[(&str, [&str; 2])] = &[
     (
         "twice",
         [
-            "the solver said state unasked, before ",
+            "the solver sent state before ",
             "the solver answered save with state; expected saved",
         ],
     ),
@@ -264,7 +264,7 @@ fn each_fault_of_a_step_has_a_name_and_leaves_what_was_done() {
                 // What comes after the answer may come after the next request.
                 for _ in 0..5 {
                     said = does(&mut session, minor());
-                    if said.ends_with("is kept") {
+                    if said.ends_with("kept") {
                         break;
                     }
                 }
