@@ -30,8 +30,8 @@ pub fn finding(model: &Model, finding: &Finding) -> String {
             "friction drives the slip of {node} instead of opposing it (slip {slip:.6e}, F_t {f_t:.6e})"
         ),
         Law::Slip => format!(
-            "{node} slipped by {slip:.6e} with friction below its limit (F_t {f_t:.6e}, limit \
-             {limit:.6e})"
+            "{node} slipped by {slip:.6e} while friction is not at its limit against the slip (F_t \
+             {f_t:.6e}, limit {limit:.6e})"
         ),
         Law::Touch => format!(
             "friction drives {node}, wherever it made contact: since the last increment, in \
@@ -49,8 +49,8 @@ pub fn finding(model: &Model, finding: &Finding) -> String {
         ),
         Law::Tied => format!("{node} has left the point of the surface that it is tied to"),
         Law::Stick => format!(
-            "{node} slipped by {slip:.6e} beyond its elastic slip with friction below its limit \
-             (F_t {f_t:.6e}, limit {limit:.6e})"
+            "{node} slipped by {slip:.6e} beyond its elastic slip while friction is not at its \
+             limit against the slip (F_t {f_t:.6e}, limit {limit:.6e})"
         ),
         Law::Balance => format!("the forces on {node} are not in balance"),
         Law::Moments => "loads and reactions are not in balance".into(),
