@@ -1,15 +1,15 @@
-//! Work on bodies side by side, by whoever has threads to give.
+//! Parallel work on bodies.
 //!
-//! The core starts no threads. Who does hands an [`Executor`] in; every part of the work is the same whoever does it, and writes
-//! to places of its own, so that the answers have the same bits on one thread and on many.
+//! The core starts no threads. A caller that has threads passes an [`Executor`]; every part of the work is the same with any executor
+//! and writes to separate memory, so the results are bit-identical on one thread and on many.
 
-/// Does two things, side by side or one after the other.
+/// Runs two tasks, in parallel or in sequence.
 pub trait Executor: Send + Sync {
     /// Returns when both are done.
     fn join(&self, first: &mut (dyn FnMut() + Send), second: &mut (dyn FnMut() + Send));
 }
 
-/// One after the other, on the caller's thread.
+/// Runs tasks in sequence on the caller's thread.
 #[derive(Debug, Clone, Copy)]
 pub struct InTurn;
 

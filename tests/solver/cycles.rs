@@ -254,7 +254,7 @@ fn several_consistent_states_are_listed_with_how_they_differ() {
     assert_eq!(states, ["F+F", "FF+", "F++"]);
     let lines = words(stuck.stepper.model(), &problem, &diagnosis);
     let has = |text: &str| assert!(lines.iter().any(|l| l.contains(text)), "{text}: {lines:#?}");
-    has("3 states of c1, c2 and c3 are consistent");
+    has("3 combinations of modes of c1, c2 and c3 are consistent");
     has("how they differ:");
     has(
         "c2: sliding with F_t > 0 in 1, F_n 4.0000e0, F_t 0.0000e0; free in 2, gap 8.0000e0; sliding",
@@ -273,7 +273,7 @@ fn the_debugger_shows_several_states_and_goes_to_any() {
     let name = file.to_str().unwrap();
     for (width, height) in [(80, 24), (120, 40), (200, 60)] {
         let screen = stickslip::tui::screen(name, "c d", width, height).unwrap();
-        for text in ["3 states of c1, c2 and c3", "▸1", "*c2", "*c3", " c1"] {
+        for text in ["3 combinations of modes of", "▸1", "*c2", "*c3", " c1"] {
             assert!(
                 screen.contains(text),
                 "{text} at {width}x{height}:\n{screen}"

@@ -119,7 +119,7 @@ fn the_program_gives_no_advice_that_does_not_help() {
         assert_eq!(code(&output), 3);
         err(&output)
     };
-    let none = "nor has a smaller increment a consistent state";
+    let none = "smaller increments have no consistent state either";
     for strategy in ["table2", "ladder", "census"] {
         let told = ran(&[&format!("settings.strategy={strategy}")]);
         assert!(told.contains(none), "{strategy}: {told}");

@@ -66,7 +66,7 @@ fn without_colour_the_weights_carry_everything() {
         "the selected row"
     );
     assert!(
-        find(&screen, "fixed → sliding")
+        find(&screen, "fixed → sliding ")
             .modifier
             .contains(Modifier::BOLD),
         "a changed mode"

@@ -30,8 +30,8 @@ pub fn finding(model: &Model, finding: &Finding) -> String {
             "friction drives the slip of {node} instead of opposing it (slip {slip:.6e}, F_t {f_t:.6e})"
         ),
         ContactLaw::Slip => format!(
-            "{node} slipped by {slip:.6e} with friction below its limit (F_t {f_t:.6e}, limit \
-             {limit:.6e})"
+            "{node} slipped by {slip:.6e} while friction is not at its limit against the slip (F_t \
+             {f_t:.6e}, limit {limit:.6e})"
         ),
         ContactLaw::Touch => format!(
             "friction drives {node}, wherever it made contact: since the last increment, in \
@@ -49,8 +49,8 @@ pub fn finding(model: &Model, finding: &Finding) -> String {
         ),
         ContactLaw::Tied => format!("{node} has left the point of the surface that it is tied to"),
         ContactLaw::Stick => format!(
-            "{node} slipped by {slip:.6e} beyond its elastic slip with friction below its limit \
-             (F_t {f_t:.6e}, limit {limit:.6e})"
+            "{node} slipped by {slip:.6e} beyond its elastic slip while friction is not at its \
+             limit against the slip (F_t {f_t:.6e}, limit {limit:.6e})"
         ),
         ContactLaw::Balance => format!("the forces on {node} are not in balance"),
         ContactLaw::Moments => "loads and reactions are not in balance".into(),

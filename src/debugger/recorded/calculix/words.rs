@@ -144,7 +144,7 @@ pub fn iteration(run: &CalculixRun, iteration: usize) -> String {
         None => "contacts unknown".into(),
     };
     if this.kept {
-        text += ", contacts kept";
+        text += ", held fixed";
     }
     if let Some(norms) = this.norms {
         let _ = write!(
