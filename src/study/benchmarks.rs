@@ -153,7 +153,7 @@ impl Benchmarks {
         if !path.is_file() {
             let own = name.strip_suffix(".ron").unwrap_or(name) == BUILTIN;
             return own
-                .then(|| Benchmarks::from_text(BUILTIN, &builtin_text()))
+                .then(|| Benchmarks::from_text(BUILTIN, builtin_text()))
                 .transpose();
         }
         let text = file_text(name)?;

@@ -56,7 +56,7 @@ fn every_file_of_the_manual_is_a_page_and_has_one_title() {
 #[test]
 fn every_page_fits_80_columns() {
     for page in PAGES {
-        for line in render(&page.text(), WIDTH) {
+        for line in render(page.text(), WIDTH) {
             let text = line.text();
             let wide = unicode_width::UnicodeWidthStr::width(text.trim_end());
             assert!(wide <= WIDTH, "{}: {wide} columns: {text}", page.topic);
@@ -84,7 +84,7 @@ fn every_block_of_code_names_its_language() {
 fn every_command_in_the_manual_can_be_typed() {
     let mut commands = 0;
     for page in PAGES {
-        for line in pages::typed(&page.text()) {
+        for line in pages::typed(page.text()) {
             if let Some(words) = pages::arguments(&line) {
                 commands += 1;
                 stickslip::cli::is_command_line(&words)
@@ -104,7 +104,7 @@ fn every_command_in_the_manual_can_be_typed() {
 fn scenes_studies_and_benches_that_the_manual_names_exist() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     for page in PAGES {
-        for line in pages::typed(&page.text()) {
+        for line in pages::typed(page.text()) {
             let words: Vec<&str> = line.split_whitespace().collect();
             let path = line.split_whitespace().next().unwrap_or_default();
             if ["src/", "tests/", "problems/", "snapshots/"]
@@ -238,7 +238,7 @@ fn help_lists_the_pages_and_shows_one_as_plain_text_where_there_is_no_terminal()
         assert!(out(&listed).lines().any(line), "{}", page.topic);
         let shown = stickslip(&["help", page.topic]);
         assert_eq!(shown.status.code(), Some(0));
-        let expected: Vec<String> = render(&page.text(), WIDTH)
+        let expected: Vec<String> = render(page.text(), WIDTH)
             .iter()
             .map(|line| line.plain())
             .collect();
@@ -510,7 +510,7 @@ fn on_a_terminal_the_pager_shows_a_page_and_without_one_it_is_printed() {
 #[test]
 fn the_exercise_on_the_judge_finds_a_broken_law_that_shrinks_with_the_increment() {
     let page = stickslip::manual::page("teaching").unwrap().text();
-    let typed = pages::typed(&page);
+    let typed = pages::typed(page);
     let audit = typed
         .iter()
         .find(|line| line.starts_with("stickslip audit 0"));

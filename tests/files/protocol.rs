@@ -20,7 +20,7 @@ fn messages(page: &str) -> Vec<serde_json::Value> {
 #[test]
 fn every_message_on_the_page_of_the_protocol_is_read_whole() {
     let page = manual::page("protocol").expect("the page exists").text();
-    let all = messages(&page);
+    let all = messages(page);
     assert!(all.len() > 18, "{} messages", all.len());
     let mut kinds = std::collections::BTreeSet::new();
     for value in all {

@@ -206,7 +206,7 @@ const CHART: &str = "scene,series,run,status,error,seconds\n\
 fn orders_in_files_and_their_names_are_shown_on_the_screen_and_not_obeyed() {
     let directory = tempfile::tempdir().unwrap();
     let file = directory.path().join("n\u{1b}]0;PWN\u{7}.ron");
-    std::fs::write(&file, builtin::find(OSCILLATES).unwrap().text.to_owned()).unwrap();
+    std::fs::write(&file, builtin::find(OSCILLATES).unwrap().text).unwrap();
     std::fs::write(directory.path().join("lesson"), LESSON).unwrap();
     std::fs::write(directory.path().join("chart"), CHART).unwrap();
     let mut session = Start::debugger(&[file.to_str().unwrap()])

@@ -6,7 +6,7 @@
 //!
 //! - [`message`]: the messages; `reading`: converts them to and from lines.
 //! - [`mod@line`]: reads lines of bounded length from an untrusted stream.
-//! - [`conversation`]: transcripts.
+//! - [`conversation`]: transcripts of exchanges.
 
 pub mod conversation;
 pub mod line;
