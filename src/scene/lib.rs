@@ -8,7 +8,7 @@
 //! - [`attached`]: scenes sent by attached solvers.
 //! - `pressed`: detects prescribed displacements that compress a solid beyond the range of its law.
 //! - [`problems`]: interface problems of other programs.
-//! - [`builtin`]: the built-in scenes; [`embedded`]: other embedded files.
+//! - [`builtin`]: the built-in scenes; [`embedded`](mod@embedded): other embedded files.
 //! - [`shown`]: makes external text safe for a terminal, table or picture; [`number`]: formats numbers for people.
 //! - [`calculix`]: the files of a finished CalculiX run.
 

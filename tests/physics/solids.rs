@@ -289,8 +289,7 @@ fn a_block_that_is_pressed_through_itself_diverges_and_does_not_pretend() {
     );
     let cut = run(&scene);
     assert!(cut.failure.is_some() && cut.accepted.iter().all(|a| a.load < 2.0 / 3.0));
-    let whole = scene.with("history.least", "1").unwrap();
-    let run = run(&whole.with("settings.search", "off").unwrap());
+    let run = run(&scene.with("history.least", "1").unwrap());
     assert!(run.failure.is_some() && run.accepted.is_empty());
 }
 

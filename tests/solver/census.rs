@@ -162,7 +162,7 @@ fn a_count_and_a_page_that_are_stopped_keep_what_was_found_and_say_that_it_is_no
     let all: Vec<usize> = (0..20).collect();
     let counted = examine_nodes(&mut stepper, &state, &all, &|| true);
     let words = counted.lines.join("\n");
-    assert!(words.contains("not done after 0 branches"), "{words}");
+    assert!(words.contains("incomplete after 0 branches"), "{words}");
     let mut parts = 0;
     let whole = page(&mut stepper, &state, None, &|| true, &mut |_| parts += 1);
     assert_eq!((whole, parts), (None, 1));

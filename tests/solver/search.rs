@@ -46,15 +46,15 @@ fn run(name: &str, set: &[(&str, &str)]) -> Run {
     }
 }
 
-const OFF: &[(&str, &str)] = &[("settings.search", "off")];
+const AUTO: &[(&str, &str)] = &[("settings.search", "auto")];
 
 #[test]
 fn bodies_that_touch_without_a_gap_are_held_from_the_start() {
     for name in ["die", "stack-of-50-blocks"] {
-        let searched = run(name, &[]);
+        let searched = run(name, AUTO);
         assert_eq!(searched.failure, None, "{name}");
         assert_eq!(searched.found.first(), Some(&Fallback::Touching), "{name}");
-        let without = run(name, OFF).failure;
+        let without = run(name, &[]).failure;
         assert!(
             matches!(without, Some(Failure::Singular(_))),
             "{name}: {without:?}"
@@ -64,7 +64,7 @@ fn bodies_that_touch_without_a_gap_are_held_from_the_start() {
 
 #[test]
 fn modes_that_cycle_at_the_least_increment_settle_in_smaller_parts() {
-    let searched = run("modes-cycle-at-the-least-increment", &[]);
+    let searched = run("modes-cycle-at-the-least-increment", AUTO);
     assert_eq!(searched.failure, None);
     assert!(
         searched.found.contains(&Fallback::Deeper),
@@ -76,22 +76,28 @@ fn modes_that_cycle_at_the_least_increment_settle_in_smaller_parts() {
 
 #[test]
 fn a_damped_motion_finds_the_next_equilibrium() {
-    let searched = run("moves-to-another-equilibrium", &[]);
+    let searched = run("moves-to-another-equilibrium", AUTO);
     assert_eq!(searched.failure, None);
     assert!(
         searched.found.contains(&Fallback::Release),
         "{:?}",
         searched.found
     );
-    assert!(run("moves-to-another-equilibrium", OFF).failure.is_some());
+    assert!(run("moves-to-another-equilibrium", &[]).failure.is_some());
 }
 
 #[test]
 fn no_search_spends_more_than_its_limit() {
     let name = "moves-to-another-equilibrium";
-    let whole = run(name, &[]).spent;
+    let whole = run(name, AUTO).spent;
     let limit = whole / 2;
-    let limited = run(name, &[("settings.search_limit", &limit.to_string())]);
+    let limited = run(
+        name,
+        &[
+            ("settings.search", "auto"),
+            ("settings.search_limit", &limit.to_string()),
+        ],
+    );
     assert!(limited.failure.is_some());
     // The attempt in which the limit is reached is finished.
     assert!(limited.spent <= limit + 60, "{} of {limit}", limited.spent);

@@ -125,7 +125,11 @@ fn a_broken_file_is_refused_with_its_line() {
     let dense = text("two-dense.dat");
     let blocks = text("two-blocks.dat");
     let cases = [
-        (dense.replacen("2\n2\n", "3\n2\n", 1), 1, "in space"),
+        (
+            dense.replacen("2\n2\n", "3\n2\n", 1),
+            1,
+            "three-dimensional",
+        ),
         (
             dense.replacen("2\n2\n", "7\n2\n", 1),
             1,
@@ -134,7 +138,7 @@ fn a_broken_file_is_refused_with_its_line() {
         (
             dense.replacen("2\n2\n", "2\n0\n", 1),
             2,
-            "it must have 1 at least",
+            "it must have at least 1",
         ),
         (dense.replacen("2\n2\n", "2\nx\n", 1), 2, "whole number"),
         (dense.replacen("2\n2\n0\n", "2\n2\n5\n", 1), 3, "storage 5"),
@@ -150,7 +154,7 @@ fn a_broken_file_is_refused_with_its_line() {
         (
             blocks.replacen("2 4\n", "4 2\n", 1),
             9,
-            "the ends must rise",
+            "the ends must be ascending",
         ),
         (blocks.replacen("0 2 4\n", "0 5 4\n", 1), 13, "at most 4"),
         (

@@ -60,7 +60,7 @@ fn without_colour_the_weights_carry_everything() {
             .contains(Modifier::REVERSED)
     );
     assert!(
-        find(&screen, "beam.2 fixed →")
+        find(&screen, "beam.2 fixed → sliding ")
             .modifier
             .contains(Modifier::REVERSED),
         "the selected row"

@@ -48,7 +48,7 @@ documented! {
         /// 1e-6.
         #[serde(skip_serializing_if = "is_default_limit_load")]
         pub limit_load: f64,
-        /// Whether the strategy `ladder` searches for a way out where an increment fails. Default: auto.
+        /// Whether the strategy `ladder` searches for a way out where an increment fails. Default: off.
         #[serde(skip_serializing_if = "SearchMode::is_default")]
         pub search: SearchMode,
         /// Maximum number of factorizations that a run spends on such searches. Default: 1000.
@@ -240,9 +240,9 @@ documented! {
     pub enum SearchMode {
         /// After the strategies and the other parts of the increment: nodes that touch at the start are held, the increment is cut
         /// below its least size, and where equilibrium ends the nodes move damped to the next one, which is marked.
-        #[default]
         Auto,
         /// The increment fails.
+        #[default]
         Off,
     }
 }

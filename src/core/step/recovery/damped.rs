@@ -85,6 +85,9 @@ impl Recovery for Slower {
 
 /// Repeats the step with more drag, or continues the motion after a premature attempt at rest.
 fn slower(slow: Slow, stalled: &Stalled<'_>) -> Option<Retry> {
+    if stalled.state.fallback.is_some() && !stalled.searches() {
+        return None;
+    }
     let mut motion = stalled.state.motion?;
     if motion.coming_to_rest {
         motion.coming_to_rest = false;

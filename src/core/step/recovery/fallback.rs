@@ -13,7 +13,7 @@
 //! If `settings.search` allows it, the search continues:
 //!
 //! 6. with parts down to 1/4096 of the least increment;
-//! 7. with the loads of the last equilibrium, from which a damped motion leads to the next one ([`super::damped`]), which is
+//! 7. with the loads of the last equilibrium, from which a damped motion leads to the next one (`damped`), which is
 //!    marked.
 //!
 //! Before all others, if a body is unsupported at the start of the history, nodes that touch without a gap start fixed.
