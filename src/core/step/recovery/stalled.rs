@@ -34,11 +34,8 @@ impl Stalled<'_> {
     /// Size below which an increment is not cut; before a damped motion, the accuracy of the limit load.
     pub fn least(&self) -> f64 {
         let controls = &self.state.controls;
-        if self
-            .state
-            .fallback
-            .is_some_and(|route| route.by == Fallback::Deeper)
-        {
+        let fallback = self.state.fallback.map(|route| route.by);
+        if fallback == Some(Fallback::Deeper) && self.searches() {
             return controls.least / DEEPER;
         }
         if !self.can_move() {
