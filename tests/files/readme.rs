@@ -19,7 +19,7 @@ fn the_picture_and_the_list_of_pages_in_the_readme_are_those_of_the_program() {
 fn the_readme_is_a_front_page() {
     let readme = fs::read_to_string(readme()).unwrap();
     let lines = readme.lines().count();
-    assert!(lines <= 250, "{lines} lines");
+    assert!(lines <= 150, "{lines} lines");
     assert!(readme.contains("cargo test "), "it must say how to test");
 }
 

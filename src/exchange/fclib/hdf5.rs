@@ -480,7 +480,7 @@ mod tests {
         };
         assert!(read(with(2, 2, 0.1)).is_ok());
         let cases = [
-            (with(3, 2, 0.1), "in space"),
+            (with(3, 2, 0.1), "three-dimensional"),
             (with(2, 3, 0.1), "2 rows and 3 columns"),
             (with(2, 2, -0.1), "negative"),
             (
@@ -501,7 +501,7 @@ mod tests {
                 }),
                 "W/m",
             ),
-            (b"\x89HDF\r\n\x1a\nrest".to_vec(), "no sound"),
+            (b"\x89HDF\r\n\x1a\nrest".to_vec(), "invalid HDF5"),
         ];
         for (bytes, told) in cases {
             let broken = read(bytes).unwrap_err();
