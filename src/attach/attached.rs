@@ -17,11 +17,11 @@ use stickslip_core::step::places::Places;
 use stickslip_core::step::solver::{Lost, Offers, Posed, Solver};
 use stickslip_core::step::state::State;
 use stickslip_debugger::explain::names;
+use stickslip_debugger::recorded::decode::{self, Led, WireFrame};
 use stickslip_debugger::recorded::fault::Fault;
 use stickslip_debugger::recorded::log::Log;
 use stickslip_debugger::recorded::orders::requests;
 use stickslip_debugger::recorded::posed::posed;
-use stickslip_debugger::recorded::told::{self, Led, WireFrame};
 use stickslip_exchange::attach::message::{self, Ended, Hello, Id, Restore};
 use stickslip_exchange::attach::{Answer, Request};
 use stickslip_scene::Scene;
@@ -87,7 +87,7 @@ impl Attached {
             scene: told,
             offers,
         } = meet(&start, &log, &asks)?;
-        let (scene, ids, now) = told::start(&offers.name, &told, offers.begins_with())?;
+        let (scene, ids, now) = decode::start(&offers.name, &told, offers.begins_with())?;
         let mut attached = Attached {
             ids,
             now,

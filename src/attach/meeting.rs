@@ -74,10 +74,10 @@ pub fn other(request: &Request, answer: Answer, expected: &'static str) -> Fault
 /// The capabilities of a solver, in the debugger's terms.
 fn offers(hello: &Hello) -> Result<Offers, Fault> {
     let mut parameters: Vec<Parameter> = Vec::with_capacity(hello.parameters.len());
-    for told in &hello.parameters {
-        let parameter = parameter(told)?;
+    for sent in &hello.parameters {
+        let parameter = parameter(sent)?;
         if parameters.iter().any(|known| known.name == parameter.name) {
-            return unfit(told, "duplicate name");
+            return unfit(sent, "duplicate name");
         }
         parameters.push(parameter);
     }
@@ -103,45 +103,45 @@ fn offers(hello: &Hello) -> Result<Offers, Fault> {
     })
 }
 
-fn unfit<T>(told: &message::Parameter, why: &str) -> Result<T, Fault> {
+fn unfit<T>(sent: &message::Parameter, why: &str) -> Result<T, Fault> {
     Err(Fault::Unfit {
         message: "hello",
-        why: format!("parameter {:?}: {why}", told.name),
+        why: format!("parameter {:?}: {why}", sent.name),
     })
 }
 
-fn parameter(told: &message::Parameter) -> Result<Parameter, Fault> {
-    if told.name.is_empty()
-        || told
+fn parameter(sent: &message::Parameter) -> Result<Parameter, Fault> {
+    if sent.name.is_empty()
+        || sent
             .name
             .contains(|c: char| c.is_whitespace() || shown::is_order(c))
     {
-        return unfit(told, "the name must be one word");
+        return unfit(sent, "the name must be one word");
     }
     let numbers = |whole: bool| Range::Numbers {
-        least: told.least.unwrap_or(f64::NEG_INFINITY),
-        most: told.most.unwrap_or(f64::INFINITY),
+        least: sent.least.unwrap_or(f64::NEG_INFINITY),
+        most: sent.most.unwrap_or(f64::INFINITY),
         whole,
     };
     let parameter = Parameter {
-        name: told.name.clone(),
-        value: match &told.value {
+        name: sent.name.clone(),
+        value: match &sent.value {
             serde_json::Value::Bool(flag) => Value::Flag(*flag),
             serde_json::Value::String(text) => Value::Text(text.clone()),
             serde_json::Value::Number(number) => Value::Number(number.as_f64().unwrap_or(f64::NAN)),
-            _ => return unfit(told, "the value must be a number, a flag or a text"),
+            _ => return unfit(sent, "the value must be a number, a flag or a text"),
         },
-        range: match told.kind {
+        range: match sent.kind {
             ParameterKind::Number => numbers(false),
             ParameterKind::Integer => numbers(true),
             ParameterKind::Flag => Range::Flag,
-            ParameterKind::Choice => Range::Choice(told.choices.clone()),
+            ParameterKind::Choice => Range::Choice(sent.choices.clone()),
             ParameterKind::Text => Range::Text,
         },
-        about: shown::line(&told.about).into_owned(),
+        about: shown::line(&sent.about).into_owned(),
     };
     match parameter.check(&parameter.value) {
         Ok(()) => Ok(parameter),
-        Err(why) => unfit(told, &format!("its current value is invalid: {why}")),
+        Err(why) => unfit(sent, &format!("its current value is invalid: {why}")),
     }
 }

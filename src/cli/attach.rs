@@ -1,6 +1,6 @@
 //! `stickslip attach`: steps an external solver in the debugger, checks its protocol, or prints the Python module for writing one.
 
-use super::base::{Error, Exit, say, tell};
+use super::base::{Error, Exit, notify, say};
 use super::debugger::{DEBUGGER, needs_terminal};
 use super::front;
 use super::solver::SolverArgs;
@@ -71,12 +71,12 @@ fn checked(args: &Args) -> Result<Exit, Error> {
     let report = check::check(&args.solver.start(), &log);
     say(&report.text())?;
     if let Some(lost) = log.lost() {
-        tell(&format!("warning: {lost}"));
+        notify(&format!("warning: {lost}"));
     }
     let failed = report.failed();
     if failed > 0 {
         let s = if failed == 1 { "" } else { "s" };
-        tell(&format!("{failed} check{s} failed"));
+        notify(&format!("{failed} check{s} failed"));
         return Ok(Exit::Differ);
     }
     Ok(Exit::Good)

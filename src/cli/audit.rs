@@ -1,11 +1,11 @@
 //! `stickslip audit`: the largest violation of each law over entire histories.
 
-use super::base::{Error, Exit, SetArgs, say, tell};
+use super::base::{Error, Exit, SetArgs, notify, say};
 use super::course::Course;
 use super::interrupt::Interrupt;
 use std::path::Path;
 use std::sync::Arc;
-use stickslip_core::contact::laws::ContactLaw;
+use stickslip_core::contact::laws::JudgedLaw;
 use stickslip_core::model::Model;
 use stickslip_core::step::drive::RunEnd;
 use stickslip_core::step::event::Outcome;
@@ -71,7 +71,7 @@ fn one(course: &Course, interrupt: &Interrupt) -> Result<Exit, Error> {
     let failed = match end {
         RunEnd::Stopped(error) => return Err(error),
         RunEnd::Interrupted => {
-            tell(&format!("{name}: interrupted"));
+            notify(&format!("{name}: interrupted"));
             return Ok(Exit::Interrupted);
         }
         RunEnd::Failed(failure) => {
@@ -84,7 +84,7 @@ fn one(course: &Course, interrupt: &Interrupt) -> Result<Exit, Error> {
     say(&table(name, model, &audit))?;
     if let Some((position, load, failure)) = failed {
         let text = report::failure(model, stepper.state(), position, load, &failure);
-        tell(&format!("{name}: history ends early: {text}"));
+        notify(&format!("{name}: history ends early: {text}"));
     }
     Ok(match audit.broken().next() {
         Some(_) => Exit::Unconverged,
@@ -102,10 +102,10 @@ fn table(name: &str, model: &Model, audit: &Audit) -> String {
         _ => format!("{name}: {increments} increments accepted, {marked} of them marked\n"),
     };
     text += "  law          worst     allowed   where\n";
-    let of_bonds = ContactLaw::OF_BONDS
+    let of_bonds = JudgedLaw::OF_BONDS
         .into_iter()
         .filter(|law| audit.of(*law).is_some());
-    for law in ContactLaw::ALL.into_iter().chain(of_bonds) {
+    for law in JudgedLaw::ALL.into_iter().chain(of_bonds) {
         text += &match audit.of(law) {
             None => format!("  {:<11}  -\n", law.name()),
             Some(found) => row(model, law, found),
@@ -170,7 +170,7 @@ fn place(found: &Found) -> String {
     format!("increment {} (load {})", found.increment, found.load_factor)
 }
 
-fn row(model: &Model, law: ContactLaw, found: &Found) -> String {
+fn row(model: &Model, law: JudgedLaw, found: &Found) -> String {
     let node = found
         .finding
         .slave

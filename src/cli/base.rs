@@ -117,7 +117,7 @@ pub fn quoted(word: &str) -> String {
 }
 
 /// Prints a message to standard error. Unlike `eprintln`, it does not panic if standard error is closed.
-pub fn tell(message: &str) {
+pub fn notify(message: &str) {
     let _ = writeln!(io::stderr(), "{}", shown::text(message));
 }
 
@@ -149,7 +149,7 @@ pub fn put(output: Option<&Path>, text: &str, force: bool) -> Result<Exit, Error
     match output.filter(|path| path.as_os_str() != "-") {
         Some(path) => {
             files::write(path, text, force)?;
-            tell(&format!("wrote {}", path.display()));
+            notify(&format!("wrote {}", path.display()));
         }
         None => drop(say(text)?),
     }

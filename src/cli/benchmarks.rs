@@ -1,6 +1,6 @@
 //! `stickslip study benchmarks`: scenes with published reference values ([`stickslip_study::benchmarks`]).
 
-use super::base::{Error, Exit, tell};
+use super::base::{Error, Exit, notify};
 use super::interrupt::Interrupt;
 use super::outputs::{OutputArgs, Outputs};
 use stickslip_scene::number::six;
@@ -30,7 +30,7 @@ pub fn main(list: &Benchmarks, out: &OutputArgs) -> Result<Exit, Error> {
     let all = compared.len();
     let count = |is: fn(&Standing) -> bool| compared.iter().filter(|c| is(&c.standing)).count();
     let good = count(|standing| *standing == Standing::Good);
-    tell(&format!("{}: {good} of {all} pass", list.name));
+    notify(&format!("{}: {good} of {all} pass", list.name));
     Ok(match count(|standing| *standing == Standing::NotRun) {
         0 if good == all => Exit::Good,
         0 => Exit::Differ,
@@ -39,9 +39,9 @@ pub fn main(list: &Benchmarks, out: &OutputArgs) -> Result<Exit, Error> {
 }
 
 fn tell_table(list: &Benchmarks, compared: &[Compared]) {
-    tell(&list.title);
+    notify(&list.title);
     if !list.about.is_empty() {
-        tell(&list.about);
+        notify(&list.about);
     }
     let header = [
         "benchmark",
@@ -57,7 +57,7 @@ fn tell_table(list: &Benchmarks, compared: &[Compared]) {
     let pairs = list.list.iter().zip(compared);
     rows.extend(pairs.map(|(benchmark, compared)| row(benchmark, compared)));
     for line in aligned(&rows, 2) {
-        tell(&line);
+        notify(&line);
     }
 }
 

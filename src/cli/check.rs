@@ -1,6 +1,6 @@
 //! `stickslip check`: validates a scene and estimates its cost.
 
-use super::base::{Error, Exit, SceneArgs, say, tell};
+use super::base::{Error, Exit, SceneArgs, notify, say};
 use stickslip_scene::Scene;
 use stickslip_scene::cost::Cost;
 use stickslip_scene::format::paths;
@@ -26,16 +26,16 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     say(&text)?;
     if !args.paths {
         for remark in &scene.remarks {
-            tell(&format!("note: {remark}"));
+            notify(&format!("note: {remark}"));
         }
         for note in scene.names().notes(scene.spec.refine) {
-            tell(&format!("note: {note}"));
+            notify(&format!("note: {note}"));
         }
         for warning in gaps::warnings(&scene.model) {
-            tell(&format!("warning: {warning}"));
+            notify(&format!("warning: {warning}"));
         }
         if let Some(warning) = precision::warning(&scene.model) {
-            tell(&format!("warning: {warning}"));
+            notify(&format!("warning: {warning}"));
         }
     }
     Ok(Exit::Good)

@@ -4,7 +4,7 @@
 //! Exit code 0: the scene was written. Exit code 3: there is none, and the message gives the reason: the scene converges, fails
 //! otherwise, or its core cannot be written as a matrix.
 
-use super::base::{Error, Exit, SceneArgs, put, tell};
+use super::base::{Error, Exit, SceneArgs, notify, put};
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -41,7 +41,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     let text = match text(&scene) {
         Ok(text) => text,
         Err(why) => {
-            tell(&format!("{}: {why}", scene.name));
+            notify(&format!("{}: {why}", scene.name));
             return Ok(Exit::Unconverged);
         }
     };
@@ -89,7 +89,7 @@ fn text(scene: &Scene) -> Result<String, NoCore> {
         return Err(NoCore::OtherFailure(told));
     };
     if scene.model.settings.at_cycle != AtCycle::Stop {
-        tell("note: settings.at_cycle was ignored; with it the scene may escape this cycle");
+        notify("note: settings.at_cycle was ignored; with it the scene may escape this cycle");
     }
     let (at, load) = (stepper.event().position, stepper.state().target);
     let problem = stepper

@@ -1,11 +1,11 @@
 //! `stickslip export INPUT -o FILE`: converts a scene, snapshot, journal or mesh; the extension selects the format
 //! ([`stickslip_debugger::record::export`]).
 
-use super::base::{Error, Exit, SetArgs, tell};
+use super::base::{Error, Exit, SetArgs, notify};
 use super::course::Course;
 use super::front;
 use super::interrupt::Interrupt;
-use super::place::{At, seek, tell_missed};
+use super::place::{At, notify_missed, seek};
 use super::solver::{SolverArgs, session_of};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -96,7 +96,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     let whole: Vec<_> = names.into_iter().zip(contents).collect();
     files::write_all(&whole, args.force)?;
     for (name, _) in &whole {
-        tell(&format!("wrote {}", name.display()));
+        notify(&format!("wrote {}", name.display()));
     }
     Ok(Exit::Good)
 }
@@ -256,7 +256,7 @@ fn state(
         None => Ok(Err(Exit::Bad)),
         Some(Ok(contents)) => Ok(Ok(contents)),
         Some(Err(why)) => {
-            tell(&format!("{}: {why}", scene.name));
+            notify(&format!("{}: {why}", scene.name));
             Ok(Err(Exit::Unconverged))
         }
     }
@@ -284,14 +284,14 @@ fn drive(
         let found = seek(stepper, at, interrupt, &mut |stepper| seen.see(stepper));
         return Ok(match found {
             Ok(_) => Ended::There(String::new()),
-            Err(missed) => Ended::Not(tell_missed(scene, stepper, at, missed)),
+            Err(missed) => Ended::Not(notify_missed(scene, stepper, at, missed)),
         });
     }
     let end = course.go(stepper, interrupt, &mut |stepper| seen.see(stepper))?;
     Ok(match end {
         RunEnd::Stopped(error) => return Err(error),
         RunEnd::Interrupted => {
-            tell(&format!("{name}: interrupted"));
+            notify(&format!("{name}: interrupted"));
             Ended::Not(Exit::Interrupted)
         }
         RunEnd::Finished | RunEnd::Spent => match &stepper.state().status {
@@ -310,7 +310,7 @@ fn failed(scene: &Scene, stepper: &Stepper, failure: &Failure, told: bool) -> St
     if told {
         let at = names::position(stepper.event().position);
         let name = &scene.name;
-        tell(&format!("{name}: {at}: {words}; exporting this state"));
+        notify(&format!("{name}: {at}: {words}; exporting this state"));
     }
     words
 }

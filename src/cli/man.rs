@@ -1,6 +1,6 @@
 //! `stickslip man`: pages for man, one for the program and one for each subcommand.
 
-use super::base::{Error, Exit, say, tell};
+use super::base::{Error, Exit, notify, say};
 use clap_mangen::Man;
 use std::path::PathBuf;
 use stickslip_platform::files;
@@ -31,7 +31,7 @@ pub fn main(args: &Args, mut program: clap::Command) -> Result<Exit, Error> {
         pages.push((folder.join(format!("{name}.1")), page(command)?));
     }
     files::write_all(&pages, args.force)?;
-    tell(&format!(
+    notify(&format!(
         "wrote {} pages to {}; `man -M` reads them if the folder is named man1",
         pages.len(),
         folder.display()

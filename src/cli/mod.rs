@@ -46,7 +46,7 @@ mod study;
 mod sweep;
 mod table;
 
-use base::{Exit, say, tell};
+use base::{Exit, notify, say};
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::process::ExitCode;
 use stickslip_study::origin;
@@ -135,14 +135,14 @@ pub fn main() -> ExitCode {
         Ok(cli) => cli,
         Err(error) => {
             if let Some(told) = groups::mistyped(&error, std::env::args_os().nth(1)) {
-                tell(&told);
+                notify(&told);
                 return Exit::Bad.into();
             }
             // Clap reports help as an error, too; a failure to print it is ignored.
             // The typed text is shown unchanged; the message has no colours.
             let told = error.render().ansi().to_string();
             match error.use_stderr() {
-                true => tell(told.trim_end_matches('\n')),
+                true => notify(told.trim_end_matches('\n')),
                 false => drop(say(&told)),
             }
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
@@ -196,7 +196,7 @@ pub fn main() -> ExitCode {
     };
     ended
         .unwrap_or_else(|error| {
-            tell(&error.to_string());
+            notify(&error.to_string());
             match error {
                 base::Error::Again(_) => Exit::Again,
                 _ => Exit::Bad,

@@ -1,6 +1,6 @@
 //! Positions in a run, as given to `--at`.
 
-use super::base::{Exit, NoValue, tell};
+use super::base::{Exit, NoValue, notify};
 use super::interrupt::Interrupt;
 use std::fmt;
 use std::ops::ControlFlow;
@@ -129,7 +129,7 @@ pub fn seek<T: Solver + ?Sized>(
     }
 }
 
-pub fn tell_missed(scene: &Scene, solver: &dyn Solver, at: At, missed: Missed) -> Exit {
+pub fn notify_missed(scene: &Scene, solver: &dyn Solver, at: At, missed: Missed) -> Exit {
     let (event, name) = (solver.event(), &scene.name);
     match missed {
         Missed::Failed(failure) => {
@@ -140,21 +140,21 @@ pub fn tell_missed(scene: &Scene, solver: &dyn Solver, at: At, missed: Missed) -
                 event.load_factor,
                 &failure,
             );
-            tell(&format!("{name}: {at} not reached: {text}"));
+            notify(&format!("{name}: {at} not reached: {text}"));
             Exit::Unconverged
         }
         Missed::Lost(lost) => {
-            tell(&format!("{name}: {at} not reached: {lost}"));
+            notify(&format!("{name}: {at} not reached: {lost}"));
             Exit::Unconverged
         }
         Missed::Interrupted => {
             let reached = names::position(event.position);
-            tell(&format!("{name}: interrupted after {reached}"));
+            notify(&format!("{name}: interrupted after {reached}"));
             Exit::Interrupted
         }
         Missed::Absent => {
             let reached = report::outcome(&scene.model, event);
-            tell(&format!("{name}: no position {at}: {reached}"));
+            notify(&format!("{name}: no position {at}: {reached}"));
             Exit::Bad
         }
     }

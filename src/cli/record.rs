@@ -1,8 +1,8 @@
 //! `stickslip record`: solves up to a position, and writes a snapshot of it.
 
-use super::base::{Error, Exit, say, tell};
+use super::base::{Error, Exit, notify, say};
 use super::interrupt::Interrupt;
-use super::place::{At, seek, tell_missed};
+use super::place::{At, notify_missed, seek};
 use super::solver::{Subject, SubjectArgs};
 use std::path::PathBuf;
 use stickslip_debugger::record::snapshot::Snapshot;
@@ -37,7 +37,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     };
     let steps = match seek(&mut *solver, args.at, &interrupt, &mut |_| {}) {
         Ok(steps) => steps,
-        Err(missed) => return Ok(tell_missed(&scene, &*solver, args.at, missed)),
+        Err(missed) => return Ok(notify_missed(&scene, &*solver, args.at, missed)),
     };
     let event = Some(solver.event());
     let text = Snapshot::take(&scene, &[], steps, solver.state(), event).to_text()?;
@@ -47,7 +47,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     };
     output.append(text.as_bytes())?;
     output.finish()?;
-    tell(&format!("wrote {}", path.display()));
+    notify(&format!("wrote {}", path.display()));
     Ok(Exit::Good)
 }
 

@@ -1,7 +1,7 @@
 //! `stickslip remedies SCENE`: solves up to the first increment that fails, tries every remedy there, and prints their cost and
 //! result.
 
-use super::base::{Error, Exit, SceneArgs, quoted, say, tell};
+use super::base::{Error, Exit, SceneArgs, notify, quoted, say};
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -38,12 +38,12 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     let mut stepper = solver(Arc::new(scene.model.clone()));
     let end = stepper.drive(Until::end(), |_| ControlFlow::<Infallible>::Continue(()));
     let RunEnd::Failed(failure) = end else {
-        tell("the scene converges; nothing to remedy");
+        notify("the scene converges; nothing to remedy");
         return Ok(Exit::Good);
     };
     let state = stepper.state().clone();
     let (model, event) = (stepper.model().clone(), stepper.event());
-    tell(&report::failure(
+    notify(&report::failure(
         &model,
         &state,
         event.position,
@@ -51,7 +51,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         &failure,
     ));
     for line in page::facts(&mut stepper, &state, &failure, &|| false) {
-        tell(&format!("  {line}"));
+        notify(&format!("  {line}"));
     }
     let mut trials = Vec::new();
     for remedy in remedies::all(&mut stepper, &state, spec, &|| false) {

@@ -1,6 +1,6 @@
 //! `stickslip replay`: recomputes snapshots, and compares.
 
-use super::base::{Error, Exit, say, scene_instead, tell};
+use super::base::{Error, Exit, notify, say, scene_instead};
 use super::solver::SolverArgs;
 use std::path::{Path, PathBuf};
 use stickslip_debugger::record::differences::compare;
@@ -32,7 +32,7 @@ fn one(file: &Path, solver: &SolverArgs) -> Result<Exit, Error> {
     let recorded = match Snapshot::read(file) {
         Ok(recorded) => recorded,
         Err(error) => {
-            tell(&scene_instead(file).unwrap_or_else(|| error.to_string()));
+            notify(&scene_instead(file).unwrap_or_else(|| error.to_string()));
             return Ok(Exit::Bad);
         }
     };
@@ -50,7 +50,7 @@ fn one(file: &Path, solver: &SolverArgs) -> Result<Exit, Error> {
             return Ok(Exit::Differ);
         }
         Err(error) => {
-            tell(&format!("{shown}: {error}"));
+            notify(&format!("{shown}: {error}"));
             return Ok(Exit::Bad);
         }
     };

@@ -1,6 +1,6 @@
 //! `stickslip resume [JOURNAL]`: replays a journal, and continues in the debugger.
 
-use super::base::{Error, Exit, tell};
+use super::base::{Error, Exit, notify};
 use super::debugger::{DEBUGGER, needs_terminal};
 use super::front;
 use super::solver::{SolverArgs, session_of};
@@ -41,18 +41,18 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         path.display(),
         record.entries.len()
     );
-    tell(&format!("replaying {text}"));
+    notify(&format!("replaying {text}"));
     let session = session_of(&record, &args.solver)?;
     let mut session = match record.replay_in(session, &mut |_, _| {}) {
         Err(error @ JournalError::Differs { .. }) => {
-            tell(&error.to_string());
+            notify(&error.to_string());
             return Ok(Exit::Differ);
         }
         replayed => replayed?,
     };
     let reservations = record.reservations();
     let Some(mut journal) = kept else {
-        tell(&format!("replay is bit-identical{reservations}"));
+        notify(&format!("replay is bit-identical{reservations}"));
         return Ok(Exit::Good);
     };
     journal.cut(record.whole_bytes)?;

@@ -1,6 +1,6 @@
 //! `stickslip run`: solves a scene from start to end.
 
-use super::base::{Error, Exit, Sent, distinct, tell};
+use super::base::{Error, Exit, Sent, distinct, notify};
 use super::grids::{Each, Grids};
 use super::interrupt::Interrupt;
 use super::progress::Progress;
@@ -97,7 +97,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     let mut outputs = RunOutputs::open(args, &scene)?;
     if !args.quiet {
         for warning in gaps::warnings(&scene.model) {
-            tell(&format!("warning: {warning}"));
+            notify(&format!("warning: {warning}"));
         }
     }
     let mut run = Run::new(&scene, solver, args);
@@ -105,12 +105,12 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     run.tally.progress.clear();
     let (snapshot, wrote) = outputs.close()?;
     if let Some(wrote) = wrote.filter(|_| !args.quiet) {
-        tell(&wrote);
+        notify(&wrote);
     }
     if let Some(output) = snapshot {
         write_snapshot(output, &run)?;
     }
-    Ok(run.tell(&end, args, &interrupt))
+    Ok(run.notify(&end, args, &interrupt))
 }
 
 /// The output files of a run.
@@ -308,24 +308,24 @@ impl<'a> Run<'a> {
     }
 
     /// Prints how the run ended.
-    fn tell(&mut self, end: &Ended, args: &Args, interrupt: &Interrupt) -> Exit {
+    fn notify(&mut self, end: &Ended, args: &Args, interrupt: &Interrupt) -> Exit {
         if self.tally.doubtful > MOST_WARNINGS {
-            tell(&format!(
+            notify(&format!(
                 "warning: {} increments in total were accepted with warnings",
                 self.tally.doubtful
             ));
         }
         if let Some(left) = accuracy::left(&self.tally.noisiest) {
-            tell(&format!("warning: {left}"));
+            notify(&format!("warning: {left}"));
         }
         let tolerance = self.tally.scene.model.settings.tolerance;
         if let Some(raised) =
             accuracy::raised(tolerance, self.tally.reached).filter(|_| !args.quiet)
         {
-            tell(&format!("note: {raised}"));
+            notify(&format!("note: {raised}"));
         }
         if self.tally.notes > MOST_WARNINGS && !args.quiet {
-            tell(&format!(
+            notify(&format!(
                 "note: {} such notes in total; the rest is not shown",
                 self.tally.notes
             ));
@@ -339,13 +339,13 @@ impl<'a> Run<'a> {
         if let Some(touch) = self.tally.touch.as_ref().filter(|_| !interrupt.came())
             && let Some(difference) = touch.measure(self.solver.model())
         {
-            tell(&format!("note: {}", difference.words()));
+            notify(&format!("note: {}", difference.words()));
         }
         let name = &self.tally.scene.name;
         let end = match end {
             Ok(end) => end,
             Err(lost) => {
-                tell(&format!("{name}: {lost}"));
+                notify(&format!("{name}: {lost}"));
                 return Exit::Unconverged;
             }
         };
@@ -354,12 +354,12 @@ impl<'a> Run<'a> {
             // A reader that closes the pipe has all the data it wants.
             RunEnd::Stopped(Closed::Pipe) => Exit::Good,
             RunEnd::Stopped(Closed::Endless(text)) => {
-                tell(&format!("{name}: {text}"));
+                notify(&format!("{name}: {text}"));
                 Exit::Unconverged
             }
             RunEnd::Interrupted => {
                 let at = names::position(self.solver.state().next);
-                tell(&format!("{name}: interrupted before {at}"));
+                notify(&format!("{name}: interrupted before {at}"));
                 Exit::Interrupted
             }
             RunEnd::Failed(failure) => {
@@ -372,21 +372,21 @@ impl<'a> Run<'a> {
                     failure,
                 );
                 self.tell_marks();
-                tell(&format!("{name}: {text}"));
+                notify(&format!("{name}: {text}"));
                 if self.solver.stepper().is_none() {
                     // Only an attached solver knows the cause.
-                    tell("  `stickslip attach` opens it in the debugger; d shows the cause");
+                    notify("  `stickslip attach` opens it in the debugger; d shows the cause");
                     return Exit::Unconverged;
                 }
                 let (state, model) = (self.solver.state().clone(), self.solver.model().clone());
                 let mut scratch = solver(model);
                 let remedies = remedies::command(self.tally.scene);
-                tell(&format!(
+                notify(&format!(
                     "  `{remedies}` tries every remedy; in the debugger, d shows the cause"
                 ));
                 // The limit load is printed last.
                 for line in page::facts(&mut scratch, &state, failure, &|| interrupt.came()) {
-                    tell(&format!("  {line}"));
+                    notify(&format!("  {line}"));
                 }
                 Exit::Unconverged
             }
@@ -405,13 +405,13 @@ impl<'a> Run<'a> {
         let loads = |all: &[f64]| first_of(all.iter().map(|&x| four(x)), MOST_STRETCHES, ", ");
         if !jumps.is_empty() {
             let at = loads(jumps);
-            tell(&format!(
+            notify(&format!(
                 "{name}: jumped to another equilibrium branch at load {at}"
             ));
         }
         if !losses.is_empty() {
             let at = loads(losses);
-            tell(&format!(
+            notify(&format!(
                 "{name}: equilibrium becomes unstable at load {at}; a structure does not stay in the states after it (--stability checks each state; page jumps)"
             ));
         }
@@ -424,7 +424,7 @@ impl<'a> Run<'a> {
         let event = self.solver.event();
         if event.is_cut_short(model) {
             let (arc, load) = (four(event.arc.unwrap_or(f64::NAN)), event.load_factor);
-            tell(&format!(
+            notify(&format!(
                 "{name}: path incomplete: its maximum length {arc} was reached at load {} instead of load {}; page limit-points",
                 four(load),
                 model.path.last().unwrap_or(&f64::NAN)
@@ -440,7 +440,7 @@ impl<'a> Run<'a> {
     }
 
     fn tell_summary(&self, monitors: bool) {
-        tell(&format!(
+        notify(&format!(
             "{}: {} increments accepted, up to load {}; {} major and {} minor iterations",
             self.tally.scene.name,
             self.tally.accepted,
@@ -450,7 +450,7 @@ impl<'a> Run<'a> {
         ));
         let stability = self.tally.stability.as_ref();
         if let Some(stability) = stability.and_then(Stretches::told) {
-            tell(&stability);
+            notify(&stability);
         }
         if !monitors {
             return;
@@ -463,7 +463,7 @@ impl<'a> Run<'a> {
             .iter()
             .zip(&self.tally.monitors)
         {
-            tell(&format!("  {} {value:?}", shown::padded(&monitor.name, 12)));
+            notify(&format!("  {} {value:?}", shown::padded(&monitor.name, 12)));
         }
     }
 }
@@ -578,11 +578,11 @@ impl Tally<'_> {
             }
         }
         for line in aligned(&table, 3) {
-            tell(&line);
+            notify(&line);
         }
         if self.slaves.len() > MOST_SLAVES {
             let more = self.slaves.len() - MOST_SLAVES;
-            tell(&format!(
+            notify(&format!(
                 "  and {more} more slave nodes; --trace writes all"
             ));
         }
@@ -594,7 +594,7 @@ impl Tally<'_> {
         if self.notes <= MOST_WARNINGS && !self.quiet {
             self.progress.clear();
             let text = report::outcome(&self.scene.model, event);
-            tell(&format!("note: {text}"));
+            notify(&format!("note: {text}"));
         }
     }
 
@@ -629,7 +629,7 @@ impl Tally<'_> {
         if self.doubtful <= MOST_WARNINGS {
             let (increment, load) = (event.position.increment, event.load_factor);
             self.progress.clear();
-            tell(&format!(
+            notify(&format!(
                 "warning: increment {increment} (load {load}) was accepted{although}"
             ));
         }

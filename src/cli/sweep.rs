@@ -1,6 +1,6 @@
 //! Shared by all sweeps: `--shard`, `--log`, `--merge`, running, and reporting.
 
-use super::base::{Error, Exit, quoted, tell};
+use super::base::{Error, Exit, notify, quoted};
 use super::interrupt::Interrupt;
 use super::outputs::{OutputArgs, Outputs};
 use std::path::PathBuf;
@@ -47,7 +47,7 @@ impl Report<'_> {
     pub fn write(self, outputs: Outputs, quiet: bool) -> Result<(), Error> {
         outputs.write(&self.table, self.picture)?;
         let lines = self.lines.iter().filter(|_| !quiet);
-        lines.chain(&self.warnings).for_each(|line| tell(line));
+        lines.chain(&self.warnings).for_each(|line| notify(line));
         Ok(())
     }
 }
@@ -113,7 +113,7 @@ impl SweepArgs {
             let (all, there) = (own().count(), own().filter(|cell| store.has(cell)).count());
             let done = count_done(&results);
             if done < all {
-                tell(&format!(
+                notify(&format!(
                     "interrupted after {done} of {all} {unit} of shard {shard}; repeat the command to continue"
                 ));
                 return Ok(Exit::Interrupted);
@@ -122,7 +122,7 @@ impl SweepArgs {
                 outputs.write_table(&report(results)?.table)?;
             }
             if !self.out.quiet {
-                tell(&format!(
+                notify(&format!(
                     "shard {shard}: {all} {unit}, {there} of them from the log"
                 ));
             }
@@ -131,14 +131,14 @@ impl SweepArgs {
         let (all, done) = (results.len(), count_done(&results));
         let report = match report(results) {
             Err(_) if interrupt.came() => {
-                tell("interrupted before any result");
+                notify("interrupted before any result");
                 return Ok(Exit::Interrupted);
             }
             report => report?,
         };
         report.write(outputs, self.out.quiet)?;
         if done < all {
-            tell(&format!("interrupted after {done} of {all} {unit}"));
+            notify(&format!("interrupted after {done} of {all} {unit}"));
             return Ok(Exit::Interrupted);
         }
         Ok(Exit::Good)
@@ -155,7 +155,7 @@ fn tell_machines<T: Outcome>(store: &Store<T>) {
     let here = origin::processor();
     let others: Vec<&str> = store.machines().filter(|other| *other != here).collect();
     if !others.is_empty() {
-        tell(&format!(
+        notify(&format!(
             "computed on {}, merged on {here}, which tables and pictures name; last digits may differ",
             others.join("; ")
         ));
@@ -177,13 +177,13 @@ const MOST: usize = 8;
 
 fn tell_missing(missing: &Missing, all: usize, unit: &str) {
     let count = missing.cells.len();
-    tell(&format!(
+    notify(&format!(
         "{count} of {all} {unit} are missing (numbers from 0, in the order of the table): {}",
         ranges(&missing.cells, MOST)
     ));
     let given: Vec<String> = std::env::args().skip(1).collect();
     let sweep = words(&given);
-    tell("To compute them, run this; then merge again with the new logs:");
+    notify("To compute them, run this; then merge again with the new logs:");
     for (shard, file) in missing.shards.iter().take(MOST) {
         let (number, of) = (shard.number(), shard.of());
         let file = file.as_ref().map(|file| file.display().to_string());
@@ -192,7 +192,7 @@ fn tell_missing(missing: &Missing, all: usize, unit: &str) {
             1 => String::new(),
             _ => format!(" --shard {shard}"),
         };
-        tell(&format!(
+        notify(&format!(
             "  stickslip {sweep}{part} --log {}",
             quoted(&file)
         ));
@@ -200,7 +200,7 @@ fn tell_missing(missing: &Missing, all: usize, unit: &str) {
     if missing.shards.len() > MOST {
         let numbers = missing.shards.iter().skip(MOST);
         let numbers: Vec<usize> = numbers.map(|(s, _)| s.number() as usize).collect();
-        tell(&format!(
+        notify(&format!(
             "  and the same for shards {}",
             ranges(&numbers, usize::MAX)
         ));

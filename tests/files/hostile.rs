@@ -14,7 +14,7 @@ pub const CYCLES: &str = "osc-two6";
 /// Far more than a refusal takes, since the machine may be busy with other tests.
 pub const DEADLINE: Duration = Duration::from_secs(20);
 
-/// Runs the program, and does not wait for ever.
+/// Runs the program, and does not wait forever.
 #[track_caller]
 pub fn run(directory: &TempDir, arguments: &[&str]) -> Output {
     let mut child = program(directory.path(), arguments)
@@ -28,7 +28,7 @@ pub fn run(directory: &TempDir, arguments: &[&str]) -> Output {
     while child.try_wait().unwrap().is_none() {
         if begin.elapsed() > DEADLINE {
             child.kill().unwrap();
-            panic!("it waits for ever: {arguments:?}");
+            panic!("it waits forever: {arguments:?}");
         }
         std::thread::sleep(Duration::from_millis(5));
     }

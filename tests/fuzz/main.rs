@@ -166,7 +166,7 @@ fn fuzz(target: &str, corpus: &[String], read: impl Fn(&str) -> Took) {
     );
 }
 
-/// Ends everything where one input takes for ever.
+/// Ends everything where one input takes forever.
 fn watch_over(target: &str, over: &AtomicBool, present: &Mutex<String>, done: &AtomicU64) {
     let (mut last, mut since) = (0, Instant::now());
     while !over.load(Ordering::SeqCst) {
@@ -177,7 +177,7 @@ fn watch_over(target: &str, over: &AtomicBool, present: &Mutex<String>, done: &A
         } else if since.elapsed() > PATIENCE {
             let file = leave(target, &present.lock().unwrap());
             eprintln!(
-                "{target}: input {now} takes for ever; it is in {}",
+                "{target}: input {now} takes forever; it is in {}",
                 file.display()
             );
             std::process::abort();

@@ -30,7 +30,6 @@ from pathlib import Path
 
 TOP = Path(__file__).resolve().parents[2]
 MOST_BYTES = 15_000_000
-PACKAGES = ["stickslip-linalg", "stickslip-exchange", "stickslip-core", "stickslip"]
 
 
 def say(text):
@@ -44,16 +43,18 @@ def cargo(*arguments, **more):
 def packed(place):
     """Packs all packages, unpacks them there, and gives their folders."""
     cargo("package", "--workspace", "--no-verify", "--allow-dirty", "--quiet", cwd=TOP)
-    told = subprocess.run(
+    metadata = subprocess.run(
         ["cargo", "metadata", "--no-deps", "--format-version", "1"], cwd=TOP, check=True, capture_output=True
     )
-    told = json.loads(told.stdout)
-    versions = {package["name"]: package["version"] for package in told["packages"]}
+    metadata = json.loads(metadata.stdout)
     folders = {}
-    for name in PACKAGES:
-        file = Path(told["target_directory"]) / "package" / f"{name}-{versions[name]}.crate"
+    for package in metadata["packages"]:
+        if package["publish"] == []:
+            continue
+        name, version = package["name"], package["version"]
+        file = Path(metadata["target_directory"]) / "package" / f"{name}-{version}.crate"
         shutil.unpack_archive(file, place, format="gztar")
-        folders[name] = place / f"{name}-{versions[name]}"
+        folders[name] = place / f"{name}-{version}"
         count = sum(1 for path in folders[name].rglob("*") if path.is_file())
         say(f"packed      {file.name}: {count} files, {file.stat().st_size / 1e6:.2f} MB")
     return folders
@@ -62,10 +63,10 @@ def packed(place):
 def installed(folders, root, options):
     """Installs the program from the unpacked packages."""
     arguments = ["install", "--path", str(folders["stickslip"]), "--root", str(root), "--quiet"]
-    for name in PACKAGES[:-1]:
-        arguments += ["--config", f'patch.crates-io.{name}.path="{folders[name]}"']
-    if options.debug:
-        arguments.append("--debug")
+    for name, folder in folders.items():
+        if name != "stickslip":
+            arguments += ["--config", f'patch.crates-io.{name}.path="{folder}"']
+    arguments += ["--debug"] if options.debug else ["--profile", "dist"]
     if options.features is not None:
         arguments += ["--no-default-features", "--features", options.features]
     begin = time.monotonic()
@@ -238,7 +239,7 @@ def without_terminal(place, features):
 
 
 def walk(place):
-    """Five minutes with problem 01, as the README has it."""
+    """Five minutes with problem 01, as on page tour."""
     work = place.folder / "work"
     before = set(work.iterdir())
     place.debug("01-pinned-beam-rough-floor", [

@@ -30,7 +30,7 @@ pub struct Drawn {
     pub text: String,
 }
 
-/// Scene `number` of a seed. The same for ever, unless a family is changed.
+/// Scene `number` of a seed. The same forever, unless a family is changed.
 pub fn draw(seed: u64, number: u64) -> Drawn {
     let (family, make) = FAMILIES[(number % FAMILIES.len() as u64) as usize];
     let mut draft = make(&mut Draw::new(seed, number));

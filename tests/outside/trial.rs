@@ -13,7 +13,7 @@ use stickslip::step::recovery::fallback::Fallback;
 use stickslip::step::state::IncrementStart;
 use stickslip::step::stepper::Stepper;
 
-/// Minor iterations after which a run is given up, so that one that goes on for ever ends the same way everywhere.
+/// Minor iterations after which a run is given up, so that one that goes on forever ends the same way everywhere.
 const PATIENCE: usize = 20_000;
 /// Forces that are this part of what the stiffest section bears before it is strained by 1 are as exact as can be had.
 const ROUNDING: f64 = 1e-7;

@@ -4,7 +4,7 @@ use crate::common::scene;
 use crate::program::{code, err, out, program};
 use std::path::Path;
 use std::sync::Arc;
-use stickslip::contact::laws::ContactLaw;
+use stickslip::contact::laws::JudgedLaw;
 use stickslip::explain::audit::Audit;
 use stickslip::explain::remedies::{self, TrialEnd};
 use stickslip::model::Mode;
@@ -50,7 +50,7 @@ fn assert_clean(name: &str, audit: &Audit, may_be_marked: bool) {
         .flatten()
         .map(|found| found.finding);
     let mut beyond =
-        marked.filter(|finding| finding.is_broken() && finding.law != ContactLaw::Touch);
+        marked.filter(|finding| finding.is_broken() && finding.law != JudgedLaw::Touch);
     assert!(
         may_be_marked || beyond.next().is_none(),
         "{name}: {beyond:?}"
@@ -65,7 +65,7 @@ fn every_accepted_increment_of_every_built_in_scene_obeys_every_law() {
         let may_be_marked = leaves_the_law(&scene);
         let audit = audit(scene);
         assert_clean(builtin.name, &audit, may_be_marked);
-        judged += u32::from(audit.of(ContactLaw::Slip).is_some());
+        judged += u32::from(audit.of(JudgedLaw::Slip).is_some());
     }
     assert!(judged > 10, "nodes are pressed in most scenes: {judged}");
 }
@@ -94,7 +94,7 @@ fn the_command_prints_the_worst_of_every_law_and_ends_with_0_where_all_hold() {
     let output = program(here, &["audit", &file, snapshot]).output().unwrap();
     assert_eq!(code(&output), 0, "{}", err(&output));
     let text = out(&output);
-    for law in ContactLaw::ALL {
+    for law in JudgedLaw::ALL {
         let rows = text.matches(&format!("\n  {} ", law.name())).count();
         assert_eq!(rows, 2, "{text}");
     }
@@ -167,10 +167,7 @@ fn an_audit_keeps_the_worst_of_all_increments() {
     let scene = scene("01-pinned-beam-rough-floor", &[]);
     let mut stepper = Stepper::new(Arc::new(scene.model));
     let mut audit = Audit::default();
-    let (mut worst, mut last) = (
-        [0.0_f64; ContactLaw::ALL.len()],
-        [0.0; ContactLaw::ALL.len()],
-    );
+    let (mut worst, mut last) = ([0.0_f64; JudgedLaw::ALL.len()], [0.0; JudgedLaw::ALL.len()]);
     while let Some(event) = stepper.step() {
         let accepted = matches!(event.outcome, Outcome::Increment { marked: None, .. });
         audit.take(&stepper);
@@ -181,7 +178,7 @@ fn an_audit_keeps_the_worst_of_all_increments() {
             worst = std::array::from_fn(|k| worst[k].max(last[k]));
         }
     }
-    let kept = ContactLaw::ALL.map(|law| audit.of(law).map_or(0.0, |found| found.finding.times()));
+    let kept = JudgedLaw::ALL.map(|law| audit.of(law).map_or(0.0, |found| found.finding.times()));
     assert_eq!(kept, worst);
     assert_ne!(last, worst);
 }

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 use stickslip::contact::balance::{self, Forces};
 use stickslip::contact::judge::{Judge, Seen};
-use stickslip::contact::laws::{ContactLaw, Scales, Verdict};
+use stickslip::contact::laws::{JudgedLaw, Scales, Verdict};
 use stickslip::model::InitialState;
 use stickslip::model::{Bond, Contact, Surface};
 use stickslip::model::{Friction, Mode};
@@ -58,7 +58,7 @@ impl Stage {
     }
 
     /// The laws that are broken.
-    fn broken(&self, from: [f64; 2], to: [f64; 2], force: [f64; 2]) -> Vec<ContactLaw> {
+    fn broken(&self, from: [f64; 2], to: [f64; 2], force: [f64; 2]) -> Vec<JudgedLaw> {
         let verdict = self.judge(from, to, force);
         verdict.broken().map(|finding| finding.law).collect()
     }
@@ -68,7 +68,7 @@ impl Stage {
 const MU: f64 = 0.577_350_269_189_625_7;
 
 /// A node that may touch a floor, y = 0, and a wall of two pieces, x = 1, whose outward side is −x.
-fn between_floor_and_wall(from: [f64; 2], to: [f64; 2]) -> Vec<ContactLaw> {
+fn between_floor_and_wall(from: [f64; 2], to: [f64; 2]) -> Vec<JudgedLaw> {
     let chain = [[3.0, 0.0], [-3.0, 0.0], [1.0, 2.0], [1.0, 1.0], [1.0, -1.0]];
     let surfaces = [
         surface(vec![vec![1, 2]]),
@@ -140,7 +140,7 @@ fn judged(
 
 #[test]
 fn a_node_that_went_through_a_surface_which_is_not_its_nearest_is_refused() {
-    let through = [ContactLaw::Penetration];
+    let through = [JudgedLaw::Penetration];
     assert_eq!(between_floor_and_wall([0.9, 0.1], [1.1, 0.01]), through);
     // Where two pieces of the wall meet, too.
     assert_eq!(between_floor_and_wall([0.9, 1.0], [2.5, 1.0]), through);
@@ -155,19 +155,19 @@ fn a_node_inside_the_surface_or_pressed_over_a_gap_is_refused() {
     let stage = Stage::floor(30.0, 0.0);
     assert_eq!(
         stage.broken([1.0, 0.5], [1.0, -1e-6], [0.0, 0.0]),
-        [ContactLaw::Penetration]
+        [JudgedLaw::Penetration]
     );
     assert_eq!(
         stage.broken([1.0, 0.5], [1.0, 1e-6], [0.0, 0.1]),
-        [ContactLaw::Gap]
+        [JudgedLaw::Gap]
     );
     assert_eq!(
         stage.broken([1.0, 0.5], [1.0, -1e-6], [0.0, 0.1]),
-        [ContactLaw::Gap]
+        [JudgedLaw::Gap]
     );
     assert_eq!(
         stage.broken([1.0, 0.5], [2.5, 0.1], [0.0, 0.1]),
-        [ContactLaw::Gap]
+        [JudgedLaw::Gap]
     );
     assert_eq!(stage.broken([1.0, 0.5], [1.0, -1e-9], [0.0, 0.1]), []);
     assert_eq!(stage.broken([1.0, 0.5], [2.5, -0.1], [0.0, 0.0]), []);
@@ -180,15 +180,15 @@ fn a_surface_that_pulls_or_gives_more_friction_than_it_has_is_refused() {
     assert!(
         stage
             .broken(at, at, [0.0, -0.1])
-            .contains(&ContactLaw::Tension)
+            .contains(&JudgedLaw::Tension)
     );
-    assert_eq!(stage.broken(at, at, [MU + 1e-6, 1.0]), [ContactLaw::Cone]);
+    assert_eq!(stage.broken(at, at, [MU + 1e-6, 1.0]), [JudgedLaw::Cone]);
     assert_eq!(stage.broken(at, at, [MU - 1e-9, 1.0]), []);
     assert_eq!(Stage::floor(30.0, 0.2).broken(at, at, [MU + 0.19, 1.0]), []);
     // A smooth surface gives none.
     assert_eq!(
         Stage::floor(0.0, 0.0).broken(at, at, [1e-6, 1.0]),
-        [ContactLaw::Cone]
+        [JudgedLaw::Cone]
     );
 }
 
@@ -201,12 +201,12 @@ fn net_slip_needs_friction_at_its_limit_against_it_also_across_a_border() {
         assert_eq!(stage.broken(from, to, [MU, 1.0]), [], "opposed");
         assert_eq!(
             stage.broken(from, to, [-MU, 1.0]),
-            [ContactLaw::Slip],
+            [JudgedLaw::Slip],
             "driven"
         );
         assert_eq!(
             stage.broken(from, to, [0.5 * MU, 1.0]),
-            [ContactLaw::Slip],
+            [JudgedLaw::Slip],
             "not mobilised"
         );
         assert_eq!(stage.broken(from, from, [0.5 * MU, 1.0]), [], "stuck");
@@ -222,7 +222,7 @@ fn net_slip_needs_friction_at_its_limit_against_it_also_across_a_border() {
     // What creeps by three millionths is not stuck.
     assert_eq!(
         stage.broken([1.0, 0.0], [1.000003, 0.0], [0.0, 1.0]),
-        [ContactLaw::Slip]
+        [JudgedLaw::Slip]
     );
 }
 
@@ -236,7 +236,7 @@ fn slip_that_a_scene_brings_counts_from_where_it_began() {
     };
     let at = [1.0, 0.0];
     assert_eq!(stage.broken(at, at, [-MU, 1.0]), []);
-    assert_eq!(stage.broken(at, at, [MU, 1.0]), [ContactLaw::Slip]);
+    assert_eq!(stage.broken(at, at, [MU, 1.0]), [JudgedLaw::Slip]);
     assert_eq!(
         stage.broken(at, [0.8, 0.0], [0.1, 1.0]),
         [],
@@ -262,7 +262,7 @@ fn a_node_that_was_open_may_have_touched_anywhere_on_its_way_but_not_before_it()
     );
     assert_eq!(
         stage.broken(from, [0.5, 0.0], [-MU, 1.0]),
-        [ContactLaw::Touch]
+        [JudgedLaw::Touch]
     );
     // From past the end nothing can be told.
     assert_eq!(stage.broken([2.5, 0.0], [0.5, 0.0], [-MU, 1.0]), []);
@@ -275,14 +275,11 @@ fn in_a_concave_corner_both_sides_give_a_force_and_only_there() {
     let smooth = Stage::chain(&valley, 0.0, 0.0);
     let bottom = [0.0, 0.0];
     assert_eq!(smooth.broken(bottom, bottom, [0.3, 1.0]), []);
-    assert_eq!(
-        smooth.broken(bottom, bottom, [1.1, 1.0]),
-        [ContactLaw::Cone]
-    );
+    assert_eq!(smooth.broken(bottom, bottom, [1.1, 1.0]), [JudgedLaw::Cone]);
     assert!(
         smooth
             .broken(bottom, [0.1, 0.1], [0.0, 1.0])
-            .contains(&ContactLaw::Cone)
+            .contains(&JudgedLaw::Cone)
     );
     assert_eq!(
         smooth.broken([0.5, 0.5], bottom, [0.3, 1.0]),
@@ -295,12 +292,12 @@ fn in_a_concave_corner_both_sides_give_a_force_and_only_there() {
     assert_eq!(rough.broken(bottom, bottom, force(edge + 1e-6)), []);
     assert_eq!(
         rough.broken(bottom, bottom, force(edge - 1e-6)),
-        [ContactLaw::Cone]
+        [JudgedLaw::Cone]
     );
     // It slid down the right wall, whose normal is at 135 degrees: friction there points up the wall, which gives 115.
     let slid = |angle: f64| rough.broken([0.5, 0.5], bottom, force(angle.to_radians()));
     assert_eq!(slid(114.0), []);
-    assert_eq!(slid(120.0), [ContactLaw::Slip]);
+    assert_eq!(slid(120.0), [JudgedLaw::Slip]);
 }
 
 /// A node slides onto a kink of 2e-4, of one surface, or of two that cross or end and begin there: friction is at its limit against
@@ -348,12 +345,12 @@ fn a_slight_kink_takes_no_friction_from_a_node_that_slid_onto_it() {
             for against in [least - 1e-6, 0.3, 0.0, -0.3, -least] {
                 let found = broken(0.5, against);
                 assert!(
-                    found.contains(&ContactLaw::Slip),
+                    found.contains(&JudgedLaw::Slip),
                     "{name} {side} {against}: {found:?}"
                 );
             }
             assert!(
-                broken(0.5, most + 1e-6).contains(&ContactLaw::Cone),
+                broken(0.5, most + 1e-6).contains(&JudgedLaw::Cone),
                 "{name} {side}"
             );
             // What stood there before may bear any force of the cone.
@@ -374,11 +371,11 @@ fn on_a_convex_vertex_a_node_stays_that_slides_down_neither_side() {
     assert_eq!(Stage::chain(&ridge, 20.0, 0.0).broken(top, top, up), []);
     assert_eq!(
         Stage::chain(&ridge, 10.0, 0.0).broken(top, top, up),
-        [ContactLaw::Cone]
+        [JudgedLaw::Cone]
     );
     assert_eq!(
         Stage::chain(&ridge, 0.0, 0.0).broken(top, top, up),
-        [ContactLaw::Cone]
+        [JudgedLaw::Cone]
     );
 }
 
@@ -416,23 +413,23 @@ fn forces_out_of_balance_at_a_node_and_on_the_bodies_as_a_whole_are_refused() {
         };
         let mut verdict = Verdict::default();
         balance::check(&model, &forces, &now, &scales, &mut verdict);
-        let laws: Vec<ContactLaw> = verdict.broken().map(|finding| finding.law).collect();
+        let laws: Vec<JudgedLaw> = verdict.broken().map(|finding| finding.law).collect();
         laws
     };
     assert_eq!(broken(&[], &[]), []);
-    assert_eq!(broken(&[], &[(free, 1e-6)]), [ContactLaw::Balance]);
+    assert_eq!(broken(&[], &[(free, 1e-6)]), [JudgedLaw::Balance]);
     assert_eq!(broken(&[], &[(pin, 1.0)]), [], "the pin bears it");
     assert_eq!(
         broken(&[(free, 1e-6)], &[(free, 1e-6)]),
-        [ContactLaw::Moments]
+        [JudgedLaw::Moments]
     );
     // A couple: the forces add up to nothing, and turn the beam.
     let couple = [(free, 1e-6), (pin, -1e-6)];
-    assert_eq!(broken(&couple, &[(free, 1e-6)]), [ContactLaw::Moments]);
+    assert_eq!(broken(&couple, &[(free, 1e-6)]), [JudgedLaw::Moments]);
 }
 
 /// Runs a scene to its end, and gives back what it was refused for on the way.
-fn run(file: &str, set: &[(&str, &str)]) -> (Stepper, Vec<ContactLaw>, Option<Failure>) {
+fn run(file: &str, set: &[(&str, &str)]) -> (Stepper, Vec<JudgedLaw>, Option<Failure>) {
     let path = format!("{}/tests/findings/{file}", env!("CARGO_MANIFEST_DIR"));
     open(Scene::open(&path, &owned(set)).unwrap())
 }
@@ -442,7 +439,7 @@ fn owned(set: &[(&str, &str)]) -> Vec<(String, String)> {
     set.iter().map(pair).collect()
 }
 
-fn open(scene: Scene) -> (Stepper, Vec<ContactLaw>, Option<Failure>) {
+fn open(scene: Scene) -> (Stepper, Vec<JudgedLaw>, Option<Failure>) {
     let mut stepper = Stepper::new(Arc::new(scene.model));
     let (mut refused, mut failure) = (Vec::new(), None);
     while let Some(event) = stepper.step() {
@@ -512,7 +509,7 @@ fn a_node_that_opened_and_touched_again_within_an_increment_has_its_net_slip_cou
     );
     let (_, refused, failure) = run("2-stuck-after-retouch.ron", &[]);
     assert!(
-        refused.contains(&ContactLaw::Slip) && failure.is_none(),
+        refused.contains(&JudgedLaw::Slip) && failure.is_none(),
         "{refused:?} {failure:?}"
     );
 }
@@ -653,15 +650,15 @@ fn a_penalty_node_is_inside_by_its_compliance_times_its_force_and_by_nothing_els
     };
     let at = |y: f64, f_n: f64| stage.broken([1.0, 0.0], [1.0, y], [0.0, f_n]);
     assert_eq!(at(-0.2, 2.0), []);
-    assert_eq!(at(-0.2, 1.9), [ContactLaw::Penalty]);
-    assert_eq!(at(0.0, 2.0), [ContactLaw::Penalty]);
-    assert_eq!(at(-0.2, 0.0), [ContactLaw::Penetration]);
+    assert_eq!(at(-0.2, 1.9), [JudgedLaw::Penalty]);
+    assert_eq!(at(0.0, 2.0), [JudgedLaw::Penalty]);
+    assert_eq!(at(-0.2, 0.0), [JudgedLaw::Penetration]);
     assert_eq!(at(0.3, 0.0), []);
     // It has gone along the floor as well, and friction at its limit opposes that.
     let slid = |f_x: f64| stage.broken([1.0, 0.0], [1.5, -0.2], [f_x, 2.0]);
     assert_eq!(slid(-2.0 * MU), []);
-    assert_eq!(slid(-1.9 * MU), [ContactLaw::Slip]);
-    assert_eq!(slid(-2.1 * MU), [ContactLaw::Cone]);
+    assert_eq!(slid(-1.9 * MU), [JudgedLaw::Slip]);
+    assert_eq!(slid(-2.1 * MU), [JudgedLaw::Cone]);
 }
 
 #[test]
@@ -672,7 +669,7 @@ fn elastic_slip_is_in_proportion_to_the_tangential_force() {
     };
     let gone = |x: f64, f_x: f64| stage.broken([1.0, 0.0], [1.0 + x, 0.0], [f_x, 4.0]);
     assert_eq!(gone(0.25, -1.0), []);
-    assert_eq!(gone(0.25, -0.9), [ContactLaw::Stick]);
+    assert_eq!(gone(0.25, -0.9), [JudgedLaw::Stick]);
     assert_eq!(gone(0.0, 0.0), []);
     assert_eq!(gone(-0.5, 2.0), []);
     // Beyond the limit it slides.
@@ -687,6 +684,6 @@ fn a_tied_node_may_be_pulled_and_may_not_stray() {
     };
     let to = |to: [f64; 2], force: [f64; 2]| stage.broken([1.0, 0.0], to, force);
     assert_eq!(to([1.0, 0.0], [3.0, -7.0]), []);
-    assert_eq!(to([1.001, 0.0], [3.0, -7.0]), [ContactLaw::Tied]);
-    assert_eq!(to([1.0, 0.001], [0.0, 0.0]), [ContactLaw::Tied]);
+    assert_eq!(to([1.001, 0.0], [3.0, -7.0]), [JudgedLaw::Tied]);
+    assert_eq!(to([1.0, 0.001], [0.0, 0.0]), [JudgedLaw::Tied]);
 }

@@ -202,7 +202,7 @@ fn without_a_word_nothing_moves_on() {
     }
 }
 
-/// Pressed beyond its friction, a block without support slides for ever.
+/// Pressed beyond its friction, a block without support slides forever.
 #[test]
 fn what_nothing_stops_comes_to_no_rest_and_says_so() {
     let set = [

@@ -1,7 +1,7 @@
 //! Every way in which an increment can fail has its page: what happened, where, why, what was tried, what to do.
 
 use std::sync::Arc;
-use stickslip::contact::laws::{ContactLaw, Finding, JudgedNumbers};
+use stickslip::contact::laws::{Finding, JudgedLaw, JudgedNumbers};
 use stickslip::explain::examination::Examination;
 use stickslip::explain::page::page;
 use stickslip::scene::Scene;
@@ -175,7 +175,7 @@ fn a_state_that_the_judge_refuses_has_a_page_with_the_law_the_node_and_what_is_a
     let session = debugger.session.as_ref().unwrap();
     let mut state = session.frame().state.clone();
     let why = Finding {
-        law: ContactLaw::Cone,
+        law: JudgedLaw::Cone,
         slave: Some(0),
         amount: 1e-3,
         allowed: 1e-9,

@@ -17,7 +17,7 @@ const OSCILLATES: &str = "osc-inclined-cantilever";
 /// The walks that stand in sentences: scene and keys, by the page that has them.
 const WALKS: [(&str, &str, &str); 4] = [
     (
-        "README.md",
+        "src/manual/pages/tour.md",
         FLOOR,
         "s f 2 4 f s s 1 7 f f S N F F i 0 . 0 0 1 Enter f c",
     ),

@@ -4,7 +4,7 @@
 //! restrained ones. Internal forces are invariant under rigid motions, so their sum and the sum of their moments vanish; the same
 //! then holds for the reactions and the loads together.
 
-use crate::contact::laws::{ContactLaw, Finding, JudgedNumbers, Scales, Verdict};
+use crate::contact::laws::{Finding, JudgedLaw, JudgedNumbers, Scales, Verdict};
 use crate::model::{Body, BodyKind, Model};
 
 /// Forces by degree of freedom ([`crate::model::Dofs`]), and the contact forces by node.
@@ -18,7 +18,7 @@ pub struct Forces<'a> {
     pub contact: &'a [[f64; 2]],
 }
 
-/// Adds to `verdict` the worst node of [`ContactLaw::Balance`] and the sum of [`ContactLaw::Moments`]; `now` are the positions of all nodes.
+/// Adds to `verdict` the worst node of [`JudgedLaw::Balance`] and the sum of [`JudgedLaw::Moments`]; `now` are the positions of all nodes.
 /// Bodies given by a matrix are not checked as a whole, because the matrix may contain supports.
 pub fn check(
     model: &Model,
@@ -54,10 +54,10 @@ pub fn check(
     }
     let slave = |node| model.contacts.iter().position(|s| s.node == node);
     verdict.add(Finding {
-        law: ContactLaw::Balance,
+        law: JudgedLaw::Balance,
         slave: worst.1.and_then(slave),
         amount: worst.0,
-        allowed: scales.allowed(ContactLaw::Balance),
+        allowed: scales.allowed(JudgedLaw::Balance),
         numbers: JudgedNumbers::default(),
     });
     // The matrix of a body may contain supports. If small and large displacements are mixed, there is no common shape for the
@@ -67,10 +67,10 @@ pub fn check(
         return;
     }
     verdict.add(Finding {
-        law: ContactLaw::Moments,
+        law: JudgedLaw::Moments,
         slave: None,
         amount: total.size(scales.length, model.is_axisymmetric()) / scales.force,
-        allowed: scales.allowed(ContactLaw::Moments),
+        allowed: scales.allowed(JudgedLaw::Moments),
         numbers: JudgedNumbers::default(),
     });
 }

@@ -25,7 +25,7 @@ use crate::contact::corner::Side;
 use crate::contact::element::{SurfaceElement, closed};
 use crate::contact::facing::{MOST, faced};
 use crate::contact::feet::{self, Foot, direction, place, speed};
-use crate::contact::laws::{ContactLaw, Finding, JudgedNumbers, Scales, Verdict};
+use crate::contact::laws::{Finding, JudgedLaw, JudgedNumbers, Scales, Verdict};
 use crate::contact::point_force::judged::{JudgedGives, Loaded, hand_on};
 use crate::contact::projection::SurfacePoint;
 use crate::contact::side_laws::{Amounts, SideHistory, Touching};
@@ -175,7 +175,7 @@ impl Judge {
             2.0 * near,
             &mut self.feet,
         );
-        let mut report = |law: ContactLaw, amount: f64, numbers: JudgedNumbers| {
+        let mut report = |law: JudgedLaw, amount: f64, numbers: JudgedNumbers| {
             verdict.add(Finding {
                 law,
                 slave: Some(slave),
@@ -212,12 +212,12 @@ impl Judge {
                 hand_on(&seen.loaded(), slave, &foot, false, contact);
                 foot.distance.max(self.strayed(seen, slave, &foot).abs())
             });
-            report(ContactLaw::Tied, amount / length, JudgedNumbers::default());
+            report(JudgedLaw::Tied, amount / length, JudgedNumbers::default());
             return;
         }
         let Some(foot) = foot else {
             if pressed {
-                report(ContactLaw::Gap, f64::INFINITY, JudgedNumbers::default());
+                report(JudgedLaw::Gap, f64::INFINITY, JudgedNumbers::default());
             }
             return;
         };
@@ -230,7 +230,7 @@ impl Judge {
                 gap: -through,
                 ..JudgedNumbers::default()
             };
-            report(ContactLaw::Penetration, through / length, numbers);
+            report(JudgedLaw::Penetration, through / length, numbers);
         }
         let numbers = JudgedNumbers {
             gap: gap - given,
@@ -240,7 +240,7 @@ impl Judge {
             // A spring whose force is below the force tolerance lets the node penetrate.
             let soft = bond.give()[0] * forces * seen.scales.force;
             report(
-                ContactLaw::Penetration,
+                JudgedLaw::Penetration,
                 ((-gap - soft) / length).max(0.0),
                 numbers,
             );
@@ -249,14 +249,14 @@ impl Judge {
         let [law_of_gap, law_of_slip] = match bond.give().map(|give| give > 0.0) {
             [normal, tangential] => [
                 if normal {
-                    ContactLaw::Penalty
+                    JudgedLaw::Penalty
                 } else {
-                    ContactLaw::Gap
+                    JudgedLaw::Gap
                 },
                 if tangential {
-                    ContactLaw::Stick
+                    JudgedLaw::Stick
                 } else {
-                    ContactLaw::Slip
+                    JudgedLaw::Slip
                 },
             ],
         };
@@ -272,17 +272,17 @@ impl Judge {
             ..amounts.numbers
         };
         for (law, amount) in [
-            (ContactLaw::Tension, amounts.tension),
-            (ContactLaw::Cone, amounts.cone),
+            (JudgedLaw::Tension, amounts.tension),
+            (JudgedLaw::Cone, amounts.cone),
             (law_of_slip, amounts.slip),
-            (ContactLaw::Touch, amounts.touch),
+            (JudgedLaw::Touch, amounts.touch),
         ] {
             report(law, amount, numbers);
         }
         let mean = 0.5 * (seen.earlier[slave] + numbers.f_t);
         let work = mean * numbers.slip / (length * seen.scales.force);
         if amounts.touched && work > 0.0 {
-            report(ContactLaw::Work, work, numbers);
+            report(JudgedLaw::Work, work, numbers);
         }
     }
 

@@ -25,9 +25,9 @@ impl Scales {
     }
 
     /// Tolerance of a law.
-    pub fn allowed(&self, law: ContactLaw) -> f64 {
+    pub fn allowed(&self, law: JudgedLaw) -> f64 {
         match law {
-            ContactLaw::Penetration | ContactLaw::Gap | ContactLaw::Penalty | ContactLaw::Tied => {
+            JudgedLaw::Penetration | JudgedLaw::Gap | JudgedLaw::Penalty | JudgedLaw::Tied => {
                 self.lengths
             }
             _ => self.forces,
@@ -38,7 +38,7 @@ impl Scales {
 /// A law.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum ContactLaw {
+pub enum JudgedLaw {
     /// g >= 0: no slave node is inside a master (length).
     Penetration,
     /// A force acts only where nodes touch: F = 0 or g = 0 (length).
@@ -67,26 +67,25 @@ pub enum ContactLaw {
     Stick,
 }
 
-impl ContactLaw {
+impl JudgedLaw {
     /// The laws that apply to every accepted state.
-    pub const ALL: [ContactLaw; 8] = [
-        ContactLaw::Penetration,
-        ContactLaw::Gap,
-        ContactLaw::Tension,
-        ContactLaw::Cone,
-        ContactLaw::Slip,
-        ContactLaw::Touch,
-        ContactLaw::Balance,
-        ContactLaw::Moments,
+    pub const ALL: [JudgedLaw; 8] = [
+        JudgedLaw::Penetration,
+        JudgedLaw::Gap,
+        JudgedLaw::Tension,
+        JudgedLaw::Cone,
+        JudgedLaw::Slip,
+        JudgedLaw::Touch,
+        JudgedLaw::Balance,
+        JudgedLaw::Moments,
     ];
 
     /// The laws of bonds other than hard contact.
-    pub const OF_BONDS: [ContactLaw; 3] =
-        [ContactLaw::Penalty, ContactLaw::Tied, ContactLaw::Stick];
+    pub const OF_BONDS: [JudgedLaw; 3] = [JudgedLaw::Penalty, JudgedLaw::Tied, JudgedLaw::Stick];
 }
 
 crate::words! {
-    ContactLaw, name:
+    JudgedLaw, name:
     Penetration "penetration",
     Gap "gap",
     Tension "tension",
@@ -105,7 +104,7 @@ crate::words! {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Finding {
     /// The law.
-    pub law: ContactLaw,
+    pub law: JudgedLaw,
     /// Slave number. `None` if the finding concerns the whole scene, or a node that is not a slave.
     pub slave: Option<usize>,
     /// Amount of the violation, relative to [`Scales::length`] or [`Scales::force`]; infinite if a force acts where no contact is
@@ -135,9 +134,9 @@ pub struct JudgedNumbers {
 /// Findings for a state; initially empty.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Verdict {
-    /// The worst place for every law, in the order of [`ContactLaw::ALL`]. `None` if the law did not apply.
+    /// The worst place forevery law, in the order of [`JudgedLaw::ALL`]. `None` if the law did not apply.
     pub worst: [Option<Finding>; 8],
-    /// The same for [`ContactLaw::OF_BONDS`].
+    /// The same for [`JudgedLaw::OF_BONDS`].
     #[serde(default, skip_serializing_if = "is_nothing")]
     pub bonds: [Option<Finding>; 3],
     /// The node at which friction did the most positive work. `None` if there is no such node.
@@ -152,10 +151,10 @@ impl Verdict {
     /// Records `finding` if it is worse than the previous one for its law.
     pub fn add(&mut self, finding: Finding) {
         let worst = match finding.law {
-            ContactLaw::Work => &mut self.work,
-            ContactLaw::Penalty => &mut self.bonds[0],
-            ContactLaw::Tied => &mut self.bonds[1],
-            ContactLaw::Stick => &mut self.bonds[2],
+            JudgedLaw::Work => &mut self.work,
+            JudgedLaw::Penalty => &mut self.bonds[0],
+            JudgedLaw::Tied => &mut self.bonds[1],
+            JudgedLaw::Stick => &mut self.bonds[2],
             law => &mut self.worst[law as usize],
         };
         if worst.is_none_or(|w| finding.amount > w.amount || finding.amount.is_nan()) {
@@ -164,12 +163,12 @@ impl Verdict {
     }
 
     /// The worst place for a law. `None` if it did not apply.
-    pub fn of(&self, law: ContactLaw) -> Option<Finding> {
+    pub fn of(&self, law: JudgedLaw) -> Option<Finding> {
         let mut all = self.findings().chain(&self.work);
         all.find(|found| found.law == law).copied()
     }
 
-    /// The worst place for every law that applied, with the laws of bonds last.
+    /// The worst place forevery law that applied, with the laws of bonds last.
     pub fn findings(&self) -> impl Iterator<Item = &Finding> {
         self.worst.iter().chain(&self.bonds).flatten()
     }

@@ -2,7 +2,7 @@
 
 use crate::contact::balance::{self, Forces};
 use crate::contact::judge::{Judge, Seen};
-use crate::contact::laws::{ContactLaw, Scales, Verdict};
+use crate::contact::laws::{JudgedLaw, Scales, Verdict};
 use crate::contact::projection::SurfacePoint;
 use crate::contact::state::{ContactState, in_mode, largest_drift};
 use crate::contact::stick_point::pierced;
@@ -462,7 +462,7 @@ impl Source for Bodies {
         balance::check(model, &forces, now, &scales, &mut verdict);
         if self.overlaps && left[0] > 0.0 {
             // With a remaining overlap, the force and its reaction act at different points.
-            verdict.worst[ContactLaw::Moments as usize] = None;
+            verdict.worst[JudgedLaw::Moments as usize] = None;
         }
         verdict
     }

@@ -259,14 +259,6 @@ impl Source for ConstantSource {
         })
     }
 
-    fn advance(&mut self, w: &mut [f64]) -> f64 {
-        let motions = self.condensed.motions.iter().flatten();
-        w.iter_mut().zip(motions).fold(0.0, |most: f64, (w, v)| {
-            *w -= v;
-            most.max(v.abs())
-        })
-    }
-
     fn stick_point(&self, contact: usize, state: &ContactState) -> Option<SurfacePoint> {
         let point = state.spot?;
         Some(SurfacePoint {

@@ -5,7 +5,7 @@
 //! the source receives the forces, moves its bodies, projects the slave nodes on their surfaces, and linearises again. Anything
 //! that implements this trait can be stepped.
 
-use crate::contact::laws::{ContactLaw, Finding, JudgedNumbers, Scales, Verdict};
+use crate::contact::laws::{Finding, JudgedLaw, JudgedNumbers, Scales, Verdict};
 use crate::contact::projection::SurfacePoint;
 use crate::contact::state::{ContactState, in_mode, largest_drift};
 use crate::fem::deformation::Deformation;
@@ -333,8 +333,18 @@ pub trait Source: Send {
         Solved::Well
     }
 
-    /// Moves the bodies according to the forces of the last minor iteration. Returns the largest displacement.
-    fn advance(&mut self, u: &mut [f64]) -> f64;
+    /// Moves the bodies according to the forces of the last minor iteration. Returns the largest displacement. By default the
+    /// unknowns are w_n, w_t of each contact: those of S over its surface, which motions of the contacts reduce.
+    fn advance(&mut self, u: &mut [f64]) -> f64 {
+        let motions = self
+            .condensed()
+            .into_iter()
+            .flat_map(|c| c.motions.iter().flatten());
+        u.iter_mut().zip(motions).fold(0.0, |most: f64, (w, v)| {
+            *w -= v;
+            most.max(v.abs())
+        })
+    }
 
     /// The stick point of a contact that touched in this major iteration: where its path meets the surface.
     fn stick_point(&self, _contact: usize, _state: &ContactState) -> Option<SurfacePoint> {
@@ -414,10 +424,10 @@ pub trait Source: Send {
             }
         }
         verdict.add(Finding {
-            law: ContactLaw::Balance,
+            law: JudgedLaw::Balance,
             slave: None,
             amount: after.relative,
-            allowed: scales.allowed(ContactLaw::Balance),
+            allowed: scales.allowed(JudgedLaw::Balance),
             numbers: JudgedNumbers::default(),
         });
         verdict
@@ -485,24 +495,24 @@ fn against(
     gap: f64,
     slip: Option<f64>,
     scales: &Scales,
-) -> Vec<(ContactLaw, f64)> {
+) -> Vec<(JudgedLaw, f64)> {
     let (length, force) = (scales.length, scales.force);
     let pressed = state.f_n.hypot(state.f_t) > scales.forces * force;
     if !pressed {
-        return vec![(ContactLaw::Penetration, (-gap / length).max(0.0))];
+        return vec![(JudgedLaw::Penetration, (-gap / length).max(0.0))];
     }
     let bound = friction.coefficient() * state.f_n + friction.cohesion;
     let mut laws = vec![
-        (ContactLaw::Gap, gap.abs() / length),
-        (ContactLaw::Tension, (-state.f_n / force).max(0.0)),
+        (JudgedLaw::Gap, gap.abs() / length),
+        (JudgedLaw::Tension, (-state.f_n / force).max(0.0)),
         (
-            ContactLaw::Cone,
+            JudgedLaw::Cone,
             ((state.f_t.abs() - bound) / force).max(0.0),
         ),
     ];
     if let Some(slip) = slip.filter(|slip| slip.abs() > scales.near()) {
         let short = bound - slip.signum() * state.f_t;
-        laws.push((ContactLaw::Slip, (short / force).max(0.0)));
+        laws.push((JudgedLaw::Slip, (short / force).max(0.0)));
     }
     laws
 }

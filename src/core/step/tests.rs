@@ -2,7 +2,7 @@
 
 use super::drive::{RunEnd, Until};
 use super::stepper::Stepper;
-use crate::contact::laws::ContactLaw;
+use crate::contact::laws::JudgedLaw;
 use crate::interface::census::census;
 use crate::linear::constant::Constant;
 use crate::model::{
@@ -211,7 +211,7 @@ fn a_slave_node_can_have_two_contacts_at_once() {
         assert!((state.u[0] + 1.0).abs() < 1e-12 && (state.u[1] + 1.0).abs() < 1e-12);
         let verdict = state.start.verdict.unwrap();
         assert_eq!(verdict.broken().count(), 0, "{verdict:?}");
-        assert!(verdict.worst[ContactLaw::Balance as usize].is_some());
+        assert!(verdict.worst[JudgedLaw::Balance as usize].is_some());
     }
 }
 

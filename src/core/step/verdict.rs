@@ -9,7 +9,7 @@
 //! A state with an inverted element (det F ≤ 0 at an integration point or a node of a solid) is always rejected: the increment
 //! is cut, and fails if it cannot be cut. Other interpretations of the contact status are not tried for such a state.
 
-use crate::contact::laws::{ContactLaw, Finding, Verdict};
+use crate::contact::laws::{Finding, JudgedLaw, Verdict};
 use crate::contact::record::Forced;
 use crate::contact::state::ContactState;
 use crate::fem::deformation::PointDeformation;
@@ -60,7 +60,7 @@ impl Stepper {
         }
         match self.cut(&why) {
             Some(cut) => cut,
-            None if worst.law == ContactLaw::Touch => self.land(after, verdict, Some(worst)),
+            None if worst.law == JudgedLaw::Touch => self.land(after, verdict, Some(worst)),
             None => self.fall_back(&why).unwrap_or_else(|| {
                 self.next_major();
                 Outcome::Failed(why)
@@ -117,8 +117,8 @@ pub(super) fn range_left(source: &dyn Source, state: &State) -> Option<PointDefo
 }
 
 /// Whether a law concerns the net slip of a node.
-fn is_slip(law: ContactLaw) -> bool {
-    matches!(law, ContactLaw::Slip | ContactLaw::Stick)
+fn is_slip(law: JudgedLaw) -> bool {
+    matches!(law, JudgedLaw::Slip | JudgedLaw::Stick)
 }
 
 /// The worst violation of a law: slip first, since it can be repaired, and the touch of an open node last, since it may be
@@ -126,7 +126,7 @@ fn is_slip(law: ContactLaw) -> bool {
 fn worst_of(verdict: &Verdict) -> Option<Finding> {
     let rank = |finding: &Finding| match finding.law {
         law if is_slip(law) => 2,
-        ContactLaw::Touch => 0,
+        JudgedLaw::Touch => 0,
         _ => 1,
     };
     let worse = |a: &&Finding, b: &&Finding| {

@@ -7,7 +7,7 @@
 
 use stickslip_core::contact::element::SurfaceElement;
 use stickslip_core::contact::feet::place;
-use stickslip_core::contact::laws::{ContactLaw, Finding};
+use stickslip_core::contact::laws::{Finding, JudgedLaw};
 use stickslip_core::fem::deformation::{PointDeformation, deformation};
 use stickslip_core::model::Model;
 use stickslip_core::model::{BodyKind, Solid};
@@ -61,8 +61,8 @@ pub struct Audit {
     pub increments: u32,
     /// Number of increments accepted with a mark.
     pub marked: u32,
-    /// The worst finding for each law over all unmarked increments, in the order of [`ContactLaw::ALL`] and then
-    /// [`ContactLaw::OF_BONDS`].
+    /// The worst finding for each law over all unmarked increments, in the order of [`JudgedLaw::ALL`] and then
+    /// [`JudgedLaw::OF_BONDS`].
     pub worst: [Option<Found>; 11],
     /// The same for marked increments.
     pub worst_marked: [Option<Found>; 11],
@@ -139,7 +139,7 @@ impl Audit {
     }
 
     /// The worst finding for a law in unmarked increments.
-    pub fn of(&self, law: ContactLaw) -> Option<&Found> {
+    pub fn of(&self, law: JudgedLaw) -> Option<&Found> {
         let mut all = self.worst.iter().flatten();
         all.find(|found| found.finding.law == law)
     }

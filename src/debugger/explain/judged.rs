@@ -1,7 +1,7 @@
 //! Describes the judge's findings: the law, the node, the amount.
 
 use crate::explain::names::slave;
-use stickslip_core::contact::laws::{ContactLaw, Finding, JudgedNumbers};
+use stickslip_core::contact::laws::{Finding, JudgedLaw, JudgedNumbers};
 use stickslip_core::model::Model;
 use stickslip_scene::number::four;
 
@@ -16,44 +16,44 @@ pub fn finding(model: &Model, finding: &Finding) -> String {
     } = finding.numbers;
     let node = finding.slave.map_or("a node", |s| slave(model, s));
     let told = match finding.law {
-        ContactLaw::Penetration => format!("{node} penetrates its surface by {:.3e}", -gap),
-        ContactLaw::Gap if finding.amount.is_infinite() => {
+        JudgedLaw::Penetration => format!("{node} penetrates its surface by {:.3e}", -gap),
+        JudgedLaw::Gap if finding.amount.is_infinite() => {
             format!("{node} carries a force without facing a surface")
         }
-        ContactLaw::Gap => format!("{node} carries a force across a gap of {:.3e}", gap.abs()),
-        ContactLaw::Tension => format!("the surface pulls {node}: F_n {f_n:.6e}"),
-        ContactLaw::Cone => format!(
+        JudgedLaw::Gap => format!("{node} carries a force across a gap of {:.3e}", gap.abs()),
+        JudgedLaw::Tension => format!("the surface pulls {node}: F_n {f_n:.6e}"),
+        JudgedLaw::Cone => format!(
             "F_t at {node} exceeds the friction limit of the node or of its corner (F_t \
              {f_t:.6e}, limit {limit:.6e})"
         ),
-        ContactLaw::Slip if f_t * slip > 0.0 => format!(
+        JudgedLaw::Slip if f_t * slip > 0.0 => format!(
             "friction drives the slip of {node} instead of opposing it (slip {slip:.6e}, F_t {f_t:.6e})"
         ),
-        ContactLaw::Slip => format!(
+        JudgedLaw::Slip => format!(
             "{node} slipped by {slip:.6e} while friction is not at its limit against the slip (F_t \
              {f_t:.6e}, limit {limit:.6e})"
         ),
-        ContactLaw::Touch => format!(
+        JudgedLaw::Touch => format!(
             "friction drives {node}, wherever it made contact: since the last increment, in \
              which it was open, its projection moved by {slip:.6e} along t (F_t {f_t:.6e})"
         ),
-        ContactLaw::Work => {
+        JudgedLaw::Work => {
             format!("friction produced work at {node} (slip {slip:.6e}, final F_t {f_t:.6e})")
         }
-        ContactLaw::Penalty if finding.amount.is_infinite() => {
+        JudgedLaw::Penalty if finding.amount.is_infinite() => {
             format!("{node} carries a force without facing a surface")
         }
-        ContactLaw::Penalty => format!(
+        JudgedLaw::Penalty => format!(
             "{node} penetrates its surface by {:.6e}, which does not match its penalty law for F_n {f_n:.6e}",
             -gap
         ),
-        ContactLaw::Tied => format!("{node} has left the point of the surface that it is tied to"),
-        ContactLaw::Stick => format!(
+        JudgedLaw::Tied => format!("{node} has left the point of the surface that it is tied to"),
+        JudgedLaw::Stick => format!(
             "{node} slipped by {slip:.6e} beyond its elastic slip while friction is not at its \
              limit against the slip (F_t {f_t:.6e}, limit {limit:.6e})"
         ),
-        ContactLaw::Balance => format!("the forces on {node} are not in balance"),
-        ContactLaw::Moments => "loads and reactions are not in balance".into(),
+        JudgedLaw::Balance => format!("the forces on {node} are not in balance"),
+        JudgedLaw::Moments => "loads and reactions are not in balance".into(),
     };
     format!("{told} ({}: {:.1e})", finding.law.name(), finding.amount)
 }

@@ -10,7 +10,7 @@ use super::restart;
 use std::cmp::Ordering;
 use std::ops::ControlFlow;
 use std::time::Instant;
-use stickslip_core::contact::laws::ContactLaw;
+use stickslip_core::contact::laws::JudgedLaw;
 use stickslip_core::contact::record::{ContactRecord, Forced};
 use stickslip_core::interface::method::NotFound;
 use stickslip_core::linear::norms::Norms;
@@ -39,7 +39,7 @@ pub enum TrialEnd {
     /// The failed load was accepted.
     Converged,
     /// A state was accepted that violates this law, because of held modes or settings.
-    Against(ContactLaw),
+    Against(JudgedLaw),
     /// It failed.
     Failed(Failure),
     /// The budget is used up.
@@ -345,16 +345,16 @@ fn scale_of(
 /// The judge's findings in the last accepted state.
 fn left(stepper: &Stepper, event: &Event, after: &Norms) -> Left {
     let verdict = stepper.state().start.verdict.as_ref();
-    let amount = |law: ContactLaw| {
+    let amount = |law: JudgedLaw| {
         let found = verdict.and_then(|verdict| verdict.of(law));
         let amount = found.map_or(0.0, |found| found.amount);
         if amount < ROUND_OFF { 0.0 } else { amount }
     };
-    let gap = amount(ContactLaw::Gap)
-        .max(amount(ContactLaw::Penalty))
-        .max(amount(ContactLaw::Tied));
-    let inside = amount(ContactLaw::Penetration).max(gap);
-    let (tension, shear) = (amount(ContactLaw::Tension), amount(ContactLaw::Cone));
+    let gap = amount(JudgedLaw::Gap)
+        .max(amount(JudgedLaw::Penalty))
+        .max(amount(JudgedLaw::Tied));
+    let inside = amount(JudgedLaw::Penetration).max(gap);
+    let (tension, shear) = (amount(JudgedLaw::Tension), amount(JudgedLaw::Cone));
     let decisions = event.nodes.iter().map(|record| &record.decision);
     Left {
         penetration: inside * stepper.model().length,

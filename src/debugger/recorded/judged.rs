@@ -4,7 +4,7 @@
 //! Only those numbers are used: g >= 0 for rigid contact, no force across an open gap, F_n >= 0, |F_t| <=
 //! |T_max|, and friction that opposes the slip of a sliding node. Unreported quantities are not checked.
 
-use stickslip_core::contact::laws::{ContactLaw, Finding, JudgedNumbers};
+use stickslip_core::contact::laws::{Finding, JudgedLaw, JudgedNumbers};
 use stickslip_core::contact::record::ContactRecord;
 use stickslip_core::model::{Mode, Model};
 
@@ -71,20 +71,20 @@ fn of_node(
     tied: bool,
     force: f64,
     length: f64,
-) -> [(ContactLaw, f64); 5] {
+) -> [(JudgedLaw, f64); 5] {
     let (gap, f_n, f_t, limit) = (node.gap, node.f_n, node.f_t, node.t_max.abs());
     let acts = f_n.abs() > ALLOWED * force;
     let slides = node.decision.before == Mode::Sliding && node.slip * node.t_max < 0.0;
     let slip = node.slip.abs() / length;
     let unless = |without: bool, amount: f64| if without { 0.0 } else { amount };
     [
-        (ContactLaw::Penetration, unless(!hard, -gap / length)),
-        (ContactLaw::Gap, unless(!acts || !hard, gap / length)),
-        (ContactLaw::Tension, unless(tied, -f_n / force)),
-        (ContactLaw::Cone, unless(tied, (f_t.abs() - limit) / force)),
+        (JudgedLaw::Penetration, unless(!hard, -gap / length)),
+        (JudgedLaw::Gap, unless(!acts || !hard, gap / length)),
+        (JudgedLaw::Tension, unless(tied, -f_n / force)),
+        (JudgedLaw::Cone, unless(tied, (f_t.abs() - limit) / force)),
         // Friction pushes in the direction of slip: the violation is twice its force.
         (
-            ContactLaw::Slip,
+            JudgedLaw::Slip,
             unless(tied || !slides || slip <= ALLOWED, 2.0 * f_t.abs() / force),
         ),
     ]

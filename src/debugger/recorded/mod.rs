@@ -3,13 +3,14 @@
 //! ([`Solver`](stickslip_core::step::Solver)).
 //!
 //! - [`fault`]: errors of a solver that violates the protocol; [`log`]: its log.
-//! - [`told`]: its messages as states and events; [`posed`]: its frozen interface problem; [`judged`]: the
+//! - [`decode`]: its messages as states and events; [`posed`]: its frozen interface problem; [`judged`]: the
 //!   contact laws, checked with its numbers.
 //! - [`orders`]: interventions as requests.
 //! - [`past`]: a solver replayed from its stored exchange; [`story`]: such a file as text.
 //! - [`calculix`]: finished CalculiX runs; [`recording`]: opens a finished run by file name.
 
 pub mod calculix;
+pub mod decode;
 pub mod fault;
 pub mod judged;
 pub mod log;
@@ -18,4 +19,3 @@ pub mod past;
 pub mod posed;
 pub mod recording;
 pub mod story;
-pub mod told;

@@ -3,10 +3,10 @@
 //! The file is read once into a tree of states, like that of the original session. Steps can only follow this
 //! tree.
 
+use super::decode::{self, Led, WireFrame};
 use super::fault::Fault;
 use super::log::Log;
 use super::orders;
-use super::told::{self, Led, WireFrame};
 use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
@@ -192,7 +192,7 @@ impl ExchangeReader {
             (Answer::Hello(hello), _) => self.hello = Some(*hello),
             (Answer::Scene(told), _) if self.met.is_none() => {
                 let hello = self.hello.clone().ok_or(Fault::NoScene)?;
-                let (scene, ids, start) = told::start(name, &told, None)?;
+                let (scene, ids, start) = decode::start(name, &told, None)?;
                 self.met = Some(Met {
                     scene,
                     hello,

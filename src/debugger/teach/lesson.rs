@@ -7,7 +7,7 @@ use super::spec::{AnswerSpec, LessonSpec, SceneSpec, StepSpec, When};
 use crate::action::{self, Action, Context};
 use crate::record::command::Command;
 use std::sync::Arc;
-use stickslip_core::contact::laws::ContactLaw;
+use stickslip_core::contact::laws::JudgedLaw;
 use stickslip_core::model::{Mode, Model};
 use stickslip_scene::embedded::EmbeddedFile;
 use stickslip_scene::embedded_all;
@@ -107,7 +107,7 @@ pub enum Truth {
     /// All laws are satisfied.
     Obeys,
     /// This law is violated.
-    Breaks(ContactLaw),
+    Breaks(JudgedLaw),
     /// The first number is clearly less than the second.
     Less(LessonQuantity, LessonQuantity),
     /// The numbers are about the same.
@@ -399,9 +399,9 @@ impl LessonReader<'_> {
             When::Quadratic => Truth::Quadratic(true),
             When::Obeys => Truth::Obeys,
             When::Breaks(name) => {
-                let all = || ContactLaw::ALL.into_iter().chain(ContactLaw::OF_BONDS);
+                let all = || JudgedLaw::ALL.into_iter().chain(JudgedLaw::OF_BONDS);
                 let law = all().find(|law| law.name() == name);
-                let names = || all().map(ContactLaw::name).collect::<Vec<_>>().join(", ");
+                let names = || all().map(JudgedLaw::name).collect::<Vec<_>>().join(", ");
                 let none = || Fault::new(path, format!("unknown law {name:?}; laws: {}", names()));
                 Truth::Breaks(law.ok_or_else(none)?)
             }

@@ -120,14 +120,6 @@ impl Source for Stiffening {
         })
     }
 
-    fn advance(&mut self, w: &mut [f64]) -> f64 {
-        let motions = self.condensed.motions.iter().flatten();
-        w.iter_mut().zip(motions).fold(0.0, |most: f64, (w, v)| {
-            *w -= v;
-            most.max(v.abs())
-        })
-    }
-
     fn condensed(&self) -> Option<&Condensed> {
         Some(&self.condensed)
     }

@@ -21,7 +21,7 @@
 use super::motion::Motion;
 use super::retry::{Effect, Recovery, Retry};
 use super::stalled::Stalled;
-use crate::contact::laws::{ContactLaw, Finding, Verdict};
+use crate::contact::laws::{Finding, JudgedLaw, Verdict};
 use crate::linear::norms::Norms;
 use crate::step::event::{Failure, Moves, Outcome, Slow};
 use crate::step::jump::Landing;
@@ -134,7 +134,7 @@ impl Stepper {
         };
         let moved = self.source.moved(&self.state.u, &self.state.start.u);
         let stride = STRIDE * self.model.length;
-        let slow = match worst.filter(|found| found.law != ContactLaw::Touch) {
+        let slow = match worst.filter(|found| found.law != JudgedLaw::Touch) {
             Some(found) => Some(Slow::Failed(Failure::Refused(found))),
             None if moved > stride => Some(Slow::Far { motion: moved }),
             None if self.source.stability(&self.state.at()).is_unstable() => Some(Slow::Unstable),
