@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! cargo bench --bench random_scenes -- 10000 --seed 1              scenes 0 to 9,999 of seed 1, and their tables
-//! cargo bench --bench random_scenes -- 10000 --list FILE           writes a line forevery scene as well
+//! cargo bench --bench random_scenes -- 10000 --list FILE           writes a line for every scene as well
 //! cargo bench --bench random_scenes -- --seed 1 --only 157         one scene, with all that is wrong in it
 //! cargo bench --bench random_scenes -- 1000 --set surfaces.*.smooth=true   each scene changed in some way
 //! cargo bench --bench random_scenes -- --write 157 FILE.ron        writes one scene to a file, to be run or debugged

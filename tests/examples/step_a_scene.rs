@@ -12,7 +12,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     run(&mut std::io::stdout())
 }
 
-/// Writes a line forevery accepted increment.
+/// Writes a line for every accepted increment.
 pub fn run(out: &mut impl Write) -> Result<(), Box<dyn Error>> {
     // A built-in scene or the path of a file, with settings as `--set` takes them.
     let set = [

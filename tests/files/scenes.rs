@@ -136,7 +136,7 @@ pub const EVERYTHING: &str = r#"(
     ],
 )"#;
 
-/// What must hold forevery scene that is accepted, however it came about.
+/// What must hold for every scene that is accepted, however it came about.
 pub fn assert_usable(model: &Model) {
     assert!(
         model

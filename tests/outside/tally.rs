@@ -91,7 +91,7 @@ impl Row {
     }
 }
 
-/// A path of a scene and its value there. `surfaces.*.` stands forevery surface.
+/// A path of a scene and its value there. `surfaces.*.` stands for every surface.
 pub type Set = (String, String);
 
 /// A drawn scene, changed and checked; or why it is refused.

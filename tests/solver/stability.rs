@@ -148,7 +148,7 @@ fn a_node_that_slides_on_its_springs_diverges_where_friction_grows_faster_than_t
 }
 
 /// Out-of-balance forces and conditions of a scene as functions of displacements and multipliers, with the surfaces' geometry
-/// made anew: bodies, and forevery node that touches its forces and how far it is off.
+/// made anew: bodies, and for every node that touches its forces and how far it is off.
 struct Balance<'a> {
     model: &'a Model,
     assembly: Assembly,

@@ -52,7 +52,7 @@ fn within_a_major_iteration_going_back_assembles_and_factors_nothing() {
         assert!(others.iter().all(|other| *other == others[0]));
         let more = stepper.work();
         assert_eq!(more.assemblies, done.assemblies, "{solver}");
-        // The whole system is factored forevery assumption of modes.
+        // The whole system is factored for every assumption of modes.
         let factored = if solver == "condensed" { 0 } else { 6 };
         assert_eq!(more.factorizations, done.factorizations + factored);
     }

@@ -299,7 +299,7 @@ fn names_of_wide_letters_keep_the_columns() {
     let place = |screen: &str, text: &str| {
         let row = screen.lines().find(|row| row.contains(text));
         let row = row.unwrap_or_else(|| panic!("{text}:\n{screen}"));
-        // The picture has a character forevery column.
+        // The picture has a character for every column.
         row.chars().count() - row.split_once(text).unwrap().1.chars().count()
     };
     for (narrow, wide) in screens[0].iter().zip(&screens[1]) {

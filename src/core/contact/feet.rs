@@ -100,7 +100,7 @@ pub fn find(
     feet.sort_by(|a, b| a.distance.total_cmp(&b.distance));
 }
 
-/// Calls a function forevery local minimum of the distance on an element.
+/// Calls a function for every local minimum of the distance on an element.
 fn minima(
     element: SurfaceElement<'_>,
     positions: &[[f64; 2]],

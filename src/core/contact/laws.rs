@@ -134,7 +134,7 @@ pub struct JudgedNumbers {
 /// Findings for a state; initially empty.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Verdict {
-    /// The worst place forevery law, in the order of [`JudgedLaw::ALL`]. `None` if the law did not apply.
+    /// The worst place for every law, in the order of [`JudgedLaw::ALL`]. `None` if the law did not apply.
     pub worst: [Option<Finding>; 8],
     /// The same for [`JudgedLaw::OF_BONDS`].
     #[serde(default, skip_serializing_if = "is_nothing")]
@@ -168,7 +168,7 @@ impl Verdict {
         all.find(|found| found.law == law).copied()
     }
 
-    /// The worst place forevery law that applied, with the laws of bonds last.
+    /// The worst place for every law that applied, with the laws of bonds last.
     pub fn findings(&self) -> impl Iterator<Item = &Finding> {
         self.worst.iter().chain(&self.bonds).flatten()
     }

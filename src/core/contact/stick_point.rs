@@ -187,7 +187,7 @@ mod tests {
     fn a_node_touches_where_its_straight_path_meets_the_surface() {
         let x = [[3.0, 0.0], [-1.0, 0.0]];
         let s = [surface(vec![vec![0, 1]])];
-        // From (0, 0.5), one to the right forevery one down: meets the floor at (0.5, 0).
+        // From (0, 0.5), one to the right for every one down: meets the floor at (0.5, 0).
         let slave = [0.0, 0.5];
         let start = project(slave, &s, &[0], &x, None).unwrap();
         let at = projection_at(&s, start, &x, slave);

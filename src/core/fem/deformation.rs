@@ -9,7 +9,7 @@
 //!
 //! - **St Venant-Kirchhoff**: if the compressed directions share the stretch s, and the other directions are constrained or
 //!   stress-free, S = K (s² − 1) / 2 with a constant K. This covers compression along one, two or three directions in plane
-//!   strain, plane stress and axisymmetry, forevery ν. P = s S has its extremum at dP/ds = K (3 s² − 1) / 2 = 0: below s = 1/√3
+//!   strain, plane stress and axisymmetry, for every ν. P = s S has its extremum at dP/ds = K (3 s² − 1) / 2 = 0: below s = 1/√3
 //!   the material softens. For other ratios of the stretches the limit depends on ν. In tension P rises monotonically.
 //! - **neo-Hookean**: μ/2 (I1 − 3) − μ ln J is polyconvex; λ/2 (ln J)² is convex in J for ln J < 1. The law does not soften in
 //!   compression; it may soften in volumetric expansion beyond J = e.
@@ -146,7 +146,7 @@ pub fn by_element(model: &Model, u: &[f64]) -> Vec<Vec<[f64; 2]>> {
     all
 }
 
-/// Calls a function forevery point of every solid element, integration points before nodes. The last argument of the function
+/// Calls a function for every point of every solid element, integration points before nodes. The last argument of the function
 /// is whether the point is an integration point.
 fn each_point(model: &Model, u: &[f64], mut see: impl FnMut(&Elastic, PointDeformation, bool)) {
     for (body, one) in model.bodies.iter().enumerate() {

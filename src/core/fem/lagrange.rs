@@ -47,7 +47,7 @@ const fn nodes() -> [[(f64, f64); MAX_NODES]; MAX_NODES + 1] {
     table
 }
 
-/// Calls a function that is compiled forevery number of nodes from 2 to [`MAX_NODES`]; for fewer nodes there are no shape
+/// Calls a function that is compiled for every number of nodes from 2 to [`MAX_NODES`]; for fewer nodes there are no shape
 /// functions.
 macro_rules! for_count {
     ($m:expr, $function:ident($($argument:expr),*)) => {

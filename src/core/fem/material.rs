@@ -77,7 +77,7 @@ impl Material {
         }
     }
 
-    /// S = C : E with constant plane moduli, which the updated Lagrangian formulation uses forevery increment.
+    /// S = C : E with constant plane moduli, which the updated Lagrangian formulation uses for every increment.
     pub fn linear(&self, strain: &Vector3<f64>) -> Response {
         let (mu, trace) = (self.mu, strain.x + strain.y);
         // λ / (λ + 2μ) = ν / (1 − ν).

@@ -331,7 +331,7 @@ fn the_nodes_of_every_face_lie_on_the_boundary_of_the_parent_element_in_order() 
 }
 
 /// The patch test: if displacements are linear in the position, the forces of every distorted element of a kind follow from a
-/// single stress, which gives the tractions on its faces: Σ f_i = 0, and Σ f_i ⊗ X_i is the stress times the volume, forevery
+/// single stress, which gives the tractions on its faces: Σ f_i = 0, and Σ f_i ⊗ X_i is the stress times the volume, for every
 /// shape.
 #[test]
 fn every_kind_of_continuum_element_passes_the_patch_test() {

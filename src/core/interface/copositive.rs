@@ -1,5 +1,5 @@
 //! Complementary pivoting on Coulomb's law in the form of Stewart and Trinkle (Int. J. Numer. Meth. Engng 39, 1996), with the
-//! friction force split into two opposite parts: forevery node with friction
+//! friction force split into two opposite parts: for every node with friction
 //!
 //! ```text
 //! 0 <= F_n                              complements   gap >= 0

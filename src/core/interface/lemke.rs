@@ -1,6 +1,6 @@
 //! Lemke's complementary pivoting on the frozen interface problem.
 //!
-//! Coulomb's law in the plane is a linear complementarity problem (Klarbring, Ing.-Arch. 56, 1986): forevery node with friction
+//! Coulomb's law in the plane is a linear complementarity problem (Klarbring, Ing.-Arch. 56, 1986): for every node with friction
 //!
 //! ```text
 //! 0 <= F_n            complements   gap >= 0

@@ -1,4 +1,4 @@
-//! Minor iterations on the full system of bodies and interface (eqn 9), which is factored forevery combination of modes.
+//! Minor iterations on the full system of bodies and interface (eqn 9), which is factored for every combination of modes.
 
 use super::partners::{partners_motion, place_partners};
 use super::source::{At, Solved};

@@ -80,7 +80,7 @@ pub struct Model {
     pub budget: f64,
     /// Diagonal of the bounding box of all bodies' nodes: the length scale for tolerances.
     pub length: f64,
-    /// Data of a finished run of another program. `None` foreverything that can be stepped.
+    /// Data of a finished run of another program. `None` for everything that can be stepped.
     pub finished: Option<FinishedRun>,
 }
 

@@ -225,7 +225,7 @@ documented! {
         /// other one if only that fits into memory.
         #[default]
         Auto,
-        /// The full system of bodies and interface (eqn 9), factored forevery combination of modes.
+        /// The full system of bodies and interface (eqn 9), factored for every combination of modes.
         Augmented,
         /// Bodies condensed to the interface (eqn 6) once per major iteration, as in the paper. A minor iteration then costs a
         /// dense solve of the interface's size.

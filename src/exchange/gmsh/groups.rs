@@ -29,7 +29,7 @@ impl Groups {
     }
 
     /// The cells, each once, and the nonempty groups: named groups in the order of their names, then unnamed ones in the order of
-    /// their cells. Version 2.2 repeats a cell forevery group that contains it.
+    /// their cells. Version 2.2 repeats a cell for every group that contains it.
     pub fn of_cells(&self, raw: &[RawCell], cells: Vec<Cell>) -> (Vec<Cell>, Vec<Group>) {
         let mut made = Vec::new();
         let mut place_of: HashMap<(u8, i64), usize> = HashMap::new();

@@ -56,7 +56,7 @@ fn elastic(here: &Path, material: &Material) -> Result<(), Fault> {
     }
     let why = match made.update {
         Update::Updated => "update: updated uses the moduli of svk in every increment",
-        Update::Small => "update: small is linear elasticity forevery law",
+        Update::Small => "update: small is linear elasticity for every law",
         Update::Total => return Ok(()),
     };
     if made.law != Law::Svk {

@@ -1,4 +1,4 @@
-//! The isoparametric continuum element, with finite rotations and strains: one formulation forevery kind of
+//! The isoparametric continuum element, with finite rotations and strains: one formulation for every kind of
 //! [`super::kinds`].
 //!
 //! The degrees of freedom are x, y of node 1, of node 2, … With H = ∂u/∂X, F = I + H and the rule of the kind,

@@ -36,7 +36,7 @@ impl Recovery for Halve {
     }
 }
 
-/// Along the path: half the arc, or the arc to the next corner, forevery strategy. The arc control sets the size.
+/// Along the path: half the arc, or the arc to the next corner, for every strategy. The arc control sets the size.
 pub(super) struct ShorterArc;
 
 impl Recovery for ShorterArc {

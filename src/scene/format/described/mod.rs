@@ -205,7 +205,7 @@ pub(crate) trait Choice {
     fn choose(&mut self, name: &str) -> bool;
 }
 
-/// Callback forevery scalar of a walk.
+/// Callback for every scalar of a walk.
 pub(crate) type Visit<'v> = dyn FnMut(&ScalarPlace<'_>, Scalar<'_>) + 'v;
 
 /// A type that can occur in a scene file.
