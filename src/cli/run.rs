@@ -8,6 +8,7 @@ use super::remedies;
 use super::sink::Sink;
 use super::solver::{Subject, SubjectArgs};
 use super::table;
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -18,6 +19,7 @@ use stickslip_core::linear::stability::Stability;
 use stickslip_core::model::{Control, Jumps, Model, Touch};
 use stickslip_core::step::drive::{RunEnd, Until, drive};
 use stickslip_core::step::event::{Event, Moves, Outcome};
+use stickslip_core::step::recovery::fallback::Fallback;
 use stickslip_core::step::solver::{Lost, Solver};
 use stickslip_debugger::explain::accuracy;
 use stickslip_debugger::explain::bond;
@@ -206,6 +208,8 @@ struct Tally<'a> {
     majors: u64,
     /// Increments accepted with a warning.
     doubtful: u32,
+    /// Load factors of increments that were accepted with a fallback.
+    found: BTreeMap<Fallback, Vec<f64>>,
     /// Load factors of accepted increments that jumped, and of those that lost stability.
     jumps: Vec<f64>,
     losses: Vec<f64>,
@@ -256,6 +260,7 @@ impl<'a> Run<'a> {
                 accepted: 0,
                 majors: 0,
                 doubtful: 0,
+                found: BTreeMap::new(),
                 jumps: Vec::new(),
                 losses: Vec::new(),
                 notes: 0,
@@ -397,12 +402,17 @@ impl<'a> Run<'a> {
     fn tell_marks(&self) {
         let Tally {
             scene,
+            found,
             jumps,
             losses,
             ..
         } = &self.tally;
         let name = &scene.name;
         let loads = |all: &[f64]| first_of(all.iter().map(|&x| four(x)), MOST_STRETCHES, ", ");
+        for (by, found) in found {
+            let (by, at) = (by.words(), loads(found));
+            notify(&format!("{name}: found with {by} at load {at}"));
+        }
         if !jumps.is_empty() {
             let at = loads(jumps);
             notify(&format!(
@@ -604,11 +614,15 @@ impl Tally<'_> {
             after,
             jumped,
             unstable,
+            found,
             ..
         } = event.outcome
         else {
             return;
         };
+        if let Some(by) = found {
+            self.found.entry(by).or_default().push(event.load_factor);
+        }
         match unstable {
             Some(_) => self.losses.push(event.load_factor),
             None if jumped => self.jumps.push(event.load_factor),

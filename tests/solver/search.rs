@@ -6,7 +6,7 @@ use stickslip::step::event::{Failure, Outcome};
 use stickslip::step::recovery::fallback::Fallback;
 use stickslip::step::stepper::Stepper;
 
-/// A run: how it ends, the fallbacks by which an increment was accepted, accepted jumps, and major iterations of searches.
+/// A run: how it ends, the fallbacks by which an increment was accepted, accepted jumps, and factorizations spent on searches.
 struct Run {
     failure: Option<Failure>,
     found: Vec<Fallback>,
@@ -46,15 +46,15 @@ fn run(name: &str, set: &[(&str, &str)]) -> Run {
     }
 }
 
-const AUTO: &[(&str, &str)] = &[("settings.search", "auto")];
+const OFF: &[(&str, &str)] = &[("settings.search", "off")];
 
 #[test]
 fn bodies_that_touch_without_a_gap_are_held_from_the_start() {
     for name in ["die", "stack-of-50-blocks"] {
-        let searched = run(name, AUTO);
+        let searched = run(name, &[]);
         assert_eq!(searched.failure, None, "{name}");
         assert_eq!(searched.found.first(), Some(&Fallback::Touching), "{name}");
-        let without = run(name, &[]).failure;
+        let without = run(name, OFF).failure;
         assert!(
             matches!(without, Some(Failure::Singular(_))),
             "{name}: {without:?}"
@@ -64,7 +64,7 @@ fn bodies_that_touch_without_a_gap_are_held_from_the_start() {
 
 #[test]
 fn modes_that_cycle_at_the_least_increment_settle_in_smaller_parts() {
-    let searched = run("modes-cycle-at-the-least-increment", AUTO);
+    let searched = run("modes-cycle-at-the-least-increment", &[]);
     assert_eq!(searched.failure, None);
     assert!(
         searched.found.contains(&Fallback::Deeper),
@@ -76,29 +76,23 @@ fn modes_that_cycle_at_the_least_increment_settle_in_smaller_parts() {
 
 #[test]
 fn a_damped_motion_finds_the_next_equilibrium() {
-    let searched = run("moves-to-another-equilibrium", AUTO);
+    let searched = run("moves-to-another-equilibrium", &[]);
     assert_eq!(searched.failure, None);
     assert!(
         searched.found.contains(&Fallback::Release),
         "{:?}",
         searched.found
     );
-    assert!(run("moves-to-another-equilibrium", &[]).failure.is_some());
+    assert!(run("moves-to-another-equilibrium", OFF).failure.is_some());
 }
 
 #[test]
 fn no_search_spends_more_than_its_limit() {
     let name = "moves-to-another-equilibrium";
-    let whole = run(name, AUTO).spent;
+    let whole = run(name, &[]).spent;
     let limit = whole / 2;
-    let limited = run(
-        name,
-        &[
-            ("settings.search", "auto"),
-            ("settings.search_limit", &limit.to_string()),
-        ],
-    );
+    let limited = run(name, &[("settings.search_limit", &limit.to_string())]);
     assert!(limited.failure.is_some());
     // The attempt in which the limit is reached is finished.
-    assert!(limited.spent <= limit + 60, "{} of {limit}", limited.spent);
+    assert!(limited.spent <= limit + 600, "{} of {limit}", limited.spent);
 }

@@ -48,11 +48,12 @@ documented! {
         /// 1e-6.
         #[serde(skip_serializing_if = "is_default_limit_load")]
         pub limit_load: f64,
-        /// Whether the strategy `ladder` searches for a way out where an increment fails. Default: off.
+        /// Whether the strategy `ladder` searches for a way out where an increment fails. Default: auto.
         #[serde(skip_serializing_if = "SearchMode::is_default")]
         pub search: SearchMode,
-        /// Maximum number of factorizations that a run spends on such searches. Default: 1000.
-        #[serde(skip_serializing_if = "is_default_search_limit")]
+        /// Maximum number of factorizations that a run spends on such searches; a minor iteration counts as one, a major iteration
+        /// as one more. 0 means 4 times those of the rest of the run. Default: 0.
+        #[serde(skip_serializing_if = "is_default_limit")]
         pub search_limit: u32,
         /// What becomes of gaps that are there before the first increment. Default: keep.
         #[serde(skip_serializing_if = "InitialGaps::is_default")]
@@ -88,7 +89,7 @@ impl Default for Settings {
             tolerance: 1e-11,
             limit_load: LIMIT_LOAD,
             search: SearchMode::default(),
-            search_limit: SEARCH_LIMIT,
+            search_limit: 0,
             initial_gaps: InitialGaps::default(),
             adjust_gap: 0.0,
             memory: None,
@@ -103,11 +104,8 @@ fn is_default_limit_load(value: &f64) -> bool {
     *value == LIMIT_LOAD
 }
 
-/// Maximum number of factorizations of searches, unless the scene sets it.
-const SEARCH_LIMIT: u32 = 1000;
-
-fn is_default_search_limit(value: &u32) -> bool {
-    *value == SEARCH_LIMIT
+fn is_default_limit(value: &u32) -> bool {
+    *value == 0
 }
 
 fn is_zero(value: &f64) -> bool {
@@ -240,9 +238,9 @@ documented! {
     pub enum SearchMode {
         /// After the strategies and the other parts of the increment: nodes that touch at the start are held, the increment is cut
         /// below its least size, and where equilibrium ends the nodes move damped to the next one, which is marked.
+        #[default]
         Auto,
         /// The increment fails.
-        #[default]
         Off,
     }
 }

@@ -187,6 +187,8 @@ pub enum Outcome {
         unstable: Option<StabilityLoss>,
         /// The damped motion that it completes, if any.
         motion: Option<Motion>,
+        /// The fallback with which it was found. `None` without one.
+        found: Option<Fallback>,
         /// Worst point at which a solid leaves the range of its law in this increment. `None` if all points are inside, or if a
         /// point was outside before.
         left_range: Option<PointDeformation>,
@@ -207,6 +209,7 @@ impl Outcome {
             jumped: false,
             unstable: None,
             motion: None,
+            found: None,
             left_range: None,
             last,
         }

@@ -5,6 +5,7 @@ use crate::linear::norms::Norms;
 use crate::model::{Mode, least};
 use crate::step::event::Outcome;
 use crate::step::jump::Landing;
+use crate::step::recovery::fallback::Fallback;
 use crate::step::state::Status;
 use crate::step::stepper::Stepper;
 use crate::step::sub_increment::SubIncrement;
@@ -46,6 +47,8 @@ impl Stepper {
         let bounded = self.go_along(leg);
         self.settle_contacts();
         let motion = self.state.motion.take();
+        let found = self.state.fallback.map(|fallback| fallback.by);
+        let found = found.filter(|by| *by != Fallback::Back);
         let left_range = range_left(&*self.source, &self.state);
         let start = Arc::make_mut(&mut self.state.start);
         start.load_factor = self.state.load_factor;
@@ -68,6 +71,7 @@ impl Stepper {
             jumped: landing.jumped,
             unstable: landing.unstable,
             motion,
+            found,
             left_range,
             last,
         }
@@ -123,7 +127,11 @@ impl Stepper {
             let (start, increment) = (&self.state.start, self.state.controls.increment);
             SubIncrement::whole(&self.model, start.place(), increment)
         };
-        self.state.fallback = None;
+        let helped = self.state.fallback.take().map(|fallback| fallback.by);
+        let repeated = |by: &Fallback| matches!(by, Fallback::Deeper | Fallback::Release);
+        if let Some(by) = helped.filter(repeated) {
+            self.state.searched.adopted = Some(by);
+        }
         self.state.searched.origin = None;
         let rest = self.state.sub_increment.next();
         self.state.sub_increment = rest.unwrap_or_else(whole);

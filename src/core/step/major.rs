@@ -189,9 +189,7 @@ impl Stepper {
 
     /// Starts the first minor iteration of another major iteration.
     pub(super) fn next_major(&mut self) {
-        if self.state.fallback.is_some_and(|route| route.by.searches()) {
-            self.state.searched.spent += 1;
-        }
+        self.state.count_cost(1);
         self.state.next.major += 1;
         self.state.next.minor = 1;
     }

@@ -15,7 +15,7 @@ use crate::step::event::{Failure, Position};
 use crate::step::intervention::{Intervention, Value};
 use crate::step::major_history::MajorHistory;
 use crate::step::pace::Pace;
-use crate::step::recovery::fallback::FallbackState;
+use crate::step::recovery::fallback::{Fallback, FallbackState};
 use crate::step::recovery::motion::Motion;
 use crate::step::recovery::proximal::Brake;
 use crate::step::sub_increment::SubIncrement;
@@ -117,11 +117,18 @@ pub struct Outside {
     pub largest_force: f64,
 }
 
-/// Record of the search for recoveries in a run ([`crate::model::SearchMode`]).
+/// Record of the search for recoveries in a run ([`crate::model::SearchMode`]). Costs are numbers of factorizations: one of the
+/// interface for each minor iteration, one of the bodies for each major iteration.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Searches {
-    /// Major iterations spent.
+    /// Cost of all searches.
     pub spent: u32,
+    /// Cost of the rest of the run.
+    #[serde(default)]
+    pub run: u32,
+    /// The fallback of the search that helped last; the next failed increment tries it first.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub adopted: Option<Fallback>,
     /// Load factor of the equilibrium from which the last damped motion began.
     pub released: Option<f64>,
     /// That equilibrium, while the motion is in progress.
@@ -129,7 +136,23 @@ pub struct Searches {
     pub origin: Option<Arc<IncrementStart>>,
 }
 
+/// Limit of the cost of searches over that of the rest of the run, unless the scene sets one.
+const WORTH: u32 = 4;
+
 impl Searches {
+    /// Whether a fallback may continue within the limit; 0 means [`WORTH`] times the cost of the run. Smaller increments may
+    /// spend half of it.
+    pub(super) fn can_afford(&self, by: Fallback, limit: u32) -> bool {
+        let limit = match limit {
+            0 => self.run.saturating_mul(WORTH),
+            limit => limit,
+        };
+        match by {
+            Fallback::Deeper => self.spent < limit / 2,
+            _ => self.spent < limit,
+        }
+    }
+
     /// Whether no search was done yet.
     pub fn is_new(&self) -> bool {
         *self == Searches::default()
@@ -293,8 +316,22 @@ impl State {
         State {
             pace: self.pace.digested(),
             watch: StabilityWatch::default(),
+            searched: Searches {
+                run: 0,
+                ..self.searched.clone()
+            },
             ..self.clone()
         }
+    }
+
+    /// Adds factorizations to the cost of the run, or of the search that is in progress.
+    pub(super) fn count_cost(&mut self, factorizations: u32) {
+        let searched = &mut self.searched;
+        let cost = match self.fallback {
+            Some(fallback) if fallback.by.searches() => &mut searched.spent,
+            _ => &mut searched.run,
+        };
+        *cost = cost.saturating_add(factorizations);
     }
 
     /// Arc length from the start of the history to the current increment. `None` under load control.

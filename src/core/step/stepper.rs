@@ -158,6 +158,7 @@ impl Stepper {
         self.event.load_factor = self.state.load_factor;
         self.event.drag = self.state.at().drag.unwrap_or(0.0);
         self.event.nodes.clear();
+        self.state.count_cost(1);
         self.event.outcome = self.iterate();
         self.event.arc = self.state.arc();
         if self.state.way.is_some() && self.event.outcome.ends_major() {

@@ -187,7 +187,7 @@ pub fn outcome(model: &Model, event: &Event) -> String {
         }
         Outcome::Moves(moves) => format!("{at}: {}", self::moves(model, moves)),
         Outcome::Fallback { why, by, size } => format!(
-            "{at}: {}; smaller increments have failed: tries {} from size {size}",
+            "{at}: {}; tries {} (size {size})",
             describe_failure(model, why),
             by.words()
         ),
@@ -208,11 +208,14 @@ pub fn outcome(model: &Model, event: &Event) -> String {
             "{at}: refused: {}; continues, counting net slip from here on",
             judged::finding(model, why)
         ),
-        Outcome::Increment { after, last, .. } => {
+        Outcome::Increment {
+            after, found, last, ..
+        } => {
+            let found = found.map_or(String::new(), |by| format!(", found with {}", by.words()));
             let end = if *last { jumped::end(model, event) } else { "" };
             let left = accuracy::left(after).map_or(String::new(), |left| format!("; {left}"));
             format!(
-                "{at}: load {} accepted{}{left}{end}",
+                "{at}: load {} accepted{found}{}{left}{end}",
                 event.load_factor,
                 reservations(model, event)
             )

@@ -21,8 +21,8 @@ use crate::model::PointGive;
 const BY_NORMAL: usize = DOFS;
 const BY_TANGENTIAL: usize = DOFS + 1;
 const BY_TURN: usize = DOFS + 2;
-/// Fixed-point iterations for tan α: each reduces the error by the factor tan² α.
-const STEPS: usize = 12;
+/// Minimum and maximum number of fixed-point iterations for tan α: each reduces the error by the factor tan² α.
+const STEPS: [usize; 2] = [12, 100];
 
 /// Deflection and slopes at a point of an element due to the other forces on it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -101,10 +101,20 @@ pub fn turned(normal: [f64; 2], a: f64) -> [f64; 2] {
 /// tan α of a force F_n at a point with the lever √m / (m − g k).
 pub fn tilt(own: &Pair, lever: f64, f_n: f64, others: &Others) -> f64 {
     let mut a = others.slope * lever;
-    for _ in 0..STEPS {
-        a = (others.slope + own.slope * f_n / (1.0 + a * a).sqrt()) * lever;
+    for step in 1..=STEPS[1] {
+        let next = (others.slope + own.slope * f_n / (1.0 + a * a).sqrt()) * lever;
+        let last = ends(step, a, next);
+        a = next;
+        if last {
+            break;
+        }
     }
     a
+}
+
+/// Whether the iteration for tan α ends with this step.
+fn ends(step: usize, before: f64, after: f64) -> bool {
+    step >= STEPS[0] && (after - before).abs() <= f64::EPSILON * after.abs()
 }
 
 /// Computes gap, forces and derivatives of a contact.
@@ -140,8 +150,13 @@ pub fn linearise(over: &Over<'_>) -> Linearised {
     others_slope.by[BY_TURN] = 1.0;
     let lever = size / stiffness;
     let (one, mut a) = (Dual::constant(1.0), others_slope * lever);
-    for _ in 0..STEPS {
-        a = (others_slope + own_slope * f_n / (one + a * a).sqrt()) * lever;
+    for step in 1..=STEPS[1] {
+        let next = (others_slope + own_slope * f_n / (one + a * a).sqrt()) * lever;
+        let last = ends(step, a.value, next.value);
+        a = next;
+        if last {
+            break;
+        }
     }
     let cos = one / (one + a * a).sqrt();
     let sin = a * cos;

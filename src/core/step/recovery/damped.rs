@@ -18,6 +18,7 @@
 //! is accepted and marked as a jump; otherwise the motion continues. Viscosity only dissipates work, Σ (c / Δt) |Δu|²; the sum is
 //! reported.
 
+use super::fallback::Fallback;
 use super::motion::Motion;
 use super::retry::{Effect, Recovery, Retry};
 use super::stalled::Stalled;
@@ -85,7 +86,7 @@ impl Recovery for Slower {
 
 /// Repeats the step with more drag, or continues the motion after a premature attempt at rest.
 fn slower(slow: Slow, stalled: &Stalled<'_>) -> Option<Retry> {
-    if stalled.state.fallback.is_some() && !stalled.searches() {
+    if stalled.state.fallback.is_some() && !stalled.searches(Fallback::Release) {
         return None;
     }
     let mut motion = stalled.state.motion?;
@@ -161,8 +162,7 @@ impl Stepper {
             };
             return self.accept(after, verdict, landing);
         }
-        let limit = self.state.controls.settings.search_limit;
-        let spent = self.state.fallback.is_some() && self.state.searched.spent >= limit;
+        let spent = self.state.fallback.is_some() && !self.stalled().searches(Fallback::Release);
         if spent || motion.steps + 1 >= MOST_STEPS || motion.drag < SOFTEST * motion.stiffness {
             self.next_major();
             return self.end_motion(Failure::Restless {

@@ -27,7 +27,13 @@ impl Recovery for Fallback {
     fn propose(&self, why: &Failure, stalled: &Stalled<'_>) -> Option<Retry> {
         let state = stalled.state;
         let chosen = &state.controls.settings;
-        if state.fallback.is_some_and(|route| route.by >= *self)
+        let tried = state.fallback.map(|route| route.by);
+        let out_of_turn = match (state.searched.adopted, tried) {
+            // The one that helped last came first; the others follow in their order.
+            (Some(adopted), Some(by)) if adopted == by => adopted == *self,
+            (_, tried) => tried.is_some_and(|by| by >= *self),
+        };
+        if out_of_turn
             || strategy::rungs(chosen.strategy).is_empty()
             || matches!(why, Failure::Leapt { .. }) && state.fallback.is_none()
             || !(*self == Fallback::Touching || stalled.size_helps(why) || stalled.drowned(why))
@@ -71,7 +77,7 @@ impl Fallback {
         if self == Fallback::Back {
             return state.fallback.is_some();
         }
-        if self.searches() && !stalled.searches() {
+        if self.searches() && !stalled.searches(self) {
             return false;
         }
         if matches!(why, Failure::Inverted(_)) && !self.searches() {

@@ -64,15 +64,15 @@ pub struct FallbackState {
 
 crate::words! {
     Fallback, words:
-    Touching "nodes that touch at the start held",
-    Section "parts that are no halves",
-    Consistent "T_max in the equations",
-    Start "touching nodes held where they were",
-    Newton "semismooth Newton first",
-    Held "sliding held back",
+    Touching "nodes that touch at the start fixed",
+    Section "unequal parts",
+    Consistent "t_max: consistent",
+    Start "touch: start",
+    Newton "semismooth Newton",
+    Held "held-back sliding",
     Deeper "parts below the least increment",
     Release "a damped motion from the last equilibrium",
-    Back "the last half as it was, since nothing else helps",
+    Back "the last part without a fallback, since none has helped",
 }
 
 impl Fallback {

@@ -126,9 +126,12 @@ impl Stepper {
         self.recover(recoveries, why)
     }
 
-    /// Restarts the increment with the next fallback. `None` if none applies.
+    /// Restarts the increment with the next fallback: first the one of the search that helped last. `None` if none applies.
     pub(super) fn fall_back(&mut self, why: &Failure) -> Option<Outcome> {
-        self.recover(&FALLBACKS, why)
+        let adopted = self.state.searched.adopted;
+        let first = adopted.filter(|_| self.state.fallback.is_none());
+        let again = first.and_then(|by| self.recover(&[&by], why));
+        again.or_else(|| self.recover(&FALLBACKS, why))
     }
 
     fn recover(&mut self, recoveries: &[&dyn Recovery], why: &Failure) -> Option<Outcome> {
@@ -164,16 +167,15 @@ impl Stepper {
                 state.fallback = Some(fallback);
             }
         }
-        if by == Some(Fallback::Back)
-            && let Some(origin) = self.state.searched.origin.take()
-        {
-            (self.state.start, self.state.motion) = (origin, None);
+        if let Some(by) = by {
+            self.leave_motion();
+            self.state
+                .searched
+                .adopted
+                .take_if(|adopted| *adopted != by);
         }
         if by == Some(Fallback::Touching) {
             self.hold_touching();
-        }
-        if by.is_some_and(Fallback::searches) {
-            self.state.searched.spent += 1;
         }
         if by == Some(Fallback::Release) {
             self.state.searched.released = Some(self.state.start.load_factor);
@@ -186,6 +188,13 @@ impl Stepper {
             self.state.brake = Some(Brake::new(self.source.spring()));
         }
         Some(outcome)
+    }
+
+    /// Returns from a damped motion of the search to its start.
+    fn leave_motion(&mut self) {
+        if let Some(origin) = self.state.searched.origin.take() {
+            (self.state.start, self.state.motion) = (origin, None);
+        }
     }
 
     /// Makes the free nodes that touch without a gap start fixed.

@@ -35,7 +35,7 @@ impl Stalled<'_> {
     pub fn least(&self) -> f64 {
         let controls = &self.state.controls;
         let fallback = self.state.fallback.map(|route| route.by);
-        if fallback == Some(Fallback::Deeper) && self.searches() {
+        if fallback == Some(Fallback::Deeper) && self.searches(Fallback::Deeper) {
             return controls.least / DEEPER;
         }
         if !self.can_move() {
@@ -54,11 +54,11 @@ impl Stalled<'_> {
         self.model.jumps == Jumps::Dynamic && self.source.damps()
     }
 
-    /// Whether the search may continue: not if jumps end the history, or if all bodies are given as matrices.
-    pub fn searches(&self) -> bool {
+    /// Whether the search may continue with a fallback: not if jumps end the history, or if all bodies are given as matrices.
+    pub fn searches(&self, by: Fallback) -> bool {
         let settings = &self.state.controls.settings;
         settings.search == SearchMode::Auto
-            && self.state.searched.spent < settings.search_limit
+            && self.state.searched.can_afford(by, settings.search_limit)
             && self.model.jumps != Jumps::Stop
             && !self.is_given()
     }
