@@ -20,6 +20,7 @@ use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
 use crate::model::{ArcLength, Jumps, Measured, Mode, Model};
 use crate::step::event::{Failure, Outcome};
+use crate::step::iterate::Iterate;
 use crate::step::jump::Landing;
 use crate::step::pace::RATIO;
 use crate::step::state::State;
@@ -42,6 +43,55 @@ struct Goal {
 }
 
 impl Stepper {
+    /// Accepts a state that passes the judge; cuts an increment that jumps or doubles back.
+    pub(super) fn land_on_way(
+        &mut self,
+        after: Norms,
+        verdict: Verdict,
+        marked: Option<Finding>,
+    ) -> Outcome {
+        let motion = self
+            .now
+            .source
+            .moved(&self.now.state.u, &self.now.state.start.u);
+        let predicted = self.now.state.pace.predicted;
+        let moves = motion > NOTHING * self.now.model.length;
+        let leaps = moves && motion > RATIO * predicted;
+        let why = if self.now.state.doubles_back() {
+            Some(Failure::DoubledBack)
+        } else {
+            leaps.then_some(Failure::Leapt {
+                motion,
+                predicted,
+                unstable: None,
+            })
+        };
+        let mut jumped = false;
+        if let Some(why) = why {
+            let jumps = self.now.model.jumps;
+            let leapt = matches!(why, Failure::Leapt { .. });
+            if !(leapt && jumps == Jumps::Accept)
+                && let Some(cut) = self.cut(&why)
+            {
+                return cut;
+            }
+            if !leapt || jumps == Jumps::Stop {
+                self.now.state.next_major();
+                return Outcome::Failed(why);
+            }
+            jumped = true;
+        }
+        #[cfg(mutants)]
+        let jumped = jumped && !crate::mutants::is_active("arc-jump-unmarked");
+        let landing = Landing {
+            jumped,
+            ..Landing::marked(marked)
+        };
+        self.now.accept(after, verdict, landing)
+    }
+}
+
+impl Iterate {
     /// Computes the tangent at the start of an increment, and with it the constraint of the increment. Does nothing under load
     /// control, or if the tangent is known.
     ///
@@ -60,7 +110,7 @@ impl Stepper {
             (motion, slips, None)
         } else {
             let (mut motion, given) = self.solve_tangent()?;
-            let sign = self.onwards(&given);
+            let sign = self.state.onwards(&given);
             motion.iter_mut().for_each(|motion| *motion *= sign);
             let slips = given.iter().map(|given| sign * given.motion[1]);
             (motion, slips.collect(), Some(self.next_changes(sign)))
@@ -133,73 +183,10 @@ impl Stepper {
     /// beyond.
     pub(super) fn turn_to_goal(&mut self, after: Norms) -> Option<Outcome> {
         let goal = self.goal_passed()?;
-        self.aim_at(goal.aim);
-        self.next_major();
+        self.state.aim_at(goal.aim);
+        self.state.next_major();
         let settled = true;
         Some(Outcome::Major { after, settled })
-    }
-
-    /// Accepts a state that passes the judge; cuts an increment that jumps or doubles back.
-    pub(super) fn land_on_way(
-        &mut self,
-        after: Norms,
-        verdict: Verdict,
-        marked: Option<Finding>,
-    ) -> Outcome {
-        let motion = self.source.moved(&self.state.u, &self.state.start.u);
-        let predicted = self.state.pace.predicted;
-        let moves = motion > NOTHING * self.model.length;
-        let leaps = moves && motion > RATIO * predicted;
-        let why = if self.doubles_back() {
-            Some(Failure::DoubledBack)
-        } else {
-            leaps.then_some(Failure::Leapt {
-                motion,
-                predicted,
-                unstable: None,
-            })
-        };
-        let mut jumped = false;
-        if let Some(why) = why {
-            let jumps = self.model.jumps;
-            let leapt = matches!(why, Failure::Leapt { .. });
-            if !(leapt && jumps == Jumps::Accept)
-                && let Some(cut) = self.cut(&why)
-            {
-                return cut;
-            }
-            if !leapt || jumps == Jumps::Stop {
-                self.next_major();
-                return Outcome::Failed(why);
-            }
-            jumped = true;
-        }
-        #[cfg(mutants)]
-        let jumped = jumped && !crate::mutants::is_active("arc-jump-unmarked");
-        let landing = Landing {
-            jumped,
-            ..Landing::marked(marked)
-        };
-        self.accept(after, verdict, landing)
-    }
-
-    /// Whether the state is on the path of the previous increment, or behind the start of this one.
-    fn doubles_back(&self) -> bool {
-        let state = &self.state;
-        let Some(way) = &state.way else { return false };
-        #[cfg(mutants)]
-        if crate::mutants::is_active("arc-step-doubles-back") {
-            return false;
-        }
-        let behind = way.measured == Measured::Displacements
-            && way.gone(&state.u, &state.start.u) <= -ROUNDING * way.step;
-        if behind || self.turned_back() || way.turned || way.last.is_empty() {
-            return behind || self.turned_back();
-        }
-        let moved = state.u.iter().zip(state.start.u.iter());
-        let moved = moved.map(|(u, start)| u - start);
-        let load = state.load_factor - state.start.load_factor;
-        goes_back(moved, &way.last) && load * way.last_load <= 0.0
     }
 
     /// The first corner or bound that the increment has passed.
@@ -227,16 +214,6 @@ impl Stepper {
         let all = of_load.into_iter().chain(bounds);
         let open = all.filter(|goal| goal.aim != way.aim);
         open.min_by(|a, b| a.part.total_cmp(&b.part))
-    }
-
-    fn aim_at(&mut self, aim: Aim) {
-        let state = &mut self.state;
-        let Some(way) = &mut state.way else { return };
-        way.aim = aim;
-        way.left = match aim {
-            Aim::Load(to) => to - state.load_factor,
-            _ => way.remaining(&state.u, &state.start.u),
-        };
     }
 
     /// Updates the arc data with an increment that is about to be accepted: its length, and the size of the next. Returns whether
@@ -292,6 +269,37 @@ impl Stepper {
         way.slips = Arc::new(state.nodes.iter().map(slip).collect());
         (way.last, way.known, way.turned) = (Arc::new(last), false, false);
         ends
+    }
+}
+
+impl State {
+    /// Whether the state is on the path of the previous increment, or behind the start of this one.
+    fn doubles_back(&self) -> bool {
+        let state = &*self;
+        let Some(way) = &state.way else { return false };
+        #[cfg(mutants)]
+        if crate::mutants::is_active("arc-step-doubles-back") {
+            return false;
+        }
+        let behind = way.measured == Measured::Displacements
+            && way.gone(&state.u, &state.start.u) <= -ROUNDING * way.step;
+        if behind || self.turned_back() || way.turned || way.last.is_empty() {
+            return behind || self.turned_back();
+        }
+        let moved = state.u.iter().zip(state.start.u.iter());
+        let moved = moved.map(|(u, start)| u - start);
+        let load = state.load_factor - state.start.load_factor;
+        goes_back(moved, &way.last) && load * way.last_load <= 0.0
+    }
+
+    fn aim_at(&mut self, aim: Aim) {
+        let state = &mut *self;
+        let Some(way) = &mut state.way else { return };
+        way.aim = aim;
+        way.left = match aim {
+            Aim::Load(to) => to - state.load_factor,
+            _ => way.remaining(&state.u, &state.start.u),
+        };
     }
 }
 

@@ -86,6 +86,14 @@ impl Event {
             outcome: Outcome::Minor,
         }
     }
+
+    /// Contacts whose mode changed, or whose T_max changed by more than `force`.
+    pub(super) fn changing(&self, force: f64) -> Vec<usize> {
+        let moves =
+            |r: &ContactRecord| r.decision.changes() || (r.t_max - r.t_max_used).abs() > force;
+        let records = self.nodes.iter().enumerate();
+        records.filter(|(_, r)| moves(r)).map(|(s, _)| s).collect()
+    }
 }
 
 impl Event {

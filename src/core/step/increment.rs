@@ -4,10 +4,10 @@ use crate::contact::laws::Verdict;
 use crate::linear::norms::Norms;
 use crate::model::{Mode, least};
 use crate::step::event::Outcome;
+use crate::step::iterate::Iterate;
 use crate::step::jump::Landing;
 use crate::step::recovery::fallback::Fallback;
 use crate::step::state::Status;
-use crate::step::stepper::Stepper;
 use crate::step::sub_increment::SubIncrement;
 use crate::step::verdict::range_left;
 use std::sync::Arc;
@@ -15,7 +15,7 @@ use std::sync::Arc;
 /// Minimum fraction of its load to which a major iteration is damped.
 const SMALLEST_PART: f64 = 1e-6;
 
-impl Stepper {
+impl Iterate {
     /// Restarts the increment, up to the end of this part.
     pub(super) fn restart(&mut self, part: SubIncrement) {
         self.state.sub_increment = part;
@@ -36,7 +36,7 @@ impl Stepper {
         }
         self.state.target = self.state.last_target + left / 2.0;
         self.linearised = false;
-        self.begin_again();
+        self.state.begin_again();
         true
     }
 

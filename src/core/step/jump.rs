@@ -19,6 +19,7 @@ use crate::linear::norms::Norms;
 use crate::linear::stability::Stability;
 use crate::model::Jumps;
 use crate::step::event::{Failure, Outcome};
+use crate::step::iterate::Iterate;
 use crate::step::pace::{Pace, Suspect};
 use crate::step::recovery::fallback::{Fallback, FallbackState};
 use crate::step::stepper::Stepper;
@@ -84,15 +85,15 @@ impl Stepper {
         verdict: Verdict,
         marked: Option<Finding>,
     ) -> Outcome {
-        if self.state.way.is_some() {
+        if self.now.state.way.is_some() {
             return self.land_on_way(after, verdict, marked);
         }
-        let (mut trip, why) = self.trip();
+        let (mut trip, why) = self.now.trip();
         let mut landing = Landing {
-            unstable: self.state.watch.loss(trip.found),
+            unstable: self.now.state.watch.loss(trip.found),
             ..Landing::marked(marked)
         };
-        let cuts = matches!(self.model.jumps, Jumps::Cut | Jumps::Stop);
+        let cuts = matches!(self.now.model.jumps, Jumps::Cut | Jumps::Stop);
         if trip.exceeds || landing.unstable.is_some() && cuts {
             // A state that violates a law is marked, not cut.
             if landing.marked.is_none()
@@ -100,14 +101,43 @@ impl Stepper {
             {
                 return tried;
             }
-            landing.jumped = trip.exceeds && (self.state.pace.over || !trip.follows());
-            let found = trip.found.unwrap_or_else(|| self.look());
+            landing.jumped = trip.exceeds && (self.now.state.pace.over || !trip.follows());
+            let found = trip.found.unwrap_or_else(|| self.now.look());
             trip.found = Some(found);
-            landing.unstable = self.state.watch.loss(trip.found);
+            landing.unstable = self.now.state.watch.loss(trip.found);
         }
-        self.touch_down(after, verdict, landing, &trip)
+        self.now.touch_down(after, verdict, landing, &trip)
     }
 
+    /// Cuts an increment that may have jumped, or fails if jumps are not allowed. `None` if the increment is accepted.
+    fn try_parts(&mut self, trip: &Trip, why: &Failure) -> Option<Outcome> {
+        let (jumps, size) = (self.now.model.jumps, trip.size());
+        let smallest = size <= self.now.state.controls.least;
+        if jumps == Jumps::Dynamic && smallest && trip.follows() {
+            return None;
+        }
+        let round = |route: FallbackState| !matches!(route.by, Fallback::Held | Fallback::Back);
+        if jumps != Jumps::Accept && self.now.state.fallback.is_some_and(round) {
+            self.now.state.next_major();
+            return Some(self.fail(why.clone()));
+        }
+        if jumps == Jumps::Accept || self.now.state.pace.over {
+            return None;
+        }
+        if let Some(cut) = self.cut(why) {
+            self.now.state.pace.suspect = Some(trip.suspect);
+            return Some(cut);
+        }
+        let ends = matches!(jumps, Jumps::Stop | Jumps::Dynamic);
+        if !ends || trip.exceeds && trip.follows() {
+            return None;
+        }
+        self.now.state.next_major();
+        Some(Outcome::Failed(why.clone()))
+    }
+}
+
+impl Iterate {
     /// Motion of the current increment, and the failure to report if the motion is too large.
     fn trip(&mut self) -> (Trip, Failure) {
         let state = &self.state;
@@ -148,33 +178,6 @@ impl Stepper {
     /// Checks the stability of the state that is about to be accepted.
     fn look(&mut self) -> Stability {
         self.source.stability(&self.state.at())
-    }
-
-    /// Cuts an increment that may have jumped, or fails if jumps are not allowed. `None` if the increment is accepted.
-    fn try_parts(&mut self, trip: &Trip, why: &Failure) -> Option<Outcome> {
-        let (jumps, size) = (self.model.jumps, trip.size());
-        let smallest = size <= self.state.controls.least;
-        if jumps == Jumps::Dynamic && smallest && trip.follows() {
-            return None;
-        }
-        let round = |route: FallbackState| !matches!(route.by, Fallback::Held | Fallback::Back);
-        if jumps != Jumps::Accept && self.state.fallback.is_some_and(round) {
-            self.next_major();
-            return Some(self.fail(why.clone()));
-        }
-        if jumps == Jumps::Accept || self.state.pace.over {
-            return None;
-        }
-        if let Some(cut) = self.cut(why) {
-            self.state.pace.suspect = Some(trip.suspect);
-            return Some(cut);
-        }
-        let ends = matches!(jumps, Jumps::Stop | Jumps::Dynamic);
-        if !ends || trip.exceeds && trip.follows() {
-            return None;
-        }
-        self.next_major();
-        Some(Outcome::Failed(why.clone()))
     }
 
     /// Accepts the state.

@@ -9,8 +9,10 @@ use crate::linear::singular::Singular;
 use crate::linear::source::Solved;
 use crate::model::{AtLimit, Friction, Mode, Refactor, ResidualMethod, SlipCount, Sticking};
 use crate::step::event::{Failure, Outcome};
+use crate::step::iterate::Iterate;
 use crate::step::major_history::{MajorCycle, RepeatScales};
 use crate::step::recovery::PATIENCE;
+use crate::step::state::State;
 use crate::step::stepper::Stepper;
 use std::sync::Arc;
 
@@ -31,61 +33,61 @@ impl Stepper {
     /// Updates displacements and forces, renews the geometry, and checks whether the increment has converged. `settled` is false
     /// if the limit of minor iterations was accepted instead.
     pub(super) fn end_major(&mut self, settled: bool) -> Outcome {
-        let held = self.hold();
-        let before = self.state.correction;
-        let asked = match self.keeps_factors() {
-            true => self.source.asked(),
+        let held = self.now.hold(&self.event.nodes);
+        let before = self.now.state.correction;
+        let asked = match self.now.keeps_factors() {
+            true => self.now.source.asked(),
             false => f64::INFINITY,
         };
-        if self.source.recover() == Solved::Not {
-            let singular = self.explain();
+        if self.now.source.recover() == Solved::Not {
+            let singular = self.now.explain();
             return self.fail(Failure::Singular(singular));
         }
-        self.update();
-        let search = &mut self.state.search;
+        self.now.update(&self.event.nodes);
+        let search = &mut self.now.state.search;
         (search.first, search.fewest, search.rounds) = (None, None, 0);
         search.searched = Searched::Not;
-        self.kept = None;
+        self.now.kept = None;
         let norms = self.norms();
-        if let Some(again) = held.and_then(|held| self.hold_back(held)) {
+        if let Some(again) = held.and_then(|held| self.now.hold_back(held)) {
             return again;
         }
-        let state = &self.state;
+        let state = &self.now.state;
         note_releases(
             &mut self.event.nodes,
             &state.nodes,
             &state.controls.friction,
         );
-        self.state.unsettled += u32::from(!settled);
+        self.now.state.unsettled += u32::from(!settled);
         let Some(after) = norms else {
             return self.fail(Failure::Singular(Singular::Unexplained));
         };
-        let settings = self.state.controls.settings;
-        let size = self.source.largest_motion(&self.state.u);
-        let bounded = after.relative.is_finite() && size < DIVERGED * self.model.length;
-        let balanced = self.is_balanced(&after) && self.is_near(before);
-        let braked = self.state.brake.is_some();
-        let most = self.most_majors(braked);
-        let at_limit = self.state.next.major.is_multiple_of(most);
+        let settings = self.now.state.controls.settings;
+        let size = self.now.source.largest_motion(&self.now.state.u);
+        let bounded = after.relative.is_finite() && size < DIVERGED * self.now.model.length;
+        let balanced = self.now.state.is_balanced(&after) && self.now.is_near(before);
+        let braked = self.now.state.brake.is_some();
+        let most = self.now.most_majors(braked);
+        let at_limit = self.now.state.next.major.is_multiple_of(most);
         let drowned = after.noise > Norms::LOUDEST;
         // A motion larger than the scene's length has diverged, however large its round-off.
         let still = after.correction < 1.0;
-        if settled && balanced && !drowned && !self.is_carried(&after) {
+        if settled && balanced && !drowned && !self.now.state.is_carried(&after) {
             return self.finish(after);
         }
         let accepts = settings.at_major_limit == AtLimit::Accept && !drowned;
         if at_limit && bounded && accepts {
-            self.state.unsettled += 1;
+            self.now.state.unsettled += 1;
             return self.finish(after);
         }
         if bounded
-            && self.state.next.major >= OVERSHOOT
-            && let Some(point) = self.inverted()
+            && self.now.state.next.major >= OVERSHOOT
+            && let Some(point) = self.now.inverted()
         {
             return self.refuse_inverted(point);
         }
-        self.renew_factors(asked, before, &after);
-        self.next_major();
+        self.now.renew_factors(asked, before, &after);
+        self.now.state.next_major();
         if !bounded {
             return self.fail(Failure::Diverged {
                 relative: after.relative,
@@ -96,9 +98,9 @@ impl Stepper {
         }
         if settings.at_major_limit == AtLimit::Stop
             && !braked
-            && let Some(cycle) = self.find_major_cycle()
+            && let Some(cycle) = self.now.find_major_cycle()
         {
-            self.state.forget_majors();
+            self.now.state.forget_majors();
             return self.fail(Failure::MajorCycle(cycle));
         }
         if at_limit {
@@ -110,7 +112,9 @@ impl Stepper {
         }
         Outcome::Major { after, settled }
     }
+}
 
+impl Iterate {
     /// Whether the settings keep old factors where they help: under load control, without damping.
     fn keeps_factors(&self) -> bool {
         let state = &self.state;
@@ -178,22 +182,6 @@ impl Stepper {
         }
     }
 
-    /// Whether forces and interface conditions are satisfied at the full load of the increment.
-    fn is_balanced(&self, after: &Norms) -> bool {
-        let tolerance = self.state.controls.settings.tolerance;
-        let exact = after.relative <= tolerance;
-        self.state.last_target == self.state.load_factor
-            && (exact || (after.relative <= after.limit && after.correction <= STILL))
-            && after.interface <= after.limit.max(tolerance)
-    }
-
-    /// Starts the first minor iteration of another major iteration.
-    pub(super) fn next_major(&mut self) {
-        self.state.count_cost(1);
-        self.state.next.major += 1;
-        self.state.next.minor = 1;
-    }
-
     /// Finds a cycle: whether the next major iteration starts from the same state as an earlier one of this increment.
     fn find_major_cycle(&mut self) -> Option<MajorCycle> {
         let scales = RepeatScales {
@@ -209,7 +197,7 @@ impl Stepper {
     }
 
     /// Updates the state with displacements and forces of the last minor iteration, and linearises there.
-    fn update(&mut self) {
+    fn update(&mut self, records: &[ContactRecord]) {
         self.measured = false;
         self.state.last_target = self.state.target;
         self.state.target = self.state.load_factor;
@@ -230,8 +218,8 @@ impl Stepper {
             pace.corrected += largest;
         }
         self.take_load();
-        for contact in 0..self.state.nodes.len() {
-            self.take_increment(contact);
+        for (contact, record) in records.iter().enumerate() {
+            self.take_increment(contact, record);
         }
         self.state.forget_minors();
         self.follow();
@@ -249,8 +237,7 @@ impl Stepper {
     ///
     /// T_max stays that of the last minor iteration: forces from stresses carry the whole error of the linearisation,
     /// which can exceed F_n itself, and a first trial with such a T_max opens contacts that are closed.
-    fn take_increment(&mut self, contact: usize) {
-        let record = self.record(contact);
+    fn take_increment(&mut self, contact: usize, record: &ContactRecord) {
         let (before, f_n, f_t) = (record.decision.before, record.f_n, record.f_t);
         let node = &mut self.state.nodes[contact];
         (node.f_n, node.f_t) = (f_n, f_t);
@@ -283,6 +270,24 @@ impl Stepper {
         let (u, friction) = (&self.state.u, &self.state.controls.friction);
         self.source.follow(u, &mut self.state.nodes, friction, anew);
         self.linearised = false;
+    }
+}
+
+impl State {
+    /// Whether forces and interface conditions are satisfied at the full load of the increment.
+    fn is_balanced(&self, after: &Norms) -> bool {
+        let tolerance = self.controls.settings.tolerance;
+        let exact = after.relative <= tolerance;
+        self.last_target == self.load_factor
+            && (exact || (after.relative <= after.limit && after.correction <= STILL))
+            && after.interface <= after.limit.max(tolerance)
+    }
+
+    /// Starts the first minor iteration of another major iteration.
+    pub(super) fn next_major(&mut self) {
+        self.count_cost(1);
+        self.next.major += 1;
+        self.next.minor = 1;
     }
 }
 

@@ -2,6 +2,7 @@
 
 use crate::contact::record::ContactRecord;
 use crate::contact::table2::Ties;
+use crate::interface::method::Method;
 use crate::interface::minor::{self, Check};
 use crate::interface::minor_history::Cycle;
 use crate::interface::rows::carried;
@@ -11,6 +12,8 @@ use crate::linear::sizes::ROUND_OFF;
 use crate::linear::source::Solved;
 use crate::model::{self, AtCycle, AtLimit, Mode};
 use crate::step::event::{Failure, Outcome};
+use crate::step::iterate::Iterate;
+use crate::step::state::State;
 use crate::step::stepper::Stepper;
 use std::sync::Arc;
 
@@ -28,11 +31,92 @@ const MOST_AHEAD: usize = 40;
 const PATIENCE: u32 = 10;
 
 impl Stepper {
-    /// Records the start of this minor iteration, to detect a cycle.
-    pub(super) fn remember(&mut self) {
-        Arc::make_mut(&mut self.state.minor_history).push(&self.state.nodes);
+    /// Checks and records the mode of every contact; true if modes and T_max have converged.
+    ///
+    /// Leaves the modes of the next minor iteration in the state.
+    pub(super) fn check(&mut self) -> bool {
+        let settings = self.now.state.settings();
+        let method = self.method();
+        let check = Check {
+            settings,
+            method: &*method,
+            ties: self.now.ties(),
+            stiffness: if method.compares_by_springs() {
+                self.now.source.spring()
+            } else {
+                1.0
+            },
+        };
+        let mut settled = true;
+        let controls = self.now.state.controls.clone();
+        let singly = method.is_single(self.now.state.is_stalled());
+        if singly {
+            self.before.clone_from(&self.now.state.nodes);
+        }
+        for (contact, node) in self.now.state.nodes.iter_mut().enumerate() {
+            let over = self.now.source.kinematics(contact);
+            let increment = self.now.source.increment(contact);
+            let friction = node.friction(&controls.friction[contact]);
+            let (record, still) = minor::check(node, over.as_ref(), increment, &friction, &check);
+            settled &= still;
+            self.event.nodes.push(record);
+        }
+        if method.counts_changes() {
+            self.now.state.count_changes(&self.event.nodes);
+        }
+        if singly {
+            minor::one_at_a_time(
+                &mut self.now.state.nodes,
+                &self.before,
+                &mut self.event.nodes,
+            );
+        }
+        settled
     }
 
+    /// The minor loop has not converged: looks for a cycle, checks the limit, and counts on.
+    pub(super) fn go_on(&mut self) -> Outcome {
+        let settings = self.now.state.settings();
+        let method = self.method();
+        if method.search().is_some() {
+            return self.now.state.begin_search();
+        }
+        let accept = settings.at_minor_limit == AtLimit::Accept;
+        let tried = self.now.state.minor_history.len(self.now.state.nodes.len()) as u32;
+        let at_limit = tried > 0 && tried.is_multiple_of(settings.minors);
+        if at_limit && accept {
+            return self.end_major(false);
+        }
+        let moves_on = method.counts_changes() && !self.now.state.is_stalled();
+        if !accept
+            && !moves_on
+            && let Some(cycle) = self
+                .now
+                .find_cycle()
+                .or_else(|| (at_limit || tried == LOOK).then(|| self.now.find_spiral(&*method))?)
+        {
+            if settings.at_cycle == AtCycle::Damp && self.now.damp() {
+                self.now.state.next.minor += 1;
+                return Outcome::Damped {
+                    cycle,
+                    target: self.now.state.target,
+                };
+            }
+            return self.escalate(Failure::Cycle(cycle));
+        }
+        if at_limit {
+            let changing = self.event.changing(self.now.ties().force);
+            return self.escalate(Failure::MinorLimit {
+                limit: settings.minors,
+                changing,
+            });
+        }
+        self.now.state.next.minor += 1;
+        Outcome::Minor
+    }
+}
+
+impl Iterate {
     /// Why a solve has no solution, or no meaningful one.
     pub(super) fn unsolvable(&self, solved: Solved) -> Option<Failure> {
         let singular = match solved {
@@ -80,11 +164,11 @@ impl Stepper {
 
     /// Failure before a ladder found a state without contact pressure: if the equations were singular, such a state does not
     /// support the loose bodies.
-    pub(super) fn unsupported(&self) -> Option<Failure> {
+    pub(super) fn unsupported(&self, records: &[ContactRecord]) -> Option<Failure> {
         let first = self.state.search.first.as_deref()?;
         let force = self.ties().force;
         let pressed = |record: &ContactRecord| record.f_n > force;
-        let loose = matches!(first, Failure::Singular(_)) && !self.event.nodes.iter().any(pressed);
+        let loose = matches!(first, Failure::Singular(_)) && !records.iter().any(pressed);
         loose.then(|| first.clone())
     }
 
@@ -117,116 +201,6 @@ impl Stepper {
         })
     }
 
-    /// Checks and records the mode of every contact; true if modes and T_max have converged.
-    ///
-    /// Leaves the modes of the next minor iteration in the state.
-    pub(super) fn check(&mut self) -> bool {
-        let settings = self.state.settings();
-        let method = self.method();
-        let check = Check {
-            settings,
-            method: &*method,
-            ties: self.ties(),
-            stiffness: if method.compares_by_springs() {
-                self.source.spring()
-            } else {
-                1.0
-            },
-        };
-        let mut settled = true;
-        let controls = self.state.controls.clone();
-        let singly = method.is_single(self.is_stalled());
-        if singly {
-            self.before.clone_from(&self.state.nodes);
-        }
-        for (contact, node) in self.state.nodes.iter_mut().enumerate() {
-            let over = self.source.kinematics(contact);
-            let increment = self.source.increment(contact);
-            let friction = node.friction(&controls.friction[contact]);
-            let (record, still) = minor::check(node, over.as_ref(), increment, &friction, &check);
-            settled &= still;
-            self.event.nodes.push(record);
-        }
-        if method.counts_changes() {
-            self.count_changes();
-        }
-        if singly {
-            minor::one_at_a_time(&mut self.state.nodes, &self.before, &mut self.event.nodes);
-        }
-        settled
-    }
-
-    /// Whether simultaneous changes have continued for long without becoming fewer.
-    fn is_stalled(&self) -> bool {
-        self.state.search.rounds > PATIENCE
-    }
-
-    /// Counts the rounds since the minimum number of changing nodes in this major iteration. Rounds before a change of pace do
-    /// not indicate cycles.
-    fn count_changes(&mut self) {
-        let all = self.event.nodes.iter();
-        let changing = all.filter(|record| record.decision.changes()).count();
-        let stalled = self.is_stalled();
-        let search = &mut self.state.search;
-        if search.fewest.is_none_or(|fewest| changing < fewest) {
-            (search.fewest, search.rounds) = (Some(changing), 0);
-        } else {
-            search.rounds += 1;
-        }
-        if self.is_stalled() != stalled {
-            self.state.forget_minors();
-        }
-    }
-
-    /// The minor loop has not converged: looks for a cycle, checks the limit, and counts on.
-    pub(super) fn go_on(&mut self) -> Outcome {
-        let settings = self.state.settings();
-        let method = self.method();
-        if method.search().is_some() {
-            return self.begin_search();
-        }
-        let accept = settings.at_minor_limit == AtLimit::Accept;
-        let tried = self.state.minor_history.len(self.state.nodes.len()) as u32;
-        let at_limit = tried > 0 && tried.is_multiple_of(settings.minors);
-        if at_limit && accept {
-            return self.end_major(false);
-        }
-        let moves_on = method.counts_changes() && !self.is_stalled();
-        if !accept
-            && !moves_on
-            && let Some(cycle) = self
-                .find_cycle()
-                .or_else(|| (at_limit || tried == LOOK).then(|| self.find_spiral())?)
-        {
-            if settings.at_cycle == AtCycle::Damp && self.damp() {
-                self.state.next.minor += 1;
-                return Outcome::Damped {
-                    cycle,
-                    target: self.state.target,
-                };
-            }
-            return self.escalate(Failure::Cycle(cycle));
-        }
-        if at_limit {
-            let changing = self.changing();
-            return self.escalate(Failure::MinorLimit {
-                limit: settings.minors,
-                changing,
-            });
-        }
-        self.state.next.minor += 1;
-        Outcome::Minor
-    }
-
-    /// Contacts whose mode or T_max changed in the last minor iteration.
-    fn changing(&self) -> Vec<usize> {
-        let force = self.ties().force;
-        let moves =
-            |r: &ContactRecord| r.decision.changes() || (r.t_max - r.t_max_used).abs() > force;
-        let records = self.event.nodes.iter().enumerate();
-        records.filter(|(_, r)| moves(r)).map(|(s, _)| s).collect()
-    }
-
     /// Finds a cycle: whether the next minor iteration starts from the same state as an earlier one of this major iteration.
     fn find_cycle(&self) -> Option<Cycle> {
         let force = REPEATED * self.force_scale();
@@ -237,13 +211,13 @@ impl Stepper {
     }
 
     /// Finds a cycle of modes that repeats endlessly while T_max still converges; this is certain, since T_max changes linearly.
-    fn find_spiral(&mut self) -> Option<Cycle> {
+    fn find_spiral(&mut self, method: &dyn Method) -> Option<Cycle> {
         let count = self.state.nodes.len();
         if count > MOST_AHEAD {
             return None;
         }
         let problem = self.source.problem(&self.state.at()).ok()?;
-        let found = spiral(&problem, &*self.method(), AHEAD)?;
+        let found = spiral(&problem, method, AHEAD)?;
         let period = found.period as usize;
         let history = &self.state.minor_history;
         // Phase in the cycle of the iteration `back` before the next one: rounds end `start` iterations from now.
@@ -275,5 +249,36 @@ impl Stepper {
                 .map(|(_, (node, modes))| (node.slave, pattern(modes)))
                 .collect(),
         })
+    }
+}
+
+impl State {
+    /// Records the start of this minor iteration, to detect a cycle.
+    pub(super) fn remember(&mut self) {
+        Arc::make_mut(&mut self.minor_history).push(&self.nodes);
+    }
+
+    /// Whether simultaneous changes have continued for long without becoming fewer.
+    fn is_stalled(&self) -> bool {
+        self.search.rounds > PATIENCE
+    }
+
+    /// Counts the rounds since the minimum number of changing nodes in this major iteration. Rounds before a change of pace do
+    /// not indicate cycles.
+    fn count_changes(&mut self, records: &[ContactRecord]) {
+        let changing = records
+            .iter()
+            .filter(|record| record.decision.changes())
+            .count();
+        let stalled = self.is_stalled();
+        let search = &mut self.search;
+        if search.fewest.is_none_or(|fewest| changing < fewest) {
+            (search.fewest, search.rounds) = (Some(changing), 0);
+        } else {
+            search.rounds += 1;
+        }
+        if self.is_stalled() != stalled {
+            self.forget_minors();
+        }
     }
 }

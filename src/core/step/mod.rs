@@ -18,6 +18,7 @@ pub mod event;
 mod increment;
 pub mod intervene;
 pub mod intervention;
+mod iterate;
 mod jump;
 mod major;
 pub mod major_history;

@@ -10,8 +10,10 @@ use crate::interface::problem::Assumed;
 use crate::linear::singular::Singular;
 use crate::model::{Contact, Mode};
 use crate::step::event::{Failure, Outcome};
+use crate::step::iterate::Iterate;
 use crate::step::recovery::left_out::LeftOut;
 use crate::step::state::Progress;
+use crate::step::state::State;
 use crate::step::stepper::Stepper;
 use crate::strategy;
 
@@ -20,23 +22,23 @@ impl Stepper {
     /// fails.
     pub(super) fn escalate(&mut self, why: Failure) -> Outcome {
         let searches = self.method().search().is_some();
-        if searches && self.state.search.searched == Searched::Not {
-            return self.begin_search();
+        if searches && self.now.state.search.searched == Searched::Not {
+            return self.now.state.begin_search();
         }
-        let chosen = self.state.controls.settings.strategy;
+        let chosen = self.now.state.controls.settings.strategy;
         let held = |node: &ContactState| matches!(node.forced, Forced::Held(_));
-        if strategy::rungs(chosen).is_empty() || self.state.nodes.iter().any(held) {
+        if strategy::rungs(chosen).is_empty() || self.now.state.nodes.iter().any(held) {
             let unsolved = matches!(why, Failure::Singular(_) | Failure::OverConstrained { .. });
-            self.state.next.minor += u32::from(!unsolved);
-            self.state.forget_minors();
+            self.now.state.next.minor += u32::from(!unsolved);
+            self.now.state.forget_minors();
             return self.fail(why);
         }
-        self.begin_again();
-        let search = &mut self.state.search;
+        self.now.state.begin_again();
+        let search = &mut self.now.state.search;
         let first = search.first.get_or_insert_with(|| Box::new(why.clone()));
         // A census that has tried every combination leaves nothing to find.
         let proven = matches!(why, Failure::NoAnswer { .. });
-        let contacts = self.state.nodes.len();
+        let contacts = self.now.state.nodes.len();
         let mut next = strategy::next_rung(chosen, search.rung, contacts);
         if let Some((rung, to)) = next
             && self.left_out == Some(LeftOut::Strategy(to))
@@ -44,64 +46,28 @@ impl Stepper {
             next = strategy::next_rung(chosen, rung, contacts);
         }
         // The searches do not support held-back sliding.
-        let braked = self.state.brake.is_some();
+        let braked = self.now.state.brake.is_some();
         let next = next.filter(|(_, to)| !(braked && strategy::method(*to).search().is_some()));
         if let Some((rung, to)) = next
             && !proven
         {
             search.rung = rung;
             (search.fewest, search.rounds, search.searched) = (None, 0, Searched::Not);
-            self.state.next.minor += 1;
+            self.now.state.next.minor += 1;
             return Outcome::Climbed { why, to };
         }
         let first = first.clone();
-        if let Some(again) = self.hold_harder(&why) {
+        if let Some(again) = self.now.state.hold_harder(&why) {
             return again;
         }
-        self.state.search = Progress::default();
+        self.now.state.search = Progress::default();
         self.fail(ended(*first, why))
-    }
-
-    /// Restores the contacts to the start of the current major iteration.
-    pub(super) fn begin_again(&mut self) {
-        self.take_back();
-        self.state.forget_minors();
-    }
-
-    fn take_back(&mut self) {
-        let first = self.state.minor_history.first(self.state.nodes.len());
-        for (node, input) in self.state.nodes.iter_mut().zip(first) {
-            (node.mode, node.ratio) = (input.mode, input.ratio);
-            if input.mode == Mode::Sliding {
-                (node.t_max, node.sign) = (input.t_max, input.t_max.signum());
-            }
-        }
-    }
-
-    /// The modes that were tried are not consistent: the next start of a search over all nodes, or its next solution.
-    pub(super) fn begin_search(&mut self) -> Outcome {
-        let search = &mut self.state.search;
-        let start = match search.searched {
-            Searched::Not => {
-                search.unconfirmed = 0;
-                0
-            }
-            Searched::At { start, .. } => start + 1,
-            Searched::Found { start } => {
-                search.unconfirmed += 1;
-                start + 1
-            }
-        };
-        search.searched = Searched::At { start, step: 0 };
-        self.take_back();
-        self.state.next.minor += 1;
-        Outcome::Minor
     }
 
     /// Start and step of the search over all nodes to which this minor iteration belongs.
     pub(super) fn searching(&self) -> Option<(usize, usize)> {
         self.method().search()?;
-        match self.state.search.searched {
+        match self.now.state.search.searched {
             Searched::At { start, step } => Some((start, step)),
             Searched::Not | Searched::Found { .. } => None,
         }
@@ -110,14 +76,14 @@ impl Stepper {
     /// One proposal of a search over all nodes.
     pub(super) fn propose(&mut self, start: usize, step: usize) -> Outcome {
         let method = self.method();
-        self.state.minors += 1;
-        let brought = self.brought();
-        let Stepper {
+        self.now.state.minors += 1;
+        let brought = self.now.brought();
+        let Iterate {
             state,
             source,
             kept,
             ..
-        } = self;
+        } = &mut self.now;
         let asked = Asked {
             start,
             step,
@@ -134,7 +100,7 @@ impl Stepper {
             Ok(proposal) => self.take(&proposal),
             Err(NoProposal::NotFound(why)) => self.escalate(Failure::NotFound(why)),
             Err(NoProposal::NoAnswer { tried }) => {
-                let first = self.state.search.first.clone();
+                let first = self.now.state.search.first.clone();
                 self.escalate(Failure::NoAnswer { first, tried })
             }
         }
@@ -142,13 +108,14 @@ impl Stepper {
 
     /// Records the modes that a search proposes for the contacts, and stores them in the state.
     fn take(&mut self, proposal: &Proposal) -> Outcome {
-        self.state.search.searched = proposal.next;
-        let (model, mut nodes) = (self.model.clone(), proposal.nodes.iter());
+        self.now.state.search.searched = proposal.next;
+        let (model, mut nodes) = (self.now.model.clone(), proposal.nodes.iter());
         for (contact, slave) in model.contacts.iter().enumerate() {
             if slave.bond.is_tied() {
-                self.stay_tied(contact);
+                self.event.nodes.push(self.now.stay_tied(contact));
             } else if let Some(&(assumed, numbers)) = nodes.next() {
-                self.assume(contact, assumed, numbers, proposal);
+                let record = self.now.assume(contact, assumed, numbers, proposal);
+                self.event.nodes.push(record);
             }
         }
         if let Some((place, tested)) = proposal.bound {
@@ -163,10 +130,12 @@ impl Stepper {
                 tie: false,
             });
         }
-        self.state.next.minor += 1;
+        self.now.state.next.minor += 1;
         Outcome::Minor
     }
+}
 
+impl Iterate {
     /// Modes and T_max of the contacts that are not tied, at the start of the current major iteration.
     fn brought(&self) -> Vec<Assumed> {
         let first = self.state.minor_history.first(self.state.nodes.len());
@@ -181,9 +150,9 @@ impl Stepper {
     }
 
     /// Records a tied contact, which searches ignore: its forces follow from the next solve.
-    fn stay_tied(&mut self, contact: usize) {
+    fn stay_tied(&self, contact: usize) -> ContactRecord {
         let (node, over) = (&self.state.nodes[contact], self.source.kinematics(contact));
-        self.event.nodes.push(ContactRecord {
+        ContactRecord {
             decision: Decision::tied(),
             forced: node.forced,
             gap: over.map_or(f64::INFINITY, |k| k.gap),
@@ -198,16 +167,17 @@ impl Stepper {
             foot: over.map_or([f64::NAN; 2], |k| k.foot),
             corner: None,
             carried: [false; 2],
-        });
+        }
     }
 
+    /// Gives a contact the mode that a search assumes, and records it with the search's forces, gap and slip.
     fn assume(
         &mut self,
         contact: usize,
         assumed: Assumed,
         [f_n, f_t, gap, slip]: [f64; 4],
         proposal: &Proposal,
-    ) {
+    ) -> ContactRecord {
         let node = &mut self.state.nodes[contact];
         let friction = node.friction(&self.state.controls.friction[contact]);
         let over = self.source.kinematics(contact);
@@ -232,7 +202,7 @@ impl Stepper {
             None => Rule::OffSurface,
         };
         let give = over.map_or(0.0, |k| k.bond.give()[0]);
-        self.event.nodes.push(ContactRecord {
+        ContactRecord {
             decision: Decision {
                 before,
                 next: node.mode,
@@ -256,7 +226,45 @@ impl Stepper {
             foot: over.map_or([f64::NAN; 2], |k| k.foot),
             corner: node.corner.filter(|_| before == Mode::Fixed),
             carried: [false; 2],
-        });
+        }
+    }
+}
+
+impl State {
+    /// Restores the contacts to the start of the current major iteration.
+    pub(super) fn begin_again(&mut self) {
+        self.take_back();
+        self.forget_minors();
+    }
+
+    fn take_back(&mut self) {
+        let first = self.minor_history.first(self.nodes.len());
+        for (node, input) in self.nodes.iter_mut().zip(first) {
+            (node.mode, node.ratio) = (input.mode, input.ratio);
+            if input.mode == Mode::Sliding {
+                (node.t_max, node.sign) = (input.t_max, input.t_max.signum());
+            }
+        }
+    }
+
+    /// The modes that were tried are not consistent: the next start of a search over all nodes, or its next solution.
+    pub(super) fn begin_search(&mut self) -> Outcome {
+        let search = &mut self.search;
+        let start = match search.searched {
+            Searched::Not => {
+                search.unconfirmed = 0;
+                0
+            }
+            Searched::At { start, .. } => start + 1,
+            Searched::Found { start } => {
+                search.unconfirmed += 1;
+                start + 1
+            }
+        };
+        search.searched = Searched::At { start, step: 0 };
+        self.take_back();
+        self.next.minor += 1;
+        Outcome::Minor
     }
 }
 

@@ -11,7 +11,6 @@
 //! The modules around this box: `minor` solves and checks, `search` handles modes that do not converge, `major` updates the
 //! forces, `verdict` and `jump` decide whether a converged state is accepted, `increment` accepts it or cuts.
 
-use crate::contact::record::ContactRecord;
 use crate::contact::state::ContactState;
 use crate::executor::Executor;
 use crate::interface::kinematics::NodeKinematics;
@@ -26,27 +25,15 @@ use crate::linear::stability::Stability;
 use crate::model::{Model, Strategy};
 use crate::step::event::{Event, Failure, Outcome};
 use crate::step::intervene::{Intervention, Refusal};
+use crate::step::iterate::Iterate;
 use crate::step::recovery::left_out::LeftOut;
-use crate::step::state::{IncrementStart, State, Status};
+use crate::step::state::{State, Status};
 use crate::strategy::{self, AnyMethod};
-use std::any::Any;
 use std::sync::Arc;
 
-/// The solver: a state, and the workspace computed from it.
+/// The solver: a state with its workspace, the strategy in force, and the event of the last minor iteration.
 pub struct Stepper {
-    pub(super) model: Arc<Model>,
-    pub(super) state: State,
-    pub(super) source: Box<dyn Source>,
-    /// Whether `source` is linearised at `state`.
-    pub(super) linearised: bool,
-    /// Whether the last linearisation is at the displacements of `state`, so that monitors can be read from it.
-    pub(super) measured: bool,
-    /// Norms of the last linearisation.
-    pub(super) norms: Norms,
-    /// Data that a search over all nodes keeps between proposals.
-    pub(super) kept: Option<Box<dyn Any + Send>>,
-    /// Buffer for the displacements at which a stiffness is computed.
-    pub(super) room: Option<Arc<Vec<f64>>>,
+    pub(super) now: Iterate,
     /// Frozen problem borrowed from another stepper of the same scene.
     borrowed: Option<Box<Lent>>,
     /// Contacts at the start of the current minor iteration, if only one of them may change.
@@ -81,28 +68,20 @@ impl Stepper {
 
     /// A stepper at the start of a history, for any source of deformation under the model's contacts.
     pub fn with_source(model: Arc<Model>, source: Box<dyn Source>) -> Self {
-        let mut stepper = Stepper {
-            state: State::at_start(&model, source.start(), source.history()),
-            source,
-            event: Event::nothing_yet(&model),
-            linearised: false,
-            measured: false,
-            norms: Norms::default(),
-            kept: None,
-            room: None,
+        let event = Event::nothing_yet(&model);
+        Stepper {
+            now: Iterate::new(model, source),
+            event,
             borrowed: None,
             before: Vec::new(),
             left_out: None,
             custom: None,
-            model,
-        };
-        stepper.begin();
-        stepper
+        }
     }
 
     /// Selects a strategy from outside this package instead of Table 2. If it fails, no other strategy follows.
     pub fn with_strategy(mut self, strategy: Arc<dyn Method>) -> Self {
-        let settings = &mut Arc::make_mut(&mut self.state.controls).settings;
+        let settings = &mut Arc::make_mut(&mut self.now.state.controls).settings;
         settings.strategy = Strategy::Table2;
         settings.t_max = strategy.bound(settings.t_max);
         self.custom = Some(strategy);
@@ -111,7 +90,7 @@ impl Stepper {
 
     /// The strategy in force.
     pub(super) fn method(&self) -> AnyMethod {
-        match (self.state.settings().strategy, &self.custom) {
+        match (self.now.state.settings().strategy, &self.custom) {
             (Strategy::Table2, Some(custom)) => AnyMethod::Custom(custom.clone()),
             (strategy, _) => AnyMethod::Builtin(strategy::method(strategy)),
         }
@@ -121,51 +100,36 @@ impl Stepper {
     /// the workspace; the results are bit-identical to those of a new stepper. Returns false and changes nothing for any other
     /// model, or if the source does not support this ([`Source::renew`]).
     pub fn renew(&mut self, model: &Arc<Model>) -> bool {
-        if !self.source.renew(model) {
+        if !self.now.source.renew(model) {
             return false;
         }
-        self.state = State::at_start(model, self.source.start(), self.source.history());
+        self.now.renew(model);
         self.event = Event::nothing_yet(model);
-        self.norms = Norms::default();
         self.before.clear();
         self.borrowed = None;
-        self.model = model.clone();
-        self.forget_workspace();
-        self.begin();
         true
-    }
-
-    /// Finds the positions of the contacts on their surfaces at the start.
-    fn begin(&mut self) {
-        self.follow();
-        self.source.place_stick_points(&mut self.state.nodes);
-        let start = IncrementStart {
-            nodes: self.state.nodes.clone(),
-            ..(*self.state.start).clone()
-        };
-        self.state.start = Arc::new(start);
     }
 
     /// Does one minor iteration. `None` if the history is finished.
     ///
     /// After a failure the next call continues from the failed state, for instance after a change by the user.
     pub fn step(&mut self) -> Option<&Event> {
-        if self.state.status == Status::Finished {
+        if self.now.state.status == Status::Finished {
             return None;
         }
-        self.state.status = Status::Running;
-        self.event.position = self.state.next;
-        self.event.load_factor = self.state.load_factor;
-        self.event.drag = self.state.at().drag.unwrap_or(0.0);
+        self.now.state.status = Status::Running;
+        self.event.position = self.now.state.next;
+        self.event.load_factor = self.now.state.load_factor;
+        self.event.drag = self.now.state.at().drag.unwrap_or(0.0);
         self.event.nodes.clear();
-        self.state.count_cost(1);
+        self.now.state.count_cost(1);
         self.event.outcome = self.iterate();
-        self.event.arc = self.state.arc();
-        if self.state.way.is_some() && self.event.outcome.ends_major() {
-            self.event.load_factor = self.state.last_target;
+        self.event.arc = self.now.state.arc();
+        if self.now.state.way.is_some() && self.event.outcome.ends_major() {
+            self.event.load_factor = self.now.state.last_target;
         }
         if let Outcome::Failed(failure) = &self.event.outcome {
-            self.state.status = Status::Failed(failure.clone());
+            self.now.state.status = Status::Failed(failure.clone());
         }
         Some(&self.event)
     }
@@ -180,32 +144,34 @@ impl Stepper {
 
     /// One minor iteration; `None` if modes and T_max have converged, which ends the major iteration.
     fn iterate_minor(&mut self) -> Option<Outcome> {
-        if !self.linearise() {
+        if !self.now.linearise() {
             return Some(self.fail(Failure::Singular(Singular::Unexplained)));
         }
-        if let Err(why) = self.find_tangent() {
+        if let Err(why) = self.now.find_tangent() {
             return Some(self.fail(why));
         }
-        self.norms = self.source.norms(&self.state.at());
-        self.event.before = self.norms;
+        self.now.norms = self.now.source.norms(&self.now.state.at());
+        self.event.before = self.now.norms;
         if let Some((start, step)) = self.searching() {
             return Some(self.propose(start, step));
         }
-        self.remember();
-        let solved = self.source.solve(&self.state.at());
-        if let Some(why) = self.unsolvable(solved) {
+        self.now.state.remember();
+        let solved = self.now.source.solve(&self.now.state.at());
+        if let Some(why) = self.now.unsolvable(solved) {
             return Some(self.escalate(why));
         }
-        self.state.minors += 1;
+        self.now.state.minors += 1;
         let settled = self.check();
-        self.note_changes();
+        self.now.state.note_changes(&self.event.nodes);
         if !settled {
             return Some(self.go_on());
         }
-        if solved == Solved::NearlySingular && self.is_unbounded() {
+        if solved == Solved::NearlySingular && self.now.is_unbounded() {
             return Some(self.escalate(Failure::Singular(Singular::Unexplained)));
         }
-        self.unsupported().map(|first| self.fail(first))
+        self.now
+            .unsupported(&self.event.nodes)
+            .map(|first| self.fail(first))
     }
 
     /// Looks ahead for a cycle of the minor iterations of the current major iteration; `None` if they converge or end in another
@@ -214,13 +180,13 @@ impl Stepper {
         if let Some(lent) = self
             .borrowed
             .as_ref()
-            .filter(|lent| lent.state == self.state)
+            .filter(|lent| lent.state == self.now.state)
         {
             return lent.cycle.clone();
         }
-        let began = self.state.clone();
+        let began = self.now.state.clone();
         let found = loop {
-            self.event.position = self.state.next;
+            self.event.position = self.now.state.next;
             self.event.nodes.clear();
             match self.iterate_minor() {
                 Some(Outcome::Minor) => {}
@@ -239,12 +205,12 @@ impl Stepper {
 
     /// The scene.
     pub fn model(&self) -> &Arc<Model> {
-        &self.model
+        &self.now.model
     }
 
     /// Current state of the solver.
     pub fn state(&self) -> &State {
-        &self.state
+        &self.now.state
     }
 
     /// Restores a state of the same scene; the iterations from there are bit-identical to the first time.
@@ -252,12 +218,12 @@ impl Stepper {
     /// Within a major iteration this is free: the linearisation and its factors remain valid.
     pub fn restore(&mut self, state: &State) {
         let stands = self.stands_for(state);
-        self.state.clone_from(state);
+        self.now.state.clone_from(state);
         #[cfg(mutants)]
         let stands = crate::mutants::pick("restore-keeps-the-factors", stands, true);
-        let kept = self.source.restore(&self.state.at());
-        self.forget_workspace();
-        (self.linearised, self.measured) = (stands && kept, stands && kept);
+        let kept = self.now.source.restore(&self.now.state.at());
+        self.now.forget_workspace();
+        (self.now.linearised, self.now.measured) = (stands && kept, stands && kept);
     }
 
     /// Applies a change made by the user.
@@ -265,26 +231,26 @@ impl Stepper {
     /// # Errors
     /// Those of [`State::intervene`].
     pub fn intervene(&mut self, intervention: &Intervention) -> Result<(), Refusal> {
-        let before = self.state.clone();
-        let done = self.state.intervene(&self.model, intervention);
+        let before = self.now.state.clone();
+        let done = self.now.state.intervene(&self.now.model, intervention);
         let stands = self.stands_for(&before);
-        self.forget_workspace();
-        (self.linearised, self.measured) = (stands, stands);
+        self.now.forget_workspace();
+        (self.now.linearised, self.now.measured) = (stands, stands);
         done
     }
 
     /// Norms of the current state, where the next minor iteration is linearised; `None` if it cannot be linearised.
     pub fn norms(&mut self) -> Option<Norms> {
-        if !self.linearise() {
+        if !self.now.linearise() {
             return None;
         }
-        self.norms = self.source.norms(&self.state.at());
-        Some(self.norms)
+        self.now.norms = self.now.source.norms(&self.now.state.at());
+        Some(self.now.norms)
     }
 
     /// Whether the minor iterations are solved on the condensed interface.
     pub fn condenses(&self) -> bool {
-        self.source.condenses(&self.state.controls.settings)
+        self.now.source.condenses(&self.now.state.controls.settings)
     }
 
     /// The interface problem of the current major iteration; `None` if the bodies cannot be condensed.
@@ -292,10 +258,10 @@ impl Stepper {
         if let Some(problem) = self.borrowed() {
             return Some(problem);
         }
-        if !self.linearise() {
+        if !self.now.linearise() {
             return None;
         }
-        self.source.problem(&self.state.at()).ok()
+        self.now.source.problem(&self.now.state.at()).ok()
     }
 
     /// Restores a state and lends its frozen problem, if it is available: if the bodies are condensed, and within the same major
@@ -318,14 +284,14 @@ impl Stepper {
     /// The borrowed problem, if it belongs to the current state.
     fn borrowed(&self) -> Option<InterfaceProblem> {
         let lent = self.borrowed.as_ref()?;
-        if !lent.state.is_linearised_as(&self.state) {
+        if !lent.state.is_linearised_as(&self.now.state) {
             return None;
         }
         let mut problem = lent.problem.clone();
-        problem.settings = self.state.settings();
+        problem.settings = self.now.state.settings();
         for node in &mut problem.nodes {
-            node.state = self.state.nodes[node.slave];
-            let friction = &self.state.controls.friction[node.slave];
+            node.state = self.now.state.nodes[node.slave];
+            let friction = &self.now.state.controls.friction[node.slave];
             node.friction = node.state.friction(friction);
         }
         Some(problem)
@@ -333,67 +299,45 @@ impl Stepper {
 
     /// Whether linearisation and factors belong to a state.
     pub fn stands_for(&self, state: &State) -> bool {
-        self.linearised && self.state.is_linearised_as(state)
+        self.now.linearised && self.now.state.is_linearised_as(state)
     }
 
     /// Kinematics of a contact on its surface at the start of the current major iteration; `None` if it has no surface or the
     /// state cannot be linearised.
     pub fn kinematics(&mut self, contact: usize) -> Option<NodeKinematics> {
-        if !self.linearise() {
+        if !self.now.linearise() {
             return None;
         }
-        self.source.kinematics(contact)
+        self.now.source.kinematics(contact)
     }
 
     /// Motions without any resistance for the modes of these contacts, at the current positions.
     pub fn loose(&self, contacts: &[ContactState]) -> Singular {
-        self.source.explain(contacts)
+        self.now.source.explain(contacts)
     }
 
     /// Appends the values of the scene's monitors at the start of the current major iteration (after an accepted increment: at
     /// its end) to `out`.
     pub fn monitors(&mut self, out: &mut Vec<f64>) {
-        if !self.measured {
-            self.linearise();
+        if !self.now.measured {
+            self.now.linearise();
         }
-        let at = self.state.at();
-        let monitors = self.model.monitors.iter();
-        out.extend(monitors.map(|monitor| self.source.monitor(&monitor.of, &at)));
+        let at = self.now.state.at();
+        let monitors = self.now.model.monitors.iter();
+        out.extend(monitors.map(|monitor| self.now.source.monitor(&monitor.of, &at)));
     }
 
     /// Stability of the state at the start of the current major iteration (after an accepted increment: at its end), with the
     /// current modes of its nodes. It costs a factorization and changes nothing.
     pub fn stability(&mut self) -> Stability {
-        if !self.linearise() {
+        if !self.now.linearise() {
             return Stability::NotKnown;
         }
-        self.source.stability(&self.state.at())
+        self.now.source.stability(&self.now.state.at())
     }
 
     /// Counts of the assemblies and factorizations so far.
     pub fn work(&self) -> Work {
-        self.source.work()
-    }
-
-    /// Linearises at the current state, unless that is done; false if it cannot be linearised.
-    pub(super) fn linearise(&mut self) -> bool {
-        if !self.linearised {
-            let at = self.state.at();
-            self.linearised = self.source.linearise(&at).is_ok();
-            self.measured = self.linearised;
-            self.source.turn(&at);
-        }
-        self.linearised
-    }
-
-    /// Discards data computed from another state.
-    pub(super) fn forget_workspace(&mut self) {
-        (self.linearised, self.measured) = (false, false);
-        self.kept = None;
-    }
-
-    /// Record of a contact in the last minor iteration.
-    pub(super) fn record(&self, contact: usize) -> &ContactRecord {
-        &self.event.nodes[contact]
+        self.now.source.work()
     }
 }

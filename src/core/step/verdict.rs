@@ -17,27 +17,28 @@ use crate::linear::norms::Norms;
 use crate::linear::source::Source;
 use crate::model::{SlipCount, Sticking, TieRule};
 use crate::step::event::{Failure, Outcome};
+use crate::step::iterate::Iterate;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
 
 impl Stepper {
     /// Accepts a converged state, or handles its refusal by the judge.
     pub(super) fn finish(&mut self, after: Norms) -> Outcome {
-        if let Some(on) = self.turn_to_goal(after) {
+        if let Some(on) = self.now.turn_to_goal(after) {
             return on;
         }
-        if let Some(point) = self.inverted() {
+        if let Some(point) = self.now.inverted() {
             return self.refuse_inverted(point);
         }
-        let verdict = self.source.judge(&self.state.at(), &after);
+        let verdict = self.now.source.judge(&self.now.state.at(), &after);
         #[cfg(mutants)]
         let verdict =
             crate::mutants::pick("accepted-without-the-judge", verdict, Verdict::default());
-        if self.state.motion.is_some() {
+        if self.now.state.motion.is_some() {
             let worst = worst_of(&verdict);
-            return match worst.filter(|found| is_slip(found.law) && !self.state.net) {
+            return match worst.filter(|found| is_slip(found.law) && !self.now.state.net) {
                 Some(why) => {
-                    self.count_net_slip();
+                    self.now.count_net_slip();
                     Outcome::Refused { why, after }
                 }
                 None => self.end_step(after, verdict, worst),
@@ -46,28 +47,36 @@ impl Stepper {
         let Some(worst) = worst_of(&verdict) else {
             return self.land(after, verdict, None);
         };
-        if self.only_marks() {
+        if self.now.state.only_marks() {
             return self.land(after, verdict, Some(worst));
         }
-        if is_slip(worst.law) && !self.state.net {
-            self.count_net_slip();
+        if is_slip(worst.law) && !self.now.state.net {
+            self.now.count_net_slip();
             return Outcome::Refused { why: worst, after };
         }
         let why = Failure::Refused(worst);
-        if let Some(stop) = self.cut_too_often(&why) {
-            self.next_major();
+        if let Some(stop) = self.now.state.cut_too_often(&why) {
+            self.now.state.next_major();
             return Outcome::Failed(stop);
         }
         match self.cut(&why) {
             Some(cut) => cut,
             None if worst.law == JudgedLaw::Touch => self.land(after, verdict, Some(worst)),
             None => self.fall_back(&why).unwrap_or_else(|| {
-                self.next_major();
+                self.now.state.next_major();
                 Outcome::Failed(why)
             }),
         }
     }
 
+    /// Cuts an increment that ends with an inverted element at `point`, or fails if it cannot be cut.
+    pub(super) fn refuse_inverted(&mut self, point: PointDeformation) -> Outcome {
+        self.now.state.next_major();
+        self.fail(Failure::Inverted(point))
+    }
+}
+
+impl Iterate {
     /// Worst point of an inverted element of the current state. `None` if no element is inverted.
     pub(super) fn inverted(&self) -> Option<PointDeformation> {
         #[cfg(mutants)]
@@ -75,23 +84,6 @@ impl Stepper {
             return None;
         }
         self.source.deformation(&self.state.u)?.inverted()
-    }
-
-    /// Cuts an increment that ends with an inverted element at `point`, or fails if it cannot be cut.
-    pub(super) fn refuse_inverted(&mut self, point: PointDeformation) -> Outcome {
-        self.next_major();
-        self.fail(Failure::Inverted(point))
-    }
-
-    /// Whether states that violate a law are accepted, since the user asked for what causes them.
-    fn only_marks(&self) -> bool {
-        let settings = &self.state.controls.settings;
-        let held = |node: &ContactState| matches!(node.forced, Forced::Held(_));
-        self.state.unsettled > 0
-            || settings.slip == SlipCount::Major
-            || settings.sticking == Sticking::Increments
-            || settings.ties == TieRule::Printed
-            || self.state.nodes.iter().any(held)
     }
 
     /// Restores the anchors of the nodes that touched when the increment started, for the rest of the attempt, and continues with
@@ -102,10 +94,23 @@ impl Stepper {
         self.source
             .count_net_slip(tolerance, &start.nodes, &mut self.state.nodes);
         self.state.net = true;
-        self.next_major();
+        self.state.next_major();
         self.state.forget_minors();
         self.state.forget_majors();
         self.linearised = false;
+    }
+}
+
+impl State {
+    /// Whether states that violate a law are accepted, since the user asked for what causes them.
+    fn only_marks(&self) -> bool {
+        let settings = &self.controls.settings;
+        let held = |node: &ContactState| matches!(node.forced, Forced::Held(_));
+        self.unsettled > 0
+            || settings.slip == SlipCount::Major
+            || settings.sticking == Sticking::Increments
+            || settings.ties == TieRule::Printed
+            || self.nodes.iter().any(held)
     }
 }
 

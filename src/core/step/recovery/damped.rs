@@ -27,6 +27,7 @@ use crate::linear::norms::Norms;
 use crate::step::event::{Failure, Moves, Outcome, Slow};
 use crate::step::jump::Landing;
 
+use crate::step::iterate::Iterate;
 use crate::step::pace::Pace;
 use crate::step::stepper::Stepper;
 use crate::step::sub_increment::SubIncrement;
@@ -105,22 +106,10 @@ fn slower(slow: Slow, stalled: &Stalled<'_>) -> Option<Retry> {
 }
 
 impl Stepper {
-    /// Prepares a damped motion from the last equilibrium, with constant loads. `None` if the state there cannot be linearised.
-    pub(super) fn release(&mut self, part: SubIncrement) -> Option<()> {
-        self.restart(part);
-        if !self.linearise() {
-            return None;
-        }
-        let (from, stiffness) = (self.state.start.load_factor, self.source.spring());
-        self.state.motion = Some(Motion::new(from, stiffness));
-        Arc::make_mut(&mut self.state.start).load_factor = self.state.load_factor;
-        Some(())
-    }
-
     /// Repeats a step more slowly. `None` if the maximum drag is reached.
     fn slow_down(&mut self, slow: Slow) -> Option<Outcome> {
-        let retry = slower(slow, &self.stalled())?;
-        self.try_again(retry)
+        let retry = slower(slow, &self.now.stalled())?;
+        self.now.try_again(retry)
     }
 
     /// Ends a converged step without violations that could be repaired.
@@ -130,15 +119,25 @@ impl Stepper {
         verdict: Verdict,
         worst: Option<Finding>,
     ) -> Outcome {
-        let Some(motion) = self.state.motion else {
-            return self.accept(after, verdict, Landing::marked(worst));
+        let Some(motion) = self.now.state.motion else {
+            return self.now.accept(after, verdict, Landing::marked(worst));
         };
-        let moved = self.source.moved(&self.state.u, &self.state.start.u);
-        let stride = STRIDE * self.model.length;
+        let moved = self
+            .now
+            .source
+            .moved(&self.now.state.u, &self.now.state.start.u);
+        let stride = STRIDE * self.now.model.length;
         let slow = match worst.filter(|found| found.law != JudgedLaw::Touch) {
             Some(found) => Some(Slow::Failed(Failure::Refused(found))),
             None if moved > stride => Some(Slow::Far { motion: moved }),
-            None if self.source.stability(&self.state.at()).is_unstable() => Some(Slow::Unstable),
+            None if self
+                .now
+                .source
+                .stability(&self.now.state.at())
+                .is_unstable() =>
+            {
+                Some(Slow::Unstable)
+            }
             None => None,
         };
         if let Some(slow) = slow {
@@ -153,29 +152,44 @@ impl Stepper {
         }
         if motion.coming_to_rest {
             // The other branch has a different pace.
-            self.state.pace = Pace::default();
-            let jumped = motion.travelled + moved > JUMP * self.model.length;
-            self.state.watch = StabilityWatch::default();
+            self.now.state.pace = Pace::default();
+            let jumped = motion.travelled + moved > JUMP * self.now.model.length;
+            self.now.state.watch = StabilityWatch::default();
             let landing = Landing {
                 jumped,
                 ..Landing::marked(worst)
             };
-            return self.accept(after, verdict, landing);
+            return self.now.accept(after, verdict, landing);
         }
-        let spent = self.state.fallback.is_some() && !self.stalled().searches(Fallback::Release);
+        let spent =
+            self.now.state.fallback.is_some() && !self.now.stalled().searches(Fallback::Release);
         if spent || motion.steps + 1 >= MOST_STEPS || motion.drag < SOFTEST * motion.stiffness {
-            self.next_major();
+            self.now.state.next_major();
             return self.end_motion(Failure::Restless {
                 steps: motion.steps,
             });
         }
-        self.step_on(motion, moved, stride, verdict)
+        self.now.step_on(motion, moved, stride, verdict)
     }
 
     /// Ends a failed motion: a search returns to its start.
     fn end_motion(&mut self, why: Failure) -> Outcome {
         let back = self.fall_back(&why);
         back.unwrap_or(Outcome::Failed(why))
+    }
+}
+
+impl Iterate {
+    /// Prepares a damped motion from the last equilibrium, with constant loads. `None` if the state there cannot be linearised.
+    pub(super) fn release(&mut self, part: SubIncrement) -> Option<()> {
+        self.restart(part);
+        if !self.linearise() {
+            return None;
+        }
+        let (from, stiffness) = (self.state.start.load_factor, self.source.spring());
+        self.state.motion = Some(Motion::new(from, stiffness));
+        Arc::make_mut(&mut self.state.start).load_factor = self.state.load_factor;
+        Some(())
     }
 
     /// Makes the end of a step the start of the next one.

@@ -36,6 +36,7 @@ pub(super) use slip_step::PATIENCE;
 use crate::linear::source::Source;
 use crate::model::{Mode, Model};
 use crate::step::event::{Failure, Outcome};
+use crate::step::iterate::Iterate;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
 use fallback::Fallback;
@@ -79,44 +80,21 @@ impl Stepper {
         self.left_out = Some(left_out);
     }
 
-    /// The state of a failed increment, for the recoveries.
-    pub(super) fn stalled(&self) -> Stalled<'_> {
-        let source: &dyn Source = &*self.source;
-        let model: &Model = &self.model;
-        Stalled {
-            model,
-            state: &self.state,
-            source,
-        }
-    }
-
     /// Restarts the increment if a recovery applies; otherwise it fails.
     pub(super) fn fail(&mut self, mut why: Failure) -> Outcome {
         if let Failure::LadderEnded { scales, .. } = &mut why {
-            *scales = self.stalled().scales();
+            *scales = self.now.stalled().scales();
         }
-        if let Some(stop) = self.cut_too_often(&why) {
+        if let Some(stop) = self.now.state.cut_too_often(&why) {
             return Outcome::Failed(stop);
         }
         let again = self.cut(&why).or_else(|| self.fall_back(&why));
         again.unwrap_or(Outcome::Failed(why))
     }
 
-    /// Failure of an increment that was cut [`MOST_CUTS`] times because of the same node: each part is accepted, and the next part
-    /// fails at the same node.
-    pub(super) fn cut_too_often(&self, why: &Failure) -> Option<Failure> {
-        let slave = why.culprit()?;
-        let cuts = *self.state.cuts.get(&slave)?;
-        (cuts >= MOST_CUTS).then(|| Failure::CutTooOften {
-            slave,
-            cuts,
-            last: Box::new(why.clone()),
-        })
-    }
-
     /// Restarts the increment with another size. `None` if no recovery applies.
     pub(super) fn cut(&mut self, why: &Failure) -> Option<Outcome> {
-        let recoveries: &[&dyn Recovery] = match &self.state {
+        let recoveries: &[&dyn Recovery] = match &self.now.state {
             State {
                 motion: Some(_), ..
             } => &MOVING,
@@ -128,8 +106,8 @@ impl Stepper {
 
     /// Restarts the increment with the next fallback: first the one of the search that helped last. `None` if none applies.
     pub(super) fn fall_back(&mut self, why: &Failure) -> Option<Outcome> {
-        let adopted = self.state.searched.adopted;
-        let first = adopted.filter(|_| self.state.fallback.is_none());
+        let adopted = self.now.state.searched.adopted;
+        let first = adopted.filter(|_| self.now.state.fallback.is_none());
         let again = first.and_then(|by| self.recover(&[&by], why));
         again.or_else(|| self.recover(&FALLBACKS, why))
     }
@@ -138,9 +116,22 @@ impl Stepper {
         let left_out = self.left_out;
         let kept = |recovery: &&&dyn Recovery| Some(LeftOut::Recovery(recovery.name())) != left_out;
         recoveries.iter().filter(kept).find_map(|recovery| {
-            let retry = recovery.propose(why, &self.stalled())?;
-            self.try_again(retry)
+            let retry = recovery.propose(why, &self.now.stalled())?;
+            self.now.try_again(retry)
         })
+    }
+}
+
+impl Iterate {
+    /// The state of a failed increment, for the recoveries.
+    pub(super) fn stalled(&self) -> Stalled<'_> {
+        let source: &dyn Source = &*self.source;
+        let model: &Model = &self.model;
+        Stalled {
+            model,
+            state: &self.state,
+            source,
+        }
     }
 
     /// Restarts the increment. `None` if a damped motion cannot start.
@@ -168,7 +159,7 @@ impl Stepper {
             }
         }
         if let Some(by) = by {
-            self.leave_motion();
+            self.state.leave_motion();
             self.state
                 .searched
                 .adopted
@@ -190,19 +181,33 @@ impl Stepper {
         Some(outcome)
     }
 
-    /// Returns from a damped motion of the search to its start.
-    fn leave_motion(&mut self) {
-        if let Some(origin) = self.state.searched.origin.take() {
-            (self.state.start, self.state.motion) = (origin, None);
-        }
-    }
-
     /// Makes the free nodes that touch without a gap start fixed.
     fn hold_touching(&mut self) {
         let touching: Vec<usize> = self.stalled().touching().collect();
         let start = Arc::make_mut(&mut self.state.start);
         for contact in touching {
             start.nodes[contact].mode = Mode::Fixed;
+        }
+    }
+}
+
+impl State {
+    /// Failure of an increment that was cut [`MOST_CUTS`] times because of the same node: each part is accepted, and the next part
+    /// fails at the same node.
+    pub(super) fn cut_too_often(&self, why: &Failure) -> Option<Failure> {
+        let slave = why.culprit()?;
+        let cuts = *self.cuts.get(&slave)?;
+        (cuts >= MOST_CUTS).then(|| Failure::CutTooOften {
+            slave,
+            cuts,
+            last: Box::new(why.clone()),
+        })
+    }
+
+    /// Returns from a damped motion of the search to its start.
+    fn leave_motion(&mut self) {
+        if let Some(origin) = self.searched.origin.take() {
+            (self.start, self.motion) = (origin, None);
         }
     }
 }

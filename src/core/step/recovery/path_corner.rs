@@ -25,6 +25,7 @@
 
 use super::retry::{Effect, Recovery, Retry};
 use super::stalled::Stalled;
+use crate::contact::record::ContactRecord;
 use crate::contact::record::Forced;
 use crate::contact::state::ContactState;
 use crate::contact::tracking::leave_border;
@@ -32,7 +33,8 @@ use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
 use crate::linear::source::Solved;
 use crate::model::{BoundUpdate, Friction, Mode};
 use crate::step::event::{Failure, Outcome};
-use crate::step::stepper::Stepper;
+use crate::step::iterate::Iterate;
+use crate::step::state::State;
 use crate::step::way::{Change, Way};
 use std::sync::Arc;
 
@@ -79,25 +81,7 @@ impl Rates {
     }
 }
 
-impl Stepper {
-    /// Direction in which the path continues along a tangent (−1 or 1). The tangent was solved for a positive inner product with
-    /// the previous increment, and that direction is used. If then all sliding contacts would slide against their friction, and
-    /// no slower than before, the previous increment is no reference, since it passed a corner: the direction is the one in which
-    /// they continue to slide.
-    pub(in crate::step) fn onwards(&self, given: &[NodeIncrement]) -> f64 {
-        let nodes = &self.state.nodes;
-        let slips = self.state.way.as_ref().map(|way| way.slips.clone());
-        let slips = slips.unwrap_or_default();
-        let sliding = nodes.iter().zip(given).zip(slips.iter());
-        let mut sliding = sliding.filter(|((node, _), _)| node.mode == Mode::Sliding);
-        let turns = |((node, given), slip): ((&ContactState, &NodeIncrement), &f64)| {
-            let rate = given.motion[1];
-            node.sign * rate < 0.0 && rate.abs() > REVERSAL * slip.abs()
-        };
-        let any = sliding.clone().next().is_some();
-        if any && sliding.all(turns) { -1.0 } else { 1.0 }
-    }
-
+impl Iterate {
     /// The contacts whose modes end first along the tangent that was just solved for, and their distance as a multiple of the
     /// solved motion. The path continues in the direction `sign` of the solution. Empty if no mode ends.
     pub(in crate::step) fn next_changes(&self, sign: f64) -> (f64, Vec<Change>) {
@@ -260,18 +244,38 @@ impl Stepper {
         }
         self.linearise()
     }
+}
+
+impl State {
+    /// Direction in which the path continues along a tangent (−1 or 1). The tangent was solved for a positive inner product with
+    /// the previous increment, and that direction is used. If then all sliding contacts would slide against their friction, and
+    /// no slower than before, the previous increment is no reference, since it passed a corner: the direction is the one in which
+    /// they continue to slide.
+    pub(in crate::step) fn onwards(&self, given: &[NodeIncrement]) -> f64 {
+        let nodes = &self.nodes;
+        let slips = self.way.as_ref().map(|way| way.slips.clone());
+        let slips = slips.unwrap_or_default();
+        let sliding = nodes.iter().zip(given).zip(slips.iter());
+        let mut sliding = sliding.filter(|((node, _), _)| node.mode == Mode::Sliding);
+        let turns = |((node, given), slip): ((&ContactState, &NodeIncrement), &f64)| {
+            let rate = given.motion[1];
+            node.sign * rate < 0.0 && rate.abs() > REVERSAL * slip.abs()
+        };
+        let any = sliding.clone().next().is_some();
+        if any && sliding.all(turns) { -1.0 } else { 1.0 }
+    }
 
     /// Records which contacts changed their modes first in the current increment.
-    pub(in crate::step) fn note_changes(&mut self) {
-        let Some(way) = &mut self.state.way else {
+    pub(in crate::step) fn note_changes(&mut self, records: &[ContactRecord]) {
+        let Some(way) = &mut self.way else {
             return;
         };
         if !way.seen.is_empty() || way.turned {
             return;
         }
-        let records = self.event.nodes.iter().enumerate();
+        let records = records.iter().enumerate();
         let changed = records.filter(|(_, record)| record.decision.changes());
-        let nodes = &self.state.nodes;
+        let nodes = &self.nodes;
         let seen = changed.map(|(contact, record)| Change {
             contact,
             from: record.decision.before,
@@ -290,15 +294,15 @@ impl Stepper {
     /// whether a contact that slides along the tangent now sticks. Every state of sliding has a second solution, unloading, where
     /// all contacts stick. That is not the path.
     pub(in crate::step) fn turned_back(&self) -> bool {
-        let nodes = &self.state.nodes;
-        let Some(way) = &self.state.way else {
+        let nodes = &self.nodes;
+        let Some(way) = &self.way else {
             return false;
         };
         if way.turned {
             let mut changes = way.next.iter();
             return changes.any(|change| nodes[change.contact].mode != change.to);
         }
-        let mut both = nodes.iter().zip(&self.state.start.nodes);
+        let mut both = nodes.iter().zip(&self.start.nodes);
         both.any(|(now, start)| (start.mode, now.mode) == (Mode::Sliding, Mode::Fixed))
     }
 }

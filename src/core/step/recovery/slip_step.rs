@@ -1,11 +1,12 @@
 //! Major iterations in which sliding is held back ([`super::proximal`]), and which of them are undone.
 
 use super::proximal::Brake;
+use crate::contact::record::ContactRecord;
 use crate::linear::norms::Norms;
 use crate::model::Mode;
 use crate::step::event::{Failure, Outcome};
+use crate::step::iterate::Iterate;
 use crate::step::state::{Progress, State};
-use crate::step::stepper::Stepper;
 
 /// Slip in one major iteration beyond which it is undone, relative to the scene's length.
 const FAR: f64 = 0.02;
@@ -28,35 +29,13 @@ pub(in crate::step) struct Held {
     work: f64,
 }
 
-impl Stepper {
-    /// The modes of a major iteration do not converge: restarts it with a larger κ, with which they converge eventually. `None`
-    /// if sliding is not held back, or if a larger κ no longer helps.
-    pub(in crate::step) fn hold_harder(&mut self, why: &Failure) -> Option<Outcome> {
-        let brake = self.state.brake.as_mut()?;
-        if !brake.tighten() {
-            return None;
-        }
-        let stiffness = brake.stiffness;
-        self.state.search = Progress::default();
-        self.state.next.minor += 1;
-        Some(Outcome::HeldBack {
-            why: Some(why.clone()),
-            stiffness,
-        })
-    }
-
-    /// Whether the brake still carries a part of the friction, which the judge would report as missing.
-    pub(in crate::step) fn is_carried(&self, after: &Norms) -> bool {
-        let holds = |brake: Brake| brake.stiffness > 0.0;
-        self.state.brake.is_some_and(holds) && after.interface > EXACT
-    }
-
+impl Iterate {
     /// Records a major iteration before it is done, if sliding is held back.
-    pub(in crate::step) fn hold(&self) -> Option<Held> {
+    pub(in crate::step) fn hold(&self, records: &[ContactRecord]) -> Option<Held> {
         self.state.brake.map(|brake| {
             let (mut work, mut slips) = (0.0, Vec::new());
             for (contact, node) in self.state.nodes.iter().enumerate() {
-                let record = self.record(contact);
+                let record = &records[contact];
                 let slides = record.decision.before == Mode::Sliding;
                 let slip = if slides {
                     self.source.increment(contact).motion[1]
@@ -101,11 +80,35 @@ impl Stepper {
         self.state = *state;
         self.state.brake = Some(brake);
         self.linearised = false;
-        self.begin_again();
+        self.state.begin_again();
         self.state.next.minor += 1;
         Some(Outcome::HeldBack {
             why: None,
             stiffness: brake.stiffness,
         })
+    }
+}
+
+impl State {
+    /// The modes of a major iteration do not converge: restarts it with a larger κ, with which they converge eventually. `None`
+    /// if sliding is not held back, or if a larger κ no longer helps.
+    pub(in crate::step) fn hold_harder(&mut self, why: &Failure) -> Option<Outcome> {
+        let brake = self.brake.as_mut()?;
+        if !brake.tighten() {
+            return None;
+        }
+        let stiffness = brake.stiffness;
+        self.search = Progress::default();
+        self.next.minor += 1;
+        Some(Outcome::HeldBack {
+            why: Some(why.clone()),
+            stiffness,
+        })
+    }
+
+    /// Whether the brake still carries a part of the friction, which the judge would report as missing.
+    pub(in crate::step) fn is_carried(&self, after: &Norms) -> bool {
+        let holds = |brake: Brake| brake.stiffness > 0.0;
+        self.brake.is_some_and(holds) && after.interface > EXACT
     }
 }
