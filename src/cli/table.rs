@@ -88,7 +88,7 @@ pub fn csv_row(
         _ => (false, None),
     };
     let _ = write!(line, ",{}", u8::from(jumped));
-    match motion {
+    match motion.filter(|_| moves(model)) {
         Some(motion) => {
             let Motion {
                 from,

@@ -299,10 +299,9 @@ impl State {
 
     /// The settings in force: with the strategy of the current rung, its update of T_max, and the changes of a fallback.
     pub fn settings(&self) -> Settings {
-        let rung = self.search.rung;
-        let mut settings = strategy::in_force(&self.controls.settings, rung);
+        let mut settings = strategy::in_force(&self.controls.settings, self.search.rung);
         if let Some(route) = self.fallback {
-            settings = route.by.in_force(settings, rung);
+            settings = route.by.in_force(settings);
         }
         if self.brake.is_some() && !self.net {
             settings.slip = SlipCount::Major;

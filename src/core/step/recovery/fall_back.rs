@@ -16,7 +16,6 @@ impl Recovery for Fallback {
             Fallback::Section => "section",
             Fallback::Consistent => "consistent",
             Fallback::Start => "start",
-            Fallback::Newton => "newton",
             Fallback::Held => "held",
             Fallback::Deeper => "deeper",
             Fallback::Release => "motion",
@@ -36,7 +35,9 @@ impl Recovery for Fallback {
         if out_of_turn
             || strategy::rungs(chosen.strategy).is_empty()
             || matches!(why, Failure::Leapt { .. }) && state.fallback.is_none()
-            || !(*self == Fallback::Touching || stalled.size_helps(why) || stalled.drowned(why))
+            || !(matches!(self, Fallback::Touching | Fallback::Back)
+                || stalled.size_helps(why)
+                || stalled.drowned(why))
             || state.way.is_some()
             || stalled.model.jumps == Jumps::Dynamic
             || !self.helps(why, stalled)
@@ -85,12 +86,16 @@ impl Fallback {
         }
         match self {
             Fallback::Touching => stalled.can_touch(why),
-            Fallback::Deeper => last_half(state).size() > state.controls.least / DEEPER,
+            // The least increment of the scene applies if it is set.
+            Fallback::Deeper => {
+                stalled.model.least.is_none()
+                    && last_half(state).size() > state.controls.least / DEEPER
+            }
             Fallback::Release => stalled.can_release(),
             Fallback::Held => stalled.can_hold(why),
             Fallback::Section => {
                 let rest = last_half(state).rest(state.start.load_factor);
-                // The least increment of the scene applies if it is set; otherwise the section may be smaller than 1/64.
+                // Without a least increment of the scene, the section may be smaller than 1/64.
                 let least = stalled.model.least;
                 !stalled.is_given() && least.is_none_or(|least| rest.section().size() >= least)
             }
@@ -101,7 +106,7 @@ impl Fallback {
     /// Whether the fallback changes these settings.
     fn changes(self, chosen: &Settings) -> bool {
         let first = strategy::in_force(chosen, 0);
-        self.in_force(first, 0) != first
+        self.in_force(first) != first
     }
 }
 
@@ -121,9 +126,9 @@ mod tests {
             t_max: BoundUpdate::Consistent,
             ..plain
         };
-        for by in [Fallback::Consistent, Fallback::Start, Fallback::Newton] {
+        for by in [Fallback::Consistent, Fallback::Start] {
             assert!(by.changes(&plain), "{by:?}");
-            assert_eq!(by.changes(&own), by == Fallback::Newton, "{by:?}");
+            assert!(!by.changes(&own), "{by:?}");
         }
     }
 }

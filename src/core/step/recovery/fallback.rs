@@ -7,13 +7,12 @@
 //! 1. in two unequal parts: first the smaller part of the golden section, which no sum of halves equals;
 //! 2. with T_max in the equations ([`crate::model::BoundUpdate::Consistent`]) from the first rung on;
 //! 3. with touching nodes held at the projections of their start positions ([`crate::model::Touch::Start`]);
-//! 4. with Newton's method on the first rung;
-//! 5. with sliding held back ([`super::proximal`]): this one may end on another branch of equilibrium, marked.
+//! 4. with sliding held back ([`super::proximal`]): this one may end on another branch of equilibrium, marked.
 //!
 //! If `settings.search` allows it, the search continues:
 //!
-//! 6. with parts down to 1/4096 of the least increment;
-//! 7. with the loads of the last equilibrium, from which a damped motion leads to the next one (`damped`), which is
+//! 5. with parts down to 1/4096 of the least increment;
+//! 6. with the loads of the last equilibrium, from which a damped motion leads to the next one (`damped`), which is
 //!    marked.
 //!
 //! Before all others, if a body is unsupported at the start of the history, nodes that touch without a gap start fixed.
@@ -21,16 +20,15 @@
 //! Each fallback is cut into halves as before and stays in force until a part of the increment is accepted. If none helps, the
 //! last half is repeated without a fallback, so that the failed state matches the reported failure.
 
-use crate::model::{BoundUpdate, Settings, Strategy, Touch};
+use crate::model::{BoundUpdate, Settings, Touch};
 use crate::step::sub_increment::SubIncrement;
-use crate::strategy;
 use serde::{Deserialize, Serialize};
 
 /// Factor by which the search cuts below the least increment.
 pub(super) const DEEPER: f64 = 4096.0;
 
 /// A fallback.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Fallback {
     /// Nodes that touch at the start of the history, without a gap, start fixed.
@@ -41,8 +39,6 @@ pub enum Fallback {
     Consistent,
     /// Touching nodes are held at the projections of their start positions.
     Start,
-    /// Newton's method as the first strategy.
-    Newton,
     /// Sliding is held back ([`super::proximal`]).
     Held,
     /// Parts smaller than the least increment.
@@ -68,7 +64,6 @@ crate::words! {
     Section "unequal parts",
     Consistent "t_max: consistent",
     Start "touch: start",
-    Newton "semismooth Newton",
     Held "held-back sliding",
     Deeper "parts below the least increment",
     Release "a damped motion from the last equilibrium",
@@ -84,8 +79,8 @@ impl Fallback {
         )
     }
 
-    /// The settings in force on a rung of the ladder with this fallback.
-    pub(in crate::step) fn in_force(self, mut settings: Settings, rung: usize) -> Settings {
+    /// The settings in force with this fallback.
+    pub(in crate::step) fn in_force(self, mut settings: Settings) -> Settings {
         match self {
             Fallback::Touching
             | Fallback::Section
@@ -95,11 +90,6 @@ impl Fallback {
             | Fallback::Back => {}
             Fallback::Consistent => settings.t_max = BoundUpdate::Consistent,
             Fallback::Start => settings.touch = Touch::Start,
-            Fallback::Newton if rung == 0 => {
-                settings.strategy = Strategy::Newton;
-                settings.t_max = strategy::method(Strategy::Newton).bound(settings.t_max);
-            }
-            Fallback::Newton => {}
         }
         settings
     }
