@@ -62,6 +62,8 @@ pub enum Rule {
     Sweeps,
     /// A state found to be consistent by pivoting, sweeps, or the census.
     Found,
+    /// The forces of the Gauss-Seidel sweeps, which obey Coulomb's law within a tolerance, are accepted without a solve.
+    Settled,
     /// An attached solver decided by its own rules.
     Theirs,
     /// A strategy outside this package decided; the text is its reason ([`crate::step::Stepper::with_strategy`]).
@@ -97,6 +99,7 @@ crate::words! {
     Pivots "pivots",
     Sweeps "sweeps",
     Found "found",
+    Settled "settled",
     Theirs "theirs",
     Custom(..) "custom",
 }

@@ -14,13 +14,16 @@ use crate::step::recovery::left_out::LeftOut;
 use crate::step::state::Progress;
 use crate::step::stepper::Stepper;
 use crate::strategy;
+use std::cell::RefCell;
 
 impl Stepper {
     /// The strategy cannot continue: the next one of the ladder restarts the major iteration. If there is none, the increment
     /// fails.
     pub(super) fn escalate(&mut self, why: Failure) -> Outcome {
         let searches = self.method().search().is_some();
-        if searches && self.state.search.searched == Searched::Not {
+        // Forces that are not unique have no solve that confirms them, but sweeps find them.
+        let sweeps_on = matches!(why, Failure::Singular(_)) && self.source.takes_forces();
+        if searches && (self.state.search.searched == Searched::Not || sweeps_on) {
             return self.begin_search();
         }
         let chosen = self.state.controls.settings.strategy;
@@ -118,12 +121,14 @@ impl Stepper {
             kept,
             ..
         } = self;
+        let source = RefCell::new(source);
         let asked = Asked {
             start,
             step,
             unconfirmed: state.search.unconfirmed,
             brought: &brought,
-            problem: &mut || source.problem(&state.at()).ok(),
+            problem: &mut || source.borrow_mut().problem(&state.at()).ok(),
+            sweep: &mut || source.borrow_mut().sweep(&state.at()),
             kept,
         };
         let proposed = match method.search() {
@@ -131,6 +136,7 @@ impl Stepper {
             None => return self.go_on(),
         };
         match proposed {
+            Ok(proposal) if proposal.rule == Rule::Settled => self.settle(&proposal),
             Ok(proposal) => self.take(&proposal),
             Err(NoProposal::NotFound(why)) => self.escalate(Failure::NotFound(why)),
             Err(NoProposal::NoAnswer { tried }) => {
@@ -165,6 +171,19 @@ impl Stepper {
         }
         self.state.next.minor += 1;
         Outcome::Minor
+    }
+
+    /// Ends the major iteration with the forces of a search.
+    fn settle(&mut self, proposal: &Proposal) -> Outcome {
+        let minor = self.state.next.minor;
+        self.take(proposal);
+        self.state.next.minor = minor;
+        for record in &mut self.event.nodes {
+            record.decision.before = record.decision.next;
+        }
+        let forces = self.event.nodes.iter().map(|r| [r.f_n, r.f_t]);
+        self.source.press(&mut { forces });
+        self.end_major(true)
     }
 
     /// Modes and T_max of the contacts that are not tied, at the start of the current major iteration.
@@ -219,7 +238,7 @@ impl Stepper {
         node.t_max = t_max(&friction, f_n, sign);
         let test = Test {
             tested: match proposal.rule {
-                Rule::Sweeps => Tested::Change,
+                Rule::Sweeps | Rule::Settled => Tested::Change,
                 _ => Tested::Cover,
             },
             value: proposal.cover,

@@ -95,6 +95,12 @@ pub fn reason(decision: &Decision, friction: bool) -> String {
                 mode(decision.next)
             );
         }
+        Rule::Settled => {
+            return format!(
+                "Gauss-Seidel: {}; the forces obey Coulomb's law within the tolerance and are accepted.",
+                mode(decision.next)
+            );
+        }
         Rule::OffSurface => {
             "Free: the projection lies past an end of every surface, so there is no contact."
         }

@@ -34,7 +34,8 @@ impl From<SolveError> for NotEliminated {
     }
 }
 
-/// W, row by row, and Hᵀ M⁻¹ f. For a symmetric M, W is exactly symmetric.
+/// W, row by row, and Hᵀ M⁻¹ f. For a symmetric M, W is exactly symmetric. `most` is the number of its entries for which memory
+/// is available.
 ///
 /// # Errors
 /// If M is singular, or memory is insufficient.
@@ -42,7 +43,8 @@ pub fn condensed(
     m: &Matrix,
     h: &Matrix,
     f: &[f64],
-) -> Result<(Vec<Vec<f64>>, Vec<f64>), NotEliminated> {
+    most: f64,
+) -> Result<(Matrix, Vec<f64>), NotEliminated> {
     let mut solver = Inverse::new(m)?;
     let columns = by_column(h);
     let mut x = vec![0.0; m.rows];
@@ -53,15 +55,28 @@ pub fn condensed(
     solver.solve(f, &mut x)?;
     let q = onto(&x);
     let mut right = vec![0.0; m.rows];
-    // Column by column, which is the transpose.
-    let mut w = Vec::with_capacity(columns.len());
-    for column in &columns {
+    let mut entries = Vec::new();
+    for (j, column) in columns.iter().enumerate() {
         column.iter().for_each(|&(i, v)| right[i] += v);
         solver.solve(&right, &mut x)?;
         column.iter().for_each(|&(i, _)| right[i] = 0.0);
-        w.push(onto(&x));
+        for (i, value) in onto(&x).into_iter().enumerate() {
+            match (value == 0.0, solver.symmetric) {
+                (true, _) => {}
+                (false, true) => entries.extend([(i, j, 0.5 * value), (j, i, 0.5 * value)]),
+                (false, false) => entries.push((i, j, value)),
+            }
+        }
+        if entries.len() as f64 > most {
+            return Err(NotEliminated::Memory);
+        }
     }
-    Ok((turned(w, solver.symmetric), q))
+    let w = Matrix {
+        rows: columns.len(),
+        columns: columns.len(),
+        entries,
+    };
+    Ok((w.merged(), q))
 }
 
 /// The Schur complement S over the unknowns `kept`, row by row, and the condensed load.

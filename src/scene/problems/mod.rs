@@ -14,15 +14,35 @@ pub mod siconos;
 pub mod stored;
 
 use super::limits;
+use crate::format::condensed::Matrix;
 use crate::format::{SceneError, error, read};
 use std::path::Path;
+use stickslip_core::model::FEW;
+use stickslip_exchange::problem;
 use stickslip_platform::input;
 
-/// Rejects a matrix of this many contacts if it does not fit into memory.
+/// Rejects a matrix with all entries of this many contacts if it does not fit into memory.
 fn fits(contacts: usize, memory: Option<f64>) -> Result<(), String> {
-    let entries = 4.0 * (contacts as f64).powi(2);
+    entries_fit(contacts, 4.0 * (contacts as f64).powi(2), memory)
+}
+
+/// Rejects a matrix of this many contacts if its entries do not fit into memory.
+fn entries_fit(contacts: usize, entries: f64, memory: Option<f64>) -> Result<(), String> {
     limits::memory(entries * limits::ENTRY_BYTES, memory)
         .map_err(|why| format!("the problem has {contacts} contacts; its matrix needs {why}"))
+}
+
+/// Rejects this many contacts if not even the diagonal of their matrix fits into memory.
+fn blocks_fit(contacts: usize, memory: Option<f64>) -> Result<(), String> {
+    entries_fit(contacts, 4.0 * contacts as f64, memory)
+}
+
+/// A compliance as it is stored in a scene: few contacts have all rows, many the entries.
+fn compliance(w: problem::Matrix) -> Matrix {
+    match w.rows > 2 * FEW {
+        true => Matrix::Entries(w.merged().entries),
+        false => Matrix::Compliance(w.dense()),
+    }
 }
 
 /// The text of a file named in another one.

@@ -443,6 +443,7 @@ fn fired(decision: &Decision, differs: bool, theme: &Theme) -> Line<'static> {
         | Rule::Pivots
         | Rule::Sweeps
         | Rule::Found
+        | Rule::Settled
         | Rule::Theirs => String::new(),
         _ if second.is_empty() => format!(" {first} "),
         _ => format!(" {first}, {second} "),
