@@ -132,6 +132,8 @@ pub enum Tested {
     Cover,
     /// The change of the forces in the last sweep of Gauss-Seidel against 0 (relative).
     Change,
+    /// The natural map of the forces of Gauss-Seidel against 0 (relative; [`crate::interface::sweep`]).
+    Error,
     /// A comparison by an attached solver's own rules (in its unit).
     Own,
 }

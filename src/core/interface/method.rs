@@ -121,8 +121,10 @@ pub struct Proposal {
     pub nodes: Vec<(Assumed, [f64; 4])>,
     /// The rule for the records.
     pub rule: Rule,
-    /// Remaining relaxation of the problem, or remaining change of the forces (relative).
+    /// Remaining relaxation of the problem, or remaining change or error of the forces (relative).
     pub cover: f64,
+    /// Which of these it is.
+    pub covers: Tested,
     /// The quantity that reached its bound, and the node.
     pub bound: Option<(usize, Tested)>,
     /// Where the search continues.

@@ -3,7 +3,7 @@
 use crate::contact::record::{ContactRecord, Forced};
 use crate::contact::state::ContactState;
 use crate::contact::table1::t_max;
-use crate::contact::table2::{Decision, Rule, Test, Tested};
+use crate::contact::table2::{Decision, Rule, Test};
 use crate::interface::method::{Asked, NoProposal, Proposal, Searched};
 use crate::interface::minor_history::Input;
 use crate::interface::problem::Assumed;
@@ -237,10 +237,7 @@ impl Stepper {
         let sign = if f_t == 0.0 { node.sign } else { f_t.signum() };
         node.t_max = t_max(&friction, f_n, sign);
         let test = Test {
-            tested: match proposal.rule {
-                Rule::Sweeps | Rule::Settled => Tested::Change,
-                _ => Tested::Cover,
-            },
+            tested: proposal.covers,
             value: proposal.cover,
             bound: 0.0,
             margin: -proposal.cover,

@@ -9,7 +9,7 @@
 //! fallen by a factor of 10, at most [`MOST_SWEEPS`] times. Below [`SETTLED`] the modes are solved for once more; if they have no
 //! unique solution, the forces of the sweeps are accepted.
 
-use crate::contact::table2::Rule;
+use crate::contact::table2::{Rule, Tested};
 use crate::interface::method::{Asked, Method, NoProposal, NotFound, Proposal, Search, Searched};
 use crate::interface::problem::Assumed;
 use crate::interface::sweep::Sweep;
@@ -171,6 +171,10 @@ impl Search for GaussSeidel {
                 false => Rule::Sweeps,
             },
             cover: going.change,
+            covers: match going.sweep.is_given() {
+                true => Tested::Error,
+                false => Tested::Change,
+            },
             bound: None,
             next: match lasts {
                 true => Searched::Found { start: asked.start },

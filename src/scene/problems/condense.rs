@@ -257,7 +257,9 @@ mod tests {
             columns: 2,
             entries: vec![(5, 0, 1.0), (2, 1, -1.0)],
         };
-        let (w, q) = condensed(&chain(0.5), &h, &[0.0, 0.0, 0.0, 0.0, 0.0, 3.0]).unwrap();
+        let f = [0.0, 0.0, 0.0, 0.0, 0.0, 3.0];
+        let (w, q) = condensed(&chain(0.5), &h, &f, 4.0 * 2.0).unwrap();
+        let w = w.dense();
         // The compliance is 1/0.5 + 5 at the end and 1/0.5 + 2 in the middle.
         let wanted = [[7.0, -4.0], [-4.0, 4.0]];
         for (row, wanted) in w.iter().zip(wanted) {
@@ -273,6 +275,17 @@ mod tests {
     }
 
     #[test]
+    fn a_compliance_that_does_not_fit_is_refused() {
+        let h = Matrix {
+            rows: 6,
+            columns: 2,
+            entries: vec![(5, 0, 1.0), (2, 1, -1.0)],
+        };
+        let refused = condensed(&chain(0.5), &h, &[0.0; 6], 3.0);
+        assert_eq!(refused, Err(NotEliminated::Memory));
+    }
+
+    #[test]
     fn an_unsupported_chain_has_a_stiffness_but_no_compliance() {
         let h = Matrix {
             rows: 6,
@@ -280,7 +293,7 @@ mod tests {
             entries: vec![(5, 0, 1.0)],
         };
         assert_eq!(
-            condensed(&chain(0.0), &h, &[0.0; 6]),
+            condensed(&chain(0.0), &h, &[0.0; 6], f64::INFINITY),
             Err(NotEliminated::Singular)
         );
         let (s, load) = reduced(&chain(0.0), &[0.0, 0.0, 0.0, 0.0, 1.0, 0.0], &[5, 0]).unwrap();
@@ -304,7 +317,8 @@ mod tests {
             columns: 2,
             entries: vec![(3, 0, 1.0), (1, 1, 1.0)],
         };
-        let (w, q) = condensed(&chain(2.0), &h, &f).unwrap();
+        let (w, q) = condensed(&chain(2.0), &h, &f, f64::INFINITY).unwrap();
+        let w = w.dense();
         let (s, g) = reduced(&chain(2.0), &f, &kept).unwrap();
         for (i, (row, own)) in w.iter().zip(&q).enumerate() {
             for j in 0..2 {
