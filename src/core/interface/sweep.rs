@@ -214,9 +214,11 @@ impl Sweep {
             self.parts[part].settled = of_part <= allowed;
             error += of_part;
         }
-        match error == 0.0 {
-            true => 0.0,
-            false => (error / force.max(error)).sqrt(),
+        match error {
+            0.0 => 0.0,
+            error if error < force => (error / force).sqrt(),
+            // No forces yet, or a node that no force can move.
+            _ => 1.0,
         }
     }
 

@@ -243,8 +243,13 @@ fn sparse(model: &Model) -> Option<Effort> {
     let contacts = model.contacts.len() as f64;
     Some(Effort {
         seconds: SPARSE_SWEEP * entries * contacts,
-        bytes: PROGRAM + SPARSE_CONTACT * contacts + SPARSE_ENTRY * entries,
+        bytes: sparse_bytes(contacts, entries),
     })
+}
+
+/// Memory of a scene that is solved on the entries of a compliance (bytes).
+pub fn sparse_bytes(contacts: f64, entries: f64) -> f64 {
+    PROGRAM + SPARSE_CONTACT * contacts + SPARSE_ENTRY * entries
 }
 
 /// Cost of factoring a body's stiffness by LDLᵀ, and its part of the full system by LU.

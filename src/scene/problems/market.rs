@@ -70,7 +70,7 @@ pub fn read(file: &str, text: &str, memory: Option<f64>) -> Result<Problem, Scen
     }
     match names.stiffness {
         true => fits(size / 2, memory),
-        false => entries_fit(size / 2, (matrix.entries.len() + 2 * size) as f64, memory),
+        false => entries_fit(size / 2, matrix.entries.len() as f64, memory),
     }
     .map_err(whole)?;
     let mu = column(&names, "mu", size / 2)?;
