@@ -11,6 +11,8 @@ pub struct Blocks {
     values: Vec<[f64; 4]>,
     /// Index of the diagonal block of each column.
     own: Vec<usize>,
+    /// Whether it was given by its entries, and these are symmetric bit by bit.
+    symmetric: bool,
 }
 
 impl Blocks {
@@ -30,6 +32,7 @@ impl Blocks {
                 blocks.values[block][2 * (j % 2) + i % 2] += value;
             }
         }
+        blocks.symmetric = blocks.equals_its_transpose();
         blocks
     }
 
@@ -61,7 +64,33 @@ impl Blocks {
             rows: places.iter().map(|&(_, i)| i as u32).collect(),
             values: vec![[0.0; 4]; places.len()],
             own,
+            symmetric: false,
         }
+    }
+
+    fn equals_its_transpose(&self) -> bool {
+        let mut columns = (0..self.contacts()).flat_map(|j| self.column(j).map(move |b| (j, b)));
+        columns.all(|(j, (i, &[nn, tn, nt, tt]))| {
+            let other = self.find(j, i).map(|block| self.values[block]);
+            other == Some([nn, nt, tn, tt])
+        })
+    }
+
+    /// Whether [`Blocks::row`] applies.
+    pub fn is_symmetric(&self) -> bool {
+        self.symmetric
+    }
+
+    /// The product of a contact's rows and `x`, for a symmetric matrix: its rows are its columns.
+    pub fn row(&self, contact: usize, x: &[f64]) -> [f64; 2] {
+        let (mut n, mut t) = (0.0, 0.0);
+        for (i, [nn, tn, nt, tt]) in self.column(contact) {
+            if let [x_n, x_t] = x[2 * i..2 * i + 2] {
+                n += nn * x_n + tn * x_t;
+                t += nt * x_n + tt * x_t;
+            }
+        }
+        [n, t]
     }
 
     /// Number of contacts.
@@ -167,6 +196,28 @@ mod tests {
         let mut y = vec![0.0; 4];
         blocks.multiply(&[2.0, 3.0, 0.0, 0.0], &mut y);
         assert_eq!(y, [3.0, 4.0, 0.0, -3.0]);
+        assert!(!blocks.is_symmetric());
+    }
+
+    #[test]
+    fn rows_of_a_symmetric_matrix_give_its_product() {
+        let half = [
+            (0, 0, 1.5),
+            (1, 0, 2.0),
+            (2, 1, -0.5),
+            (3, 0, 4.0),
+            (3, 3, 1.0),
+        ];
+        let other = half
+            .iter()
+            .filter(|(i, j, _)| i != j)
+            .map(|&(i, j, w)| (j, i, w));
+        let entries: Vec<_> = half.iter().copied().chain(other).collect();
+        let blocks = Blocks::from_entries(2, entries.into_iter());
+        assert!(blocks.is_symmetric());
+        let (x, mut y) = ([1.0, 2.0, -1.0, 3.0], vec![0.0; 4]);
+        blocks.multiply(&x, &mut y);
+        assert_eq!([blocks.row(0, &x), blocks.row(1, &x)].concat(), y);
     }
 
     #[test]

@@ -167,7 +167,7 @@ impl Sweep {
     }
 
     /// One sweep over all nodes of the parts that have not settled; returns the largest change of a force relative to the largest
-    /// force.
+    /// force. With a symmetric compliance given by its entries, [`Sweep::settle`] must follow before the motions are read.
     pub fn sweep(&mut self) -> f64 {
         let (mut most, mut largest) = (0.0_f64, 0.0_f64);
         for part in 0..self.parts.len() {
@@ -182,10 +182,20 @@ impl Sweep {
                     k
                 };
                 let place = self.order[k];
+                // Rows are read faster than columns are written, but the motions of the other nodes are then old.
+                let by_rows = self.compliance.is_symmetric();
+                if by_rows {
+                    let moved = self.compliance.row(place, &self.forces);
+                    for (k, moved) in (2 * place..).zip(moved) {
+                        self.motions[k] = self.free[k] + moved;
+                    }
+                }
                 let force = self.alone(place);
                 let change: [f64; 2] =
                     std::array::from_fn(|k| force[k] - self.forces[2 * place + k]);
-                self.compliance.add_column(place, change, &mut self.motions);
+                if !by_rows {
+                    self.compliance.add_column(place, change, &mut self.motions);
+                }
                 self.forces[2 * place..2 * place + 2].copy_from_slice(&force);
                 for k in 0..2 {
                     most = most.max(change[k].abs());
