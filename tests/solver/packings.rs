@@ -5,7 +5,7 @@ use crate::packing::{global, local, natural_map};
 use std::fs;
 use stickslip::contact::table2::Rule;
 use stickslip::explain::{accuracy, report};
-use stickslip::model::FEW;
+use stickslip::linear::sparse_contacts::FEW;
 use stickslip::scene::Scene;
 use stickslip::step::event::Outcome;
 use stickslip::step::stepper::Stepper;

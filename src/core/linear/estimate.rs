@@ -15,6 +15,7 @@
 //!
 //! Contacts with a sparse compliance need memory proportional to its entries, and time proportional to the sweeps over them.
 
+use crate::linear::sparse_contacts::sparse_contacts;
 use crate::model::{Body, BodyKind, Form, Linear, LinearSolver, Model};
 use std::fmt;
 
@@ -69,7 +70,7 @@ pub struct Estimate {
     pub augmented: Effort,
     /// With the bodies condensed (eqn 6).
     pub condensed: Effort,
-    /// On the entries of a compliance ([`Model::sparse_contacts`]), if the scene is solved so.
+    /// On the entries of a compliance ([`sparse_contacts`]), if the scene is solved so.
     pub sparse: Option<Effort>,
     /// Whether `auto` selects condensation.
     pub condenses: bool,
@@ -239,7 +240,7 @@ impl Factoring {
 
 /// Cost of a scene that is solved on the entries of a compliance.
 fn sparse(model: &Model) -> Option<Effort> {
-    let entries = model.sparse_contacts()?.linear.entries.len() as f64;
+    let entries = sparse_contacts(model)?.linear.entries.len() as f64;
     let contacts = model.contacts.len() as f64;
     Some(Effort {
         seconds: SPARSE_SWEEP * entries * contacts,

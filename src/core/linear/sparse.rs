@@ -25,6 +25,7 @@ use crate::linalg::{DenseFactors, Factors, Pattern, SolveError};
 use crate::linear::bodies::pressure;
 use crate::linear::norms::Norms;
 use crate::linear::source::{At, SUSPICIOUS, Solved, Source, Work};
+use crate::linear::sparse_contacts::sparse_contacts;
 use crate::linear::violation::violation;
 use crate::model::{Axis, Bond, Friction, Linear, Model, Settings, Watched};
 use crate::strategy::SETTLED;
@@ -71,9 +72,9 @@ struct Unknown {
 }
 
 impl SparseInterface {
-    /// The source of a model; `None` if it has anything but contacts on a floor and a compliance ([`Model::sparse_contacts`]).
+    /// The source of a model; `None` if it has anything but contacts on a floor and a compliance ([`sparse_contacts`]).
     pub fn new(model: &Arc<Model>) -> Option<Self> {
-        let given = model.sparse_contacts()?;
+        let given = sparse_contacts(model)?;
         let contacts = model.contacts.len();
         let compliance = blocks(contacts, given.linear);
         let count = 2 * contacts;

@@ -18,7 +18,6 @@ mod friction;
 mod load;
 mod mesh;
 mod settings;
-mod sparse;
 
 use serde::{Deserialize, Serialize};
 
@@ -35,7 +34,6 @@ pub use settings::{
     AtCycle, AtLimit, BoundUpdate, Geometry, InitialGaps, LinearSolver, PointForce, Refactor,
     ResidualMethod, SearchMode, Settings, SlipCount, Sticking, Strategy, TieRule, Touch,
 };
-pub use sparse::{FEW, SparseContacts};
 
 /// A checked scene.
 #[derive(Debug, Clone, PartialEq)]

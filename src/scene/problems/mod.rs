@@ -18,7 +18,7 @@ use crate::format::condensed::Matrix;
 use crate::format::{SceneError, error, read};
 use std::path::Path;
 use stickslip_core::linear::estimate::sparse_bytes;
-use stickslip_core::model::FEW;
+use stickslip_core::linear::sparse_contacts::FEW;
 use stickslip_exchange::problem;
 use stickslip_platform::input;
 
