@@ -219,6 +219,8 @@ struct Tally<'a> {
     noisiest: Norms,
     /// Largest relative error of an accepted increment that is within its limit.
     reached: f64,
+    /// Largest natural map of forces that their modes do not determine.
+    settled: Option<f64>,
     quiet: bool,
     /// Stability of the accepted states, if requested.
     stability: Option<Stretches>,
@@ -266,6 +268,7 @@ impl<'a> Run<'a> {
                 notes: 0,
                 noisiest: Norms::default(),
                 reached: 0.0,
+                settled: None,
                 quiet,
                 most: args
                     .subject
@@ -328,6 +331,9 @@ impl<'a> Run<'a> {
             accuracy::raised(tolerance, self.tally.reached).filter(|_| !args.quiet)
         {
             notify(&format!("note: {raised}"));
+        }
+        if let Some(error) = self.tally.settled.filter(|_| !args.quiet) {
+            notify(&format!("note: {}", accuracy::not_unique(error)));
         }
         if self.tally.notes > MOST_WARNINGS && !args.quiet {
             notify(&format!(
@@ -632,7 +638,9 @@ impl Tally<'_> {
             self.noisiest = after;
         }
         let error = after.relative.max(after.interface);
-        if error <= after.limit {
+        if let Some(error) = accuracy::natural_map(event) {
+            self.settled = Some(self.settled.map_or(error, |most| most.max(error)));
+        } else if error <= after.limit {
             self.reached = self.reached.max(error);
         }
         let although = report::reservations(&self.scene.model, event);

@@ -34,6 +34,19 @@ impl Matrix {
         }
     }
 
+    /// The same matrix with its entries row by row, each once.
+    pub fn merged(mut self) -> Matrix {
+        self.entries.sort_by_key(|&(i, j, _)| (i, j));
+        self.entries.dedup_by(|next, kept| {
+            let same = (next.0, next.1) == (kept.0, kept.1);
+            if same {
+                kept.2 += next.2;
+            }
+            same
+        });
+        self
+    }
+
     /// All entries, row by row. The caller must check that they fit into memory.
     pub fn dense(&self) -> Vec<Vec<f64>> {
         let mut rows = vec![vec![0.0; self.columns]; self.rows];

@@ -300,6 +300,9 @@ fn history_line(model: &Model) -> String {
 fn solver_lines(model: &Model) -> Vec<String> {
     let estimate = Estimate::of(model);
     let chosen = estimate.with(model.settings.solver);
+    if estimate.sparse.is_some() {
+        return vec![format!("sparse, estimated: {}", chosen.0)];
+    }
     let other = if chosen.1 == "condensed" {
         (estimate.augmented, "augmented")
     } else {

@@ -198,13 +198,19 @@ pub fn text(problem: &Problem, head: &[String]) -> String {
         }
         text += "),\n";
     }
+    let lines =
+        |rows: &[Vec<f64>]| -> Vec<String> { rows.iter().map(|row| format!("{row:?}")).collect() };
     let (name, rows) = match &problem.matrix {
-        Matrix::Stiffness(rows) => ("Stiffness", rows),
-        Matrix::Compliance(rows) => ("Compliance", rows),
+        Matrix::Stiffness(rows) => ("Stiffness", lines(rows)),
+        Matrix::Compliance(rows) => ("Compliance", lines(rows)),
+        Matrix::Entries(entries) => {
+            let entry = |entry: &(usize, usize, f64)| format!("{entry:?}");
+            ("Entries", entries.iter().map(entry).collect())
+        }
     };
     let _ = writeln!(text, "    ],\n    matrix: {name}([");
     for row in rows {
-        let _ = writeln!(text, "        {row:?},");
+        let _ = writeln!(text, "        {row},");
     }
     text += "    ]),\n";
     if !problem.free.is_empty() {

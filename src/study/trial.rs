@@ -248,18 +248,23 @@ fn broken(problem: &Problem, u: &[f64], f: &[f64]) -> f64 {
     let acts = |i: usize| problem.contacts[i / 2].load[i % 2] + f[i];
     let size = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |m: f64, v| m.max(v.abs()));
     let all = || 0..u.len();
-    let (rows, stiff) = match &problem.matrix {
-        Matrix::Stiffness(rows) => (rows, true),
-        Matrix::Compliance(rows) => (rows, false),
-    };
-    let product = |i: usize| -> f64 {
-        let of = |j: usize| if stiff { u[j] - free(j) } else { acts(j) };
-        rows[i]
-            .iter()
-            .enumerate()
-            .map(|(j, entry)| entry * of(j))
-            .sum()
-    };
+    let stiff = matches!(problem.matrix, Matrix::Stiffness(_));
+    let of = |j: usize| if stiff { u[j] - free(j) } else { acts(j) };
+    let mut products = vec![0.0; u.len()];
+    match &problem.matrix {
+        Matrix::Stiffness(rows) | Matrix::Compliance(rows) => {
+            for (product, row) in products.iter_mut().zip(rows) {
+                let terms = row.iter().enumerate();
+                *product = terms.map(|(j, entry)| entry * of(j)).sum();
+            }
+        }
+        Matrix::Entries(entries) => {
+            for &(i, j, entry) in entries {
+                products[i] += entry * of(j);
+            }
+        }
+    }
+    let product = |i: usize| products[i];
     let gaps = problem.contacts.iter().map(|contact| contact.gap);
     let mut length = size(&mut gaps.chain(u.iter().copied()).chain(all().map(free)));
     let mut force = size(&mut all().map(acts).chain(f.iter().copied()));

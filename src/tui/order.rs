@@ -59,7 +59,7 @@ fn margin(slave: usize, view: &View) -> Option<f64> {
         | Tested::Pressure
         | Tested::Drag => event.before.scale,
         Tested::Slip | Tested::Room | Tested::Gap => view.model.length,
-        Tested::Cover | Tested::Change | Tested::Own => 1.0,
+        Tested::Cover | Tested::Change | Tested::Error | Tested::Own => 1.0,
     };
     tests
         .map(|test| (test.margin / size(test.tested)).abs())

@@ -224,7 +224,9 @@ fn a_matrix_that_does_not_fit_into_memory_is_refused_before_it_is_made() {
     );
     let matrix = "%%MatrixMarket matrix coordinate real general\n4000000 4000000 0\n";
     let matrix = put(&folder, "m.mtx", matrix);
-    assert!(refusal(&folder, &matrix).contains("2000000 contacts"));
+    let set = [("settings.memory".to_owned(), "5".to_owned())];
+    let error = Scene::open(&matrix, &set).unwrap_err().to_string();
+    assert!(error.contains("2000000 contacts"), "{error}");
 }
 
 #[test]

@@ -5,6 +5,8 @@
 mod common;
 #[path = "../outside/hyperstatic.rs"]
 mod hyperstatic;
+#[path = "../common/packing.rs"]
+mod packing;
 #[path = "../common/program.rs"]
 mod program;
 
@@ -19,6 +21,8 @@ mod condensation;
 // Bodies given by a matrix, endless floors, and what slave nodes bring along.
 mod interfaces;
 mod linear;
+// Many contacts whose forces are not unique.
+mod packings;
 // Friction problems of Siconos are read, solved, written, and refused with a line where broken.
 mod siconos;
 // Planted cycles are found where they start and as long as they are, and diagnosed.

@@ -62,6 +62,8 @@ pub enum Rule {
     Sweeps,
     /// A state found to be consistent by pivoting, sweeps, or the census.
     Found,
+    /// The forces of the Gauss-Seidel sweeps, which obey Coulomb's law within a tolerance, are accepted without a solve.
+    Settled,
     /// An attached solver decided by its own rules.
     Theirs,
     /// A strategy outside this package decided; the text is its reason ([`crate::step::Stepper::with_strategy`]).
@@ -97,6 +99,7 @@ crate::words! {
     Pivots "pivots",
     Sweeps "sweeps",
     Found "found",
+    Settled "settled",
     Theirs "theirs",
     Custom(..) "custom",
 }
@@ -129,6 +132,8 @@ pub enum Tested {
     Cover,
     /// The change of the forces in the last sweep of Gauss-Seidel against 0 (relative).
     Change,
+    /// The natural map of the forces of Gauss-Seidel against 0 (relative; [`crate::interface::sweep`]).
+    Error,
     /// A comparison by an attached solver's own rules (in its unit).
     Own,
 }

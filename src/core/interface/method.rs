@@ -6,6 +6,7 @@
 
 use crate::contact::table2::{Decision, Entry, Numbers, Rule, Tested, Ties, decide};
 use crate::interface::problem::{Assumed, InterfaceProblem};
+use crate::interface::sweep::Sweep;
 use crate::model::{BoundUpdate, Friction, Strategy};
 use serde::{Deserialize, Serialize};
 use std::any::Any;
@@ -107,6 +108,8 @@ pub struct Asked<'a> {
     pub brought: &'a [Assumed],
     /// The interface problem; `None` if the bodies cannot be condensed.
     pub problem: &'a mut dyn FnMut() -> Option<InterfaceProblem>,
+    /// Starts sweeps over the interface problem.
+    pub sweep: &'a mut dyn FnMut() -> Result<Sweep, NotFound>,
     /// Data cached between proposals. They may be lost and must then be rebuilt.
     pub kept: &'a mut Option<Box<dyn Any + Send>>,
 }
@@ -118,8 +121,10 @@ pub struct Proposal {
     pub nodes: Vec<(Assumed, [f64; 4])>,
     /// The rule for the records.
     pub rule: Rule,
-    /// Remaining relaxation of the problem, or remaining change of the forces (relative).
+    /// Remaining relaxation of the problem, or remaining change or error of the forces (relative).
     pub cover: f64,
+    /// Which of these it is.
+    pub covers: Tested,
     /// The quantity that reached its bound, and the node.
     pub bound: Option<(usize, Tested)>,
     /// Where the search continues.

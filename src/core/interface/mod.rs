@@ -4,13 +4,14 @@
 //!   [`kinematics`]: position of a node relative to its surface.
 //! - [`minor`]: a minor iteration at one node; [`method`]: the strategy's decisions in it; [`minor_history`]: inputs of the minor
 //!   iterations so far, and their cycles; [`cycle`]: cycle detection for any iterations.
-//! - [`census`], [`lemke`], [`copositive`] and [`sweep`]: searches for a consistent state over all nodes; [`tableau`]: pivoting
+//! - [`blocks`]: a sparse compliance; [`census`], [`lemke`], [`copositive`] and [`sweep`]: searches for a consistent state over all nodes; [`tableau`]: pivoting
 //!   for two of them; [`vertex`]: selects unique forces if they are not unique; [`branches`] and [`feasible`]: rule out
 //!   inconsistent combinations in a census of many nodes.
 //! - [`spiral`]: evolution of T_max while the modes repeat.
 //! - [`uniqueness`]: whether the matrix alone excludes a second state; [`family`]: states that differ only in their forces;
 //!   [`definite`]: eigenvalues of the compliance, and the problem without negative ones.
 
+pub mod blocks;
 pub mod branches;
 pub mod census;
 pub mod copositive;

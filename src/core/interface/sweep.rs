@@ -5,9 +5,19 @@
 //! this is a problem with two equations and four assumptions: free, fixed, and sliding in either direction. The forces converge
 //! slowly, but the modes usually soon, and a solve with these modes gives the exact forces. Only 2 by 2 blocks are inverted, so W
 //! may be singular. Every second sweep runs backwards: with strong friction, sweeps in the same direction may cycle.
+//!
+//! The compliance is stored by its blocks, and contacts that it does not couple are independent: a part whose forces obey the law
+//! is not swept again. How far forces are from obeying it is the natural map, with ρ the inverse of a node's own compliance:
+//!
+//! ```text
+//! F_n − max(F_n − ρ e_n, 0),     F_t − [F_t − ρ e_t]  limited to  ±(tan φ F_n + c)
+//! ```
 
-use crate::interface::problem::{Assumed, InterfaceProblem};
+use crate::interface::blocks::Blocks;
+use crate::interface::problem::{Assumed, InterfaceProblem, ProblemNode};
 use crate::linalg::DenseFactors;
+use std::ops::Range;
+use std::sync::Arc;
 
 /// Estimated norm of the scaled inverse above which the response has no compliance.
 const SINGULAR: f64 = 1e11;
@@ -15,15 +25,30 @@ const SINGULAR: f64 = 1e11;
 /// State of the sweeps.
 #[derive(Debug, Clone)]
 pub struct Sweep {
-    /// W, column-major.
-    compliance: Vec<f64>,
+    /// W.
+    compliance: Arc<Blocks>,
+    /// Whether W was given by its entries, and not inverted.
+    given: bool,
     nodes: Vec<Alone>,
+    /// The nodes, part by part, and the parts.
+    order: Vec<usize>,
+    parts: Vec<Part>,
     /// F_n, F_t of each node in turn.
     forces: Vec<f64>,
-    /// Gap and negative slip of each node in turn.
+    /// Gap and negative slip of each node in turn: without forces, and with the current ones.
+    free: Vec<f64>,
     motions: Vec<f64>,
     /// Whether the next sweep runs backwards.
     back: bool,
+}
+
+/// Contacts that W couples with each other and with no others.
+#[derive(Debug, Clone)]
+struct Part {
+    /// Its nodes, as a range of the order.
+    nodes: Range<usize>,
+    /// Whether its forces obey the law within the tolerance.
+    settled: bool,
 }
 
 /// A single node.
@@ -35,6 +60,19 @@ struct Alone {
     /// Whether it can have a normal force, and whether it has friction.
     presses: bool,
     rough: bool,
+}
+
+impl Alone {
+    fn new(node: &ProblemNode) -> Self {
+        let [normal, tangential] = node.moves();
+        Alone {
+            does: Assumed::Free,
+            coefficient: node.friction.coefficient(),
+            cohesion: node.friction.cohesion,
+            presses: normal,
+            rough: normal && tangential && !node.friction.is_smooth(),
+        }
+    }
 }
 
 impl Sweep {
@@ -56,67 +94,113 @@ impl Sweep {
             return None;
         }
         dense.solve(&mut solved).ok()?;
-        let mut motions = solved.split_off(last);
-        motions.iter_mut().for_each(|x| *x = -*x);
+        let mut free = solved.split_off(last);
+        free.iter_mut().for_each(|x| *x = -*x);
         let mut compliance = solved;
         compliance.iter_mut().for_each(|x| *x = -*x);
         for j in 0..count {
             compliance[j * count + j] -= 1.0 / relation.stiffness;
         }
-        let mut nodes = Vec::with_capacity(problem.nodes.len());
         for (place, node) in problem.nodes.iter().enumerate() {
-            let [normal, tangential] = node.moves();
             let (n, t) = (2 * place, 2 * place + 1);
-            motions[n] += node.kinematics.map_or(0.0, |over| over.gap) - node.prescribed[0];
-            motions[t] -= node.state.slipped(&problem.settings) + node.prescribed[1];
-            nodes.push(Alone {
-                does: Assumed::Free,
-                coefficient: node.friction.coefficient(),
-                cohesion: node.friction.cohesion,
-                presses: normal,
-                rough: normal && tangential && !node.friction.is_smooth(),
-            });
+            free[n] += node.kinematics.map_or(0.0, |over| over.gap) - node.prescribed[0];
+            free[t] -= node.state.slipped(&problem.settings) + node.prescribed[1];
         }
-        let mut sweep = Sweep {
-            compliance,
-            nodes,
-            forces: vec![0.0; count],
-            motions,
-            back: false,
-        };
+        let compliance = Blocks::from_dense(problem.nodes.len(), &compliance);
         // The initial motions are those without forces.
         for (place, node) in problem.nodes.iter().enumerate() {
-            sweep.push(place, [-node.state.f_n, -node.state.f_t]);
+            compliance.add_column(place, [-node.state.f_n, -node.state.f_t], &mut free);
         }
+        let parts = vec![(0..problem.nodes.len()).collect()];
+        let mut sweep = Sweep::start(Arc::new(compliance), parts, free, &problem.nodes);
+        sweep.given = false;
         Some(sweep)
     }
 
-    /// Adds to the forces of a node and updates the motions.
-    fn push(&mut self, place: usize, change: [f64; 2]) {
-        let count = self.motions.len();
-        for (j, change) in [2 * place, 2 * place + 1].into_iter().zip(change) {
-            if change != 0.0 {
-                let column = &self.compliance[j * count..(j + 1) * count];
-                for (e, w) in self.motions.iter_mut().zip(column) {
-                    *e += w * change;
-                }
+    /// Starts without forces, for a compliance given by its blocks with its independent parts; `free` are gap and negative slip
+    /// of each node without contact forces.
+    pub fn start(
+        compliance: Arc<Blocks>,
+        parts: Vec<Vec<usize>>,
+        free: Vec<f64>,
+        nodes: &[ProblemNode],
+    ) -> Self {
+        let mut first = 0;
+        let ranges = parts.iter().map(|part| {
+            first += part.len();
+            Part {
+                nodes: first - part.len()..first,
+                settled: false,
             }
+        });
+        Sweep {
+            compliance,
+            given: true,
+            nodes: nodes.iter().map(Alone::new).collect(),
+            parts: ranges.collect(),
+            order: parts.concat(),
+            forces: vec![0.0; free.len()],
+            motions: free.clone(),
+            free,
+            back: false,
         }
     }
 
-    /// One sweep over all nodes; returns the largest change of a force relative to the largest force.
+    /// Whether the compliance was given by its entries: it may be singular, and the forces that obey the law need not be unique.
+    pub fn is_given(&self) -> bool {
+        self.given
+    }
+
+    /// Continues from the forces of the nodes' states.
+    pub fn with_forces(mut self, nodes: &[ProblemNode]) -> Self {
+        for (force, node) in self.forces.chunks_exact_mut(2).zip(nodes) {
+            force.copy_from_slice(&[node.state.f_n, node.state.f_t]);
+        }
+        self.renew_motions();
+        self
+    }
+
+    /// Recomputes the motions, in which round-off accumulates.
+    fn renew_motions(&mut self) {
+        self.motions.copy_from_slice(&self.free);
+        self.compliance.multiply(&self.forces, &mut self.motions);
+    }
+
+    /// One sweep over all nodes of the parts that have not settled; returns the largest change of a force relative to the largest
+    /// force. With a symmetric compliance given by its entries, [`Sweep::settle`] must follow before the motions are read.
     pub fn sweep(&mut self) -> f64 {
         let (mut most, mut largest) = (0.0_f64, 0.0_f64);
-        let count = self.nodes.len();
-        for k in 0..count {
-            let place = if self.back { count - 1 - k } else { k };
-            let force = self.alone(place);
-            let change: [f64; 2] = std::array::from_fn(|k| force[k] - self.forces[2 * place + k]);
-            self.push(place, change);
-            self.forces[2 * place..2 * place + 2].copy_from_slice(&force);
-            for k in 0..2 {
-                most = most.max(change[k].abs());
-                largest = largest.max(force[k].abs());
+        for part in 0..self.parts.len() {
+            let Part { nodes, settled } = self.parts[part].clone();
+            if settled {
+                continue;
+            }
+            for k in nodes.clone() {
+                let k = if self.back {
+                    nodes.end - 1 - (k - nodes.start)
+                } else {
+                    k
+                };
+                let place = self.order[k];
+                // Rows are read faster than columns are written, but the motions of the other nodes are then old.
+                let by_rows = self.compliance.is_symmetric();
+                if by_rows {
+                    let moved = self.compliance.row(place, &self.forces);
+                    for (k, moved) in (2 * place..).zip(moved) {
+                        self.motions[k] = self.free[k] + moved;
+                    }
+                }
+                let force = self.alone(place);
+                let change: [f64; 2] =
+                    std::array::from_fn(|k| force[k] - self.forces[2 * place + k]);
+                if !by_rows {
+                    self.compliance.add_column(place, change, &mut self.motions);
+                }
+                self.forces[2 * place..2 * place + 2].copy_from_slice(&force);
+                for k in 0..2 {
+                    most = most.max(change[k].abs());
+                    largest = largest.max(force[k].abs());
+                }
             }
         }
         self.back = !self.back;
@@ -127,11 +211,55 @@ impl Sweep {
         }
     }
 
+    /// The norm of the natural map relative to that of the forces: how far the forces are from obeying Coulomb's law. Parts
+    /// within the tolerance are not swept again.
+    pub fn settle(&mut self, tolerance: f64) -> f64 {
+        self.renew_motions();
+        let force: f64 = self.forces.iter().map(|f| f * f).sum();
+        let allowed = tolerance * tolerance * force / self.parts.len() as f64;
+        let mut error = 0.0;
+        for part in 0..self.parts.len() {
+            let nodes = &self.order[self.parts[part].nodes.clone()];
+            let of_part: f64 = nodes.iter().map(|&place| self.natural(place)).sum();
+            self.parts[part].settled = of_part <= allowed;
+            error += of_part;
+        }
+        match error {
+            0.0 => 0.0,
+            error if error < force => (error / force).sqrt(),
+            // No forces yet, or a node that no force can move.
+            _ => 1.0,
+        }
+    }
+
+    /// The square of the natural map at a node (force²).
+    fn natural(&self, place: usize) -> f64 {
+        let node = &self.nodes[place];
+        let (f_n, f_t) = (self.forces[2 * place], self.forces[2 * place + 1]);
+        let [e_n, e_t] = [self.motions[2 * place], self.motions[2 * place + 1]];
+        let &[nn, _, _, tt] = self.compliance.own(place);
+        // A motion without compliance has no force that stops it.
+        let by = |motion: f64, own: f64| match own > 0.0 {
+            true => motion / own,
+            false => 0.0,
+        };
+        let normal = match node.presses {
+            true if nn <= 0.0 && e_n < 0.0 => f64::INFINITY,
+            true => f_n - (f_n - by(e_n, nn)).max(0.0),
+            false => f_n,
+        };
+        let limit = match node.does {
+            Assumed::Free => 0.0,
+            _ => (node.coefficient * f_n + node.cohesion).max(0.0),
+        };
+        let tangential = f_t - (f_t - by(e_t, tt)).clamp(-limit, limit);
+        normal * normal + tangential * tangential
+    }
+
     /// The force on a node that obeys Coulomb's law with all others frozen; also sets its mode.
     fn alone(&mut self, place: usize) -> [f64; 2] {
-        let (count, n, t) = (self.motions.len(), 2 * place, 2 * place + 1);
-        let w = |i: usize, j: usize| self.compliance[j * count + i];
-        let (nn, nt, tn, tt) = (w(n, n), w(n, t), w(t, n), w(t, t));
+        let (n, t) = (2 * place, 2 * place + 1);
+        let &[nn, tn, nt, tt] = self.compliance.own(place);
         let (f_n, f_t) = (self.forces[n], self.forces[t]);
         // Motions without this node's own force.
         let q = [

@@ -12,7 +12,10 @@
 //! slave nodes and of all nodes of the surfaces that they may touch, and over the z forces of the slave nodes. With m = c − z,
 //! the condensed stiffness needs c³ / 3 operations, the compliance m³ / 3 + m² z, and each minor iteration z³ / 3. All constants
 //! are measured (README).
+//!
+//! Contacts with a sparse compliance need memory proportional to its entries, and time proportional to the sweeps over them.
 
+use crate::linear::sparse_contacts::sparse_contacts;
 use crate::model::{Body, BodyKind, Form, Linear, LinearSolver, Model};
 use std::fmt;
 
@@ -40,6 +43,11 @@ const LOOK: f64 = 4.0;
 /// Bytes per unknown, including its share of elements, pattern and stiffness, and per entry of a given matrix.
 const UNKNOWN: f64 = 2500.0;
 const GIVEN: f64 = 180.0;
+/// Bytes per contact and per entry of a sparse compliance, from the reader on, and seconds per entry and sweep; a packing needs
+/// about as many sweeps as it has contacts.
+const SPARSE_CONTACT: f64 = 2800.0;
+const SPARSE_ENTRY: f64 = 150.0;
+const SPARSE_SWEEP: f64 = 1.2e-9;
 /// Number of stored matrices over the interface's displacements, and over its forces, for condensation.
 const OVER_DISPLACEMENTS: f64 = 7.0;
 const OVER_FORCES: f64 = 4.0;
@@ -62,6 +70,8 @@ pub struct Estimate {
     pub augmented: Effort,
     /// With the bodies condensed (eqn 6).
     pub condensed: Effort,
+    /// On the entries of a compliance ([`sparse_contacts`]), if the scene is solved so.
+    pub sparse: Option<Effort>,
     /// Whether `auto` selects condensation.
     pub condenses: bool,
     /// Cost of a stability check ([`crate::linear::stability`]) in major iterations.
@@ -127,6 +137,7 @@ impl Estimate {
         let mut estimate = Estimate {
             augmented,
             condensed,
+            sparse: sparse(model),
             condenses: if fits(augmented) {
                 pays && fits(condensed)
             } else {
@@ -143,16 +154,17 @@ impl Estimate {
 
     /// Cost and name of a solver.
     pub fn with(&self, solver: LinearSolver) -> (Effort, &'static str) {
-        if self.is_condensed(solver) {
-            (self.condensed, "condensed")
-        } else {
-            (self.augmented, "augmented")
+        match self.sparse {
+            Some(sparse) => (sparse, "sparse"),
+            None if self.is_condensed(solver) => (self.condensed, "condensed"),
+            None => (self.augmented, "augmented"),
         }
     }
 
     /// Whether a solver uses condensation.
     pub fn is_condensed(&self, solver: LinearSolver) -> bool {
         match solver {
+            _ if self.sparse.is_some() => false,
             LinearSolver::Auto => self.condenses,
             LinearSolver::Augmented => false,
             LinearSolver::Condensed => true,
@@ -163,6 +175,7 @@ impl Estimate {
     pub fn too_large(&self, solver: LinearSolver) -> Option<TooLarge> {
         let (effort, name) = self.with(solver);
         let other = match solver {
+            _ if self.sparse.is_some() => None,
             LinearSolver::Condensed => Some(("augmented", self.augmented.bytes)),
             LinearSolver::Augmented => Some(("condensed", self.condensed.bytes)),
             LinearSolver::Auto => None,
@@ -223,6 +236,21 @@ impl Factoring {
         self.seconds += other.seconds;
         self.entries += other.entries;
     }
+}
+
+/// Cost of a scene that is solved on the entries of a compliance.
+fn sparse(model: &Model) -> Option<Effort> {
+    let entries = sparse_contacts(model)?.linear.entries.len() as f64;
+    let contacts = model.contacts.len() as f64;
+    Some(Effort {
+        seconds: SPARSE_SWEEP * entries * contacts,
+        bytes: sparse_bytes(contacts, entries),
+    })
+}
+
+/// Memory of a scene that is solved on the entries of a compliance (bytes).
+pub fn sparse_bytes(contacts: f64, entries: f64) -> f64 {
+    PROGRAM + SPARSE_CONTACT * contacts + SPARSE_ENTRY * entries
 }
 
 /// Cost of factoring a body's stiffness by LDLᵀ, and its part of the full system by LU.

@@ -1,7 +1,8 @@
 //! The linearised equations of a major iteration, behind the trait [`source::Source`].
 //!
 //! - [`source`]: what the stepper needs from the deformable part; [`bodies`]: the program's bodies as a source; [`constant`]: a
-//!   constant interface response as a source.
+//!   constant interface response as a source; [`sparse`]: contacts with a sparse compliance as a source, and
+//!   [`sparse_contacts`], which recognises them.
 //! - `system`: the linearised system of the bodies; `residual`: its out-of-balance forces; [`norms`]: their norms; `sizes`: force
 //!   scales and round-off levels.
 //! - `augmented` (eqn 9) and `reduced` (eqn 6): the two methods for minor iterations; `condensation`: condenses the bodies;
@@ -30,6 +31,8 @@ mod residual;
 pub mod singular;
 pub mod sizes;
 pub mod source;
+pub mod sparse;
+pub mod sparse_contacts;
 pub mod stability;
 mod system;
 mod tangent;

@@ -10,9 +10,11 @@ use crate::contact::projection::SurfacePoint;
 use crate::contact::state::{ContactState, in_mode, largest_drift};
 use crate::fem::deformation::Deformation;
 use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
+use crate::interface::method::NotFound;
 use crate::interface::minor_history::Input;
 use crate::interface::problem::{InterfaceProblem, ProblemNode};
 use crate::interface::rows;
+use crate::interface::sweep::Sweep;
 use crate::linalg::SolveError;
 use crate::linear::condensed::Condensed;
 use crate::linear::norms::Norms;
@@ -22,7 +24,7 @@ use crate::model::{Axis, Friction, Mode, Model, Settings, Watched};
 use std::sync::Arc;
 
 /// Estimated norm of the scaled inverse from which on the equations are suspected to be singular.
-const SUSPICIOUS: f64 = 1e12;
+pub(super) const SUSPICIOUS: f64 = 1e12;
 /// What a relative amount against a law may be at least.
 const TOLERANCE: f64 = 1e-8;
 
@@ -303,6 +305,23 @@ pub trait Source: Send {
             settings: at.settings,
         })
     }
+
+    /// Starts Gauss-Seidel sweeps over the interface problem of the last linearisation.
+    ///
+    /// # Errors
+    /// [`NotFound`] if the bodies cannot be condensed, or are unsupported without contact.
+    fn sweep(&mut self, at: &At<'_>) -> Result<Sweep, NotFound> {
+        let problem = self.problem(at).map_err(|_| NotFound::NotCondensed)?;
+        Sweep::new(&problem).ok_or(NotFound::NoStart)
+    }
+
+    /// Whether [`Source::press`] can take the forces of sweeps, so that they need no solve for their modes.
+    fn takes_forces(&self) -> bool {
+        false
+    }
+
+    /// Takes total contact forces (normal and tangential, by contact) as the result of a minor iteration.
+    fn press(&mut self, _forces: &mut dyn Iterator<Item = [f64; 2]>) {}
 
     /// The unit of length for tolerances: the size of the scene.
     fn length(&self) -> f64 {

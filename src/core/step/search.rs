@@ -3,7 +3,7 @@
 use crate::contact::record::{ContactRecord, Forced};
 use crate::contact::state::ContactState;
 use crate::contact::table1::t_max;
-use crate::contact::table2::{Decision, Rule, Test, Tested};
+use crate::contact::table2::{Decision, Rule, Test};
 use crate::interface::method::{Asked, NoProposal, Proposal, Searched};
 use crate::interface::minor_history::Input;
 use crate::interface::problem::Assumed;
@@ -16,13 +16,16 @@ use crate::step::state::Progress;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
 use crate::strategy;
+use std::cell::RefCell;
 
 impl Stepper {
     /// The strategy cannot continue: the next one of the ladder restarts the major iteration. If there is none, the increment
     /// fails.
     pub(super) fn escalate(&mut self, why: Failure) -> Outcome {
         let searches = self.method().search().is_some();
-        if searches && self.now.state.search.searched == Searched::Not {
+        // Forces that are not unique have no solve that confirms them, but sweeps find them.
+        let sweeps_on = matches!(why, Failure::Singular(_)) && self.now.source.takes_forces();
+        if searches && (self.now.state.search.searched == Searched::Not || sweeps_on) {
             return self.now.state.begin_search();
         }
         let chosen = self.now.state.controls.settings.strategy;
@@ -84,12 +87,14 @@ impl Stepper {
             kept,
             ..
         } = &mut self.now;
+        let source = RefCell::new(source);
         let asked = Asked {
             start,
             step,
             unconfirmed: state.search.unconfirmed,
             brought: &brought,
-            problem: &mut || source.problem(&state.at()).ok(),
+            problem: &mut || source.borrow_mut().problem(&state.at()).ok(),
+            sweep: &mut || source.borrow_mut().sweep(&state.at()),
             kept,
         };
         let proposed = match method.search() {
@@ -97,6 +102,7 @@ impl Stepper {
             None => return self.go_on(),
         };
         match proposed {
+            Ok(proposal) if proposal.rule == Rule::Settled => self.settle(&proposal),
             Ok(proposal) => self.take(&proposal),
             Err(NoProposal::NotFound(why)) => self.escalate(Failure::NotFound(why)),
             Err(NoProposal::NoAnswer { tried }) => {
@@ -132,6 +138,19 @@ impl Stepper {
         }
         self.now.state.next.minor += 1;
         Outcome::Minor
+    }
+
+    /// Ends the major iteration with the forces of a search.
+    fn settle(&mut self, proposal: &Proposal) -> Outcome {
+        let minor = self.now.state.next.minor;
+        self.take(proposal);
+        self.now.state.next.minor = minor;
+        for record in &mut self.event.nodes {
+            record.decision.before = record.decision.next;
+        }
+        let forces = self.event.nodes.iter().map(|r| [r.f_n, r.f_t]);
+        self.now.source.press(&mut { forces });
+        self.end_major(true)
     }
 }
 
@@ -188,10 +207,7 @@ impl Iterate {
         let sign = if f_t == 0.0 { node.sign } else { f_t.signum() };
         node.t_max = t_max(&friction, f_n, sign);
         let test = Test {
-            tested: match proposal.rule {
-                Rule::Sweeps => Tested::Change,
-                _ => Tested::Cover,
-            },
+            tested: proposal.covers,
             value: proposal.cover,
             bound: 0.0,
             margin: -proposal.cover,

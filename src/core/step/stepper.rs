@@ -12,7 +12,7 @@
 //! forces, `verdict` and `jump` decide whether a converged state is accepted, `increment` accepts it or cuts.
 
 use crate::contact::state::ContactState;
-use crate::executor::Executor;
+use crate::executor::{Executor, InTurn};
 use crate::interface::kinematics::NodeKinematics;
 use crate::interface::method::Method;
 use crate::interface::minor_history::Cycle;
@@ -21,6 +21,7 @@ use crate::linear::bodies::Bodies;
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
 use crate::linear::source::{Solved, Source, Work};
+use crate::linear::sparse::SparseInterface;
 use crate::linear::stability::Stability;
 use crate::model::{Model, Strategy};
 use crate::step::event::{Event, Failure, Outcome};
@@ -56,12 +57,14 @@ pub struct Lent {
 impl Stepper {
     /// A stepper of built-in bodies at the start of a scene's history.
     pub fn new(model: Arc<Model>) -> Self {
-        let bodies = Bodies::new(model.clone());
-        Stepper::with_source(model, Box::new(bodies))
+        Stepper::with_executor(model, Arc::new(InTurn))
     }
 
     /// The same, with an executor that works on the bodies in parallel.
     pub fn with_executor(model: Arc<Model>, executor: Arc<dyn Executor>) -> Self {
+        if let Some(contacts) = SparseInterface::new(&model) {
+            return Stepper::with_source(model, Box::new(contacts));
+        }
         let bodies = Bodies::with_executor(model.clone(), executor);
         Stepper::with_source(model, Box::new(bodies))
     }

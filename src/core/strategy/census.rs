@@ -1,7 +1,7 @@
 //! The census as a strategy: tries all combinations of modes ([`crate::interface::census`]). Consistent ones are proposed in
 //! sequence, starting with the one that changes the fewest nodes.
 
-use crate::contact::table2::Rule;
+use crate::contact::table2::{Rule, Tested};
 use crate::interface::census;
 use crate::interface::method::{Asked, Method, NoProposal, NotFound, Proposal, Search, Searched};
 use crate::interface::problem::{Assumed, NodeAnswer};
@@ -53,6 +53,7 @@ impl Search for CensusStrategy {
             nodes,
             rule: Rule::Found,
             cover: 0.0,
+            covers: Tested::Cover,
             bound: None,
             next: Searched::Found { start: asked.start },
         })

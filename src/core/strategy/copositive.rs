@@ -4,7 +4,7 @@
 //! If forces are not unique, those found by pivoting are moved to a state whose modes have a unique solution
 //! ([`crate::interface::vertex`]). Table 2 checks the result in the next minor iteration.
 
-use crate::contact::table2::Rule;
+use crate::contact::table2::{Rule, Tested};
 use crate::interface::copositive::{Copositive as Pivoting, STARTS};
 use crate::interface::method::{Asked, Method, NoProposal, NotFound, Proposal, Search, Searched};
 use crate::interface::tableau::PathEnd;
@@ -78,6 +78,7 @@ impl Search for CopositiveStrategy {
             nodes,
             rule: if solved { Rule::Found } else { Rule::Pivots },
             cover: pivoting.cover(),
+            covers: Tested::Cover,
             bound: pivoting.bound(),
             next: match ended {
                 None => Searched::At {

@@ -4,8 +4,12 @@
 //!
 //! If forces are not unique, those of the sweeps are moved to a state whose modes have a unique solution
 //! ([`crate::interface::vertex`]).
+//!
+//! With a compliance given by its entries ([`Sweep::is_given`]), a minor iteration sweeps until the error, the natural map, has
+//! fallen by a factor of 10, at most [`MOST_SWEEPS`] times. Below [`SETTLED`] the modes are solved for once more; if they have no
+//! unique solution, the forces of the sweeps are accepted.
 
-use crate::contact::table2::Rule;
+use crate::contact::table2::{Rule, Tested};
 use crate::interface::method::{Asked, Method, NoProposal, NotFound, Proposal, Search, Searched};
 use crate::interface::problem::Assumed;
 use crate::interface::sweep::Sweep;
@@ -19,6 +23,15 @@ pub struct GaussSeidel;
 const SWEEPS: usize = 10;
 /// Maximum number of minor iterations with sweeps. Most problems need fewer than 100.
 const MOST: usize = 500;
+/// Natural map, relative to the forces, below which the forces of sweeps over a given compliance are accepted.
+pub const SETTLED: f64 = 1e-9;
+/// Factor by which a minor iteration over a given compliance reduces the error, the maximum number of its sweeps, and the number
+/// after which the error is measured.
+const FALL: f64 = 0.1;
+const MOST_SWEEPS: usize = 500;
+const MEASURED: usize = 10;
+/// Maximum number of sweeps over a given compliance.
+const MOST_GIVEN: usize = 100_000;
 
 /// State of the sweeps.
 struct Going {
@@ -34,8 +47,10 @@ struct Going {
     /// The previous modes, and those of the last proposal.
     does: Vec<Assumed>,
     found: Vec<Assumed>,
-    /// Change in the last sweep (relative).
+    /// Change in the last sweep, or the error of a given compliance (relative).
     change: f64,
+    /// Sweeps done.
+    sweeps: usize,
 }
 
 impl Going {
@@ -50,14 +65,16 @@ impl Going {
             does: Vec::new(),
             found: Vec::new(),
             change: f64::INFINITY,
+            sweeps: 0,
         }
     }
 
     /// Performs the sweeps of a minor iteration; returns whether the modes have been stable long enough and differ from the last
     /// proposal.
     fn go(&mut self, nodes: usize) -> bool {
-        for _ in 0..SWEEPS {
-            self.change = self.sweep.sweep();
+        match self.sweep.is_given() {
+            true => self.reduce(),
+            false => self.sweep_on(SWEEPS),
         }
         self.done += 1;
         self.step += 1;
@@ -67,7 +84,7 @@ impl Going {
         } else {
             0
         };
-        let lasts = self.lasted >= self.patience && does != self.found;
+        let lasts = (self.lasted >= self.patience || self.is_settled()) && does != self.found;
         self.does = does;
         if lasts {
             self.patience *= 2;
@@ -77,9 +94,36 @@ impl Going {
         lasts
     }
 
+    fn sweep_on(&mut self, sweeps: usize) {
+        for _ in 0..sweeps {
+            self.change = self.sweep.sweep();
+        }
+        self.sweeps += sweeps;
+    }
+
+    /// The sweeps of a minor iteration over a given compliance.
+    fn reduce(&mut self) {
+        if self.sweeps == 0 {
+            self.change = self.sweep.settle(SETTLED);
+        }
+        let (goal, most) = (FALL * self.change, self.sweeps + MOST_SWEEPS);
+        while self.change > goal.max(SETTLED) && self.sweeps < most {
+            self.sweep_on(MEASURED);
+            self.change = self.sweep.settle(SETTLED);
+        }
+    }
+
+    /// Whether the forces of a given compliance obey Coulomb's law.
+    fn is_settled(&self) -> bool {
+        self.sweep.is_given() && self.change <= SETTLED
+    }
+
     /// Whether further sweeps would change nothing, or the limit is reached.
     fn is_over(&self) -> bool {
-        self.change == 0.0 && self.does == self.found || self.done >= MOST
+        match self.sweep.is_given() {
+            true => self.sweeps >= MOST_GIVEN && !self.is_settled(),
+            false => self.change == 0.0 && self.does == self.found || self.done >= MOST,
+        }
     }
 }
 
@@ -105,7 +149,7 @@ impl Search for GaussSeidel {
         if going.is_over() {
             return Err(match asked.unconfirmed {
                 0 => NotFound::Unsettled {
-                    sweeps: going.done * SWEEPS,
+                    sweeps: going.sweeps,
                 }
                 .into(),
                 states => NotFound::Unconfirmed { states }.into(),
@@ -115,14 +159,22 @@ impl Search for GaussSeidel {
         let mut proposed: Vec<_> = (0..nodes)
             .map(|k| (going.sweep.assumed(k), going.sweep.numbers(k)))
             .collect();
-        if lasts {
+        if lasts && !going.sweep.is_given() {
             let problem = (asked.problem)().ok_or(NotFound::NotCondensed)?;
             vertices(&problem, &mut proposed);
         }
         let proposal = Proposal {
             nodes: proposed,
-            rule: if lasts { Rule::Found } else { Rule::Sweeps },
+            rule: match lasts {
+                true => Rule::Found,
+                false if going.is_settled() => Rule::Settled,
+                false => Rule::Sweeps,
+            },
             cover: going.change,
+            covers: match going.sweep.is_given() {
+                true => Tested::Error,
+                false => Tested::Change,
+            },
             bound: None,
             next: match lasts {
                 true => Searched::Found { start: asked.start },
@@ -143,8 +195,7 @@ fn is_at(going: &Going, asked: &Asked<'_>) -> bool {
 
 /// The state of the sweeps so far.
 fn going(asked: &mut Asked<'_>) -> Result<Going, NotFound> {
-    let problem = (asked.problem)().ok_or(NotFound::NotCondensed)?;
-    let mut going = Going::new(Sweep::new(&problem).ok_or(NotFound::NoStart)?);
+    let mut going = Going::new((asked.sweep)()?);
     while !is_at(&going, asked) && !going.is_over() {
         going.go(asked.brought.len());
     }

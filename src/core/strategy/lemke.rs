@@ -1,7 +1,7 @@
 //! Lemke's pivoting on the linear complementarity problem of Coulomb's law ([`crate::interface::lemke`]), with one pivot per
 //! minor iteration. Table 2 checks the result in the next minor iteration.
 
-use crate::contact::table2::Rule;
+use crate::contact::table2::{Rule, Tested};
 use crate::interface::lemke::{Lemke as Tableau, PathEnd, STARTS};
 use crate::interface::method::{Asked, Method, NoProposal, NotFound, Proposal, Search, Searched};
 use crate::model::BoundUpdate;
@@ -49,6 +49,7 @@ impl Search for LemkeStrategy {
                 _ => Rule::Pivots,
             },
             cover: tableau.cover(),
+            covers: Tested::Cover,
             bound: tableau.bound(),
             next: match ended {
                 None => Searched::At {

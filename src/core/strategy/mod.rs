@@ -11,6 +11,8 @@ mod newton;
 mod sliding;
 mod table2;
 
+pub use gauss_seidel::SETTLED;
+
 use crate::interface::method::Method;
 use crate::model::{BoundUpdate, Settings, Strategy};
 use std::ops::Deref;

@@ -1,6 +1,8 @@
 //! Describes how far round-off limits the accuracy of a scene.
 
+use stickslip_core::contact::table2::{Rule, Test, Tested};
 use stickslip_core::linear::norms::Norms;
+use stickslip_core::step::event::Event;
 
 /// Describes the accuracy that round-off permits; `None` if it is sufficient.
 pub fn left(norms: &Norms) -> Option<String> {
@@ -20,4 +22,40 @@ pub fn raised(tolerance: f64, reached: f64) -> Option<String> {
             "settings.tolerance {tolerance:.0e} is below the round-off of this scene: increments were accepted at errors up to {reached:.1e}"
         )
     })
+}
+
+/// What remains after Gauss-Seidel sweeps: the natural map, or the change of the forces in the last one.
+pub fn sweeps(event: &Event) -> String {
+    match first_test(event) {
+        None => "sweeps".to_owned(),
+        Some(test) if test.tested == Tested::Error => {
+            format!(
+                "sweeps; the natural map of the forces is {:.1e}",
+                test.value
+            )
+        }
+        Some(test) => format!("sweeps; the last one changed forces by {:.3e}", test.value),
+    }
+}
+
+/// The natural map of forces that were accepted without a solve for their modes, relative to the forces.
+pub fn natural_map(event: &Event) -> Option<f64> {
+    let settled = event.nodes.first()?.decision.rule == Rule::Settled;
+    first_test(event).filter(|_| settled).map(|test| test.value)
+}
+
+/// Says so.
+pub fn settled(event: &Event) -> Option<String> {
+    natural_map(event).map(not_unique)
+}
+
+/// Describes forces that were accepted with this natural map.
+pub fn not_unique(error: f64) -> String {
+    format!(
+        "the modes do not determine the contact forces; those of the sweeps satisfy the contact laws to {error:.1e} (natural map)"
+    )
+}
+
+fn first_test(event: &Event) -> Option<Test> {
+    event.nodes.iter().find_map(|node| node.decision.tests[0])
 }

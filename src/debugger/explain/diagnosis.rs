@@ -233,9 +233,12 @@ fn push(
     let tested = fired(records[node].decision.rule)?;
     let of = |i: &Influence| match tested {
         Tested::Gap => i.gap,
-        Tested::NormalForce | Tested::Pressure | Tested::Cover | Tested::Change | Tested::Own => {
-            i.f_n
-        }
+        Tested::NormalForce
+        | Tested::Pressure
+        | Tested::Cover
+        | Tested::Change
+        | Tested::Error
+        | Tested::Own => i.f_n,
         Tested::ShearForce | Tested::LeastFriction | Tested::Drag => i.f_t,
         Tested::Slip | Tested::Room => i.slip,
     };
@@ -485,9 +488,12 @@ fn push_words<'a>(push: &Push, phase: &Phase, name: &impl Fn(usize) -> &'a str) 
     let from = &push.influence;
     let (what, value) = match push.tested {
         Tested::Gap => ("Δg", from.gap),
-        Tested::NormalForce | Tested::Pressure | Tested::Cover | Tested::Change | Tested::Own => {
-            ("ΔF_n", from.f_n)
-        }
+        Tested::NormalForce
+        | Tested::Pressure
+        | Tested::Cover
+        | Tested::Change
+        | Tested::Error
+        | Tested::Own => ("ΔF_n", from.f_n),
         Tested::ShearForce | Tested::LeastFriction | Tested::Drag => ("ΔF_t", from.f_t),
         Tested::Slip | Tested::Room => ("Δslip", from.slip),
     };

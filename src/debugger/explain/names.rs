@@ -55,9 +55,12 @@ const NEWTON: [[&str; 2]; 3] = [
 pub fn table(rule: Rule) -> [[[&'static str; 2]; 3]; 3] {
     match rule {
         Rule::NewtonOpens | Rule::NewtonSticks | Rule::NewtonSlides => [NEWTON; 3],
-        Rule::CornerReleases | Rule::Pivots | Rule::Sweeps | Rule::Found | Rule::Theirs => {
-            [[["", ""]; 3]; 3]
-        }
+        Rule::CornerReleases
+        | Rule::Pivots
+        | Rule::Sweeps
+        | Rule::Found
+        | Rule::Settled
+        | Rule::Theirs => [[["", ""]; 3]; 3],
         Rule::FreeEnters => {
             let mut table = TABLE_2;
             table[2] = [["", ""], ["g < 0", ""], ["g > 0", ""]];

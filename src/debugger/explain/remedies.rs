@@ -338,7 +338,7 @@ fn scale_of(
         | Tested::Pressure
         | Tested::Drag => event.before.scale,
         Tested::Slip | Tested::Room | Tested::Gap => stepper.model().length,
-        Tested::Cover | Tested::Change | Tested::Own => 1.0,
+        Tested::Cover | Tested::Change | Tested::Error | Tested::Own => 1.0,
     }
 }
 

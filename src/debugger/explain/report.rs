@@ -95,6 +95,12 @@ pub fn reason(decision: &Decision, friction: bool) -> String {
                 mode(decision.next)
             );
         }
+        Rule::Settled => {
+            return format!(
+                "Gauss-Seidel: {}; the forces obey Coulomb's law within the tolerance and are accepted.",
+                mode(decision.next)
+            );
+        }
         Rule::OffSurface => {
             "Free: the projection lies past an end of every surface, so there is no contact."
         }
@@ -133,7 +139,9 @@ pub fn outcome(model: &Model, event: &Event) -> String {
             format!("{at}: found a consistent state; it is checked next")
         }
         Outcome::Minor if together(event, Rule::Pivots) => format!("{at}: {}", pivot(model, event)),
-        Outcome::Minor if together(event, Rule::Sweeps) => format!("{at}: {}", sweeps(event)),
+        Outcome::Minor if together(event, Rule::Sweeps) => {
+            format!("{at}: {}", accuracy::sweeps(event))
+        }
         Outcome::Minor => match changes(model, event).as_str() {
             // For an attached solver, other changes are unknown.
             "" if event
@@ -213,7 +221,8 @@ pub fn outcome(model: &Model, event: &Event) -> String {
         } => {
             let found = found.map_or(String::new(), |by| format!(", found with {}", by.words()));
             let end = if *last { jumped::end(model, event) } else { "" };
-            let left = accuracy::left(after).map_or(String::new(), |left| format!("; {left}"));
+            let left = accuracy::left(after).or_else(|| accuracy::settled(event));
+            let left = left.map_or(String::new(), |left| format!("; {left}"));
             format!(
                 "{at}: load {} accepted{found}{}{left}{end}",
                 event.load_factor,
@@ -270,18 +279,6 @@ fn pivot(model: &Model, event: &Event) -> String {
         Some(what) => format!("pivot: {what}; {left}"),
         None => format!("pivot; {left}"),
     }
-}
-
-/// Gauss-Seidel sweeps: the remaining change of the forces.
-fn sweeps(event: &Event) -> String {
-    let change = event
-        .nodes
-        .iter()
-        .find_map(|n| Some(n.decision.tests[0]?.value));
-    let left = change.map_or(String::new(), |c| {
-        format!("; the last one changed forces by {c:.3e}")
-    });
-    format!("sweeps{left}")
 }
 
 /// Objections to an accepted increment; empty if there are none.

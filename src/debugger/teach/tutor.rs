@@ -657,6 +657,7 @@ fn compared(decision: &Decision) -> String {
             Tested::Drag => ("|F_t + k·slip|", format!("the limit, {}", four(test.bound))),
             Tested::Cover => ("z", "0".into()),
             Tested::Change => ("the change", "0".into()),
+            Tested::Error => ("the error", "0".into()),
             Tested::Own => ("what it compares", "0".into()),
         };
         format!("{name} = {} {sign} {bound}", four(test.value))

@@ -6,6 +6,7 @@ use crate::format::error::{Fault, Path};
 use crate::format::spec::{Bar, BodySpec, Spec};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use stickslip_core::model::{Body, BodyKind, Dofs, Factor, Form, Linear, Load, Truss};
+use stickslip_exchange::problem::Matrix;
 
 /// A body given by a stiffness or a compliance. The degrees of freedom of a compliance's forces are numbered later, with all
 /// others.
@@ -15,12 +16,28 @@ pub(super) fn matrix(here: &Path, body: &BodySpec, names: &Names) -> Result<Body
         nodes: list,
         stiffness,
         compliance,
+        entries,
         free,
     } = body
     else {
         return Err(Fault::new(here.clone(), "the body is not a Matrix"));
     };
     let nodes = distinct(&here.then("nodes"), list, names)?;
+    let size = 2 * nodes.len();
+    if !free.is_empty() {
+        sized(&here.then("free"), free, size)?;
+    }
+    if !entries.is_empty() {
+        if !stiffness.is_empty() || !compliance.is_empty() {
+            let message = "the body has a matrix and entries of a compliance; give exactly one";
+            return Err(Fault::new(here.clone(), message));
+        }
+        return Ok(Body {
+            name: id.clone(),
+            kind: BodyKind::Linear(sparse(&here.then("entries"), entries, size)?),
+            nodes,
+        });
+    }
     let (key, rows, form) = match (stiffness.is_empty(), compliance.is_empty()) {
         (false, true) => ("stiffness", stiffness, Form::Stiffness),
         (true, false) => (
@@ -38,11 +55,7 @@ pub(super) fn matrix(here: &Path, body: &BodySpec, names: &Names) -> Result<Body
             return Err(Fault::new(here.clone(), message));
         }
     };
-    let size = 2 * nodes.len();
     square(&here.then(key), rows, size)?;
-    if !free.is_empty() {
-        sized(&here.then("free"), free, size)?;
-    }
     let entries = rows.iter().enumerate().flat_map(|(i, row)| {
         let kept = move |(j, _): &(usize, f64)| *j == i;
         let all = row.iter().copied().enumerate();
@@ -57,6 +70,34 @@ pub(super) fn matrix(here: &Path, body: &BodySpec, names: &Names) -> Result<Body
             bars: Vec::new(),
         }),
         nodes,
+    })
+}
+
+/// A compliance from its entries.
+fn sparse(here: &Path, entries: &[(usize, usize, f64)], size: usize) -> Result<Linear, Fault> {
+    for (k, &(i, j, value)) in entries.iter().enumerate() {
+        if i >= size || j >= size {
+            let message = format!(
+                "the entry is in row {i}, column {j}; they must be 0 to {}",
+                size - 1
+            );
+            return Err(Fault::new(here.then(k), message));
+        }
+        number_of_matrix(&here.then(k), value)?;
+    }
+    let mut whole = Matrix {
+        rows: size,
+        columns: size,
+        entries: entries.to_vec(),
+    };
+    // The diagonal is stored whole.
+    whole.entries.extend((0..size).map(|i| (i, i, 0.0)));
+    let mut entries = whole.merged().entries;
+    entries.retain(|&(i, j, value)| i == j || value != 0.0);
+    Ok(Linear {
+        form: Form::Compliance { first_force: 0 },
+        entries,
+        bars: Vec::new(),
     })
 }
 
@@ -101,12 +142,17 @@ fn sized(here: &Path, row: &[f64], size: usize) -> Result<(), Fault> {
         return Err(Fault::new(here.clone(), message));
     }
     for (k, value) in row.iter().enumerate() {
-        if !value.is_finite() || value.abs() > limits::STIFFNESS.1 {
-            let message = format!("the entry is {value:?}; it must be a finite number below 1e30");
-            return Err(Fault::new(here.then(k), message));
-        }
+        number_of_matrix(&here.then(k), *value)?;
     }
     Ok(())
+}
+
+fn number_of_matrix(here: &Path, value: f64) -> Result<(), Fault> {
+    if value.is_finite() && value.abs() <= limits::STIFFNESS.1 {
+        return Ok(());
+    }
+    let message = format!("the entry is {value:?}; it must be a finite number below 1e30");
+    Err(Fault::new(here.clone(), message))
 }
 
 /// Bars with fixed directions: each adds stiffness · e eᵀ to its nodes, and the negative between them.

@@ -23,13 +23,15 @@ use stickslip_core::model::{Friction, InitialState, Mode, Settings};
 /// First word of an interface problem file.
 pub const HEAD: &str = "Contacts";
 
-/// Response of the body that carries the contacts, row by row.
+/// Response of the body that carries the contacts: row by row, or by its entries.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Matrix {
     /// K, force per length.
     Stiffness(Vec<Vec<f64>>),
     /// W, length per force; may be singular.
     Compliance(Vec<Vec<f64>>),
+    /// W by its nonzero entries: row, column (from 0) and value; repeated ones are added.
+    Entries(Vec<(usize, usize, f64)>),
 }
 
 /// One contact.
@@ -129,6 +131,7 @@ impl Problem {
                 _ => at!["contacts"],
             },
             ("bodies", "") => at!["matrix"],
+            ("bodies", "entries") => after(at!["matrix"], rest),
             ("bodies", _) => after(at!["matrix"], &turned),
             ("surfaces" | "friction" | "materials" | "supports" | "monitors", _) => Path::default(),
             _ => of_scene.clone(),
@@ -156,10 +159,12 @@ impl Problem {
             elements: 1,
             per_element: 2,
         });
-        let (stiffness, compliance) = match &self.matrix {
-            Matrix::Stiffness(rows) => (turned(rows), Vec::new()),
-            Matrix::Compliance(rows) => (Vec::new(), turned(rows)),
-        };
+        let (mut stiffness, mut compliance, mut entries) = Default::default();
+        match &self.matrix {
+            Matrix::Stiffness(rows) => stiffness = turned(rows),
+            Matrix::Compliance(rows) => compliance = turned(rows),
+            Matrix::Entries(given) => entries = turned_entries(given),
+        }
         Spec {
             title: self.title.clone(),
             about: self.about.clone(),
@@ -169,6 +174,7 @@ impl Problem {
                 nodes: ids().collect(),
                 stiffness,
                 compliance,
+                entries,
                 free: turned_row(&self.free, 1.0),
             }],
             surfaces: vec![SurfaceSpec {
@@ -219,12 +225,16 @@ impl Problem {
         }
         text += "    ],\n";
         let (form, rows) = match &self.matrix {
-            Matrix::Stiffness(rows) => ("Stiffness", rows),
-            Matrix::Compliance(rows) => ("Compliance", rows),
+            Matrix::Stiffness(rows) => ("Stiffness", lists(rows)),
+            Matrix::Compliance(rows) => ("Compliance", lists(rows)),
+            Matrix::Entries(entries) => {
+                let entry = |(i, j, value)| format!("({i}, {j}, {value:?})");
+                ("Entries", entries.iter().copied().map(entry).collect())
+            }
         };
         text += &format!("    matrix: {form}([\n");
         for row in rows {
-            text += &format!("        [{}],\n", list(row));
+            text += &format!("        {row},\n");
         }
         text += "    ]),\n";
         if self.free.iter().any(|&u| u != 0.0) {
@@ -273,6 +283,11 @@ impl Contact {
         }
         fields
     }
+}
+
+/// Each row as a list.
+fn lists(rows: &[Vec<f64>]) -> Vec<String> {
+    rows.iter().map(|row| format!("[{}]", list(row))).collect()
 }
 
 /// Numbers separated by commas; zero is written without a sign.
@@ -335,6 +350,20 @@ fn turned(rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
         x.into_iter().chain(y)
     });
     pairs.collect()
+}
+
+/// The same for the entries of a matrix.
+fn turned_entries(entries: &[(usize, usize, f64)]) -> Vec<(usize, usize, f64)> {
+    let turn = |&(i, j, value): &(usize, usize, f64)| {
+        // The normal component keeps its sign, the tangential one changes it.
+        let value = if i % 2 == j % 2 {
+            value
+        } else {
+            negative(value)
+        };
+        (i ^ 1, j ^ 1, value)
+    };
+    entries.iter().map(turn).collect()
 }
 
 /// A row over (n, t), times a sign, as a row over (x, y).

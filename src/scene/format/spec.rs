@@ -421,6 +421,10 @@ described! {
             /// W, length per force. Default: none.
             #[serde(default)]
             compliance: Vec<Vec<f64>>,
+            /// W by its nonzero entries `(row, column, value)`, from 0, instead of all rows; repeated ones are added. Default:
+            /// none.
+            #[serde(default, skip_serializing_if = "Vec::is_empty")]
+            entries: Vec<(usize, usize, f64)> => skip,
             /// Displacement of the body without forces at load factor 1; it is multiplied by the load factor: u = free λ + W f.
             /// Default: zero.
             #[serde(default)]

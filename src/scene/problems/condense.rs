@@ -34,7 +34,8 @@ impl From<SolveError> for NotEliminated {
     }
 }
 
-/// W, row by row, and Hᵀ M⁻¹ f. For a symmetric M, W is exactly symmetric.
+/// W, row by row, and Hᵀ M⁻¹ f. For a symmetric M, W is exactly symmetric. `most` is the number of its entries for which memory
+/// is available.
 ///
 /// # Errors
 /// If M is singular, or memory is insufficient.
@@ -42,7 +43,8 @@ pub fn condensed(
     m: &Matrix,
     h: &Matrix,
     f: &[f64],
-) -> Result<(Vec<Vec<f64>>, Vec<f64>), NotEliminated> {
+    most: f64,
+) -> Result<(Matrix, Vec<f64>), NotEliminated> {
     let mut solver = Inverse::new(m)?;
     let columns = by_column(h);
     let mut x = vec![0.0; m.rows];
@@ -53,15 +55,28 @@ pub fn condensed(
     solver.solve(f, &mut x)?;
     let q = onto(&x);
     let mut right = vec![0.0; m.rows];
-    // Column by column, which is the transpose.
-    let mut w = Vec::with_capacity(columns.len());
-    for column in &columns {
+    let mut entries = Vec::new();
+    for (j, column) in columns.iter().enumerate() {
         column.iter().for_each(|&(i, v)| right[i] += v);
         solver.solve(&right, &mut x)?;
         column.iter().for_each(|&(i, _)| right[i] = 0.0);
-        w.push(onto(&x));
+        for (i, value) in onto(&x).into_iter().enumerate() {
+            match (value == 0.0, solver.symmetric) {
+                (true, _) => {}
+                (false, true) => entries.extend([(i, j, 0.5 * value), (j, i, 0.5 * value)]),
+                (false, false) => entries.push((i, j, value)),
+            }
+        }
+        if entries.len() as f64 > most {
+            return Err(NotEliminated::Memory);
+        }
     }
-    Ok((turned(w, solver.symmetric), q))
+    let w = Matrix {
+        rows: columns.len(),
+        columns: columns.len(),
+        entries,
+    };
+    Ok((w.merged(), q))
 }
 
 /// The Schur complement S over the unknowns `kept`, row by row, and the condensed load.
@@ -242,7 +257,9 @@ mod tests {
             columns: 2,
             entries: vec![(5, 0, 1.0), (2, 1, -1.0)],
         };
-        let (w, q) = condensed(&chain(0.5), &h, &[0.0, 0.0, 0.0, 0.0, 0.0, 3.0]).unwrap();
+        let f = [0.0, 0.0, 0.0, 0.0, 0.0, 3.0];
+        let (w, q) = condensed(&chain(0.5), &h, &f, 4.0 * 2.0).unwrap();
+        let w = w.dense();
         // The compliance is 1/0.5 + 5 at the end and 1/0.5 + 2 in the middle.
         let wanted = [[7.0, -4.0], [-4.0, 4.0]];
         for (row, wanted) in w.iter().zip(wanted) {
@@ -258,6 +275,17 @@ mod tests {
     }
 
     #[test]
+    fn a_compliance_that_does_not_fit_is_refused() {
+        let h = Matrix {
+            rows: 6,
+            columns: 2,
+            entries: vec![(5, 0, 1.0), (2, 1, -1.0)],
+        };
+        let refused = condensed(&chain(0.5), &h, &[0.0; 6], 3.0);
+        assert_eq!(refused, Err(NotEliminated::Memory));
+    }
+
+    #[test]
     fn an_unsupported_chain_has_a_stiffness_but_no_compliance() {
         let h = Matrix {
             rows: 6,
@@ -265,7 +293,7 @@ mod tests {
             entries: vec![(5, 0, 1.0)],
         };
         assert_eq!(
-            condensed(&chain(0.0), &h, &[0.0; 6]),
+            condensed(&chain(0.0), &h, &[0.0; 6], f64::INFINITY),
             Err(NotEliminated::Singular)
         );
         let (s, load) = reduced(&chain(0.0), &[0.0, 0.0, 0.0, 0.0, 1.0, 0.0], &[5, 0]).unwrap();
@@ -289,7 +317,8 @@ mod tests {
             columns: 2,
             entries: vec![(3, 0, 1.0), (1, 1, 1.0)],
         };
-        let (w, q) = condensed(&chain(2.0), &h, &f).unwrap();
+        let (w, q) = condensed(&chain(2.0), &h, &f, f64::INFINITY).unwrap();
+        let w = w.dense();
         let (s, g) = reduced(&chain(2.0), &f, &kept).unwrap();
         for (i, (row, own)) in w.iter().zip(&q).enumerate() {
             for j in 0..2 {

@@ -11,8 +11,8 @@
 //! The components are those of [`super::siconos`]. The user names the matrix file; the others are next to it. For a stiffness, q
 //! may be missing if f is given.
 
-use super::fits;
 use super::siconos::{contacts, settings};
+use super::{compliance, entries_fit, fits};
 use crate::format::condensed::{Matrix, Problem};
 use crate::format::{SceneError, read};
 use std::path::{Path, PathBuf};
@@ -68,7 +68,11 @@ pub fn read(file: &str, text: &str, memory: Option<f64>) -> Result<Problem, Scen
             matrix.rows, matrix.columns
         )));
     }
-    fits(size / 2, memory).map_err(whole)?;
+    match names.stiffness {
+        true => fits(size / 2, memory),
+        false => entries_fit(size / 2, matrix.entries.len() as f64, memory),
+    }
+    .map_err(whole)?;
     let mu = column(&names, "mu", size / 2)?;
     let missing = |part: &str| {
         let path = names.part(part);
@@ -88,19 +92,18 @@ pub fn read(file: &str, text: &str, memory: Option<f64>) -> Result<Problem, Scen
     if q.is_none() && !(names.stiffness && f.is_some()) {
         return Err(missing("q"));
     }
-    let rows = matrix.dense();
     Ok(Problem {
         title: super::title(file),
         about: "An interface problem from Matrix Market files.".to_owned(),
         contacts: contacts(&mu, &f.unwrap_or_default()),
         matrix: match names.stiffness {
-            true => Matrix::Stiffness(rows),
-            false => Matrix::Compliance(rows),
+            true => Matrix::Stiffness(matrix.dense()),
+            false => compliance(matrix),
         },
         free: q.unwrap_or_default(),
         spacing: None,
         history: Default::default(),
-        settings: settings(),
+        settings: settings(mu.len()),
     })
 }
 

@@ -14,15 +14,41 @@ pub mod siconos;
 pub mod stored;
 
 use super::limits;
+use crate::format::condensed::Matrix;
 use crate::format::{SceneError, error, read};
 use std::path::Path;
+use stickslip_core::linear::estimate::sparse_bytes;
+use stickslip_core::linear::sparse_contacts::FEW;
+use stickslip_exchange::problem;
 use stickslip_platform::input;
 
-/// Rejects a matrix of this many contacts if it does not fit into memory.
+/// Rejects a matrix with all entries of this many contacts if it does not fit into memory.
 fn fits(contacts: usize, memory: Option<f64>) -> Result<(), String> {
     let entries = 4.0 * (contacts as f64).powi(2);
     limits::memory(entries * limits::ENTRY_BYTES, memory)
         .map_err(|why| format!("the problem has {contacts} contacts; its matrix needs {why}"))
+}
+
+/// Rejects a compliance of this many contacts if its entries do not fit into memory.
+fn entries_fit(contacts: usize, entries: f64, memory: Option<f64>) -> Result<(), String> {
+    if contacts <= FEW {
+        return fits(contacts, memory);
+    }
+    limits::memory(sparse_bytes(contacts as f64, entries), memory)
+        .map_err(|why| format!("the problem has {contacts} contacts; it needs {why}"))
+}
+
+/// Rejects this many contacts if not even the diagonal of their matrix fits into memory.
+fn blocks_fit(contacts: usize, memory: Option<f64>) -> Result<(), String> {
+    entries_fit(contacts, 4.0 * contacts as f64, memory)
+}
+
+/// A compliance as it is stored in a scene: few contacts have all rows, many the entries.
+fn compliance(w: problem::Matrix) -> Matrix {
+    match w.rows > 2 * FEW {
+        true => Matrix::Entries(w.merged().entries),
+        false => Matrix::Compliance(w.dense()),
+    }
 }
 
 /// The text of a file named in another one.

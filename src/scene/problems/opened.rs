@@ -1,6 +1,6 @@
 //! Recognises interface problems of other programs by file name or text.
 
-use super::siconos::{self, Friction2d};
+use super::siconos;
 use super::title;
 use crate::format::condensed::Problem;
 use crate::format::{SceneError, read};
@@ -25,9 +25,9 @@ pub(crate) fn from_file(
         let bytes = input::bytes(Path::new(name), read::FILE_BYTES as u64, large)
             .map_err(|why| SceneError::whole(name, why.to_string()))?;
         let problem = fclib::read(bytes).map_err(|broken| read::of_file(name, broken))?;
-        let problem = Friction2d::condensed(problem, memory(overrides))
+        let local = siconos::local(problem, memory(overrides))
             .map_err(|why| SceneError::whole(name, why))?;
-        let mut problem = problem.problem(&title(name));
+        let mut problem = siconos::problem(local, &title(name));
         problem.about = "A friction problem from an fclib file: u = W r + q.".to_owned();
         Ok(problem)
     };
@@ -39,8 +39,8 @@ pub(crate) fn from_file(
 /// # Errors
 /// If it is invalid.
 pub(crate) fn siconos(name: &str, text: &str, memory: Option<f64>) -> Result<Problem, SceneError> {
-    match siconos::read_within(text, memory) {
-        Ok(problem) => Ok(problem.problem(&title(name))),
+    match siconos::local_within(text, memory, super::blocks_fit) {
+        Ok(local) => Ok(siconos::problem(local, &title(name))),
         Err(broken) => Err(SceneError {
             at: Some((broken.line, broken.column)),
             ..SceneError::whole(name, broken.message)

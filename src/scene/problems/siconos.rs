@@ -7,9 +7,10 @@
 //! [`stickslip_exchange::siconos`] reads and writes the text. In the resulting scene all contacts start free with gap 0, and the
 //! free velocity q, and hence u and r, is applied in one increment.
 
-use crate::format::condensed::{Contact, Matrix, Problem};
+use crate::format::condensed::{Contact, Problem};
 use crate::limits;
-use stickslip_core::model::{Friction, InitialState, LinearSolver, Mode, Settings};
+use stickslip_core::linear::sparse_contacts::FEW;
+use stickslip_core::model::{Friction, InitialState, LinearSolver, Mode, Settings, Strategy};
 use stickslip_exchange::problem::{self, Local};
 use stickslip_exchange::siconos;
 pub use stickslip_exchange::siconos::Storage;
@@ -54,6 +55,20 @@ pub fn read(text: &str) -> Result<Friction2d, Broken> {
 /// # Errors
 /// As [`read`].
 pub fn read_within(text: &str, memory: Option<f64>) -> Result<Friction2d, Broken> {
+    let local = local_within(text, memory, super::fits)?;
+    let problem = Friction2d::of(local);
+    Ok(problem)
+}
+
+/// Reads such a file as a problem condensed to its contacts, if `fits` accepts the number of contacts.
+///
+/// # Errors
+/// As [`read`].
+pub(super) fn local_within(
+    text: &str,
+    memory: Option<f64>,
+    fits: fn(usize, Option<f64>) -> Result<(), String>,
+) -> Result<Local, Broken> {
     let broken = |at: Option<(usize, usize)>, message| {
         let (line, column) = at.unwrap_or((1, 1));
         Broken {
@@ -65,78 +80,91 @@ pub fn read_within(text: &str, memory: Option<f64>) -> Result<Friction2d, Broken
     // Checked before anything of that size is read.
     let (contacts, place) =
         siconos::contacts(text).map_err(|wrong| broken(wrong.at, wrong.message))?;
-    super::fits(contacts, memory).map_err(|why| broken(Some(place), why))?;
+    fits(contacts, memory).map_err(|why| broken(Some(place), why))?;
     let problem = siconos::read(text).map_err(|wrong| broken(wrong.at, wrong.message))?;
-    Friction2d::condensed(problem, memory).map_err(|why| broken(None, why))
+    local(problem, memory).map_err(|why| broken(None, why))
+}
+
+/// Condenses a problem of any form to its contacts, with a memory limit (GB; `None`: the free memory).
+///
+/// # Errors
+/// Why it cannot be condensed.
+pub(super) fn local(problem: problem::Problem, memory: Option<f64>) -> Result<Local, String> {
+    let most = crate::memory::budget(memory) / limits::ENTRY_BYTES;
+    let local = match problem {
+        problem::Problem::Local(local) => local,
+        problem::Problem::Mixed(mut local, bilateral) => {
+            let turned = super::condense::transposed(&bilateral.v);
+            let (w, q) = super::condense::condensed(&bilateral.r, &turned, &bilateral.s, most)
+                .map_err(|why| format!("R of the bilateral constraints {why}"))?;
+            local.w = local.w.merged();
+            let parts = w.entries.into_iter().map(|(i, j, part)| (i, j, -part));
+            local.w.entries.extend(parts);
+            local
+                .q
+                .iter_mut()
+                .zip(&q)
+                .for_each(|(whole, part)| *whole -= part);
+            local
+        }
+        problem::Problem::Global(global) => {
+            let (w, mut q) = super::condense::condensed(&global.m, &global.h, &global.f, most)
+                .map_err(|why| format!("M {why}"))?;
+            q.iter_mut().zip(&global.b).for_each(|(q, b)| *q += b);
+            let mu = global.mu;
+            Local { w, q, mu }
+        }
+    };
+    let local = Local {
+        w: local.w.merged(),
+        ..local
+    };
+    let entries = local.w.entries.len() as f64;
+    super::entries_fit(local.mu.len(), entries, memory)?;
+    sound(&local)?;
+    Ok(local)
+}
+
+/// Rejects numbers that a scene cannot have.
+fn sound(local: &Local) -> Result<(), String> {
+    let of = |what: &dyn Fn() -> String, value: f64| match value.abs() <= limits::MAGNITUDE {
+        true => Ok(()),
+        false => Err(format!(
+            "{} is {value:?}; it must be a number between -1e12 and 1e12",
+            what()
+        )),
+    };
+    for &(i, j, value) in &local.w.entries {
+        let what = || format!("the entry of W in row {}, column {},", i + 1, j + 1);
+        of(&what, value)?;
+    }
+    for (k, &value) in local.q.iter().enumerate() {
+        of(&|| format!("component {} of q", k + 1), value)?;
+    }
+    Ok(())
+}
+
+/// A condensed problem in the format of the scene.
+pub(super) fn problem(local: Local, title: &str) -> Problem {
+    Problem {
+        title: title.to_owned(),
+        about: "A friction problem in Siconos' format: u = W r + q.".to_owned(),
+        contacts: contacts(&local.mu, &[]),
+        settings: settings(local.mu.len()),
+        matrix: super::compliance(local.w),
+        free: local.q,
+        spacing: None,
+        history: Default::default(),
+    }
 }
 
 impl Friction2d {
-    /// Condenses a problem of any form to its contacts, with a memory limit (GB; `None`: the free memory).
-    ///
-    /// # Errors
-    /// Why it cannot be condensed.
-    pub fn condensed(problem: problem::Problem, memory: Option<f64>) -> Result<Self, String> {
-        let contacts = match &problem {
-            problem::Problem::Local(local) | problem::Problem::Mixed(local, _) => local.mu.len(),
-            problem::Problem::Global(global) => global.mu.len(),
-        };
-        super::fits(contacts, memory)?;
-        let problem = match problem {
-            problem::Problem::Local(local) => Friction2d::of(local),
-            problem::Problem::Mixed(local, bilateral) => {
-                let mut whole = Friction2d::of(local);
-                let turned = super::condense::transposed(&bilateral.v);
-                let (w, q) = super::condense::condensed(&bilateral.r, &turned, &bilateral.s)
-                    .map_err(|why| format!("R of the bilateral constraints {why}"))?;
-                let rows = whole.w.iter_mut().flatten().zip(w.iter().flatten());
-                rows.for_each(|(whole, part)| *whole -= part);
-                whole
-                    .q
-                    .iter_mut()
-                    .zip(&q)
-                    .for_each(|(whole, part)| *whole -= part);
-                whole
-            }
-            problem::Problem::Global(global) => {
-                let (w, mut q) = super::condense::condensed(&global.m, &global.h, &global.f)
-                    .map_err(|why| format!("M {why}"))?;
-                q.iter_mut().zip(&global.b).for_each(|(q, b)| *q += b);
-                let mu = global.mu;
-                Friction2d { w, q, mu }
-            }
-        };
-        problem.sound()?;
-        Ok(problem)
-    }
-
     fn of(local: Local) -> Self {
         Friction2d {
             w: local.w.dense(),
             q: local.q,
             mu: local.mu,
         }
-    }
-
-    /// Rejects numbers that a scene cannot have.
-    fn sound(&self) -> Result<(), String> {
-        let of = |what: &str, value: f64| match value.abs() <= limits::MAGNITUDE {
-            true => Ok(()),
-            false => Err(format!(
-                "{what} is {value:?}; it must be a number between -1e12 and 1e12"
-            )),
-        };
-        for (i, row) in self.w.iter().enumerate() {
-            for (j, &value) in row.iter().enumerate() {
-                of(
-                    &format!("the entry of W in row {}, column {},", i + 1, j + 1),
-                    value,
-                )?;
-            }
-        }
-        for (k, &value) in self.q.iter().enumerate() {
-            of(&format!("component {} of q", k + 1), value)?;
-        }
-        Ok(())
     }
 
     /// The problem in file format.
@@ -150,16 +178,7 @@ impl Friction2d {
 
     /// The problem in the format of the scene.
     pub fn problem(&self, title: &str) -> Problem {
-        Problem {
-            title: title.to_owned(),
-            about: "A friction problem in Siconos' format: u = W r + q.".to_owned(),
-            contacts: contacts(&self.mu, &[]),
-            matrix: Matrix::Compliance(self.w.clone()),
-            free: self.q.clone(),
-            spacing: None,
-            history: Default::default(),
-            settings: settings(),
-        }
+        problem(self.local(), title)
     }
 
     /// The text of the file.
@@ -191,10 +210,15 @@ fn friction(mu: f64) -> Friction {
     }
 }
 
-/// W is usually sparse, and condensation has nothing to eliminate.
-pub(super) fn settings() -> Settings {
+/// W is usually sparse, and condensation has nothing to eliminate. Sweeps solve problems with many contacts, whose other
+/// strategies solve for all forces together.
+pub(super) fn settings(contacts: usize) -> Settings {
     Settings {
         solver: LinearSolver::Augmented,
+        strategy: match contacts > FEW {
+            true => Strategy::GaussSeidel,
+            false => Strategy::default(),
+        },
         ..Settings::default()
     }
 }

@@ -158,11 +158,11 @@ impl<'s> Posed<'s> {
         if inner.entries.is_empty() {
             return Err(Fault::new(Path::default(), "no unknown is free"));
         }
-        match condensed(&inner, &self.frames(), &self.load) {
+        match condensed(&inner, &self.frames(), &self.load, f64::INFINITY) {
             Ok((w, free)) => {
                 let moved = self.moved();
                 let free = free.iter().zip(moved).map(|(u, p)| u + p).collect();
-                Ok(self.problem(Matrix::Compliance(w), free, &[]))
+                Ok(self.problem(Matrix::Compliance(w.dense()), free, &[]))
             }
             Err(NotEliminated::Singular) => self.floating(&inner),
             Err(why) => Err(Fault::new(at!["stiffness"], format!("the stiffness {why}"))),

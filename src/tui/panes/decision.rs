@@ -149,17 +149,23 @@ fn pushes(
     let tested = tested(&record.decision);
     let of = |push: &NodePush| match tested {
         Tested::Gap => push.influence.gap,
-        Tested::NormalForce | Tested::Pressure | Tested::Cover | Tested::Change | Tested::Own => {
-            push.influence.f_n
-        }
+        Tested::NormalForce
+        | Tested::Pressure
+        | Tested::Cover
+        | Tested::Change
+        | Tested::Error
+        | Tested::Own => push.influence.f_n,
         Tested::ShearForce | Tested::LeastFriction | Tested::Drag => push.influence.f_t,
         Tested::Slip | Tested::Room => push.influence.slip,
     };
     let symbol = match tested {
         Tested::Gap => "Δg",
-        Tested::NormalForce | Tested::Pressure | Tested::Cover | Tested::Change | Tested::Own => {
-            "ΔF_n"
-        }
+        Tested::NormalForce
+        | Tested::Pressure
+        | Tested::Cover
+        | Tested::Change
+        | Tested::Error
+        | Tested::Own => "ΔF_n",
         Tested::ShearForce | Tested::LeastFriction | Tested::Drag => "ΔF_t",
         Tested::Slip | Tested::Room => "Δslip",
     };
@@ -443,6 +449,7 @@ fn fired(decision: &Decision, differs: bool, theme: &Theme) -> Line<'static> {
         | Rule::Pivots
         | Rule::Sweeps
         | Rule::Found
+        | Rule::Settled
         | Rule::Theirs => String::new(),
         _ if second.is_empty() => format!(" {first} "),
         _ => format!(" {first}, {second} "),
@@ -562,6 +569,7 @@ fn inequality(test: &Test, view: &View) -> String {
         Tested::Drag => ("|F_t + k·slip|", format!("limit {}", long(test.bound))),
         Tested::Cover => ("z", "0".into()),
         Tested::Change => ("change", "0".into()),
+        Tested::Error => ("error", "0".into()),
         Tested::Own => ("its own", "0".into()),
     };
     format!(" {name} {} {sign} {bound}", long(test.value))
@@ -578,7 +586,7 @@ fn margin(test: &Test, view: &View, theme: &Theme) -> (String, Style) {
         | Tested::Pressure
         | Tested::Drag => "force",
         Tested::Slip | Tested::Room | Tested::Gap => "length",
-        Tested::Cover | Tested::Change => "(relative)",
+        Tested::Cover | Tested::Change | Tested::Error => "(relative)",
         Tested::Own => "",
     };
     match test.tie {

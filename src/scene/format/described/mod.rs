@@ -368,6 +368,19 @@ pairs! {
 }
 
 /// A node of a given mesh (label, x and y); none of its parts can be set by a path.
+impl Described for (usize, usize, f64) {
+    fn walk(&mut self, _place: &ScalarPlace<'_>, _visit: &mut Visit<'_>) {}
+    fn kind() -> String {
+        "two whole numbers and a number (row, column, value)".to_owned()
+    }
+    fn blank() -> String {
+        "(0, 0, 0.0)".to_owned()
+    }
+    fn shown(&self) -> String {
+        format!("{self:?}")
+    }
+}
+
 impl Described for (usize, f64, f64) {
     fn walk(&mut self, _place: &ScalarPlace<'_>, _visit: &mut Visit<'_>) {}
     fn kind() -> String {

@@ -1,0 +1,232 @@
+//! A sparse matrix over the contacts: 2 by 2 blocks, normal and tangential, column by column.
+
+/// A square matrix over the contacts, stored by its blocks.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Blocks {
+    /// Index of the first block of each column of blocks, and the number of blocks.
+    starts: Vec<usize>,
+    /// Row of each block; ascending within a column.
+    rows: Vec<u32>,
+    /// Entries nn, tn, nt, tt of each block.
+    values: Vec<[f64; 4]>,
+    /// Index of the diagonal block of each column.
+    own: Vec<usize>,
+    /// Whether it was given by its entries, and these are symmetric bit by bit.
+    symmetric: bool,
+}
+
+impl Blocks {
+    /// A matrix over this many contacts from its entries: row, column (two per contact) and value. Repeated entries are added.
+    pub fn from_entries(
+        contacts: usize,
+        entries: impl Iterator<Item = (usize, usize, f64)> + Clone,
+    ) -> Self {
+        let places = entries.clone().map(|(i, j, _)| (j / 2, i / 2));
+        let mut places: Vec<(usize, usize)> = places.collect();
+        places.extend((0..contacts).map(|k| (k, k)));
+        places.sort_unstable();
+        places.dedup();
+        let mut blocks = Blocks::at(contacts, &places);
+        for (i, j, value) in entries {
+            if let Some(block) = blocks.find(i / 2, j / 2) {
+                blocks.values[block][2 * (j % 2) + i % 2] += value;
+            }
+        }
+        blocks.symmetric = blocks.equals_its_transpose();
+        blocks
+    }
+
+    /// A full matrix from its columns, which are consecutive.
+    pub fn from_dense(contacts: usize, columns: &[f64]) -> Self {
+        let count = 2 * contacts;
+        let places = (0..contacts).flat_map(|j| (0..contacts).map(move |i| (j, i)));
+        let mut blocks = Blocks::at(contacts, &places.collect::<Vec<_>>());
+        for (block, values) in blocks.values.iter_mut().enumerate() {
+            let (j, i) = (block / contacts, block % contacts);
+            let first = 2 * j * count + 2 * i;
+            let next = first + count;
+            *values = [first, first + 1, next, next + 1].map(|place| columns[place]);
+        }
+        blocks
+    }
+
+    /// Zeros at these (column, row) places, which are sorted and include the diagonal.
+    fn at(contacts: usize, places: &[(usize, usize)]) -> Self {
+        let (mut starts, mut own) = (vec![0; contacts + 1], vec![0; contacts]);
+        for (block, &(j, i)) in places.iter().enumerate() {
+            starts[j + 1] = block + 1;
+            if i == j {
+                own[j] = block;
+            }
+        }
+        Blocks {
+            starts,
+            rows: places.iter().map(|&(_, i)| i as u32).collect(),
+            values: vec![[0.0; 4]; places.len()],
+            own,
+            symmetric: false,
+        }
+    }
+
+    fn equals_its_transpose(&self) -> bool {
+        let mut columns = (0..self.contacts()).flat_map(|j| self.column(j).map(move |b| (j, b)));
+        columns.all(|(j, (i, &[nn, tn, nt, tt]))| {
+            let other = self.find(j, i).map(|block| self.values[block]);
+            other == Some([nn, nt, tn, tt])
+        })
+    }
+
+    /// Whether [`Blocks::row`] applies.
+    pub fn is_symmetric(&self) -> bool {
+        self.symmetric
+    }
+
+    /// The product of a contact's rows and `x`, for a symmetric matrix: its rows are its columns.
+    pub fn row(&self, contact: usize, x: &[f64]) -> [f64; 2] {
+        let (mut n, mut t) = (0.0, 0.0);
+        for (i, [nn, tn, nt, tt]) in self.column(contact) {
+            if let [x_n, x_t] = x[2 * i..2 * i + 2] {
+                n += nn * x_n + tn * x_t;
+                t += nt * x_n + tt * x_t;
+            }
+        }
+        [n, t]
+    }
+
+    /// Number of contacts.
+    pub fn contacts(&self) -> usize {
+        self.own.len()
+    }
+
+    /// Index of a block, if it is stored.
+    fn find(&self, i: usize, j: usize) -> Option<usize> {
+        let (start, end) = (self.starts[j], self.starts[j + 1]);
+        let found = self.rows[start..end].binary_search(&(i as u32)).ok()?;
+        Some(start + found)
+    }
+
+    /// The blocks of a column of blocks with their rows.
+    pub fn column(&self, j: usize) -> impl Iterator<Item = (usize, &[f64; 4])> {
+        let range = self.starts[j]..self.starts[j + 1];
+        let rows = self.rows[range.clone()].iter().map(|&i| i as usize);
+        rows.zip(&self.values[range])
+    }
+
+    /// The diagonal block of a contact.
+    pub fn own(&self, contact: usize) -> &[f64; 4] {
+        &self.values[self.own[contact]]
+    }
+
+    /// Adds the product of a column of blocks and `x`, the components of its contact, to `y`; first that of the normal one.
+    pub fn add_column(&self, j: usize, x: [f64; 2], y: &mut [f64]) {
+        let [normal, tangential] = x;
+        if normal != 0.0 && tangential != 0.0 {
+            for (i, [nn, tn, nt, tt]) in self.column(j) {
+                y[2 * i] = (y[2 * i] + nn * normal) + nt * tangential;
+                y[2 * i + 1] = (y[2 * i + 1] + tn * normal) + tt * tangential;
+            }
+        } else if normal != 0.0 {
+            for (i, [nn, tn, _, _]) in self.column(j) {
+                y[2 * i] += nn * normal;
+                y[2 * i + 1] += tn * normal;
+            }
+        } else if tangential != 0.0 {
+            for (i, [_, _, nt, tt]) in self.column(j) {
+                y[2 * i] += nt * tangential;
+                y[2 * i + 1] += tt * tangential;
+            }
+        }
+    }
+
+    /// Adds the product with `x` to `y`.
+    pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
+        for j in 0..self.contacts() {
+            self.add_column(j, [x[2 * j], x[2 * j + 1]], y);
+        }
+    }
+
+    /// The independent parts: groups of contacts between which there are no blocks, each in ascending order.
+    pub fn parts(&self) -> Vec<Vec<usize>> {
+        let mut leader: Vec<usize> = (0..self.contacts()).collect();
+        for j in 0..self.contacts() {
+            for (i, _) in self.column(j) {
+                let (a, b) = (root(&mut leader, i), root(&mut leader, j));
+                leader[a.max(b)] = a.min(b);
+            }
+        }
+        let mut number = vec![None; self.contacts()];
+        let mut parts: Vec<Vec<usize>> = Vec::new();
+        for k in 0..self.contacts() {
+            let first = root(&mut leader, k);
+            let part = *number[first].get_or_insert(parts.len());
+            if part == parts.len() {
+                parts.push(Vec::new());
+            }
+            parts[part].push(k);
+        }
+        parts
+    }
+}
+
+/// The smallest known contact of the part that contains `k`.
+fn root(leader: &mut [usize], mut k: usize) -> usize {
+    while leader[k] != k {
+        leader[k] = leader[leader[k]];
+        k = leader[k];
+    }
+    k
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn parts_are_the_connected_contacts() {
+        let entries = [(0, 4, 1.0), (4, 0, 1.0), (7, 2, 2.0), (2, 7, 2.0)];
+        let blocks = Blocks::from_entries(5, entries.iter().copied());
+        assert_eq!(blocks.parts(), [vec![0, 2], vec![1, 3], vec![4]]);
+    }
+
+    #[test]
+    fn repeated_entries_are_added_and_multiplied() {
+        let entries = [(0, 0, 1.0), (1, 0, 2.0), (0, 0, 0.5), (3, 1, -1.0)];
+        let blocks = Blocks::from_entries(2, entries.iter().copied());
+        assert_eq!(blocks.own(0), &[1.5, 2.0, 0.0, 0.0]);
+        let mut y = vec![0.0; 4];
+        blocks.multiply(&[2.0, 3.0, 0.0, 0.0], &mut y);
+        assert_eq!(y, [3.0, 4.0, 0.0, -3.0]);
+        assert!(!blocks.is_symmetric());
+    }
+
+    #[test]
+    fn rows_of_a_symmetric_matrix_give_its_product() {
+        let half = [
+            (0, 0, 1.5),
+            (1, 0, 2.0),
+            (2, 1, -0.5),
+            (3, 0, 4.0),
+            (3, 3, 1.0),
+        ];
+        let other = half
+            .iter()
+            .filter(|(i, j, _)| i != j)
+            .map(|&(i, j, w)| (j, i, w));
+        let entries: Vec<_> = half.iter().copied().chain(other).collect();
+        let blocks = Blocks::from_entries(2, entries.into_iter());
+        assert!(blocks.is_symmetric());
+        let (x, mut y) = ([1.0, 2.0, -1.0, 3.0], vec![0.0; 4]);
+        blocks.multiply(&x, &mut y);
+        assert_eq!([blocks.row(0, &x), blocks.row(1, &x)].concat(), y);
+    }
+
+    #[test]
+    fn a_full_matrix_has_all_blocks() {
+        let columns: Vec<f64> = (0..16).map(f64::from).collect();
+        let blocks = Blocks::from_dense(2, &columns);
+        assert_eq!(blocks.own(1), &[10.0, 11.0, 14.0, 15.0]);
+        let mut y = vec![0.0; 4];
+        blocks.multiply(&[0.0, 1.0, 0.0, 0.0], &mut y);
+        assert_eq!(y, [4.0, 5.0, 6.0, 7.0]);
+    }
+}
