@@ -23,7 +23,7 @@ use stickslip_debugger::recorded::calculix::words::GREETING;
 use stickslip_debugger::session::{Reply, Session};
 use stickslip_debugger::teach::progress::{self, Keeper, Progress};
 use stickslip_debugger::teach::{Lesson, Tutor};
-use stickslip_scene::shown;
+use stickslip_scene::{gaps, shown};
 use stickslip_study::measuring::Measuring;
 
 /// Steps shorter than this delay the next key instead of queueing it, so that the screen does not flicker.
@@ -137,7 +137,7 @@ impl Debugger {
     /// Prints one line on exit: where the journal is, or why there is none.
     pub(super) fn part(&self) {
         let Some(session) = &self.session else { return };
-        let told = match (session.journal(), session.lost_journal()) {
+        let told = match (session.journal().path(), session.journal().lost()) {
             (Some(path), _) => {
                 let path = path.display();
                 format!("journal: {path} (`stickslip resume {path}` continues it)")
@@ -295,7 +295,7 @@ impl Debugger {
                 self.advance();
             }
             match &mut self.session {
-                Some(session) if session.background().is_busy() => session.wait_for_background(),
+                Some(session) if session.background().is_busy() => session.background_mut().wait(),
                 _ if moved && self.app.ahead.is_any() => {}
                 _ => return,
             }
@@ -336,7 +336,7 @@ impl Debugger {
         let lost = self
             .session
             .as_ref()
-            .is_some_and(|session| session.lost().is_some());
+            .is_some_and(|session| session.connection().lost().is_some());
         if lost {
             self.app.ahead.forget();
             if let Some(tutor) = &mut self.app.lesson {
@@ -351,7 +351,7 @@ impl Debugger {
 
     /// Takes notice of new lines in an attached solver's log. Returns whether there were any.
     fn hear(&mut self) -> bool {
-        let Some(log) = self.session.as_ref().and_then(Session::log) else {
+        let Some(log) = self.session.as_ref().and_then(|s| s.connection().log()) else {
             return false;
         };
         let (any, told) = self.app.heard.hear(log);
@@ -488,10 +488,10 @@ impl Debugger {
     }
 
     fn open(&mut self, mut session: Session) {
-        let resumed = session.journal().is_some();
+        let resumed = session.journal().path().is_some();
         // A resumed journal continues on its own.
-        if self.keeps && !resumed && session.offers().past.is_none() {
-            session.keep_at_default_place();
+        if self.keeps && !resumed && session.connection().offers().past.is_none() {
+            session.journal_mut().write_to_default_path();
         }
         (self.measuring, self.app.measuring) = (None, None);
         self.app.opened();
@@ -539,10 +539,10 @@ impl Debugger {
             return measured;
         };
         let was_busy = session.is_running();
-        self.app.unkept = session.lost_journal().is_some();
-        let seen = session.gather_background();
-        match session.exported() {
-            Some(Ok(Reply(told))) => self.app.say(told),
+        self.app.unkept = session.journal().lost().is_some();
+        let seen = session.background_mut().gather();
+        match session.background_mut().exported() {
+            Some(Ok(reply)) => self.app.say(reply),
             Some(Err(why)) => self.app.complain(why),
             None => {}
         }
@@ -601,13 +601,13 @@ fn greet(app: &mut App, session: &Session) {
         (app.page, app.chart) = (Pane::Timeline, Pane::Timeline);
         return app.say(GREETING);
     }
-    match session.doubts() {
+    match &gaps::warnings(session.model())[..] {
         [] => app.say("Press s for one minor iteration, ? for all keys"),
         [doubt] => app.complain(doubt),
         [doubt, others @ ..] => app.complain(format!(
             "{doubt} (and {} more: `stickslip check {}` lists all)",
             others.len(),
-            session.scene_name()
+            session.scene().name
         )),
     }
 }

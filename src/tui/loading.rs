@@ -103,6 +103,6 @@ fn resumed(file: &Path) -> Result<Session, JournalError> {
     let record = Record::read(file)?;
     let mut session = record.replay()?;
     journal.cut(record.whole_bytes)?;
-    session.keep(journal);
+    session.journal_mut().write_to(journal);
     Ok(session)
 }

@@ -68,23 +68,23 @@ impl<'a> View<'a> {
     /// The view of a session.
     pub fn of(session: &'a Session) -> Self {
         let mut view = View {
-            name: session.scene_name(),
+            name: &session.scene().name,
             scene: Some(session.scene()),
             model: session.model(),
             frames: session.frames(),
-            strips: session.strips(),
-            tree: Some(session.tree()),
+            strips: session.timeline().strips(),
+            tree: Some(session.timeline().tree()),
             background: Some(session.background()),
             start_gaps: session.start_gaps(),
-            guest: session.log().map(|log| Guest {
-                offers: session.offers(),
+            guest: session.connection().log().map(|log| Guest {
+                offers: session.connection().offers(),
                 log,
-                lost: session.lost().is_some(),
-                again: session.again(),
+                lost: session.connection().lost().is_some(),
+                again: session.connection().repeats(),
             }),
             cursor: session.cursor(),
             running: session.is_running(),
-            residuals: session.residual_history(),
+            residuals: session.timeline().residual_history(),
             aside: match session.is_running() {
                 true => String::new(),
                 false => session.aside(),

@@ -39,7 +39,7 @@ fn a_kept_exchange_has_every_branch_with_the_same_states() {
         let (mut session, opened) = kept(restore, &folder.path().join("all.exchange"));
         let lines = opened.lines.clone();
         assert!(
-            lines.len() >= session.branches().len() - 1,
+            lines.len() >= session.timeline().branches().len() - 1,
             "{restore}: {} ways",
             lines.len()
         );
@@ -52,7 +52,7 @@ fn a_kept_exchange_has_every_branch_with_the_same_states() {
             assert!(!said.contains("kept"), "{said}");
             ways.push(read.frames().iter().map(seen).collect::<Vec<_>>());
         }
-        for branch in 1..=session.branches().len() {
+        for branch in 1..=session.timeline().branches().len() {
             does(&mut session, Command::Branch(To::Next));
             let frames = session.frames();
             let own: Vec<String> = frames.iter().map(seen).collect();

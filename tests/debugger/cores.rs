@@ -393,8 +393,12 @@ fn the_debugger_writes_cores_whole_problems_and_what_an_extension_says() {
             overwrite: false,
         };
         session.submit(command).map_err(|e| e.to_string())?;
-        session.wait_for_background();
-        session.exported().unwrap().map_err(|e| e.to_string())?;
+        session.background_mut().wait();
+        session
+            .background_mut()
+            .exported()
+            .unwrap()
+            .map_err(|e| e.to_string())?;
         Ok::<String, String>(std::fs::read_to_string(file).unwrap())
     };
     // From the start, too, since the minor iterations run into the cycle.

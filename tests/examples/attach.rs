@@ -258,7 +258,10 @@ pub fn run(out: &mut impl Write) -> Result<(), Box<dyn Error>> {
             .collect();
         lines.push(format!(
             "in {}, step {}",
-            branches::name(session.tree(), session.tree().current()),
+            branches::name(
+                session.timeline().tree(),
+                session.timeline().tree().current()
+            ),
             session.cursor()
         ));
         Ok(lines)

@@ -464,10 +464,10 @@ fn a_cycle_among_hundreds_of_nodes_is_diagnosed_by_those_that_take_part() {
     // The same in the debugger, from before the cycle, where nothing of it is known yet.
     let mut session = Session::new(scene);
     session.submit(Command::Census(vec![])).unwrap();
-    session.wait_for_background();
+    session.background_mut().wait();
     let finding = session
         .background()
-        .examination(session.place())
+        .examination(session.timeline().place())
         .flatten()
         .unwrap();
     assert!(finding.fails, "{:?}", finding.lines);
@@ -478,10 +478,10 @@ fn a_cycle_among_hundreds_of_nodes_is_diagnosed_by_those_that_take_part() {
     );
     // And of chosen nodes, none of which is in the ring.
     session.submit(Command::Census(vec![10, 11])).unwrap();
-    session.wait_for_background();
+    session.background_mut().wait();
     let finding = session
         .background()
-        .examination(session.place())
+        .examination(session.timeline().place())
         .flatten()
         .unwrap();
     let census = finding.census.as_ref().unwrap();

@@ -8,6 +8,7 @@ use serde_json::{Value as Json, json};
 use std::sync::Arc;
 use stickslip::model::Model;
 use stickslip::recorded::past::{self, Past};
+use stickslip::recorded::recording::Recording;
 use stickslip::recorded::story::story;
 use stickslip::session::Session as Debugged;
 use stickslip::step::event::Event;
@@ -129,7 +130,9 @@ fn three() -> String {
 }
 
 fn kept(text: &str) -> Debugger {
-    let session = Debugged::kept(past::open("kept", text).unwrap());
+    let session = Debugged::recorded(Recording::Exchange(Box::new(
+        past::open("kept", text).unwrap(),
+    )));
     Debugger::new(Theme::mono(), Vec::new(), Some(session))
 }
 
@@ -329,6 +332,7 @@ fn the_decision_shows_the_solver_s_words_and_where_table_2_differs() {
     debugger.type_keys("t s s");
     let session = debugger.session.as_ref().unwrap();
     let differ: Vec<bool> = session
+        .timeline()
         .strips()
         .iter()
         .map(|strip| strip.differs(0))
@@ -616,7 +620,10 @@ fn a_kept_exchange_is_gone_through_with_all_its_ways_and_nothing_follows_on_it()
     }
     let session = debugger.session.as_ref().unwrap();
     assert_eq!(
-        (session.tree().branches().len(), session.frames().len()),
+        (
+            session.timeline().tree().branches().len(),
+            session.frames().len()
+        ),
         (2, 4)
     );
     debugger.type_keys("s s s");

@@ -3,7 +3,6 @@
 
 use stickslip::record::journal::digest;
 use stickslip::scene::Scene;
-use stickslip::session::Session;
 use stickslip::teach::progress::Progress;
 use stickslip::tui::Debugger;
 use stickslip::tui::choosing;
@@ -21,7 +20,10 @@ fn choosing() -> Debugger {
 }
 
 fn scene_of(debugger: &Debugger) -> Option<&str> {
-    debugger.session.as_ref().map(Session::scene_name)
+    debugger
+        .session
+        .as_ref()
+        .map(|session| session.scene().name.as_str())
 }
 
 #[test]
@@ -207,5 +209,5 @@ fn a_journal_is_opened_where_it_was_left() {
     let session = other.session.as_ref().unwrap();
     assert_eq!(digest(&session.frame().state), state);
     assert!(other.text(120, 40).contains("resumed from its journal"));
-    assert_eq!(session.journal(), Some(file.as_path()));
+    assert_eq!(session.journal().path(), Some(file.as_path()));
 }

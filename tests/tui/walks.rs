@@ -42,13 +42,13 @@ fn debugger(scene: &str) -> Debugger {
 /// What is on the screen and where the session is.
 fn state(debugger: &Debugger) -> (String, Vec<String>) {
     let session = debugger.session.as_ref().unwrap();
-    let branches = session.branches();
+    let branches = session.timeline().branches();
     let told = branches.iter().map(|branch| format!("{branch:?}"));
     // Seconds are no state.
     let told = told.map(|text| text.split("seconds").next().unwrap_or_default().to_owned());
     let mut place = vec![format!(
         "{:?} {:?}",
-        session.place(),
+        session.timeline().place(),
         session.frame().state.next
     )];
     place.extend(told);

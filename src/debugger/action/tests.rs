@@ -3,6 +3,7 @@
 use super::meaning::{Action, Question, Ui};
 use super::{ACTIONS, Context, complete, markdown, parse};
 use crate::history::breakpoints::Condition;
+use crate::history::tree::Budget;
 use crate::history::tree::Tree;
 use crate::history::watches::{Watch, WatchQuantity};
 use crate::record::command::{Command, Exported, Unit};
@@ -327,7 +328,7 @@ fn branches_complete_by_number_and_by_label() {
     let start = stickslip_core::step::stepper::Stepper::new(model.clone())
         .state()
         .clone();
-    let tree = Tree::new(model, start, 1 << 20);
+    let tree = Tree::new(model, start, Budget::default());
     let context = Context {
         tree: Some(&tree),
         ..Context::default()

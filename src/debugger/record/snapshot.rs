@@ -6,7 +6,7 @@
 
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stickslip_core::contact::record::Forced;
 use stickslip_core::contact::table2::Rule;
@@ -391,4 +391,18 @@ fn displacement(model: &Model, u: &[f64], node: usize) -> Displacement {
         y: at(1).unwrap_or(0.0),
         rotation: at(2),
     }
+}
+
+/// `SCENE-INC.MAJOR.MINOR.ron` in the working directory, numbered if that exists.
+pub fn free_name(scene: &str, at: Position) -> PathBuf {
+    let scene = files::stem(scene);
+    let stem = format!("{scene}-{}.{}.{}", at.increment, at.major, at.minor);
+    let name = |k: u32| match k {
+        0 => PathBuf::from(format!("{stem}.ron")),
+        k => PathBuf::from(format!("{stem}-{k}.ron")),
+    };
+    (0..1000)
+        .map(name)
+        .find(|name| !name.exists())
+        .unwrap_or_else(|| name(1000))
 }

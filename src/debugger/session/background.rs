@@ -142,15 +142,15 @@ impl Background {
     /// `spec` is the scene as written by its author, which a finer mesh may be generated from. `lender` gives
     /// access to the session's solver.
     pub fn new(model: Arc<Model>, spec: Spec, lender: Lender) -> Background {
-        Background::begun(model, Some(spec), Offers::all(), lender)
+        Background::start(model, Some(spec), Offers::all(), lender)
     }
 
     /// Starts the thread for an attached solver. Only that solver knows the deformable bodies.
-    pub fn beside(model: Arc<Model>, offers: Offers, lender: Lender) -> Background {
-        Background::begun(model, None, offers, lender)
+    pub fn attached(model: Arc<Model>, offers: Offers, lender: Lender) -> Background {
+        Background::start(model, None, offers, lender)
     }
 
-    fn begun(model: Arc<Model>, spec: Option<Spec>, offers: Offers, lender: Lender) -> Background {
+    fn start(model: Arc<Model>, spec: Option<Spec>, offers: Offers, lender: Lender) -> Background {
         let (asks, orders) = channel::<BackgroundRequest>();
         let (news, told) = channel();
         let stop = Arc::new(AtomicBool::new(false));
@@ -280,7 +280,7 @@ impl Background {
     }
 
     /// Result of the latest export; returned once.
-    pub(super) fn exported(&mut self) -> Option<Result<String, ExportError>> {
+    pub fn exported(&mut self) -> Option<Result<String, ExportError>> {
         self.exported.take()
     }
 

@@ -32,11 +32,11 @@ pub struct Export {
     /// The shown state.
     pub state: Box<State>,
     /// Further contents of a picture.
-    pub shown: Option<Box<Seen>>,
+    pub shown: Option<Box<PictureContext>>,
 }
 
 /// The context of a state that a picture shows.
-pub struct Seen {
+pub struct PictureContext {
     /// The scene of the run.
     pub scene: Scene,
     /// The last minor iteration.
@@ -120,7 +120,7 @@ pub(super) fn write_posed(model: &Model, posed: &Posed, ask: &Export) -> Result<
         }
         (_, Ok(kind)) if kind.may_be_frozen && kind.extension != "ron" => {
             let (scene, mut stepper) = solver()?;
-            let shown = Seen {
+            let shown = PictureContext {
                 scene,
                 event: None,
                 strips: Vec::new(),
