@@ -1,10 +1,11 @@
 //! The debugger without its terminal: an [`App`], a session, and the queue of keys that wait for the solver. Keys in, screens out.
 
-use crate::app::{App, Effect, Opens, Overlay, Reading};
+use crate::app::{App, Effect, Opens, Overlay};
 use crate::chartpage::{ChartPage, NoPage};
 use crate::choosing::{self, Looking, Offer};
 use crate::keys;
 use crate::layout::Pane;
+use crate::learning::Learning;
 use crate::loading::{Loaded, Loading};
 use crate::terminal;
 use crate::theme::Theme;
@@ -113,6 +114,7 @@ impl Debugger {
     fn keep_progress(&mut self) {
         let kept = self
             .app
+            .learning
             .lesson
             .as_ref()
             .map(|tutor| self.progress.follow(tutor));
@@ -237,7 +239,7 @@ impl Debugger {
 
     /// Shows a loaded file, once no overlay but the chooser is open. Returns whether anything changed.
     fn follow_loading(&mut self) -> bool {
-        if !self.app.is_open_to_pages() {
+        if !self.app.overlay.is_open_to_pages() {
             return false;
         }
         let Some(loaded) = self.loading.as_ref().and_then(Loading::result) else {
@@ -284,7 +286,7 @@ impl Debugger {
                 }
                 continue;
             }
-            let open = self.app.is_open_to_pages();
+            let open = self.app.overlay.is_open_to_pages();
             // Behind another page these would never finish.
             if open && (self.loading.is_some() || self.measuring.is_some()) {
                 std::thread::sleep(Duration::from_millis(1));
@@ -314,15 +316,15 @@ impl Debugger {
         self.begun = Instant::now();
         // The page itself shows that the analysis is running.
         let shown = match command {
-            Command::Census(_) => self.app.focus == Pane::Diagnosis,
-            Command::Remedies => self.app.focus == Pane::Remedies,
+            Command::Census(_) => self.app.panes.focus == Pane::Diagnosis,
+            Command::Remedies => self.app.panes.focus == Pane::Remedies,
             _ => false,
         };
         match session.submit(command) {
             Ok(_) if shown => {}
             Ok(reply) => self.tell(reply),
             Err(message) => {
-                if let Some(tutor) = &mut self.app.lesson {
+                if let Some(tutor) = &mut self.app.learning.lesson {
                     tutor.failed();
                 }
                 self.app.complain(message);
@@ -339,7 +341,7 @@ impl Debugger {
             .is_some_and(|session| session.connection().lost().is_some());
         if lost {
             self.app.ahead.forget();
-            if let Some(tutor) = &mut self.app.lesson {
+            if let Some(tutor) = &mut self.app.learning.lesson {
                 tutor.failed();
             }
             self.app.say("");
@@ -375,7 +377,7 @@ impl Debugger {
         });
         // The message must not reveal what the user still has to predict.
         let view = self.session.as_ref().map(View::of);
-        let hidden = view.is_some_and(|view| !view.running && self.app.hides_any(&view));
+        let hidden = view.is_some_and(|view| !view.running && self.app.learning.hides_any(&view));
         // The status line already shows the outcome.
         let new = match &known {
             Some(known) => text.strip_prefix(known.as_str()).unwrap_or(&text),
@@ -391,7 +393,7 @@ impl Debugger {
             .session
             .as_ref()
             .filter(|session| !session.is_running());
-        if let (Some(tutor), Some(session)) = (&mut self.app.lesson, idle) {
+        if let (Some(tutor), Some(session)) = (&mut self.app.learning.lesson, idle) {
             tutor.settled(session.cursor(), session.frame());
         }
         self.keep_progress();
@@ -473,7 +475,7 @@ impl Debugger {
         if let Some(measuring) = &self.measuring {
             measuring.interrupt();
         }
-        if let Some(tutor) = &mut self.app.lesson {
+        if let Some(tutor) = &mut self.app.learning.lesson {
             // The action that the lesson asked for was not completed.
             tutor.failed();
         }
@@ -513,8 +515,7 @@ impl Debugger {
         self.session = Some(session);
         (self.measuring, self.app.measuring) = (None, None);
         self.app.opened();
-        self.app.lesson = Some(tutor);
-        self.app.reading = Reading::default();
+        self.app.learning = Learning::new(tutor);
         self.app.say("");
     }
 
@@ -542,8 +543,7 @@ impl Debugger {
         self.app.unkept = session.journal().lost().is_some();
         let seen = session.background_mut().gather();
         match session.background_mut().exported() {
-            Some(Ok(reply)) => self.app.say(reply),
-            Some(Err(why)) => self.app.complain(why),
+            Some(exported) => self.app.report(exported),
             None => {}
         }
         let reply = session.poll();
@@ -598,7 +598,7 @@ impl Debugger {
 /// The first message after opening a scene: warnings about its start, or the first key to press.
 fn greet(app: &mut App, session: &Session) {
     if session.model().finished.is_some() {
-        (app.page, app.chart) = (Pane::Timeline, Pane::Timeline);
+        (app.panes.page, app.panes.chart) = (Pane::Timeline, Pane::Timeline);
         return app.say(GREETING);
     }
     match &gaps::warnings(session.model())[..] {

@@ -10,21 +10,6 @@ use stickslip_debugger::history::verdicts::{self, summaries};
 use stickslip_debugger::record::command::{Command, To};
 
 impl App {
-    pub(super) fn turn(&mut self, places: usize) {
-        self.look_at(self.focus.turn(places));
-    }
-
-    /// Focuses a pane and makes it visible.
-    pub(super) fn look_at(&mut self, pane: Pane) {
-        self.focus = pane;
-        if pane != Pane::Nodes {
-            self.page = pane;
-        }
-        if pane.takes_turns() {
-            self.chart = pane;
-        }
-    }
-
     /// Shows the curve of a monitor, or of the next one.
     pub(super) fn watch(&mut self, monitor: Option<usize>, view: Option<&View>) {
         let monitors = view.map_or(&[][..], |view| &view.model.monitors);
@@ -36,17 +21,11 @@ impl App {
         }
     }
 
-    /// Zooms a pane, or ends the zoom.
-    pub(super) fn show(&mut self, pane: Pane) {
-        self.zoomed = !(self.zoomed && self.focus == pane);
-        self.look_at(pane);
-    }
-
     /// Opens a page, and runs its analysis if there is no result yet. Requesting an open page again keeps it open.
     pub(super) fn page(&mut self, page: Page, view: Option<&View>) -> Option<Effect> {
         match page {
-            Page::Timeline => self.show(Pane::Timeline),
-            Page::Branches => self.show(Pane::Branches),
+            Page::Timeline => self.panes.zoom(Pane::Timeline),
+            Page::Branches => self.panes.zoom(Pane::Branches),
             Page::Diagnosis => return self.ask_page(Pane::Diagnosis, view),
             Page::Remedies => return self.ask_page(Pane::Remedies, view),
         }
@@ -60,9 +39,9 @@ impl App {
     }
 
     fn ask_page(&mut self, pane: Pane, view: Option<&View>) -> Option<Effect> {
-        let again = self.zoomed && self.focus == pane;
-        self.zoomed = true;
-        self.look_at(pane);
+        let again = self.panes.zoomed && self.panes.focus == pane;
+        self.panes.zoomed = true;
+        self.panes.look_at(pane);
         let view = view?;
         let found = match pane {
             Pane::Diagnosis => view.examination().map(|found| found.is_some()),
@@ -156,7 +135,7 @@ impl App {
             ));
             return None;
         }
-        self.zoomed = false;
+        self.panes.zoomed = false;
         let (label, steps) = (trial.label.clone(), trial.steps.clone());
         self.submit(Command::Follow { label, steps }, view)
     }
@@ -168,7 +147,7 @@ impl App {
         }
         let text = self.sought.to_lowercase();
         let view = view.filter(|_| !text.is_empty())?;
-        let (names, at): (Vec<String>, _) = match self.focus {
+        let (names, at): (Vec<String>, _) = match self.panes.focus {
             Pane::Branches if !screen::is_hidden(Pane::Branches, self, view) => {
                 let all = summaries(view.tree?);
                 let order = verdicts::order(&all);
@@ -199,7 +178,7 @@ impl App {
     }
 
     pub(super) fn step(&mut self, step: Step, count: isize, view: Option<&View>) -> Option<Effect> {
-        if self.focus == Pane::Timeline
+        if self.panes.focus == Pane::Timeline
             && let Some(to) = view.and_then(|view| along(step, count, view))
         {
             return self.submit(Command::Goto { step: to }, view);
@@ -207,7 +186,7 @@ impl App {
         let tried = view.and_then(|view| view.background?.tried());
         let answers =
             view.and_then(|view| Some(view.examination()??.census.as_ref()?.answers.len()));
-        let list = match self.focus {
+        let list = match self.panes.focus {
             Pane::Branches => {
                 let count = view.and_then(|view| Some(view.tree?.branches().len()));
                 Some((&mut self.branch, count))
@@ -234,7 +213,7 @@ impl App {
                 .saturating_add_signed(by.saturating_mul(count));
             row(to.min(last))
         };
-        match (self.focus, step) {
+        match (self.panes.focus, step) {
             (Pane::Shape, Step::Left) => self.camera = self.camera.panned(-1.0, 0.0),
             (Pane::Shape, Step::Right) => self.camera = self.camera.panned(1.0, 0.0),
             (Pane::Shape, Step::Up) => self.camera = self.camera.panned(0.0, 1.0),

@@ -11,7 +11,7 @@ impl App {
     pub fn order(&self, view: &View) -> Vec<usize> {
         let count = view.model.contacts.len();
         let selected = self.selected.min(count.saturating_sub(1));
-        let next = |slave: usize| match self.hides(view, slave) {
+        let next = |slave: usize| match self.learning.hides(view, slave) {
             true => view.mode_before(slave),
             false => view.mode(slave),
         };

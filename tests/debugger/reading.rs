@@ -25,7 +25,7 @@ fn taught(name: &str, width: u16, height: u16) -> Debugger {
 }
 
 fn tutor(debugger: &Debugger) -> &Tutor {
-    debugger.app.lesson.as_ref().unwrap()
+    debugger.app.learning.lesson.as_ref().unwrap()
 }
 
 fn shown(debugger: &Debugger) -> String {

@@ -69,7 +69,7 @@ fn what_is_typed_finds_scenes_and_lessons() {
     debugger.type_text("reading table");
     debugger.settle();
     debugger.type_keys("Enter");
-    let lesson = debugger.app.lesson.as_ref().unwrap();
+    let lesson = debugger.app.learning.lesson.as_ref().unwrap();
     assert_eq!(lesson.lesson().name, "2-table-2");
 }
 

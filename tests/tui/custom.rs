@@ -68,12 +68,12 @@ fn a_click_selects_a_node_in_the_table_and_in_the_shape() {
         let at = place(&debugger, "Slave nodes", "b ");
         click(&mut debugger, at);
         assert_eq!(debugger.app.selected, 1, "{size:?}\n{}", text(&debugger));
-        assert_eq!(debugger.app.focus, Pane::Nodes);
+        assert_eq!(debugger.app.panes.focus, Pane::Nodes);
         let heading = place(&debugger, "Slave nodes", "Slave nodes");
         click(&mut debugger, heading);
         assert_eq!(debugger.app.selected, 1);
         debugger.type_keys("Tab Tab Tab z");
-        assert_eq!(debugger.app.focus, Pane::Shape);
+        assert_eq!(debugger.app.panes.focus, Pane::Shape);
         // Both letters stand in one row; a is the one on the left.
         let rows: Vec<String> = text(&debugger).lines().map(String::from).collect();
         let found = rows.iter().enumerate().find_map(|(y, row)| {
@@ -112,7 +112,7 @@ fn a_click_selects_a_branch_a_step_of_the_timeline_and_a_pane() {
         .branches()
         .len();
     assert!(all >= 2, "{}", text(&debugger));
-    debugger.app.zoomed = true;
+    debugger.app.panes.zoomed = true;
     let at = place(&debugger, "Branches", "b1: ");
     click(&mut debugger, at);
     assert_eq!(debugger.app.branch, 0, "{}", text(&debugger));
@@ -144,7 +144,7 @@ fn a_click_selects_a_branch_a_step_of_the_timeline_and_a_pane() {
     ] {
         let at = place(&debugger, title, title);
         click(&mut debugger, at);
-        assert_eq!(debugger.app.focus, pane);
+        assert_eq!(debugger.app.panes.focus, pane);
     }
 }
 
@@ -159,7 +159,7 @@ fn the_wheel_scrolls_what_it_is_over_and_the_focus_stays() {
     let shape = place(&debugger, "Shape", "Shape");
     mouse(&mut debugger, MouseEventKind::ScrollUp, shape);
     assert!(debugger.app.camera.zoom > 1.0);
-    assert_eq!(debugger.app.focus, Pane::Nodes);
+    assert_eq!(debugger.app.panes.focus, Pane::Nodes);
     debugger.type_keys("?");
     let top = text(&debugger);
     mouse(&mut debugger, MouseEventKind::ScrollDown, shape);

@@ -142,7 +142,7 @@ fn contacts_are_selected_by_name() {
     debugger.type_keys("/ x y Enter");
     assert!(debugger.app.message.text.contains("xy"));
     debugger.type_keys("Shift-Tab Shift-Tab");
-    assert_ne!(debugger.app.focus, Pane::Nodes);
+    assert_ne!(debugger.app.panes.focus, Pane::Nodes);
 }
 
 #[test]

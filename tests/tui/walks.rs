@@ -258,10 +258,10 @@ fn the_key_of_an_empty_page_computes_and_a_second_press_leaves_it_open() {
         );
         // From another place it is found out anew, and not closed.
         debugger.type_keys(&format!("s {key}"));
-        assert!(debugger.app.zoomed);
+        assert!(debugger.app.panes.zoomed);
         assert!(debugger.text(120, 50).contains(shown));
         debugger.type_keys("Esc");
-        assert!(!debugger.app.zoomed);
+        assert!(!debugger.app.panes.zoomed);
     }
 }
 

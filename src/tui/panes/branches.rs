@@ -24,7 +24,7 @@ const NAME: usize = 12;
 /// Draws the tree and the comparison.
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let theme = &app.theme;
-    let focused = app.focus == Pane::Branches;
+    let focused = app.panes.focus == Pane::Branches;
     let Some(tree) = view.tree else {
         paint::frame(buffer, area, "Branches", focused, theme);
         return;

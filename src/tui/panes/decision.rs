@@ -39,7 +39,13 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     } else {
         format!("Decision  {}", view.slave(slave))
     };
-    let inner = paint::frame(buffer, area, &title, app.focus == Pane::Decision, theme);
+    let inner = paint::frame(
+        buffer,
+        area,
+        &title,
+        app.panes.focus == Pane::Decision,
+        theme,
+    );
     if view.model.finished.is_some() {
         let words = view.words(slave).unwrap_or("No decision at the start.");
         let lines = paint::wrapped(words, inner.width.into(), theme.text);
@@ -47,7 +53,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     }
     let record = view.record(slave);
     let decision = record.map(|record| record.decision);
-    let hidden = app.hides(view, slave);
+    let hidden = app.learning.hides(view, slave);
     let tests = record.filter(|_| !hidden).map_or(Vec::new(), |record| {
         tests(&record.decision, view, inner.width as usize, theme)
     });
@@ -59,7 +65,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
             .collect(),
         None => tests,
     };
-    let words = match (hidden, &app.lesson) {
+    let words = match (hidden, &app.learning.lesson) {
         (false, _) => words(record, slave, view),
         (true, Some(_)) => "The numbers are in the table above. What does Table 2 choose?".into(),
         (true, None) if view.guest.is_some() => {

@@ -23,7 +23,7 @@ const MOST_LISTED: usize = 8;
 /// Draws the diagnosis.
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let theme = &app.theme;
-    let focused = app.focus == Pane::Diagnosis;
+    let focused = app.panes.focus == Pane::Diagnosis;
     let width = usize::from(area.width.saturating_sub(2));
     let height = usize::from(area.height.saturating_sub(2));
     let mut title = "Diagnosis".to_string();

@@ -1,6 +1,7 @@
 //! The last two rows: the message or prompt, and the most relevant keys of the key table.
 
 use crate::app::{App, Overlay, Tone};
+use crate::commandline::Purpose;
 use crate::layout::{Pane, Places};
 use crate::paint::{self, wrapped};
 use crate::theme::Theme;
@@ -9,6 +10,9 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 use stickslip_debugger::action::{ACTIONS, ActionEntry, Group};
+use stickslip_debugger::teach::Tutor;
+use stickslip_debugger::teach::tutor::AnswerKind;
+use stickslip_scene::number;
 use unicode_width::UnicodeWidthStr;
 
 /// Actions that the footer shows at any width.
@@ -38,16 +42,15 @@ pub fn draw(buffer: &mut Buffer, places: &Places, app: &App, view: Option<&View>
 fn message(app: &App, view: Option<&View>, places: &Places, width: usize) -> Vec<Line<'static>> {
     let theme = &app.theme;
     if let Overlay::Line(line) = &app.overlay {
-        use crate::commandline::Purpose;
         let prompt = match line.purpose {
             Purpose::Command => ":".into(),
             Purpose::Node => "/".into(),
             Purpose::Answer => "your answer: ".into(),
-            Purpose::Increment => app.question(view).unwrap_or_else(|| "increment: ".into()),
+            Purpose::Increment => question(app, view).unwrap_or_else(|| "increment: ".into()),
         };
         return line.lines(&prompt, width, theme);
     }
-    if let Some(question) = app.question(view) {
+    if let Some(question) = question(app, view) {
         return wrapped(&question, width, theme.key);
     }
     if let Some(note) = app.ahead.note() {
@@ -57,7 +60,7 @@ fn message(app: &App, view: Option<&View>, places: &Places, width: usize) -> Vec
         return vec![Line::styled(format!(" {count} ×"), theme.key)];
     }
     let shown = places.panes.iter().any(|(pane, _)| *pane == Pane::Lesson);
-    if let (false, "", Some(tutor)) = (shown, app.message.text.as_str(), &app.lesson) {
+    if let (false, "", Some(tutor)) = (shown, app.message.text.as_str(), &app.learning.lesson) {
         return wrapped(&format!("▶ {}", tutor.todo()), width, theme.key);
     }
     let mut lines = said(app, view, width);
@@ -66,6 +69,43 @@ fn message(app: &App, view: Option<&View>, places: &Places, width: usize) -> Vec
         lines.splice(0..0, wrapped(notice, width, theme.bad));
     }
     lines
+}
+
+/// The keys of the modes.
+const MODES: &str = "f free   s sliding   x fixed";
+
+/// The prompt of the message line; `None` if there is no question.
+fn question(app: &App, view: Option<&View>) -> Option<String> {
+    let view = view?;
+    match &app.overlay {
+        Overlay::Mode => {
+            let held = match view.guest.map(|guest| guest.offers) {
+                Some(offers) if !offers.hold => "this solver cannot hold it",
+                Some(offers) if !offers.force => {
+                    "capital letters only: this solver can only hold it, until M releases it"
+                }
+                _ => "capital letter: hold until M releases it",
+            };
+            Some(format!(
+                "mode of {}:  {MODES}   ({held})",
+                view.slave(app.selected)
+            ))
+        }
+        Overlay::Answer => Some(
+            match app.learning.lesson.as_ref().and_then(Tutor::question) {
+                Some(question) if question.kind == AnswerKind::Choice => {
+                    format!("your answer:  1 to {}", question.options.len())
+                }
+                Some(_) => format!("your answer:  {MODES}"),
+                None => format!("next mode of {}:  {MODES}", view.slave(app.selected)),
+            },
+        ),
+        Overlay::Line(line) if line.purpose == Purpose::Increment => Some(format!(
+            "new increment (now {}): ",
+            number::plain(view.frame().state.controls.increment)
+        )),
+        _ => None,
+    }
 }
 
 /// The last message, and the watches.
@@ -194,7 +234,7 @@ fn hint(key: &str, label: &str, theme: &Theme) -> [Span<'static>; 2] {
 
 /// The labelled actions of the table that fit, in table order; the ones in [`ALWAYS`] get space first.
 fn table_keys(app: &App, view: Option<&View>, places: &Places, room: usize) -> Line<'static> {
-    let teaches = app.lesson.is_some() || app.guess.is_some();
+    let teaches = app.learning.lesson.is_some() || app.learning.guess.is_some();
     // An action without a key is left out; it can still be typed by name.
     let key = |entry: &'static ActionEntry| app.keymap.keys(entry).next().map(str::to_owned);
     let context = app.context(view, &[]);
@@ -247,7 +287,7 @@ fn label(entry: &ActionEntry, app: &App, places: &Places) -> String {
     if entry.name == "pane" && places.paged {
         let page = Pane::ALL
             .iter()
-            .position(|pane| *pane == app.focus)
+            .position(|pane| *pane == app.panes.focus)
             .map_or(1, |at| at + 1);
         return format!("page {page}/{}", Pane::ALL.len());
     }

@@ -2,6 +2,7 @@
 //! format of the file that changes them.
 
 use crate::paint;
+use crate::scroll::scrolled;
 use crate::theme::Theme;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -78,18 +79,8 @@ impl Help {
             self.top = self.search.find(go, self.top, &texts).unwrap_or(self.top);
             return true;
         }
-        self.top = match name {
-            "Esc" | "q" | "?" | "F1" | "Enter" => return false,
-            "Up" | "k" => top.saturating_sub(1),
-            "Down" | "j" => top + 1,
-            "PageUp" => top.saturating_sub(PAGE),
-            "PageDown" | "Space" => top + PAGE,
-            "Home" | "g" => 0,
-            "End" | "G" => last,
-            _ => top,
-        }
-        .min(last);
-        true
+        self.top = scrolled(top, name, PAGE, last).unwrap_or(top);
+        !["Esc", "q", "?", "F1", "Enter"].contains(&name)
     }
 
     fn lines(

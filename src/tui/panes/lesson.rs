@@ -15,7 +15,7 @@ use unicode_width::UnicodeWidthStr;
 /// Rows that the lesson needs at a width, with border; 0 without a lesson.
 pub fn rows(app: &App, width: u16) -> u16 {
     let inner = usize::from(width.saturating_sub(2));
-    match &app.lesson {
+    match &app.learning.lesson {
         Some(tutor) => {
             let todo = todo(tutor, inner, &app.theme);
             2 + (said(tutor, inner, &app.theme).len() + todo.len()) as u16
@@ -26,14 +26,16 @@ pub fn rows(app: &App, width: u16) -> u16 {
 
 /// Draws the lesson, with the next task at the bottom. If the text does not fit, a part of it is shown, with the key for more.
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App) {
-    let Some(tutor) = &app.lesson else { return };
+    let Some(tutor) = &app.learning.lesson else {
+        return;
+    };
     let inner = paint::frame(buffer, area, &title(tutor), false, &app.theme);
     let (width, room) = room(area, tutor, &app.theme);
     let mut lines = said(tutor, width, &app.theme);
     let (top, all) = (top(app, tutor, width, room), lines.len());
     let shown = top..(top + room).min(all);
-    let same = app.reading.edition == tutor.edition();
-    let seen = if same { app.reading.seen } else { 0 };
+    let same = app.learning.reading.edition == tutor.edition();
+    let seen = if same { app.learning.reading.seen } else { 0 };
     lines = lines.into_iter().skip(top).take(room).collect();
     let more = all > shown.end.max(seen);
     match more {
@@ -65,9 +67,9 @@ pub fn room(area: Rect, tutor: &Tutor, theme: &Theme) -> (usize, usize) {
 /// The first visible line: the latest addition to the text, or the top of a new page.
 pub fn top(app: &App, tutor: &Tutor, width: usize, room: usize) -> usize {
     let all = said(tutor, width, &app.theme).len();
-    let (now, then) = (tutor.edition(), app.reading.edition);
+    let (now, then) = (tutor.edition(), app.learning.reading.edition);
     let wanted = match now.0 == then.0 {
-        true if now.1 == then.1 => app.reading.top,
+        true if now.1 == then.1 => app.learning.reading.top,
         // The question above an answer has been read.
         true => all - remark(tutor, width, &app.theme).len(),
         false => 0,

@@ -105,7 +105,13 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let at = order.iter().position(|slave| *slave == selected);
     let at = at.unwrap_or(0);
     let title = title(at, order.len(), count, app);
-    let inner = paint::frame(buffer, area, &title, app.focus == Pane::Nodes, &app.theme);
+    let inner = paint::frame(
+        buffer,
+        area,
+        &title,
+        app.panes.focus == Pane::Nodes,
+        &app.theme,
+    );
     if count == 0 {
         paint::lines(
             buffer,
@@ -235,7 +241,7 @@ fn row<'a>(
 ) -> Line<'a> {
     let theme = &app.theme;
     let record = view.record(slave);
-    let hidden = app.hides(view, slave);
+    let hidden = app.learning.hides(view, slave);
     let changed = !hidden && view.mode_before(slave) != view.mode(slave);
     let differs = !hidden && view.differs(slave);
     let name_style = match (selected, changed) {
@@ -313,7 +319,7 @@ fn modes(
     };
     let (before, next) = (view.mode_before(slave), view.mode(slave));
     let arrow = if columns.words { " → " } else { "→" };
-    let hidden = app.hides(view, slave);
+    let hidden = app.learning.hides(view, slave);
     let (first, second) = (spell(before), if hidden { "?" } else { spell(next) });
     let next_style = if hidden {
         app.theme.strong

@@ -22,7 +22,7 @@ const NAME: usize = 26;
 /// Draws the list.
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let theme = &app.theme;
-    let focused = app.focus == Pane::Remedies;
+    let focused = app.panes.focus == Pane::Remedies;
     let tried = view.background.and_then(|background| background.tried());
     let Some(tried) = tried else {
         let inner = paint::frame(buffer, area, "Remedies", focused, theme);

@@ -23,7 +23,13 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         None => "Residual by major iteration",
         Some(_) => "Residual by iteration of this attempt",
     };
-    let inner = paint::frame(buffer, area, title, app.focus == Pane::Residual, theme);
+    let inner = paint::frame(
+        buffer,
+        area,
+        title,
+        app.panes.focus == Pane::Residual,
+        theme,
+    );
     let Some((_, last)) = view.residuals.last() else {
         paint::lines(
             buffer,
@@ -58,7 +64,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         Span::raw(limit),
     ]);
     let mut above = vec![caption];
-    let shows_judge = inner.height >= ROOM_FOR_JUDGE && !app.hides_verdict();
+    let shows_judge = inner.height >= ROOM_FOR_JUDGE && !app.learning.hides_verdict();
     above.extend(judged(view, theme).filter(|_| shows_judge));
     paint::lines(buffer, inner, &above);
     let above = above.len() as u16;

@@ -46,7 +46,7 @@ const SPACING: f64 = 16.0;
 /// Draws the shape.
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let theme = &app.theme;
-    let inner = paint::frame(buffer, area, "Shape", app.focus == Pane::Shape, theme);
+    let inner = paint::frame(buffer, area, "Shape", app.panes.focus == Pane::Shape, theme);
     if view.model.finished.is_some() {
         let none = "The files of this run contain no coordinates.";
         let lines = paint::wrapped(none, inner.width.into(), theme.faint);
@@ -423,7 +423,7 @@ fn slaves(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view
             continue;
         };
         // The shape must not reveal a mode that is still to be predicted.
-        let mode = match app.hides(view, slave) {
+        let mode = match app.learning.hides(view, slave) {
             true => view.mode_before(slave),
             false => view.mode(slave),
         };

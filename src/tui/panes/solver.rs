@@ -3,6 +3,7 @@
 //! `:set` changes, with their current values; and the text of a finished run.
 
 use crate::paint;
+use crate::scroll::scrolled;
 use crate::theme::Theme;
 use crate::view::{View, context};
 use ratatui::buffer::Buffer;
@@ -88,26 +89,17 @@ impl SolverReader {
             self.top = self.search.find(go, top, &texts).or(self.top);
             return true;
         }
-        let to = match name {
+        match name {
             "Esc" | "q" | "Enter" | "O" => return false,
-            "Left" | "h" => {
-                self.aside = self.aside.saturating_sub(ASIDE);
-                return true;
+            "Left" | "h" => self.aside = self.aside.saturating_sub(ASIDE),
+            "Right" | "l" => self.aside += ASIDE,
+            _ => {
+                if let Some(to) = scrolled(top, name, PAGE, last) {
+                    // Scrolling back to the end follows it again.
+                    self.top = (to < last || self.page != Page::Log).then_some(to);
+                }
             }
-            "Right" | "l" => {
-                self.aside += ASIDE;
-                return true;
-            }
-            "Up" | "k" => top.saturating_sub(1),
-            "Down" | "j" => top + 1,
-            "PageUp" => top.saturating_sub(PAGE),
-            "PageDown" | "Space" => top + PAGE,
-            "Home" | "g" => 0,
-            "End" | "G" => last,
-            _ => return true,
-        };
-        // Scrolling back to the end follows it again.
-        self.top = (to < last || self.page != Page::Log).then_some(to.min(last));
+        }
         true
     }
 }

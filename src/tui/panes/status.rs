@@ -222,11 +222,11 @@ fn outcome(app: &App, view: &View, width: u16) -> Vec<Line<'static>> {
             theme.strong,
         ),
         (None, None) => (start(view), theme.text),
-        (None, Some(_)) if app.hides_verdict() => (
+        (None, Some(_)) if app.learning.hides_verdict() => (
             "? Accepted. Predict the judge's verdict (a)".into(),
             theme.text,
         ),
-        (None, Some(_)) if app.hides_any(view) => {
+        (None, Some(_)) if app.learning.hides_any(view) => {
             ("? Solved. Predict the next mode (a)".into(), theme.text)
         }
         (None, Some(event)) => sentence(event, view.model, app),

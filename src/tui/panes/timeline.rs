@@ -37,7 +37,13 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     if rows < count {
         title += &format!("  node {} of {count}", selected + 1);
     }
-    let inner = paint::frame(buffer, area, &title, app.focus == Pane::Timeline, theme);
+    let inner = paint::frame(
+        buffer,
+        area,
+        &title,
+        app.panes.focus == Pane::Timeline,
+        theme,
+    );
     if view.model.finished.is_some() && area.height > 2 {
         let legend = paint::cut(LETTERS, inner.width.into());
         buffer.set_string(inner.x, area.bottom() - 1, legend, theme.faint);
