@@ -13,14 +13,18 @@ pub struct LogAxis {
 const AIR: f64 = 0.06;
 const LEAST: f64 = 0.5;
 
+/// The smallest and the largest number; `None` without numbers.
+pub(super) fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
+    values.fold(None, |range: Option<(f64, f64)>, v| {
+        Some(range.map_or((v, v), |(low, high)| (low.min(v), high.max(v))))
+    })
+}
+
 impl LogAxis {
     /// An axis that contains some positive numbers, with a small margin.
     pub fn of(values: impl Iterator<Item = f64>) -> LogAxis {
         let values = values.filter(|v| v.is_finite() && *v > 0.0);
-        let range = values.fold(None, |range: Option<(f64, f64)>, v| {
-            let v = v.log10();
-            Some(range.map_or((v, v), |(low, high)| (low.min(v), high.max(v))))
-        });
+        let range = range(values.map(f64::log10));
         let (low, high) = range.unwrap_or((0.0, 1.0));
         let missing = 0.5 * (LEAST - (high - low)).max(0.0);
         let air = AIR * (high - low).max(LEAST) + missing;

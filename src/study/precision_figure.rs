@@ -231,13 +231,7 @@ fn labels(
             let Some(patch) = taken.place(at, size, reach) else {
                 continue;
             };
-            let near = (
-                at.0.clamp(patch.from.0, patch.to.0),
-                at.1.clamp(patch.from.1, patch.to.1),
-            );
-            if (near.0 - at.0).hypot(near.1 - at.1) > 16.0 {
-                sheet.line(&[at, near], 0.6, GREY);
-            }
+            sheet.leader(at, &patch, 16.0);
             sheet.text(patch.middle(), text, SIZE, BLACK, Anchor::Middle);
             if *text == number {
                 key.push(format!("{number} {}, {words}", chart.series[point.series]));

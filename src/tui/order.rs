@@ -2,9 +2,10 @@
 
 use crate::app::App;
 use crate::view::View;
-use stickslip_core::contact::table2::{Rule, Tested};
+use stickslip_core::contact::table2::Rule;
 use stickslip_core::model::Mode;
 use stickslip_debugger::action::{Filter, Sort};
+use stickslip_debugger::explain::tested::Dimension;
 
 impl App {
     /// The slave nodes of the table, in order. The selected one is always included.
@@ -52,15 +53,8 @@ fn surface(slave: usize, view: &View) -> Option<usize> {
 fn margin(slave: usize, view: &View) -> Option<f64> {
     let (event, record) = (view.event()?, view.record(slave)?);
     let tests = record.decision.tests.iter().flatten();
-    let size = |tested| match tested {
-        Tested::NormalForce
-        | Tested::ShearForce
-        | Tested::LeastFriction
-        | Tested::Pressure
-        | Tested::Drag => event.before.scale,
-        Tested::Slip | Tested::Room | Tested::Gap => view.model.length,
-        Tested::Cover | Tested::Change | Tested::Own => 1.0,
-    };
+    let (force, length) = (event.before.scale, view.model.length);
+    let size = |tested| Dimension::from(tested).scale(force, length);
     tests
         .map(|test| (test.margin / size(test.tested)).abs())
         .filter(|margin| !margin.is_nan())

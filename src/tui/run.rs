@@ -67,12 +67,8 @@ pub fn resume(session: Session, told: &str) -> Result<(), Error> {
 
 /// Runs the debugger on a session; `keeps` also writes journals of scenes opened later.
 fn go(session: Option<Session>, keeps: bool, told: Option<&str>) -> Result<(), Error> {
-    if !io::stdin().is_terminal() || !io::stdout().is_terminal() {
-        return Err(Error::NoTerminal);
-    }
-    let mut debugger = configured(Config::open()?, session);
+    let mut debugger = in_terminal(session)?;
     debugger.keeps = keeps;
-    debugger.in_the_world();
     if let Some(told) = told {
         debugger.app.say(told);
     }
@@ -84,17 +80,23 @@ fn go(session: Option<Session>, keeps: bool, told: Option<&str>) -> Result<(), E
 /// # Errors
 /// If there is no terminal, or it fails.
 pub fn run_lesson(lesson: Lesson) -> Result<(), Error> {
-    if !io::stdin().is_terminal() || !io::stdout().is_terminal() {
-        return Err(Error::NoTerminal);
-    }
-    let mut debugger = configured(Config::open()?, None);
-    debugger.in_the_world();
+    let mut debugger = in_terminal(None)?;
     if let Some(runs) = lesson.runs.clone() {
         // Measured in the background, so that keys need not wait for it; an error is shown where the result is used.
         std::thread::spawn(move || runs.measure().is_ok());
     }
     debugger.teach(lesson);
     run_on(debugger)
+}
+
+/// A debugger with the user's configuration and files, if there is a terminal.
+fn in_terminal(session: Option<Session>) -> Result<Debugger, Error> {
+    if !io::stdin().is_terminal() || !io::stdout().is_terminal() {
+        return Err(Error::NoTerminal);
+    }
+    let mut debugger = configured(Config::open()?, session);
+    debugger.in_the_world();
+    Ok(debugger)
 }
 
 /// A debugger with the user's configuration.

@@ -5,6 +5,7 @@ use crate::explain::core::{Core, core, cycle};
 use crate::explain::influence::{Influence, influences};
 use crate::explain::names;
 use crate::explain::proven;
+use crate::explain::tested;
 use stickslip_core::contact::record::ContactRecord;
 use stickslip_core::contact::state::ContactState;
 use stickslip_core::contact::table2::{Rule, Tested};
@@ -231,14 +232,7 @@ fn push(
     node: usize,
 ) -> Option<Push> {
     let tested = fired(records[node].decision.rule)?;
-    let of = |i: &Influence| match tested {
-        Tested::Gap => i.gap,
-        Tested::NormalForce | Tested::Pressure | Tested::Cover | Tested::Change | Tested::Own => {
-            i.f_n
-        }
-        Tested::ShearForce | Tested::LeastFriction | Tested::Drag => i.f_t,
-        Tested::Slip | Tested::Room => i.slip,
-    };
+    let of = |i: &Influence| tested::effect(tested, i).1;
     let most = all
         .iter()
         .max_by(|a, b| of(a).abs().total_cmp(&of(b).abs()))?;
@@ -483,14 +477,7 @@ fn cause_words<'a>(
 fn push_words<'a>(push: &Push, phase: &Phase, name: &impl Fn(usize) -> &'a str) -> String {
     let record = &phase.records[push.node];
     let from = &push.influence;
-    let (what, value) = match push.tested {
-        Tested::Gap => ("Δg", from.gap),
-        Tested::NormalForce | Tested::Pressure | Tested::Cover | Tested::Change | Tested::Own => {
-            ("ΔF_n", from.f_n)
-        }
-        Tested::ShearForce | Tested::LeastFriction | Tested::Drag => ("ΔF_t", from.f_t),
-        Tested::Slip | Tested::Room => ("Δslip", from.slip),
-    };
+    let (what, value) = tested::effect(push.tested, from);
     let whom = if from.from == push.node {
         "it"
     } else {

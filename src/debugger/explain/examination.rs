@@ -73,15 +73,21 @@ fn nothing(why: &str) -> Examination {
     }
 }
 
+/// The frozen problem that is solved next from a state, or why there is none.
+fn next_problem(stepper: &mut Stepper, state: &State) -> Result<InterfaceProblem, &'static str> {
+    if state.status == Status::Finished {
+        return Err(DONE);
+    }
+    stepper.restore(state);
+    stepper.interface_problem().ok_or(NOT_CONDENSED)
+}
+
 /// Examines the frozen problem that is solved next from a state: the diagnosis of its cycle, or otherwise its
 /// census. Stops early if `stop` returns true.
 pub fn frozen(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -> Examination {
-    if state.status == Status::Finished {
-        return nothing(DONE);
-    }
-    stepper.restore(state);
-    let Some(problem) = stepper.interface_problem() else {
-        return nothing(NOT_CONDENSED);
+    let problem = match next_problem(stepper, state) {
+        Err(why) => return nothing(why),
+        Ok(problem) => problem,
     };
     let round = match going_round(stepper, state, &problem) {
         Err(why) => return nothing(&why.to_string()),
@@ -147,12 +153,9 @@ pub fn examine_nodes(
     slaves: &[usize],
     stop: &dyn Fn() -> bool,
 ) -> Examination {
-    if state.status == Status::Finished {
-        return nothing(DONE);
-    }
-    stepper.restore(state);
-    let Some(problem) = stepper.interface_problem() else {
-        return nothing(NOT_CONDENSED);
+    let problem = match next_problem(stepper, state) {
+        Err(why) => return nothing(why),
+        Ok(problem) => problem,
     };
     let wanted = |place: &usize| slaves.contains(&problem.nodes[*place].slave);
     let places: Vec<usize> = (0..problem.nodes.len()).filter(wanted).collect();

@@ -189,28 +189,20 @@ impl PageBuilder {
             }
             Failure::MajorCycle(round) => {
                 self.found.nodes = round.members.iter().map(|member| member.0).collect();
-                match Attempt::again(stepper, state, failure, stop) {
-                    Some(attempt) => {
-                        let words = majors::cycle_words(stepper.model(), &attempt, round);
-                        self.facts.extend(words);
-                    }
-                    None => self.not_again(),
-                }
+                self.repeat(stepper, state, failure, stop, |model, attempt| {
+                    majors::cycle_words(model, attempt, round)
+                });
             }
-            Failure::MajorLimit { .. } => match Attempt::again(stepper, state, failure, stop) {
-                Some(attempt) => {
-                    let settings = &state.controls.settings;
-                    self.facts.extend(majors::limit_words(settings, &attempt));
-                }
-                None => self.not_again(),
-            },
-            Failure::Diverged { .. } => match Attempt::again(stepper, state, failure, stop) {
-                Some(attempt) => {
-                    let told = majors::flight_words(stepper.model(), state, &attempt);
-                    self.facts.extend(told);
-                }
-                None => self.not_again(),
-            },
+            Failure::MajorLimit { .. } => {
+                self.repeat(stepper, state, failure, stop, |_, attempt| {
+                    majors::limit_words(&state.controls.settings, attempt)
+                });
+            }
+            Failure::Diverged { .. } => {
+                self.repeat(stepper, state, failure, stop, |model, attempt| {
+                    majors::flight_words(model, state, attempt)
+                });
+            }
             Failure::Cycle(_)
             | Failure::MinorLimit { .. }
             | Failure::NotFound(_)
@@ -277,6 +269,21 @@ impl PageBuilder {
             Failure::RoundOff { .. } => self.facts.extend(stiffest(stepper.model())),
             // The element comes first.
             Failure::Inverted(_) => {}
+        }
+    }
+
+    /// Repeats the failed attempt, and adds facts about it.
+    fn repeat<F: IntoIterator<Item = String>>(
+        &mut self,
+        stepper: &mut Stepper,
+        state: &State,
+        failure: &Failure,
+        stop: &dyn Fn() -> bool,
+        facts: impl FnOnce(&Model, &Attempt) -> F,
+    ) {
+        match Attempt::again(stepper, state, failure, stop) {
+            Some(attempt) => self.facts.extend(facts(stepper.model(), &attempt)),
+            None => self.not_again(),
         }
     }
 

@@ -7,6 +7,7 @@ use super::advice::{Advice, advice};
 use super::examination::{Examination, frozen};
 use super::remedy::{How, Remedy, RemedyKind};
 use super::restart;
+use super::tested::Dimension;
 use std::cmp::Ordering;
 use std::ops::ControlFlow;
 use std::time::Instant;
@@ -302,7 +303,8 @@ fn is_there(state: &State, event: &Event, (leg, load): (usize, f64)) -> bool {
 fn hysteresis(stepper: &Stepper, event: &Event) -> Vec<Intervention> {
     let near = |record: &ContactRecord| {
         let margins = record.decision.tests.iter().flatten();
-        let size = |tested| scale_of(tested, stepper, event);
+        let (force, length) = (event.before.scale, stepper.model().length);
+        let size = |tested| Dimension::from(tested).scale(force, length);
         margins
             .filter(|test| test.margin < 0.0)
             .all(|test| -test.margin < HYSTERESIS * size(test.tested))
@@ -322,24 +324,6 @@ fn hysteresis(stepper: &Stepper, event: &Event) -> Vec<Intervention> {
     });
     let release = held.map(|(slave, _)| Intervention::Release { slave });
     hold.chain(release).collect()
-}
-
-/// Scale of the tested quantity: a force or a length.
-fn scale_of(
-    tested: stickslip_core::contact::table2::Tested,
-    stepper: &Stepper,
-    event: &Event,
-) -> f64 {
-    use stickslip_core::contact::table2::Tested;
-    match tested {
-        Tested::NormalForce
-        | Tested::ShearForce
-        | Tested::LeastFriction
-        | Tested::Pressure
-        | Tested::Drag => event.before.scale,
-        Tested::Slip | Tested::Room | Tested::Gap => stepper.model().length,
-        Tested::Cover | Tested::Change | Tested::Own => 1.0,
-    }
 }
 
 /// The judge's findings in the last accepted state.
@@ -366,22 +350,26 @@ fn left(stepper: &Stepper, event: &Event, after: &Norms) -> Left {
     }
 }
 
-/// Best first: those that converged without violations, by cost; then those with violations, by size; then the
-/// others.
-pub fn sort(trials: &mut [Trial]) {
-    let class = |trial: &Trial| match (&trial.end, &trial.left) {
+/// Order of a trial: 0 if it converged without violations, 1 with some, 2 if it did not converge.
+pub fn rank(trial: &Trial) -> u8 {
+    match (&trial.end, &trial.left) {
         (TrialEnd::Converged, Some(left)) if left.worst > CLEAN || left.held > 0 => 1,
         (TrialEnd::Converged, _) => 0,
         (TrialEnd::Against(_), _) => 1,
         _ => 2,
-    };
+    }
+}
+
+/// Best first: those that converged without violations, by cost; then those with violations, by size; then the
+/// others.
+pub fn sort(trials: &mut [Trial]) {
     let worst = |trial: &Trial| trial.left.map_or(0.0, |left| left.worst);
     trials.sort_by(|a, b| {
-        let by_size = match class(a) {
+        let by_size = match rank(a) {
             1 => worst(a).total_cmp(&worst(b)),
             _ => Ordering::Equal,
         };
-        (class(a).cmp(&class(b)))
+        (rank(a).cmp(&rank(b)))
             .then(by_size)
             .then(a.factorizations.cmp(&b.factorizations))
             .then(a.minors.cmp(&b.minors))

@@ -3,7 +3,7 @@
 use crate::explain::accuracy;
 use crate::explain::judged;
 use crate::explain::jumped;
-use crate::explain::names::{mode, position_in, slave};
+use crate::explain::names::{self, mode, position_in, slave};
 use crate::explain::strain;
 use stickslip_core::contact::record::ContactRecord;
 use stickslip_core::contact::table2::{Decision, Rule, Tested};
@@ -375,11 +375,10 @@ pub fn intervention(model: &Model, intervention: &Intervention) -> String {
             format!("{} is held {} until released", slave(model, *s), mode(*m))
         }
         Intervention::Assume(starts) => {
-            let told: Vec<String> = starts
-                .iter()
-                .map(|start| format!("{} {}", slave(model, start.slave), mode(start.mode)))
-                .collect();
-            format!("the next minor iteration starts with {}", told.join(", "))
+            format!(
+                "the next minor iteration starts with {}",
+                names::starts(model, starts)
+            )
         }
         Intervention::Release { slave: s } => format!("{} follows Table 2 again", slave(model, *s)),
         Intervention::Increment(increment) => {

@@ -82,15 +82,9 @@ pub fn label(model: &Model, intervention: &Intervention, setting: Option<(&str, 
         }
         Intervention::Assume(starts) => {
             const SHOWN: usize = 3;
-            let some = starts.iter().take(SHOWN).map(|start| {
-                format!(
-                    "{} {}",
-                    names::slave(model, start.slave),
-                    names::mode(start.mode)
-                )
-            });
+            let some = names::starts(model, &starts[..starts.len().min(SHOWN)]);
             let more = if starts.len() > SHOWN { ", …" } else { "" };
-            some.collect::<Vec<_>>().join(", ") + more
+            some + more
         }
         Intervention::Release { slave } => format!("{} released", names::slave(model, *slave)),
         Intervention::Increment(size) => format!("increment {size}"),

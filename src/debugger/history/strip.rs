@@ -180,7 +180,7 @@ impl Strip {
             first: event
                 .filter(|event| begins(event) || model.finished.is_some())
                 .map(|event| Box::new(event.before)),
-            after: event.and_then(after),
+            after: event.and_then(|event| norms_after(&event.outcome).copied().map(Box::new)),
             seconds,
             marks: (0..count).map(mark).collect(),
             margins: (0..count)
@@ -290,11 +290,12 @@ fn begins(event: &Event) -> bool {
     (event.position.major, event.position.minor) == (1, 1)
 }
 
-fn after(event: &Event) -> Option<Box<Norms>> {
-    match &event.outcome {
+/// Norms at the end of a major iteration, if the outcome is one.
+pub fn norms_after(outcome: &Outcome) -> Option<&Norms> {
+    match outcome {
         Outcome::Major { after, .. }
         | Outcome::Refused { after, .. }
-        | Outcome::Increment { after, .. } => Some(Box::new(*after)),
+        | Outcome::Increment { after, .. } => Some(after),
         _ => None,
     }
 }

@@ -4,6 +4,7 @@
 //! resulting state. Recomputing starts the scene and repeats the steps; it does not use the recorded state.
 //! Floats are written so that they read back to the same bits, including NaN and the infinities.
 
+use crate::history::strip::norms_after;
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -13,7 +14,7 @@ use stickslip_core::contact::table2::Rule;
 use stickslip_core::linear::norms::Norms;
 use stickslip_core::model::{Mode, Model};
 use stickslip_core::step::drive::{RunEnd, Until, drive};
-use stickslip_core::step::event::{Event, Outcome, Position};
+use stickslip_core::step::event::{Event, Position};
 use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::solver::Solver;
 use stickslip_core::step::state::{State, Status};
@@ -330,20 +331,11 @@ impl Recorded {
             load_factor: event.map_or(state.start.load_factor, |e| e.load_factor),
             status: state.status.clone(),
             before: event.map(|e| e.before),
-            after: event.and_then(|e| after(&e.outcome)),
+            after: event.and_then(|e| norms_after(&e.outcome).copied()),
             slaves,
             displacements,
             shear: state.u[nodal..].to_vec(),
         }
-    }
-}
-
-fn after(outcome: &Outcome) -> Option<Norms> {
-    match outcome {
-        Outcome::Major { after, .. }
-        | Outcome::Refused { after, .. }
-        | Outcome::Increment { after, .. } => Some(*after),
-        _ => None,
     }
 }
 

@@ -73,11 +73,10 @@ pub fn done(model: &Model, entry: &Entry) -> String {
             format!("Forced {} to {} {how}.", slave(s), names::mode(*mode))
         }
         Command::Assume(starts) => {
-            let told: Vec<String> = starts
-                .iter()
-                .map(|start| format!("{} {}", slave(&start.slave), names::mode(start.mode)))
-                .collect();
-            format!("Started from a consistent state: {}.", told.join(", "))
+            format!(
+                "Started from a consistent state: {}.",
+                names::starts(model, starts)
+            )
         }
         Command::Follow { label, steps } => {
             format!("Applied a remedy ({} steps): {label}.", steps.len())

@@ -20,9 +20,9 @@ use crate::explain::attached;
 use crate::explain::examination::{Examination, examine_nodes};
 use crate::explain::influence::{NodePush, PushPath, between, pushed, pushes};
 use crate::explain::page::page;
-use crate::explain::pushes_told::{self, Iterations};
 use crate::explain::remedies::{self, Trial};
 use crate::explain::remedy::Remedy;
+use crate::explain::reported_pushes::{self, Iterations};
 use crate::record::export::shown::ExportError;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -236,7 +236,7 @@ impl Background {
     }
 
     /// Records that the pushes cannot be computed: only the attached solver knows them.
-    pub(super) fn pushes_untold(&mut self, place: LinePlace, slave: usize) {
+    pub(super) fn pushes_unknown(&mut self, place: LinePlace, slave: usize) {
         self.keep_pushes(place, slave, None);
     }
 
@@ -416,7 +416,7 @@ impl Helper {
                     BetweenRuns::Reported(iterations) => {
                         let posed = self.posed_aside(&iterations.start);
                         posed.map(|posed| {
-                            pushes_told::pushes(&self.model, &iterations, &posed.ok()?, slave)
+                            reported_pushes::pushes(&self.model, &iterations, &posed.ok()?, slave)
                         })
                     }
                 };
@@ -441,18 +441,16 @@ impl Helper {
                 let (stepper, spec) = self.solver();
                 examine(stepper, spec, (place, &state, nodes), news, stop)
             }
-            BackgroundRequest::Export(ask) if self.spec.is_none() && is_of_problem(&ask) => {
-                let done = self
-                    .posed(&ask.state)
-                    .map_err(ExportError::from)
-                    .and_then(|posed| write_posed(&self.model, &posed, &ask));
-                let told = done.map(|()| format!("wrote {}", ask.file.display()));
-                news.send(BackgroundReply::Exported(told)).ok()
-            }
             BackgroundRequest::Export(ask) => {
-                let done = write(self.solver().0, &ask);
-                let told = done.map(|()| format!("wrote {}", ask.file.display()));
-                news.send(BackgroundReply::Exported(told)).ok()
+                let done = match self.spec.is_none() && is_of_problem(&ask) {
+                    true => self
+                        .posed(&ask.state)
+                        .map_err(ExportError::from)
+                        .and_then(|posed| write_posed(&self.model, &posed, &ask)),
+                    false => write(self.solver().0, &ask),
+                };
+                let done = done.map(|()| format!("wrote {}", ask.file.display()));
+                news.send(BackgroundReply::Exported(done)).ok()
             }
             BackgroundRequest::Remedies(state) if self.spec.is_none() => {
                 self.try_attached(&state, news, stop)

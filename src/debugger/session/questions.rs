@@ -4,8 +4,8 @@ use super::background::BetweenRuns;
 use super::exports::{Export, PictureContext};
 use super::machine::Session;
 use super::refusal::Refusal;
-use crate::explain::pushes_told;
 use crate::explain::report;
+use crate::explain::reported_pushes;
 use crate::history::strip::PointKind;
 use crate::record::command::Exported;
 use crate::record::export::shown::ExportError;
@@ -33,8 +33,10 @@ impl Session {
             return;
         };
         let is_attached = self.connection.log().is_some();
-        if is_attached && !pushes_told::are_told(timeline.model(), self.connection.offers()) {
-            return self.background.pushes_untold(place, slave);
+        if is_attached
+            && !reported_pushes::are_available(timeline.model(), self.connection.offers())
+        {
+            return self.background.pushes_unknown(place, slave);
         }
         self.background
             .ask_pushes(place, slave, || match is_attached {

@@ -3,8 +3,8 @@
 use super::refusal::Refusal;
 use super::worker::Steps;
 use crate::explain::influence::PushPath;
-use crate::explain::pushes_told::Iterations;
 use crate::explain::report;
+use crate::explain::reported_pushes::Iterations;
 use crate::history::branches;
 use crate::history::breakpoints::Breakpoints;
 use crate::history::compare::{self, Comparison};

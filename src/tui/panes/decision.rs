@@ -14,11 +14,12 @@ use stickslip_core::contact::table2::{Decision, Rule, Test, Tested};
 use stickslip_core::model::Mode;
 use stickslip_core::model::TieRule;
 use stickslip_debugger::explain::bond;
-use stickslip_debugger::explain::influence::NodePush;
+use stickslip_debugger::explain::influence::{Influence, NodePush};
 use stickslip_debugger::explain::names::{self, MODES, TABLE_2};
-use stickslip_debugger::explain::pushes_told;
 use stickslip_debugger::explain::report;
+use stickslip_debugger::explain::reported_pushes;
 use stickslip_debugger::explain::round_off::NOTE;
+use stickslip_debugger::explain::tested::{self, Dimension};
 use stickslip_scene::number::{self, four, long};
 use unicode_width::UnicodeWidthStr;
 
@@ -145,30 +146,16 @@ fn pushes(
     };
     let Some(found) = found else {
         return vec![heading(match view.guest {
-            Some(guest) if pushes_told::are_told(view.model, guest.offers) => {
+            Some(guest) if reported_pushes::are_available(view.model, guest.offers) => {
                 "Who pushed it: unknown, the interface problem does not match the numbers"
             }
             Some(_) => "Who pushed it: known only to the solver",
             None => "Who pushed it: not available here",
         })];
     };
-    let tested = tested(&record.decision);
-    let of = |push: &NodePush| match tested {
-        Tested::Gap => push.influence.gap,
-        Tested::NormalForce | Tested::Pressure | Tested::Cover | Tested::Change | Tested::Own => {
-            push.influence.f_n
-        }
-        Tested::ShearForce | Tested::LeastFriction | Tested::Drag => push.influence.f_t,
-        Tested::Slip | Tested::Room => push.influence.slip,
-    };
-    let symbol = match tested {
-        Tested::Gap => "Δg",
-        Tested::NormalForce | Tested::Pressure | Tested::Cover | Tested::Change | Tested::Own => {
-            "ΔF_n"
-        }
-        Tested::ShearForce | Tested::LeastFriction | Tested::Drag => "ΔF_t",
-        Tested::Slip | Tested::Room => "Δslip",
-    };
+    let quantity = quantity(&record.decision);
+    let of = |push: &NodePush| tested::effect(quantity, &push.influence).1;
+    let (symbol, _) = tested::effect(quantity, &Influence::default());
     let mut found: Vec<&NodePush> = found.iter().filter(|push| of(push) != 0.0).collect();
     found.sort_by(|a, b| of(b).abs().total_cmp(&of(a).abs()));
     let together: f64 = found.iter().map(|push| of(push)).sum();
@@ -209,7 +196,7 @@ fn deed(push: &NodePush, view: &View) -> String {
 }
 
 /// The quantity of the test that fired, or otherwise of the first test.
-fn tested(decision: &Decision) -> Tested {
+fn quantity(decision: &Decision) -> Tested {
     let tests = || decision.tests.iter().flatten();
     let fired = tests().find(|test| test.margin < 0.0);
     fired
@@ -557,19 +544,8 @@ fn inequality(test: &Test, view: &View) -> String {
         Some(std::cmp::Ordering::Equal) => "=",
         None => "?",
     };
-    let (name, bound) = match test.tested {
-        Tested::NormalForce => ("F_n", "0".into()),
-        Tested::ShearForce => ("|F_t|", format!("|T_max| {}", long(test.bound))),
-        Tested::Slip => ("slip·sgn T_max", "0".into()),
-        Tested::LeastFriction => ("F_t against slip", format!("least {}", long(test.bound))),
-        Tested::Room => ("way", format!("room {}", long(test.bound))),
-        Tested::Gap => ("g", "0".into()),
-        Tested::Pressure => ("F_n − k·g", "0".into()),
-        Tested::Drag => ("|F_t + k·slip|", format!("limit {}", long(test.bound))),
-        Tested::Cover => ("z", "0".into()),
-        Tested::Change => ("change", "0".into()),
-        Tested::Own => ("its own", "0".into()),
-    };
+    let (name, bound) = tested::sides(test.tested);
+    let bound = bound.map_or("0".into(), |bound| format!("{bound} {}", long(test.bound)));
     format!(" {name} {} {sign} {bound}", long(test.value))
 }
 
@@ -577,15 +553,12 @@ fn inequality(test: &Test, view: &View) -> String {
 fn margin(test: &Test, view: &View, theme: &Theme) -> (String, Style) {
     let long = |value| view.long(value);
     let round_off = view.round_off();
-    let unit = match test.tested {
-        Tested::NormalForce
-        | Tested::ShearForce
-        | Tested::LeastFriction
-        | Tested::Pressure
-        | Tested::Drag => "force",
-        Tested::Slip | Tested::Room | Tested::Gap => "length",
-        Tested::Cover | Tested::Change => "(relative)",
-        Tested::Own => "",
+    let dimension = Dimension::from(test.tested);
+    let unit = match dimension {
+        Dimension::Force => "force",
+        Dimension::Length => "length",
+        Dimension::Ratio => "(relative)",
+        Dimension::Unknown => "",
     };
     match test.tie {
         true => (
@@ -593,11 +566,12 @@ fn margin(test: &Test, view: &View, theme: &Theme) -> (String, Style) {
             theme.warning,
         ),
         false => {
-            let nothing = match unit {
-                "force" => round_off.force(test.value) == 0.0 && test.value != 0.0,
-                "length" => round_off.length(test.value) == 0.0 && test.value != 0.0,
-                _ => false,
+            let rounded = match dimension {
+                Dimension::Force => round_off.force(test.value),
+                Dimension::Length => round_off.length(test.value),
+                _ => test.value,
             };
+            let nothing = rounded == 0.0 && test.value != 0.0;
             let note = if nothing { NOTE } else { "" };
             let text = format!("margin {} {unit} {note}", long(test.margin));
             (format!("{} ", text.trim_end()), theme.faint)

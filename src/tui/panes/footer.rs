@@ -129,33 +129,22 @@ fn said(app: &App, view: Option<&View>, width: usize) -> Vec<Line<'static>> {
 
 fn keys(app: &App, view: Option<&View>, places: &Places) -> Vec<Line<'static>> {
     let room = places.footer.width as usize;
+    let typed = match &app.overlay {
+        Overlay::Manual(reader) => reader.typed(),
+        Overlay::Help(help) => help.search.typed(),
+        Overlay::Solver(reader) => reader.search.typed(),
+        _ => None,
+    };
+    let page = |own: &[(&str, &str)]| {
+        let search = [("/", "search"), ("n N", "again"), ("Esc", "back")];
+        listed(&[own, &search].concat(), app)
+    };
     let line = match &app.overlay {
+        _ if typed.is_some() => listed(&[("Enter", "find"), ("Esc", "back")], app),
         Overlay::None => table_keys(app, view, places, room),
-        Overlay::Manual(reader) => match reader.typed() {
-            Some(_) => listed(&[("Enter", "find"), ("Esc", "back")], app),
-            None => listed(
-                &[
-                    ("↑↓", "scroll"),
-                    ("←→", "page"),
-                    ("/", "search"),
-                    ("n N", "again"),
-                    ("Esc", "back"),
-                ],
-                app,
-            ),
-        },
-        Overlay::Help(help) => match help.search.typed() {
-            Some(_) => listed(&[("Enter", "find"), ("Esc", "back")], app),
-            None => listed(
-                &[
-                    ("↑↓", "scroll"),
-                    ("/", "search"),
-                    ("n N", "again"),
-                    ("Esc", "back"),
-                ],
-                app,
-            ),
-        },
+        Overlay::Manual(_) => page(&[("↑↓", "scroll"), ("←→", "page")]),
+        Overlay::Help(_) => page(&[("↑↓", "scroll")]),
+        Overlay::Solver(_) => page(&[("↑↓ ←→", "scroll"), ("End", "follow")]),
         Overlay::Chart(_) => listed(
             &[
                 ("←→", "run"),
@@ -183,19 +172,6 @@ fn keys(app: &App, view: Option<&View>, places: &Places) -> Vec<Line<'static>> {
             let hold = may(offers.is_none_or(|offers| offers.hold), "hold", "(hold)");
             listed(&[("f s x", once), ("F S X", hold), ("Esc", "cancel")], app)
         }
-        Overlay::Solver(reader) => match reader.search.typed() {
-            Some(_) => listed(&[("Enter", "find"), ("Esc", "back")], app),
-            None => listed(
-                &[
-                    ("↑↓ ←→", "scroll"),
-                    ("End", "follow"),
-                    ("/", "search"),
-                    ("n N", "again"),
-                    ("Esc", "back"),
-                ],
-                app,
-            ),
-        },
         Overlay::Answer => listed(&[("Esc", "back to the panes")], app),
         Overlay::Line(line) => {
             let scenes = app.scenes();

@@ -8,7 +8,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
 use ratatui::text::{Line, Span};
-use stickslip_debugger::explain::remedies::{self, CLEAN, COLUMNS, Trial, TrialEnd};
+use stickslip_debugger::explain::remedies::{self, COLUMNS, Trial, TrialEnd, rank};
 use stickslip_scene::shown;
 use unicode_width::UnicodeWidthStr;
 
@@ -136,12 +136,9 @@ fn shown(rows: &[[String; 10]], width: usize) -> Vec<(usize, usize)> {
 /// Mark of a trial: converged cleanly, converged with warnings, or not converged.
 fn mark(trial: &Trial, app: &App) -> (&'static str, Style) {
     let theme = &app.theme;
-    match (&trial.end, &trial.left) {
-        (TrialEnd::Converged, Some(left)) if left.worst > CLEAN || left.held > 0 => {
-            ("~", theme.warning)
-        }
-        (TrialEnd::Converged, _) => ("✓", theme.good),
-        (TrialEnd::Against(_), _) => ("~", theme.warning),
+    match rank(trial) {
+        0 => ("✓", theme.good),
+        1 => ("~", theme.warning),
         _ => ("✗", theme.bad),
     }
 }

@@ -17,6 +17,7 @@
 use crate::explain::core::Core;
 use crate::explain::names;
 use crate::explain::report;
+use crate::history::verdicts;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use stickslip_core::contact::record::{ContactRecord, Forced};
@@ -195,7 +196,7 @@ pub fn core(
     );
     let text = text(model, &core.on_cycle(), title, head.into())?;
     match cycle_of(&text)? {
-        Some(found) if same_cycle(&found, &core.cycle) => Ok(text),
+        Some(found) if verdicts::is_same_cycle(&found, &core.cycle) => Ok(text),
         other => {
             let found = other.map_or("no cycle".to_owned(), |c| format!("period {}", c.period));
             Err(NoExport::OtherCycle {
@@ -657,18 +658,4 @@ fn cycle_of(text: &str) -> Result<Option<Cycle>, Parted> {
         }
     }
     Ok(None)
-}
-
-/// Whether two cycles have the same period, members and patterns, up to a shift.
-fn same_cycle(a: &Cycle, b: &Cycle) -> bool {
-    let period = a.period as usize;
-    let turned = |by: usize| {
-        a.members
-            .iter()
-            .zip(&b.members)
-            .all(|((i, ours), (j, theirs))| {
-                i == j && (0..period).all(|k| ours[(k + by) % period] == theirs[k])
-            })
-    };
-    a.period == b.period && a.members.len() == b.members.len() && (0..period).any(turned)
 }

@@ -389,7 +389,7 @@ fn slaves(
         ] {
             let size = (widest([text.as_str()], SMALL)? + 4.0, 1.1 * SMALL);
             if let Some(patch) = taken.place(at(slave), size, 60.0) {
-                leader(sheet, at(slave), &patch, r);
+                sheet.leader(at(slave), &patch, r + 12.0);
                 sheet.text(patch.middle(), &text, SMALL, BLACK, Anchor::Middle);
                 break;
             }
@@ -411,17 +411,6 @@ fn radius(window: &Window, model: &Model, now: &dyn Fn(usize) -> Point) -> f64 {
     });
     let apart = apart.filter(|d| *d > 0.0).fold(f64::INFINITY, f64::min);
     (0.34 * apart).clamp(2.0, 5.0)
-}
-
-/// A line from a node to a label that is not next to it.
-fn leader(sheet: &mut Sheet, at: (f64, f64), patch: &Patch, r: f64) {
-    let near = (
-        at.0.clamp(patch.from.0, patch.to.0),
-        at.1.clamp(patch.from.1, patch.to.1),
-    );
-    if (near.0 - at.0).hypot(near.1 - at.1) > r + 12.0 {
-        sheet.line(&[at, near], 0.6, GREY);
-    }
 }
 
 /// The mode in the shown minor iteration; before the first one, the initial mode.
