@@ -17,7 +17,7 @@ const MOST: usize = 50_000;
 const SHOWN: usize = 60;
 
 /// A name for the message, and the copied text.
-type Called = (String, String);
+type NamedText = (String, String);
 
 impl App {
     /// Copies something and shows what was copied.
@@ -51,14 +51,14 @@ impl App {
     }
 }
 
-fn last_line(app: &App) -> Result<Called, String> {
+fn last_line(app: &App) -> Result<NamedText, String> {
     let line = app.history.last().cloned();
     let line = line.ok_or("no command in the history yet; press : to type one")?;
     Ok(("the command".into(), line))
 }
 
 /// The selection of the focused pane.
-fn selected_text(app: &App, view: &View) -> Result<Called, String> {
+fn selected_text(app: &App, view: &View) -> Result<NamedText, String> {
     if screen::is_hidden(app.panes.focus, app, view) {
         return Err("hidden until you predict what follows".into());
     }
@@ -76,8 +76,7 @@ fn selected_text(app: &App, view: &View) -> Result<Called, String> {
             Ok(("a command".into(), format!("branch b{}", number + 1)))
         }
         Pane::Remedies => {
-            let tried = view.background.and_then(|background| background.tried());
-            let trials = tried.map_or(&[][..], |tried| &tried.trials);
+            let trials = view.trials();
             let at = app.remedy.min(trials.len().saturating_sub(1));
             let trial = trials
                 .get(at)
@@ -95,10 +94,9 @@ fn selected_text(app: &App, view: &View) -> Result<Called, String> {
 }
 
 /// The selected slave node and all its numbers, separated by tabs.
-fn row(app: &App, view: &View) -> Result<Called, String> {
-    let count = view.model.contacts.len();
-    let slave = app.selected.min(count.saturating_sub(1));
-    if count == 0 {
+fn row(app: &App, view: &View) -> Result<NamedText, String> {
+    let slave = app.slave(view);
+    if view.model.contacts.is_empty() {
         return Err("this scene has no slave nodes".into());
     }
     let next = match app.learning.hides(view, slave) {
@@ -115,10 +113,9 @@ fn row(app: &App, view: &View) -> Result<Called, String> {
     Ok((format!("the row of {name}"), cells.join("\t")))
 }
 
-fn value(quantity: WatchQuantity, app: &App, view: &View) -> Result<Called, String> {
-    let count = view.model.contacts.len();
-    let slave = app.selected.min(count.saturating_sub(1));
-    if quantity.is_nodal() && count == 0 {
+fn value(quantity: WatchQuantity, app: &App, view: &View) -> Result<NamedText, String> {
+    let slave = app.slave(view);
+    if quantity.is_nodal() && view.model.contacts.is_empty() {
         return Err("this scene has no slave nodes".into());
     }
     if quantity == WatchQuantity::Margin && app.learning.hides(view, slave) {
@@ -131,7 +128,7 @@ fn value(quantity: WatchQuantity, app: &App, view: &View) -> Result<Called, Stri
 }
 
 /// The load and the shown monitor at the last accepted increment.
-fn monitored(app: &App, view: &View) -> Result<Called, String> {
+fn monitored(app: &App, view: &View) -> Result<NamedText, String> {
     let monitor = view.model.monitors.get(app.monitor);
     let monitor = monitor.ok_or("this scene has no monitors")?;
     let frames = &view.frames[..=view.cursor];

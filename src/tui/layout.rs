@@ -205,13 +205,21 @@ fn table(choice: &Choice, most: u16) -> u16 {
         .min(most)
 }
 
+/// The upper rows of an area, and the others.
+fn top(area: Rect, rows: u16) -> [Rect; 2] {
+    Layout::vertical([Constraint::Length(rows), Constraint::Min(0)]).areas(area)
+}
+
+/// The left columns of an area, and the others.
+fn left(area: Rect, columns: u16) -> [Rect; 2] {
+    Layout::horizontal([Constraint::Length(columns), Constraint::Min(0)]).areas(area)
+}
+
 fn small(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
     if body.height < DECISION + TABLE_FRAME + 1 || body.width < 40 {
         return vec![(choice.panes.focus, body)];
     }
-    let rows = [table(choice, body.height - DECISION), 0];
-    let [upper, lower] =
-        Layout::vertical([Constraint::Length(rows[0]), Constraint::Min(rows[1])]).areas(body);
+    let [upper, lower] = top(body, table(choice, body.height - DECISION));
     vec![(Pane::Nodes, upper), (choice.panes.page, lower)]
 }
 
@@ -219,8 +227,7 @@ fn small(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
 /// a small one, and the place of the table on a tiny one.
 fn with_lesson(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
     if body.width >= 110 + LESSON && body.height >= 30 {
-        let columns = [Constraint::Min(0), Constraint::Length(LESSON)];
-        let [left, right] = Layout::horizontal(columns).areas(body);
+        let [left, right] = left(body, body.width - LESSON);
         let mut panes = medium(left, choice);
         panes.push((Pane::Lesson, right));
         return panes;
@@ -244,13 +251,11 @@ fn with_lesson(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
         return vec![(pane, body)];
     }
     let lesson = choice.lesson.min(body.height - least);
-    let rows = [Constraint::Min(0), Constraint::Length(lesson)];
-    let [upper, lower] = Layout::vertical(rows).areas(body);
+    let [upper, lower] = top(body, body.height - lesson);
     let nodes = table(choice, upper.height);
     let mut panes = match upper.height.saturating_sub(nodes) {
         PAGE.. => {
-            let rows = [Constraint::Length(nodes), Constraint::Min(0)];
-            let [nodes, page] = Layout::vertical(rows).areas(upper);
+            let [nodes, page] = top(upper, nodes);
             vec![(Pane::Nodes, nodes), (choice.panes.page, page)]
         }
         _ if choice.panes.focus == Pane::Nodes => vec![(Pane::Nodes, upper)],
@@ -263,16 +268,14 @@ fn with_lesson(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
 /// The focused pane with the lesson next to it or below it, since the lesson says what to do there.
 fn zoomed_with_lesson(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
     if body.width >= 110 + LESSON {
-        let columns = [Constraint::Min(0), Constraint::Length(LESSON)];
-        let [left, right] = Layout::horizontal(columns).areas(body);
+        let [left, right] = left(body, body.width - LESSON);
         return vec![(choice.panes.focus, left), (Pane::Lesson, right)];
     }
     if body.height < LEAST_LESSON + PAGE {
         return vec![(choice.panes.focus, body)];
     }
     let lesson = choice.lesson.min(body.height / 2).max(LEAST_LESSON);
-    let rows = [Constraint::Min(0), Constraint::Length(lesson)];
-    let [upper, lower] = Layout::vertical(rows).areas(body);
+    let [upper, lower] = top(body, body.height - lesson);
     vec![(choice.panes.focus, upper), (Pane::Lesson, lower)]
 }
 
@@ -302,15 +305,9 @@ fn shapeless(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
 
 fn medium(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
     let most = body.height - TALL_DECISION - 7;
-    let rows = [Constraint::Length(table(choice, most)), Constraint::Min(0)];
-    let [upper, lower] = Layout::vertical(rows).areas(body);
-    let columns = [
-        Constraint::Length((body.width / 2).clamp(66, 76)),
-        Constraint::Min(0),
-    ];
-    let [left, right] = Layout::horizontal(columns).areas(lower);
-    let rows = [Constraint::Length(TALL_DECISION), Constraint::Min(0)];
-    let [decision, residual] = Layout::vertical(rows).areas(left);
+    let [upper, lower] = top(body, table(choice, most));
+    let [left, right] = left(lower, (body.width / 2).clamp(66, 76));
+    let [decision, residual] = top(left, TALL_DECISION);
     vec![
         (Pane::Nodes, upper),
         (Pane::Decision, decision),
@@ -324,13 +321,8 @@ fn large(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
         0..ROOM_FOR_TIMELINE => 0,
         _ => (choice.slaves.min(LONGEST_TIMELINE) as u16).max(1) + TIMELINE_FRAME,
     };
-    let rows = [Constraint::Min(0), Constraint::Length(timeline)];
-    let [body, timeline] = Layout::vertical(rows).areas(body);
-    let columns = [
-        Constraint::Length((body.width * 11 / 20).clamp(104, 130)),
-        Constraint::Min(0),
-    ];
-    let [left, right] = Layout::horizontal(columns).areas(body);
+    let [body, timeline] = top(body, body.height - timeline);
+    let [left, right] = left(body, (body.width * 11 / 20).clamp(104, 130));
     let most = left.height - TALL_DECISION - 7;
     let rows = [
         Constraint::Length(table(choice, most)),

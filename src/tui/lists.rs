@@ -155,9 +155,7 @@ impl App {
                 (names.collect(), &mut self.branch)
             }
             Pane::Remedies if !screen::is_hidden(Pane::Remedies, self, view) => {
-                let tried = view.background.and_then(|background| background.tried());
-                let trials = tried.map_or(&[][..], |tried| &tried.trials);
-                let names = trials.iter().map(|trial| trial.label.clone());
+                let names = view.trials().iter().map(|trial| trial.label.clone());
                 (names.collect(), &mut self.remedy)
             }
             _ => {
@@ -183,7 +181,6 @@ impl App {
         {
             return self.submit(Command::Goto { step: to }, view);
         }
-        let tried = view.and_then(|view| view.background?.tried());
         let answers =
             view.and_then(|view| Some(view.examination()??.census.as_ref()?.answers.len()));
         let list = match self.panes.focus {
@@ -191,7 +188,7 @@ impl App {
                 let count = view.and_then(|view| Some(view.tree?.branches().len()));
                 Some((&mut self.branch, count))
             }
-            Pane::Remedies => Some((&mut self.remedy, tried.map(|tried| tried.trials.len()))),
+            Pane::Remedies => Some((&mut self.remedy, view.map(|view| view.trials().len()))),
             Pane::Diagnosis if matches!(step, Step::PageUp | Step::PageDown) => {
                 Some((&mut self.scroll, Some(usize::MAX)))
             }

@@ -4,7 +4,7 @@ use crate::theme::Theme;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
-use ratatui::text::Line;
+use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, BorderType, Clear, Widget};
 use stickslip_scene::shown;
 pub use stickslip_scene::shown::wrap;
@@ -51,6 +51,11 @@ pub fn cut(text: &str, width: usize) -> String {
         0 => kept,
         _ => format!("{}…", kept.trim_end()),
     }
+}
+
+/// The mark before an entry of a list.
+pub fn cursor(selected: bool, theme: &Theme) -> Span<'static> {
+    Span::styled(if selected { "▸" } else { " " }, theme.focus)
 }
 
 /// Writes lines over existing content.

@@ -126,17 +126,18 @@ impl Terminal {
     /// SIGTTIN: unlike SIGSTOP, the kernel ignores that signal in a process group without a shell above it (an orphaned
     /// group in POSIX), where nothing would continue the process.
     pub fn suspend(&mut self) -> io::Result<()> {
-        self.released(|| {
-            rustix::process::kill_current_process_group(rustix::process::Signal::TSTP)?;
-            low_level::raise(SIGTTIN)
-        })
+        self.stopped_by(|| low_level::raise(SIGTTIN))
     }
 
     /// The same after a SIGTSTP from another process, which can also continue this process.
     pub fn stop(&mut self) -> io::Result<()> {
+        self.stopped_by(|| low_level::emulate_default_handler(SIGTSTP))
+    }
+
+    fn stopped_by(&mut self, stop: impl FnOnce() -> io::Result<()>) -> io::Result<()> {
         self.released(|| {
             rustix::process::kill_current_process_group(rustix::process::Signal::TSTP)?;
-            low_level::emulate_default_handler(SIGTSTP)
+            stop()
         })
     }
 

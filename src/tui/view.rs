@@ -9,6 +9,7 @@ use stickslip_core::step::solver::Offers;
 use stickslip_debugger::action::Context;
 use stickslip_debugger::explain::examination::Examination;
 use stickslip_debugger::explain::influence::NodePush;
+use stickslip_debugger::explain::remedies::Trial;
 use stickslip_debugger::explain::round_off::RoundOff;
 use stickslip_debugger::history::frame::Frame;
 use stickslip_debugger::history::strip::Strip;
@@ -18,7 +19,7 @@ use stickslip_debugger::session::Session;
 use stickslip_debugger::session::background::Background;
 use stickslip_debugger::teach;
 use stickslip_scene::Scene;
-use stickslip_scene::number;
+use stickslip_scene::{number, shown};
 
 /// All session data needed for drawing. Plain data, so that tests can construct it.
 #[derive(Debug, Clone)]
@@ -105,6 +106,12 @@ impl<'a> View<'a> {
     /// Whether remedies were tried, or are being tried.
     pub fn has_tried(&self) -> bool {
         self.background.is_some_and(|b| b.tried().is_some())
+    }
+
+    /// The remedies tried so far.
+    pub fn trials(&self) -> &'a [Trial] {
+        let tried = self.background.and_then(Background::tried);
+        tried.map_or(&[][..], |tried| &tried.trials)
     }
 
     /// Whether remedies are being tried.
@@ -214,26 +221,27 @@ impl<'a> View<'a> {
     }
 
     /// Whether an attached solver does not report a value.
-    pub fn is_untold(&self, value: f64) -> bool {
+    pub fn is_unreported(&self, value: f64) -> bool {
         self.guest.is_some() && value.is_nan()
+    }
+
+    /// Whether a value is shown as a dash.
+    fn is_absent(&self, value: f64) -> bool {
+        self.guest.is_some() && (value.is_nan() || value == f64::INFINITY)
     }
 
     /// A value as a table cell ([`number::cell`]); a dash if an attached solver does not report it.
     pub fn cell(&self, value: f64, width: usize) -> String {
-        match self.is_untold(value) || (self.guest.is_some() && value == f64::INFINITY) {
-            true => format!(
-                " {:<width$}",
-                number::UNTOLD,
-                width = width.saturating_sub(1)
-            ),
+        match self.is_absent(value) {
+            true => shown::padded(&format!(" {}", number::UNREPORTED), width),
             false => number::cell(value, width),
         }
     }
 
     /// A value with ten digits ([`number::long`]), or a dash.
     pub fn long(&self, value: f64) -> String {
-        match self.is_untold(value) || (self.guest.is_some() && value == f64::INFINITY) {
-            true => number::UNTOLD.into(),
+        match self.is_absent(value) {
+            true => number::UNREPORTED.into(),
             false => number::long(value),
         }
     }

@@ -34,7 +34,7 @@ const GRID: usize = 6;
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let theme = &app.theme;
     let count = view.model.contacts.len();
-    let slave = app.selected.min(count.saturating_sub(1));
+    let slave = app.slave(view);
     let title = if count == 0 {
         "Decision".into()
     } else {
@@ -273,8 +273,8 @@ fn measured(
         ),
         (
             "|F_t|/T_max",
-            match view.is_untold(record.f_t / record.t_max) {
-                true => format!(" {}", number::UNTOLD),
+            match view.is_unreported(record.f_t / record.t_max) {
+                true => format!(" {}", number::UNREPORTED),
                 false => format!(" {}", round_off.ratio(record.f_t, record.t_max)),
             },
             "used fraction of the friction limit",

@@ -1,6 +1,7 @@
 //! The slave-node table: the values of every slave node in the shown minor iteration.
 
 use crate::app::App;
+use crate::columns::rows_shown;
 use crate::layout::Pane;
 use crate::paint;
 use crate::theme;
@@ -100,7 +101,7 @@ impl Columns {
 /// Draws the table.
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let count = view.model.contacts.len();
-    let selected = app.selected.min(count.saturating_sub(1));
+    let selected = app.slave(view);
     let order = app.order(view);
     let at = order.iter().position(|slave| *slave == selected);
     let at = at.unwrap_or(0);
@@ -139,7 +140,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     };
     let rows = (inner.height as usize).saturating_sub(1);
     let round_off = view.round_off();
-    let top = first_row(at, rows, order.len());
+    let top = rows_shown(rows, at, order.len()).start;
     let mut lines = vec![match view.model.finished {
         None => headings(&columns, app),
         Some(_) => Line::styled(format!("{:MARKS$}contact", ""), app.theme.heading),
@@ -157,13 +158,12 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
 /// The slave node in the row at a screen position.
 pub fn slave_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usize> {
     let order = app.order(view);
-    let count = view.model.contacts.len();
-    let selected = app.selected.min(count.saturating_sub(1));
+    let selected = app.slave(view);
     let here = order.iter().position(|slave| *slave == selected);
     // Border and headings.
     let rows = usize::from(area.height).saturating_sub(3);
     let row = usize::from(at.y).checked_sub(usize::from(area.y) + 2)?;
-    let top = first_row(here.unwrap_or(0), rows, order.len());
+    let top = rows_shown(rows, here.unwrap_or(0), order.len()).start;
     let inside = row < rows && at.x > area.x && at.x + 1 < area.right();
     order.get(top + row).copied().filter(|_| inside)
 }
@@ -188,13 +188,6 @@ fn title(at: usize, shown: usize, count: usize, app: &App) -> String {
         title += ", reversed";
     }
     title
-}
-
-/// First visible row, with the selection in the middle if possible.
-fn first_row(selected: usize, rows: usize, count: usize) -> usize {
-    selected
-        .saturating_sub(rows / 2)
-        .min(count.saturating_sub(rows))
 }
 
 fn headings(columns: &Columns, app: &App) -> Line<'static> {
@@ -250,7 +243,7 @@ fn row<'a>(
         _ => theme.text,
     };
     let mut spans = vec![
-        Span::styled(if selected { "▸" } else { " " }, theme.focus),
+        paint::cursor(selected, theme),
         Span::styled(
             change_mark(differs, changed, !hidden && view.t_max_moves(slave)),
             theme.strong,
@@ -362,7 +355,7 @@ fn numbers(
         false => cell(round_off.length(value)),
     };
     let ratio = match decided(Tested::ShearForce) {
-        _ if view.is_untold(record.f_t / record.t_max) => number::UNTOLD.into(),
+        _ if view.is_unreported(record.f_t / record.t_max) => number::UNREPORTED.into(),
         true => number::ratio(record.f_t, record.t_max),
         false => round_off.ratio(record.f_t, record.t_max),
     };
@@ -442,7 +435,7 @@ mod tests {
         for count in [1, 5, 300] {
             for rows in [1, 4, 10] {
                 for selected in 0..count {
-                    let top = first_row(selected, rows, count);
+                    let top = rows_shown(rows, selected, count).start;
                     assert!(top <= selected && selected < top + rows);
                 }
             }

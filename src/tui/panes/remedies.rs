@@ -86,7 +86,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         let selected = number == at;
         let name = paint::cut(&format!("{} {}", number + 1, trial.label), names);
         let mut spans = vec![
-            Span::styled(if selected { "▸" } else { " " }, theme.focus),
+            paint::cursor(selected, theme),
             Span::styled(mark, style),
             Span::raw(" "),
             Span::styled(

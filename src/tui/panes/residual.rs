@@ -40,7 +40,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     };
     let words = |value: f64| short(value, view);
     let percent = |part: f64| match part.is_nan() {
-        true => number::UNTOLD.to_owned(),
+        true => number::UNREPORTED.to_owned(),
         false => format!("{} %", number::plain(100.0 * part)),
     };
     let (main, (other, value), limit) = match &view.model.finished {
@@ -79,7 +79,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         let told = view
             .residuals
             .iter()
-            .filter(|(_, norms)| !view.is_untold(norms.relative));
+            .filter(|(_, norms)| !view.is_unreported(norms.relative));
         let points: Vec<Point> = told.map(|one| point(one, view)).collect();
         convergence::draw(buffer, plot, &points, theme);
     }
@@ -87,8 +87,8 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
 
 /// A number of a caption; a dash if an attached solver does not report it.
 fn short(value: f64, view: &View) -> String {
-    match view.is_untold(value) {
-        true => number::UNTOLD.into(),
+    match view.is_unreported(value) {
+        true => number::UNREPORTED.into(),
         false => number::short(value),
     }
 }

@@ -36,7 +36,7 @@ use stickslip_linalg::DenseFactors;
 use stickslip_scene::format::condensed::{Contact, Matrix, Problem};
 use stickslip_scene::format::{SceneError, read};
 use stickslip_scene::siconos::Friction2d;
-use stickslip_scene::{Scene, limits};
+use stickslip_scene::{Scene, limits, shown};
 
 /// If the inverse (relative to the springs) that yields one of the two matrices is larger than this, removing
 /// the springs loses too many digits.
@@ -556,22 +556,16 @@ fn shortened(title: &str) -> String {
     plain.take(limits::TITLE - 1).chain(['…']).collect()
 }
 
-/// A comment in lines of [`WIDTH`], broken at spaces.
-fn wrapped(text: &str) -> Vec<String> {
-    let mut lines = vec![String::new()];
-    for word in text.split_whitespace() {
-        let last = lines.len() - 1;
-        let line = &mut lines[last];
-        if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > WIDTH {
-            lines.push(format!("  {word}"));
-        } else {
-            if !line.is_empty() {
-                line.push(' ');
-            }
-            line.push_str(word);
-        }
-    }
-    lines
+/// A comment in lines of [`WIDTH`], indented after the first.
+fn wrapped(text: &str) -> impl Iterator<Item = String> {
+    let lines = shown::wrap(text, WIDTH - 2).into_iter().enumerate();
+    lines.map(|(k, line)| if k == 0 { line } else { format!("  {line}") })
+}
+
+/// The solver of an exported file at its start.
+fn stepper(text: &str) -> Result<Stepper, Parted> {
+    let scene = Scene::from_text("exported scene", text, &[]).map_err(Box::new)?;
+    Ok(Stepper::new(Arc::new(scene.model)))
 }
 
 /// Steps a file and its problem together until the minor iterations settle, cycle or fail. Returns the largest
@@ -579,8 +573,7 @@ fn wrapped(text: &str) -> Vec<String> {
 ///
 /// # Errors If the two differ.
 pub fn compared(problem: &InterfaceProblem, text: &str) -> Result<f64, Parted> {
-    let scene = Scene::from_text("exported scene", text, &[]).map_err(Box::new)?;
-    let mut stepper = Stepper::new(Arc::new(scene.model));
+    let mut stepper = stepper(text)?;
     // For bonds, the file contains only the contact points, not the nodes behind them.
     let mut touching = problem.clone();
     let kinematics = touching
@@ -648,8 +641,7 @@ fn difference(problem: &InterfaceProblem, a: &ContactRecord, b: &ContactRecord) 
 
 /// The cycle of the first minor iterations of a scene; `None` if they do not cycle.
 fn cycle_of(text: &str) -> Result<Option<Cycle>, Parted> {
-    let scene = Scene::from_text("exported scene", text, &[]).map_err(Box::new)?;
-    let mut stepper = Stepper::new(Arc::new(scene.model));
+    let mut stepper = stepper(text)?;
     while let Some(event) = stepper.step() {
         match &event.outcome {
             Outcome::Minor => {}

@@ -419,6 +419,12 @@ fn mode(shown: &Shown, slave: usize) -> Mode {
     found.map_or(shown.state.nodes[slave].mode, |found| found.decision.before)
 }
 
+/// A text in the legend; returns its width with the space after it.
+fn entry(sheet: &mut Sheet, at: (f64, f64), text: &str) -> Result<f64, PlotError> {
+    sheet.text(at, text, SMALL, BLACK, Anchor::Left);
+    Ok(widest([text], SMALL)? + 22.0)
+}
+
 /// The legend: modes, and the scales of lengths and forces.
 fn legend(
     sheet: &mut Sheet,
@@ -430,9 +436,7 @@ fn legend(
     let mut x = MARGIN + 6.0;
     for mode in [Mode::Free, Mode::Sliding, Mode::Fixed] {
         marker(sheet, (x, y), mode, 5.0);
-        let word = names::mode(mode);
-        sheet.text((x + 12.0, y), word, SMALL, BLACK, Anchor::Left);
-        x += 12.0 + widest([word], SMALL)? + 22.0;
+        x += 12.0 + entry(sheet, (x + 12.0, y), names::mode(mode))?;
     }
     let unit = round(90.0 / window.scale);
     if unit.is_finite() && unit > 0.0 {
@@ -442,18 +446,14 @@ fn legend(
             sheet.line(&[(end, y - 5.0), (end, y + 5.0)], 1.5, BLACK);
         }
         x += wide + 8.0;
-        let text = format!("length {}", plain(unit));
-        sheet.text((x, y), &text, SMALL, BLACK, Anchor::Left);
-        x += widest([text.as_str()], SMALL)? + 22.0;
+        x += entry(sheet, (x, y), &format!("length {}", plain(unit)))?;
     }
     if largest > 0.0 {
         let unit = round(0.8 * largest);
         let wide = FORCE * unit / largest;
         sheet.arrow((x, y), (x + wide, y), 2.0, VERMILION);
         x += wide + 8.0;
-        let text = format!("contact force {}", plain(unit));
-        sheet.text((x, y), &text, SMALL, BLACK, Anchor::Left);
-        x += widest([text.as_str()], SMALL)? + 22.0;
+        x += entry(sheet, (x, y), &format!("contact force {}", plain(unit)))?;
     }
     sheet.arrow((x, y + 6.0), (x, y - 7.0), 1.0, GREY);
     sheet.text((x + 10.0, y), "outward side", SMALL, BLACK, Anchor::Left);
