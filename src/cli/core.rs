@@ -93,6 +93,6 @@ fn text(scene: &Scene) -> Result<String, NoCore> {
         .and_then(|problem| cycling(problem, &cycle))
         .ok_or(NoCore::NotCondensed)?;
     let core = core(&problem).ok_or(NoCore::NotFound)?;
-    let origin = Origin::of(scene, at, load);
+    let origin = Origin::new(scene, at, load);
     Ok(export::core(&scene.model, &origin, &cycle, &core)?)
 }

@@ -228,7 +228,7 @@ struct Tally<'a> {
 }
 
 /// How a run ended: stopped by `Closed`, or lost if an attached solver fails.
-type Ended = Result<RunEnd<Closed>, Lost>;
+type Ending = Result<RunEnd<Closed>, Lost>;
 
 /// Why the run was stopped here.
 enum Closed {
@@ -275,7 +275,7 @@ impl<'a> Run<'a> {
         }
     }
 
-    fn go(&mut self, outputs: &mut RunOutputs, interrupt: &Interrupt) -> Result<Ended, Error> {
+    fn go(&mut self, outputs: &mut RunOutputs, interrupt: &Interrupt) -> Result<Ending, Error> {
         let Run { solver, tally } = self;
         let solver = &mut **solver;
         let stability = tally.stability.is_some();
@@ -308,7 +308,7 @@ impl<'a> Run<'a> {
     }
 
     /// Prints how the run ended.
-    fn notify(&mut self, end: &Ended, args: &Args, interrupt: &Interrupt) -> Exit {
+    fn notify(&mut self, end: &Ending, args: &Args, interrupt: &Interrupt) -> Exit {
         if self.tally.doubtful > MOST_WARNINGS {
             notify(&format!(
                 "warning: {} increments in total were accepted with warnings",
@@ -511,7 +511,7 @@ impl Tally<'_> {
     fn endless(&mut self, solver: &dyn Solver) -> Option<String> {
         let (most, watch) = self.most.as_mut()?;
         let (event, state) = (solver.event(), solver.state());
-        watch.see(&Strip::of(solver.model(), state, Some(event), None, 0.0));
+        watch.see(&Strip::new(solver.model(), state, Some(event), None, 0.0));
         if self.minors < *most {
             return None;
         }

@@ -22,7 +22,7 @@
 //! `scale`.
 
 use super::figure::assigned;
-use super::one::{Spare, Watch, one};
+use super::one::{SolverPool, Watch, one};
 use super::read::pairs;
 use super::result::{CaseEnd, Row, Run};
 use super::sweep::{RunError, side_by_side};
@@ -207,7 +207,7 @@ impl Benchmarks {
             self.check_monitors(benchmark, &posed[place].1)?;
             of.push(place);
         }
-        let spare = Spare::default();
+        let spare = SolverPool::default();
         let runs: Vec<Run> = side_by_side(jobs, posed.len(), |k| {
             let model = &posed[k].1.model;
             let count = increments(&model.path, |leg| model.on_leg(leg)) as u64;

@@ -91,7 +91,7 @@ impl CurveChart {
         let mut sheet = Sheet::new(LEFT + PLOT.0 + 2.0 * MARGIN + legend, &self.title)?;
         let top = sheet.height;
         let place = self.curves(&mut sheet, top);
-        // Drawn last, so that no line hides a failure.
+        // RandomProblem last, so that no line hides a failure.
         for curve in &self.curves {
             if let (CurveEnd::Failed(_), Some(end)) = (&curve.end, curve.points.last()) {
                 sheet.cross(place(end), 7.0, CROSS);

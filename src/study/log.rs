@@ -186,12 +186,12 @@ pub struct Content<T> {
     /// What the results belong to; empty if the file does not say.
     pub inputs: Vec<Input>,
     /// The results in the order of the file.
-    pub results: Vec<(Key, Found<T>)>,
+    pub results: Vec<(Key, StoredResult<T>)>,
 }
 
 /// A result in a log.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Found<T> {
+pub struct StoredResult<T> {
     /// Line number, from 1.
     pub line: usize,
     /// The result.
@@ -383,7 +383,7 @@ fn content<T: Outcome>(
             }
             Entry::Result(key, value) => {
                 let line = lines.number;
-                content.results.push((key, Found { line, value }));
+                content.results.push((key, StoredResult { line, value }));
             }
         }
     }

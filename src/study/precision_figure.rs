@@ -68,8 +68,8 @@ fn draw(sheet: &mut Sheet, chart: &Precision) -> Result<(), PlotError> {
     let top = sheet.height + RAIL;
     let errors = chart.points.iter().filter_map(|p| p.error);
     let frame = Frame {
-        x: LogAxis::of(chart.points.iter().map(|p| chart.cost.of(p))),
-        y: LogAxis::of(errors.map(|e| e.max(ROUND_OFF)).chain(chart.target)),
+        x: LogAxis::new(chart.points.iter().map(|p| chart.cost.of(p))),
+        y: LogAxis::new(errors.map(|e| e.max(ROUND_OFF)).chain(chart.target)),
         axes: Axes {
             left: LEFT,
             top,

@@ -1,7 +1,7 @@
 //! Surveys: runs all random problems of a population with all variants, and counts the verdicts.
 
 use super::figure::assigned;
-use super::one::{Spare, Watch};
+use super::one::{SolverPool, Watch};
 use super::origin;
 use super::random::Population;
 use super::shard::Key;
@@ -68,7 +68,7 @@ pub fn sweep<'a>(population: &'a Population, variants: &'a [Variant]) -> Sweep<'
     });
     let input = std::iter::once(("population".to_owned(), name.clone())).chain(tried);
     let prepared = prepared(variants);
-    let compute = move |k: usize, _: &Spare, watch: &Watch| {
+    let compute = move |k: usize, _: &SolverPool, watch: &Watch| {
         if (watch.stop)() {
             return Ok(None);
         }

@@ -13,7 +13,7 @@
 //! ```
 
 use super::log::Outcome;
-use super::random::{Drawn, Population};
+use super::random::{Population, RandomProblem};
 use super::reason::Reason;
 use super::verdict::RunVerdict;
 use serde::{Deserialize, Serialize};
@@ -147,7 +147,7 @@ pub fn try_variants(
     variants: &[Prepared<'_>],
     stop: &(dyn Fn() -> bool + Sync),
 ) -> Result<Option<Judged>, SceneError> {
-    let Drawn {
+    let RandomProblem {
         problem,
         form,
         cohesive,
@@ -219,7 +219,7 @@ fn one(problem: &Problem, stepper: &mut Stepper) -> Trial {
                 false => RunVerdict::Wrong,
             };
         }
-        RunEnd::Failed(failure) => trial.verdict = RunVerdict::of(&failure),
+        RunEnd::Failed(failure) => trial.verdict = RunVerdict::from_failure(&failure),
         RunEnd::Spent | RunEnd::Interrupted => {}
         RunEnd::Stopped(never) => match never {},
     }

@@ -6,10 +6,10 @@ use crate::camera::Camera;
 use crate::chartpage::ChartPage;
 use crate::choosing::{Chooser, Offer, Preview};
 use crate::commandline::{CommandLine, Purpose};
-use crate::hearing::Heard;
 use crate::keys;
 use crate::layout::{Pane, ShownPanes};
 use crate::learning::Learning;
+use crate::log_counts::LogCounts;
 use crate::panes::help::{Help, Listing};
 use crate::panes::manual;
 use crate::panes::solver;
@@ -146,7 +146,7 @@ pub struct App {
     /// A message about the attached solver or its loss, shown until the next key.
     pub notice: Option<String>,
     /// How much of the attached solver's log has been counted.
-    pub heard: Heard,
+    pub log_counts: LogCounts,
     /// Pan and zoom of the shape.
     pub camera: Camera,
     /// Sort key of the table.
@@ -210,7 +210,7 @@ impl App {
                 tone: Tone::Plain,
             },
             notice: None,
-            heard: Heard::default(),
+            log_counts: LogCounts::default(),
             camera: Camera::ALL,
             sort: Sort::Scene,
             backward: false,
@@ -264,7 +264,7 @@ impl App {
         self.monitor = 0;
         (self.answer, self.branch, self.remedy, self.scroll) = (0, 0, 0, 0);
         self.camera = Camera::ALL;
-        (self.notice, self.heard) = (None, Heard::default());
+        (self.notice, self.log_counts) = (None, LogCounts::default());
         self.last = None;
         self.count = None;
         self.learning = Learning::default();

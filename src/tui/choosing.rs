@@ -127,7 +127,7 @@ pub struct Glance {
 
 impl Preview {
     /// Loads the preview of an entry. A file can be a scene or a lesson.
-    pub fn of(offer: &Offer) -> Preview {
+    pub fn new(offer: &Offer) -> Preview {
         let name = offer.name.clone();
         let what = match offer.group {
             Group::Lessons => lesson(&name),
@@ -153,7 +153,7 @@ impl Preview {
             background: None,
             aside: String::new(),
             start_gaps: "",
-            guest: None,
+            attached: None,
             cursor: 0,
             running: false,
             residuals: Vec::new(),
@@ -194,7 +194,7 @@ impl Looking {
             let offer = offer.clone();
             thread::spawn(move || {
                 // The receiver may be gone.
-                let _ = told.send(Preview::of(&offer));
+                let _ = told.send(Preview::new(&offer));
             });
         }
         None
@@ -310,7 +310,7 @@ mod tests {
     fn every_built_in_entry_has_a_picture() {
         let offers = offers(&Progress::default());
         for offer in offers.iter().filter(|offer| offer.group != Group::Files) {
-            let preview = Preview::of(offer);
+            let preview = Preview::new(offer);
             let glance = preview.what.unwrap_or_else(|why| panic!("{why}"));
             assert_eq!(glance.title, offer.title);
             assert!(!glance.about.is_empty(), "{}", offer.name);

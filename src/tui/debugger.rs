@@ -153,7 +153,7 @@ impl Debugger {
 
     /// The data that the panes draw.
     pub fn view(&self) -> Option<View<'_>> {
-        self.session.as_ref().map(View::of)
+        self.session.as_ref().map(View::new)
     }
 
     /// Whether the solver is running.
@@ -176,7 +176,7 @@ impl Debugger {
                 None
             }
             Event::Mouse(mouse) if self.app.mouse => {
-                let view = self.session.as_ref().map(View::of);
+                let view = self.session.as_ref().map(View::new);
                 let effect = self.app.mouse(mouse, view.as_ref())?;
                 self.carry_out(effect)
             }
@@ -186,7 +186,7 @@ impl Debugger {
 
     /// Handles a key.
     pub fn key(&mut self, key: &KeyEvent) -> Option<Outside> {
-        let view = self.session.as_ref().map(View::of);
+        let view = self.session.as_ref().map(View::new);
         let chose = matches!(self.app.overlay, Overlay::Chooser(_));
         let effect = self.app.key(key, view.as_ref());
         self.keep_progress();
@@ -217,7 +217,7 @@ impl Debugger {
     fn resume(&mut self) -> bool {
         let mut any = false;
         while !self.is_busy() {
-            let view = self.session.as_ref().map(View::of);
+            let view = self.session.as_ref().map(View::new);
             let Some(effect) = self.app.resume(view.as_ref()) else {
                 break;
             };
@@ -356,7 +356,7 @@ impl Debugger {
         let Some(log) = self.session.as_ref().and_then(|s| s.connection().log()) else {
             return false;
         };
-        let (any, told) = self.app.heard.hear(log);
+        let (any, told) = self.app.log_counts.count(log);
         if let Some(told) = told
             && self.app.notice.is_none()
         {
@@ -376,7 +376,7 @@ impl Debugger {
             }
         });
         // The message must not reveal what the user still has to predict.
-        let view = self.session.as_ref().map(View::of);
+        let view = self.session.as_ref().map(View::new);
         let hidden = view.is_some_and(|view| !view.running && self.app.learning.hides_any(&view));
         // The status line already shows the outcome.
         let new = match &known {

@@ -45,7 +45,7 @@ impl Loading {
     /// Opens a session on a scene (a file or a built-in name), or resumes a journal at its end.
     pub fn scene(name: &str) -> Loading {
         let name = name.to_owned();
-        Loading::of(move || {
+        Loading::start(move || {
             if journal::is_named_so(Path::new(&name)) {
                 let session = resumed(Path::new(&name));
                 return Loaded::Scene(session.map(Box::new).map_err(NotLoaded::from));
@@ -58,7 +58,7 @@ impl Loading {
     /// Loads a lesson, by file or built-in name, and a session on its scene.
     pub fn lesson(name: &str) -> Loading {
         let name = name.to_owned();
-        Loading::of(move || {
+        Loading::start(move || {
             let lesson = Lesson::open(&name).map_err(NotLoaded::from);
             Loaded::Lesson(lesson.map(|lesson| {
                 if let Some(runs) = &lesson.runs {
@@ -74,10 +74,10 @@ impl Loading {
     /// Loads the table of a chart.
     pub fn chart(file: &str) -> Loading {
         let file = file.to_owned();
-        Loading::of(move || Loaded::Chart(ChartPage::open(&file).map(Box::new)))
+        Loading::start(move || Loaded::Chart(ChartPage::open(&file).map(Box::new)))
     }
 
-    fn of(read: impl FnOnce() -> Loaded + Send + 'static) -> Loading {
+    fn start(read: impl FnOnce() -> Loaded + Send + 'static) -> Loading {
         let (told, result) = channel();
         thread::spawn(move || {
             // The receiver may be gone.

@@ -142,7 +142,7 @@ fn draw_pane(pane: Pane, buffer: &mut Buffer, area: Rect, app: &App, view: &View
 pub fn picture(session: &Session, width: u16, height: u16) -> String {
     text(
         &App::new(Theme::mono(), Vec::new()),
-        Some(&View::of(session)),
+        Some(&View::new(session)),
         width,
         height,
     )

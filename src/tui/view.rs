@@ -41,7 +41,7 @@ pub struct View<'a> {
     /// The start gaps in words; empty if there are none.
     pub start_gaps: &'a str,
     /// The attached solver, if there is one.
-    pub guest: Option<Guest<'a>>,
+    pub attached: Option<AttachedSolver<'a>>,
     /// Index of the shown frame.
     pub cursor: usize,
     /// Whether the solver is running.
@@ -54,7 +54,7 @@ pub struct View<'a> {
 
 /// An attached solver.
 #[derive(Debug, Clone, Copy)]
-pub struct Guest<'a> {
+pub struct AttachedSolver<'a> {
     /// Its capabilities.
     pub offers: &'a Offers,
     /// Its log.
@@ -67,7 +67,7 @@ pub struct Guest<'a> {
 
 impl<'a> View<'a> {
     /// The view of a session.
-    pub fn of(session: &'a Session) -> Self {
+    pub fn new(session: &'a Session) -> Self {
         let mut view = View {
             name: &session.scene().name,
             scene: Some(session.scene()),
@@ -77,7 +77,7 @@ impl<'a> View<'a> {
             tree: Some(session.timeline().tree()),
             background: Some(session.background()),
             start_gaps: session.start_gaps(),
-            guest: session.connection().log().map(|log| Guest {
+            attached: session.connection().log().map(|log| AttachedSolver {
                 offers: session.connection().offers(),
                 log,
                 lost: session.connection().lost().is_some(),
@@ -172,7 +172,7 @@ impl<'a> View<'a> {
     /// Which of the shown values are round-off; none at the start.
     pub fn round_off(&self) -> RoundOff {
         self.event().map_or(RoundOff::default(), |event| {
-            RoundOff::of(self.model, &event.before)
+            RoundOff::new(self.model, &event.before)
         })
     }
 
@@ -222,12 +222,12 @@ impl<'a> View<'a> {
 
     /// Whether an attached solver does not report a value.
     pub fn is_unreported(&self, value: f64) -> bool {
-        self.guest.is_some() && value.is_nan()
+        self.attached.is_some() && value.is_nan()
     }
 
     /// Whether a value is shown as a dash.
     fn is_absent(&self, value: f64) -> bool {
-        self.guest.is_some() && (value.is_nan() || value == f64::INFINITY)
+        self.attached.is_some() && (value.is_nan() || value == f64::INFINITY)
     }
 
     /// A value as a table cell ([`number::cell`]); a dash if an attached solver does not report it.
@@ -248,7 +248,7 @@ impl<'a> View<'a> {
 
     /// Whether an attached solver's decision on a node differs from its rules for the same values.
     pub fn differs(&self, slave: usize) -> bool {
-        let record = self.record(slave).filter(|_| self.guest.is_some());
+        let record = self.record(slave).filter(|_| self.attached.is_some());
         record.is_some_and(|record| record.differs())
     }
 
@@ -269,7 +269,9 @@ pub fn context<'a>(view: Option<&View<'a>>, selected: usize, scenes: &'a [String
         scene,
         tree: view.and_then(|view| view.tree),
         selected,
-        offers: view.and_then(|view| view.guest).map(|guest| guest.offers),
+        offers: view
+            .and_then(|view| view.attached)
+            .map(|attached| attached.offers),
         state: view.map(|view| &view.frame().state),
         scenes,
         lessons: teach::list(),

@@ -6,7 +6,7 @@ use libtest_mimic::Trial;
 use std::path::Path;
 use stickslip::attach::Attached;
 use stickslip::record::command::{Command, To};
-use stickslip::recorded::{log::Log, past};
+use stickslip::recorded::{exchange, log::Log};
 use stickslip::session::Session;
 
 pub fn tests() -> Vec<Trial> {
@@ -17,7 +17,7 @@ pub fn tests() -> Vec<Trial> {
 }
 
 /// Attaches, keeps the exchange, does all commands, and opens what was kept.
-fn kept(restore: &str, file: &Path) -> (Session, past::Opened) {
+fn kept(restore: &str, file: &Path) -> (Session, exchange::OpenedExchange) {
     let log = Log::default();
     log.keep(file, false).unwrap();
     let mut session = session(start("osc-lag4", restore, ""), &log);
@@ -28,9 +28,9 @@ fn kept(restore: &str, file: &Path) -> (Session, past::Opened) {
     (session, opened)
 }
 
-fn open(file: &Path) -> past::Opened {
+fn open(file: &Path) -> exchange::OpenedExchange {
     let text = std::fs::read_to_string(file).unwrap();
-    past::open("kept", &text).unwrap_or_else(|why| panic!("{why}"))
+    exchange::open("kept", &text).unwrap_or_else(|why| panic!("{why}"))
 }
 
 fn a_kept_exchange_has_every_branch_with_the_same_states() {
@@ -94,7 +94,7 @@ fn an_exchange_that_ended_in_a_fault_is_read_up_to_it() {
             .step_by(97)
             .filter(|&cut| text.is_char_boundary(cut))
         {
-            let _ = past::open("cut", &text[..cut]);
+            let _ = exchange::open("cut", &text[..cut]);
         }
         rude.is_gone();
     }

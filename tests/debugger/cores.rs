@@ -31,7 +31,7 @@ fn stuck(scene: Scene) -> Option<Stuck> {
     let Failure::Cycle(cycle) = failure else {
         return None;
     };
-    let origin = Origin::of(&scene, event.position, event.load_factor);
+    let origin = Origin::new(&scene, event.position, event.load_factor);
     Some(Stuck {
         scene,
         stepper: run.stepper,
@@ -190,7 +190,7 @@ fn whole_frozen_problems_step_alone_as_in_their_scenes() {
         for step in 0..60 {
             if step % 6 == 1 {
                 let problem = stepper.interface_problem().unwrap();
-                let origin = Origin::of(&scene, stepper.state().next, stepper.state().target);
+                let origin = Origin::new(&scene, stepper.state().next, stepper.state().target);
                 let text = export::whole(&scene.model, &origin, &problem)
                     .unwrap_or_else(|why| panic!("{name}, step {step}: {why}"));
                 let off = compared(&plain(&problem), &text).unwrap();
@@ -253,7 +253,7 @@ fn contacts(matrix: &str) -> Scene {
 fn exported(scene: &Scene) -> Result<String, String> {
     let mut stepper = Stepper::new(Arc::new(scene.model.clone()));
     let problem = stepper.interface_problem().unwrap();
-    let origin = Origin::of(scene, stepper.state().next, 1.0);
+    let origin = Origin::new(scene, stepper.state().next, 1.0);
     export::whole(&scene.model, &origin, &problem).map_err(|e| e.to_string())
 }
 

@@ -341,7 +341,7 @@ fn every_theme_tells_the_modes_by_letters_first_and_none_of_them_hides_a_cell() 
     for colours in Colours::ALL {
         let mut debugger = debugger("osc-two6", "c", (120, 40));
         let plain = text(&debugger);
-        debugger.app.theme = Theme::of(colours);
+        debugger.app.theme = Theme::new(colours);
         // The letters are the same, whatever the colours.
         assert_eq!(text(&debugger), plain);
         let area = debugger.app.area;

@@ -216,7 +216,7 @@ fn letters_tell_what_colours_tell_too() {
         (symbols, colours.count(), bold.count())
     };
     let (plain, none, bold) = shown(Theme::mono());
-    let (colour, some, _) = shown(Theme::of(Colours::Dark));
+    let (colour, some, _) = shown(Theme::new(Colours::Dark));
     assert_eq!(plain, colour);
     assert!(none == 0 && some > 0 && bold > 0);
 }

@@ -166,7 +166,7 @@ fn taken_in(model: &Model, scene: &Scene, states: &[State]) -> Result<(), String
                 ));
             }
         };
-        let led = frame.led(&from, &told);
+        let led = frame.recorded_step(&from, &told);
         from = led
             .map_err(|fault| format!("state {number}: {fault}"))?
             .state;

@@ -25,7 +25,7 @@ pub const NOT_CONDENSED: &str = "The bodies cannot be condensed to the interface
 
 /// Why it is unknown whether the minor iterations cycle.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum Untold {
+pub enum NotExamined {
     /// There is no interface problem, because the solver does not condense.
     #[error("{NOT_CONDENSED}")]
     NotCondensed,
@@ -95,7 +95,7 @@ pub fn frozen(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -> 
     };
     let model = stepper.model();
     if let Some((problem, cycle)) = round
-        && let Some(diagnosis) = Diagnosis::of(&problem, stop)
+        && let Some(diagnosis) = Diagnosis::find(&problem, stop)
     {
         let mut lines = diagnosis::words(model, &problem, &diagnosis);
         if diagnosis.cause == Cause::NoAnswer {
@@ -201,7 +201,7 @@ pub fn going_round(
     stepper: &mut Stepper,
     state: &State,
     problem: &InterfaceProblem,
-) -> Result<Option<(InterfaceProblem, Cycle)>, Untold> {
+) -> Result<Option<(InterfaceProblem, Cycle)>, NotExamined> {
     let by_slave = |cycle: Cycle| Cycle {
         members: cycle
             .members
@@ -220,10 +220,12 @@ pub fn going_round(
     let Some(cycle) = known else {
         return Ok(None);
     };
-    let problem = stepper.interface_problem().ok_or(Untold::NotCondensed)?;
+    let problem = stepper
+        .interface_problem()
+        .ok_or(NotExamined::NotCondensed)?;
     match cycling(problem, &cycle) {
         Some(problem) => Ok(Some((problem, cycle))),
-        None => Err(Untold::TooMany(too_many(&cycle))),
+        None => Err(NotExamined::TooMany(too_many(&cycle))),
     }
 }
 

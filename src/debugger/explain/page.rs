@@ -137,10 +137,11 @@ impl PageBuilder {
             finer: None,
             found: Examination::default(),
         };
-        let cause = MaterialCause::of(stepper.model(), state, failure);
+        let cause = MaterialCause::find(stepper.model(), state, failure);
         let certain = cause.filter(MaterialCause::is_certain);
         let words = |cause: MaterialCause| cause.words(stepper.model());
-        let overlap = Remedy::of(RemedyKind::Gaps(InitialGaps::Ramp), stepper.model(), state);
+        let overlap =
+            Remedy::from_kind(RemedyKind::Gaps(InitialGaps::Ramp), stepper.model(), state);
         page.facts.extend(overlap.map(|_| OVERLAP.to_owned()));
         page.facts.extend(certain.map(words));
         let possible = cause.filter(|cause| !cause.is_certain()).map(words);

@@ -150,7 +150,7 @@ pub fn all(
         }
     };
     for kind in KINDS {
-        if let Some(remedy) = Remedy::of(kind, model, state) {
+        if let Some(remedy) = Remedy::from_kind(kind, model, state) {
             add(remedy);
         }
     }
@@ -171,7 +171,7 @@ pub fn offered(model: &Model, state: &State, offers: &Offers, found: &Examinatio
     let parts = [RemedyKind::Part(0.5), RemedyKind::Part(0.1)];
     let parts = parts
         .into_iter()
-        .filter_map(|kind| Remedy::of(kind, model, state));
+        .filter_map(|kind| Remedy::from_kind(kind, model, state));
     let touching = [Mode::Fixed, Mode::Sliding]
         .into_iter()
         .filter_map(|mode| Remedy::touching(state, mode));

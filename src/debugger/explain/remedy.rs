@@ -126,7 +126,7 @@ impl Remedy {
     }
 
     /// The remedy of a kind at a state; `None` if it would change nothing or does not apply.
-    pub fn of(kind: RemedyKind, model: &Model, state: &State) -> Option<Remedy> {
+    pub fn from_kind(kind: RemedyKind, model: &Model, state: &State) -> Option<Remedy> {
         let remedy = |label: &str, how: How, first: Vec<Intervention>| Remedy {
             kind,
             label: label.to_owned(),
@@ -183,7 +183,7 @@ impl Remedy {
     /// Another law for materials outside the range of theirs in a failed state, and whether the law is
     /// certainly the cause. `None` if all are inside.
     pub fn law(model: &Model, state: &State, failure: &Failure) -> Option<(Remedy, bool)> {
-        let cause = MaterialCause::of(model, state, failure)?;
+        let cause = MaterialCause::find(model, state, failure)?;
         let points = cause.before.into_iter().chain([cause.point]);
         let mut changes: Vec<(String, &'static str)> = Vec::new();
         for change in points.filter_map(|point| strain::other_law(model, &point)) {

@@ -112,7 +112,7 @@ pub struct MaterialCause {
 impl MaterialCause {
     /// The element of a failed state that is outside the range of its law. `None` if all are inside, or if the failure
     /// certainly has another cause.
-    pub fn of(model: &Model, state: &State, failure: &Failure) -> Option<MaterialCause> {
+    pub fn find(model: &Model, state: &State, failure: &Failure) -> Option<MaterialCause> {
         use stickslip_core::linear::singular::Singular;
         if matches!(
             failure,

@@ -101,7 +101,7 @@ pub struct Tree {
 impl Tree {
     /// The tree of a session at its start.
     pub fn new(model: Arc<Model>, start: State, budget: Budget) -> Tree {
-        let strip = Strip::of(&model, &start, None, None, 0.0);
+        let strip = Strip::new(&model, &start, None, None, 0.0);
         let empty = Arc::new(Vec::new());
         let hollow = State {
             nodes: Vec::new(),
@@ -332,7 +332,7 @@ impl Tree {
         let (frame, strip) = (&mut self.line.frames[at], &self.line.strips[at]);
         let again = match (&frame.intervention, before) {
             (Some(_), Some(before)) => Strip::intervention(&self.model, &state, before),
-            _ => Strip::of(&self.model, &state, event.as_deref(), before, 0.0),
+            _ => Strip::new(&self.model, &state, event.as_deref(), before, 0.0),
         };
         if frame.is_whole() {
             return true;

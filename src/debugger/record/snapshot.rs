@@ -181,7 +181,7 @@ impl Snapshot {
             interventions: applied.to_vec(),
             steps,
             position: event.map_or(state.next, |e| e.position),
-            state: Recorded::of(&scene.model, state, event),
+            state: Recorded::new(&scene.model, state, event),
         }
     }
 
@@ -318,9 +318,9 @@ impl Snapshot {
 }
 
 impl Recorded {
-    fn of(model: &Model, state: &State, event: Option<&Event>) -> Recorded {
+    fn new(model: &Model, state: &State, event: Option<&Event>) -> Recorded {
         let slaves = (0..model.contacts.len())
-            .map(|s| SlaveRecord::of(model, state, event, s))
+            .map(|s| SlaveRecord::new(model, state, event, s))
             .collect();
         let displacements = (0..model.nodes.len())
             .map(|n| displacement(model, &state.u, n))
@@ -340,7 +340,7 @@ impl Recorded {
 }
 
 impl SlaveRecord {
-    fn of(model: &Model, state: &State, event: Option<&Event>, slave: usize) -> SlaveRecord {
+    fn new(model: &Model, state: &State, event: Option<&Event>, slave: usize) -> SlaveRecord {
         let now = &state.nodes[slave];
         let node = model.nodes[model.contacts[slave].node].name.clone();
         // A minor iteration that cannot be solved has no records.

@@ -45,7 +45,7 @@ pub struct WireFrame<'a> {
 
 /// Result of an iteration.
 #[derive(Clone)]
-pub struct Led {
+pub struct RecordedStep {
     /// The event of the iteration.
     pub event: Event,
     /// The state from which the next iteration starts; its identifier is set later.
@@ -63,13 +63,13 @@ pub fn start(
     name: &str,
     told: &message::Scene,
     increment: Option<f64>,
-) -> Result<(Scene, Vec<Id>, Led), Fault> {
+) -> Result<(Scene, Vec<Id>, RecordedStep), Fault> {
     let scene = Scene::told(name, told, increment).map_err(|error| Fault::Unfit {
         message: "scene",
         why: error.message,
     })?;
     let ids = told.contacts.iter().map(|contact| contact.id.clone());
-    let start = Led {
+    let start = RecordedStep {
         state: State::outside_start(&scene.model),
         event: Event::nothing_yet(&scene.model),
         monitors: Vec::new(),
@@ -88,7 +88,11 @@ impl WireFrame<'_> {
     /// Converts a state message about the iteration that started from `from`.
     ///
     /// # Errors [`Fault::Unfit`] if the message does not match the scene.
-    pub fn led(&self, from: &State, told: &message::State) -> Result<Led, Fault> {
+    pub fn recorded_step(
+        &self,
+        from: &State,
+        told: &message::State,
+    ) -> Result<RecordedStep, Fault> {
         let at = self.check(told)?;
         let load = told.load.unwrap_or(from.load_factor);
         let ties = self.ties(told);
@@ -134,7 +138,7 @@ impl WireFrame<'_> {
         }
         let monitors = self.model.monitors.iter().enumerate();
         let monitor = |(k, _)| told.monitors.get(k).copied().flatten().unwrap_or(f64::NAN);
-        Ok(Led {
+        Ok(RecordedStep {
             state,
             monitors: monitors.map(monitor).collect(),
             event,
@@ -318,7 +322,7 @@ fn largest(displacements: Option<&[[f64; 2]]>) -> f64 {
     all.fold(0.0, |most: f64, [x, y]| most.max(x.hypot(*y)))
 }
 
-impl Led {
+impl RecordedStep {
     /// Sets the identifier of the state.
     pub fn state_at(&mut self, place: u64) {
         if let Some(outside) = &mut self.state.outside {

@@ -48,7 +48,7 @@ pub type LinePlace = (usize, usize);
 
 /// The remedies tried from one position so far.
 #[derive(Debug, Clone)]
-pub struct Tried {
+pub struct RemedyTrials {
     /// Position that the trials start from.
     pub place: LinePlace,
     /// Number of remedies to try; `None` until it is known.
@@ -92,7 +92,7 @@ enum BackgroundReply {
         all: usize,
         now: String,
     },
-    Tried(Box<Trial>),
+    Trial(Box<Trial>),
     Done {
         stopped: bool,
     },
@@ -130,7 +130,7 @@ pub struct Background {
     /// By position: the requested nodes, and the result.
     examinations: HashMap<LinePlace, (Vec<usize>, Option<Examination>)>,
     exported: Option<Result<String, ExportError>>,
-    tried: Option<Tried>,
+    tried: Option<RemedyTrials>,
     trying: bool,
     /// Examinations running or queued.
     examining: usize,
@@ -206,7 +206,7 @@ impl Background {
     }
 
     /// The latest remedy trials.
-    pub fn tried(&self) -> Option<&Tried> {
+    pub fn tried(&self) -> Option<&RemedyTrials> {
         self.tried.as_ref()
     }
 
@@ -287,7 +287,7 @@ impl Background {
     /// Tries all remedies from the state at a position.
     pub(super) fn ask_remedies(&mut self, place: LinePlace, state: &State) {
         self.stop.store(false, Ordering::Relaxed);
-        self.tried = Some(Tried {
+        self.tried = Some(RemedyTrials {
             place,
             all: None,
             now: String::new(),
@@ -378,7 +378,7 @@ impl Background {
                     (tried.all, tried.now) = (Some(all), now);
                 }
             }
-            BackgroundReply::Tried(trial) => {
+            BackgroundReply::Trial(trial) => {
                 if let Some(tried) = &mut self.tried {
                     tried.trials.push(*trial);
                     remedies::sort(&mut tried.trials);
@@ -669,7 +669,7 @@ fn try_all(
         let (all, now) = (all.len(), remedy.label.clone());
         news.send(BackgroundReply::Trying { all, now }).ok()?;
         match attempt(remedy) {
-            Some(Some(trial)) => news.send(BackgroundReply::Tried(Box::new(trial))).ok()?,
+            Some(Some(trial)) => news.send(BackgroundReply::Trial(Box::new(trial))).ok()?,
             Some(None) => {}
             None => {
                 stopped = true;

@@ -3,7 +3,7 @@
 use crate::explain::attached;
 use crate::explain::core::core;
 use crate::explain::diagnosis::too_many;
-use crate::explain::examination::{Untold, going_round};
+use crate::explain::examination::{NotExamined, going_round};
 use crate::explain::report;
 use crate::history::strip::Strip;
 use crate::record::command::Exported;
@@ -76,9 +76,11 @@ fn core_of(stepper: &mut Stepper, state: &State, origin: &Origin) -> Result<Stri
         return Err(ExportError::Finished);
     }
     stepper.restore(state);
-    let problem = stepper.interface_problem().ok_or(Untold::NotCondensed)?;
+    let problem = stepper
+        .interface_problem()
+        .ok_or(NotExamined::NotCondensed)?;
     let (problem, cycle) = going_round(stepper, state, &problem)?.ok_or(ExportError::NoCycle)?;
-    let core = core(&problem).ok_or_else(|| Untold::TooMany(too_many(&cycle)))?;
+    let core = core(&problem).ok_or_else(|| NotExamined::TooMany(too_many(&cycle)))?;
     Ok(export::core(stepper.model(), origin, &cycle, &core)?)
 }
 

@@ -5,7 +5,7 @@ use super::machine::Session;
 use crate::history::branches;
 use crate::history::strip::{PointKind, Strip};
 use crate::recorded::calculix::{self, RecordedRun};
-use crate::recorded::past::{Line, Opened};
+use crate::recorded::exchange::{Line, OpenedExchange};
 use crate::recorded::recording::Recording;
 use crate::recorded::story::in_common;
 use stickslip_scene::Scene;
@@ -49,7 +49,7 @@ impl Session {
 
     /// The session at the start of the first path; every other path is a branch that leaves the nearest earlier
     /// one.
-    fn from_exchange(opened: Opened) -> Session {
+    fn from_exchange(opened: OpenedExchange) -> Session {
         let mut session = Session::attached(opened.scene, Box::new(opened.past), opened.log);
         let mut done: Vec<(usize, Line)> = Vec::new();
         for line in opened.lines {

@@ -320,7 +320,7 @@ fn run(
 fn seen(solver: &mut dyn Solver, before: &Strip, began: Instant) -> (Frame, Strip) {
     let seconds = began.elapsed().as_secs_f32();
     let event = Arc::new(solver.event().clone());
-    let strip = Strip::of(
+    let strip = Strip::new(
         solver.model(),
         solver.state(),
         Some(&event),

@@ -69,7 +69,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let words = match (hidden, &app.learning.lesson) {
         (false, _) => words(record, slave, view),
         (true, Some(_)) => "The numbers are in the table above. What does Table 2 choose?".into(),
-        (true, None) if view.guest.is_some() => {
+        (true, None) if view.attached.is_some() => {
             "Which mode does the solver choose next? Predict it: press a, then f, s or x.".into()
         }
         (true, None) => {
@@ -145,8 +145,8 @@ fn pushes(
         return Vec::new();
     };
     let Some(found) = found else {
-        return vec![heading(match view.guest {
-            Some(guest) if reported_pushes::are_available(view.model, guest.offers) => {
+        return vec![heading(match view.attached {
+            Some(attached) if reported_pushes::are_available(view.model, attached.offers) => {
                 "Who pushed it: unknown, the interface problem does not match the numbers"
             }
             Some(_) => "Who pushed it: known only to the solver",
@@ -227,7 +227,7 @@ fn measured(
     let place = match record.spot {
         None => " past the ends of every surface".into(),
         // Only the solver knows the position on the surface.
-        Some(_) if view.guest.is_some() => {
+        Some(_) if view.attached.is_some() => {
             let own = view.model.contacts[slave].surfaces.first();
             let surface = own.and_then(|own| view.model.surfaces.get(*own));
             surface.map_or(" -".into(), |surface| format!(" {}", surface.name))
@@ -584,7 +584,7 @@ fn theirs(record: &ContactRecord, slave: usize, view: &View) -> Option<String> {
     let decision = &record.decision;
     let said = view.words(slave);
     let differs = view.differs(slave);
-    if view.guest.is_none() || (said.is_none() && !differs && decision.rule != Rule::Theirs) {
+    if view.attached.is_none() || (said.is_none() && !differs && decision.rule != Rule::Theirs) {
         return None;
     }
     let next = names::mode(decision.next);

@@ -79,7 +79,7 @@ fn question(app: &App, view: Option<&View>) -> Option<String> {
     let view = view?;
     match &app.overlay {
         Overlay::Mode => {
-            let held = match view.guest.map(|guest| guest.offers) {
+            let held = match view.attached.map(|attached| attached.offers) {
                 Some(offers) if !offers.hold => "this solver cannot hold it",
                 Some(offers) if !offers.force => {
                     "capital letters only: this solver can only hold it, until M releases it"
@@ -166,7 +166,9 @@ fn keys(app: &App, view: Option<&View>, places: &Places) -> Vec<Line<'static>> {
             listed(&keys, app)
         }
         Overlay::Mode => {
-            let offers = view.and_then(|view| view.guest).map(|guest| guest.offers);
+            let offers = view
+                .and_then(|view| view.attached)
+                .map(|attached| attached.offers);
             let may = |may: bool, word, not| if may { word } else { not };
             let once = may(offers.is_none_or(|offers| offers.force), "once", "(once)");
             let hold = may(offers.is_none_or(|offers| offers.hold), "hold", "(hold)");

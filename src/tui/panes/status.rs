@@ -3,7 +3,7 @@
 use crate::app::{App, Overlay};
 use crate::layout::Places;
 use crate::paint;
-use crate::view::{Guest, View};
+use crate::view::{AttachedSolver, View};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
@@ -50,11 +50,11 @@ pub fn draw(buffer: &mut Buffer, places: &Places, app: &App, view: Option<&View>
 const OUTCOME: usize = 3;
 
 /// The attached solver, how it goes back, and the counts of its warnings and errors.
-fn guest(app: &App, view: &View, guest: &Guest, width: usize) -> Line<'static> {
+fn solver_line(app: &App, view: &View, attached: &AttachedSolver, width: usize) -> Line<'static> {
     let theme = &app.theme;
-    let offers = guest.offers;
+    let offers = attached.offers;
     let name = format!("{} {}", offers.name, offers.version);
-    let (state, style) = match (guest.lost, offers.past, offers.goes_back) {
+    let (state, style) = match (attached.lost, offers.past, offers.goes_back) {
         (true, ..) => ("✗ lost; the next step restarts it", theme.bad),
         (_, Some(record), _) => (record, theme.warning),
         (.., GoesBack::ToAny) => ("attached, can go back to any state", theme.faint),
@@ -67,7 +67,7 @@ fn guest(app: &App, view: &View, guest: &Guest, width: usize) -> Line<'static> {
     let key = by_name("log")
         .ok()
         .and_then(|entry| app.keymap.keys(entry).next());
-    let counted = match app.heard.counted() {
+    let counted = match app.log_counts.words() {
         none if none.is_empty() => none,
         counted => format!("{counted} ({})", key.unwrap_or(":log")),
     };
@@ -99,8 +99,8 @@ fn guest(app: &App, view: &View, guest: &Guest, width: usize) -> Line<'static> {
 }
 
 fn scene<'a>(app: &App, view: &View<'a>, width: usize) -> Line<'a> {
-    if let Some(attached) = &view.guest {
-        return guest(app, view, attached, width);
+    if let Some(attached) = &view.attached {
+        return solver_line(app, view, attached, width);
     }
     const PROGRAM: &str = " stickslip ";
     let name = paint::cut(view.name, width.saturating_sub(PROGRAM.width()));
@@ -131,7 +131,7 @@ fn position(app: &App, view: &View, width: usize) -> Line<'static> {
             line.push_span(chart);
         }
     }
-    if view.guest.is_some_and(|guest| guest.lost) {
+    if view.attached.is_some_and(|attached| attached.lost) {
         const WORDS: &str = "  ✗ lost";
         while line.width() + WORDS.width() > width && line.spans.pop().is_some() {}
         line.push_span(Span::styled(WORDS, app.theme.bad));
@@ -208,7 +208,7 @@ fn outcome(app: &App, view: &View, width: u16) -> Vec<Line<'static>> {
             at.minor,
             view.frames.len() - 1
         );
-        let again = view.guest.map_or("", |guest| guest.again);
+        let again = view.attached.map_or("", |attached| attached.again);
         let first = (!again.is_empty()).then(|| format!("   {again} first"));
         return [Some(text), first]
             .into_iter()

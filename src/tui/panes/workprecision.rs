@@ -77,8 +77,8 @@ pub fn draw(buffer: &mut Buffer, area: Rect, page: &ChartPage, theme: &Theme) {
 fn plot_runs(buffer: &mut Buffer, plot: Rect, page: &ChartPage, theme: &Theme) {
     let chart = page.shown();
     let cost = |p: &Point| page.cost.of(p);
-    let x = LogAxis::of(chart.points.iter().map(cost));
-    let y = LogAxis::of(
+    let x = LogAxis::new(chart.points.iter().map(cost));
+    let y = LogAxis::new(
         chart
             .points
             .iter()

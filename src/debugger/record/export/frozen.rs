@@ -91,12 +91,12 @@ pub enum NoExport {
     },
     /// The file does not behave as the problem does.
     #[error(transparent)]
-    Parted(#[from] Parted),
+    FileMismatch(#[from] FileMismatch),
 }
 
 /// How a file departs from its problem.
 #[derive(Debug, thiserror::Error)]
-pub enum Parted {
+pub enum FileMismatch {
     /// The file would not be a valid scene.
     #[error(transparent)]
     Unsound(#[from] Box<SceneError>),
@@ -137,7 +137,7 @@ pub struct Origin {
 
 impl Origin {
     /// A scene with its overrides.
-    pub fn of(scene: &Scene, at: Position, load: f64) -> Self {
+    pub fn new(scene: &Scene, at: Position, load: f64) -> Self {
         Origin {
             scene: scene.name.clone(),
             changes: scene.overrides().map(|(p, v)| format!("{p}={v}")).collect(),
@@ -563,7 +563,7 @@ fn wrapped(text: &str) -> impl Iterator<Item = String> {
 }
 
 /// The solver of an exported file at its start.
-fn stepper(text: &str) -> Result<Stepper, Parted> {
+fn stepper(text: &str) -> Result<Stepper, FileMismatch> {
     let scene = Scene::from_text("exported scene", text, &[]).map_err(Box::new)?;
     Ok(Stepper::new(Arc::new(scene.model)))
 }
@@ -572,7 +572,7 @@ fn stepper(text: &str) -> Result<Stepper, Parted> {
 /// relative difference of a force or length.
 ///
 /// # Errors If the two differ.
-pub fn compared(problem: &InterfaceProblem, text: &str) -> Result<f64, Parted> {
+pub fn compared(problem: &InterfaceProblem, text: &str) -> Result<f64, FileMismatch> {
     let mut stepper = stepper(text)?;
     // For bonds, the file contains only the contact points, not the nodes behind them.
     let mut touching = problem.clone();
@@ -581,7 +581,7 @@ pub fn compared(problem: &InterfaceProblem, text: &str) -> Result<f64, Parted> {
         .iter_mut()
         .filter_map(|node| node.kinematics.as_mut());
     kinematics.for_each(|over| over.bond = Bond::Hard);
-    let mut trials = Trials::new(&touching).ok_or(Parted::Memory)?;
+    let mut trials = Trials::new(&touching).ok_or(FileMismatch::Memory)?;
     let mut nodes = problem.states();
     let (mut worst, mut minor) = (0.0_f64, 0);
     let until = Until::end().minors(COMPARED.into()).past_failures();
@@ -595,17 +595,17 @@ pub fn compared(problem: &InterfaceProblem, text: &str) -> Result<f64, Parted> {
             return ControlFlow::Break(if singular {
                 Ok(())
             } else {
-                Err(Parted::Singular(minor))
+                Err(FileMismatch::Singular(minor))
             });
         };
         if event.nodes.len() != records.len() {
-            return ControlFlow::Break(Err(Parted::Unsolved(minor)));
+            return ControlFlow::Break(Err(FileMismatch::Unsolved(minor)));
         }
         for (found, wanted) in event.nodes.iter().zip(&records) {
             let modes = |r: &ContactRecord| (r.decision.before, r.decision.next);
             worst = worst.max(difference(problem, found, wanted));
             if modes(found) != modes(wanted) || worst > CLOSE {
-                return ControlFlow::Break(Err(Parted::Apart { minor, by: worst }));
+                return ControlFlow::Break(Err(FileMismatch::Apart { minor, by: worst }));
             }
         }
         match settled || failed {
@@ -615,7 +615,7 @@ pub fn compared(problem: &InterfaceProblem, text: &str) -> Result<f64, Parted> {
     });
     match end {
         RunEnd::Stopped(parted) => parted?,
-        RunEnd::Finished => return Err(Parted::Done(minor + 1)),
+        RunEnd::Finished => return Err(FileMismatch::Done(minor + 1)),
         RunEnd::Spent | RunEnd::Failed(_) | RunEnd::Interrupted => {}
     }
     Ok(worst)
@@ -640,7 +640,7 @@ fn difference(problem: &InterfaceProblem, a: &ContactRecord, b: &ContactRecord) 
 }
 
 /// The cycle of the first minor iterations of a scene; `None` if they do not cycle.
-fn cycle_of(text: &str) -> Result<Option<Cycle>, Parted> {
+fn cycle_of(text: &str) -> Result<Option<Cycle>, FileMismatch> {
     let mut stepper = stepper(text)?;
     while let Some(event) = stepper.step() {
         match &event.outcome {

@@ -319,7 +319,7 @@ fn size(found: &ContactRecord) -> f64 {
 /// The largest contact force above round-off; 0 if there is none.
 fn largest(shown: &Shown) -> f64 {
     let Some(event) = shown.event else { return 0.0 };
-    let round_off = RoundOff::of(&shown.scene.model, &event.before);
+    let round_off = RoundOff::new(&shown.scene.model, &event.before);
     let sizes = event.nodes.iter().map(|found| round_off.force(size(found)));
     sizes.filter(|f| f.is_finite()).fold(0.0, f64::max)
 }
@@ -550,7 +550,7 @@ fn table(sheet: &mut Sheet, shown: &Shown, rows: &[usize]) -> Result<(), PlotErr
             BLACK,
             Anchor::Left,
         );
-        let round_off = RoundOff::of(model, &event.before);
+        let round_off = RoundOff::new(model, &event.before);
         let forces = [found.f_n, found.f_t, found.t_max];
         let mut values = vec![short(round_off.length(found.gap))];
         values.extend(forces.map(|force| short(round_off.force(force))));

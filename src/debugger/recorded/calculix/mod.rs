@@ -95,7 +95,7 @@ pub fn open(run: CalculixRun) -> Result<OpenedRun, String> {
         log.printed(line);
     }
     for note in words::notes(&run) {
-        log.told(Level::Warning, &note);
+        log.message(Level::Warning, &note);
     }
     Ok(OpenedRun {
         scene,
