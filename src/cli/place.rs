@@ -9,6 +9,7 @@ use stickslip_core::step::drive::{RunEnd, Until, drive};
 use stickslip_core::step::event::{Event, Failure, Outcome};
 use stickslip_core::step::solver::{Lost, Solver};
 use stickslip_debugger::explain::{names, report};
+use stickslip_debugger::history::breakpoints::parts;
 use stickslip_scene::Scene;
 
 /// A position in a run.
@@ -23,21 +24,15 @@ impl FromStr for At {
     type Err = NoValue;
 
     fn from_str(text: &str) -> Result<At, NoValue> {
-        let wrong = "expected INC, INC.MAJOR or INC.MAJOR.MINOR, with whole numbers from 1";
-        let mut numbers = Vec::new();
-        for part in text.split('.') {
-            match part.parse::<u32>() {
-                Ok(number) if number > 0 => numbers.push(number),
-                _ => return Err(NoValue::new(wrong)),
-            }
-        }
-        match numbers[..] {
-            [increment, ref rest @ ..] if rest.len() <= 2 => Ok(At {
+        match parts(text) {
+            Some([Some(increment), major, minor]) => Ok(At {
                 increment,
-                major: rest.first().copied(),
-                minor: rest.get(1).copied(),
+                major,
+                minor,
             }),
-            _ => Err(NoValue::new(wrong)),
+            _ => Err(NoValue::new(
+                "expected INC, INC.MAJOR or INC.MAJOR.MINOR, with whole numbers from 1",
+            )),
         }
     }
 }

@@ -324,9 +324,7 @@ impl Debugger {
             Ok(_) if shown => {}
             Ok(reply) => self.tell(reply),
             Err(message) => {
-                if let Some(tutor) = &mut self.app.learning.lesson {
-                    tutor.failed();
-                }
+                self.app.learning.fail();
                 self.app.complain(message);
             }
         }
@@ -341,9 +339,7 @@ impl Debugger {
             .is_some_and(|session| session.connection().lost().is_some());
         if lost {
             self.app.ahead.forget();
-            if let Some(tutor) = &mut self.app.learning.lesson {
-                tutor.failed();
-            }
+            self.app.learning.fail();
             self.app.say("");
             self.app.notice = Some(shown::line(&reply.0).into_owned());
             return;
@@ -475,10 +471,7 @@ impl Debugger {
         if let Some(measuring) = &self.measuring {
             measuring.interrupt();
         }
-        if let Some(tutor) = &mut self.app.learning.lesson {
-            // The action that the lesson asked for was not completed.
-            tutor.failed();
-        }
+        self.app.learning.fail();
         if let Some(session) = &self.session {
             session.interrupt();
             session.background().interrupt();

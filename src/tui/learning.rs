@@ -48,6 +48,13 @@ impl Learning {
         }
     }
 
+    /// Notes that the action that the lesson asked for was not completed.
+    pub(super) fn fail(&mut self) {
+        if let Some(tutor) = &mut self.lesson {
+            tutor.failed();
+        }
+    }
+
     /// Answers the lesson's question, or checks a prediction.
     pub(super) fn answer(
         &mut self,

@@ -4,34 +4,17 @@ use crate::chartpage::{ChartPage, NoPage};
 use std::path::Path;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread;
-use stickslip_debugger::record::journal::{self, Journal, JournalError, Record};
+use stickslip_debugger::record::journal::{Journal, JournalError, Record};
 use stickslip_debugger::session::Session;
 use stickslip_debugger::teach::Lesson;
-use stickslip_scene::format::SceneError;
-
-/// Why a scene or a lesson cannot be loaded.
-#[derive(Debug, thiserror::Error)]
-pub enum NotLoaded {
-    /// The lesson is invalid.
-    #[error(transparent)]
-    Lesson(#[from] SceneError),
-    /// The journal is invalid or in use, or its replay differs.
-    #[error(transparent)]
-    Journal(#[from] JournalError),
-    /// The scene is invalid, or the finished run is damaged.
-    #[error("{0}")]
-    Session(String),
-    /// The loading thread panicked.
-    #[error("internal error while loading the file")]
-    BrokeDown,
-}
+use stickslip_scene::format::kind::FileKind;
 
 /// A loaded file, or why it cannot be loaded.
 pub enum Loaded {
     /// A session on a scene.
-    Scene(Result<Box<Session>, NotLoaded>),
+    Scene(Result<Box<Session>, String>),
     /// A lesson and a session on its scene.
-    Lesson(Result<Box<(Lesson, Session)>, NotLoaded>),
+    Lesson(Result<Box<(Lesson, Session)>, String>),
     /// A chart, loaded or measured.
     Chart(Result<Box<ChartPage>, NoPage>),
 }
@@ -46,11 +29,11 @@ impl Loading {
     pub fn scene(name: &str) -> Loading {
         let name = name.to_owned();
         Loading::start(move || {
-            if journal::is_named_so(Path::new(&name)) {
-                let session = resumed(Path::new(&name));
-                return Loaded::Scene(session.map(Box::new).map_err(NotLoaded::from));
-            }
-            let session = Session::open(&name).map_err(NotLoaded::Session);
+            let path = Path::new(&name);
+            let session = match FileKind::of_file(path) {
+                Some(FileKind::Journal) => resumed(path).map_err(|why| why.to_string()),
+                _ => Session::open(&name),
+            };
             Loaded::Scene(session.map(Box::new))
         })
     }
@@ -59,7 +42,7 @@ impl Loading {
     pub fn lesson(name: &str) -> Loading {
         let name = name.to_owned();
         Loading::start(move || {
-            let lesson = Lesson::open(&name).map_err(NotLoaded::from);
+            let lesson = Lesson::open(&name).map_err(|why| why.to_string());
             Loaded::Lesson(lesson.map(|lesson| {
                 if let Some(runs) = &lesson.runs {
                     // Measured in the background, so that keys need not wait for it; an error is shown where the result is used.
@@ -91,7 +74,9 @@ impl Loading {
         match self.result.try_recv() {
             Ok(loaded) => Some(loaded),
             Err(TryRecvError::Empty) => None,
-            Err(TryRecvError::Disconnected) => Some(Loaded::Scene(Err(NotLoaded::BrokeDown))),
+            Err(TryRecvError::Disconnected) => Some(Loaded::Scene(Err(
+                "internal error while loading the file".into(),
+            ))),
         }
     }
 }

@@ -65,18 +65,23 @@ impl FromStr for RunPlace {
     type Err = NoPlace;
 
     fn from_str(text: &str) -> Result<RunPlace, NoPlace> {
-        let wrong = || NoPlace(text.into());
-        let number = |part: &str| part.parse::<u32>().ok().filter(|number| *number > 0);
-        let numbers: Option<Vec<u32>> = text.split('.').map(number).collect();
-        match numbers.ok_or_else(wrong)?[..] {
-            [increment, ref rest @ ..] if rest.len() <= 2 => Ok(RunPlace {
-                increment,
-                major: rest.first().copied().unwrap_or(1),
-                minor: rest.get(1).copied().unwrap_or(1),
-            }),
-            _ => Err(wrong()),
-        }
+        let [increment, major, minor] = parts(text).ok_or_else(|| NoPlace(text.into()))?;
+        Ok(RunPlace {
+            increment: increment.unwrap_or(1),
+            major: major.unwrap_or(1),
+            minor: minor.unwrap_or(1),
+        })
     }
+}
+
+/// The numbers of a position `INC[.MAJOR[.MINOR]]`; the first is never missing.
+pub fn parts(text: &str) -> Option<[Option<u32>; 3]> {
+    let mut all = [None; 3];
+    for (k, part) in text.split('.').enumerate() {
+        let number = part.parse().ok().filter(|number| *number > 0)?;
+        *all.get_mut(k)? = Some(number);
+    }
+    Some(all)
 }
 
 impl fmt::Display for RunPlace {

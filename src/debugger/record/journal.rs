@@ -445,11 +445,6 @@ fn sync_folder(file: &Path) {
     let _ = File::open(folder.unwrap_or(Path::new("."))).and_then(|folder| folder.sync_all());
 }
 
-/// Whether a file has the extension of a journal.
-pub fn is_named_so(file: &Path) -> bool {
-    file.extension().is_some_and(|ending| ending == EXTENSION)
-}
-
 /// Default folder for journals: in the user's folder for state, or for data on systems without one.
 ///
 /// # Errors If the system has no home directory.

@@ -16,12 +16,13 @@ use stickslip_core::step::intervene::{Intervention, Refusal};
 use stickslip_core::step::places::Places;
 use stickslip_core::step::solver::{GoesBack, Lost, Offers, Solver};
 use stickslip_core::step::state::{State, Status};
-use stickslip_exchange::attach::conversation::{HEAD, STARTED};
+use stickslip_exchange::attach::conversation::STARTED;
 use stickslip_exchange::attach::message::{Hello, Id};
 use stickslip_exchange::attach::{Answer, Kept, Request, Side};
 use stickslip_exchange::broken::Broken;
 use stickslip_platform::input::{self, Unreadable};
 use stickslip_scene::Scene;
+use stickslip_scene::format::kind::FileKind;
 use stickslip_scene::format::{SceneError, read};
 
 /// Steps from the start: an iteration (`None`) or an intervention each.
@@ -57,8 +58,7 @@ const MOST_BYTES: u64 = 1 << 30;
 /// Reads a stored exchange; `None` if the file is something else.
 pub fn file(name: &str) -> Option<Result<OpenedExchange, SceneError>> {
     let path = Path::new(name);
-    let head = input::start(path, HEAD.len() as u64).ok()?;
-    (head == HEAD.as_bytes()).then(|| {
+    (FileKind::of_file(path)? == FileKind::Exchange).then(|| {
         let not_read = |why: Unreadable| read::not_read(name, &why);
         let large = "too large for an exchange";
         let mut bytes = input::bytes(path, MOST_BYTES, large).map_err(not_read)?;
