@@ -509,14 +509,7 @@ impl Helper {
         known: Vec<String>,
         stop: &AtomicBool,
     ) -> Examination {
-        let stopped = || stop.load(Ordering::Relaxed);
-        let mut found = match self.posed(state) {
-            Ok(posed) => attached::examine(&self.model, state, &posed, nodes, &stopped),
-            Err(lost) => Examination {
-                lines: vec![format!("The frozen problem is not available: {lost}.")],
-                ..Examination::default()
-            },
-        };
+        let mut found = self.examine_problem(state, nodes, stop);
         found.fails |= matches!(state.status, Status::Failed(_));
         let mut lines = known;
         let told: Vec<String> = match &found.census {
@@ -540,6 +533,18 @@ impl Helper {
         found
     }
 
+    /// The examination of the interface problem that an attached solver reports.
+    fn examine_problem(&self, state: &State, nodes: &[usize], stop: &AtomicBool) -> Examination {
+        let stopped = || stop.load(Ordering::Relaxed);
+        match self.posed(state) {
+            Ok(posed) => attached::examine(&self.model, state, &posed, nodes, &stopped),
+            Err(lost) => Examination {
+                lines: vec![format!("The frozen problem is not available: {lost}.")],
+                ..Examination::default()
+            },
+        }
+    }
+
     /// Tries the remedies that an attached solver offers, on that solver.
     fn try_attached(
         &self,
@@ -547,11 +552,7 @@ impl Helper {
         news: &Sender<BackgroundReply>,
         stop: &AtomicBool,
     ) -> Option<()> {
-        let stopped = || stop.load(Ordering::Relaxed);
-        let found = match self.posed(state) {
-            Ok(posed) => attached::examine(&self.model, state, &posed, &[], &stopped),
-            Err(_) => Examination::default(),
-        };
+        let found = self.examine_problem(state, &[], stop);
         let all = remedies::offered(&self.model, state, &self.offers, &found);
         try_all(&all, news, |remedy| {
             let (remedy, state) = (remedy.clone(), state.clone());

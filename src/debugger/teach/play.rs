@@ -1,7 +1,7 @@
 //! Plays a lesson automatically, to check that every step can be reached and every question has one answer.
 
 use super::lesson::{Lesson, LessonStep};
-use super::refusal::Unplayable;
+use super::refusal::{NotNow, Unplayable};
 use super::tutor::{AnswerKind, Tutor, TutorQuestion};
 use crate::action::Action;
 use crate::explain::names;
@@ -39,6 +39,7 @@ pub fn play(lesson: &Arc<Lesson>) -> Result<Vec<Answered>, SceneError> {
     while let Some(step) = lesson.steps.get(tutor.at()) {
         let at = tutor.at();
         let fault = |why: Unplayable| lesson.fault(at, why.to_string());
+        let refused = |why: NotNow| fault(why.into());
         if let Some(message) = tutor.fault() {
             return Err(lesson.fault(at, message.to_owned()));
         }
@@ -47,7 +48,7 @@ pub fn play(lesson: &Arc<Lesson>) -> Result<Vec<Answered>, SceneError> {
             LessonStep::Press { action, .. } => {
                 tutor
                     .permits(action, session.cursor(), session.frame())
-                    .map_err(|why| fault(why.into()))?;
+                    .map_err(refused)?;
                 perform(action, &mut session).map_err(fault)?;
                 tutor.settled(session.cursor(), session.frame());
                 continue;
@@ -64,7 +65,7 @@ pub fn play(lesson: &Arc<Lesson>) -> Result<Vec<Answered>, SceneError> {
                 });
                 tutor
                     .answer(&word, 0, session.cursor(), session.frame())
-                    .map_err(|why| fault(why.into()))?;
+                    .map_err(refused)?;
             }
             LessonStep::Predict { right, .. } => {
                 predict(*right, &mut tutor, &mut session).map_err(fault)?
@@ -72,7 +73,7 @@ pub fn play(lesson: &Arc<Lesson>) -> Result<Vec<Answered>, SceneError> {
         }
         tutor
             .on(session.cursor(), session.frame())
-            .map_err(|why| fault(why.into()))?;
+            .map_err(refused)?;
     }
     Ok(answered)
 }

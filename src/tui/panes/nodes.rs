@@ -15,6 +15,7 @@ use stickslip_core::contact::table2::Tested;
 use stickslip_debugger::action::{Filter, Sort};
 use stickslip_debugger::explain::names;
 use stickslip_debugger::explain::round_off::RoundOff;
+use stickslip_debugger::explain::tested::Dimension;
 use stickslip_scene::number;
 use stickslip_scene::shown;
 use unicode_width::UnicodeWidthStr;
@@ -346,13 +347,10 @@ fn numbers(
         record.decision.changes() && tests.any(|test| test.tested == tested)
     };
     let cell = |value| view.cell(value, columns.number);
-    let force = |value: f64, tested: Tested| match decided(tested) {
-        true => cell(value),
-        false => cell(round_off.force(value)),
-    };
-    let length = |value: f64, tested: Tested| match decided(tested) {
-        true => cell(value),
-        false => cell(round_off.length(value)),
+    let number = |value: f64, tested: Tested| match Dimension::from(tested) {
+        _ if decided(tested) => cell(value),
+        Dimension::Force => cell(round_off.force(value)),
+        _ => cell(round_off.length(value)),
     };
     let ratio = match decided(Tested::ShearForce) {
         _ if view.is_unreported(record.f_t / record.t_max) => number::UNREPORTED.into(),
@@ -360,12 +358,12 @@ fn numbers(
         false => round_off.ratio(record.f_t, record.t_max),
     };
     let texts = [
-        length(record.gap, Tested::Gap),
-        force(record.f_n, Tested::NormalForce),
-        force(record.f_t, Tested::ShearForce),
-        force(record.t_max, Tested::ShearForce),
+        number(record.gap, Tested::Gap),
+        number(record.f_n, Tested::NormalForce),
+        number(record.f_t, Tested::ShearForce),
+        number(record.t_max, Tested::ShearForce),
         format!("{ratio:<width$}", width = columns.ratio),
-        length(record.slip, Tested::Slip),
+        number(record.slip, Tested::Slip),
     ];
     let style = |index: usize| number_style(index, record, app);
     texts

@@ -132,19 +132,22 @@ fn position(app: &App, view: &View, width: usize) -> Line<'static> {
         }
     }
     if view.attached.is_some_and(|attached| attached.lost) {
-        const WORDS: &str = "  ✗ lost";
-        while line.width() + WORDS.width() > width && line.spans.pop().is_some() {}
-        line.push_span(Span::styled(WORDS, app.theme.bad));
+        end_with(&mut line, "  ✗ lost", width, app);
     }
     if app.unkept {
         // Nothing is recorded any more, so this must stay visible.
         const LOST: [&str; 2] = ["   no journal (:journal FILE)", "  no journal"];
         let fits = |words: &&&str| line.width() + words.width() <= width;
         let words = LOST.iter().find(fits).unwrap_or(&LOST[1]);
-        while line.width() + words.width() > width && line.spans.pop().is_some() {}
-        line.push_span(Span::styled(*words, app.theme.bad));
+        end_with(&mut line, words, width, app);
     }
     line
+}
+
+/// Appends words to a line, instead of its last parts if necessary.
+fn end_with(line: &mut Line, words: &'static str, width: usize, app: &App) {
+    while line.width() + words.width() > width && line.spans.pop().is_some() {}
+    line.push_span(Span::styled(words, app.theme.bad));
 }
 
 fn place(app: &App, view: &View, apart: &str, attempt: bool) -> Line<'static> {
