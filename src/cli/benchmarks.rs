@@ -12,8 +12,8 @@ use stickslip_study::benchmarks::{Benchmark, Benchmarks, Compared, Standing, tab
 pub fn main(list: &Benchmarks, out: &OutputArgs) -> Result<Exit, Error> {
     if out.draws() {
         let name = &list.name;
-        let told = format!("{name}: benchmarks have no figure; use --csv for the table");
-        return Err(Error::Usage(told));
+        let text = format!("{name}: benchmarks have no figure; use --csv for the table");
+        return Err(Error::Usage(text));
     }
     let interrupt = Interrupt::listen();
     let outputs = Outputs::open(out)?;

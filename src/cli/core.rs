@@ -81,8 +81,8 @@ fn text(scene: &Scene) -> Result<String, NoCore> {
         return Err(NoCore::Converges(hint));
     };
     let Failure::Cycle(cycle) = failure else {
-        let told = report::outcome(&scene.model, stepper.event());
-        return Err(NoCore::OtherFailure(told));
+        let words = report::outcome(&scene.model, stepper.event());
+        return Err(NoCore::OtherFailure(words));
     };
     if scene.model.settings.at_cycle != AtCycle::Stop {
         notify("note: settings.at_cycle was ignored; with it the scene may escape this cycle");

@@ -68,11 +68,11 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     let usage = |why: String| Error::Usage(why);
     let kind = export::kind(&args.output).map_err(|e| usage(e.to_string()))?;
     if args.frozen && !kind.may_be_frozen {
-        let told = format!(
+        let message = format!(
             "--frozen cannot be used with .{}; use .ron, .dat, .mtx or .h5",
             kind.extension
         );
-        return Err(usage(told));
+        return Err(usage(message));
     }
     match kind.extension {
         "svg" | "png" => pen::ready().map_err(|e| usage(e.to_string()))?,
@@ -305,9 +305,9 @@ fn drive(
 }
 
 /// The failure of the last minor iteration in words; printed as well if requested.
-fn failed(scene: &Scene, stepper: &Stepper, failure: &Failure, told: bool) -> String {
+fn failed(scene: &Scene, stepper: &Stepper, failure: &Failure, prints: bool) -> String {
     let words = report::describe_failure(&scene.model, failure);
-    if told {
+    if prints {
         let at = names::position(stepper.event().position);
         let name = &scene.name;
         notify(&format!("{name}: {at}: {words}; exporting this state"));

@@ -449,7 +449,7 @@ impl<'a> Run<'a> {
             self.tally.steps,
         ));
         let stability = self.tally.stability.as_ref();
-        if let Some(stability) = stability.and_then(Stretches::told) {
+        if let Some(stability) = stability.and_then(Stretches::words) {
             notify(&stability);
         }
         if !monitors {
@@ -648,7 +648,7 @@ impl Stretches {
     }
 
     /// A one-line summary; `None` if no increment was accepted.
-    fn told(&self) -> Option<String> {
+    fn words(&self) -> Option<String> {
         if self.0.is_empty() {
             return None;
         }

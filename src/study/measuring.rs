@@ -40,7 +40,7 @@ impl Measuring {
             .map(|(p, v)| (p.to_owned(), v.to_owned()))
             .collect();
         let (stop, done, all) = (Arc::default(), Arc::default(), Arc::default());
-        let (told, result) = channel();
+        let (sender, result) = channel();
         let measuring = Measuring {
             stop: Arc::clone(&stop),
             done: Arc::clone(&done),
@@ -70,7 +70,7 @@ impl Measuring {
                 precision::run(&planned, measure, &watch)
             });
             // The receiver may be gone.
-            let _ = told.send(measured.map_err(NotMeasured::from));
+            let _ = sender.send(measured.map_err(NotMeasured::from));
         });
         measuring
     }

@@ -110,8 +110,8 @@ fn draw(sheet: &mut Sheet, chart: &Precision) -> Result<(), PlotError> {
     if let Some(more @ 1..) = failed().count().checked_sub(MOST_FAILED) {
         sheet.paragraph(&[format!("✗ and {more} more")], SMALL, CROSS)?;
     }
-    let told: Vec<String> = chart.verdict().into_iter().collect();
-    sheet.paragraph(&told, SMALL, BLACK)?;
+    let lines: Vec<String> = chart.verdict().into_iter().collect();
+    sheet.paragraph(&lines, SMALL, BLACK)?;
     sheet.paragraph(&chart.about, SMALL, GREY)
 }
 

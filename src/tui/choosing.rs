@@ -189,12 +189,12 @@ impl Looking {
         }
         let asked = self.0.as_ref().map(|(name, _)| name);
         if known.map(|seen| &seen.name) != Some(&offer.name) && asked != Some(&offer.name) {
-            let (told, seen) = channel();
+            let (sender, seen) = channel();
             self.0 = Some((offer.name.clone(), seen));
             let offer = offer.clone();
             thread::spawn(move || {
                 // The receiver may be gone.
-                let _ = told.send(Preview::new(&offer));
+                let _ = sender.send(Preview::new(&offer));
             });
         }
         None

@@ -153,7 +153,7 @@ impl CommandLine {
         if let Some((candidates, at)) = &self.completions {
             let words = candidates
                 .iter()
-                .map(|candidate| self.told(candidate, context));
+                .map(|candidate| self.displayed(candidate, context));
             return completions(words, *at, width, theme);
         }
         let name = self.text().split_whitespace().next();
@@ -217,7 +217,7 @@ impl CommandLine {
     }
 
     /// The displayed part of a completion: the completed word, or the last component of a path.
-    fn told<'a>(&self, candidate: &'a str, context: &Context) -> Cow<'a, str> {
+    fn displayed<'a>(&self, candidate: &'a str, context: &Context) -> Cow<'a, str> {
         // Parentheses mark actions that are not available, since colour alone must not.
         let grey = |name: &str| {
             context
@@ -310,11 +310,11 @@ fn choices(text: &str, context: &Context) -> String {
                     .entry(name.trim())
                     .is_ok_and(|entry| entry.offered(context).is_err())
             };
-            let told = found.iter().map(|name| match grey(name) {
+            let words = found.iter().map(|name| match grey(name) {
                 true => format!("({})", name.trim()),
                 false => name.clone(),
             });
-            told.collect::<Vec<_>>().join("  ")
+            words.collect::<Vec<_>>().join("  ")
         }
     }
 }

@@ -139,7 +139,7 @@ impl Debugger {
     /// Prints one line on exit: where the journal is, or why there is none.
     pub(super) fn part(&self) {
         let Some(session) = &self.session else { return };
-        let told = match (session.journal().path(), session.journal().lost()) {
+        let text = match (session.journal().path(), session.journal().lost()) {
             (Some(path), _) => {
                 let path = path.display();
                 format!("journal: {path} (`stickslip resume {path}` continues it)")
@@ -148,7 +148,7 @@ impl Debugger {
             (None, None) => return,
         };
         // Standard error may be closed.
-        let _ = writeln!(io::stderr(), "{}", shown::line(&told));
+        let _ = writeln!(io::stderr(), "{}", shown::line(&text));
     }
 
     /// The data that the panes draw.
@@ -352,11 +352,11 @@ impl Debugger {
         let Some(log) = self.session.as_ref().and_then(|s| s.connection().log()) else {
             return false;
         };
-        let (any, told) = self.app.log_counts.count(log);
-        if let Some(told) = told
+        let (any, text) = self.app.log_counts.count(log);
+        if let Some(text) = text
             && self.app.notice.is_none()
         {
-            self.app.notice = Some(told);
+            self.app.notice = Some(text);
         }
         any
     }

@@ -61,10 +61,10 @@ impl Loading {
     }
 
     fn start(read: impl FnOnce() -> Loaded + Send + 'static) -> Loading {
-        let (told, result) = channel();
+        let (sender, result) = channel();
         thread::spawn(move || {
             // The receiver may be gone.
-            let _ = told.send(read());
+            let _ = sender.send(read());
         });
         Loading { result }
     }

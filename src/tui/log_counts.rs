@@ -22,17 +22,17 @@ impl LogCounts {
         if count == self.lines {
             return (false, None);
         }
-        let mut told = None;
+        let mut last = None;
         for said in log.since(self.lines) {
             match said.how {
                 LogOrigin::Message(Level::Warning) => self.warnings += 1,
                 LogOrigin::Message(Level::Error) => self.errors += 1,
                 _ => continue,
             }
-            told = Some(format!("solver {}: {}", said.how.word(), said.text));
+            last = Some(format!("solver {}: {}", said.how.word(), said.text));
         }
         self.lines = count;
-        (true, told)
+        (true, last)
     }
 
     /// The number of warnings and errors in words; empty if there are none.

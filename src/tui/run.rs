@@ -61,16 +61,16 @@ pub fn run(
 ///
 /// # Errors
 /// If there is no terminal, or it fails.
-pub fn resume(session: Session, told: &str) -> Result<(), Error> {
-    go(Some(session), true, Some(told))
+pub fn resume(session: Session, text: &str) -> Result<(), Error> {
+    go(Some(session), true, Some(text))
 }
 
 /// Runs the debugger on a session; `keeps` also writes journals of scenes opened later.
-fn go(session: Option<Session>, keeps: bool, told: Option<&str>) -> Result<(), Error> {
+fn go(session: Option<Session>, keeps: bool, text: Option<&str>) -> Result<(), Error> {
     let mut debugger = in_terminal(session)?;
     debugger.keeps = keeps;
-    if let Some(told) = told {
-        debugger.app.say(told);
+    if let Some(text) = text {
+        debugger.app.say(text);
     }
     run_on(debugger)
 }

@@ -201,7 +201,7 @@ fn breakpoints_take_a_condition_a_node_and_a_value() {
     let place = "3.2".parse().unwrap();
     assert_eq!(read("break at 3.2"), set(Condition::At(place)));
     assert_eq!(read("b"), Ok(Action::Ui(Ui::Ask(Question::Break))));
-    for (line, told) in [
+    for (line, text) in [
         ("break leaves beam.4", "usage: break leaves [NODE] MODE"),
         (
             "break mode beam.4 glued",
@@ -230,7 +230,7 @@ fn breakpoints_take_a_condition_a_node_and_a_value() {
             "invalid breakpoint number 'x'; usage: delete NUMBER|all",
         ),
     ] {
-        assert_eq!(read(line), Err(told.into()), "{line}");
+        assert_eq!(read(line), Err(text.into()), "{line}");
     }
     assert_eq!(
         read("disable all"),

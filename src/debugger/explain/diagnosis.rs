@@ -212,8 +212,8 @@ fn phases(problem: &InterfaceProblem, period: u32) -> Option<Vec<Phase>> {
     let found = all.into_iter().enumerate().map(|(phase, records)| {
         let changed = |s: &usize| records[*s].decision.changes();
         let changed: Vec<usize> = (0..records.len()).filter(changed).collect();
-        let told = phase < MOST_PHASES && !changed.is_empty();
-        let all = told.then(|| influences(problem, before(phase), &states[phase], &changed));
+        let explains = phase < MOST_PHASES && !changed.is_empty();
+        let all = explains.then(|| influences(problem, before(phase), &states[phase], &changed));
         let all = all.flatten().unwrap_or_default();
         let pushes = changed.iter().zip(&all);
         let pushes = pushes

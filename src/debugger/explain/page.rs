@@ -184,9 +184,9 @@ impl PageBuilder {
     ) {
         match failure {
             Failure::Singular(Singular::Rigid { motions }) => {
-                let told = loose(stepper, state, motions);
-                self.facts.extend(told.lines);
-                self.found.arrows = told.arrows;
+                let rigid = loose(stepper, state, motions);
+                self.facts.extend(rigid.lines);
+                self.found.arrows = rigid.arrows;
             }
             Failure::MajorCycle(round) => {
                 self.found.nodes = round.members.iter().map(|member| member.0).collect();
@@ -317,10 +317,10 @@ impl PageBuilder {
         stepper.restore(state);
         if let Some(problem) = stepper.interface_problem()
             && let Some(problem) = problem.reduced(&undecided(&problem))
-            && let Some(told) = indefinite(&problem, stop)
+            && let Some(text) = indefinite(&problem, stop)
         {
             let name = |place: usize| names::slave(stepper.model(), problem.nodes[place].slave);
-            self.facts.extend(indefinite::words(&told, &name));
+            self.facts.extend(indefinite::words(&text, &name));
         }
         if self.found.lines == [NOT_CONDENSED] {
             self.facts.append(&mut self.found.lines);

@@ -191,11 +191,11 @@ impl Remedy {
                 changes.push(change);
             }
         }
-        let told = |(path, value): &(String, &str)| {
+        let describe = |(path, value): &(String, &str)| {
             let (_, field) = path.rsplit_once('.').unwrap_or(("", path));
             format!("{field}: {value}")
         };
-        let label = changes.first().map(told)?;
+        let label = changes.first().map(describe)?;
         let law = Remedy {
             kind: RemedyKind::Law,
             label,
@@ -231,7 +231,7 @@ fn change(
     kind: RemedyKind,
     settings: &mut Settings,
 ) -> Option<(&'static str, &'static str, String)> {
-    let told = match kind {
+    let text = match kind {
         RemedyKind::Strategy(strategy) => {
             settings.strategy = strategy;
             let label = match strategy {
@@ -305,7 +305,7 @@ fn change(
         | RemedyKind::Gaps(_)
         | RemedyKind::Law => return None,
     };
-    Some(told)
+    Some(text)
 }
 
 /// Initial modes to restart the increment with: for the nodes on their surface, or else for the closest one.

@@ -158,13 +158,13 @@ impl MaterialCause {
             true => "why",
             false => "where",
         };
-        let told = match self.point.determinant > 0.0 {
+        let text = match self.point.determinant > 0.0 {
             true => outside(model, &self.point),
             false => {
                 let (point, limit) = (inverted(model, &self.point), limit(model, &self.point));
                 format!("{point}; {limit}")
             }
         };
-        format!("{head}: {told}{before}")
+        format!("{head}: {text}{before}")
     }
 }

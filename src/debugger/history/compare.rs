@@ -241,12 +241,12 @@ fn differing(model: &Model, a: &Side, b: &Side) -> String {
     let nodes: Vec<usize> = (0..a.nodes.len().min(b.nodes.len()))
         .filter(differ)
         .collect();
-    let told = |&s: &usize| {
+    let describe = |&s: &usize| {
         let [a, b] = [a.nodes[s].next, b.nodes[s].next].map(names::mode);
         format!("{} {a}, {b}", names::slave(model, s))
     };
     match nodes.is_empty() {
         true => ", with the same modes".into(),
-        false => format!(": {}", first_of(nodes.iter().map(told), SHOWN, "; ")),
+        false => format!(": {}", first_of(nodes.iter().map(describe), SHOWN, "; ")),
     }
 }

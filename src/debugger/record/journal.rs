@@ -390,14 +390,14 @@ impl Record {
 
     /// Remarks about the end of the journal; empty if it is complete.
     pub fn reservations(&self) -> String {
-        let mut told = String::new();
+        let mut text = String::new();
         if let Some(line) = self.torn {
-            let _ = write!(told, "; line {line} is incomplete and has been ignored");
+            let _ = write!(text, "; line {line} is incomplete and has been ignored");
         }
         if self.unfinished.is_some() {
-            told += "; the last motion was interrupted and is not repeated";
+            text += "; the last motion was interrupted and is not repeated";
         }
-        told
+        text
     }
 }
 

@@ -23,11 +23,11 @@ pub fn story(record: &Record) -> Result<String, JournalError> {
         .collect();
     let more = if slaves > names.len() { ", …" } else { "" };
     text += &format!("Slave nodes: {}{more}.\n\n", names.join(", "));
-    let told: Vec<&Entry> = record.entries.iter().map(|(_, entry)| entry).collect();
+    let shown: Vec<&Entry> = record.entries.iter().map(|(_, entry)| entry).collect();
     let mut number = 0;
-    for (k, entry) in told.iter().enumerate() {
+    for (k, entry) in shown.iter().enumerate() {
         // Of consecutive cursor moves only the last one matters.
-        let next = told.get(k + 1);
+        let next = shown.get(k + 1);
         if is_look(entry) && next.is_some_and(|next| is_look(next)) {
             continue;
         }

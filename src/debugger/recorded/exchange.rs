@@ -190,9 +190,9 @@ impl ExchangeReader {
         let pending = self.pending.take();
         match (answer, pending) {
             (Answer::Hello(hello), _) => self.hello = Some(*hello),
-            (Answer::Scene(told), _) if self.met.is_none() => {
+            (Answer::Scene(sent), _) if self.met.is_none() => {
                 let hello = self.hello.clone().ok_or(Fault::NoScene)?;
-                let (scene, ids, start) = decode::start(name, &told, None)?;
+                let (scene, ids, start) = decode::start(name, &sent, None)?;
                 self.met = Some(Greeting {
                     scene,
                     hello,
@@ -200,7 +200,7 @@ impl ExchangeReader {
                     start,
                 });
             }
-            (Answer::State(told), _) => self.recorded_step(&told)?,
+            (Answer::State(sent), _) => self.recorded_step(&sent)?,
             (Answer::Saved { token }, _) => {
                 self.tokens.insert(token.to_string(), self.at);
             }
@@ -227,7 +227,7 @@ impl ExchangeReader {
 
     fn recorded_step(
         &mut self,
-        told: &stickslip_exchange::attach::message::State,
+        sent: &stickslip_exchange::attach::message::State,
     ) -> Result<(), Fault> {
         let met = self.met.as_ref().ok_or(Fault::NoScene)?;
         let asked = std::mem::take(&mut self.changed);
@@ -245,7 +245,7 @@ impl ExchangeReader {
             ids: &met.ids,
             decides: met.hello.decides,
         };
-        let led = frame.recorded_step(&from, told)?;
+        let led = frame.recorded_step(&from, sent)?;
         self.at = self.places.add(self.at, asked, Some(led));
         if let Some(Some(led)) = self.places.get_mut(self.at) {
             led.state_at(self.at);

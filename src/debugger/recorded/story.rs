@@ -76,7 +76,7 @@ fn way(
     let mut text = String::new();
     for (number, step) in line.iter().enumerate() {
         let before = &strips[strips.len() - 1];
-        let (strip, told) = match step {
+        let (strip, words) = match step {
             Some(intervention) => {
                 // It was accepted in the original session.
                 let _ = past.intervene(intervention);
@@ -115,7 +115,7 @@ fn way(
         }
         strips.push(strip);
         if number >= from {
-            let _ = writeln!(text, "{:>5}. {told}", number + 1);
+            let _ = writeln!(text, "{:>5}. {words}", number + 1);
         }
     }
     text + &cycle(model, &strips)

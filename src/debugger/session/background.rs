@@ -122,7 +122,7 @@ struct Helper {
 #[derive(Debug)]
 pub struct Background {
     asks: Sender<BackgroundRequest>,
-    told: Receiver<BackgroundReply>,
+    replies: Receiver<BackgroundReply>,
     stop: Arc<AtomicBool>,
     /// Requests without an answer yet.
     waiting: usize,
@@ -152,7 +152,7 @@ impl Background {
 
     fn start(model: Arc<Model>, spec: Option<Spec>, offers: Offers, lender: Lender) -> Background {
         let (asks, orders) = channel::<BackgroundRequest>();
-        let (news, told) = channel();
+        let (news, replies) = channel();
         let stop = Arc::new(AtomicBool::new(false));
         let flag = stop.clone();
         thread::spawn(move || {
@@ -176,7 +176,7 @@ impl Background {
         });
         Background {
             asks,
-            told,
+            replies,
             stop,
             waiting: 0,
             pushes: HashMap::new(),
@@ -248,13 +248,13 @@ impl Background {
     }
 
     /// Requests the examination of the state at a position, for these nodes or, if there are none, for the
-    /// relevant ones. `told` contains what the line already shows about an attached solver.
+    /// relevant ones. `findings` contains what the line already shows about an attached solver.
     pub(super) fn ask_examination(
         &mut self,
         place: LinePlace,
         state: &State,
         nodes: &[usize],
-        told: Vec<String>,
+        findings: Vec<String>,
     ) {
         let known = self.examinations.get(&place);
         if known.is_none_or(|(asked, _)| asked != nodes) {
@@ -269,7 +269,7 @@ impl Background {
                 place,
                 state,
                 nodes.to_vec(),
-                told,
+                findings,
             ));
         }
     }
@@ -314,8 +314,8 @@ impl Background {
     pub fn gather(&mut self) -> bool {
         let mut any = false;
         loop {
-            match self.told.try_recv() {
-                Ok(told) => self.take(told),
+            match self.replies.try_recv() {
+                Ok(reply) => self.take(reply),
                 Err(TryRecvError::Empty) => return any,
                 Err(TryRecvError::Disconnected) => {
                     any |= self.waiting > 0;
@@ -330,8 +330,8 @@ impl Background {
     /// Blocks until all requests are answered.
     pub fn wait(&mut self) {
         while self.waiting > 0 {
-            match self.told.recv() {
-                Ok(told) => self.take(told),
+            match self.replies.recv() {
+                Ok(reply) => self.take(reply),
                 Err(_) => self.gone(),
             }
         }
@@ -342,8 +342,8 @@ impl Background {
         (self.waiting, self.trying, self.examining) = (0, false, 0);
     }
 
-    fn take(&mut self, told: BackgroundReply) {
-        match told {
+    fn take(&mut self, reply: BackgroundReply) {
+        match reply {
             BackgroundReply::Pushes(place, slave, found) => {
                 self.keep_pushes(place, slave, found);
                 self.waiting -= 1;
@@ -420,10 +420,10 @@ impl Helper {
                         })
                     }
                 };
-                let told = found.map_or(BackgroundReply::NotNow, |found| {
+                let reply = found.map_or(BackgroundReply::NotNow, |found| {
                     BackgroundReply::Pushes(place, slave, found)
                 });
-                news.send(told).ok()
+                news.send(reply).ok()
             }
             BackgroundRequest::Examination(place, state, nodes, known) if self.spec.is_none() => {
                 let found = self.examine_attached(&state, &nodes, known, stop);
@@ -512,20 +512,20 @@ impl Helper {
         let mut found = self.examine_problem(state, nodes, stop);
         found.fails |= matches!(state.status, Status::Failed(_));
         let mut lines = known;
-        let told: Vec<String> = match &found.census {
+        let words: Vec<String> = match &found.census {
             Some(census) if self.offers.force => (1..=census.answers.len().min(2))
                 .map(|n| format!("not tried: start from the consistent state {n} (:start-from {n} forces its modes)"))
                 .collect(),
             _ => Vec::new(),
         };
-        let by_hand = self.offers.force && told.is_empty() && !lines.is_empty();
+        let by_hand = self.offers.force && words.is_empty() && !lines.is_empty();
         if found.problem.is_some() {
             lines.push("Table 2 applied to its interface problem:".into());
         }
         // An attached solver does not offer the settings of our own method.
         let offered = |line: &String| !line.starts_with("tried: settings.");
         lines.extend(found.lines.drain(..).filter(offered));
-        lines.extend(told);
+        lines.extend(words);
         if by_hand {
             lines.push("not tried: force one of the changing nodes into another mode (m)".into());
         }

@@ -145,7 +145,7 @@ impl Reached {
     }
 
     /// A short description: `done, 4/4 right`, or `step 3 of 13` for the next step.
-    pub fn told(&self) -> String {
+    pub fn words(&self) -> String {
         match (self.ended, self.asked) {
             (0, _) => format!("step {} of {}", (self.steps + 1).min(self.of), self.of),
             (_, 0) => "done".into(),

@@ -505,8 +505,8 @@ impl TutorQuestion {
             then: String::new(),
             tries: 0,
         };
-        let told = question.told();
-        question.then = ask.then.fill(&look, &told)?;
+        let words = question.words();
+        question.then = ask.then.fill(&look, &words)?;
         Ok(question)
     }
 
@@ -533,7 +533,7 @@ impl TutorQuestion {
     }
 
     /// The right answer in words.
-    fn told(&self) -> String {
+    fn words(&self) -> String {
         match &self.right {
             Right::Mode(mode) => names::mode(*mode).into(),
             Right::Choice(index) => format!("{}", index + 1),
@@ -553,7 +553,7 @@ impl TutorQuestion {
 
     /// The right answer with the reason.
     fn explained(&self) -> String {
-        let mut text = self.told() + ".";
+        let mut text = self.words() + ".";
         if let Some((_, decision, friction)) = &self.node {
             text += &format!(
                 " {}. {}",

@@ -90,8 +90,8 @@ fn lines<'a>(left: &[&'a Offer], at: usize, width: usize, app: &App) -> (Vec<Lin
         let blank = " ".repeat(names.saturating_sub(name.width()));
         let done = match offer.reached {
             None => String::new(),
-            Some(reached) if reached.is_done() => format!("✓ {}  ", reached.told()),
-            Some(reached) => format!("{}  ", reached.told()),
+            Some(reached) if reached.is_done() => format!("✓ {}  ", reached.words()),
+            Some(reached) => format!("{}  ", reached.words()),
         };
         let room = width.saturating_sub(names + 6 + done.width());
         lines.push(Line::from(vec![

@@ -265,10 +265,15 @@ fn row<'a>(
         if columns.pressures {
             let forces = [record.f_n, record.f_t].map(|force| round_off.force(force));
             let found = view.model.contacts[slave].pressure(forces[0], forces[1]);
-            let told = found.map_or([String::new(), String::new()], |both| {
+            let message = found.map_or([String::new(), String::new()], |both| {
                 both.map(|value| view.cell(value, columns.number))
             });
-            let text = format!(" {:<width$}{}", told[0], told[1], width = columns.number);
+            let text = format!(
+                " {:<width$}{}",
+                message[0],
+                message[1],
+                width = columns.number
+            );
             spans.push(Span::styled(text, theme.text));
         }
     }

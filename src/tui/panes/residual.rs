@@ -76,11 +76,11 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     };
     if convergence::fits(plot) {
         // Values that an attached solver does not report are left out.
-        let told = view
+        let text = view
             .residuals
             .iter()
             .filter(|(_, norms)| !view.is_unreported(norms.relative));
-        let points: Vec<Point> = told.map(|one| point(one, view)).collect();
+        let points: Vec<Point> = text.map(|one| point(one, view)).collect();
         convergence::draw(buffer, plot, &points, theme);
     }
 }

@@ -37,10 +37,10 @@ pub fn draw(buffer: &mut Buffer, places: &Places, app: &App, view: Option<&View>
     if area.height > 2 {
         lines.insert(0, scene(app, view, area.width as usize));
     }
-    let told = outcome(app, view, area.width);
+    let outcome_lines = outcome(app, view, area.width);
     let open = matches!(app.overlay, Overlay::None);
-    let more = usize::from(open) * (told.len().min(OUTCOME) + lines.len());
-    lines.extend(told.into_iter().take(OUTCOME));
+    let more = usize::from(open) * (outcome_lines.len().min(OUTCOME) + lines.len());
+    lines.extend(outcome_lines.into_iter().take(OUTCOME));
     let below = (places.message.y.saturating_sub(area.bottom())) / 3;
     let height = area.height + (more as u16).saturating_sub(area.height).min(below);
     paint::over(buffer, Rect { height, ..area }, &lines, &app.theme);
@@ -276,11 +276,11 @@ fn sentence(event: &Event, model: &Model, app: &App) -> (String, Style) {
         Outcome::Increment { .. } => ("✓", theme.warning),
         Outcome::Failed(_) => ("✗", theme.bad),
     };
-    let told = report::outcome(model, event);
+    let words = report::outcome(model, event);
     // The line above shows the position.
     let place = format!("{}: ", names::position_in(model, event.position));
     (
-        format!("{glyph} {}", told.strip_prefix(&place).unwrap_or(&told)),
+        format!("{glyph} {}", words.strip_prefix(&place).unwrap_or(&words)),
         style,
     )
 }

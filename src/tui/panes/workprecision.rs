@@ -71,7 +71,11 @@ pub fn draw(buffer: &mut Buffer, area: Rect, page: &ChartPage, theme: &Theme) {
         height: BELOW - 1,
         ..inner
     };
-    paint::lines(buffer, below, &told(page, theme, usize::from(inner.width)));
+    paint::lines(
+        buffer,
+        below,
+        &details(page, theme, usize::from(inner.width)),
+    );
 }
 
 fn plot_runs(buffer: &mut Buffer, plot: Rect, page: &ChartPage, theme: &Theme) {
@@ -156,7 +160,7 @@ fn series(chart: &Precision, theme: &Theme, width: usize) -> Vec<Line<'static>> 
 }
 
 /// Details of the selected run, and the source of the chart.
-fn told(page: &ChartPage, theme: &Theme, width: usize) -> Vec<Line<'static>> {
+fn details(page: &ChartPage, theme: &Theme, width: usize) -> Vec<Line<'static>> {
     let chart = page.shown();
     let axis = format!(" error over {}", page.cost.axis());
     let Some(point) = chart.points.get(page.run) else {

@@ -269,8 +269,8 @@ fn contacts(model: &Model, state: &State, event: Option<&Event>, grid: &mut Grid
     let mut numbers = names.map(|_| vec![f64::NAN; nodes]);
     for (place, contact) in model.contacts.iter().enumerate() {
         let found = event.and_then(|event| event.nodes.get(place));
-        let told = found.map_or_else(|| at_start(state, place), of_record);
-        let Some((mode, [x, y], values)) = told else {
+        let record = found.map_or_else(|| at_start(state, place), of_record);
+        let Some((mode, [x, y], values)) = record else {
             continue;
         };
         let node = contact.node;

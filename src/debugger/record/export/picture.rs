@@ -178,11 +178,11 @@ fn shape(sheet: &mut Sheet, shown: &Shown, rows: &[usize]) -> Result<(), PlotErr
     sheet.height = top + HIGH + 0.5 * MARGIN;
     legend(sheet, &window, shown, largest)?;
     if pressure > 0.0 {
-        let told = format!(
+        let text = format!(
             "blue: contact pressure F_n / A on undeformed areas, maximum {}",
             short(pressure)
         );
-        sheet.paragraph(&[told], SMALL, GREY)?;
+        sheet.paragraph(&[text], SMALL, GREY)?;
     }
     Ok(())
 }
@@ -458,12 +458,12 @@ fn legend(
     sheet.arrow((x, y + 6.0), (x, y - 7.0), 1.0, GREY);
     sheet.text((x + 10.0, y), "outward side", SMALL, BLACK, Anchor::Left);
     let moved = moved(shown);
-    let told = format!(
+    let words = format!(
         "Displacements to scale, maximum {}; dashed: undeformed.",
         plain_four(moved)
     );
     sheet.height = y + 1.2 * LABEL;
-    sheet.paragraph(&[told], SMALL, GREY)
+    sheet.paragraph(&[words], SMALL, GREY)
 }
 
 /// Four significant digits, without trailing zeros.
@@ -563,8 +563,8 @@ fn table(sheet: &mut Sheet, shown: &Shown, rows: &[usize]) -> Result<(), PlotErr
     sheet.height = y + SMALL;
     let left = model.contacts.len() - rows.len();
     if left > 0 {
-        let told = format!("and {left} more slave nodes");
-        sheet.paragraph(&[told], SMALL, GREY)?;
+        let words = format!("and {left} more slave nodes");
+        sheet.paragraph(&[words], SMALL, GREY)?;
     }
     sheet.height += 0.5 * SMALL;
     Ok(())
