@@ -535,9 +535,8 @@ impl Debugger {
         let was_busy = session.is_running();
         self.app.unkept = session.journal().lost().is_some();
         let seen = session.background_mut().gather();
-        match session.background_mut().exported() {
-            Some(exported) => self.app.report(exported),
-            None => {}
+        if let Some(exported) = session.background_mut().exported() {
+            self.app.report(exported);
         }
         let reply = session.poll();
         let said = reply.is_some();
