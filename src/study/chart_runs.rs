@@ -46,7 +46,7 @@ impl Outcome for TimedRun {
 }
 
 /// A chart whose runs are all planned.
-pub struct Planned {
+pub struct PlannedChart {
     /// The chart as requested.
     pub chart: Chart,
     /// Its series.
@@ -55,11 +55,11 @@ pub struct Planned {
     pub truth: Option<Plan>,
 }
 
-impl Planned {
+impl PlannedChart {
     /// Plans the runs of a chart.
     ///
     /// # Errors If a path or a value is invalid.
-    pub fn new(chart: Chart) -> Result<Planned, SceneError> {
+    pub fn new(chart: Chart) -> Result<PlannedChart, SceneError> {
         let lay_out = |vary: &[Vary], set: &[(String, String)]| {
             Plan::new(Study {
                 vary: vary.to_vec(),
@@ -74,7 +74,7 @@ impl Planned {
             Truth::Run(settings) => Some(lay_out(&[], settings)?),
             _ => None,
         };
-        Ok(Planned {
+        Ok(PlannedChart {
             chart,
             plans,
             truth,
@@ -93,8 +93,8 @@ impl Planned {
 }
 
 /// The runs of some charts as cells of a sweep: chart by chart, with the reference of each one last.
-pub fn sweep(charts: &[Planned], repeats: usize) -> Sweep<'_, TimedRun> {
-    let plans = || charts.iter().flat_map(Planned::all);
+pub fn sweep(charts: &[PlannedChart], repeats: usize) -> Sweep<'_, TimedRun> {
+    let plans = || charts.iter().flat_map(PlannedChart::all);
     let places = |plan: &Plan| 0..plan.cases.len();
     let cases = plans().flat_map(|plan| places(plan).map(move |k| (plan, k)));
     let cases: Vec<(&Plan, usize)> = cases.collect();

@@ -1,7 +1,7 @@
 //! Measures a work-precision chart on a separate thread.
 
 use super::chart_file::Chart;
-use super::chart_runs::{Planned, sweep};
+use super::chart_runs::{PlannedChart, sweep};
 use super::precision::{self, Cost, Measure, Precision, PrecisionError};
 use super::sweep::RunError;
 use super::{Vary, Watch};
@@ -61,7 +61,7 @@ impl Measuring {
             };
             let planned = Chart::open(&name, &over).and_then(|mut chart| {
                 chart.set.extend(set);
-                Planned::new(chart)
+                PlannedChart::new(chart)
             });
             let planned = planned.map_err(|e| PrecisionError::from(RunError::from(e)));
             let measured = planned.and_then(|planned| {

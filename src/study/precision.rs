@@ -9,7 +9,7 @@
 //! both error and cost; errors at round-off ([`ROUND_OFF`]) count as equal.
 
 use super::chart_file::{Chart, Truth};
-use super::chart_runs::{Planned, TimedRun, sweep};
+use super::chart_runs::{PlannedChart, TimedRun, sweep};
 use super::csv::TableError;
 use super::figure::{assigned, name};
 use super::monitor_kind::{MonitorKind, kind};
@@ -168,7 +168,7 @@ struct Measured {
 ///
 /// # Errors As [`Precision::new`], and if a scene cannot be opened.
 pub fn run(
-    planned: &Planned,
+    planned: &PlannedChart,
     measure: Measure,
     watch: &Watch,
 ) -> Result<Precision, PrecisionError> {
@@ -391,7 +391,7 @@ impl Precision {
     ///
     /// # Errors If the reference is not suitable.
     pub fn new(
-        planned: &Planned,
+        planned: &PlannedChart,
         results: Vec<Option<TimedRun>>,
         measure: Measure,
     ) -> Result<Precision, PrecisionError> {
@@ -553,7 +553,7 @@ mod tests {
     fn every_built_in_chart_is_valid() {
         for name in chart_file::names() {
             let chart = Chart::open(name, &[]).unwrap_or_else(|e| panic!("{e}"));
-            let planned = Planned::new(chart).unwrap_or_else(|e| panic!("{e}"));
+            let planned = PlannedChart::new(chart).unwrap_or_else(|e| panic!("{e}"));
             assert!(
                 planned.plans.iter().all(|plan| !plan.cases.is_empty()),
                 "{name}"

@@ -8,7 +8,7 @@ use std::thread;
 use stickslip_core::model::Model;
 use stickslip_core::step::stepper::Stepper;
 use stickslip_debugger::history::frame::Frame;
-use stickslip_debugger::teach::progress::{Progress, Reached};
+use stickslip_debugger::teach::progress::{LessonProgress, Progress};
 use stickslip_debugger::teach::{self, Lesson};
 use stickslip_scene::embedded::EmbeddedFile;
 use stickslip_scene::format::SceneError;
@@ -52,7 +52,7 @@ pub struct Offer {
     /// Its title; empty if it has not been read yet.
     pub title: String,
     /// The user's progress, for a lesson.
-    pub reached: Option<Reached>,
+    pub reached: Option<LessonProgress>,
 }
 
 impl Offer {

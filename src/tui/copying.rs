@@ -4,7 +4,7 @@ use crate::app::{App, Effect};
 use crate::layout::Pane;
 use crate::screen;
 use crate::view::View;
-use stickslip_debugger::action::Copied;
+use stickslip_debugger::action::CopyTarget;
 use stickslip_debugger::explain::names;
 use stickslip_debugger::explain::remedies;
 use stickslip_debugger::history::verdicts::{self, summaries};
@@ -21,13 +21,13 @@ type NamedText = (String, String);
 
 impl App {
     /// Copies something and shows what was copied.
-    pub(super) fn copy(&mut self, what: Option<Copied>, view: Option<&View>) -> Option<Effect> {
+    pub(super) fn copy(&mut self, what: Option<CopyTarget>, view: Option<&View>) -> Option<Effect> {
         let copied = match (what, view) {
-            (Some(Copied::Keys), _) => Ok(("the keys".into(), self.keymap.text())),
-            (Some(Copied::Command), _) => last_line(self),
+            (Some(CopyTarget::Keys), _) => Ok(("the keys".into(), self.keymap.text())),
+            (Some(CopyTarget::Command), _) => last_line(self),
             (_, None) => Err("open a scene first".into()),
-            (Some(Copied::Row), Some(view)) => row(self, view),
-            (Some(Copied::Number(quantity)), Some(view)) => value(quantity, self, view),
+            (Some(CopyTarget::Row), Some(view)) => row(self, view),
+            (Some(CopyTarget::Number(quantity)), Some(view)) => value(quantity, self, view),
             (None, Some(view)) => selected_text(self, view),
         };
         match copied {

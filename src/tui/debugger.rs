@@ -6,7 +6,7 @@ use crate::choosing::{self, Looking, Offer};
 use crate::keys;
 use crate::layout::Pane;
 use crate::learning::Learning;
-use crate::loading::{Loaded, Loading};
+use crate::loading::{LoadedFile, Loading};
 use crate::terminal;
 use crate::theme::Theme;
 use crate::view::View;
@@ -38,7 +38,7 @@ pub fn offers() -> Vec<Offer> {
 
 /// A request that only the event loop can carry out.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Outside {
+pub enum TerminalRequest {
     /// Quit.
     Quit,
     /// Suspend the program.
@@ -58,7 +58,7 @@ pub struct Debugger {
     /// The session; `None` until a scene is opened.
     pub session: Option<Session>,
     /// Requests to the event loop from queued keys.
-    pub(super) outside: VecDeque<Outside>,
+    pub(super) outside: VecDeque<TerminalRequest>,
     /// Start time of the current computation.
     begun: Instant,
     /// Number of frames in the session at the last draw.
@@ -101,7 +101,7 @@ impl Debugger {
     }
 
     /// From now on stores the progress in lessons, and lists the files of the folder in the chooser.
-    pub(super) fn in_the_world(&mut self) {
+    pub(super) fn use_user_files(&mut self) {
         self.progress = Keeper::new(progress::place());
         self.lists = true;
     }
@@ -137,7 +137,7 @@ impl Debugger {
     }
 
     /// Prints one line on exit: where the journal is, or why there is none.
-    pub(super) fn part(&self) {
+    pub(super) fn print_exit_line(&self) {
         let Some(session) = &self.session else { return };
         let text = match (session.journal().path(), session.journal().lost()) {
             (Some(path), _) => {
@@ -162,7 +162,7 @@ impl Debugger {
     }
 
     /// Handles an event from the terminal.
-    pub fn event(&mut self, event: &Event) -> Option<Outside> {
+    pub fn event(&mut self, event: &Event) -> Option<TerminalRequest> {
         match event {
             Event::Key(key) => {
                 let mut last = None;
@@ -185,7 +185,7 @@ impl Debugger {
     }
 
     /// Handles a key.
-    pub fn key(&mut self, key: &KeyEvent) -> Option<Outside> {
+    pub fn key(&mut self, key: &KeyEvent) -> Option<TerminalRequest> {
         let view = self.session.as_ref().map(View::new);
         let chose = matches!(self.app.overlay, Overlay::Chooser(_));
         let effect = self.app.key(key, view.as_ref());
@@ -197,13 +197,13 @@ impl Debugger {
     }
 
     /// Carries out an effect, unless only the event loop can.
-    fn carry_out(&mut self, effect: Effect) -> Option<Outside> {
+    fn carry_out(&mut self, effect: Effect) -> Option<TerminalRequest> {
         match effect {
-            Effect::Quit => return Some(Outside::Quit),
-            Effect::Suspend => return Some(Outside::Suspend),
-            Effect::Redraw => return Some(Outside::Redraw),
-            Effect::Copy(text) => return Some(Outside::Copy(text)),
-            Effect::Mouse(on) => return Some(Outside::Mouse(on)),
+            Effect::Quit => return Some(TerminalRequest::Quit),
+            Effect::Suspend => return Some(TerminalRequest::Suspend),
+            Effect::Redraw => return Some(TerminalRequest::Redraw),
+            Effect::Copy(text) => return Some(TerminalRequest::Copy(text)),
+            Effect::Mouse(on) => return Some(TerminalRequest::Mouse(on)),
             Effect::Submit(command) => self.submit(command),
             Effect::Interrupt => self.interrupt(),
             Effect::Open(scene) => self.load(Loading::scene(&scene), Opens::Scene, &scene),
@@ -247,14 +247,14 @@ impl Debugger {
         };
         (self.loading, self.app.loading) = (None, None);
         match loaded {
-            Loaded::Scene(Ok(session)) => self.open(*session),
-            Loaded::Lesson(Ok(taught)) => self.take_lesson(taught.0, taught.1),
-            Loaded::Chart(Ok(page)) => {
+            LoadedFile::Scene(Ok(session)) => self.open(*session),
+            LoadedFile::Lesson(Ok(taught)) => self.take_lesson(taught.0, taught.1),
+            LoadedFile::Chart(Ok(page)) => {
                 self.app.say("");
                 self.app.overlay = Overlay::Chart(page);
             }
-            Loaded::Scene(Err(why)) | Loaded::Lesson(Err(why)) => self.app.complain(why),
-            Loaded::Chart(Err(why)) => self.app.complain(why),
+            LoadedFile::Scene(Err(why)) | LoadedFile::Lesson(Err(why)) => self.app.complain(why),
+            LoadedFile::Chart(Err(why)) => self.app.complain(why),
         }
         true
     }

@@ -10,7 +10,7 @@ use stickslip_debugger::teach::Lesson;
 use stickslip_scene::format::kind::FileKind;
 
 /// A loaded file, or why it cannot be loaded.
-pub enum Loaded {
+pub enum LoadedFile {
     /// A session on a scene.
     Scene(Result<Box<Session>, String>),
     /// A lesson and a session on its scene.
@@ -21,7 +21,7 @@ pub enum Loaded {
 
 /// A file that is being loaded; dropping this cancels it.
 pub struct Loading {
-    result: Receiver<Loaded>,
+    result: Receiver<LoadedFile>,
 }
 
 impl Loading {
@@ -34,7 +34,7 @@ impl Loading {
                 Some(FileKind::Journal) => resumed(path).map_err(|why| why.to_string()),
                 _ => Session::open(&name),
             };
-            Loaded::Scene(session.map(Box::new))
+            LoadedFile::Scene(session.map(Box::new))
         })
     }
 
@@ -43,7 +43,7 @@ impl Loading {
         let name = name.to_owned();
         Loading::start(move || {
             let lesson = Lesson::open(&name).map_err(|why| why.to_string());
-            Loaded::Lesson(lesson.map(|lesson| {
+            LoadedFile::Lesson(lesson.map(|lesson| {
                 if let Some(runs) = &lesson.runs {
                     // Measured in the background, so that keys need not wait for it; an error is shown where the result is used.
                     let _ = runs.measure();
@@ -57,10 +57,10 @@ impl Loading {
     /// Loads the table of a chart.
     pub fn chart(file: &str) -> Loading {
         let file = file.to_owned();
-        Loading::start(move || Loaded::Chart(ChartPage::open(&file).map(Box::new)))
+        Loading::start(move || LoadedFile::Chart(ChartPage::open(&file).map(Box::new)))
     }
 
-    fn start(read: impl FnOnce() -> Loaded + Send + 'static) -> Loading {
+    fn start(read: impl FnOnce() -> LoadedFile + Send + 'static) -> Loading {
         let (sender, result) = channel();
         thread::spawn(move || {
             // The receiver may be gone.
@@ -70,11 +70,11 @@ impl Loading {
     }
 
     /// The result, once it is available.
-    pub fn result(&self) -> Option<Loaded> {
+    pub fn result(&self) -> Option<LoadedFile> {
         match self.result.try_recv() {
             Ok(loaded) => Some(loaded),
             Err(TryRecvError::Empty) => None,
-            Err(TryRecvError::Disconnected) => Some(Loaded::Scene(Err(
+            Err(TryRecvError::Disconnected) => Some(LoadedFile::Scene(Err(
                 "internal error while loading the file".into(),
             ))),
         }

@@ -1,7 +1,7 @@
 //! The event loop, and the entry points: a scene, a session, a lesson, or the chooser.
 
 use crate::app::App;
-use crate::debugger::{Debugger, Outside, offers};
+use crate::debugger::{Debugger, TerminalRequest, offers};
 use crate::terminal::{self, Signals, Terminal};
 use crate::theme::Theme;
 use crossterm::event::{self, Event};
@@ -95,7 +95,7 @@ fn in_terminal(session: Option<Session>) -> Result<Debugger, Error> {
         return Err(Error::NoTerminal);
     }
     let mut debugger = configured(Config::open()?, session);
-    debugger.in_the_world();
+    debugger.use_user_files();
     Ok(debugger)
 }
 
@@ -114,7 +114,7 @@ fn run_on(mut debugger: Debugger) -> Result<(), Error> {
         // The terminal is restored before anything is printed.
         events(&mut debugger, &mut terminal, &signals)
     });
-    debugger.part();
+    debugger.print_exit_line();
     leave(ended, &signals)
 }
 
@@ -210,14 +210,14 @@ fn next_event(wait: Duration) -> io::Result<Option<Event>> {
 
 /// Executes requests that need the event loop; returns true to quit.
 fn obey(
-    outside: Outside,
+    outside: TerminalRequest,
     terminal: &mut Terminal,
     signals: &Signals,
     app: &mut App,
 ) -> io::Result<bool> {
     match outside {
-        Outside::Quit => return Ok(true),
-        Outside::Suspend => {
+        TerminalRequest::Quit => return Ok(true),
+        TerminalRequest::Suspend => {
             terminal.suspend()?;
             if !continued(signals) {
                 app.complain(
@@ -225,9 +225,9 @@ fn obey(
                 );
             }
         }
-        Outside::Redraw => terminal.forget()?,
-        Outside::Copy(text) => terminal.copy(&text)?,
-        Outside::Mouse(on) => terminal.heed_mouse(on)?,
+        TerminalRequest::Redraw => terminal.forget()?,
+        TerminalRequest::Copy(text) => terminal.copy(&text)?,
+        TerminalRequest::Mouse(on) => terminal.heed_mouse(on)?,
     }
     Ok(false)
 }

@@ -6,7 +6,7 @@ use stickslip::scene::Scene;
 use stickslip::teach::progress::Progress;
 use stickslip::tui::Debugger;
 use stickslip::tui::choosing;
-use stickslip::tui::debugger::Outside;
+use stickslip::tui::debugger::TerminalRequest;
 use stickslip::tui::keys;
 use stickslip::tui::theme::Theme;
 
@@ -99,7 +99,7 @@ fn escape_forgets_what_was_typed_then_goes_back_and_never_quits() {
     );
     // Only q quits, and only where nothing is typed and nothing is open.
     let mut debugger = choosing();
-    assert_eq!(press(&mut debugger, "q"), Some(Outside::Quit));
+    assert_eq!(press(&mut debugger, "q"), Some(TerminalRequest::Quit));
 }
 
 #[test]

@@ -9,7 +9,7 @@ use std::fs;
 use stickslip::action::{Colours, Keymap};
 use stickslip::scene::Scene;
 use stickslip::session;
-use stickslip::tui::debugger::Outside;
+use stickslip::tui::debugger::TerminalRequest;
 use stickslip::tui::layout::Pane;
 use stickslip::tui::theme::Theme;
 use stickslip::tui::{Debugger, keys, screen};
@@ -178,7 +178,7 @@ fn a_mouse_that_is_switched_off_does_nothing() {
     debugger.type_text(":mouse off");
     assert_eq!(
         debugger.key(&keys::press("Enter").unwrap()),
-        Some(Outside::Mouse(false))
+        Some(TerminalRequest::Mouse(false))
     );
     click(&mut debugger, at);
     assert_eq!(debugger.app.selected, 0);
@@ -196,7 +196,7 @@ fn copied(scene: &str, keys: &str, line: &str) -> (Option<String>, String) {
         }
     };
     let text = match outside {
-        Some(Outside::Copy(text)) => Some(text),
+        Some(TerminalRequest::Copy(text)) => Some(text),
         _ => None,
     };
     (text, debugger.app.message.text)

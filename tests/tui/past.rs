@@ -13,7 +13,7 @@ use stickslip::recorded::calculix::run::{CalculixRun, Status};
 use stickslip::recorded::calculix::{self, words};
 use stickslip::recorded::recording::Recording;
 use stickslip::session::Session as Debugged;
-use stickslip::tui::debugger::{Debugger, Outside};
+use stickslip::tui::debugger::{Debugger, TerminalRequest};
 use stickslip::tui::layout::Pane;
 use stickslip::tui::theme::Theme;
 use stickslip::tui::{keys, screen};
@@ -167,7 +167,7 @@ fn what_needs_a_solver_is_refused_with_the_reason() {
     debugger.type_keys(": n o n s e n s e Enter");
     assert!(debugger.app.message.text.contains("nonsense"));
     let quit = keys::press("q").unwrap();
-    assert_eq!(debugger.key(&quit), Some(Outside::Quit));
+    assert_eq!(debugger.key(&quit), Some(TerminalRequest::Quit));
 }
 
 #[test]

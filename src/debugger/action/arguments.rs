@@ -1,13 +1,13 @@
 //! Parses the arguments of actions.
 
 use super::context::{Context, any_or_exact, chosen, exact, find, model, several};
-use super::meaning::{Action, ChartOf, Colours, Copied, Filter, Question, Sort, Ui, Whose};
+use super::meaning::{Action, ChartOf, Colours, CopyTarget, Filter, Question, Sort, Ui, Whose};
 use super::misread::Misread;
 use super::parameters::{parameter, set_paths};
 use super::table::{ActionEntry, Verb};
 use crate::history::breakpoints::Condition;
 use crate::history::watches::{Watch, WatchQuantity};
-use crate::record::command::{Command, Exported, To};
+use crate::record::command::{Command, ExportScope, To};
 use std::path::PathBuf;
 use stickslip_core::model::Mode;
 use stickslip_manual as manual;
@@ -92,7 +92,7 @@ impl ActionEntry {
             Verb::Census => Command::Census(several(&words, context)?),
             Verb::Export { what, overwrite } => {
                 let frozen = match what {
-                    Exported::Shown => rest.strip_prefix("--frozen"),
+                    ExportScope::Shown => rest.strip_prefix("--frozen"),
                     _ => None,
                 };
                 let frozen = frozen.filter(|file| file.is_empty() || file.starts_with(' '));
@@ -101,7 +101,7 @@ impl ActionEntry {
                     return Err(self.misused());
                 }
                 Command::Export {
-                    what: frozen.map_or(*what, |_| Exported::Whole),
+                    what: frozen.map_or(*what, |_| ExportScope::Whole),
                     file: PathBuf::from(file),
                     overwrite: *overwrite,
                 }
@@ -128,7 +128,7 @@ impl ActionEntry {
                 return Ok(Action::Ui(Ui::Filter(filter)));
             }
             Verb::Copy => {
-                let what = one_of(&words, Copied::all(), Copied::word)?;
+                let what = one_of(&words, CopyTarget::all(), CopyTarget::word)?;
                 return Ok(Action::Ui(Ui::Copy(what)));
             }
             Verb::Colours => {

@@ -2,7 +2,7 @@
 
 use super::arguments::CONDITIONS;
 use super::context::{Context, names};
-use super::meaning::{Colours, Copied, Filter, Sort, Whose};
+use super::meaning::{Colours, CopyTarget, Filter, Sort, Whose};
 use super::parameters::{parameter_lines, set_paths};
 use super::paths::beginning_with;
 use super::table::{ACTIONS, ActionEntry, Verb, by_name};
@@ -120,7 +120,7 @@ impl ActionEntry {
                 names.map(|lesson| lesson.name.into()).collect()
             }
             (Verb::Predict, 0) => Whose::ALL.map(|whose| whose.word().into()).into(),
-            (Verb::Copy, 0) => Copied::all().map(|what| what.word().into()).collect(),
+            (Verb::Copy, 0) => CopyTarget::all().map(|what| what.word().into()).collect(),
             (Verb::Colours, 0) => Colours::ALL.map(|colours| colours.word().into()).into(),
             (Verb::Mouse, 0) => ["on", "off"].map(String::from).into(),
             (Verb::Sort, 0) => Sort::ALL.map(|sort| sort.word().into()).into(),

@@ -6,7 +6,7 @@ use crate::history::breakpoints::Condition;
 use crate::history::tree::Budget;
 use crate::history::tree::Tree;
 use crate::history::watches::{Watch, WatchQuantity};
-use crate::record::command::{Command, Exported, Unit};
+use crate::record::command::{Command, ExportScope, Unit};
 use std::path::PathBuf;
 use stickslip_core::model::{Contact, Node};
 use stickslip_core::model::{Friction, Mode, Model, Settings};
@@ -303,16 +303,16 @@ fn export_requires_a_file_name() {
     };
     assert_eq!(
         read("core a b.ron"),
-        export(Exported::Core, "a b.ron", false)
+        export(ExportScope::Core, "a b.ron", false)
     );
-    assert_eq!(read("export! x"), export(Exported::Shown, "x", true));
+    assert_eq!(read("export! x"), export(ExportScope::Shown, "x", true));
     assert_eq!(
         read("export --frozen a b.ron"),
-        export(Exported::Whole, "a b.ron", false)
+        export(ExportScope::Whole, "a b.ron", false)
     );
     assert_eq!(
         read("export --frozen.svg"),
-        export(Exported::Shown, "--frozen.svg", false)
+        export(ExportScope::Shown, "--frozen.svg", false)
     );
     assert!(read("export --frozen").is_err());
     assert_eq!(read("core"), Err("usage: core FILE".into()));

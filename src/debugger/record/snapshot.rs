@@ -39,7 +39,7 @@ pub struct Snapshot {
     /// The whole scene, with all `--set` overrides.
     pub scene: Spec,
     /// Interventions in order.
-    pub interventions: Vec<Applied>,
+    pub interventions: Vec<AppliedIntervention>,
     /// Number of minor iterations.
     pub steps: u64,
     /// The last minor iteration; the first one to be solved if there is none.
@@ -51,7 +51,7 @@ pub struct Snapshot {
 /// An intervention, and the number of minor iterations before it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Applied {
+pub struct AppliedIntervention {
     /// Number of minor iterations before it.
     pub step: u64,
     /// The intervention.
@@ -169,7 +169,7 @@ impl Snapshot {
     /// `event` the last one.
     pub fn take(
         scene: &Scene,
-        applied: &[Applied],
+        applied: &[AppliedIntervention],
         steps: u64,
         state: &State,
         event: Option<&Event>,

@@ -79,7 +79,10 @@ pub fn done(model: &Model, entry: &Entry) -> String {
             )
         }
         Command::Follow { label, steps } => {
-            format!("Applied a remedy ({} steps): {label}.", steps.len())
+            format!(
+                "AppliedIntervention a remedy ({} steps): {label}.",
+                steps.len()
+            )
         }
         Command::Release { slave: s } => {
             format!("Released {}, so that Table 2 decides again.", slave(s))

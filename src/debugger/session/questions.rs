@@ -7,7 +7,7 @@ use super::refusal::Refusal;
 use crate::explain::report;
 use crate::explain::reported_pushes;
 use crate::history::strip::PointKind;
-use crate::record::command::Exported;
+use crate::record::command::ExportScope;
 use crate::record::export::shown::ExportError;
 use crate::record::export::{self, MadeOf, Origin};
 use crate::record::snapshot::{self, Snapshot};
@@ -73,13 +73,13 @@ impl Session {
     /// Requests a file made from the shown state; [`Background::exported`](super::background::Background::exported) returns the result.
     pub(super) fn export(
         &mut self,
-        what: Exported,
+        what: ExportScope,
         file: PathBuf,
         overwrite: bool,
     ) -> Result<String, Refusal> {
         // Fails early if the file cannot be written, and leaves nothing behind.
         files::regular(&file)?;
-        if what == Exported::Shown {
+        if what == ExportScope::Shown {
             let kind = export::kind(&file)?;
             if matches!(kind.made_of, MadeOf::Journal) {
                 return Err(ExportError::OfJournal.into());
@@ -102,7 +102,7 @@ impl Session {
         origin.changes.extend(words);
         let reply = format!("writing {}", file.display());
         let state = Box::new(frame.state.clone());
-        let shown = (what != Exported::Core).then(|| Box::new(self.picture_context()));
+        let shown = (what != ExportScope::Core).then(|| Box::new(self.picture_context()));
         self.background.ask_export(Export {
             shown,
             what,

@@ -15,7 +15,7 @@ use crate::history::tree::Tree;
 use crate::history::verdicts::{self, Summary};
 use crate::record::command::{To, Unit};
 use crate::record::export::shown::COLUMNS;
-use crate::record::snapshot::Applied;
+use crate::record::snapshot::AppliedIntervention;
 use std::sync::Arc;
 use stickslip_core::linear::norms::Norms;
 use stickslip_core::model::Model;
@@ -300,11 +300,11 @@ impl Timeline {
     }
 
     /// Number of minor iterations up to the cursor, and the interventions among them.
-    pub(super) fn applied(&self) -> (u64, Vec<Applied>) {
+    pub(super) fn applied(&self) -> (u64, Vec<AppliedIntervention>) {
         let (mut step, mut applied) = (0, Vec::new());
         for frame in &self.frames()[1..=self.cursor] {
             match &frame.intervention {
-                Some(intervention) => applied.push(Applied {
+                Some(intervention) => applied.push(AppliedIntervention {
                     step,
                     intervention: intervention.clone(),
                 }),

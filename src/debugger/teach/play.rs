@@ -16,7 +16,7 @@ const MOST_STEPS: u32 = 1000;
 
 /// A question with the solver's answer and the replies, numbers filled in.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Answered {
+pub struct AnsweredQuestion {
     /// Index of the step, from 0.
     pub step: usize,
     /// The question.
@@ -32,7 +32,7 @@ pub struct Answered {
 /// Plays a lesson with the right keys and answers.
 ///
 /// # Errors For the first step that cannot be completed, with its line and column.
-pub fn play(lesson: &Arc<Lesson>) -> Result<Vec<Answered>, SceneError> {
+pub fn play(lesson: &Arc<Lesson>) -> Result<Vec<AnsweredQuestion>, SceneError> {
     let mut session = Session::new(lesson.scene.clone());
     let mut tutor = Tutor::new(lesson.clone(), session.cursor(), session.frame());
     let mut answered = Vec::new();
@@ -56,7 +56,7 @@ pub fn play(lesson: &Arc<Lesson>) -> Result<Vec<Answered>, SceneError> {
             LessonStep::Ask(_) => {
                 let word = tutor.solution().unwrap_or_default();
                 let question = tutor.question();
-                answered.push(Answered {
+                answered.push(AnsweredQuestion {
                     step: at,
                     question: tutor.text().to_owned(),
                     answer: readable(&tutor, &word),
