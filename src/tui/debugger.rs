@@ -488,13 +488,17 @@ impl Debugger {
         if self.keeps && !resumed && session.connection().offers().past.is_none() {
             session.journal_mut().write_to_default_path();
         }
-        (self.measuring, self.app.measuring) = (None, None);
         self.app.opened();
         match resumed {
             true => self.app.say("resumed from its journal, which continues"),
             false => greet(&mut self.app, &session),
         }
+        self.replace_session(session);
+    }
+
+    fn replace_session(&mut self, session: Session) {
         self.session = Some(session);
+        (self.measuring, self.app.measuring) = (None, None);
     }
 
     /// Starts a lesson at the start of its scene.
@@ -505,10 +509,9 @@ impl Debugger {
 
     fn take_lesson(&mut self, lesson: Lesson, session: Session) {
         let tutor = Tutor::new(Arc::new(lesson), session.cursor(), session.frame());
-        self.session = Some(session);
-        (self.measuring, self.app.measuring) = (None, None);
         self.app.opened();
         self.app.learning = Learning::new(tutor);
+        self.replace_session(session);
         self.app.say("");
     }
 

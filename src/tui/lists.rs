@@ -197,7 +197,7 @@ impl App {
         };
         if let Some((at, length)) = list {
             let last = length.unwrap_or(0).saturating_sub(1);
-            *at = moved(*at, step, count, last);
+            *at = moved(*at, step, count, last, [Step::Up, Step::Down]);
             return None;
         }
         let order = view.map_or(Vec::new(), |view| self.order(view));
@@ -227,16 +227,16 @@ impl App {
     }
 }
 
-/// The index after a step in a list with indices up to `last`.
-fn moved(at: usize, step: Step, count: isize, last: usize) -> usize {
+/// The index after a step in a list with indices up to `last`; steps other than `back` and `forth` by one stay.
+fn moved(at: usize, step: Step, count: isize, last: usize, [back, forth]: [Step; 2]) -> usize {
     let by = match step {
-        Step::Up => -count,
-        Step::Down => count,
-        Step::PageUp => -PAGE,
-        Step::PageDown => PAGE,
         Step::First => return 0,
         Step::Last => return last,
-        Step::Left | Step::Right => 0,
+        Step::PageUp => -PAGE,
+        Step::PageDown => PAGE,
+        step if step == back => -count,
+        step if step == forth => count,
+        _ => 0,
     };
     at.saturating_add_signed(by).min(last)
 }
@@ -244,14 +244,6 @@ fn moved(at: usize, step: Step, count: isize, last: usize) -> usize {
 /// The target of a step along the timeline; `None` for other steps.
 fn along(step: Step, count: isize, view: &View) -> Option<usize> {
     let last = view.frames.len().saturating_sub(1);
-    let by = match step {
-        Step::Left => -count,
-        Step::Right => count,
-        Step::PageUp => -PAGE,
-        Step::PageDown => PAGE,
-        Step::First => return Some(0),
-        Step::Last => return Some(last),
-        Step::Up | Step::Down => return None,
-    };
-    Some(view.cursor.saturating_add_signed(by).min(last))
+    let steps = [Step::Left, Step::Right];
+    (!matches!(step, Step::Up | Step::Down)).then(|| moved(view.cursor, step, count, last, steps))
 }

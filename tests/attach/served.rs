@@ -7,6 +7,7 @@ use libtest_mimic::Trial;
 use std::path::Path;
 use stickslip::attach::{Attached, Start};
 use stickslip::history::frame::Frame;
+use stickslip::history::verdicts::summaries;
 use stickslip::model::Mode;
 use stickslip::record::command::{Command, To, Unit};
 use stickslip::recorded::log::Log;
@@ -247,8 +248,8 @@ fn sessions_with_interventions_are_the_same_frame_by_frame() {
                         }
                     }
                     assert_eq!(
-                        own.timeline().branches().len(),
-                        attached.timeline().branches().len()
+                        summaries(own.timeline().tree()).len(),
+                        summaries(attached.timeline().tree()).len()
                     );
                 });
             }

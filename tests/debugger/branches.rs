@@ -2,9 +2,11 @@
 
 use stickslip::history::compare::Sameness;
 use stickslip::history::frame::Frame;
+use stickslip::history::frame::curve;
 use stickslip::history::strip::PointKind;
 use stickslip::history::tree::Budget;
 use stickslip::history::verdicts::BranchEnd;
+use stickslip::history::verdicts::summaries;
 use stickslip::model::Mode;
 use stickslip::record::command::{Command, To, Unit};
 use stickslip::scene::Scene;
@@ -55,18 +57,14 @@ fn set(session: &mut Session, path: &str, value: &str) -> String {
 }
 
 fn verdicts(session: &Session) -> Vec<BranchEnd> {
-    session
-        .timeline()
-        .branches()
+    summaries(session.timeline().tree())
         .into_iter()
         .map(|b| b.verdict)
         .collect()
 }
 
 fn names(session: &Session) -> Vec<String> {
-    session
-        .timeline()
-        .branches()
+    summaries(session.timeline().tree())
         .into_iter()
         .map(|b| b.name)
         .collect()
@@ -140,9 +138,7 @@ fn branches_of_branches_keep_their_lines_and_motions_stay_on_the_present_one() {
     forward(&mut session, Unit::Increment, 1);
     let fifth = states(&session);
 
-    let parents: Vec<_> = session
-        .timeline()
-        .branches()
+    let parents: Vec<_> = summaries(session.timeline().tree())
         .iter()
         .map(|b| b.parent)
         .collect();
@@ -152,9 +148,7 @@ fn branches_of_branches_keep_their_lines_and_motions_stay_on_the_present_one() {
     for k in [2, 0, 4, 1, 3, 2, 4, 3, 1, 0] {
         branch(&mut session, &format!("b{}", k + 1));
         assert_eq!(states(&session), all[k], "b{}", k + 1);
-        let lengths: Vec<usize> = session
-            .timeline()
-            .branches()
+        let lengths: Vec<usize> = summaries(session.timeline().tree())
             .iter()
             .map(|b| b.length)
             .collect();
@@ -389,7 +383,10 @@ fn a_session_with_hardly_any_memory_does_the_same() {
         roomy.timeline().residual_history(),
         tight.timeline().residual_history()
     );
-    assert_eq!(roomy.timeline().curve(0), tight.timeline().curve(0));
+    assert_eq!(
+        curve(&roomy.frames()[..=roomy.cursor()], 0),
+        curve(&tight.frames()[..=tight.cursor()], 0)
+    );
     assert_eq!(verdicts(&roomy).len(), 2);
 }
 

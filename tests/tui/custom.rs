@@ -7,6 +7,7 @@ use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier};
 use std::fs;
 use stickslip::action::{Colours, Keymap};
+use stickslip::history::verdicts::summaries;
 use stickslip::scene::Scene;
 use stickslip::session;
 use stickslip::tui::debugger::TerminalRequest;
@@ -95,22 +96,10 @@ fn a_click_selects_a_node_in_the_table_and_in_the_shape() {
 #[test]
 fn a_click_selects_a_branch_a_step_of_the_timeline_and_a_pane() {
     let mut debugger = debugger("osc-two6", "c m x s m s s v", (120, 40));
-    let all = debugger
-        .session
-        .as_ref()
-        .unwrap()
-        .timeline()
-        .branches()
-        .len();
+    let all = summaries(debugger.session.as_ref().unwrap().timeline().tree()).len();
     assert!(all >= 1);
     debugger.type_keys("S S m f s v v");
-    let all = debugger
-        .session
-        .as_ref()
-        .unwrap()
-        .timeline()
-        .branches()
-        .len();
+    let all = summaries(debugger.session.as_ref().unwrap().timeline().tree()).len();
     assert!(all >= 2, "{}", text(&debugger));
     debugger.app.panes.zoomed = true;
     let at = place(&debugger, "Branches", "b1: ");

@@ -6,6 +6,7 @@ use ratatui::style::Modifier;
 use stickslip::explain::remedies::TrialEnd;
 use stickslip::history::tree::Budget;
 use stickslip::history::verdicts::BranchEnd;
+use stickslip::history::verdicts::summaries;
 use stickslip::model::Mode;
 use stickslip::record::command::{Command, Unit};
 use stickslip::record::journal::{Keep, Record};
@@ -250,7 +251,7 @@ fn remedies_are_measured_and_the_chosen_one_is_done_again_in_a_branch_of_its_own
     debugger.type_keys("Down Enter");
     let session = debugger.session.as_ref().unwrap();
     let second = &tried.trials[1];
-    let branches = session.timeline().branches();
+    let branches = summaries(session.timeline().tree());
     assert_eq!(branches.len(), 2);
     assert!(branches[1].name.ends_with(&second.label) && branches[1].is_current);
     assert_eq!(branches[1].own.minors, u64::from(second.minors));
@@ -278,9 +279,7 @@ fn every_converging_remedy_ends_in_the_state_that_its_trial_measured() {
         good += 1;
     }
     assert_eq!(good, 8);
-    let ends: Vec<BranchEnd> = session
-        .timeline()
-        .branches()
+    let ends: Vec<BranchEnd> = summaries(session.timeline().tree())
         .into_iter()
         .map(|b| b.verdict)
         .collect();
@@ -316,13 +315,7 @@ fn keys_are_answered_while_remedies_are_tried() {
 #[test]
 fn a_remedy_from_elsewhere_is_not_taken_here() {
     let mut debugger = debugger("osc-two6", "c r r S r Enter");
-    let branches = debugger
-        .session
-        .as_ref()
-        .unwrap()
-        .timeline()
-        .branches()
-        .len();
+    let branches = summaries(debugger.session.as_ref().unwrap().timeline().tree()).len();
     assert_eq!(branches, 2, "{}", debugger.app.message.text);
     debugger.type_keys("s Enter");
     let message = &debugger.app.message.text;
@@ -404,7 +397,7 @@ fn answers_and_remedies_are_in_the_journal_and_replay_to_the_same_bits() {
     let again = record.replay().unwrap();
     assert_eq!(again.timeline().place(), session.timeline().place());
     assert_eq!(again.frame().state, session.frame().state);
-    assert_eq!(again.timeline().branches().len(), 22);
+    assert_eq!(summaries(again.timeline().tree()).len(), 22);
     for branch in 0..22 {
         let tip = |session: &Session| {
             session

@@ -5,6 +5,7 @@ use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
 use std::fs;
 use std::path::Path;
+use stickslip::history::verdicts::summaries;
 use stickslip::scene::Scene;
 use stickslip::session::Session;
 use stickslip::tui::Debugger;
@@ -42,7 +43,7 @@ fn debugger(scene: &str) -> Debugger {
 /// What is on the screen and where the session is.
 fn state(debugger: &Debugger) -> (String, Vec<String>) {
     let session = debugger.session.as_ref().unwrap();
-    let branches = session.timeline().branches();
+    let branches = summaries(session.timeline().tree());
     let told = branches.iter().map(|branch| format!("{branch:?}"));
     // Seconds are no state.
     let told = told.map(|text| text.split("seconds").next().unwrap_or_default().to_owned());

@@ -143,9 +143,7 @@ fn common(tree: &Tree, a: usize, b: usize) -> Option<[usize; 2]> {
     common_load(tree, a, b).or_else(|| {
         let start = parting(tree, a, b);
         let places = |branch: usize| {
-            let own = (start..tree.len(branch)).rev();
-            own.filter_map(move |at| tree.point(branch, at).map(|(_, strip)| (at, strip)))
-                .filter(|(_, strip)| strip.kind.is_solved())
+            branches::strips(tree, branch, start).filter(|(_, strip)| strip.kind.is_solved())
         };
         let place = |strip: &Strip| {
             let at = strip.position;

@@ -8,11 +8,11 @@ use crate::explain::reported_pushes::Iterations;
 use crate::history::branches;
 use crate::history::breakpoints::Breakpoints;
 use crate::history::compare::{self, Comparison};
-use crate::history::frame::{Frame, curve};
+use crate::history::frame::Frame;
 use crate::history::rounds::{self, rounds};
 use crate::history::strip::{PointKind, Strip};
 use crate::history::tree::Tree;
-use crate::history::verdicts::{self, Summary};
+use crate::history::verdicts;
 use crate::record::command::{To, Unit};
 use crate::record::export::shown::COLUMNS;
 use crate::record::snapshot::AppliedIntervention;
@@ -185,11 +185,6 @@ impl Timeline {
         Ok(format!("this branch is {}", self.name()))
     }
 
-    /// Summaries of all branches.
-    pub fn branches(&self) -> Vec<Summary> {
-        verdicts::summaries(&self.tree)
-    }
-
     /// Two branches side by side, by number; `None` if one does not exist.
     pub fn compare(&self, a: usize, b: usize) -> Option<Comparison> {
         let count = self.tree.branches().len();
@@ -356,11 +351,6 @@ impl Timeline {
         history.reverse();
         history.dedup_by_key(|entry| entry.0);
         history
-    }
-
-    /// A monitor over the load factor, at the end of each accepted increment up to the cursor.
-    pub fn curve(&self, monitor: usize) -> Vec<[f64; 2]> {
-        curve(&self.frames()[..=self.cursor], monitor)
     }
 
     /// The minor iteration before the shown one in the same frozen problem, as a step of the line.
