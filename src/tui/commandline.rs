@@ -124,7 +124,7 @@ impl CommandLine {
     }
 
     /// The line after a prompt, with the cursor as a reversed cell, in as many rows as it needs.
-    pub fn lines(&self, prompt: &str, width: usize, theme: &Theme) -> Vec<Line<'static>> {
+    pub fn lines(&self, prompt: &str, width: usize, theme: &Theme) -> paint::Lines {
         let cursor = theme.text.add_modifier(Modifier::REVERSED);
         let at = self.input.cursor();
         let typed = self.text().chars().chain([' ']).enumerate();
@@ -149,7 +149,7 @@ impl CommandLine {
     }
 
     /// The footer while the line is open: the completions, or the arguments of the action.
-    pub fn hint(&self, context: &Context, width: usize, theme: &Theme) -> Vec<Line<'static>> {
+    pub fn hint(&self, context: &Context, width: usize, theme: &Theme) -> paint::Lines {
         if let Some((candidates, at)) = &self.completions {
             let words = candidates
                 .iter()
@@ -260,7 +260,7 @@ fn completions<'a>(
     at: usize,
     width: usize,
     theme: &Theme,
-) -> Vec<Line<'static>> {
+) -> paint::Lines {
     let mut rows: Vec<Vec<Span>> = vec![Vec::new()];
     let (mut used, mut here) = (0, 0);
     for (index, word) in words.enumerate() {

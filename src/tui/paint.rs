@@ -53,6 +53,9 @@ pub fn cut(text: &str, width: usize) -> String {
     }
 }
 
+/// Lines of text with styles.
+pub type Lines = Vec<Line<'static>>;
+
 /// The mark before an entry of a list.
 pub fn cursor(selected: bool, theme: &Theme) -> Span<'static> {
     Span::styled(if selected { "▸" } else { " " }, theme.focus)
@@ -68,7 +71,7 @@ pub fn over(buffer: &mut Buffer, area: Rect, lines: &[Line], theme: &Theme) {
 }
 
 /// Wraps a text into lines of this width, with a blank on either side.
-pub fn wrapped(text: &str, width: usize, style: Style) -> Vec<Line<'static>> {
+pub fn wrapped(text: &str, width: usize, style: Style) -> Lines {
     let lines = wrap(text, width.saturating_sub(2)).into_iter();
     lines
         .map(|line| Line::styled(format!(" {line}"), style))

@@ -378,30 +378,34 @@ pub fn sort(trials: &mut [Trial]) {
 
 /// The end of a trial, in a word or two.
 pub fn end_words(end: &TrialEnd) -> String {
-    match end {
-        TrialEnd::Converged => "converged".into(),
-        TrialEnd::Against(law) => format!("violates {}", law.name()),
-        TrialEnd::Budget => format!("{BUDGET} minor"),
-        TrialEnd::Failed(Failure::Cycle(cycle)) => format!("{}-cycle", cycle.period),
-        TrialEnd::Failed(Failure::MinorLimit { .. }) => "minor limit".into(),
-        TrialEnd::Failed(Failure::MajorLimit { .. }) => "major limit".into(),
-        TrialEnd::Failed(Failure::MajorCycle(_)) => "majors cycle".into(),
-        TrialEnd::Failed(Failure::Singular(_)) => "singular".into(),
-        TrialEnd::Failed(Failure::Diverged { .. }) => "diverged".into(),
-        TrialEnd::Failed(Failure::OverConstrained { .. }) => "jammed".into(),
-        TrialEnd::Failed(Failure::Refused(_)) => "refused".into(),
-        TrialEnd::Failed(Failure::Inverted(_)) => "inverted".into(),
-        TrialEnd::Failed(Failure::CutTooOften { .. }) => "cut too often".into(),
-        TrialEnd::Failed(Failure::Restless { .. }) => "no rest".into(),
-        TrialEnd::Failed(Failure::Leapt { .. }) => "jumps".into(),
-        TrialEnd::Failed(Failure::DoubledBack) => "doubles back".into(),
-        TrialEnd::Failed(Failure::Unmoved) => "does not move".into(),
-        TrialEnd::Failed(Failure::RoundOff { .. }) => "round-off".into(),
-        TrialEnd::Failed(Failure::Reported { .. }) => "failed".into(),
-        TrialEnd::Failed(Failure::NoAnswer { .. }) => "no answer".into(),
-        TrialEnd::Failed(Failure::NotFound(NotFound::Ray)) => "ray".into(),
-        TrialEnd::Failed(Failure::LadderEnded { .. } | Failure::NotFound(_)) => "none found".into(),
-    }
+    let failure = match end {
+        TrialEnd::Converged => return "converged".into(),
+        TrialEnd::Against(law) => return format!("violates {}", law.name()),
+        TrialEnd::Budget => return format!("{BUDGET} minor"),
+        TrialEnd::Failed(failure) => failure,
+    };
+    let words = match failure {
+        Failure::Cycle(cycle) => return format!("{}-cycle", cycle.period),
+        Failure::MinorLimit { .. } => "minor limit",
+        Failure::MajorLimit { .. } => "major limit",
+        Failure::MajorCycle(_) => "majors cycle",
+        Failure::Singular(_) => "singular",
+        Failure::Diverged { .. } => "diverged",
+        Failure::OverConstrained { .. } => "jammed",
+        Failure::Refused(_) => "refused",
+        Failure::Inverted(_) => "inverted",
+        Failure::CutTooOften { .. } => "cut too often",
+        Failure::Restless { .. } => "no rest",
+        Failure::Leapt { .. } => "jumps",
+        Failure::DoubledBack => "doubles back",
+        Failure::Unmoved => "does not move",
+        Failure::RoundOff { .. } => "round-off",
+        Failure::Reported { .. } => "failed",
+        Failure::NoAnswer { .. } => "no answer",
+        Failure::NotFound(NotFound::Ray) => "ray",
+        Failure::LadderEnded { .. } | Failure::NotFound(_) => "none found",
+    };
+    words.into()
 }
 
 /// Headings of the table; the columns of [`row`].

@@ -131,7 +131,7 @@ fn comparison(
     selected: usize,
     app: &App,
     view: &View,
-) -> Vec<Line<'static>> {
+) -> paint::Lines {
     let theme = &app.theme;
     let current = tree.current();
     if all.len() < 2 {

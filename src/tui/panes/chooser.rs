@@ -140,7 +140,7 @@ fn look(buffer: &mut Buffer, area: Rect, preview: &Preview, beside: bool, app: &
     picture
 }
 
-fn description(glance: &Glance, width: u16, app: &App) -> Vec<Line<'static>> {
+fn description(glance: &Glance, width: u16, app: &App) -> paint::Lines {
     let width = usize::from(width.saturating_sub(2));
     let mut lines = paint::wrapped(&glance.title, width, app.theme.heading);
     lines.extend(paint::wrapped(&glance.about, width, app.theme.text));

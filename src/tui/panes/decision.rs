@@ -135,7 +135,7 @@ fn pushes(
     record: Option<&ContactRecord>,
     view: &View,
     theme: &Theme,
-) -> Vec<Line<'static>> {
+) -> paint::Lines {
     const MOST: usize = 6;
     let heading = |text: &str| Line::styled(format!(" {text}"), theme.heading);
     let Some(record) = record else {
@@ -208,12 +208,7 @@ fn quantity(decision: &Decision) -> Tested {
 const MEASURED: usize = 15;
 
 /// All quantities of the node in this minor iteration, with explanations; shown if there is room.
-fn measured(
-    record: &ContactRecord,
-    slave: usize,
-    view: &View,
-    theme: &Theme,
-) -> Vec<Line<'static>> {
+fn measured(record: &ContactRecord, slave: usize, view: &View, theme: &Theme) -> paint::Lines {
     let round_off = view.round_off();
     let long = |value| view.long(value);
     let signed = |value: f64| {
@@ -326,7 +321,7 @@ fn grid(
     width: usize,
     ruled: bool,
     theme: &Theme,
-) -> Vec<Line<'static>> {
+) -> paint::Lines {
     let table = decision.and_then(table).unwrap_or(TABLE_2);
     let cell = width.saturating_sub(LABEL + 6) / 3;
     let bar = Span::styled("│ ", theme.faint);
@@ -389,7 +384,7 @@ fn grid(
 }
 
 /// The cells that can fire, one per line, if the table does not fit and the cell that fired is hidden.
-fn choices(before: Mode, theme: &Theme) -> Vec<Line<'static>> {
+fn choices(before: Mode, theme: &Theme) -> paint::Lines {
     let row = MODES.iter().position(|mode| *mode == before).unwrap_or(0);
     let cell = |(column, next): (usize, &Mode)| {
         let [first, second] = TABLE_2[row][column];
@@ -482,7 +477,7 @@ fn cell_look(
 }
 
 /// The inequalities with their values, on one line each if they fit, otherwise on two.
-fn tests(decision: &Decision, view: &View, width: usize, theme: &Theme) -> Vec<Line<'static>> {
+fn tests(decision: &Decision, view: &View, width: usize, theme: &Theme) -> paint::Lines {
     let mut lines = Vec::new();
     for test in decision.tests.iter().flatten() {
         let inequality = inequality(test, view);
@@ -508,7 +503,7 @@ fn tests(decision: &Decision, view: &View, width: usize, theme: &Theme) -> Vec<L
 }
 
 /// The forces on each of the two sides that hold a node in a corner.
-fn sides(record: &ContactRecord, slave: usize, view: &View, theme: &Theme) -> Vec<Line<'static>> {
+fn sides(record: &ContactRecord, slave: usize, view: &View, theme: &Theme) -> paint::Lines {
     let friction = &view.frame().state.controls.friction[slave];
     let Some(sides) = record.sides(friction) else {
         return Vec::new();
@@ -528,7 +523,7 @@ fn sides(record: &ContactRecord, slave: usize, view: &View, theme: &Theme) -> Ve
 }
 
 /// The state of the contact law, if it is not hard contact.
-fn bond(record: &ContactRecord, slave: usize, view: &View, theme: &Theme) -> Vec<Line<'static>> {
+fn bond(record: &ContactRecord, slave: usize, view: &View, theme: &Theme) -> paint::Lines {
     let lines = bond::lines(&view.model.contacts[slave], record);
     let line = |text: String| Line::styled(format!(" {text}"), theme.text);
     lines.into_iter().map(line).collect()

@@ -39,7 +39,7 @@ pub fn draw(buffer: &mut Buffer, places: &Places, app: &App, view: Option<&View>
     paint::over(buffer, area, &lines, &app.theme);
 }
 
-fn message(app: &App, view: Option<&View>, places: &Places, width: usize) -> Vec<Line<'static>> {
+fn message(app: &App, view: Option<&View>, places: &Places, width: usize) -> paint::Lines {
     let theme = &app.theme;
     if let Overlay::Line(line) = &app.overlay {
         let prompt = match line.purpose {
@@ -109,7 +109,7 @@ fn question(app: &App, view: Option<&View>) -> Option<String> {
 }
 
 /// The last message, and the watches.
-fn said(app: &App, view: Option<&View>, width: usize) -> Vec<Line<'static>> {
+fn said(app: &App, view: Option<&View>, width: usize) -> paint::Lines {
     let theme = &app.theme;
     let aside = view.map_or("", |view| view.aside.as_str());
     let text = app.message.text.as_str();
@@ -127,7 +127,7 @@ fn said(app: &App, view: Option<&View>, width: usize) -> Vec<Line<'static>> {
     }
 }
 
-fn keys(app: &App, view: Option<&View>, places: &Places) -> Vec<Line<'static>> {
+fn keys(app: &App, view: Option<&View>, places: &Places) -> paint::Lines {
     let room = places.footer.width as usize;
     let typed = match &app.overlay {
         Overlay::Manual(reader) => reader.typed(),

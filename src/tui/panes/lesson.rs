@@ -92,26 +92,26 @@ fn title(tutor: &Tutor) -> String {
 }
 
 /// The next task, wrapped.
-fn todo(tutor: &Tutor, width: usize, theme: &Theme) -> Vec<Line<'static>> {
+fn todo(tutor: &Tutor, width: usize, theme: &Theme) -> paint::Lines {
     wrapped("▶ ", &tutor.todo(), width, theme.key)
 }
 
 /// The tutor's text, wrapped. A mark precedes the reply to an answer, so that it does not depend on colour.
-pub fn said(tutor: &Tutor, width: usize, theme: &Theme) -> Vec<Line<'static>> {
+pub fn said(tutor: &Tutor, width: usize, theme: &Theme) -> paint::Lines {
     let page = tutor.page();
     let parts = page.iter().flat_map(|part| paragraph(part, width, theme));
     parts.collect()
 }
 
 /// The tutor's reply to the last answer.
-fn remark(tutor: &Tutor, width: usize, theme: &Theme) -> Vec<Line<'static>> {
+fn remark(tutor: &Tutor, width: usize, theme: &Theme) -> paint::Lines {
     match tutor.page().last() {
         Some(part @ (Paragraph::Right(_) | Paragraph::Wrong(_))) => paragraph(part, width, theme),
         _ => Vec::new(),
     }
 }
 
-fn paragraph(part: &Paragraph, width: usize, theme: &Theme) -> Vec<Line<'static>> {
+fn paragraph(part: &Paragraph, width: usize, theme: &Theme) -> paint::Lines {
     match part {
         Paragraph::Text(text) => wrapped("", text, width, theme.text),
         Paragraph::Option(number, text) => wrapped(&format!("{number} "), text, width, theme.text),
@@ -121,7 +121,7 @@ fn paragraph(part: &Paragraph, width: usize, theme: &Theme) -> Vec<Line<'static>
 }
 
 /// A paragraph whose lines after the first are indented by the width of the mark.
-fn wrapped(mark: &str, text: &str, width: usize, style: Style) -> Vec<Line<'static>> {
+fn wrapped(mark: &str, text: &str, width: usize, style: Style) -> paint::Lines {
     let indent = mark.width();
     let lines = paint::wrap(text, width.saturating_sub(2 + indent));
     let line = |(index, words): (usize, String)| {

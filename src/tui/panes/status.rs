@@ -194,7 +194,7 @@ fn start(view: &View) -> String {
 }
 
 /// The outcome of the shown minor iteration, and the user's interventions.
-fn outcome(app: &App, view: &View, width: u16) -> Vec<Line<'static>> {
+fn outcome(app: &App, view: &View, width: u16) -> paint::Lines {
     let theme = &app.theme;
     if view.running {
         const SPINNER: [&str; 4] = ["◐", "◓", "◑", "◒"];

@@ -140,7 +140,7 @@ fn plot_runs(buffer: &mut Buffer, plot: Rect, page: &ChartPage, theme: &Theme) {
 }
 
 /// The legend of the series.
-fn series(chart: &Precision, theme: &Theme, width: usize) -> Vec<Line<'static>> {
+fn series(chart: &Precision, theme: &Theme, width: usize) -> paint::Lines {
     let one = |(k, name): (usize, &String)| {
         Line::from(vec![
             Span::styled(format!(" {} ", letter(k, false)), theme.strong),
@@ -160,7 +160,7 @@ fn series(chart: &Precision, theme: &Theme, width: usize) -> Vec<Line<'static>> 
 }
 
 /// Details of the selected run, and the source of the chart.
-fn details(page: &ChartPage, theme: &Theme, width: usize) -> Vec<Line<'static>> {
+fn details(page: &ChartPage, theme: &Theme, width: usize) -> paint::Lines {
     let chart = page.shown();
     let axis = format!(" error over {}", page.cost.axis());
     let Some(point) = chart.points.get(page.run) else {
