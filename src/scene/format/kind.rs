@@ -132,7 +132,11 @@ impl FileKind {
         let rows = text.lines().filter(|line| !line.starts_with('#'));
         let start = Start {
             text,
-            first: rows.map(str::trim).find(|line| !line.is_empty())?,
+            // A file of comments only has none, such as the head of an exchange.
+            first: rows
+                .map(str::trim)
+                .find(|line| !line.is_empty())
+                .unwrap_or_default(),
             is_shallow: too_deep(text).is_none(),
         };
         let found = KINDS.iter().find(|entry| (entry.recognise)(&start));
