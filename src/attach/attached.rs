@@ -17,7 +17,7 @@ use stickslip_core::step::places::Places;
 use stickslip_core::step::solver::{Lost, Offers, Posed, Solver};
 use stickslip_core::step::state::State;
 use stickslip_debugger::explain::names;
-use stickslip_debugger::recorded::decode::{self, Led, WireFrame};
+use stickslip_debugger::recorded::decode::{self, RecordedStep, WireFrame};
 use stickslip_debugger::recorded::fault::Fault;
 use stickslip_debugger::recorded::log::Log;
 use stickslip_debugger::recorded::orders::requests;
@@ -41,7 +41,7 @@ pub struct Attached {
     /// The tree node that the running solver is at, without interventions since; `None` if it is not known.
     at: Option<u64>,
     /// The current state, and the iteration that produced it.
-    now: Led,
+    now: RecordedStep,
     /// Iterations repeated to reach the current node.
     again: usize,
     /// Whether the solver was restarted for that.
@@ -338,7 +338,7 @@ impl Attached {
         let (from, asked) = (self.place()?, self.now.state.asked().to_vec());
         self.change(&asked)?;
         let told = self.step_there()?;
-        let mut led = self.frame().led(&self.now.state, &told)?;
+        let mut led = self.frame().recorded_step(&self.now.state, &told)?;
         let kept = Kept::of(&told, led.event.position);
         let place = match self.places.follows(from, &asked) {
             Some(place) => {

@@ -164,7 +164,7 @@ impl Link {
         let line = line.map_err(|error| self.died(&error.to_string(), waiting))?;
         match self.read(line, waiting)? {
             Answer::Message { level, text } => {
-                self.log.told(level, &text);
+                self.log.message(level, &text);
                 Ok(None)
             }
             Answer::Bye { reason } => Err(Fault::Bye {

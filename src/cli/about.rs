@@ -33,9 +33,9 @@ pub fn main(verbose: bool) -> Result<Exit, Error> {
             ("state", folder(journal::home().ok())),
             ("settings", folder(config::folder())),
         ];
-        for (name, told) in parts {
+        for (name, words) in parts {
             // Writing to a String cannot fail.
-            let _ = writeln!(text, "{name:<10}{told}");
+            let _ = writeln!(text, "{name:<10}{words}");
         }
     }
     say(&text)?;
@@ -113,13 +113,13 @@ fn streams() -> String {
         ("output", stdout().is_terminal()),
         ("error", stderr().is_terminal()),
     ];
-    let told = all.map(|(name, is)| {
+    let words = all.map(|(name, is)| {
         format!(
             "{name}: {}",
             if is { "a terminal" } else { "not a terminal" }
         )
     });
-    told.join(", ")
+    words.join(", ")
 }
 
 /// The environment variables that describe the terminal.
@@ -128,7 +128,7 @@ fn terminal() -> String {
         Some((columns, rows)) => format!("{columns}x{rows}, "),
         None => String::new(),
     };
-    let told = variables(&[
+    let words = variables(&[
         "TERM",
         "COLORTERM",
         "NO_COLOR",
@@ -138,18 +138,18 @@ fn terminal() -> String {
         "STY",
         "SSH_TTY",
     ]);
-    size + &told
+    size + &words
 }
 
 fn variables(names: &[&str]) -> String {
-    let told = names.iter().filter_map(|name| {
+    let words = names.iter().filter_map(|name| {
         let value = env::var_os(name)?;
         Some(format!("{name}={}", value.to_string_lossy()))
     });
-    let told: Vec<String> = told.collect();
-    match told.is_empty() {
+    let words: Vec<String> = words.collect();
+    match words.is_empty() {
         true => format!("none of these is set: {}", names.join(", ")),
-        false => told.join(" "),
+        false => words.join(" "),
     }
 }
 
@@ -158,12 +158,12 @@ fn asked() -> String {
     match terminal::ask() {
         Ok(None) => "not asked: standard input or output is not a terminal".into(),
         Ok(Some(answers)) if answers == Answers::default() => "the terminal does not answer".into(),
-        Ok(Some(answers)) => told(&answers),
+        Ok(Some(answers)) => words(&answers),
         Err(why) => format!("terminal query failed: {why}"),
     }
 }
 
-fn told(answers: &Answers) -> String {
+fn words(answers: &Answers) -> String {
     let known = |known: Option<bool>| match known {
         Some(true) => "yes",
         Some(false) => "no",
@@ -177,9 +177,9 @@ fn told(answers: &Answers) -> String {
         None => "not reported".into(),
         Some(other) if other.is_empty() => "as expected".into(),
         Some(other) => {
-            let told =
+            let words =
                 |(what, there, here)| format!("{what} take {there} columns instead of {here}");
-            other.into_iter().map(told).collect::<Vec<_>>().join(", ")
+            other.into_iter().map(words).collect::<Vec<_>>().join(", ")
         }
     };
     let kind = answers.kind.iter().map(u16::to_string);

@@ -54,14 +54,14 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         None => Keep::Default,
     };
     let (scene, attached, log) = args.solver.attach(args.force)?;
-    let told = format!(
+    let text = format!(
         "attached to {} {}",
         attached.hello().name,
         attached.hello().version
     );
     let mut session = Session::attached(scene, Box::new(attached), log);
     keep.begin(&mut session)?;
-    front::resume(session, told.trim_end())?;
+    front::resume(session, text.trim_end())?;
     Ok(Exit::Good)
 }
 

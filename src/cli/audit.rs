@@ -9,7 +9,7 @@ use stickslip_core::contact::laws::JudgedLaw;
 use stickslip_core::model::Model;
 use stickslip_core::step::drive::RunEnd;
 use stickslip_core::step::event::Outcome;
-use stickslip_debugger::explain::audit::{Audit, Found};
+use stickslip_debugger::explain::audit::{Audit, WorstFinding};
 use stickslip_debugger::explain::judged;
 use stickslip_debugger::explain::names;
 use stickslip_debugger::explain::report;
@@ -166,11 +166,11 @@ fn table(name: &str, model: &Model, audit: &Audit) -> String {
     text
 }
 
-fn place(found: &Found) -> String {
+fn place(found: &WorstFinding) -> String {
     format!("increment {} (load {})", found.increment, found.load_factor)
 }
 
-fn row(model: &Model, law: JudgedLaw, found: &Found) -> String {
+fn row(model: &Model, law: JudgedLaw, found: &WorstFinding) -> String {
     let node = found
         .finding
         .slave

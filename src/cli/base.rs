@@ -1,8 +1,13 @@
 //! Shared by all subcommands: exit codes, errors, scene arguments and output.
 
+use std::convert::Infallible;
 use std::io::{self, Write};
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::process::ExitCode;
+use stickslip_core::step::drive::{RunEnd, Until};
+use stickslip_core::step::event::Failure;
+use stickslip_core::step::stepper::Stepper;
 use stickslip_debugger::record::journal::JournalError;
 use stickslip_debugger::record::snapshot::SnapshotError;
 use stickslip_platform::files::{self, FileError};
@@ -119,6 +124,15 @@ pub fn quoted(word: &str) -> String {
 /// Prints a message to standard error. Unlike `eprintln`, it does not panic if standard error is closed.
 pub fn notify(message: &str) {
     let _ = writeln!(io::stderr(), "{}", shown::text(message));
+}
+
+/// Runs a solver to the end of its history, and returns the failure that ends it early.
+pub fn run_to_end(stepper: &mut Stepper) -> Option<Failure> {
+    let go = |_: &mut Stepper| ControlFlow::<Infallible>::Continue(());
+    match stepper.drive(Until::end(), go) {
+        RunEnd::Failed(failure) => Some(failure),
+        _ => None,
+    }
 }
 
 /// Result of writing to standard output.

@@ -6,14 +6,14 @@ use super::outputs::{OutputArgs, Outputs};
 use stickslip_scene::number::six;
 use stickslip_scene::shown::aligned;
 use stickslip_study::Watch;
-use stickslip_study::benchmarks::{Benchmark, Benchmarks, Compared, Standing, table};
+use stickslip_study::benchmarks::{Benchmark, Benchmarks, ComparedBenchmark, Standing, table};
 
 /// Runs a list of benchmarks, and reports the deviation of each value.
 pub fn main(list: &Benchmarks, out: &OutputArgs) -> Result<Exit, Error> {
     if out.draws() {
         let name = &list.name;
-        let told = format!("{name}: benchmarks have no figure; use --csv for the table");
-        return Err(Error::Usage(told));
+        let text = format!("{name}: benchmarks have no figure; use --csv for the table");
+        return Err(Error::Usage(text));
     }
     let interrupt = Interrupt::listen();
     let outputs = Outputs::open(out)?;
@@ -38,7 +38,7 @@ pub fn main(list: &Benchmarks, out: &OutputArgs) -> Result<Exit, Error> {
     })
 }
 
-fn tell_table(list: &Benchmarks, compared: &[Compared]) {
+fn tell_table(list: &Benchmarks, compared: &[ComparedBenchmark]) {
     notify(&list.title);
     if !list.about.is_empty() {
         notify(&list.about);
@@ -61,7 +61,7 @@ fn tell_table(list: &Benchmarks, compared: &[Compared]) {
     }
 }
 
-fn row(benchmark: &Benchmark, compared: &Compared) -> Vec<String> {
+fn row(benchmark: &Benchmark, compared: &ComparedBenchmark) -> Vec<String> {
     let some = |value: Option<f64>, show: fn(f64) -> String| value.map_or_else(String::new, show);
     let small = |value: f64| format!("{value:.1e}");
     vec![

@@ -9,7 +9,7 @@ use stickslip_scene::format::kind::{FileKind, mistaken};
 use stickslip_scene::number::six;
 use stickslip_scene::shown::aligned;
 use stickslip_study::chart_file::{Chart, Truth};
-use stickslip_study::chart_runs::{Planned, sweep};
+use stickslip_study::chart_runs::{PlannedChart, sweep};
 use stickslip_study::precision::{Cost, Measure, Point, Precision, PrecisionError, ROUND_OFF};
 use stickslip_study::precision_table;
 use stickslip_study::{Vary, precision_figure};
@@ -101,7 +101,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
             Some(file) => chart.truth = Truth::Table(Path::new(file).to_owned()),
             None => {}
         }
-        planned.push(Planned::new(chart)?);
+        planned.push(PlannedChart::new(chart)?);
     }
     let measure = Measure {
         cost: args.cost,

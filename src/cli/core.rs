@@ -4,13 +4,10 @@
 //! Exit code 0: the scene was written. Exit code 3: there is none, and the message gives the reason: the scene converges, fails
 //! otherwise, or its core cannot be written as a matrix.
 
-use super::base::{Error, Exit, SceneArgs, notify, put};
-use std::convert::Infallible;
-use std::ops::ControlFlow;
+use super::base::{Error, Exit, SceneArgs, notify, put, run_to_end};
 use std::path::PathBuf;
 use std::sync::Arc;
 use stickslip_core::model::{AtCycle, AtLimit, Strategy};
-use stickslip_core::step::drive::{RunEnd, Until};
 use stickslip_core::step::event::Failure;
 use stickslip_debugger::explain::core::core;
 use stickslip_debugger::explain::diagnosis::cycling;
@@ -75,8 +72,7 @@ fn text(scene: &Scene) -> Result<String, NoCore> {
     }
     let passes = model.settings.at_minor_limit == AtLimit::Accept;
     let mut stepper = solver(Arc::new(model));
-    let end = stepper.drive(Until::end(), |_| ControlFlow::<Infallible>::Continue(()));
-    let RunEnd::Failed(failure) = end else {
+    let Some(failure) = run_to_end(&mut stepper) else {
         let hint = if passes {
             "; settings.at_minor_limit: accept skips cycles (try stop)"
         } else {
@@ -85,8 +81,8 @@ fn text(scene: &Scene) -> Result<String, NoCore> {
         return Err(NoCore::Converges(hint));
     };
     let Failure::Cycle(cycle) = failure else {
-        let told = report::outcome(&scene.model, stepper.event());
-        return Err(NoCore::OtherFailure(told));
+        let words = report::outcome(&scene.model, stepper.event());
+        return Err(NoCore::OtherFailure(words));
     };
     if scene.model.settings.at_cycle != AtCycle::Stop {
         notify("note: settings.at_cycle was ignored; with it the scene may escape this cycle");
@@ -97,6 +93,6 @@ fn text(scene: &Scene) -> Result<String, NoCore> {
         .and_then(|problem| cycling(problem, &cycle))
         .ok_or(NoCore::NotCondensed)?;
     let core = core(&problem).ok_or(NoCore::NotFound)?;
-    let origin = Origin::of(scene, at, load);
+    let origin = Origin::new(scene, at, load);
     Ok(export::core(&scene.model, &origin, &cycle, &core)?)
 }

@@ -5,7 +5,7 @@ use super::interrupt::Interrupt;
 use std::ops::ControlFlow;
 use stickslip_core::step::drive::{RunEnd, Until};
 use stickslip_core::step::stepper::Stepper;
-use stickslip_debugger::record::snapshot::{Applied, Snapshot, SnapshotError};
+use stickslip_debugger::record::snapshot::{AppliedIntervention, Snapshot, SnapshotError};
 use stickslip_scene::Scene;
 
 /// A scene, with the interventions and the number of steps of a snapshot.
@@ -13,7 +13,7 @@ pub struct Course {
     /// The scene.
     pub scene: Scene,
     /// Interventions, in order of the steps.
-    pub applied: Vec<Applied>,
+    pub applied: Vec<AppliedIntervention>,
     /// Minor iterations of a snapshot; `None` continues to the end of the history, or to the first failure.
     pub steps: Option<u64>,
 }

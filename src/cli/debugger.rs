@@ -44,8 +44,8 @@ pub fn main(args: Args) -> Result<Exit, Error> {
     if args.scene.is_none() && !args.set.set.is_empty() {
         return Err(Error::Usage("--set needs a scene".into()));
     }
-    if let Some(told) = args.scene.as_deref().and_then(groups::unknown) {
-        return Err(Error::Usage(told));
+    if let Some(text) = args.scene.as_deref().and_then(groups::unknown) {
+        return Err(Error::Usage(text));
     }
     front::ready()?;
     if let Some(name) = args.scene.as_deref()

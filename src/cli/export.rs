@@ -68,11 +68,11 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     let usage = |why: String| Error::Usage(why);
     let kind = export::kind(&args.output).map_err(|e| usage(e.to_string()))?;
     if args.frozen && !kind.may_be_frozen {
-        let told = format!(
+        let message = format!(
             "--frozen cannot be used with .{}; use .ron, .dat, .mtx or .h5",
             kind.extension
         );
-        return Err(usage(told));
+        return Err(usage(message));
     }
     match kind.extension {
         "svg" | "png" => pen::ready().map_err(|e| usage(e.to_string()))?,
@@ -183,23 +183,23 @@ fn open(args: &Args) -> Result<Course, Error> {
 }
 
 /// Records of the run so far.
-struct Seen {
+struct RunHistory {
     strips: Vec<Strip>,
     last_major: State,
 }
 
-impl Seen {
-    fn at_start(stepper: &Stepper) -> Seen {
+impl RunHistory {
+    fn at_start(stepper: &Stepper) -> RunHistory {
         let state = stepper.state();
-        Seen {
-            strips: vec![Strip::of(stepper.model(), state, None, None, 0.0)],
+        RunHistory {
+            strips: vec![Strip::new(stepper.model(), state, None, None, 0.0)],
             last_major: state.clone(),
         }
     }
 
     fn see(&mut self, stepper: &Stepper) {
         let (state, event) = (stepper.state(), stepper.event());
-        let strip = Strip::of(stepper.model(), state, Some(event), self.strips.last(), 0.0);
+        let strip = Strip::new(stepper.model(), state, Some(event), self.strips.last(), 0.0);
         self.strips.push(strip);
         // A timeline shows only the last steps; their total is needed only if it is small.
         if self.strips.len() > 64 * COLUMNS {
@@ -212,7 +212,7 @@ impl Seen {
 }
 
 /// How a run ended.
-enum Ended {
+enum RunStop {
     There(String),
     Not(Exit),
 }
@@ -226,16 +226,16 @@ fn state(
     let course = open(args)?;
     let scene = &course.scene;
     let mut stepper = solver(Arc::new(scene.model.clone()));
-    let mut seen = Seen::at_start(&stepper);
+    let mut seen = RunHistory::at_start(&stepper);
     // The scene file itself needs no solve.
     let solves = kind.extension != "ron" || args.frozen;
     let ended = match solves {
         true => drive(&course, args.at, &mut stepper, &mut seen, interrupt)?,
-        false => Ended::There(String::new()),
+        false => RunStop::There(String::new()),
     };
     let ended = match ended {
-        Ended::There(ended) => ended,
-        Ended::Not(exit) => return Ok(Err(exit)),
+        RunStop::There(ended) => ended,
+        RunStop::Not(exit) => return Ok(Err(exit)),
     };
     let solved = seen.strips.len() > 1;
     let event = solved.then(|| stepper.event().clone());
@@ -263,7 +263,7 @@ fn state(
 }
 
 fn origin(course: &Course, at: Position, state: &State) -> Origin {
-    let mut origin = Origin::of(&course.scene, at, state.target);
+    let mut origin = Origin::new(&course.scene, at, state.target);
     let model = &course.scene.model;
     let words = course.applied.iter();
     let words = words.map(|a| report::intervention(model, &a.intervention));
@@ -276,15 +276,15 @@ fn drive(
     course: &Course,
     at: Option<At>,
     stepper: &mut Stepper,
-    seen: &mut Seen,
+    seen: &mut RunHistory,
     interrupt: &Interrupt,
-) -> Result<Ended, Error> {
+) -> Result<RunStop, Error> {
     let (scene, name) = (&course.scene, &course.scene.name);
     if let Some(at) = at {
         let found = seek(stepper, at, interrupt, &mut |stepper| seen.see(stepper));
         return Ok(match found {
-            Ok(_) => Ended::There(String::new()),
-            Err(missed) => Ended::Not(notify_missed(scene, stepper, at, missed)),
+            Ok(_) => RunStop::There(String::new()),
+            Err(missed) => RunStop::Not(notify_missed(scene, stepper, at, missed)),
         });
     }
     let end = course.go(stepper, interrupt, &mut |stepper| seen.see(stepper))?;
@@ -292,22 +292,22 @@ fn drive(
         RunEnd::Stopped(error) => return Err(error),
         RunEnd::Interrupted => {
             notify(&format!("{name}: interrupted"));
-            Ended::Not(Exit::Interrupted)
+            RunStop::Not(Exit::Interrupted)
         }
         RunEnd::Finished | RunEnd::Spent => match &stepper.state().status {
             Status::Failed(failure) => {
-                Ended::There(failed(scene, stepper, &failure.clone(), false))
+                RunStop::There(failed(scene, stepper, &failure.clone(), false))
             }
-            _ => Ended::There(String::new()),
+            _ => RunStop::There(String::new()),
         },
-        RunEnd::Failed(failure) => Ended::There(failed(scene, stepper, &failure, true)),
+        RunEnd::Failed(failure) => RunStop::There(failed(scene, stepper, &failure, true)),
     })
 }
 
 /// The failure of the last minor iteration in words; printed as well if requested.
-fn failed(scene: &Scene, stepper: &Stepper, failure: &Failure, told: bool) -> String {
+fn failed(scene: &Scene, stepper: &Stepper, failure: &Failure, prints: bool) -> String {
     let words = report::describe_failure(&scene.model, failure);
-    if told {
+    if prints {
         let at = names::position(stepper.event().position);
         let name = &scene.name;
         notify(&format!("{name}: {at}: {words}; exporting this state"));

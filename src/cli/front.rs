@@ -13,17 +13,17 @@ pub fn ready() -> Result<(), Error> {
 
 /// Opens the debugger on a scene, or on the chooser.
 pub fn debug(scene: Option<String>, set: &[(String, String)], keep: &Keep) -> Result<(), Error> {
-    tui::run(scene, set, keep).map_err(told)
+    tui::run(scene, set, keep).map_err(usage_error)
 }
 
 /// Opens the debugger on a replayed session.
 pub fn resume(session: Session, words: &str) -> Result<(), Error> {
-    tui::resume(session, words).map_err(told)
+    tui::resume(session, words).map_err(usage_error)
 }
 
 /// Starts a guided lesson.
 pub fn lesson(lesson: Lesson) -> Result<(), Error> {
-    tui::run_lesson(lesson).map_err(told)
+    tui::run_lesson(lesson).map_err(usage_error)
 }
 
 /// Converts a journal to a film.
@@ -31,6 +31,6 @@ pub fn film(record: &Record, session: Session) -> Result<String, Error> {
     Ok(tui::cast::film(record, session)?)
 }
 
-fn told(error: impl ToString) -> Error {
+fn usage_error(error: impl ToString) -> Error {
     Error::Usage(error.to_string())
 }

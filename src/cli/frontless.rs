@@ -7,8 +7,8 @@ use stickslip_debugger::teach::Lesson;
 
 /// Fails: this build has no debugger.
 pub fn ready() -> Result<(), Error> {
-    let told = "this build has no debugger; cargo install stickslip --features tui";
-    Err(Error::Usage(told.to_owned()))
+    let text = "this build has no debugger; cargo install stickslip --features tui";
+    Err(Error::Usage(text.to_owned()))
 }
 
 pub fn debug(_: Option<String>, _: &[(String, String)], _: &Keep) -> Result<(), Error> {

@@ -50,7 +50,7 @@ fn list() -> Result<String, Error> {
     let done = |lesson: &Lesson| {
         progress
             .of(&lesson.name)
-            .map_or(String::new(), |r| r.told())
+            .map_or(String::new(), |r| r.words())
     };
     let names = lessons.iter().map(|lesson| lesson.name.width());
     let width = names.max().unwrap_or(0);

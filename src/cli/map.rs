@@ -14,7 +14,7 @@ use stickslip_study::map::{self, Map, MapCell};
 use stickslip_study::plan::{MOST_CASES, product};
 use stickslip_study::random::{self, NODES, Population};
 use stickslip_study::survey::{self, Survey};
-use stickslip_study::trial::{Judged, TOLERANCE, Variant};
+use stickslip_study::trial::{JudgedProblem, TOLERANCE, Variant};
 use stickslip_study::{Plan, Study, Vary, verdict_figure};
 
 #[derive(Debug, clap::Args)]
@@ -281,8 +281,9 @@ fn lags(strategy: Strategy) -> bool {
 }
 
 fn survey_lines(survey: &Survey) -> Vec<String> {
-    let all: Vec<&Judged> = survey.done().map(|(_, judged)| judged).collect();
-    let count = |is: &dyn Fn(&Judged) -> bool| all.iter().filter(|judged| is(judged)).count();
+    let all: Vec<&JudgedProblem> = survey.done().map(|(_, judged)| judged).collect();
+    let count =
+        |is: &dyn Fn(&JudgedProblem) -> bool| all.iter().filter(|judged| is(judged)).count();
     let mut lines = survey.origin();
     let unseen = count(&|j| j.answers == 0 && j.solvable());
     let besides = match unseen {

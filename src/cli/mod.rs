@@ -134,16 +134,16 @@ pub fn main() -> ExitCode {
     let cli = match parsed() {
         Ok(cli) => cli,
         Err(error) => {
-            if let Some(told) = groups::mistyped(&error, std::env::args_os().nth(1)) {
-                notify(&told);
+            if let Some(text) = groups::mistyped(&error, std::env::args_os().nth(1)) {
+                notify(&text);
                 return Exit::Bad.into();
             }
             // Clap reports help as an error, too; a failure to print it is ignored.
             // The typed text is shown unchanged; the message has no colours.
-            let told = error.render().ansi().to_string();
+            let text = error.render().ansi().to_string();
             match error.use_stderr() {
-                true => notify(told.trim_end_matches('\n')),
-                false => drop(say(&told)),
+                true => notify(text.trim_end_matches('\n')),
+                false => drop(say(&text)),
             }
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }

@@ -9,6 +9,7 @@ use stickslip_core::step::drive::{RunEnd, Until, drive};
 use stickslip_core::step::event::{Event, Failure, Outcome};
 use stickslip_core::step::solver::{Lost, Solver};
 use stickslip_debugger::explain::{names, report};
+use stickslip_debugger::history::breakpoints::parts;
 use stickslip_scene::Scene;
 
 /// A position in a run.
@@ -23,21 +24,15 @@ impl FromStr for At {
     type Err = NoValue;
 
     fn from_str(text: &str) -> Result<At, NoValue> {
-        let wrong = "expected INC, INC.MAJOR or INC.MAJOR.MINOR, with whole numbers from 1";
-        let mut numbers = Vec::new();
-        for part in text.split('.') {
-            match part.parse::<u32>() {
-                Ok(number) if number > 0 => numbers.push(number),
-                _ => return Err(NoValue::new(wrong)),
-            }
-        }
-        match numbers[..] {
-            [increment, ref rest @ ..] if rest.len() <= 2 => Ok(At {
+        match parts(text) {
+            Some([Some(increment), major, minor]) => Ok(At {
                 increment,
-                major: rest.first().copied(),
-                minor: rest.get(1).copied(),
+                major,
+                minor,
             }),
-            _ => Err(NoValue::new(wrong)),
+            _ => Err(NoValue::new(
+                "expected INC, INC.MAJOR or INC.MAJOR.MINOR, with whole numbers from 1",
+            )),
         }
     }
 }
@@ -89,7 +84,7 @@ fn ends_major(outcome: &Outcome) -> bool {
 }
 
 /// Why a position was not reached.
-pub enum Missed {
+pub enum SeekFailure {
     Failed(Failure),
     Interrupted,
     /// The solver was lost.
@@ -104,35 +99,35 @@ pub fn seek<T: Solver + ?Sized>(
     at: At,
     interrupt: &Interrupt,
     see: &mut dyn FnMut(&T),
-) -> Result<u64, Missed> {
+) -> Result<u64, SeekFailure> {
     let mut steps = 0;
     let end = drive(solver, Until::end(), |solver| {
         steps += 1;
         see(solver);
         if interrupt.came() {
-            return ControlFlow::Break(Err(Missed::Interrupted));
+            return ControlFlow::Break(Err(SeekFailure::Interrupted));
         }
         let event = solver.event();
         let failed = matches!(event.outcome, Outcome::Failed(_));
         if at.is(event) {
             ControlFlow::Break(Ok(()))
         } else if at.is_past(event) && !failed {
-            ControlFlow::Break(Err(Missed::Absent))
+            ControlFlow::Break(Err(SeekFailure::Absent))
         } else {
             ControlFlow::Continue(())
         }
     });
-    match end.map_err(Missed::Lost)? {
+    match end.map_err(SeekFailure::Lost)? {
         RunEnd::Stopped(place) => place.map(|()| steps),
-        RunEnd::Failed(failure) => Err(Missed::Failed(failure)),
-        RunEnd::Finished | RunEnd::Spent | RunEnd::Interrupted => Err(Missed::Absent),
+        RunEnd::Failed(failure) => Err(SeekFailure::Failed(failure)),
+        RunEnd::Finished | RunEnd::Spent | RunEnd::Interrupted => Err(SeekFailure::Absent),
     }
 }
 
-pub fn notify_missed(scene: &Scene, solver: &dyn Solver, at: At, missed: Missed) -> Exit {
+pub fn notify_missed(scene: &Scene, solver: &dyn Solver, at: At, missed: SeekFailure) -> Exit {
     let (event, name) = (solver.event(), &scene.name);
     match missed {
-        Missed::Failed(failure) => {
+        SeekFailure::Failed(failure) => {
             let text = report::failure(
                 &scene.model,
                 solver.state(),
@@ -143,16 +138,16 @@ pub fn notify_missed(scene: &Scene, solver: &dyn Solver, at: At, missed: Missed)
             notify(&format!("{name}: {at} not reached: {text}"));
             Exit::Unconverged
         }
-        Missed::Lost(lost) => {
+        SeekFailure::Lost(lost) => {
             notify(&format!("{name}: {at} not reached: {lost}"));
             Exit::Unconverged
         }
-        Missed::Interrupted => {
+        SeekFailure::Interrupted => {
             let reached = names::position(event.position);
             notify(&format!("{name}: interrupted after {reached}"));
             Exit::Interrupted
         }
-        Missed::Absent => {
+        SeekFailure::Absent => {
             let reached = report::outcome(&scene.model, event);
             notify(&format!("{name}: no position {at}: {reached}"));
             Exit::Bad

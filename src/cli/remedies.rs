@@ -1,11 +1,8 @@
 //! `stickslip remedies SCENE`: solves up to the first increment that fails, tries every remedy there, and prints their cost and
 //! result.
 
-use super::base::{Error, Exit, SceneArgs, notify, quoted, say};
-use std::convert::Infallible;
-use std::ops::ControlFlow;
+use super::base::{Error, Exit, SceneArgs, notify, quoted, run_to_end, say};
 use std::sync::Arc;
-use stickslip_core::step::drive::{RunEnd, Until};
 use stickslip_debugger::explain::page;
 use stickslip_debugger::explain::remedies::{self, COLUMNS, TrialEnd};
 use stickslip_debugger::explain::report;
@@ -36,8 +33,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     let scene = args.scene.open()?;
     let spec = Some(&scene.spec);
     let mut stepper = solver(Arc::new(scene.model.clone()));
-    let end = stepper.drive(Until::end(), |_| ControlFlow::<Infallible>::Continue(()));
-    let RunEnd::Failed(failure) = end else {
+    let Some(failure) = run_to_end(&mut stepper) else {
         notify("the scene converges; nothing to remedy");
         return Ok(Exit::Good);
     };

@@ -56,7 +56,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         return Ok(Exit::Good);
     };
     journal.cut(record.whole_bytes)?;
-    session.keep(journal);
+    session.journal_mut().write_to(journal);
     let text = format!(
         "resumed after {} entries{reservations}",
         record.entries.len()

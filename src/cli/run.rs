@@ -234,7 +234,7 @@ struct Tally<'a> {
 }
 
 /// How a run ended: stopped by `Closed`, or lost if an attached solver fails.
-type Ended = Result<RunEnd<Closed>, Lost>;
+type Ending = Result<RunEnd<Closed>, Lost>;
 
 /// Why the run was stopped here.
 enum Closed {
@@ -283,7 +283,7 @@ impl<'a> Run<'a> {
         }
     }
 
-    fn go(&mut self, outputs: &mut RunOutputs, interrupt: &Interrupt) -> Result<Ended, Error> {
+    fn go(&mut self, outputs: &mut RunOutputs, interrupt: &Interrupt) -> Result<Ending, Error> {
         let Run { solver, tally } = self;
         let solver = &mut **solver;
         let stability = tally.stability.is_some();
@@ -316,7 +316,7 @@ impl<'a> Run<'a> {
     }
 
     /// Prints how the run ended.
-    fn notify(&mut self, end: &Ended, args: &Args, interrupt: &Interrupt) -> Exit {
+    fn notify(&mut self, end: &Ending, args: &Args, interrupt: &Interrupt) -> Exit {
         if self.tally.doubtful > MOST_WARNINGS {
             notify(&format!(
                 "warning: {} increments in total were accepted with warnings",
@@ -465,7 +465,7 @@ impl<'a> Run<'a> {
             self.tally.steps,
         ));
         let stability = self.tally.stability.as_ref();
-        if let Some(stability) = stability.and_then(Stretches::told) {
+        if let Some(stability) = stability.and_then(Stretches::words) {
             notify(&stability);
         }
         if !monitors {
@@ -527,7 +527,7 @@ impl Tally<'_> {
     fn endless(&mut self, solver: &dyn Solver) -> Option<String> {
         let (most, watch) = self.most.as_mut()?;
         let (event, state) = (solver.event(), solver.state());
-        watch.see(&Strip::of(solver.model(), state, Some(event), None, 0.0));
+        watch.see(&Strip::new(solver.model(), state, Some(event), None, 0.0));
         if self.minors < *most {
             return None;
         }
@@ -670,7 +670,7 @@ impl Stretches {
     }
 
     /// A one-line summary; `None` if no increment was accepted.
-    fn told(&self) -> Option<String> {
+    fn words(&self) -> Option<String> {
         if self.0.is_empty() {
             return None;
         }

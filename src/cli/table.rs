@@ -36,6 +36,7 @@ use stickslip_core::model::{Control, Friction, Jumps, Model, Monitor, ToldKind, 
 use stickslip_core::step::event::{Event, Failure, Outcome};
 use stickslip_core::step::recovery::motion::Motion;
 use stickslip_debugger::explain::names;
+use stickslip_debugger::history::strip::norms_after;
 use stickslip_study::csv::field;
 
 /// The first line of `--csv`.
@@ -200,9 +201,6 @@ pub fn trace_rows(model: &Model, friction: &[Friction], event: &Event) -> String
 
 fn residual(event: &Event) -> f64 {
     match &event.outcome {
-        Outcome::Major { after, .. }
-        | Outcome::Refused { after, .. }
-        | Outcome::Increment { after, .. } => after.relative,
         Outcome::Failed(Failure::MajorLimit { relative, .. } | Failure::Diverged { relative }) => {
             *relative
         }
@@ -210,7 +208,7 @@ fn residual(event: &Event) -> f64 {
             relative: Some(relative),
             ..
         }) => *relative,
-        _ => event.before.relative,
+        outcome => norms_after(outcome).unwrap_or(&event.before).relative,
     }
 }
 

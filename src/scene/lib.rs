@@ -161,12 +161,12 @@ impl Scene {
     ///
     /// # Errors
     /// If the scene is invalid.
-    pub fn told(
+    pub fn from_message(
         name: &str,
-        told: &message::Scene,
+        message: &message::Scene,
         increment: Option<f64>,
     ) -> Result<Scene, SceneError> {
-        Scene::from_spec(name, attached::spec(told, increment))
+        Scene::from_spec(name, attached::spec(message, increment))
     }
 
     /// Checks a scene that is embedded in another file, at a path of its text; `name` identifies the file in messages.

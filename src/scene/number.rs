@@ -1,7 +1,7 @@
 //! Formats numbers for people: narrow and aligned at the decimal point in tables, without hiding a near-tie by rounding.
 
 /// Shown for a number that an attached solver does not report.
-pub const UNTOLD: &str = "-";
+pub const UNREPORTED: &str = "-";
 
 /// A number in a table cell: sign slot first, then up to six significant digits such that the last column stays empty, padded to
 /// the width. Decimal points are aligned. Only an exact zero is shown as `0`.

@@ -22,7 +22,7 @@
 //! `scale`.
 
 use super::figure::assigned;
-use super::one::{Spare, Watch, one};
+use super::one::{SolverPool, Watch, one};
 use super::read::pairs;
 use super::result::{CaseEnd, Row, Run};
 use super::sweep::{RunError, side_by_side};
@@ -106,7 +106,7 @@ pub struct Benchmark {
 
 /// Result of a benchmark.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Compared {
+pub struct ComparedBenchmark {
     /// Our value; `None` if the run did not get that far.
     pub ours: Option<f64>,
     /// (ours − source) / scale.
@@ -190,7 +190,11 @@ impl Benchmarks {
     ///
     /// # Errors If a scene or a setting is invalid, or a monitor does not exist. The failure of a run is a
     /// result.
-    pub fn run(&self, jobs: NonZeroUsize, watch: &Watch) -> Result<Vec<Compared>, RunError> {
+    pub fn run(
+        &self,
+        jobs: NonZeroUsize,
+        watch: &Watch,
+    ) -> Result<Vec<ComparedBenchmark>, RunError> {
         let mut posed: Vec<(&Benchmark, Scene)> = Vec::new();
         let mut of = Vec::with_capacity(self.list.len());
         for benchmark in &self.list {
@@ -207,7 +211,7 @@ impl Benchmarks {
             self.check_monitors(benchmark, &posed[place].1)?;
             of.push(place);
         }
-        let spare = Spare::default();
+        let spare = SolverPool::default();
         let runs: Vec<Run> = side_by_side(jobs, posed.len(), |k| {
             let model = &posed[k].1.model;
             let count = increments(&model.path, |leg| model.on_leg(leg)) as u64;
@@ -263,8 +267,8 @@ impl Benchmark {
     }
 
     /// Compares the result of a run.
-    fn compare(&self, run: &Run) -> Compared {
-        let none = |standing| Compared {
+    fn compare(&self, run: &Run) -> ComparedBenchmark {
+        let none = |standing| ComparedBenchmark {
             ours: None,
             error: None,
             drift: None,
@@ -285,7 +289,7 @@ impl Benchmark {
             (true, Some(drift)) if !within(drift, self.drift) => Standing::Drifted,
             (true, _) => Standing::Good,
         };
-        Compared {
+        ComparedBenchmark {
             ours: Some(ours),
             error: Some(error),
             drift,
@@ -325,7 +329,7 @@ impl Benchmark {
 
 /// The comparison as CSV: `case,what,source,value,ours,error,within,own,drift,allowed,standing`. Floats read
 /// back to the same bits; missing values are empty.
-pub fn table(list: &Benchmarks, compared: &[Compared]) -> String {
+pub fn table(list: &Benchmarks, compared: &[ComparedBenchmark]) -> String {
     use super::csv::field;
     let mut text =
         String::from("case,what,source,value,ours,error,within,own,drift,allowed,standing\n");

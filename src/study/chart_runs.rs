@@ -3,7 +3,7 @@
 use super::chart_file::{Chart, Truth};
 use super::figure::name;
 use super::log::{Outcome, same};
-use super::one::{Spare, Watch, one};
+use super::one::{SolverPool, Watch, one};
 use super::plan::{Case, Plan};
 use super::read::{Study, Vary};
 use super::result::Run;
@@ -19,7 +19,7 @@ const LONG: f64 = 20.0;
 
 /// A run with its time, as stored in a log.
 #[derive(Debug, Clone, Serialize, Deserialize)]
-pub struct Timed {
+pub struct TimedRun {
     /// Median processor time, seconds.
     pub seconds: f64,
     /// Number of repetitions.
@@ -28,7 +28,7 @@ pub struct Timed {
     pub run: Run,
 }
 
-impl Outcome for Timed {
+impl Outcome for TimedRun {
     const MAX_BYTES: usize = Run::MAX_BYTES;
 
     fn is_sound(&self) -> bool {
@@ -37,7 +37,7 @@ impl Outcome for Timed {
 
     /// Two results must be equal except for their times. The one with more repetitions counts or, if equal, the
     /// shorter time.
-    fn join(&self, other: &Timed) -> Option<Timed> {
+    fn join(&self, other: &TimedRun) -> Option<TimedRun> {
         let more = other.repeats.cmp(&self.repeats);
         let less = more.then(self.seconds.total_cmp(&other.seconds));
         let better = if less.is_le() { self } else { other };
@@ -46,7 +46,7 @@ impl Outcome for Timed {
 }
 
 /// A chart whose runs are all planned.
-pub struct Planned {
+pub struct PlannedChart {
     /// The chart as requested.
     pub chart: Chart,
     /// Its series.
@@ -55,11 +55,11 @@ pub struct Planned {
     pub truth: Option<Plan>,
 }
 
-impl Planned {
+impl PlannedChart {
     /// Plans the runs of a chart.
     ///
     /// # Errors If a path or a value is invalid.
-    pub fn new(chart: Chart) -> Result<Planned, SceneError> {
+    pub fn new(chart: Chart) -> Result<PlannedChart, SceneError> {
         let lay_out = |vary: &[Vary], set: &[(String, String)]| {
             Plan::new(Study {
                 vary: vary.to_vec(),
@@ -74,7 +74,7 @@ impl Planned {
             Truth::Run(settings) => Some(lay_out(&[], settings)?),
             _ => None,
         };
-        Ok(Planned {
+        Ok(PlannedChart {
             chart,
             plans,
             truth,
@@ -93,8 +93,8 @@ impl Planned {
 }
 
 /// The runs of some charts as cells of a sweep: chart by chart, with the reference of each one last.
-pub fn sweep(charts: &[Planned], repeats: usize) -> Sweep<'_, Timed> {
-    let plans = || charts.iter().flat_map(Planned::all);
+pub fn sweep(charts: &[PlannedChart], repeats: usize) -> Sweep<'_, TimedRun> {
+    let plans = || charts.iter().flat_map(PlannedChart::all);
     let places = |plan: &Plan| 0..plan.cases.len();
     let cases = plans().flat_map(|plan| places(plan).map(move |k| (plan, k)));
     let cases: Vec<(&Plan, usize)> = cases.collect();
@@ -102,7 +102,7 @@ pub fn sweep(charts: &[Planned], repeats: usize) -> Sweep<'_, Timed> {
     let repeated = ("repeats".to_owned(), repeats.to_string());
     let truths = charts.iter().filter_map(|chart| chart.truth.as_ref());
     let truths: Vec<&Plan> = truths.collect();
-    let compute = move |k: usize, _: &Spare, watch: &Watch| {
+    let compute = move |k: usize, _: &SolverPool, watch: &Watch| {
         let (plan, k) = cases[k];
         let is_truth = truths.iter().any(|truth| std::ptr::eq(*truth, plan));
         let repeats = if is_truth { 1 } else { repeats };
@@ -126,7 +126,7 @@ pub fn sweep(charts: &[Planned], repeats: usize) -> Sweep<'_, Timed> {
 }
 
 /// Runs a case repeatedly; `None` if interrupted.
-fn timed(case: &Case, repeats: usize, watch: &Watch) -> Result<Option<Timed>, RunError> {
+fn timed(case: &Case, repeats: usize, watch: &Watch) -> Result<Option<TimedRun>, RunError> {
     let model = Arc::new(case.model()?);
     let quiet = Watch {
         stop: watch.stop,
@@ -135,7 +135,12 @@ fn timed(case: &Case, repeats: usize, watch: &Watch) -> Result<Option<Timed>, Ru
     let mut times = Vec::new();
     loop {
         let start = system::thread_time().as_secs_f64();
-        let run = one(case.increments, model.clone(), &Spare::default(), &quiet);
+        let run = one(
+            case.increments,
+            model.clone(),
+            &SolverPool::default(),
+            &quiet,
+        );
         times.push(system::thread_time().as_secs_f64() - start);
         if !run.is_over() {
             return Ok(None);
@@ -145,7 +150,7 @@ fn timed(case: &Case, repeats: usize, watch: &Watch) -> Result<Option<Timed>, Ru
         }
         (watch.done)(case.increments);
         times.sort_by(f64::total_cmp);
-        return Ok(Some(Timed {
+        return Ok(Some(TimedRun {
             seconds: times[times.len() / 2],
             repeats: times.len(),
             run,

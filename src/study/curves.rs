@@ -4,6 +4,7 @@
 //! cut off.
 
 use super::drawn::PlotError;
+use super::log_axis::range;
 use super::sheet::{Anchor, Axes, BLACK, CROSS, ENTRY, GREY, LABEL, MARGIN, SMALL, Sheet, widest};
 use stickslip_scene::number::six;
 
@@ -90,7 +91,7 @@ impl CurveChart {
         let mut sheet = Sheet::new(LEFT + PLOT.0 + 2.0 * MARGIN + legend, &self.title)?;
         let top = sheet.height;
         let place = self.curves(&mut sheet, top);
-        // Drawn last, so that no line hides a failure.
+        // RandomProblem last, so that no line hides a failure.
         for curve in &self.curves {
             if let (CurveEnd::Failed(_), Some(end)) = (&curve.end, curve.points.last()) {
                 sheet.cross(place(end), 7.0, CROSS);
@@ -165,10 +166,7 @@ impl CurveChart {
 /// The range of an axis, with a small margin.
 fn bounds(axis: &Axis, values: impl Iterator<Item = f64>) -> (f64, f64) {
     let zero = axis.counts.then_some(0.0);
-    let all = values.chain(zero).fold(None, |all: Option<(f64, f64)>, v| {
-        Some(all.map_or((v, v), |(low, high)| (low.min(v), high.max(v))))
-    });
-    let (low, high) = all.unwrap_or((0.0, 1.0));
+    let (low, high) = range(values.chain(zero)).unwrap_or((0.0, 1.0));
     let air = match high - low {
         0.0 => 0.5 * low.abs().max(1.0),
         range => 0.04 * range,

@@ -2,7 +2,7 @@
 //!
 //! - [`read`]: studies from RON or arguments; [`builtin`]: the built-in studies.
 //! - [`plan`]: all combinations of the settings, each checked before anything runs.
-//! - [`run`](mod@run): the cases as a sweep; [`one`](mod@one): one run on one thread; [`room`]: limits parallel
+//! - [`run`](mod@run): the cases as a sweep; [`one`](mod@one): one run on one thread; [`memory_pool`]: limits parallel
 //!   runs by memory; [`result`]: the result of a run; [`monitor_kind`]: the units of its numbers.
 //! - [`csv`]: all results as one table; [`figure`]: as [`curves`]; [`sheet`]: drawings as plain data, made of
 //!   [`drawn`] shapes; [`pen`]: written as SVG and PNG, with the feature `plot`; [`placing`]: positions of
@@ -45,6 +45,7 @@ pub mod log;
 pub mod log_axis;
 pub mod map;
 pub mod measuring;
+pub mod memory_pool;
 pub mod monitor_kind;
 pub mod one;
 pub mod origin;
@@ -63,7 +64,6 @@ pub mod read;
 pub mod reason;
 pub mod reference;
 pub mod result;
-pub mod room;
 pub mod run;
 pub mod shard;
 pub mod sheet;

@@ -47,14 +47,14 @@ pub enum LogError {
     #[error("{}: another run is writing to this file", .0.display())]
     Busy(PathBuf),
     /// The file is something else.
-    #[error("{}:1:1: {}; the file has not been changed", path.display(), told.clone().unwrap_or_else(|| format!("not a log of results (it would begin with {ours:?})")))]
+    #[error("{}:1:1: {}; the file has not been changed", path.display(), wrong_kind.clone().unwrap_or_else(|| format!("not a log of results (it would begin with {ours:?})")))]
     Foreign {
         /// Path of the file.
         path: PathBuf,
         /// Beginning of a log.
         ours: String,
         /// If the program knows the kind of file: what it is, and what reads it.
-        told: Option<String>,
+        wrong_kind: Option<String>,
     },
     /// Another revision of the program wrote the file; its results may differ in their last bits.
     #[error("{}:1:1: written by another revision of the program, whose results may differ: {theirs:?} instead of {ours:?}", path.display())]
@@ -186,12 +186,12 @@ pub struct Content<T> {
     /// What the results belong to; empty if the file does not say.
     pub inputs: Vec<Input>,
     /// The results in the order of the file.
-    pub results: Vec<(Key, Found<T>)>,
+    pub results: Vec<(Key, StoredResult<T>)>,
 }
 
 /// A result in a log.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Found<T> {
+pub struct StoredResult<T> {
     /// Line number, from 1.
     pub line: usize,
     /// The result.
@@ -219,7 +219,7 @@ impl Lines<'_> {
         let foreign = || LogError::Foreign {
             path: path.to_owned(),
             ours: head(),
-            told: told(path),
+            wrong_kind: wrong_kind(path),
         };
         /// Maximum length of the first line in any revision, in bytes.
         const MOST_HEAD: usize = 256;
@@ -290,7 +290,7 @@ impl Lines<'_> {
 }
 
 /// What kind of file this is, if it is another one of the program.
-fn told(path: &Path) -> Option<String> {
+fn wrong_kind(path: &Path) -> Option<String> {
     /// Number of bytes that identify the kind of file.
     const READ_TO_TELL: u64 = 1 << 16;
     let start = input::start(path, READ_TO_TELL).ok()?;
@@ -383,7 +383,7 @@ fn content<T: Outcome>(
             }
             Entry::Result(key, value) => {
                 let line = lines.number;
-                content.results.push((key, Found { line, value }));
+                content.results.push((key, StoredResult { line, value }));
             }
         }
     }

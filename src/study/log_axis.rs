@@ -13,14 +13,18 @@ pub struct LogAxis {
 const AIR: f64 = 0.06;
 const LEAST: f64 = 0.5;
 
+/// The smallest and the largest number; `None` without numbers.
+pub(super) fn range(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
+    values.fold(None, |range: Option<(f64, f64)>, v| {
+        Some(range.map_or((v, v), |(low, high)| (low.min(v), high.max(v))))
+    })
+}
+
 impl LogAxis {
     /// An axis that contains some positive numbers, with a small margin.
-    pub fn of(values: impl Iterator<Item = f64>) -> LogAxis {
+    pub fn new(values: impl Iterator<Item = f64>) -> LogAxis {
         let values = values.filter(|v| v.is_finite() && *v > 0.0);
-        let range = values.fold(None, |range: Option<(f64, f64)>, v| {
-            let v = v.log10();
-            Some(range.map_or((v, v), |(low, high)| (low.min(v), high.max(v))))
-        });
+        let range = range(values.map(f64::log10));
         let (low, high) = range.unwrap_or((0.0, 1.0));
         let missing = 0.5 * (LEAST - (high - low)).max(0.0);
         let air = AIR * (high - low).max(LEAST) + missing;
@@ -75,17 +79,17 @@ mod tests {
     #[test]
     fn an_axis_contains_its_values_with_a_small_margin() {
         let values = [3e-3, 0.2];
-        let axis = LogAxis::of(values.into_iter().chain([f64::INFINITY, 0.0]));
+        let axis = LogAxis::new(values.into_iter().chain([f64::INFINITY, 0.0]));
         let parts = values.map(|v| axis.part(v));
         assert!(0.02 < parts[0] && parts[0] < 0.1, "{parts:?}");
         assert!(0.9 < parts[1] && parts[1] < 0.98, "{parts:?}");
-        let one = LogAxis::of([1.0].into_iter());
+        let one = LogAxis::new([1.0].into_iter());
         assert!((one.part(1.0) - 0.5).abs() < 1e-12);
     }
 
     #[test]
     fn there_are_ticks_on_short_and_on_long_axes() {
-        let ticks = |low: f64, high: f64| LogAxis::of([low, high].into_iter()).ticks(9);
+        let ticks = |low: f64, high: f64| LogAxis::new([low, high].into_iter()).ticks(9);
         assert_eq!(ticks(1.1e-2, 3e-2), [0.01, 0.015, 0.02, 0.03]);
         assert_eq!(ticks(1e-3, 1.0), [1e-3, 1e-2, 0.1, 1.0]);
         for (low, high) in [(1.0, 1.0), (0.9, 8.0), (1e-12, 1.0), (1e-300, 1e300)] {

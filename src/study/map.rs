@@ -9,7 +9,7 @@
 use super::figure::{changes, label, name, short_names};
 use super::log::Outcome;
 use super::monitor_kind::{MonitorKind, kind};
-use super::one::{Spare, Watch, one};
+use super::one::{SolverPool, Watch, one};
 use super::origin;
 use super::plan::{Plan, poses};
 use super::result::{CaseEnd, Run};
@@ -31,7 +31,7 @@ const DEFAULT_STRATEGY: &str = "ladder";
 
 /// The result of a run, reduced to what a map needs.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Ended {
+pub struct MapRun {
     /// Verdict, increment and load factor of a failure; `None` if the run finished.
     pub failed: Option<(RunVerdict, u32, f64)>,
     /// Accepted increments.
@@ -46,12 +46,12 @@ pub struct Ended {
     #[serde(default)]
     pub jumped: u64,
     /// The monitors that are compared.
-    pub monitors: Vec<Seen>,
+    pub monitors: Vec<FinalMonitor>,
 }
 
 /// A monitor of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Seen {
+pub struct FinalMonitor {
     /// Name of the monitor.
     pub name: String,
     /// Kind of the monitor, which determines the scale of differences.
@@ -66,7 +66,7 @@ pub struct Seen {
 #[derive(Debug, Clone, PartialEq)]
 pub struct MapCell {
     /// The result of the run.
-    pub ended: Ended,
+    pub ended: MapRun,
     /// Its verdict.
     pub verdict: RunVerdict,
     /// The reference case (its own number if it is one), and the largest difference of a monitor's final value,
@@ -104,7 +104,7 @@ pub struct Panel {
     pub cells: Vec<Vec<usize>>,
 }
 
-impl Outcome for Ended {
+impl Outcome for MapRun {
     const MAX_BYTES: usize = 1 << 20;
 
     fn is_sound(&self) -> bool {
@@ -114,9 +114,9 @@ impl Outcome for Ended {
     }
 }
 
-impl Ended {
+impl MapRun {
     /// The result of a run; `None` if interrupted.
-    pub fn of(run: &Run, model: &Model) -> Option<Ended> {
+    pub fn from_run(run: &Run, model: &Model) -> Option<MapRun> {
         let failed = match &run.end {
             CaseEnd::Finished => None,
             CaseEnd::Failed(failed) => Some((failed.verdict, failed.increment, failed.load)),
@@ -125,14 +125,14 @@ impl Ended {
         let monitor = |k: usize| {
             let value = |row: &super::Row| row.monitors.get(k).copied().unwrap_or(0.0);
             let all = std::iter::once(&run.start).chain(&run.rows);
-            Seen {
+            FinalMonitor {
                 name: run.monitors[k].clone(),
                 kind: kind(model, &model.monitors[k].of),
                 end: value(run.last()),
                 largest: all.map(|row| value(row).abs()).fold(0.0, f64::max),
             }
         };
-        Some(Ended {
+        Some(MapRun {
             failed,
             increments: run.rows.len() as u64,
             majors: run.majors(),
@@ -145,7 +145,7 @@ impl Ended {
 
     /// Largest difference of a monitor's final value from the reference's, relative to the largest value of its
     /// kind in the reference's run; infinite if a number is NaN.
-    pub fn difference(&self, reference: &Ended) -> f64 {
+    pub fn difference(&self, reference: &MapRun) -> f64 {
         let scale = |kind: MonitorKind| {
             let of_kind = reference.monitors.iter().filter(|m| m.kind == kind);
             of_kind.map(|m| m.largest).fold(f64::MIN_POSITIVE, f64::max)
@@ -186,12 +186,12 @@ impl MapCell {
 
 /// The cases of a plan as cells of a sweep; the cases of one problem, which are compared with each other,
 /// belong to one shard.
-pub fn sweep(plan: &Plan) -> Sweep<'_, Ended> {
-    let compute = |k: usize, spare: &Spare, watch: &Watch| {
+pub fn sweep(plan: &Plan) -> Sweep<'_, MapRun> {
+    let compute = |k: usize, spare: &SolverPool, watch: &Watch| {
         let case = &plan.cases[k];
         let model = Arc::new(case.model()?);
         let run = one(case.increments, model.clone(), spare, watch);
-        Ok(Ended::of(&run, &model))
+        Ok(MapRun::from_run(&run, &model))
     };
     Sweep {
         input: Input::new("map", plan.input()),
@@ -206,7 +206,7 @@ pub fn sweep(plan: &Plan) -> Sweep<'_, Ended> {
 
 impl Map {
     /// Compares the final values.
-    pub fn judged(plan: impl Into<Arc<Plan>>, tolerance: f64, ended: Vec<Option<Ended>>) -> Map {
+    pub fn judged(plan: impl Into<Arc<Plan>>, tolerance: f64, ended: Vec<Option<MapRun>>) -> Map {
         let plan = plan.into();
         let mut groups: HashMap<Vec<&str>, Vec<usize>> = HashMap::new();
         for (k, case) in plan.cases.iter().enumerate() {
@@ -345,7 +345,7 @@ impl Map {
         text += &(heads.collect::<Vec<_>>().join(",") + "\n");
         for (case, cell) in self.plan.cases.iter().zip(&self.cells) {
             let Some(cell) = cell else { continue };
-            let Ended {
+            let MapRun {
                 failed,
                 increments,
                 majors,
@@ -380,7 +380,7 @@ impl Map {
 }
 
 /// The reference among some cases.
-fn reference(plan: &Plan, members: &[usize], ended: &[Option<Ended>]) -> Option<usize> {
+fn reference(plan: &Plan, members: &[usize], ended: &[Option<MapRun>]) -> Option<usize> {
     let sound = |k: &usize| {
         let ended = ended[*k].as_ref();
         ended.is_some_and(|e| e.failed.is_none() && e.unsettled == 0)

@@ -1,7 +1,7 @@
 //! Measures a work-precision chart on a separate thread.
 
 use super::chart_file::Chart;
-use super::chart_runs::{Planned, sweep};
+use super::chart_runs::{PlannedChart, sweep};
 use super::precision::{self, Cost, Measure, Precision, PrecisionError};
 use super::sweep::RunError;
 use super::{Vary, Watch};
@@ -40,7 +40,7 @@ impl Measuring {
             .map(|(p, v)| (p.to_owned(), v.to_owned()))
             .collect();
         let (stop, done, all) = (Arc::default(), Arc::default(), Arc::default());
-        let (told, result) = channel();
+        let (sender, result) = channel();
         let measuring = Measuring {
             stop: Arc::clone(&stop),
             done: Arc::clone(&done),
@@ -61,7 +61,7 @@ impl Measuring {
             };
             let planned = Chart::open(&name, &over).and_then(|mut chart| {
                 chart.set.extend(set);
-                Planned::new(chart)
+                PlannedChart::new(chart)
             });
             let planned = planned.map_err(|e| PrecisionError::from(RunError::from(e)));
             let measured = planned.and_then(|planned| {
@@ -70,7 +70,7 @@ impl Measuring {
                 precision::run(&planned, measure, &watch)
             });
             // The receiver may be gone.
-            let _ = told.send(measured.map_err(NotMeasured::from));
+            let _ = sender.send(measured.map_err(NotMeasured::from));
         });
         measuring
     }

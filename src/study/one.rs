@@ -1,8 +1,8 @@
 //! One run of a study on one thread, and the solvers that runs share.
 
+use super::memory_pool::MemoryPool;
 use super::reason::Reason;
 use super::result::{CaseEnd, Failed, Row, Run};
-use super::room::Room;
 use super::verdict::RunVerdict;
 use std::convert::Infallible;
 use std::ops::ControlFlow;
@@ -22,12 +22,12 @@ pub struct Watch<'a> {
 
 /// Solvers of finished runs. The next run reuses the workspace of one with the same layout.
 #[derive(Default)]
-pub struct Spare {
+pub struct SolverPool {
     steppers: Mutex<Vec<Stepper>>,
-    room: Room,
+    pool: MemoryPool,
 }
 
-impl Spare {
+impl SolverPool {
     /// A solver at the start of a model's history.
     fn take(&self, model: Arc<Model>) -> Stepper {
         let spare = self
@@ -49,8 +49,8 @@ impl Spare {
 
 /// Runs a model to the end of its history (with this number of increments), to its first failure, or until
 /// interrupted.
-pub fn one(increments: u64, model: Arc<Model>, spare: &Spare, watch: &Watch) -> Run {
-    let _place = spare.room.take(&model);
+pub fn one(increments: u64, model: Arc<Model>, spare: &SolverPool, watch: &Watch) -> Run {
+    let _place = spare.pool.take(&model);
     let monitors = model.monitors.iter().map(|m| m.name.clone()).collect();
     let mut stepper = spare.take(model);
     let mut run = Run {
@@ -86,7 +86,7 @@ pub fn one(increments: u64, model: Arc<Model>, spare: &Spare, watch: &Watch) -> 
             let event = stepper.event();
             CaseEnd::Failed(Failed {
                 reason: Reason::from(&failure),
-                verdict: RunVerdict::of(&failure),
+                verdict: RunVerdict::from_failure(&failure),
                 increment: event.position.increment,
                 load: event.load_factor,
                 major: event.position.major,

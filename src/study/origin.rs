@@ -30,8 +30,8 @@ pub fn machine() -> String {
 
 /// The processor's name or, if unknown, its architecture.
 pub fn processor() -> String {
-    let told = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let name = told.lines().find_map(|line| {
+    let text = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let name = text.lines().find_map(|line| {
         let (field, value) = line.split_once(':')?;
         (field.trim() == "model name").then(|| value.trim().to_owned())
     });

@@ -9,7 +9,7 @@
 //! both error and cost; errors at round-off ([`ROUND_OFF`]) count as equal.
 
 use super::chart_file::{Chart, Truth};
-use super::chart_runs::{Planned, Timed, sweep};
+use super::chart_runs::{PlannedChart, TimedRun, sweep};
 use super::csv::TableError;
 use super::figure::{assigned, name};
 use super::monitor_kind::{MonitorKind, kind};
@@ -168,7 +168,7 @@ struct Measured {
 ///
 /// # Errors As [`Precision::new`], and if a scene cannot be opened.
 pub fn run(
-    planned: &Planned,
+    planned: &PlannedChart,
     measure: Measure,
     watch: &Watch,
 ) -> Result<Precision, PrecisionError> {
@@ -179,13 +179,13 @@ pub fn run(
 
 /// A run as a point of its series.
 fn measured(
-    timed: Timed,
+    timed: TimedRun,
     model: &Model,
     series: usize,
     name: String,
     settings: Vec<(String, String)>,
 ) -> Measured {
-    let Timed {
+    let TimedRun {
         seconds,
         repeats,
         run,
@@ -227,7 +227,7 @@ fn kinds(model: &Model) -> Vec<MonitorKind> {
 fn truth(
     chart: &Chart,
     all: &[Measured],
-    run: Option<Timed>,
+    run: Option<TimedRun>,
 ) -> Result<(Reference, Option<usize>), PrecisionError> {
     let path = all.first().map(|m| m.path.clone()).unwrap_or_default();
     let wrong = PrecisionError::Reference;
@@ -248,7 +248,7 @@ fn truth(
             let stopped = "interrupted before the reference was computed";
             let run = run.ok_or_else(|| wrong(stopped.to_owned()))?.run;
             match run.failed() {
-                None => Ok((Reference::of(&run, name, &path), None)),
+                None => Ok((Reference::from_run(&run, name, &path), None)),
                 Some(failed) => Err(wrong(format!(
                     "the reference, {name}, failed: {}",
                     failed.verdict
@@ -270,7 +270,7 @@ fn truth(
                 .ok_or_else(|| wrong("no run finished, so there is no reference".to_owned()))?;
             let series = &chart.series[m.point.series].name;
             let name = format!("the finest run of the set ({series}, {})", m.point.name);
-            Ok((Reference::of(&m.run, name, &m.path), Some(k)))
+            Ok((Reference::from_run(&m.run, name, &m.path), Some(k)))
         }
     }
 }
@@ -299,7 +299,7 @@ fn compare(
             "the reference has none of the scene's monitors ({names})"
         )));
     }
-    let curve = |m: &Measured| Reference::of(&m.run, String::new(), &m.path);
+    let curve = |m: &Measured| Reference::from_run(&m.run, String::new(), &m.path);
     let curves: Vec<Option<Reference>> = all
         .iter()
         .map(|m| m.point.failed.is_none().then(|| curve(m)))
@@ -391,8 +391,8 @@ impl Precision {
     ///
     /// # Errors If the reference is not suitable.
     pub fn new(
-        planned: &Planned,
-        results: Vec<Option<Timed>>,
+        planned: &PlannedChart,
+        results: Vec<Option<TimedRun>>,
         measure: Measure,
     ) -> Result<Precision, PrecisionError> {
         let (chart, plans) = (&planned.chart, &planned.plans);
@@ -553,7 +553,7 @@ mod tests {
     fn every_built_in_chart_is_valid() {
         for name in chart_file::names() {
             let chart = Chart::open(name, &[]).unwrap_or_else(|e| panic!("{e}"));
-            let planned = Planned::new(chart).unwrap_or_else(|e| panic!("{e}"));
+            let planned = PlannedChart::new(chart).unwrap_or_else(|e| panic!("{e}"));
             assert!(
                 planned.plans.iter().all(|plan| !plan.cases.is_empty()),
                 "{name}"

@@ -68,8 +68,8 @@ fn draw(sheet: &mut Sheet, chart: &Precision) -> Result<(), PlotError> {
     let top = sheet.height + RAIL;
     let errors = chart.points.iter().filter_map(|p| p.error);
     let frame = Frame {
-        x: LogAxis::of(chart.points.iter().map(|p| chart.cost.of(p))),
-        y: LogAxis::of(errors.map(|e| e.max(ROUND_OFF)).chain(chart.target)),
+        x: LogAxis::new(chart.points.iter().map(|p| chart.cost.of(p))),
+        y: LogAxis::new(errors.map(|e| e.max(ROUND_OFF)).chain(chart.target)),
         axes: Axes {
             left: LEFT,
             top,
@@ -110,8 +110,8 @@ fn draw(sheet: &mut Sheet, chart: &Precision) -> Result<(), PlotError> {
     if let Some(more @ 1..) = failed().count().checked_sub(MOST_FAILED) {
         sheet.paragraph(&[format!("✗ and {more} more")], SMALL, CROSS)?;
     }
-    let told: Vec<String> = chart.verdict().into_iter().collect();
-    sheet.paragraph(&told, SMALL, BLACK)?;
+    let lines: Vec<String> = chart.verdict().into_iter().collect();
+    sheet.paragraph(&lines, SMALL, BLACK)?;
     sheet.paragraph(&chart.about, SMALL, GREY)
 }
 
@@ -231,13 +231,7 @@ fn labels(
             let Some(patch) = taken.place(at, size, reach) else {
                 continue;
             };
-            let near = (
-                at.0.clamp(patch.from.0, patch.to.0),
-                at.1.clamp(patch.from.1, patch.to.1),
-            );
-            if (near.0 - at.0).hypot(near.1 - at.1) > 16.0 {
-                sheet.line(&[at, near], 0.6, GREY);
-            }
+            sheet.leader(at, &patch, 16.0);
             sheet.text(patch.middle(), text, SIZE, BLACK, Anchor::Middle);
             if *text == number {
                 key.push(format!("{number} {}, {words}", chart.series[point.series]));

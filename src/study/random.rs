@@ -38,7 +38,7 @@ pub struct Population {
 
 /// A random problem, with its kind.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Drawn {
+pub struct RandomProblem {
     /// The problem.
     pub problem: Problem,
     /// Form of its body.
@@ -89,7 +89,7 @@ impl Draw {
 
 impl Population {
     /// Problem k.
-    pub fn draw(&self, k: usize) -> Drawn {
+    pub fn draw(&self, k: usize) -> RandomProblem {
         let mut draw = Draw(Pcg64::new(u128::from(self.seed), k as u128));
         let nodes = draw.whole(&self.nodes);
         let size = 2 * nodes;
@@ -129,7 +129,7 @@ impl Population {
             Form::Stiffness => (Matrix::Stiffness(matrix), Vec::new()),
             _ => (Matrix::Compliance(matrix), acts),
         };
-        Drawn {
+        RandomProblem {
             problem: Problem {
                 title: format!("Random interface problem {k} of seed {}", self.seed),
                 about: String::new(),

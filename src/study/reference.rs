@@ -128,7 +128,7 @@ impl Reference {
     }
 
     /// A run as the reference for others.
-    pub fn of(run: &Run, source: String, path: &[f64]) -> Reference {
+    pub fn from_run(run: &Run, source: String, path: &[f64]) -> Reference {
         let mut legs = Legs::new(path);
         let row = |row: &super::Row| ReferencePoint {
             leg: legs.of(row.load),

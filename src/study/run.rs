@@ -1,7 +1,7 @@
 //! The cases of a plan as a sweep.
 
 use super::figure::name;
-use super::one::{Spare, Watch, one};
+use super::one::{SolverPool, Watch, one};
 use super::plan::Plan;
 use super::result::Run;
 use super::sweep::{RunError, Sweep};
@@ -11,7 +11,7 @@ use std::sync::Arc;
 
 /// The runs of a plan as cells of a sweep.
 pub fn sweep(plan: &Plan) -> Sweep<'_, Run> {
-    let compute = |k: usize, spare: &Spare, watch: &Watch| {
+    let compute = |k: usize, spare: &SolverPool, watch: &Watch| {
         let case = &plan.cases[k];
         Ok(Some(one(
             case.increments,

@@ -132,13 +132,13 @@ pub fn ranges(numbers: &[usize], most: usize) -> String {
         true => first.to_string(),
         false => format!("{first} to {last}"),
     };
-    let told: Vec<String> = ranges.iter().take(most).map(word).collect();
+    let words: Vec<String> = ranges.iter().take(most).map(word).collect();
     let more = match ranges.len().saturating_sub(most) {
         0 => String::new(),
         1 => " and 1 more range".to_owned(),
         n => format!(" and {n} more ranges"),
     };
-    told.join(", ") + &more
+    words.join(", ") + &more
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@
 
 use super::drawn::label;
 use super::pen::{self, width_of};
+use super::placing::Patch;
 use stickslip_scene::shown;
 
 pub use super::drawn::{Anchor, Colour, PlotError, Shape};
@@ -260,6 +261,17 @@ impl Sheet {
                 s += 2.0 * DASH;
             }
             walked += length;
+        }
+    }
+
+    /// Adds a line from a point to its label, if that is further away than `reach`.
+    pub fn leader(&mut self, at: (f64, f64), label: &Patch, reach: f64) {
+        let near = (
+            at.0.clamp(label.from.0, label.to.0),
+            at.1.clamp(label.from.1, label.to.1),
+        );
+        if (near.0 - at.0).hypot(near.1 - at.1) > reach {
+            self.line(&[at, near], 0.6, GREY);
         }
     }
 

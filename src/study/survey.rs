@@ -1,13 +1,13 @@
 //! Surveys: runs all random problems of a population with all variants, and counts the verdicts.
 
 use super::figure::assigned;
-use super::one::{Spare, Watch};
+use super::one::{SolverPool, Watch};
 use super::origin;
 use super::random::Population;
 use super::shard::Key;
 use super::sweep::{Cell, Sweep};
 use super::sweep_input::Input;
-use super::trial::{Judged, Trial, Variant, prepared, try_variants};
+use super::trial::{JudgedProblem, Trial, Variant, prepared, try_variants};
 use super::verdict::RunVerdict;
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -20,7 +20,7 @@ pub struct Survey {
     /// Variants tried on each problem.
     pub variants: Vec<Variant>,
     /// One entry per problem, in order; `None` if interrupted before.
-    pub judged: Vec<Option<Judged>>,
+    pub judged: Vec<Option<JudgedProblem>>,
 }
 
 /// Number of problems by verdict of a variant, separately for problems with and without a solution.
@@ -47,7 +47,7 @@ pub struct Tally {
 }
 
 /// The problems of a population as cells of a sweep.
-pub fn sweep<'a>(population: &'a Population, variants: &'a [Variant]) -> Sweep<'a, Judged> {
+pub fn sweep<'a>(population: &'a Population, variants: &'a [Variant]) -> Sweep<'a, JudgedProblem> {
     let name = population.name();
     let settings = variants.iter().flat_map(|v| &v.settings);
     let settings = settings.flat_map(|(path, value)| [path.as_str(), value]);
@@ -68,7 +68,7 @@ pub fn sweep<'a>(population: &'a Population, variants: &'a [Variant]) -> Sweep<'
     });
     let input = std::iter::once(("population".to_owned(), name.clone())).chain(tried);
     let prepared = prepared(variants);
-    let compute = move |k: usize, _: &Spare, watch: &Watch| {
+    let compute = move |k: usize, _: &SolverPool, watch: &Watch| {
         if (watch.stop)() {
             return Ok(None);
         }
@@ -89,13 +89,13 @@ pub fn sweep<'a>(population: &'a Population, variants: &'a [Variant]) -> Sweep<'
 
 impl Survey {
     /// The completed problems, with their numbers.
-    pub fn done(&self) -> impl Iterator<Item = (usize, &Judged)> {
+    pub fn done(&self) -> impl Iterator<Item = (usize, &JudgedProblem)> {
         let all = self.judged.iter().enumerate();
         all.filter_map(|(k, judged)| Some((k, judged.as_ref()?)))
     }
 
     /// Counts the verdicts of variant number `v` on the problems selected by `meant`.
-    pub fn tally(&self, v: usize, meant: impl Fn(&Judged) -> bool) -> Tally {
+    pub fn tally(&self, v: usize, meant: impl Fn(&JudgedProblem) -> bool) -> Tally {
         let mut tally = Tally::default();
         for (_, judged) in self.done().filter(|(_, judged)| meant(judged)) {
             tally.add(judged.solvable(), judged.trials[v].verdict);
@@ -109,7 +109,7 @@ impl Survey {
         text += "seed,problem,nodes,form,cohesion,answers,strategy,verdict,detail,majors,minors,violation\n";
         for (k, judged) in self.done() {
             for (variant, trial) in self.variants.iter().zip(&judged.trials) {
-                let Judged {
+                let JudgedProblem {
                     nodes,
                     form,
                     cohesive,

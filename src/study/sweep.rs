@@ -4,8 +4,8 @@
 //! log or from the logs of all shards. The merged result depends neither on the order of the files nor on how
 //! often a cell occurs in them.
 
-use super::log::{self, Disagreement, Found, Log, LogError, Outcome};
-use super::one::{Spare, Watch};
+use super::log::{self, Disagreement, Log, LogError, Outcome, StoredResult};
+use super::one::{SolverPool, Watch};
 use super::shard::{Key, Shard};
 use super::sweep_input::Input;
 use rayon::prelude::*;
@@ -43,7 +43,7 @@ pub struct Cell {
 }
 
 /// Computes a cell; `None` if interrupted.
-type Compute<'a, T> = dyn Fn(usize, &Spare, &Watch) -> Result<Option<T>, RunError> + Sync + 'a;
+type Compute<'a, T> = dyn Fn(usize, &SolverPool, &Watch) -> Result<Option<T>, RunError> + Sync + 'a;
 
 /// Cells that are computed independently.
 pub struct Sweep<'a, T> {
@@ -74,7 +74,7 @@ pub enum Keeping {
 
 /// The existing results of a sweep's cells.
 pub struct Store<T> {
-    found: HashMap<Key, Found<T>>,
+    found: HashMap<Key, StoredResult<T>>,
     log: Option<Log>,
     /// The shard computed here; `None` when files are merged.
     shard: Option<Shard>,
@@ -128,7 +128,7 @@ impl<T: Outcome> Sweep<'_, T> {
         jobs: NonZeroUsize,
         watch: &Watch,
     ) -> Result<Vec<Option<T>>, RunError> {
-        let spare = Spare::default();
+        let spare = SolverPool::default();
         let one = |k: usize| -> Result<Option<T>, RunError> {
             let cell = &self.cells[k];
             if let Some(found) = store.found.get(&cell.key) {
@@ -160,7 +160,7 @@ impl<T: Outcome> Sweep<'_, T> {
         self.cells.iter().map(|cell| cell.steps).sum()
     }
 
-    fn check(&self, store: &Store<T>, found: &Found<T>) -> Result<(), LogError> {
+    fn check(&self, store: &Store<T>, found: &StoredResult<T>) -> Result<(), LogError> {
         let (has, wants) = (found.value.runs(), self.runs);
         if has == wants {
             return Ok(());

@@ -101,10 +101,10 @@ mod tests {
         assert_eq!(ours.difference(&ours), None);
         let shard = Shard::new(3, 7).unwrap();
         assert_eq!(ours.difference(&ours.clone().with(shard)), None);
-        let told = ours.difference(&input("map", "30")).unwrap();
-        assert!(told.contains("a different friction.angle: 30 instead of 20"));
-        let told = ours.difference(&input("study", "20")).unwrap();
-        assert!(told.contains("belong to study, not to map"), "{told}");
+        let text = ours.difference(&input("map", "30")).unwrap();
+        assert!(text.contains("a different friction.angle: 30 instead of 20"));
+        let text = ours.difference(&input("study", "20")).unwrap();
+        assert!(text.contains("belong to study, not to map"), "{text}");
         let mut fewer = input("map", "20");
         fewer.parts.pop();
         assert!(ours.difference(&fewer).is_some());

@@ -13,7 +13,7 @@
 //! ```
 
 use super::log::Outcome;
-use super::random::{Drawn, Population};
+use super::random::{Population, RandomProblem};
 use super::reason::Reason;
 use super::verdict::RunVerdict;
 use serde::{Deserialize, Serialize};
@@ -46,7 +46,7 @@ pub struct Variant {
 
 /// Results of one random problem.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Judged {
+pub struct JudgedProblem {
     /// Number of contacts.
     pub nodes: usize,
     /// Name of its form.
@@ -72,7 +72,7 @@ pub struct Trial {
     pub violation: f64,
 }
 
-impl Outcome for Judged {
+impl Outcome for JudgedProblem {
     const MAX_BYTES: usize = 1 << 20;
 
     /// A violation may be infinite without an end, but is within the tolerance if right.
@@ -90,7 +90,7 @@ impl Outcome for Judged {
     }
 }
 
-impl Judged {
+impl JudgedProblem {
     /// Whether the problem has a solution: in the census, or found by a run where the census has none (it does
     /// not examine assignments with a whole line of solutions).
     pub fn solvable(&self) -> bool {
@@ -146,15 +146,15 @@ pub fn try_variants(
     k: usize,
     variants: &[Prepared<'_>],
     stop: &(dyn Fn() -> bool + Sync),
-) -> Result<Option<Judged>, SceneError> {
-    let Drawn {
+) -> Result<Option<JudgedProblem>, SceneError> {
+    let RandomProblem {
         problem,
         form,
         cohesive,
     } = population.draw(k);
     let base = Base::new(Scene::from_spec(&problem.title, problem.spec())?);
     let mut stepper = Stepper::new(Arc::new(base.scene().model.clone()));
-    let mut judged = Judged {
+    let mut judged = JudgedProblem {
         nodes: problem.contacts.len(),
         form: form.name().to_owned(),
         cohesive,
@@ -219,7 +219,7 @@ fn one(problem: &Problem, stepper: &mut Stepper) -> Trial {
                 false => RunVerdict::Wrong,
             };
         }
-        RunEnd::Failed(failure) => trial.verdict = RunVerdict::of(&failure),
+        RunEnd::Failed(failure) => trial.verdict = RunVerdict::from_failure(&failure),
         RunEnd::Spent | RunEnd::Interrupted => {}
         RunEnd::Stopped(never) => match never {},
     }

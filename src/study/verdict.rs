@@ -31,7 +31,7 @@ pub enum RunVerdict {
 
 impl RunVerdict {
     /// The verdict on a failure.
-    pub fn of(failure: &Failure) -> RunVerdict {
+    pub fn from_failure(failure: &Failure) -> RunVerdict {
         match failure {
             Failure::Cycle(cycle) => RunVerdict::Cycle {
                 period: cycle.period,

@@ -6,9 +6,10 @@ use crate::camera::Camera;
 use crate::chartpage::ChartPage;
 use crate::choosing::{Chooser, Offer, Preview};
 use crate::commandline::{CommandLine, Purpose};
-use crate::hearing::Heard;
 use crate::keys;
-use crate::layout::{Choice, Pane};
+use crate::layout::{Pane, ShownPanes};
+use crate::learning::Learning;
+use crate::log_counts::LogCounts;
 use crate::panes::help::{Help, Listing};
 use crate::panes::manual;
 use crate::panes::solver;
@@ -21,7 +22,7 @@ use stickslip_debugger::action::{
     Action, ChartOf, Colours, Context, Filter, Keymap, Misread, Sort, Ui,
 };
 use stickslip_debugger::record::command::Command;
-use stickslip_debugger::teach::{Guess, Tutor};
+use stickslip_debugger::teach::Tutor;
 use stickslip_scene::shown;
 
 /// Rows that PageUp and PageDown move by.
@@ -75,6 +76,23 @@ pub enum Overlay {
     Answer,
 }
 
+impl Overlay {
+    /// A line to type, with an initial text.
+    pub(super) fn line(purpose: Purpose, text: &str) -> Overlay {
+        Overlay::Line(CommandLine::new(purpose, text))
+    }
+
+    /// A page about an attached solver.
+    fn solver(page: solver::Page) -> Overlay {
+        Overlay::Solver(solver::SolverReader::new(page))
+    }
+
+    /// Whether a page that finishes loading may be shown: no overlay is open except the chooser.
+    pub fn is_open_to_pages(&self) -> bool {
+        matches!(self, Overlay::None | Overlay::Chooser(_))
+    }
+}
+
 /// The kind of a message.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Tone {
@@ -102,17 +120,6 @@ pub enum Opens {
     Page,
 }
 
-/// How far the current lesson page has been read.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Reading {
-    /// The lesson page ([`Tutor::edition`]).
-    pub edition: (usize, u32),
-    /// The first visible line, from 0.
-    pub top: usize,
-    /// Lines shown so far, counted from the first.
-    pub seen: usize,
-}
-
 /// All state of the screen that is not in the session.
 #[derive(Debug, Clone)]
 pub struct App {
@@ -128,12 +135,8 @@ pub struct App {
     pub area: Rect,
     /// The page or prompt over the panes.
     pub overlay: Overlay,
-    /// Pane with the focus.
-    pub focus: Pane,
-    /// The pane below the table on a small screen.
-    pub page: Pane,
-    /// Whether the focused pane fills the screen.
-    pub zoomed: bool,
+    /// The panes that the user looks at.
+    pub panes: ShownPanes,
     /// Selected slave node, by slave number.
     pub selected: usize,
     /// The count typed before a motion.
@@ -143,7 +146,7 @@ pub struct App {
     /// A message about the attached solver or its loss, shown until the next key.
     pub notice: Option<String>,
     /// How much of the attached solver's log has been counted.
-    pub heard: Heard,
+    pub log_counts: LogCounts,
     /// Pan and zoom of the shape.
     pub camera: Camera,
     /// Sort key of the table.
@@ -162,18 +165,12 @@ pub struct App {
     pub remedy: usize,
     /// The first visible line of the diagnosis, from 0.
     pub scroll: usize,
-    /// Which of the panes that share one place is shown.
-    pub chart: Pane,
     /// The scenes, lessons and files in the chooser.
     pub offers: Vec<Offer>,
     /// The preview of the chooser's selection.
     pub preview: Option<Preview>,
-    /// The current lesson.
-    pub lesson: Option<Tutor>,
-    /// How far its current page has been read.
-    pub reading: Reading,
-    /// Prediction mode, outside lessons.
-    pub guess: Option<Guess>,
+    /// The current lesson, and prediction mode.
+    pub learning: Learning,
     /// Increments done and in total of the chart that is being measured.
     pub measuring: Option<(u64, u64)>,
     /// What the file that is being loaded will show.
@@ -205,9 +202,7 @@ impl App {
             mouse: true,
             area: Rect::new(0, 0, 80, 24),
             overlay: Overlay::None,
-            focus: Pane::Nodes,
-            page: Pane::Decision,
-            zoomed: false,
+            panes: ShownPanes::default(),
             selected: 0,
             count: None,
             message: Message {
@@ -215,7 +210,7 @@ impl App {
                 tone: Tone::Plain,
             },
             notice: None,
-            heard: Heard::default(),
+            log_counts: LogCounts::default(),
             camera: Camera::ALL,
             sort: Sort::Scene,
             backward: false,
@@ -225,12 +220,9 @@ impl App {
             branch: 0,
             remedy: 0,
             scroll: 0,
-            chart: Pane::Residual,
             offers,
             preview: None,
-            lesson: None,
-            reading: Reading::default(),
-            guess: None,
+            learning: Learning::default(),
             measuring: None,
             loading: None,
             ahead: Ahead::default(),
@@ -244,15 +236,23 @@ impl App {
 
     /// Shows a message.
     pub fn say(&mut self, text: impl Into<String>) {
-        self.tell(text.into(), Tone::Plain);
+        self.show(text.into(), Tone::Plain);
     }
 
     /// Shows an error.
     pub fn complain(&mut self, text: impl fmt::Display) {
-        self.tell(text.to_string(), Tone::Error);
+        self.show(text.to_string(), Tone::Error);
     }
 
-    pub(super) fn tell(&mut self, text: String, tone: Tone) {
+    /// Shows a result or an error.
+    pub(super) fn report(&mut self, result: Result<String, impl fmt::Display>) {
+        match result {
+            Ok(text) => self.say(text),
+            Err(why) => self.complain(why),
+        }
+    }
+
+    fn show(&mut self, text: String, tone: Tone) {
         let text = shown::line(&text.replace('\n', " ")).into_owned();
         self.message = Message { text, tone };
     }
@@ -264,35 +264,15 @@ impl App {
         self.monitor = 0;
         (self.answer, self.branch, self.remedy, self.scroll) = (0, 0, 0, 0);
         self.camera = Camera::ALL;
-        (self.notice, self.heard) = (None, Heard::default());
+        (self.notice, self.log_counts) = (None, LogCounts::default());
         self.last = None;
         self.count = None;
-        self.lesson = None;
-        self.guess = None;
-    }
-
-    /// Whether a page that finishes loading may be shown: no overlay is open except the chooser.
-    pub fn is_open_to_pages(&self) -> bool {
-        matches!(self.overlay, Overlay::None | Overlay::Chooser(_))
+        self.learning = Learning::default();
     }
 
     /// Opens the chooser.
     pub fn choose(&mut self) {
         self.overlay = Overlay::Chooser(Chooser::default());
-    }
-
-    /// The user's choices that determine the layout.
-    pub fn choice(&self, view: Option<&View>, lesson: u16) -> Choice {
-        let model = view.map(|view| view.model);
-        Choice {
-            focus: self.focus,
-            page: self.page,
-            chart: self.chart,
-            zoomed: self.zoomed,
-            slaves: model.map_or(0, |model| model.contacts.len()),
-            has_shape: model.is_none_or(|model| model.finished.is_none()),
-            lesson,
-        }
     }
 
     /// Handles a key, or queues it for [`App::resume`].
@@ -313,21 +293,17 @@ impl App {
     /// Handles a key now; this clears the previous message.
     pub(super) fn take_key(&mut self, key: &KeyEvent, view: Option<&View>) -> Option<Effect> {
         let name = keys::name(key)?;
-        self.note_reading(view);
+        let visible = self.lesson_lines(view);
+        self.learning.note(visible);
         self.say("");
         self.notice = None;
         match &mut self.overlay {
             Overlay::None => self.pane_key(&name, view),
-            Overlay::Help(_) => self.help_key(&name, view),
-            Overlay::Manual(reader) => {
-                if !reader.key(&name) {
-                    self.close(view);
-                }
+            Overlay::Chooser(_) => self.chooser_key(&name, view),
+            Overlay::Help(_) | Overlay::Manual(_) | Overlay::Chart(_) | Overlay::Solver(_) => {
+                self.page_key(&name, view);
                 None
             }
-            Overlay::Chooser(_) => self.chooser_key(&name, view),
-            Overlay::Chart(_) => self.chart_key(&name, view),
-            Overlay::Solver(_) => self.solver_key(&name, view),
             Overlay::Line(_) => self.line_key(key, &name, view),
             Overlay::Mode => self.mode_key(&name, view),
             Overlay::Answer => self.answer_key(&name, view),
@@ -458,11 +434,15 @@ impl App {
             self.complain(why);
             return None;
         }
-        match (self.permits(&action, view), action) {
+        let visible = self.lesson_lines(view);
+        let permitted = view.map_or(Ok(false), |view| {
+            self.learning.permits(&action, view, visible)
+        });
+        match (permitted, action) {
             (Ok(_), Action::Session(command)) => self.submit(command, view),
             (Ok(wanted), Action::Ui(ui)) => {
                 let effect = self.ui(ui, count, view);
-                if let (true, Some(tutor), Some(view)) = (wanted, &mut self.lesson, view) {
+                if let (true, Some(tutor), Some(view)) = (wanted, &mut self.learning.lesson, view) {
                     tutor.settled(view.cursor, view.frame());
                     // The lesson asked for this action, so its failure is no error of the user.
                     if self.message.tone == Tone::Error {
@@ -499,20 +479,22 @@ impl App {
             Ui::Redraw => return Some(Effect::Redraw),
             Ui::Interrupt => return self.interrupt(view),
             Ui::Open(scene) => return Some(Effect::Open(scene)),
-            Ui::Repeat if self.lesson.as_ref().is_some_and(Tutor::is_read) => self.go_on(view),
-            Ui::Repeat if self.focus == Pane::Branches => return self.go_to_branch(view),
-            Ui::Repeat if self.focus == Pane::Remedies => return self.take_remedy(view),
-            Ui::Repeat if self.focus == Pane::Diagnosis => return self.take_answer(view),
+            Ui::Repeat if self.learning.lesson.as_ref().is_some_and(Tutor::is_read) => {
+                self.continue_lesson(view)
+            }
+            Ui::Repeat if self.panes.focus == Pane::Branches => return self.go_to_branch(view),
+            Ui::Repeat if self.panes.focus == Pane::Remedies => return self.take_remedy(view),
+            Ui::Repeat if self.panes.focus == Pane::Diagnosis => return self.take_answer(view),
             Ui::Repeat => match self.last.clone() {
                 Some(command) => return self.attempt(Ok(Action::Session(command)), None, view),
                 None => self.complain("no motion to repeat yet; press s for one minor iteration"),
             },
             Ui::Move(step) => return self.step(step, count.unwrap_or(1) as isize, view),
             Ui::Select(slave) => self.selected = slave,
-            Ui::NextPane => self.turn(1),
-            Ui::PreviousPane => self.turn(Pane::ALL.len() - 1),
-            Ui::Zoom => self.zoomed = !self.zoomed,
-            Ui::Explain => self.show(Pane::Decision),
+            Ui::NextPane => self.panes.turn(1),
+            Ui::PreviousPane => self.panes.turn(Pane::ALL.len() - 1),
+            Ui::Zoom => self.panes.zoomed = !self.panes.zoomed,
+            Ui::Explain => self.panes.zoom(Pane::Decision),
             Ui::Page(page) => return self.page(page, view),
             Ui::StartFrom(number) => return self.start_from(number, view),
             Ui::Apply(number) => return self.apply(number, view),
@@ -525,23 +507,20 @@ impl App {
             Ui::Monitor(monitor) => self.watch(monitor, view),
             Ui::Chart(of) => return Some(Effect::Chart(of)),
             Ui::Lesson(lesson) => return Some(Effect::Lesson(lesson)),
-            Ui::On => self.go_on(view),
+            Ui::On => self.continue_lesson(view),
             Ui::Reread => self.reread(),
             Ui::Answer(word) => self.answer(&word, view),
             Ui::Predict(whose) => self.predict(whose, view),
             Ui::Ask(question) => self.ask(question, view),
-            Ui::CommandLine => self.overlay = Overlay::Line(CommandLine::new(Purpose::Command, "")),
+            Ui::CommandLine => self.overlay = Overlay::line(Purpose::Command, ""),
             Ui::Log => {
                 let finished = view.is_some_and(|view| view.model.finished.is_some());
-                let page = match finished {
+                self.overlay = Overlay::solver(match finished {
                     true => solver::Page::Run,
                     false => solver::Page::Log,
-                };
-                self.overlay = Overlay::Solver(solver::SolverReader::new(page));
+                });
             }
-            Ui::Parameters => {
-                self.overlay = Overlay::Solver(solver::SolverReader::new(solver::Page::Parameters));
-            }
+            Ui::Parameters => self.overlay = Overlay::solver(solver::Page::Parameters),
             Ui::Help => self.overlay = Overlay::Help(Help::new(Listing::Actions)),
             Ui::Keys => self.overlay = Overlay::Help(Help::new(Listing::Keys)),
             Ui::Copy(what) => return self.copy(what, view),
@@ -556,7 +535,7 @@ impl App {
             }
             Ui::Manual(page) => self.overlay = Overlay::Manual(manual::Reader::new(page)),
             Ui::Cancel => {
-                self.zoomed = false;
+                self.panes.zoomed = false;
                 self.say("");
             }
         }

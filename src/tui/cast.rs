@@ -66,7 +66,7 @@ impl Film {
 
     /// Adds the screen after an entry, or before the first.
     fn show(&mut self, session: &Session, model: &Model, entry: Option<&Entry>) {
-        let view = View::of(session);
+        let view = View::new(session);
         match entry {
             None => self.output("\u{1b}[2J\u{1b}[?25l"),
             Some(entry) => {

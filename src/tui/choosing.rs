@@ -8,7 +8,7 @@ use std::thread;
 use stickslip_core::model::Model;
 use stickslip_core::step::stepper::Stepper;
 use stickslip_debugger::history::frame::Frame;
-use stickslip_debugger::teach::progress::{Progress, Reached};
+use stickslip_debugger::teach::progress::{LessonProgress, Progress};
 use stickslip_debugger::teach::{self, Lesson};
 use stickslip_scene::embedded::EmbeddedFile;
 use stickslip_scene::format::SceneError;
@@ -52,7 +52,7 @@ pub struct Offer {
     /// Its title; empty if it has not been read yet.
     pub title: String,
     /// The user's progress, for a lesson.
-    pub reached: Option<Reached>,
+    pub reached: Option<LessonProgress>,
 }
 
 impl Offer {
@@ -127,7 +127,7 @@ pub struct Glance {
 
 impl Preview {
     /// Loads the preview of an entry. A file can be a scene or a lesson.
-    pub fn of(offer: &Offer) -> Preview {
+    pub fn new(offer: &Offer) -> Preview {
         let name = offer.name.clone();
         let what = match offer.group {
             Group::Lessons => lesson(&name),
@@ -153,7 +153,7 @@ impl Preview {
             background: None,
             aside: String::new(),
             start_gaps: "",
-            guest: None,
+            attached: None,
             cursor: 0,
             running: false,
             residuals: Vec::new(),
@@ -189,12 +189,12 @@ impl Looking {
         }
         let asked = self.0.as_ref().map(|(name, _)| name);
         if known.map(|seen| &seen.name) != Some(&offer.name) && asked != Some(&offer.name) {
-            let (told, seen) = channel();
+            let (sender, seen) = channel();
             self.0 = Some((offer.name.clone(), seen));
             let offer = offer.clone();
             thread::spawn(move || {
                 // The receiver may be gone.
-                let _ = told.send(Preview::of(&offer));
+                let _ = sender.send(Preview::new(&offer));
             });
         }
         None
@@ -310,7 +310,7 @@ mod tests {
     fn every_built_in_entry_has_a_picture() {
         let offers = offers(&Progress::default());
         for offer in offers.iter().filter(|offer| offer.group != Group::Files) {
-            let preview = Preview::of(offer);
+            let preview = Preview::new(offer);
             let glance = preview.what.unwrap_or_else(|why| panic!("{why}"));
             assert_eq!(glance.title, offer.title);
             assert!(!glance.about.is_empty(), "{}", offer.name);

@@ -124,7 +124,7 @@ impl CommandLine {
     }
 
     /// The line after a prompt, with the cursor as a reversed cell, in as many rows as it needs.
-    pub fn lines(&self, prompt: &str, width: usize, theme: &Theme) -> Vec<Line<'static>> {
+    pub fn lines(&self, prompt: &str, width: usize, theme: &Theme) -> paint::Lines {
         let cursor = theme.text.add_modifier(Modifier::REVERSED);
         let at = self.input.cursor();
         let typed = self.text().chars().chain([' ']).enumerate();
@@ -149,11 +149,11 @@ impl CommandLine {
     }
 
     /// The footer while the line is open: the completions, or the arguments of the action.
-    pub fn hint(&self, context: &Context, width: usize, theme: &Theme) -> Vec<Line<'static>> {
+    pub fn hint(&self, context: &Context, width: usize, theme: &Theme) -> paint::Lines {
         if let Some((candidates, at)) = &self.completions {
             let words = candidates
                 .iter()
-                .map(|candidate| self.told(candidate, context));
+                .map(|candidate| self.displayed(candidate, context));
             return completions(words, *at, width, theme);
         }
         let name = self.text().split_whitespace().next();
@@ -217,7 +217,7 @@ impl CommandLine {
     }
 
     /// The displayed part of a completion: the completed word, or the last component of a path.
-    fn told<'a>(&self, candidate: &'a str, context: &Context) -> Cow<'a, str> {
+    fn displayed<'a>(&self, candidate: &'a str, context: &Context) -> Cow<'a, str> {
         // Parentheses mark actions that are not available, since colour alone must not.
         let grey = |name: &str| {
             context
@@ -260,7 +260,7 @@ fn completions<'a>(
     at: usize,
     width: usize,
     theme: &Theme,
-) -> Vec<Line<'static>> {
+) -> paint::Lines {
     let mut rows: Vec<Vec<Span>> = vec![Vec::new()];
     let (mut used, mut here) = (0, 0);
     for (index, word) in words.enumerate() {
@@ -310,11 +310,11 @@ fn choices(text: &str, context: &Context) -> String {
                     .entry(name.trim())
                     .is_ok_and(|entry| entry.offered(context).is_err())
             };
-            let told = found.iter().map(|name| match grey(name) {
+            let words = found.iter().map(|name| match grey(name) {
                 true => format!("({})", name.trim()),
                 false => name.clone(),
             });
-            told.collect::<Vec<_>>().join("  ")
+            words.collect::<Vec<_>>().join("  ")
         }
     }
 }

@@ -4,7 +4,7 @@ use crate::app::{App, Effect};
 use crate::layout::Pane;
 use crate::screen;
 use crate::view::View;
-use stickslip_debugger::action::Copied;
+use stickslip_debugger::action::CopyTarget;
 use stickslip_debugger::explain::names;
 use stickslip_debugger::explain::remedies;
 use stickslip_debugger::history::verdicts::{self, summaries};
@@ -17,18 +17,18 @@ const MOST: usize = 50_000;
 const SHOWN: usize = 60;
 
 /// A name for the message, and the copied text.
-type Called = (String, String);
+type NamedText = (String, String);
 
 impl App {
     /// Copies something and shows what was copied.
-    pub(super) fn copy(&mut self, what: Option<Copied>, view: Option<&View>) -> Option<Effect> {
+    pub(super) fn copy(&mut self, what: Option<CopyTarget>, view: Option<&View>) -> Option<Effect> {
         let copied = match (what, view) {
-            (Some(Copied::Keys), _) => Ok(("the keys".into(), self.keymap.text())),
-            (Some(Copied::Command), _) => self.last_line(),
+            (Some(CopyTarget::Keys), _) => Ok(("the keys".into(), self.keymap.text())),
+            (Some(CopyTarget::Command), _) => last_line(self),
             (_, None) => Err("open a scene first".into()),
-            (Some(Copied::Row), Some(view)) => self.row(view),
-            (Some(Copied::Number(quantity)), Some(view)) => self.value(quantity, view),
-            (None, Some(view)) => self.selected_text(view),
+            (Some(CopyTarget::Row), Some(view)) => row(self, view),
+            (Some(CopyTarget::Number(quantity)), Some(view)) => value(quantity, self, view),
+            (None, Some(view)) => selected_text(self, view),
         };
         match copied {
             Ok((_, text)) if text.len() > MOST => {
@@ -49,100 +49,97 @@ impl App {
             }
         }
     }
+}
 
-    fn last_line(&self) -> Result<Called, String> {
-        let line = self.history.last().cloned();
-        let line = line.ok_or("no command in the history yet; press : to type one")?;
-        Ok(("the command".into(), line))
-    }
+fn last_line(app: &App) -> Result<NamedText, String> {
+    let line = app.history.last().cloned();
+    let line = line.ok_or("no command in the history yet; press : to type one")?;
+    Ok(("the command".into(), line))
+}
 
-    /// The selection of the focused pane.
-    fn selected_text(&self, view: &View) -> Result<Called, String> {
-        if screen::is_hidden(self.focus, self, view) {
-            return Err("hidden until you predict what follows".into());
+/// The selection of the focused pane.
+fn selected_text(app: &App, view: &View) -> Result<NamedText, String> {
+    if screen::is_hidden(app.panes.focus, app, view) {
+        return Err("hidden until you predict what follows".into());
+    }
+    match app.panes.focus {
+        Pane::Nodes | Pane::Shape | Pane::Lesson => row(app, view),
+        Pane::Decision => value(WatchQuantity::Margin, app, view),
+        Pane::Residual => value(WatchQuantity::Residual, app, view),
+        Pane::Curve => monitored(app, view),
+        Pane::Timeline => Ok(("a command".into(), format!("goto {}", view.cursor))),
+        Pane::Branches => {
+            let all = view.tree.map(summaries).unwrap_or_default();
+            let order = verdicts::order(&all);
+            let row = order.get(app.branch).or(order.first());
+            let (number, _) = row.ok_or("no branch to copy")?;
+            Ok(("a command".into(), format!("branch b{}", number + 1)))
         }
-        match self.focus {
-            Pane::Nodes | Pane::Shape | Pane::Lesson => self.row(view),
-            Pane::Decision => self.value(WatchQuantity::Margin, view),
-            Pane::Residual => self.value(WatchQuantity::Residual, view),
-            Pane::Curve => self.monitored(view),
-            Pane::Timeline => Ok(("a command".into(), format!("goto {}", view.cursor))),
-            Pane::Branches => {
-                let all = view.tree.map(summaries).unwrap_or_default();
-                let order = verdicts::order(&all);
-                let row = order.get(self.branch).or(order.first());
-                let (number, _) = row.ok_or("no branch to copy")?;
-                Ok(("a command".into(), format!("branch b{}", number + 1)))
-            }
-            Pane::Remedies => {
-                let tried = view.background.and_then(|background| background.tried());
-                let trials = tried.map_or(&[][..], |tried| &tried.trials);
-                let at = self.remedy.min(trials.len().saturating_sub(1));
-                let trial = trials
-                    .get(at)
-                    .ok_or("no remedy tried yet; press r to try all")?;
-                let mut cells = vec![trial.label.clone()];
-                cells.extend(remedies::row(trial));
-                Ok(("the remedy".into(), cells.join("\t")))
-            }
-            Pane::Diagnosis => {
-                let found = view.examination().flatten();
-                let found = found.ok_or("no diagnosis yet; press d")?;
-                Ok(("the diagnosis".into(), found.lines.join("\n")))
-            }
+        Pane::Remedies => {
+            let trials = view.trials();
+            let at = app.remedy.min(trials.len().saturating_sub(1));
+            let trial = trials
+                .get(at)
+                .ok_or("no remedy tried yet; press r to try all")?;
+            let mut cells = vec![trial.label.clone()];
+            cells.extend(remedies::row(trial));
+            Ok(("the remedy".into(), cells.join("\t")))
+        }
+        Pane::Diagnosis => {
+            let found = view.examination().flatten();
+            let found = found.ok_or("no diagnosis yet; press d")?;
+            Ok(("the diagnosis".into(), found.lines.join("\n")))
         }
     }
+}
 
-    /// The selected slave node and all its numbers, separated by tabs.
-    fn row(&self, view: &View) -> Result<Called, String> {
-        let count = view.model.contacts.len();
-        let slave = self.selected.min(count.saturating_sub(1));
-        if count == 0 {
-            return Err("this scene has no slave nodes".into());
-        }
-        let next = match self.hides(view, slave) {
-            true => "?",
-            false => names::mode(view.mode(slave)),
-        };
-        let name = view.slave(slave);
-        let before = names::mode(view.mode_before(slave));
-        let mut cells = vec![name.to_owned(), before.into(), next.into()];
-        if let Some(found) = view.record(slave) {
-            let numbers = [found.gap, found.f_n, found.f_t, found.t_max, found.slip];
-            cells.extend(numbers.map(|number| format!("{number:e}")));
-        }
-        Ok((format!("the row of {name}"), cells.join("\t")))
+/// The selected slave node and all its numbers, separated by tabs.
+fn row(app: &App, view: &View) -> Result<NamedText, String> {
+    let slave = app.slave(view);
+    if view.model.contacts.is_empty() {
+        return Err("this scene has no slave nodes".into());
     }
+    let next = match app.learning.hides(view, slave) {
+        true => "?",
+        false => names::mode(view.mode(slave)),
+    };
+    let name = view.slave(slave);
+    let before = names::mode(view.mode_before(slave));
+    let mut cells = vec![name.to_owned(), before.into(), next.into()];
+    if let Some(found) = view.record(slave) {
+        let numbers = [found.gap, found.f_n, found.f_t, found.t_max, found.slip];
+        cells.extend(numbers.map(|number| format!("{number:e}")));
+    }
+    Ok((format!("the row of {name}"), cells.join("\t")))
+}
 
-    fn value(&self, quantity: WatchQuantity, view: &View) -> Result<Called, String> {
-        let count = view.model.contacts.len();
-        let slave = self.selected.min(count.saturating_sub(1));
-        if quantity.is_nodal() && count == 0 {
-            return Err("this scene has no slave nodes".into());
-        }
-        if quantity == WatchQuantity::Margin && self.hides(view, slave) {
-            return Err("hidden until you predict what follows".into());
-        }
-        let watch = Watch::new(view.model, quantity, slave);
-        let value = watch.value(view.frame());
-        let value = value.ok_or_else(|| format!("{} has no value here", watch.name))?;
-        Ok((watch.name, format!("{value:e}")))
+fn value(quantity: WatchQuantity, app: &App, view: &View) -> Result<NamedText, String> {
+    let slave = app.slave(view);
+    if quantity.is_nodal() && view.model.contacts.is_empty() {
+        return Err("this scene has no slave nodes".into());
     }
+    if quantity == WatchQuantity::Margin && app.learning.hides(view, slave) {
+        return Err("hidden until you predict what follows".into());
+    }
+    let watch = Watch::new(view.model, quantity, slave);
+    let value = watch.value(view.frame());
+    let value = value.ok_or_else(|| format!("{} has no value here", watch.name))?;
+    Ok((watch.name, format!("{value:e}")))
+}
 
-    /// The load and the shown monitor at the last accepted increment.
-    fn monitored(&self, view: &View) -> Result<Called, String> {
-        let monitor = view.model.monitors.get(self.monitor);
-        let monitor = monitor.ok_or("this scene has no monitors")?;
-        let frames = &view.frames[..=view.cursor];
-        let frame = frames.iter().rev().find(|frame| frame.monitors.is_some());
-        let value = frame.and_then(|frame| frame.monitors.as_ref()?.get(self.monitor).copied());
-        let (Some(frame), Some(value)) = (frame, value) else {
-            return Err("no increment accepted yet".into());
-        };
-        let load = frame.state.start.load_factor;
-        Ok((
-            format!("load and {}", monitor.name),
-            format!("{load:e}\t{value:e}"),
-        ))
-    }
+/// The load and the shown monitor at the last accepted increment.
+fn monitored(app: &App, view: &View) -> Result<NamedText, String> {
+    let monitor = view.model.monitors.get(app.monitor);
+    let monitor = monitor.ok_or("this scene has no monitors")?;
+    let frames = &view.frames[..=view.cursor];
+    let frame = frames.iter().rev().find(|frame| frame.monitors.is_some());
+    let value = frame.and_then(|frame| frame.monitors.as_ref()?.get(app.monitor).copied());
+    let (Some(frame), Some(value)) = (frame, value) else {
+        return Err("no increment accepted yet".into());
+    };
+    let load = frame.state.start.load_factor;
+    Ok((
+        format!("load and {}", monitor.name),
+        format!("{load:e}\t{value:e}"),
+    ))
 }

@@ -1,11 +1,12 @@
 //! The debugger without its terminal: an [`App`], a session, and the queue of keys that wait for the solver. Keys in, screens out.
 
-use crate::app::{App, Effect, Opens, Overlay, Reading};
+use crate::app::{App, Effect, Opens, Overlay};
 use crate::chartpage::{ChartPage, NoPage};
 use crate::choosing::{self, Looking, Offer};
 use crate::keys;
 use crate::layout::Pane;
-use crate::loading::{Loaded, Loading};
+use crate::learning::Learning;
+use crate::loading::{LoadedFile, Loading};
 use crate::terminal;
 use crate::theme::Theme;
 use crate::view::View;
@@ -23,7 +24,7 @@ use stickslip_debugger::recorded::calculix::words::GREETING;
 use stickslip_debugger::session::{Reply, Session};
 use stickslip_debugger::teach::progress::{self, Keeper, Progress};
 use stickslip_debugger::teach::{Lesson, Tutor};
-use stickslip_scene::shown;
+use stickslip_scene::{gaps, shown};
 use stickslip_study::measuring::Measuring;
 
 /// Steps shorter than this delay the next key instead of queueing it, so that the screen does not flicker.
@@ -37,7 +38,7 @@ pub fn offers() -> Vec<Offer> {
 
 /// A request that only the event loop can carry out.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Outside {
+pub enum TerminalRequest {
     /// Quit.
     Quit,
     /// Suspend the program.
@@ -57,7 +58,7 @@ pub struct Debugger {
     /// The session; `None` until a scene is opened.
     pub session: Option<Session>,
     /// Requests to the event loop from queued keys.
-    pub(super) outside: VecDeque<Outside>,
+    pub(super) outside: VecDeque<TerminalRequest>,
     /// Start time of the current computation.
     begun: Instant,
     /// Number of frames in the session at the last draw.
@@ -100,7 +101,7 @@ impl Debugger {
     }
 
     /// From now on stores the progress in lessons, and lists the files of the folder in the chooser.
-    pub(super) fn in_the_world(&mut self) {
+    pub(super) fn use_user_files(&mut self) {
         self.progress = Keeper::new(progress::place());
         self.lists = true;
     }
@@ -113,6 +114,7 @@ impl Debugger {
     fn keep_progress(&mut self) {
         let kept = self
             .app
+            .learning
             .lesson
             .as_ref()
             .map(|tutor| self.progress.follow(tutor));
@@ -135,9 +137,9 @@ impl Debugger {
     }
 
     /// Prints one line on exit: where the journal is, or why there is none.
-    pub(super) fn part(&self) {
+    pub(super) fn print_exit_line(&self) {
         let Some(session) = &self.session else { return };
-        let told = match (session.journal(), session.lost_journal()) {
+        let text = match (session.journal().path(), session.journal().lost()) {
             (Some(path), _) => {
                 let path = path.display();
                 format!("journal: {path} (`stickslip resume {path}` continues it)")
@@ -146,12 +148,12 @@ impl Debugger {
             (None, None) => return,
         };
         // Standard error may be closed.
-        let _ = writeln!(io::stderr(), "{}", shown::line(&told));
+        let _ = writeln!(io::stderr(), "{}", shown::line(&text));
     }
 
     /// The data that the panes draw.
     pub fn view(&self) -> Option<View<'_>> {
-        self.session.as_ref().map(View::of)
+        self.session.as_ref().map(View::new)
     }
 
     /// Whether the solver is running.
@@ -160,7 +162,7 @@ impl Debugger {
     }
 
     /// Handles an event from the terminal.
-    pub fn event(&mut self, event: &Event) -> Option<Outside> {
+    pub fn event(&mut self, event: &Event) -> Option<TerminalRequest> {
         match event {
             Event::Key(key) => {
                 let mut last = None;
@@ -174,7 +176,7 @@ impl Debugger {
                 None
             }
             Event::Mouse(mouse) if self.app.mouse => {
-                let view = self.session.as_ref().map(View::of);
+                let view = self.session.as_ref().map(View::new);
                 let effect = self.app.mouse(mouse, view.as_ref())?;
                 self.carry_out(effect)
             }
@@ -183,8 +185,8 @@ impl Debugger {
     }
 
     /// Handles a key.
-    pub fn key(&mut self, key: &KeyEvent) -> Option<Outside> {
-        let view = self.session.as_ref().map(View::of);
+    pub fn key(&mut self, key: &KeyEvent) -> Option<TerminalRequest> {
+        let view = self.session.as_ref().map(View::new);
         let chose = matches!(self.app.overlay, Overlay::Chooser(_));
         let effect = self.app.key(key, view.as_ref());
         self.keep_progress();
@@ -195,13 +197,13 @@ impl Debugger {
     }
 
     /// Carries out an effect, unless only the event loop can.
-    fn carry_out(&mut self, effect: Effect) -> Option<Outside> {
+    fn carry_out(&mut self, effect: Effect) -> Option<TerminalRequest> {
         match effect {
-            Effect::Quit => return Some(Outside::Quit),
-            Effect::Suspend => return Some(Outside::Suspend),
-            Effect::Redraw => return Some(Outside::Redraw),
-            Effect::Copy(text) => return Some(Outside::Copy(text)),
-            Effect::Mouse(on) => return Some(Outside::Mouse(on)),
+            Effect::Quit => return Some(TerminalRequest::Quit),
+            Effect::Suspend => return Some(TerminalRequest::Suspend),
+            Effect::Redraw => return Some(TerminalRequest::Redraw),
+            Effect::Copy(text) => return Some(TerminalRequest::Copy(text)),
+            Effect::Mouse(on) => return Some(TerminalRequest::Mouse(on)),
             Effect::Submit(command) => self.submit(command),
             Effect::Interrupt => self.interrupt(),
             Effect::Open(scene) => self.load(Loading::scene(&scene), Opens::Scene, &scene),
@@ -215,7 +217,7 @@ impl Debugger {
     fn resume(&mut self) -> bool {
         let mut any = false;
         while !self.is_busy() {
-            let view = self.session.as_ref().map(View::of);
+            let view = self.session.as_ref().map(View::new);
             let Some(effect) = self.app.resume(view.as_ref()) else {
                 break;
             };
@@ -237,7 +239,7 @@ impl Debugger {
 
     /// Shows a loaded file, once no overlay but the chooser is open. Returns whether anything changed.
     fn follow_loading(&mut self) -> bool {
-        if !self.app.is_open_to_pages() {
+        if !self.app.overlay.is_open_to_pages() {
             return false;
         }
         let Some(loaded) = self.loading.as_ref().and_then(Loading::result) else {
@@ -245,14 +247,14 @@ impl Debugger {
         };
         (self.loading, self.app.loading) = (None, None);
         match loaded {
-            Loaded::Scene(Ok(session)) => self.open(*session),
-            Loaded::Lesson(Ok(taught)) => self.take_lesson(taught.0, taught.1),
-            Loaded::Chart(Ok(page)) => {
+            LoadedFile::Scene(Ok(session)) => self.open(*session),
+            LoadedFile::Lesson(Ok(taught)) => self.take_lesson(taught.0, taught.1),
+            LoadedFile::Chart(Ok(page)) => {
                 self.app.say("");
                 self.app.overlay = Overlay::Chart(page);
             }
-            Loaded::Scene(Err(why)) | Loaded::Lesson(Err(why)) => self.app.complain(why),
-            Loaded::Chart(Err(why)) => self.app.complain(why),
+            LoadedFile::Scene(Err(why)) | LoadedFile::Lesson(Err(why)) => self.app.complain(why),
+            LoadedFile::Chart(Err(why)) => self.app.complain(why),
         }
         true
     }
@@ -284,7 +286,7 @@ impl Debugger {
                 }
                 continue;
             }
-            let open = self.app.is_open_to_pages();
+            let open = self.app.overlay.is_open_to_pages();
             // Behind another page these would never finish.
             if open && (self.loading.is_some() || self.measuring.is_some()) {
                 std::thread::sleep(Duration::from_millis(1));
@@ -295,7 +297,7 @@ impl Debugger {
                 self.advance();
             }
             match &mut self.session {
-                Some(session) if session.background().is_busy() => session.wait_for_background(),
+                Some(session) if session.background().is_busy() => session.background_mut().wait(),
                 _ if moved && self.app.ahead.is_any() => {}
                 _ => return,
             }
@@ -314,17 +316,15 @@ impl Debugger {
         self.begun = Instant::now();
         // The page itself shows that the analysis is running.
         let shown = match command {
-            Command::Census(_) => self.app.focus == Pane::Diagnosis,
-            Command::Remedies => self.app.focus == Pane::Remedies,
+            Command::Census(_) => self.app.panes.focus == Pane::Diagnosis,
+            Command::Remedies => self.app.panes.focus == Pane::Remedies,
             _ => false,
         };
         match session.submit(command) {
             Ok(_) if shown => {}
             Ok(reply) => self.tell(reply),
             Err(message) => {
-                if let Some(tutor) = &mut self.app.lesson {
-                    tutor.failed();
-                }
+                self.app.learning.fail();
                 self.app.complain(message);
             }
         }
@@ -336,12 +336,10 @@ impl Debugger {
         let lost = self
             .session
             .as_ref()
-            .is_some_and(|session| session.lost().is_some());
+            .is_some_and(|session| session.connection().lost().is_some());
         if lost {
             self.app.ahead.forget();
-            if let Some(tutor) = &mut self.app.lesson {
-                tutor.failed();
-            }
+            self.app.learning.fail();
             self.app.say("");
             self.app.notice = Some(shown::line(&reply.0).into_owned());
             return;
@@ -351,14 +349,14 @@ impl Debugger {
 
     /// Takes notice of new lines in an attached solver's log. Returns whether there were any.
     fn hear(&mut self) -> bool {
-        let Some(log) = self.session.as_ref().and_then(Session::log) else {
+        let Some(log) = self.session.as_ref().and_then(|s| s.connection().log()) else {
             return false;
         };
-        let (any, told) = self.app.heard.hear(log);
-        if let Some(told) = told
+        let (any, text) = self.app.log_counts.count(log);
+        if let Some(text) = text
             && self.app.notice.is_none()
         {
-            self.app.notice = Some(told);
+            self.app.notice = Some(text);
         }
         any
     }
@@ -374,8 +372,8 @@ impl Debugger {
             }
         });
         // The message must not reveal what the user still has to predict.
-        let view = self.session.as_ref().map(View::of);
-        let hidden = view.is_some_and(|view| !view.running && self.app.hides_any(&view));
+        let view = self.session.as_ref().map(View::new);
+        let hidden = view.is_some_and(|view| !view.running && self.app.learning.hides_any(&view));
         // The status line already shows the outcome.
         let new = match &known {
             Some(known) => text.strip_prefix(known.as_str()).unwrap_or(&text),
@@ -391,7 +389,7 @@ impl Debugger {
             .session
             .as_ref()
             .filter(|session| !session.is_running());
-        if let (Some(tutor), Some(session)) = (&mut self.app.lesson, idle) {
+        if let (Some(tutor), Some(session)) = (&mut self.app.learning.lesson, idle) {
             tutor.settled(session.cursor(), session.frame());
         }
         self.keep_progress();
@@ -473,10 +471,7 @@ impl Debugger {
         if let Some(measuring) = &self.measuring {
             measuring.interrupt();
         }
-        if let Some(tutor) = &mut self.app.lesson {
-            // The action that the lesson asked for was not completed.
-            tutor.failed();
-        }
+        self.app.learning.fail();
         if let Some(session) = &self.session {
             session.interrupt();
             session.background().interrupt();
@@ -488,18 +483,22 @@ impl Debugger {
     }
 
     fn open(&mut self, mut session: Session) {
-        let resumed = session.journal().is_some();
+        let resumed = session.journal().path().is_some();
         // A resumed journal continues on its own.
-        if self.keeps && !resumed && session.offers().past.is_none() {
-            session.keep_at_default_place();
+        if self.keeps && !resumed && session.connection().offers().past.is_none() {
+            session.journal_mut().write_to_default_path();
         }
-        (self.measuring, self.app.measuring) = (None, None);
         self.app.opened();
         match resumed {
             true => self.app.say("resumed from its journal, which continues"),
             false => greet(&mut self.app, &session),
         }
+        self.replace_session(session);
+    }
+
+    fn replace_session(&mut self, session: Session) {
         self.session = Some(session);
+        (self.measuring, self.app.measuring) = (None, None);
     }
 
     /// Starts a lesson at the start of its scene.
@@ -510,11 +509,9 @@ impl Debugger {
 
     fn take_lesson(&mut self, lesson: Lesson, session: Session) {
         let tutor = Tutor::new(Arc::new(lesson), session.cursor(), session.frame());
-        self.session = Some(session);
-        (self.measuring, self.app.measuring) = (None, None);
         self.app.opened();
-        self.app.lesson = Some(tutor);
-        self.app.reading = Reading::default();
+        self.app.learning = Learning::new(tutor);
+        self.replace_session(session);
         self.app.say("");
     }
 
@@ -539,12 +536,10 @@ impl Debugger {
             return measured;
         };
         let was_busy = session.is_running();
-        self.app.unkept = session.lost_journal().is_some();
-        let seen = session.gather_background();
-        match session.exported() {
-            Some(Ok(Reply(told))) => self.app.say(told),
-            Some(Err(why)) => self.app.complain(why),
-            None => {}
+        self.app.unkept = session.journal().lost().is_some();
+        let seen = session.background_mut().gather();
+        if let Some(exported) = session.background_mut().exported() {
+            self.app.report(exported);
         }
         let reply = session.poll();
         let said = reply.is_some();
@@ -598,16 +593,16 @@ impl Debugger {
 /// The first message after opening a scene: warnings about its start, or the first key to press.
 fn greet(app: &mut App, session: &Session) {
     if session.model().finished.is_some() {
-        (app.page, app.chart) = (Pane::Timeline, Pane::Timeline);
+        (app.panes.page, app.panes.chart) = (Pane::Timeline, Pane::Timeline);
         return app.say(GREETING);
     }
-    match session.doubts() {
+    match &gaps::warnings(session.model())[..] {
         [] => app.say("Press s for one minor iteration, ? for all keys"),
         [doubt] => app.complain(doubt),
         [doubt, others @ ..] => app.complain(format!(
             "{doubt} (and {} more: `stickslip check {}` lists all)",
             others.len(),
-            session.scene_name()
+            session.scene().name
         )),
     }
 }

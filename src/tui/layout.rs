@@ -55,16 +55,11 @@ impl Pane {
     pub fn takes_turns(self) -> bool {
         !matches!(self, Pane::Nodes | Pane::Decision | Pane::Shape)
     }
-
-    /// The pane `places` steps further in Tab order.
-    pub fn turn(self, places: usize) -> Pane {
-        Pane::ALL[(self as usize + places) % Pane::ALL.len()]
-    }
 }
 
-/// The user's choices that determine the layout.
+/// Which panes the user looks at.
 #[derive(Debug, Clone, Copy)]
-pub struct Choice {
+pub struct ShownPanes {
     /// The pane with the focus.
     pub focus: Pane,
     /// The pane below the table on a small screen.
@@ -73,6 +68,48 @@ pub struct Choice {
     pub chart: Pane,
     /// Whether the focused pane fills the screen.
     pub zoomed: bool,
+}
+
+impl Default for ShownPanes {
+    fn default() -> ShownPanes {
+        ShownPanes {
+            focus: Pane::Nodes,
+            page: Pane::Decision,
+            chart: Pane::Residual,
+            zoomed: false,
+        }
+    }
+}
+
+impl ShownPanes {
+    /// Focuses the pane that is `places` steps further in Tab order.
+    pub(super) fn turn(&mut self, places: usize) {
+        self.look_at(Pane::ALL[(self.focus as usize + places) % Pane::ALL.len()]);
+    }
+
+    /// Focuses a pane and makes it visible.
+    pub(super) fn look_at(&mut self, pane: Pane) {
+        self.focus = pane;
+        if pane != Pane::Nodes {
+            self.page = pane;
+        }
+        if pane.takes_turns() {
+            self.chart = pane;
+        }
+    }
+
+    /// Zooms a pane, or ends the zoom.
+    pub(super) fn zoom(&mut self, pane: Pane) {
+        self.zoomed = !(self.zoomed && self.focus == pane);
+        self.look_at(pane);
+    }
+}
+
+/// What determines the layout.
+#[derive(Debug, Clone, Copy)]
+pub struct Choice {
+    /// The user's choice.
+    pub panes: ShownPanes,
     /// Number of slave nodes, which is the number of table rows.
     pub slaves: usize,
     /// Whether the scene has a shape to draw; otherwise the timeline replaces it.
@@ -138,8 +175,8 @@ pub fn places(area: Rect, choice: &Choice) -> Places {
     .map(Constraint::Length);
     let [status, body, message, footer] = Layout::vertical(rows).areas(area);
     let panes = match () {
-        _ if choice.zoomed && choice.lesson == 0 => vec![(choice.focus, body)],
-        _ if choice.zoomed => zoomed_with_lesson(body, choice),
+        _ if choice.panes.zoomed && choice.lesson == 0 => vec![(choice.panes.focus, body)],
+        _ if choice.panes.zoomed => zoomed_with_lesson(body, choice),
         _ if choice.lesson > 0 => with_lesson(body, choice),
         _ if !choice.has_shape && area.width >= 110 && body.height >= 30 => shapeless(body, choice),
         _ if area.width >= 160 && body.height >= 40 => large(body, choice),
@@ -150,7 +187,7 @@ pub fn places(area: Rect, choice: &Choice) -> Places {
         .iter()
         .filter(|(pane, _)| *pane != Pane::Lesson)
         .count();
-    let paged = listed < 4 && !choice.zoomed;
+    let paged = listed < 4 && !choice.panes.zoomed;
     Places {
         status,
         panes,
@@ -168,22 +205,29 @@ fn table(choice: &Choice, most: u16) -> u16 {
         .min(most)
 }
 
+/// The upper rows of an area, and the others.
+fn top(area: Rect, rows: u16) -> [Rect; 2] {
+    Layout::vertical([Constraint::Length(rows), Constraint::Min(0)]).areas(area)
+}
+
+/// The left columns of an area, and the others.
+fn left(area: Rect, columns: u16) -> [Rect; 2] {
+    Layout::horizontal([Constraint::Length(columns), Constraint::Min(0)]).areas(area)
+}
+
 fn small(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
     if body.height < DECISION + TABLE_FRAME + 1 || body.width < 40 {
-        return vec![(choice.focus, body)];
+        return vec![(choice.panes.focus, body)];
     }
-    let rows = [table(choice, body.height - DECISION), 0];
-    let [upper, lower] =
-        Layout::vertical([Constraint::Length(rows[0]), Constraint::Min(rows[1])]).areas(body);
-    vec![(Pane::Nodes, upper), (choice.page, lower)]
+    let [upper, lower] = top(body, table(choice, body.height - DECISION));
+    vec![(Pane::Nodes, upper), (choice.panes.page, lower)]
 }
 
 /// The layout with a lesson: a separate column on a large screen, the place of the chart on a medium one, the rows at the bottom on
 /// a small one, and the place of the table on a tiny one.
 fn with_lesson(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
     if body.width >= 110 + LESSON && body.height >= 30 {
-        let columns = [Constraint::Min(0), Constraint::Length(LESSON)];
-        let [left, right] = Layout::horizontal(columns).areas(body);
+        let [left, right] = left(body, body.width - LESSON);
         let mut panes = medium(left, choice);
         panes.push((Pane::Lesson, right));
         return panes;
@@ -193,31 +237,29 @@ fn with_lesson(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
         let chart = panes.remove(2);
         panes.push((Pane::Lesson, chart.1));
         // A chart with the focus replaces the shape.
-        if choice.focus == choice.chart {
-            panes[2].0 = choice.chart;
+        if choice.panes.focus == choice.panes.chart {
+            panes[2].0 = choice.panes.chart;
         }
         return panes;
     }
     let least = table(choice, TABLE_FRAME + 1);
     if body.height < least + PAGE {
-        let pane = match choice.focus {
+        let pane = match choice.panes.focus {
             Pane::Nodes => Pane::Lesson,
             other => other,
         };
         return vec![(pane, body)];
     }
     let lesson = choice.lesson.min(body.height - least);
-    let rows = [Constraint::Min(0), Constraint::Length(lesson)];
-    let [upper, lower] = Layout::vertical(rows).areas(body);
+    let [upper, lower] = top(body, body.height - lesson);
     let nodes = table(choice, upper.height);
     let mut panes = match upper.height.saturating_sub(nodes) {
         PAGE.. => {
-            let rows = [Constraint::Length(nodes), Constraint::Min(0)];
-            let [nodes, page] = Layout::vertical(rows).areas(upper);
-            vec![(Pane::Nodes, nodes), (choice.page, page)]
+            let [nodes, page] = top(upper, nodes);
+            vec![(Pane::Nodes, nodes), (choice.panes.page, page)]
         }
-        _ if choice.focus == Pane::Nodes => vec![(Pane::Nodes, upper)],
-        _ => vec![(choice.focus, upper)],
+        _ if choice.panes.focus == Pane::Nodes => vec![(Pane::Nodes, upper)],
+        _ => vec![(choice.panes.focus, upper)],
     };
     panes.push((Pane::Lesson, lower));
     panes
@@ -226,17 +268,15 @@ fn with_lesson(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
 /// The focused pane with the lesson next to it or below it, since the lesson says what to do there.
 fn zoomed_with_lesson(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
     if body.width >= 110 + LESSON {
-        let columns = [Constraint::Min(0), Constraint::Length(LESSON)];
-        let [left, right] = Layout::horizontal(columns).areas(body);
-        return vec![(choice.focus, left), (Pane::Lesson, right)];
+        let [left, right] = left(body, body.width - LESSON);
+        return vec![(choice.panes.focus, left), (Pane::Lesson, right)];
     }
     if body.height < LEAST_LESSON + PAGE {
-        return vec![(choice.focus, body)];
+        return vec![(choice.panes.focus, body)];
     }
     let lesson = choice.lesson.min(body.height / 2).max(LEAST_LESSON);
-    let rows = [Constraint::Min(0), Constraint::Length(lesson)];
-    let [upper, lower] = Layout::vertical(rows).areas(body);
-    vec![(choice.focus, upper), (Pane::Lesson, lower)]
+    let [upper, lower] = top(body, body.height - lesson);
+    vec![(choice.panes.focus, upper), (Pane::Lesson, lower)]
 }
 
 /// The table above the timeline, then the decision next to the chart.
@@ -251,7 +291,7 @@ fn shapeless(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
     let [nodes, timeline, lower] = Layout::vertical(rows).areas(body);
     let columns = [2, 3].map(Constraint::Fill);
     let [decision, chart] = Layout::horizontal(columns).areas(lower);
-    let other = match choice.chart {
+    let other = match choice.panes.chart {
         Pane::Timeline => Pane::Residual,
         chart => chart,
     };
@@ -265,19 +305,13 @@ fn shapeless(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
 
 fn medium(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
     let most = body.height - TALL_DECISION - 7;
-    let rows = [Constraint::Length(table(choice, most)), Constraint::Min(0)];
-    let [upper, lower] = Layout::vertical(rows).areas(body);
-    let columns = [
-        Constraint::Length((body.width / 2).clamp(66, 76)),
-        Constraint::Min(0),
-    ];
-    let [left, right] = Layout::horizontal(columns).areas(lower);
-    let rows = [Constraint::Length(TALL_DECISION), Constraint::Min(0)];
-    let [decision, residual] = Layout::vertical(rows).areas(left);
+    let [upper, lower] = top(body, table(choice, most));
+    let [left, right] = left(lower, (body.width / 2).clamp(66, 76));
+    let [decision, residual] = top(left, TALL_DECISION);
     vec![
         (Pane::Nodes, upper),
         (Pane::Decision, decision),
-        (choice.chart, residual),
+        (choice.panes.chart, residual),
         (Pane::Shape, right),
     ]
 }
@@ -287,13 +321,8 @@ fn large(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
         0..ROOM_FOR_TIMELINE => 0,
         _ => (choice.slaves.min(LONGEST_TIMELINE) as u16).max(1) + TIMELINE_FRAME,
     };
-    let rows = [Constraint::Min(0), Constraint::Length(timeline)];
-    let [body, timeline] = Layout::vertical(rows).areas(body);
-    let columns = [
-        Constraint::Length((body.width * 11 / 20).clamp(104, 130)),
-        Constraint::Min(0),
-    ];
-    let [left, right] = Layout::horizontal(columns).areas(body);
+    let [body, timeline] = top(body, body.height - timeline);
+    let [left, right] = left(body, (body.width * 11 / 20).clamp(104, 130));
     let most = left.height - TALL_DECISION - 7;
     let rows = [
         Constraint::Length(table(choice, most)),
@@ -303,7 +332,7 @@ fn large(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
     let [nodes, decision, residual] = Layout::vertical(rows).areas(left);
     let rows = [Constraint::Fill(3), Constraint::Fill(2)];
     let [shape, curve] = Layout::vertical(rows).areas(right);
-    let third = match choice.chart {
+    let third = match choice.panes.chart {
         Pane::Curve => Pane::Residual,
         Pane::Timeline if timeline.height > 0 => Pane::Residual,
         chart => chart,
@@ -327,10 +356,7 @@ mod tests {
 
     fn at(width: u16, height: u16, slaves: usize) -> Places {
         let choice = Choice {
-            focus: Pane::Nodes,
-            page: Pane::Decision,
-            chart: Pane::Residual,
-            zoomed: false,
+            panes: ShownPanes::default(),
             slaves,
             has_shape: true,
             lesson: 0,

@@ -1,97 +1,125 @@
-//! Lessons and prediction mode: what is allowed, what is hidden, and how answers are handled.
+//! Lessons and prediction mode: what is allowed, what is hidden, how answers are handled, and which text has been read. A lesson
+//! continues only after all of its text has been shown.
 
-use crate::app::App;
 use crate::view::View;
 use stickslip_debugger::action::{Action, Whose};
 use stickslip_debugger::recorded::calculix::words::{NO_MODES, READ_ONLY};
 use stickslip_debugger::teach::refusal::NotNow;
 use stickslip_debugger::teach::{Guess, Tutor};
 
-impl App {
-    /// Continues the lesson.
-    pub(super) fn go_on(&mut self, view: Option<&View>) {
-        if self.turn_page(view) {
-            return self.say("");
+/// How far the current lesson page has been read.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Reading {
+    /// The lesson page ([`Tutor::edition`]).
+    pub edition: (usize, u32),
+    /// The first visible line, from 0.
+    pub top: usize,
+    /// Lines shown so far, counted from the first.
+    pub seen: usize,
+}
+
+/// The visible part of a lesson page.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct VisibleLines {
+    /// The first visible line, and the one after the last.
+    pub from: usize,
+    pub to: usize,
+    /// Number of lines.
+    pub all: usize,
+}
+
+/// The current lesson, and prediction mode.
+#[derive(Debug, Clone, Default)]
+pub struct Learning {
+    /// The lesson.
+    pub lesson: Option<Tutor>,
+    /// How far its current page has been read.
+    pub reading: Reading,
+    /// Prediction mode, outside lessons.
+    pub guess: Option<Guess>,
+}
+
+impl Learning {
+    /// Starts a lesson.
+    pub(super) fn new(lesson: Tutor) -> Learning {
+        Learning {
+            lesson: Some(lesson),
+            ..Learning::default()
         }
-        let (Some(tutor), Some(view)) = (&mut self.lesson, view) else {
-            return self.complain("no lesson is open; press L to start one");
-        };
-        match tutor.on(view.cursor, view.frame()) {
-            Ok(()) => self.say(""),
-            Err(message) => self.complain(message),
+    }
+
+    /// Notes that the action that the lesson asked for was not completed.
+    pub(super) fn fail(&mut self) {
+        if let Some(tutor) = &mut self.lesson {
+            tutor.failed();
         }
     }
 
     /// Answers the lesson's question, or checks a prediction.
-    pub(super) fn answer(&mut self, word: &str, view: Option<&View>) {
-        let Some(view) = view else {
-            return self.complain("open a scene first");
-        };
-        if let Err(why) = self.must_read(Some(view)) {
-            return self.complain(why);
-        }
-        let (cursor, frame, selected) = (view.cursor, view.frame(), self.selected);
-        let told = match (&mut self.lesson, &mut self.guess) {
+    pub(super) fn answer(
+        &mut self,
+        word: &str,
+        selected: usize,
+        view: &View,
+    ) -> Result<String, String> {
+        let (cursor, frame) = (view.cursor, view.frame());
+        match (&mut self.lesson, &mut self.guess) {
             (_, Some(guess)) => guess
                 .predict(view.model, cursor, frame, selected, word)
-                .map(|(_, text)| text),
+                .map(|(_, text)| text)
+                .map_err(|why| why.to_string()),
             (Some(tutor), None) => tutor
                 .answer(word, selected, cursor, frame)
-                .map(|()| String::new()),
+                .map(|()| String::new())
+                .map_err(|why| why.to_string()),
             (None, None) => {
-                return self.complain(
-                    "there is no question; press p to hide decisions until you predict them",
-                );
+                Err("there is no question; press p to hide decisions until you predict them".into())
             }
-        };
-        match told {
-            Ok(text) => self.say(text),
-            Err(message) => self.complain(message),
         }
     }
 
     /// Switches prediction mode.
-    pub(super) fn predict(&mut self, whose: Option<Whose>, view: Option<&View>) {
-        let Some(view) = view else {
-            return self.complain("open a scene first");
-        };
+    pub(super) fn predict(&mut self, whose: Option<Whose>, view: &View) -> Result<String, String> {
         if view.model.finished.is_some() {
-            return self.complain(format!("{READ_ONLY}: {NO_MODES}"));
+            return Err(format!("{READ_ONLY}: {NO_MODES}"));
         }
         if self
             .lesson
             .as_ref()
             .is_some_and(|tutor| tutor.step().is_some())
         {
-            return self
-                .complain("prediction mode is off in lessons, which ask their own questions");
+            return Err("prediction mode is off in lessons, which ask their own questions".into());
         }
         let toggled = match self.guess {
             Some(_) => Whose::Off,
             None => Whose::Selected,
         };
-        match (whose.unwrap_or(toggled), &self.guess) {
-            (Whose::Off, Some(guess)) => {
-                let told = format!("predicted: {} right, {} wrong", guess.right, guess.wrong);
-                self.guess = None;
-                self.say(told);
-            }
-            (Whose::Off, None) => self.complain("prediction mode is off"),
+        match (whose.unwrap_or(toggled), self.guess.take()) {
+            (Whose::Off, Some(guess)) => Ok(format!(
+                "predicted: {} right, {} wrong",
+                guess.right, guess.wrong
+            )),
+            (Whose::Off, None) => Err("prediction mode is off".into()),
             (whose, _) => {
                 self.guess = Some(Guess::new(whose, view.cursor));
-                self.say(
-                    "decisions are hidden until you predict them: step, then press a and f, s or x",
-                );
+                Ok(
+                    "decisions are hidden until you predict them: step, then press a and f, s or x"
+                        .into(),
+                )
             }
         }
     }
 
     /// Whether the lesson or prediction mode allows an action; `true` if the lesson asks for it.
-    pub(super) fn permits(&mut self, action: &Action, view: Option<&View>) -> Result<bool, NotNow> {
-        let Some(view) = view else { return Ok(false) };
-        let goes_on = |tutor: &Tutor| tutor.wants(action);
-        if self.guess.is_none() && self.lesson.as_ref().is_some_and(goes_on) {
-            self.must_read(Some(view))?;
+    pub(super) fn permits(
+        &mut self,
+        action: &Action,
+        view: &View,
+        visible: Option<VisibleLines>,
+    ) -> Result<bool, NotNow> {
+        let continues = |tutor: &Tutor| tutor.wants(action);
+        if self.guess.is_none() && self.lesson.as_ref().is_some_and(continues) {
+            self.check_read(visible)?;
         }
         match (&mut self.lesson, &mut self.guess) {
             (Some(tutor), None) => tutor.permits(action, view.cursor, view.frame()),
@@ -104,20 +132,17 @@ impl App {
     }
 
     /// Prediction mode, in a lesson or outside.
-    pub fn guessing(&self) -> Option<&Guess> {
+    pub fn guess(&self) -> Option<&Guess> {
         let lesson = self.lesson.as_ref().and_then(Tutor::guess);
         lesson.or(self.guess.as_ref())
     }
 
     /// Whether to hide a decision of the shown frame, or the judge's verdict.
     pub fn hides_any(&self, view: &View) -> bool {
-        let frame = view.frame();
         let lesson = |tutor: &Tutor| tutor.hides() || tutor.hides_verdict();
+        let is_open = |guess: &Guess| guess.is_open(view.cursor, view.frame());
         view.event().is_some()
-            && (self.lesson.as_ref().is_some_and(lesson)
-                || self
-                    .guessing()
-                    .is_some_and(|guess| guess.is_open(view.cursor, frame)))
+            && (self.lesson.as_ref().is_some_and(lesson) || self.guess().is_some_and(is_open))
     }
 
     /// Whether to hide the judge's verdict.
@@ -127,10 +152,49 @@ impl App {
 
     /// Whether to hide the decision on this slave node.
     pub fn hides(&self, view: &View, slave: usize) -> bool {
+        let is_open = |guess: &Guess| guess.hides(view.cursor, view.frame(), slave);
         view.record(slave).is_some()
-            && (self.lesson.as_ref().is_some_and(Tutor::hides)
-                || self
-                    .guessing()
-                    .is_some_and(|guess| guess.hides(view.cursor, view.frame(), slave)))
+            && (self.lesson.as_ref().is_some_and(Tutor::hides) || self.guess().is_some_and(is_open))
+    }
+
+    /// Records which lines are visible, before a key is handled.
+    pub(super) fn note(&mut self, visible: Option<VisibleLines>) {
+        let (Some(visible), Some(tutor)) = (visible, &self.lesson) else {
+            return;
+        };
+        let (now, then) = (tutor.edition(), self.reading.edition);
+        let before = match now.0 == then.0 {
+            true if now.1 == then.1 => self.reading.seen,
+            // Text above an answer has been read.
+            true => self.reading.seen.min(visible.from),
+            false => 0,
+        };
+        self.reading = Reading {
+            edition: now,
+            top: visible.from,
+            // Lines that were skipped have not been read.
+            seen: match visible.from <= before {
+                true => before.max(visible.to),
+                false => before,
+            },
+        };
+    }
+
+    /// Whether the lesson has text that has not been shown.
+    pub(super) fn is_unread(&self, visible: Option<VisibleLines>) -> bool {
+        let (Some(visible), Some(tutor)) = (visible, &self.lesson) else {
+            return false;
+        };
+        let same = self.reading.edition == tutor.edition();
+        let seen = if same { self.reading.seen } else { visible.to };
+        seen < visible.all
+    }
+
+    /// Rejects actions that continue the lesson until its text has been shown.
+    pub(super) fn check_read(&self, visible: Option<VisibleLines>) -> Result<(), NotNow> {
+        match self.is_unread(visible) {
+            true => Err(NotNow::Unread),
+            false => Ok(()),
+        }
     }
 }

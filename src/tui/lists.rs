@@ -10,21 +10,6 @@ use stickslip_debugger::history::verdicts::{self, summaries};
 use stickslip_debugger::record::command::{Command, To};
 
 impl App {
-    pub(super) fn turn(&mut self, places: usize) {
-        self.look_at(self.focus.turn(places));
-    }
-
-    /// Focuses a pane and makes it visible.
-    pub(super) fn look_at(&mut self, pane: Pane) {
-        self.focus = pane;
-        if pane != Pane::Nodes {
-            self.page = pane;
-        }
-        if pane.takes_turns() {
-            self.chart = pane;
-        }
-    }
-
     /// Shows the curve of a monitor, or of the next one.
     pub(super) fn watch(&mut self, monitor: Option<usize>, view: Option<&View>) {
         let monitors = view.map_or(&[][..], |view| &view.model.monitors);
@@ -36,17 +21,11 @@ impl App {
         }
     }
 
-    /// Zooms a pane, or ends the zoom.
-    pub(super) fn show(&mut self, pane: Pane) {
-        self.zoomed = !(self.zoomed && self.focus == pane);
-        self.look_at(pane);
-    }
-
     /// Opens a page, and runs its analysis if there is no result yet. Requesting an open page again keeps it open.
     pub(super) fn page(&mut self, page: Page, view: Option<&View>) -> Option<Effect> {
         match page {
-            Page::Timeline => self.show(Pane::Timeline),
-            Page::Branches => self.show(Pane::Branches),
+            Page::Timeline => self.panes.zoom(Pane::Timeline),
+            Page::Branches => self.panes.zoom(Pane::Branches),
             Page::Diagnosis => return self.ask_page(Pane::Diagnosis, view),
             Page::Remedies => return self.ask_page(Pane::Remedies, view),
         }
@@ -60,9 +39,9 @@ impl App {
     }
 
     fn ask_page(&mut self, pane: Pane, view: Option<&View>) -> Option<Effect> {
-        let again = self.zoomed && self.focus == pane;
-        self.zoomed = true;
-        self.look_at(pane);
+        let again = self.panes.zoomed && self.panes.focus == pane;
+        self.panes.zoomed = true;
+        self.panes.look_at(pane);
         let view = view?;
         let found = match pane {
             Pane::Diagnosis => view.examination().map(|found| found.is_some()),
@@ -156,7 +135,7 @@ impl App {
             ));
             return None;
         }
-        self.zoomed = false;
+        self.panes.zoomed = false;
         let (label, steps) = (trial.label.clone(), trial.steps.clone());
         self.submit(Command::Follow { label, steps }, view)
     }
@@ -168,7 +147,7 @@ impl App {
         }
         let text = self.sought.to_lowercase();
         let view = view.filter(|_| !text.is_empty())?;
-        let (names, at): (Vec<String>, _) = match self.focus {
+        let (names, at): (Vec<String>, _) = match self.panes.focus {
             Pane::Branches if !screen::is_hidden(Pane::Branches, self, view) => {
                 let all = summaries(view.tree?);
                 let order = verdicts::order(&all);
@@ -176,9 +155,7 @@ impl App {
                 (names.collect(), &mut self.branch)
             }
             Pane::Remedies if !screen::is_hidden(Pane::Remedies, self, view) => {
-                let tried = view.background.and_then(|background| background.tried());
-                let trials = tried.map_or(&[][..], |tried| &tried.trials);
-                let names = trials.iter().map(|trial| trial.label.clone());
+                let names = view.trials().iter().map(|trial| trial.label.clone());
                 (names.collect(), &mut self.remedy)
             }
             _ => {
@@ -199,20 +176,19 @@ impl App {
     }
 
     pub(super) fn step(&mut self, step: Step, count: isize, view: Option<&View>) -> Option<Effect> {
-        if self.focus == Pane::Timeline
+        if self.panes.focus == Pane::Timeline
             && let Some(to) = view.and_then(|view| along(step, count, view))
         {
             return self.submit(Command::Goto { step: to }, view);
         }
-        let tried = view.and_then(|view| view.background?.tried());
         let answers =
             view.and_then(|view| Some(view.examination()??.census.as_ref()?.answers.len()));
-        let list = match self.focus {
+        let list = match self.panes.focus {
             Pane::Branches => {
                 let count = view.and_then(|view| Some(view.tree?.branches().len()));
                 Some((&mut self.branch, count))
             }
-            Pane::Remedies => Some((&mut self.remedy, tried.map(|tried| tried.trials.len()))),
+            Pane::Remedies => Some((&mut self.remedy, view.map(|view| view.trials().len()))),
             Pane::Diagnosis if matches!(step, Step::PageUp | Step::PageDown) => {
                 Some((&mut self.scroll, Some(usize::MAX)))
             }
@@ -221,7 +197,7 @@ impl App {
         };
         if let Some((at, length)) = list {
             let last = length.unwrap_or(0).saturating_sub(1);
-            *at = moved(*at, step, count, last);
+            *at = moved(*at, step, count, last, [Step::Up, Step::Down]);
             return None;
         }
         let order = view.map_or(Vec::new(), |view| self.order(view));
@@ -234,7 +210,7 @@ impl App {
                 .saturating_add_signed(by.saturating_mul(count));
             row(to.min(last))
         };
-        match (self.focus, step) {
+        match (self.panes.focus, step) {
             (Pane::Shape, Step::Left) => self.camera = self.camera.panned(-1.0, 0.0),
             (Pane::Shape, Step::Right) => self.camera = self.camera.panned(1.0, 0.0),
             (Pane::Shape, Step::Up) => self.camera = self.camera.panned(0.0, 1.0),
@@ -251,16 +227,16 @@ impl App {
     }
 }
 
-/// The index after a step in a list with indices up to `last`.
-fn moved(at: usize, step: Step, count: isize, last: usize) -> usize {
+/// The index after a step in a list with indices up to `last`; steps other than `back` and `forth` by one stay.
+fn moved(at: usize, step: Step, count: isize, last: usize, [back, forth]: [Step; 2]) -> usize {
     let by = match step {
-        Step::Up => -count,
-        Step::Down => count,
-        Step::PageUp => -PAGE,
-        Step::PageDown => PAGE,
         Step::First => return 0,
         Step::Last => return last,
-        Step::Left | Step::Right => 0,
+        Step::PageUp => -PAGE,
+        Step::PageDown => PAGE,
+        step if step == back => -count,
+        step if step == forth => count,
+        _ => 0,
     };
     at.saturating_add_signed(by).min(last)
 }
@@ -268,14 +244,6 @@ fn moved(at: usize, step: Step, count: isize, last: usize) -> usize {
 /// The target of a step along the timeline; `None` for other steps.
 fn along(step: Step, count: isize, view: &View) -> Option<usize> {
     let last = view.frames.len().saturating_sub(1);
-    let by = match step {
-        Step::Left => -count,
-        Step::Right => count,
-        Step::PageUp => -PAGE,
-        Step::PageDown => PAGE,
-        Step::First => return Some(0),
-        Step::Last => return Some(last),
-        Step::Up | Step::Down => return None,
-    };
-    Some(view.cursor.saturating_add_signed(by).min(last))
+    let steps = [Step::Left, Step::Right];
+    (!matches!(step, Step::Up | Step::Down)).then(|| moved(view.cursor, step, count, last, steps))
 }

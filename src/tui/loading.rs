@@ -4,63 +4,46 @@ use crate::chartpage::{ChartPage, NoPage};
 use std::path::Path;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread;
-use stickslip_debugger::record::journal::{self, Journal, JournalError, Record};
+use stickslip_debugger::record::journal::{Journal, JournalError, Record};
 use stickslip_debugger::session::Session;
 use stickslip_debugger::teach::Lesson;
-use stickslip_scene::format::SceneError;
-
-/// Why a scene or a lesson cannot be loaded.
-#[derive(Debug, thiserror::Error)]
-pub enum NotLoaded {
-    /// The lesson is invalid.
-    #[error(transparent)]
-    Lesson(#[from] SceneError),
-    /// The journal is invalid or in use, or its replay differs.
-    #[error(transparent)]
-    Journal(#[from] JournalError),
-    /// The scene is invalid, or the finished run is damaged.
-    #[error("{0}")]
-    Session(String),
-    /// The loading thread panicked.
-    #[error("internal error while loading the file")]
-    BrokeDown,
-}
+use stickslip_scene::format::kind::FileKind;
 
 /// A loaded file, or why it cannot be loaded.
-pub enum Loaded {
+pub enum LoadedFile {
     /// A session on a scene.
-    Scene(Result<Box<Session>, NotLoaded>),
+    Scene(Result<Box<Session>, String>),
     /// A lesson and a session on its scene.
-    Lesson(Result<Box<(Lesson, Session)>, NotLoaded>),
+    Lesson(Result<Box<(Lesson, Session)>, String>),
     /// A chart, loaded or measured.
     Chart(Result<Box<ChartPage>, NoPage>),
 }
 
 /// A file that is being loaded; dropping this cancels it.
 pub struct Loading {
-    result: Receiver<Loaded>,
+    result: Receiver<LoadedFile>,
 }
 
 impl Loading {
     /// Opens a session on a scene (a file or a built-in name), or resumes a journal at its end.
     pub fn scene(name: &str) -> Loading {
         let name = name.to_owned();
-        Loading::of(move || {
-            if journal::is_named_so(Path::new(&name)) {
-                let session = resumed(Path::new(&name));
-                return Loaded::Scene(session.map(Box::new).map_err(NotLoaded::from));
-            }
-            let session = Session::open(&name).map_err(NotLoaded::Session);
-            Loaded::Scene(session.map(Box::new))
+        Loading::start(move || {
+            let path = Path::new(&name);
+            let session = match FileKind::of_file(path) {
+                Some(FileKind::Journal) => resumed(path).map_err(|why| why.to_string()),
+                _ => Session::open(&name),
+            };
+            LoadedFile::Scene(session.map(Box::new))
         })
     }
 
     /// Loads a lesson, by file or built-in name, and a session on its scene.
     pub fn lesson(name: &str) -> Loading {
         let name = name.to_owned();
-        Loading::of(move || {
-            let lesson = Lesson::open(&name).map_err(NotLoaded::from);
-            Loaded::Lesson(lesson.map(|lesson| {
+        Loading::start(move || {
+            let lesson = Lesson::open(&name).map_err(|why| why.to_string());
+            LoadedFile::Lesson(lesson.map(|lesson| {
                 if let Some(runs) = &lesson.runs {
                     // Measured in the background, so that keys need not wait for it; an error is shown where the result is used.
                     let _ = runs.measure();
@@ -74,24 +57,26 @@ impl Loading {
     /// Loads the table of a chart.
     pub fn chart(file: &str) -> Loading {
         let file = file.to_owned();
-        Loading::of(move || Loaded::Chart(ChartPage::open(&file).map(Box::new)))
+        Loading::start(move || LoadedFile::Chart(ChartPage::open(&file).map(Box::new)))
     }
 
-    fn of(read: impl FnOnce() -> Loaded + Send + 'static) -> Loading {
-        let (told, result) = channel();
+    fn start(read: impl FnOnce() -> LoadedFile + Send + 'static) -> Loading {
+        let (sender, result) = channel();
         thread::spawn(move || {
             // The receiver may be gone.
-            let _ = told.send(read());
+            let _ = sender.send(read());
         });
         Loading { result }
     }
 
     /// The result, once it is available.
-    pub fn result(&self) -> Option<Loaded> {
+    pub fn result(&self) -> Option<LoadedFile> {
         match self.result.try_recv() {
             Ok(loaded) => Some(loaded),
             Err(TryRecvError::Empty) => None,
-            Err(TryRecvError::Disconnected) => Some(Loaded::Scene(Err(NotLoaded::BrokeDown))),
+            Err(TryRecvError::Disconnected) => Some(LoadedFile::Scene(Err(
+                "internal error while loading the file".into(),
+            ))),
         }
     }
 }
@@ -103,6 +88,6 @@ fn resumed(file: &Path) -> Result<Session, JournalError> {
     let record = Record::read(file)?;
     let mut session = record.replay()?;
     journal.cut(record.whole_bytes)?;
-    session.keep(journal);
+    session.journal_mut().write_to(journal);
     Ok(session)
 }

@@ -57,7 +57,7 @@ impl App {
             _ => None,
         };
         if pane != Pane::Lesson {
-            self.look_at(pane);
+            self.panes.look_at(pane);
         }
         match (pane, row) {
             (Pane::Branches, Some(row)) => self.branch = row,
@@ -82,28 +82,16 @@ impl App {
 
     fn wheel(&mut self, at: Position, up: bool, view: Option<&View>) -> Option<Effect> {
         let key = if up { "Up" } else { "Down" };
-        match &mut self.overlay {
+        match &self.overlay {
             Overlay::None => {}
-            Overlay::Help(_) => {
+            Overlay::Help(_) | Overlay::Solver(_) | Overlay::Manual(_) => {
                 for _ in 0..LINES {
-                    self.help_key(key, view);
+                    self.page_key(key, view);
                 }
                 return None;
             }
-            Overlay::Solver(_) => {
-                for _ in 0..LINES {
-                    self.solver_key(key, view);
-                }
-                return None;
-            }
-            Overlay::Manual(reader) => {
-                for _ in 0..LINES {
-                    reader.scroll(up);
-                }
-                return None;
-            }
-            Overlay::Chart(page) => {
-                page.key(key);
+            Overlay::Chart(_) => {
+                self.page_key(key, view);
                 return None;
             }
             Overlay::Chooser(_) if self.loading.is_none() => {
@@ -140,9 +128,9 @@ impl App {
             (_, false) => Step::Down,
         };
         // Acts like a key in the pane under the mouse, which need not have the focus.
-        let focus = std::mem::replace(&mut self.focus, pane);
+        let focus = std::mem::replace(&mut self.panes.focus, pane);
         let effect = self.attempt(Ok(Action::Ui(Ui::Move(step))), None, Some(view));
-        self.focus = focus;
+        self.panes.focus = focus;
         effect
     }
 }

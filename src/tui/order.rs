@@ -2,19 +2,31 @@
 
 use crate::app::App;
 use crate::view::View;
-use stickslip_core::contact::table2::{Rule, Tested};
+use stickslip_core::contact::table2::Rule;
 use stickslip_core::model::Mode;
 use stickslip_debugger::action::{Filter, Sort};
+use stickslip_debugger::explain::tested::Dimension;
 
 impl App {
+    /// The selected slave node; 0 if there are none.
+    pub fn slave(&self, view: &View) -> usize {
+        self.selected
+            .min(view.model.contacts.len().saturating_sub(1))
+    }
+
+    /// The mode of a slave node; the one before this iteration if the next one is hidden.
+    pub fn shown_mode(&self, view: &View, slave: usize) -> Mode {
+        match self.learning.hides(view, slave) {
+            true => view.mode_before(slave),
+            false => view.mode(slave),
+        }
+    }
+
     /// The slave nodes of the table, in order. The selected one is always included.
     pub fn order(&self, view: &View) -> Vec<usize> {
         let count = view.model.contacts.len();
-        let selected = self.selected.min(count.saturating_sub(1));
-        let next = |slave: usize| match self.hides(view, slave) {
-            true => view.mode_before(slave),
-            false => view.mode(slave),
-        };
+        let selected = self.slave(view);
+        let next = |slave: usize| self.shown_mode(view, slave);
         let wanted = |slave: usize| match self.filter {
             Filter::All => true,
             Filter::Active => next(slave) != Mode::Free || view.mode_before(slave) != next(slave),
@@ -52,15 +64,8 @@ fn surface(slave: usize, view: &View) -> Option<usize> {
 fn margin(slave: usize, view: &View) -> Option<f64> {
     let (event, record) = (view.event()?, view.record(slave)?);
     let tests = record.decision.tests.iter().flatten();
-    let size = |tested| match tested {
-        Tested::NormalForce
-        | Tested::ShearForce
-        | Tested::LeastFriction
-        | Tested::Pressure
-        | Tested::Drag => event.before.scale,
-        Tested::Slip | Tested::Room | Tested::Gap => view.model.length,
-        Tested::Cover | Tested::Change | Tested::Error | Tested::Own => 1.0,
-    };
+    let (force, length) = (event.before.scale, view.model.length);
+    let size = |tested| Dimension::from(tested).scale(force, length);
     tests
         .map(|test| (test.margin / size(test.tested)).abs())
         .filter(|margin| !margin.is_nan())

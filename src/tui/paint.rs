@@ -4,7 +4,7 @@ use crate::theme::Theme;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
-use ratatui::text::Line;
+use ratatui::text::{Line, Span};
 use ratatui::widgets::{Block, BorderType, Clear, Widget};
 use stickslip_scene::shown;
 pub use stickslip_scene::shown::wrap;
@@ -53,6 +53,14 @@ pub fn cut(text: &str, width: usize) -> String {
     }
 }
 
+/// Lines of text with styles.
+pub type Lines = Vec<Line<'static>>;
+
+/// The mark before an entry of a list.
+pub fn cursor(selected: bool, theme: &Theme) -> Span<'static> {
+    Span::styled(if selected { "▸" } else { " " }, theme.focus)
+}
+
 /// Writes lines over existing content.
 pub fn over(buffer: &mut Buffer, area: Rect, lines: &[Line], theme: &Theme) {
     for (row, line) in area.rows().zip(lines) {
@@ -63,7 +71,7 @@ pub fn over(buffer: &mut Buffer, area: Rect, lines: &[Line], theme: &Theme) {
 }
 
 /// Wraps a text into lines of this width, with a blank on either side.
-pub fn wrapped(text: &str, width: usize, style: Style) -> Vec<Line<'static>> {
+pub fn wrapped(text: &str, width: usize, style: Style) -> Lines {
     let lines = wrap(text, width.saturating_sub(2)).into_iter();
     lines
         .map(|line| Line::styled(format!(" {line}"), style))

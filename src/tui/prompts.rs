@@ -3,8 +3,9 @@
 use crate::ahead::Typed;
 use crate::app::{App, Effect, Overlay, PAGE};
 use crate::choosing::{Chooser, Group};
-use crate::commandline::{CommandLine, Purpose};
+use crate::commandline::Purpose;
 use crate::screen;
+use crate::scroll::scrolled;
 use crate::theme;
 use crate::view::{View, context};
 use crossterm::event::KeyEvent;
@@ -14,7 +15,6 @@ use stickslip_debugger::action::{self, Action, Context, Question};
 use stickslip_debugger::record::command::Command;
 use stickslip_debugger::teach::Tutor;
 use stickslip_debugger::teach::tutor::AnswerKind;
-use stickslip_scene::number;
 
 impl App {
     pub(super) fn ask(&mut self, question: Question, view: Option<&View>) {
@@ -22,32 +22,25 @@ impl App {
         match question {
             Question::Mode if !has_slaves => self.complain("this scene has no slave nodes"),
             Question::Mode => self.overlay = Overlay::Mode,
-            Question::Increment => {
-                self.overlay = Overlay::Line(CommandLine::new(Purpose::Increment, ""))
-            }
-            Question::Node => self.overlay = Overlay::Line(CommandLine::new(Purpose::Node, "")),
+            Question::Increment => self.overlay = Overlay::line(Purpose::Increment, ""),
+            Question::Node => self.overlay = Overlay::line(Purpose::Node, ""),
             Question::Scene => self.choose(),
-            Question::Break => {
-                self.overlay = Overlay::Line(CommandLine::new(Purpose::Command, "break "))
-            }
-            Question::Lesson => {
-                self.overlay = Overlay::Line(CommandLine::new(Purpose::Command, "lesson "))
-            }
+            Question::Break => self.overlay = Overlay::line(Purpose::Command, "break "),
+            Question::Lesson => self.overlay = Overlay::line(Purpose::Command, "lesson "),
             Question::Answer => self.ask_answer(view),
         }
     }
 
     /// Opens the prompt for an answer.
     pub(super) fn ask_answer(&mut self, view: Option<&View>) {
-        if let Err(why) = self.must_read(view) {
+        if let Err(why) = self.learning.check_read(self.lesson_lines(view)) {
             return self.complain(why);
         }
-        let asked = self.lesson.as_ref().and_then(Tutor::question);
-        let open = view.is_some_and(|view| self.guessing().is_some() && self.hides_any(view));
+        let asked = self.learning.lesson.as_ref().and_then(Tutor::question);
+        let open = view
+            .is_some_and(|view| self.learning.guess().is_some() && self.learning.hides_any(view));
         match asked.map(|question| question.kind) {
-            Some(AnswerKind::Number) => {
-                self.overlay = Overlay::Line(CommandLine::new(Purpose::Answer, ""))
-            }
+            Some(AnswerKind::Number) => self.overlay = Overlay::line(Purpose::Answer, ""),
             Some(AnswerKind::Mode | AnswerKind::Choice) => self.overlay = Overlay::Answer,
             None if open => self.overlay = Overlay::Answer,
             // Answering shows the error.
@@ -88,40 +81,22 @@ impl App {
         }
     }
 
-    pub(super) fn help_key(&mut self, name: &str, view: Option<&View>) -> Option<Effect> {
+    /// Handles a key in a page over the panes.
+    pub(super) fn page_key(&mut self, name: &str, view: Option<&View>) {
         let body = screen::body(&screen::places(self, view, self.area), view);
         // Without the frame.
         let size = body.inner(Margin::new(1, 1));
         let open = context(view, self.selected, &[]);
-        let Overlay::Help(help) = &mut self.overlay else {
-            return None;
+        let stays = match &mut self.overlay {
+            Overlay::Help(help) => help.key(name, size, &self.keymap, &open),
+            Overlay::Manual(reader) => reader.key(name),
+            Overlay::Solver(reader) => reader.key(name, size, view),
+            Overlay::Chart(page) => page.key(name) || !["Esc", "q", "Enter"].contains(&name),
+            _ => true,
         };
-        if !help.key(name, size, &self.keymap, &open) {
+        if !stays {
             self.close(view);
         }
-        None
-    }
-
-    pub(super) fn solver_key(&mut self, name: &str, view: Option<&View>) -> Option<Effect> {
-        let body = screen::body(&screen::places(self, view, self.area), view);
-        let size = body.inner(Margin::new(1, 1));
-        let Overlay::Solver(reader) = &mut self.overlay else {
-            return None;
-        };
-        if !reader.key(name, size, view) {
-            self.close(view);
-        }
-        None
-    }
-
-    pub(super) fn chart_key(&mut self, name: &str, view: Option<&View>) -> Option<Effect> {
-        let Overlay::Chart(page) = &mut self.overlay else {
-            return None;
-        };
-        if !page.key(name) && ["Esc", "q", "Enter"].contains(&name) {
-            self.close(view);
-        }
-        None
     }
 
     pub(super) fn chooser_key(&mut self, name: &str, view: Option<&View>) -> Option<Effect> {
@@ -149,13 +124,15 @@ impl App {
             "Esc" if !fresh => *chooser = Chooser::default(),
             "Esc" if view.is_some() => self.overlay = Overlay::None,
             "Esc" => self.say("no scene is open; press q to quit"),
-            ":" if fresh => {
-                self.overlay = Overlay::Line(CommandLine::new(Purpose::Command, "open "))
-            }
+            ":" if fresh => self.overlay = Overlay::line(Purpose::Command, "open "),
             "Backspace" => chooser.type_text(""),
             "Space" if !fresh => chooser.type_text(" "),
             _ if name.chars().count() == 1 => chooser.type_text(name),
-            _ => chooser.at = scrolled(chooser.at, name, left.saturating_sub(1)),
+            _ => {
+                let last = left.saturating_sub(1);
+                let to = scrolled(chooser.at, name, PAGE as usize, last);
+                chooser.at = to.unwrap_or(chooser.at.min(last));
+            }
         }
         None
     }
@@ -224,58 +201,4 @@ impl App {
         }
         self.attempt(action, None, view)
     }
-
-    /// The prompt of the message line; `None` if there is no question.
-    pub fn question(&self, view: Option<&View>) -> Option<String> {
-        let view = view?;
-        match &self.overlay {
-            Overlay::Mode => {
-                let held = match view.guest.map(|guest| guest.offers) {
-                    Some(offers) if !offers.hold => "this solver cannot hold it",
-                    Some(offers) if !offers.force => {
-                        "capital letters only: this solver can only hold it, until M releases it"
-                    }
-                    _ => "capital letter: hold until M releases it",
-                };
-                Some(format!(
-                    "mode of {}:  f free   s sliding   x fixed   ({held})",
-                    view.slave(self.selected)
-                ))
-            }
-            Overlay::Answer => Some(self.asked(view)),
-            Overlay::Line(line) if line.purpose == Purpose::Increment => Some(format!(
-                "new increment (now {}): ",
-                number::plain(view.frame().state.controls.increment)
-            )),
-            _ => None,
-        }
-    }
-
-    /// The prompt for an answer or a prediction.
-    pub(super) fn asked(&self, view: &View) -> String {
-        match self.lesson.as_ref().and_then(Tutor::question) {
-            Some(question) if question.kind == AnswerKind::Choice => {
-                format!("your answer:  1 to {}", question.options.len())
-            }
-            Some(_) => "your answer:  f free   s sliding   x fixed".into(),
-            None => format!(
-                "next mode of {}:  f free   s sliding   x fixed",
-                view.slave(self.selected)
-            ),
-        }
-    }
-}
-
-/// The position in a list after a scroll key.
-fn scrolled(at: usize, name: &str, last: usize) -> usize {
-    let to = match name {
-        "Up" | "k" => at.saturating_sub(1),
-        "Down" | "j" => at.saturating_add(1),
-        "PageUp" => at.saturating_sub(PAGE as usize),
-        "PageDown" | "Space" => at.saturating_add(PAGE as usize),
-        "Home" | "g" => 0,
-        "End" | "G" => last,
-        _ => at,
-    };
-    to.min(last)
 }

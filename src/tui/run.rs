@@ -1,7 +1,7 @@
 //! The event loop, and the entry points: a scene, a session, a lesson, or the chooser.
 
 use crate::app::App;
-use crate::debugger::{Debugger, Outside, offers};
+use crate::debugger::{Debugger, TerminalRequest, offers};
 use crate::terminal::{self, Signals, Terminal};
 use crate::theme::Theme;
 use crossterm::event::{self, Event};
@@ -61,20 +61,16 @@ pub fn run(
 ///
 /// # Errors
 /// If there is no terminal, or it fails.
-pub fn resume(session: Session, told: &str) -> Result<(), Error> {
-    go(Some(session), true, Some(told))
+pub fn resume(session: Session, text: &str) -> Result<(), Error> {
+    go(Some(session), true, Some(text))
 }
 
 /// Runs the debugger on a session; `keeps` also writes journals of scenes opened later.
-fn go(session: Option<Session>, keeps: bool, told: Option<&str>) -> Result<(), Error> {
-    if !io::stdin().is_terminal() || !io::stdout().is_terminal() {
-        return Err(Error::NoTerminal);
-    }
-    let mut debugger = configured(Config::open()?, session);
+fn go(session: Option<Session>, keeps: bool, text: Option<&str>) -> Result<(), Error> {
+    let mut debugger = in_terminal(session)?;
     debugger.keeps = keeps;
-    debugger.in_the_world();
-    if let Some(told) = told {
-        debugger.app.say(told);
+    if let Some(text) = text {
+        debugger.app.say(text);
     }
     run_on(debugger)
 }
@@ -84,17 +80,23 @@ fn go(session: Option<Session>, keeps: bool, told: Option<&str>) -> Result<(), E
 /// # Errors
 /// If there is no terminal, or it fails.
 pub fn run_lesson(lesson: Lesson) -> Result<(), Error> {
-    if !io::stdin().is_terminal() || !io::stdout().is_terminal() {
-        return Err(Error::NoTerminal);
-    }
-    let mut debugger = configured(Config::open()?, None);
-    debugger.in_the_world();
+    let mut debugger = in_terminal(None)?;
     if let Some(runs) = lesson.runs.clone() {
         // Measured in the background, so that keys need not wait for it; an error is shown where the result is used.
         std::thread::spawn(move || runs.measure().is_ok());
     }
     debugger.teach(lesson);
     run_on(debugger)
+}
+
+/// A debugger with the user's configuration and files, if there is a terminal.
+fn in_terminal(session: Option<Session>) -> Result<Debugger, Error> {
+    if !io::stdin().is_terminal() || !io::stdout().is_terminal() {
+        return Err(Error::NoTerminal);
+    }
+    let mut debugger = configured(Config::open()?, session);
+    debugger.use_user_files();
+    Ok(debugger)
 }
 
 /// A debugger with the user's configuration.
@@ -112,7 +114,7 @@ fn run_on(mut debugger: Debugger) -> Result<(), Error> {
         // The terminal is restored before anything is printed.
         events(&mut debugger, &mut terminal, &signals)
     });
-    debugger.part();
+    debugger.print_exit_line();
     leave(ended, &signals)
 }
 
@@ -208,14 +210,14 @@ fn next_event(wait: Duration) -> io::Result<Option<Event>> {
 
 /// Executes requests that need the event loop; returns true to quit.
 fn obey(
-    outside: Outside,
+    outside: TerminalRequest,
     terminal: &mut Terminal,
     signals: &Signals,
     app: &mut App,
 ) -> io::Result<bool> {
     match outside {
-        Outside::Quit => return Ok(true),
-        Outside::Suspend => {
+        TerminalRequest::Quit => return Ok(true),
+        TerminalRequest::Suspend => {
             terminal.suspend()?;
             if !continued(signals) {
                 app.complain(
@@ -223,9 +225,9 @@ fn obey(
                 );
             }
         }
-        Outside::Redraw => terminal.forget()?,
-        Outside::Copy(text) => terminal.copy(&text)?,
-        Outside::Mouse(on) => terminal.heed_mouse(on)?,
+        TerminalRequest::Redraw => terminal.forget()?,
+        TerminalRequest::Copy(text) => terminal.copy(&text)?,
+        TerminalRequest::Mouse(on) => terminal.heed_mouse(on)?,
     }
     Ok(false)
 }

@@ -2,7 +2,7 @@
 
 use crate::app::{App, Overlay};
 use crate::choosing::Preview;
-use crate::layout::{self, Pane, Places};
+use crate::layout::{self, Choice, Pane, Places};
 use crate::paint;
 use crate::panes::branches;
 use crate::panes::chooser;
@@ -81,7 +81,14 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: Option<&View>) {
 /// The layout for a screen of this size.
 pub fn places(app: &App, view: Option<&View>, area: Rect) -> Places {
     let rows = view.map_or(0, |_| lesson::rows(app, area.width));
-    layout::places(area, &app.choice(view, rows))
+    let model = view.map(|view| view.model);
+    let choice = Choice {
+        panes: app.panes,
+        slaves: model.map_or(0, |model| model.contacts.len()),
+        has_shape: model.is_none_or(|model| model.finished.is_none()),
+        lesson: rows,
+    };
+    layout::places(area, &choice)
 }
 
 /// Removes control characters from the cells, which a terminal would obey.
@@ -107,12 +114,12 @@ pub fn is_hidden(pane: Pane, app: &App, view: &View) -> bool {
         Pane::Branches,
         Pane::Remedies,
     ];
-    tells.contains(&pane) && app.hides_any(view)
+    tells.contains(&pane) && app.learning.hides_any(view)
 }
 
 fn draw_pane(pane: Pane, buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     if is_hidden(pane, app, view) {
-        let inner = paint::frame(buffer, area, "Hidden", app.focus == pane, &app.theme);
+        let inner = paint::frame(buffer, area, "Hidden", app.panes.focus == pane, &app.theme);
         let text = " until you predict what follows";
         Line::styled(text, app.theme.faint).render(inner, buffer);
         return;
@@ -135,7 +142,7 @@ fn draw_pane(pane: Pane, buffer: &mut Buffer, area: Rect, app: &App, view: &View
 pub fn picture(session: &Session, width: u16, height: u16) -> String {
     text(
         &App::new(Theme::mono(), Vec::new()),
-        Some(&View::of(session)),
+        Some(&View::new(session)),
         width,
         height,
     )

@@ -126,17 +126,18 @@ impl Terminal {
     /// SIGTTIN: unlike SIGSTOP, the kernel ignores that signal in a process group without a shell above it (an orphaned
     /// group in POSIX), where nothing would continue the process.
     pub fn suspend(&mut self) -> io::Result<()> {
-        self.released(|| {
-            rustix::process::kill_current_process_group(rustix::process::Signal::TSTP)?;
-            low_level::raise(SIGTTIN)
-        })
+        self.stopped_by(|| low_level::raise(SIGTTIN))
     }
 
     /// The same after a SIGTSTP from another process, which can also continue this process.
     pub fn stop(&mut self) -> io::Result<()> {
+        self.stopped_by(|| low_level::emulate_default_handler(SIGTSTP))
+    }
+
+    fn stopped_by(&mut self, stop: impl FnOnce() -> io::Result<()>) -> io::Result<()> {
         self.released(|| {
             rustix::process::kill_current_process_group(rustix::process::Signal::TSTP)?;
-            low_level::emulate_default_handler(SIGTSTP)
+            stop()
         })
     }
 
@@ -353,7 +354,7 @@ mod tests {
     fn restoring_waits_until_the_terminal_is_taken_over() {
         static OWNED: Ownership = Ownership(Mutex::new(false));
         let (entering, entered) = (channel(), channel::<()>());
-        let (told, left) = channel();
+        let (sender, left) = channel();
         let taker = thread::spawn(move || {
             let enter = || {
                 entering.0.send(()).unwrap();
@@ -363,7 +364,7 @@ mod tests {
             OWNED.take(enter, || panic!("nothing failed")).unwrap();
         });
         entering.1.recv().unwrap();
-        let giver = thread::spawn(move || drop(OWNED.give_back(|| told.send(()).unwrap())));
+        let giver = thread::spawn(move || drop(OWNED.give_back(|| sender.send(()).unwrap())));
         // A signal arrives while the terminal is being taken over: restoring must wait until that is complete.
         let early = left.recv_timeout(Duration::from_millis(50));
         assert_eq!(early, Err(RecvTimeoutError::Timeout));
@@ -391,10 +392,10 @@ mod tests {
     fn the_terminal_cannot_be_taken_while_the_process_ends() {
         static OWNED: Ownership = Ownership(Mutex::new(true));
         let ending = OWNED.give_back(|| ());
-        let (told, taken) = channel();
+        let (sender, taken) = channel();
         let taker = thread::spawn(move || {
             let enter = || {
-                told.send(()).unwrap();
+                sender.send(()).unwrap();
                 Ok(())
             };
             OWNED.take(enter, || ())

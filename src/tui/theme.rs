@@ -40,7 +40,7 @@ pub struct Theme {
 
 impl Theme {
     /// The theme for a choice of colours.
-    pub fn of(colours: Colours) -> Self {
+    pub fn new(colours: Colours) -> Self {
         match colours {
             Colours::Dark => Theme::colour(),
             Colours::Light => Theme::light(),
@@ -118,7 +118,7 @@ impl Theme {
     pub fn chosen(colours: Colours) -> Self {
         match wants_no_colour() {
             true => Theme::mono(),
-            false => Theme::of(colours),
+            false => Theme::new(colours),
         }
     }
 

@@ -9,6 +9,7 @@ use stickslip_core::step::solver::Offers;
 use stickslip_debugger::action::Context;
 use stickslip_debugger::explain::examination::Examination;
 use stickslip_debugger::explain::influence::NodePush;
+use stickslip_debugger::explain::remedies::Trial;
 use stickslip_debugger::explain::round_off::RoundOff;
 use stickslip_debugger::history::frame::Frame;
 use stickslip_debugger::history::strip::Strip;
@@ -18,7 +19,7 @@ use stickslip_debugger::session::Session;
 use stickslip_debugger::session::background::Background;
 use stickslip_debugger::teach;
 use stickslip_scene::Scene;
-use stickslip_scene::number;
+use stickslip_scene::{number, shown};
 
 /// All session data needed for drawing. Plain data, so that tests can construct it.
 #[derive(Debug, Clone)]
@@ -40,7 +41,7 @@ pub struct View<'a> {
     /// The start gaps in words; empty if there are none.
     pub start_gaps: &'a str,
     /// The attached solver, if there is one.
-    pub guest: Option<Guest<'a>>,
+    pub attached: Option<AttachedSolver<'a>>,
     /// Index of the shown frame.
     pub cursor: usize,
     /// Whether the solver is running.
@@ -53,7 +54,7 @@ pub struct View<'a> {
 
 /// An attached solver.
 #[derive(Debug, Clone, Copy)]
-pub struct Guest<'a> {
+pub struct AttachedSolver<'a> {
     /// Its capabilities.
     pub offers: &'a Offers,
     /// Its log.
@@ -66,25 +67,25 @@ pub struct Guest<'a> {
 
 impl<'a> View<'a> {
     /// The view of a session.
-    pub fn of(session: &'a Session) -> Self {
+    pub fn new(session: &'a Session) -> Self {
         let mut view = View {
-            name: session.scene_name(),
+            name: &session.scene().name,
             scene: Some(session.scene()),
             model: session.model(),
             frames: session.frames(),
-            strips: session.strips(),
-            tree: Some(session.tree()),
+            strips: session.timeline().strips(),
+            tree: Some(session.timeline().tree()),
             background: Some(session.background()),
             start_gaps: session.start_gaps(),
-            guest: session.log().map(|log| Guest {
-                offers: session.offers(),
+            attached: session.connection().log().map(|log| AttachedSolver {
+                offers: session.connection().offers(),
                 log,
-                lost: session.lost().is_some(),
-                again: session.again(),
+                lost: session.connection().lost().is_some(),
+                again: session.connection().repeats(),
             }),
             cursor: session.cursor(),
             running: session.is_running(),
-            residuals: session.residual_history(),
+            residuals: session.timeline().residual_history(),
             aside: match session.is_running() {
                 true => String::new(),
                 false => session.aside(),
@@ -105,6 +106,12 @@ impl<'a> View<'a> {
     /// Whether remedies were tried, or are being tried.
     pub fn has_tried(&self) -> bool {
         self.background.is_some_and(|b| b.tried().is_some())
+    }
+
+    /// The remedies tried so far.
+    pub fn trials(&self) -> &'a [Trial] {
+        let tried = self.background.and_then(Background::tried);
+        tried.map_or(&[][..], |tried| &tried.trials)
     }
 
     /// Whether remedies are being tried.
@@ -165,7 +172,7 @@ impl<'a> View<'a> {
     /// Which of the shown values are round-off; none at the start.
     pub fn round_off(&self) -> RoundOff {
         self.event().map_or(RoundOff::default(), |event| {
-            RoundOff::of(self.model, &event.before)
+            RoundOff::new(self.model, &event.before)
         })
     }
 
@@ -214,33 +221,34 @@ impl<'a> View<'a> {
     }
 
     /// Whether an attached solver does not report a value.
-    pub fn is_untold(&self, value: f64) -> bool {
-        self.guest.is_some() && value.is_nan()
+    pub fn is_unreported(&self, value: f64) -> bool {
+        self.attached.is_some() && value.is_nan()
+    }
+
+    /// Whether a value is shown as a dash.
+    fn is_absent(&self, value: f64) -> bool {
+        self.attached.is_some() && (value.is_nan() || value == f64::INFINITY)
     }
 
     /// A value as a table cell ([`number::cell`]); a dash if an attached solver does not report it.
     pub fn cell(&self, value: f64, width: usize) -> String {
-        match self.is_untold(value) || (self.guest.is_some() && value == f64::INFINITY) {
-            true => format!(
-                " {:<width$}",
-                number::UNTOLD,
-                width = width.saturating_sub(1)
-            ),
+        match self.is_absent(value) {
+            true => shown::padded(&format!(" {}", number::UNREPORTED), width),
             false => number::cell(value, width),
         }
     }
 
     /// A value with ten digits ([`number::long`]), or a dash.
     pub fn long(&self, value: f64) -> String {
-        match self.is_untold(value) || (self.guest.is_some() && value == f64::INFINITY) {
-            true => number::UNTOLD.into(),
+        match self.is_absent(value) {
+            true => number::UNREPORTED.into(),
             false => number::long(value),
         }
     }
 
     /// Whether an attached solver's decision on a node differs from its rules for the same values.
     pub fn differs(&self, slave: usize) -> bool {
-        let record = self.record(slave).filter(|_| self.guest.is_some());
+        let record = self.record(slave).filter(|_| self.attached.is_some());
         record.is_some_and(|record| record.differs())
     }
 
@@ -261,7 +269,9 @@ pub fn context<'a>(view: Option<&View<'a>>, selected: usize, scenes: &'a [String
         scene,
         tree: view.and_then(|view| view.tree),
         selected,
-        offers: view.and_then(|view| view.guest).map(|guest| guest.offers),
+        offers: view
+            .and_then(|view| view.attached)
+            .map(|attached| attached.offers),
         state: view.map(|view| &view.frame().state),
         scenes,
         lessons: teach::list(),

@@ -32,21 +32,21 @@ impl App {
             Action::Ui(Ui::Apply(_)) => true,
             // Trials that start from the shown state are visible at once.
             Action::Ui(Ui::Page(Page::Remedies)) => !view.tries_here(),
-            _ => chooses && self.focus == Pane::Remedies,
+            _ => chooses && self.panes.focus == Pane::Remedies,
         };
         if view.is_trying() && remedies {
             return Some(Awaited::Trying);
         }
         let finding = matches!(view.examination(), Some(None));
         let diagnosis = matches!(action, Action::Ui(Ui::StartFrom(_)))
-            || (chooses && self.focus == Pane::Diagnosis);
+            || (chooses && self.panes.focus == Pane::Diagnosis);
         (finding && diagnosis).then_some(Awaited::Finding)
     }
 
     /// Whether an action moves along the timeline, which the session does.
     fn goes_along(&self, action: &Action) -> bool {
         let along = !matches!(action, Action::Ui(Ui::Move(Step::Up | Step::Down)));
-        self.focus == Pane::Timeline && matches!(action, Action::Ui(Ui::Move(_))) && along
+        self.panes.focus == Pane::Timeline && matches!(action, Action::Ui(Ui::Move(_))) && along
     }
 
     /// Queues a bound key after its count.

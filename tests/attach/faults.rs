@@ -248,7 +248,7 @@ fn each_fault_of_a_step_has_a_name_and_leaves_what_was_done() {
                 if !hangs {
                     says(how, &does(&mut session, minor()), told);
                 }
-                let lines = session.log().unwrap().lines().1;
+                let lines = session.connection().log().unwrap().lines().1;
                 lines.iter().for_each(|said| is_harmless(&said.text));
                 drop(session);
                 rude.is_gone();
@@ -268,7 +268,7 @@ fn each_fault_of_a_step_has_a_name_and_leaves_what_was_done() {
                         break;
                     }
                 }
-                let log = session.log().unwrap().lines().1;
+                let log = session.connection().log().unwrap().lines().1;
                 let is_told = |text: &str| told.iter().any(|told| text.contains(told));
                 let noted = log.iter().any(|line| is_told(&line.text));
                 assert!(is_told(&said) || noted, "{how}: {said}\n{log:#?}");
@@ -493,7 +493,7 @@ fn what_is_refused_is_told_and_the_solver_goes_on() {
         };
         does(&mut session, force);
         let said = does(&mut session, minor());
-        let log = session.log().unwrap().lines().1;
+        let log = session.connection().log().unwrap().lines().1;
         match how {
             "refuses-force" => says(
                 how,

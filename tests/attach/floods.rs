@@ -61,7 +61,7 @@ fn floods_of_standard_error_and_of_messages_are_kept_within_bounds() {
             assert!(!said.contains("kept"), "{how}: {said}");
         }
         assert_eq!(session.frames().len(), 5, "{how}");
-        let (_, lines) = session.log().unwrap().lines();
+        let (_, lines) = session.connection().log().unwrap().lines();
         assert!(lines.len() <= 10_000, "{how}: {}", lines.len());
         for said in &lines {
             is_harmless(&said.text);

@@ -5,8 +5,9 @@ use super::side::{Rude, does, minor};
 use libtest_mimic::Trial;
 use std::path::Path;
 use stickslip::attach::Attached;
+use stickslip::history::verdicts::summaries;
 use stickslip::record::command::{Command, To};
-use stickslip::recorded::{log::Log, past};
+use stickslip::recorded::{exchange, log::Log};
 use stickslip::session::Session;
 
 pub fn tests() -> Vec<Trial> {
@@ -17,7 +18,7 @@ pub fn tests() -> Vec<Trial> {
 }
 
 /// Attaches, keeps the exchange, does all commands, and opens what was kept.
-fn kept(restore: &str, file: &Path) -> (Session, past::Opened) {
+fn kept(restore: &str, file: &Path) -> (Session, exchange::OpenedExchange) {
     let log = Log::default();
     log.keep(file, false).unwrap();
     let mut session = session(start("osc-lag4", restore, ""), &log);
@@ -28,9 +29,9 @@ fn kept(restore: &str, file: &Path) -> (Session, past::Opened) {
     (session, opened)
 }
 
-fn open(file: &Path) -> past::Opened {
+fn open(file: &Path) -> exchange::OpenedExchange {
     let text = std::fs::read_to_string(file).unwrap();
-    past::open("kept", &text).unwrap_or_else(|why| panic!("{why}"))
+    exchange::open("kept", &text).unwrap_or_else(|why| panic!("{why}"))
 }
 
 fn a_kept_exchange_has_every_branch_with_the_same_states() {
@@ -39,7 +40,7 @@ fn a_kept_exchange_has_every_branch_with_the_same_states() {
         let (mut session, opened) = kept(restore, &folder.path().join("all.exchange"));
         let lines = opened.lines.clone();
         assert!(
-            lines.len() >= session.branches().len() - 1,
+            lines.len() >= summaries(session.timeline().tree()).len() - 1,
             "{restore}: {} ways",
             lines.len()
         );
@@ -52,7 +53,7 @@ fn a_kept_exchange_has_every_branch_with_the_same_states() {
             assert!(!said.contains("kept"), "{said}");
             ways.push(read.frames().iter().map(seen).collect::<Vec<_>>());
         }
-        for branch in 1..=session.branches().len() {
+        for branch in 1..=summaries(session.timeline().tree()).len() {
             does(&mut session, Command::Branch(To::Next));
             let frames = session.frames();
             let own: Vec<String> = frames.iter().map(seen).collect();
@@ -94,7 +95,7 @@ fn an_exchange_that_ended_in_a_fault_is_read_up_to_it() {
             .step_by(97)
             .filter(|&cut| text.is_char_boundary(cut))
         {
-            let _ = past::open("cut", &text[..cut]);
+            let _ = exchange::open("cut", &text[..cut]);
         }
         rude.is_gone();
     }

@@ -7,6 +7,7 @@ use libtest_mimic::Trial;
 use std::path::Path;
 use stickslip::attach::{Attached, Start};
 use stickslip::history::frame::Frame;
+use stickslip::history::verdicts::summaries;
 use stickslip::model::Mode;
 use stickslip::record::command::{Command, To, Unit};
 use stickslip::recorded::log::Log;
@@ -246,7 +247,10 @@ fn sessions_with_interventions_are_the_same_frame_by_frame() {
                             assert_eq!(seen(one), seen(other), "{here}, frame {k}");
                         }
                     }
-                    assert_eq!(own.branches().len(), attached.branches().len());
+                    assert_eq!(
+                        summaries(own.timeline().tree()).len(),
+                        summaries(attached.timeline().tree()).len()
+                    );
                 });
             }
         });
@@ -309,9 +313,11 @@ fn who_pushed_a_contact_is_told_as_of_the_scene_itself() {
                     // The first look may be at why it cycles.
                     for _ in 0..2 {
                         session.look(slave);
-                        session.wait_for_background();
+                        session.background_mut().wait();
                     }
-                    let found = session.background().pushes(session.place(), slave);
+                    let found = session
+                        .background()
+                        .pushes(session.timeline().place(), slave);
                     found.map(|found| found.map(<[_]>::to_vec))
                 });
                 let [Some(one), Some(other)] = all else {

@@ -71,11 +71,11 @@ fn row(refine: &str) {
     let again = median((0..SOME).map(|_| does(&mut session, &to_and_fro)));
     let began = Instant::now();
     session.look(slaves / 2);
-    session.wait_for_background();
+    session.background_mut().wait();
     let pushes = began.elapsed().as_secs_f64();
     let began = Instant::now();
     does(&mut session, &[Command::Census(Vec::new())]);
-    session.wait_for_background();
+    session.background_mut().wait();
     let diagnosis = began.elapsed().as_secs_f64();
     println!(
         "| {unknowns} | {slaves} | {opened:.2} | {increment:.2} | {first:.2} | {:.1} | {:.1} | {:.1} | {:.1} | {:.1} | {} |",

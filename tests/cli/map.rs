@@ -4,7 +4,7 @@ use crate::program::{code, err, interrupted, program, rows, well};
 use std::collections::HashMap;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
-use stickslip::study::map::{Ended, Map, Seen, TOLERANCE};
+use stickslip::study::map::{FinalMonitor, Map, MapRun, TOLERANCE};
 use stickslip::study::monitor_kind::MonitorKind;
 use stickslip::study::verdict::RunVerdict;
 use stickslip::study::{Plan, Study, Vary};
@@ -266,7 +266,7 @@ fn ctrl_c_ends_a_map_with_130_and_a_whole_table_of_what_is_done() {
 }
 
 /// A map of one scene over increments and friction, with ends made up.
-fn judged(ended: Vec<Option<Ended>>) -> Map {
+fn judged(ended: Vec<Option<MapRun>>) -> Map {
     let vary = |path: &str, values: &[&str]| Vary {
         path: path.to_owned(),
         values: values.iter().map(|v| v.to_string()).collect(),
@@ -281,14 +281,14 @@ fn judged(ended: Vec<Option<Ended>>) -> Map {
     Map::judged(Plan::new(study).unwrap(), TOLERANCE, ended)
 }
 
-fn ended(end: f64) -> Option<Ended> {
-    let seen = |name: &str, kind, end| Seen {
+fn ended(end: f64) -> Option<MapRun> {
+    let seen = |name: &str, kind, end| FinalMonitor {
         name: name.to_owned(),
         kind,
         end,
         largest: 2.0,
     };
-    Some(Ended {
+    Some(MapRun {
         failed: None,
         increments: 5,
         majors: 5,

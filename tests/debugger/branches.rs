@@ -2,8 +2,11 @@
 
 use stickslip::history::compare::Sameness;
 use stickslip::history::frame::Frame;
+use stickslip::history::frame::curve;
 use stickslip::history::strip::PointKind;
+use stickslip::history::tree::Budget;
 use stickslip::history::verdicts::BranchEnd;
+use stickslip::history::verdicts::summaries;
 use stickslip::model::Mode;
 use stickslip::record::command::{Command, To, Unit};
 use stickslip::scene::Scene;
@@ -54,11 +57,17 @@ fn set(session: &mut Session, path: &str, value: &str) -> String {
 }
 
 fn verdicts(session: &Session) -> Vec<BranchEnd> {
-    session.branches().into_iter().map(|b| b.verdict).collect()
+    summaries(session.timeline().tree())
+        .into_iter()
+        .map(|b| b.verdict)
+        .collect()
 }
 
 fn names(session: &Session) -> Vec<String> {
-    session.branches().into_iter().map(|b| b.name).collect()
+    summaries(session.timeline().tree())
+        .into_iter()
+        .map(|b| b.name)
+        .collect()
 }
 
 fn states(session: &Session) -> Vec<State> {
@@ -101,7 +110,7 @@ fn an_intervention_at_the_tip_goes_on_in_the_same_branch() {
     forward(&mut session, Unit::Run, 1);
     assert_eq!(names(&session), ["b1: start"]);
     assert_eq!(
-        session.strips().last().map(|s| s.kind),
+        session.timeline().strips().last().map(|s| s.kind),
         Some(PointKind::Last)
     );
 }
@@ -129,18 +138,24 @@ fn branches_of_branches_keep_their_lines_and_motions_stay_on_the_present_one() {
     forward(&mut session, Unit::Increment, 1);
     let fifth = states(&session);
 
-    let parents: Vec<_> = session.branches().iter().map(|b| b.parent).collect();
+    let parents: Vec<_> = summaries(session.timeline().tree())
+        .iter()
+        .map(|b| b.parent)
+        .collect();
     assert_eq!(parents, [None, Some(0), Some(1), Some(0), Some(0)]);
     assert_eq!(names(&session)[1], "b2: friction.angle 25");
     let all = [first, second, third, fourth, fifth];
     for k in [2, 0, 4, 1, 3, 2, 4, 3, 1, 0] {
         branch(&mut session, &format!("b{}", k + 1));
         assert_eq!(states(&session), all[k], "b{}", k + 1);
-        let lengths: Vec<usize> = session.branches().iter().map(|b| b.length).collect();
+        let lengths: Vec<usize> = summaries(session.timeline().tree())
+            .iter()
+            .map(|b| b.length)
+            .collect();
         assert_eq!(lengths, all.each_ref().map(Vec::len));
         for (other, line) in all.iter().enumerate() {
             for (at, state) in line.iter().enumerate() {
-                let (frame, _) = session.tree().point(other, at).expect("a point");
+                let (frame, _) = session.timeline().tree().point(other, at).expect("a point");
                 assert_eq!(frame.state, *state, "b{} at {at}", other + 1);
             }
         }
@@ -189,7 +204,7 @@ fn branches_are_renamed_and_wrong_names_are_told() {
     assert!(said.contains("branches: b1: start, b2: way out"), "{said}");
     branch(&mut session, "sta");
     branch(&mut session, "b2: way out");
-    assert_eq!(session.tree().current(), 1);
+    assert_eq!(session.timeline().tree().current(), 1);
 }
 
 #[test]
@@ -249,7 +264,7 @@ fn branches_are_compared_at_their_tips_and_at_the_last_load_that_both_reached() 
     submit(&mut session, Command::Goto { step: 0 });
     set(&mut session, "history.increment", "0.02");
     forward(&mut session, Unit::Increment, 2);
-    let found = session.compare(0, 1).expect("two branches");
+    let found = session.timeline().compare(0, 1).expect("two branches");
     assert_eq!(
         found.tips.each_ref().map(|side| side.load_factor),
         [0.06, 0.04]
@@ -264,7 +279,7 @@ fn branches_are_compared_at_their_tips_and_at_the_last_load_that_both_reached() 
     assert_eq!(a.nodes[0].mode, Mode::Sliding);
     let forces = |side: &stickslip::history::compare::Side| side.nodes[0].forces.expect("solved");
     assert!((forces(a)[0] - forces(b)[0]).abs() < 1e-7);
-    assert!(session.compare(0, 7).is_none());
+    assert!(session.timeline().compare(0, 7).is_none());
     let told = submit(&mut session, Command::Compare(None));
     assert!(told.contains("same state at load 0.04"), "{told}");
     // Rougher, the same load is another state.
@@ -272,7 +287,7 @@ fn branches_are_compared_at_their_tips_and_at_the_last_load_that_both_reached() 
     set(&mut session, "friction.angle", "5");
     forward(&mut session, Unit::Increment, 3);
     assert_eq!(
-        session.compare(0, 2).and_then(|c| c.sameness),
+        session.timeline().compare(0, 2).and_then(|c| c.sameness),
         Some(Sameness::Different)
     );
 }
@@ -291,7 +306,7 @@ fn the_strip_of_an_iteration_tells_what_its_event_tells() {
     );
     forward(&mut session, Unit::Increment, 1);
     let mut solved = 0;
-    for (frame, strip) in session.frames().iter().zip(session.strips()) {
+    for (frame, strip) in session.frames().iter().zip(session.timeline().strips()) {
         assert_eq!(
             frame.intervention.is_some(),
             strip.kind == PointKind::Intervention
@@ -345,7 +360,11 @@ fn a_session_with_hardly_any_memory_does_the_same() {
         seen
     };
     let mut roomy = Session::new(scene());
-    let mut tight = Session::with_budget(scene(), 20_000);
+    let budget = Budget {
+        frames: 20_000,
+        ..Budget::default()
+    };
+    let mut tight = Session::with_budget(scene(), budget);
     let (a, b) = (whole_story(&mut roomy), whole_story(&mut tight));
     assert!(roomy.frames().iter().all(Frame::is_whole));
     let whole = tight
@@ -360,17 +379,30 @@ fn a_session_with_hardly_any_memory_does_the_same() {
     );
     assert_eq!(a, b);
     // What panes show of the past does not depend on it.
-    assert_eq!(roomy.residual_history(), tight.residual_history());
-    assert_eq!(roomy.curve(0), tight.curve(0));
+    assert_eq!(
+        roomy.timeline().residual_history(),
+        tight.timeline().residual_history()
+    );
+    assert_eq!(
+        curve(&roomy.frames()[..=roomy.cursor()], 0),
+        curve(&tight.frames()[..=tight.cursor()], 0)
+    );
     assert_eq!(verdicts(&roomy).len(), 2);
 }
 
 #[test]
 fn a_branch_that_does_not_fit_is_refused_and_the_others_go_on() {
-    let mut session = session("osc-lag4");
-    forward(&mut session, Unit::Increment, 2);
-    let one = session.tree().kept();
-    session.limit_branches(2 * one);
+    let scene = || Scene::open("osc-lag4", &[]).unwrap();
+    let started = |budget| {
+        let mut session = Session::with_budget(scene(), budget);
+        forward(&mut session, Unit::Increment, 2);
+        session
+    };
+    let one = started(Budget::default()).timeline().tree().kept();
+    let mut session = started(Budget {
+        branches: 2 * one,
+        ..Budget::default()
+    });
     let mut begun = 0;
     let refused = loop {
         submit(&mut session, Command::Goto { step: 1 });
@@ -390,7 +422,9 @@ fn a_branch_that_does_not_fit_is_refused_and_the_others_go_on() {
         "{refused}"
     );
     // One branch more than fits is what the last one may take.
-    assert!(session.tree().kept() >= 2 * one && session.tree().kept() < 3 * one);
+    assert!(
+        session.timeline().tree().kept() >= 2 * one && session.timeline().tree().kept() < 3 * one
+    );
     let count = verdicts(&session).len();
     branch(&mut session, "b1");
     forward(&mut session, Unit::Minor, 1);

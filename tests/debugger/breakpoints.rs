@@ -1,7 +1,6 @@
 //! Breakpoints and watches: a run stops where it should, forward and backward, and says why.
 
 use stickslip::action::{Action, Context, parse};
-use stickslip::history::breakpoints::hits;
 use stickslip::history::strip::PointKind;
 use stickslip::model::Mode;
 use stickslip::scene::Scene;
@@ -154,7 +153,7 @@ fn cycles_failures_and_places_stop_a_run() {
     let told = say(&mut session, "finish");
     assert!(told.starts_with("breakpoint 3"), "{told}");
     assert!(say(&mut session, "finish").contains("load 0.15"));
-    let kind = |session: &Session| session.strips()[session.cursor()].kind;
+    let kind = |session: &Session| session.timeline().strips()[session.cursor()].kind;
     assert_eq!(kind(&session), PointKind::Increment);
     say(&mut session, "reverse-continue");
     assert_eq!(
@@ -207,8 +206,8 @@ fn rises_and_moves(scene: &str) -> (u32, u32) {
             _ => false,
         };
         let moved = elements(at - 1) != elements(at);
-        let strips = session.strips();
-        let hits = hits(session.breakpoints(), &strips[at - 1], &strips[at]);
+        let strips = session.timeline().strips();
+        let hits = session.breakpoints().hits(&strips[at - 1], &strips[at]);
         assert_eq!(
             (hits.contains(&1), hits.contains(&2)),
             (rose, moved),
@@ -240,7 +239,7 @@ fn breakpoints_are_listed_disabled_enabled_and_deleted() {
     assert_eq!(missing, format!("there is no breakpoint 7; {all}"));
     assert_eq!(say(&mut session, "delete 1"), "breakpoints 2 (at 3.1.1)");
     say(&mut session, "break cycle");
-    assert_eq!(session.breakpoints()[1].id, 3);
+    assert_eq!(session.breakpoints().all()[1].id, 3);
     say(&mut session, "delete all");
     assert!(say(&mut session, "continue").contains("the history is complete"));
 }
@@ -256,7 +255,7 @@ fn watches_show_the_numbers_of_the_iteration_that_is_looked_at() {
     say(&mut session, "watch residual");
     say(&mut session, "watch margin beam.5 as to go");
     assert_eq!(
-        session.watched(),
+        session.watches().values(session.frame()),
         [("f_n beam.5", None), ("residual", None), ("to go", None)]
     );
     for motion in ["step 3", "finish", "reverse-step"] {
@@ -264,7 +263,7 @@ fn watches_show_the_numbers_of_the_iteration_that_is_looked_at() {
         let event = session.frame().event.as_ref().expect("solved");
         let found = event.nodes[0];
         assert_eq!(
-            session.watched(),
+            session.watches().values(session.frame()),
             [
                 ("f_n beam.5", Some(found.f_n)),
                 ("residual", Some(event.before.relative)),
@@ -280,5 +279,5 @@ fn watches_show_the_numbers_of_the_iteration_that_is_looked_at() {
         "{none}"
     );
     say(&mut session, "unwatch to go");
-    assert_eq!(session.watched().len(), 2);
+    assert_eq!(session.watches().values(session.frame()).len(), 2);
 }

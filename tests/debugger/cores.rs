@@ -10,7 +10,7 @@ use stickslip::interface::minor_history::Cycle;
 use stickslip::interface::problem::InterfaceProblem;
 use stickslip::interface::trials::Trials;
 use stickslip::model::Mode;
-use stickslip::record::command::{Command, Exported, Unit};
+use stickslip::record::command::{Command, ExportScope, Unit};
 use stickslip::record::export::{self, Origin, compared};
 use stickslip::scene::{Scene, builtin};
 use stickslip::session::Session;
@@ -31,7 +31,7 @@ fn stuck(scene: Scene) -> Option<Stuck> {
     let Failure::Cycle(cycle) = failure else {
         return None;
     };
-    let origin = Origin::of(&scene, event.position, event.load_factor);
+    let origin = Origin::new(&scene, event.position, event.load_factor);
     Some(Stuck {
         scene,
         stepper: run.stepper,
@@ -190,7 +190,7 @@ fn whole_frozen_problems_step_alone_as_in_their_scenes() {
         for step in 0..60 {
             if step % 6 == 1 {
                 let problem = stepper.interface_problem().unwrap();
-                let origin = Origin::of(&scene, stepper.state().next, stepper.state().target);
+                let origin = Origin::new(&scene, stepper.state().next, stepper.state().target);
                 let text = export::whole(&scene.model, &origin, &problem)
                     .unwrap_or_else(|why| panic!("{name}, step {step}: {why}"));
                 let off = compared(&plain(&problem), &text).unwrap();
@@ -253,7 +253,7 @@ fn contacts(matrix: &str) -> Scene {
 fn exported(scene: &Scene) -> Result<String, String> {
     let mut stepper = Stepper::new(Arc::new(scene.model.clone()));
     let problem = stepper.interface_problem().unwrap();
-    let origin = Origin::of(scene, stepper.state().next, 1.0);
+    let origin = Origin::new(scene, stepper.state().next, 1.0);
     export::whole(&scene.model, &origin, &problem).map_err(|e| e.to_string())
 }
 
@@ -385,7 +385,7 @@ fn the_command_writes_a_core_whole_once_and_says_where_there_is_none() {
 fn the_debugger_writes_cores_whole_problems_and_what_an_extension_says() {
     let directory = tempfile::tempdir().unwrap();
     let mut session = Session::new(scene("osc-two6", &[]));
-    let write = |session: &mut Session, what: Exported, name: &str| {
+    let write = |session: &mut Session, what: ExportScope, name: &str| {
         let file = directory.path().join(name);
         let command = Command::Export {
             what,
@@ -393,14 +393,18 @@ fn the_debugger_writes_cores_whole_problems_and_what_an_extension_says() {
             overwrite: false,
         };
         session.submit(command).map_err(|e| e.to_string())?;
-        session.wait_for_background();
-        session.exported().unwrap().map_err(|e| e.to_string())?;
+        session.background_mut().wait();
+        session
+            .background_mut()
+            .exported()
+            .unwrap()
+            .map_err(|e| e.to_string())?;
         Ok::<String, String>(std::fs::read_to_string(file).unwrap())
     };
     // From the start, too, since the minor iterations run into the cycle.
-    let core = write(&mut session, Exported::Core, "early.ron").unwrap();
+    let core = write(&mut session, ExportScope::Core, "early.ron").unwrap();
     assert!(core.contains("In this file: cycle of period 2"), "{core}");
-    let again = write(&mut session, Exported::Core, "early.ron").unwrap_err();
+    let again = write(&mut session, ExportScope::Core, "early.ron").unwrap_err();
     assert!(again.contains("exists already"), "{again}");
     let run = Command::Forward {
         unit: Unit::Run,
@@ -408,28 +412,28 @@ fn the_debugger_writes_cores_whole_problems_and_what_an_extension_says() {
     };
     session.submit(run).unwrap();
     session.wait();
-    let whole = write(&mut session, Exported::Whole, "whole.ron").unwrap();
+    let whole = write(&mut session, ExportScope::Whole, "whole.ron").unwrap();
     let cycle = stuck(read(&whole)).expect("a cycle").cycle;
     assert_eq!((cycle.period, cycle.members.len()), (6, 2));
     // By the extension: a picture of the state, the scene, and the problem for another program.
-    let bytes = write(&mut session, Exported::Shown, "shown.svg").unwrap();
+    let bytes = write(&mut session, ExportScope::Shown, "shown.svg").unwrap();
     assert!(
         bytes.contains("the increment failed: cycle of period 6"),
         "{bytes}"
     );
-    let scene_file = write(&mut session, Exported::Shown, "scene.ron").unwrap();
+    let scene_file = write(&mut session, ExportScope::Shown, "scene.ron").unwrap();
     assert_eq!(scene_file, session.scene().text);
-    let siconos = write(&mut session, Exported::Whole, "whole.dat").unwrap();
+    let siconos = write(&mut session, ExportScope::Whole, "whole.dat").unwrap();
     assert!(siconos.starts_with("2\n2\n"), "{siconos}");
-    let unknown = write(&mut session, Exported::Shown, "a.bmp").unwrap_err();
+    let unknown = write(&mut session, ExportScope::Shown, "a.bmp").unwrap_err();
     assert!(
         unknown.contains(".svg (") && unknown.contains(".dat ("),
         "{unknown}"
     );
-    let film = write(&mut session, Exported::Shown, "a.cast").unwrap_err();
+    let film = write(&mut session, ExportScope::Shown, "a.cast").unwrap_err();
     assert!(film.contains("stickslip export JOURNAL"), "{film}");
     let mut session = Session::new(scene("02-two-cantilevers-smooth", &[]));
-    let none = write(&mut session, Exported::Core, "none.ron").unwrap_err();
+    let none = write(&mut session, ExportScope::Core, "none.ron").unwrap_err();
     assert!(none.contains("do not cycle"), "{none}");
     assert!(!directory.path().join("none.ron").exists());
 }

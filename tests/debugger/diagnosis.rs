@@ -18,7 +18,7 @@ fn failed(name: &str) -> (Run, InterfaceProblem, Diagnosis) {
         run.failure
     );
     let problem = run.stepper.interface_problem().unwrap();
-    let diagnosis = Diagnosis::of(&problem, &|| false).unwrap();
+    let diagnosis = Diagnosis::find(&problem, &|| false).unwrap();
     (run, problem, diagnosis)
 }
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command as Process, Output, Stdio};
 use stickslip::action::{Action, Context, parse};
 use stickslip::record::command::{Command, Unit};
-use stickslip::record::journal::{Journal, JournalError, Record};
+use stickslip::record::journal::{Journal, JournalError, Keep, Record};
 use stickslip::record::story::story;
 use stickslip::scene::Scene;
 use stickslip::session::Session;
@@ -24,7 +24,9 @@ fn kept(scene: &str) -> Kept {
     let directory = tempfile::tempdir().expect("a directory");
     let path = directory.path().join("a.journal");
     let mut session = Session::new(Scene::open(scene, &[]).expect("a built-in scene"));
-    session.keep(Journal::create(&path, session.scene(), &[]).expect("a journal"));
+    Keep::File(path.clone())
+        .begin(&mut session)
+        .expect("a journal");
     Kept {
         session,
         path,
@@ -54,7 +56,7 @@ fn type_lines(session: &mut Session, lines: &[&str]) {
 
 /// All that can be seen of a session, bit for bit.
 fn all(session: &Session) -> Vec<String> {
-    let tree = session.tree();
+    let tree = session.timeline().tree();
     let mut seen = vec![format!("{} {}", tree.current(), session.cursor())];
     seen.push(format!(
         "{:?} {:?}",
@@ -112,7 +114,7 @@ fn a_journal_replays_to_the_same_bits() {
     assert_eq!(record.entries.len(), AFTERNOON.len() - 2);
     assert_eq!((record.torn, &record.unfinished), (None, &None));
     let replayed = record.replay().unwrap_or_else(|e| panic!("{e}"));
-    assert!(kept.session.tree().branches().len() > 3);
+    assert!(kept.session.timeline().tree().branches().len() > 3);
     assert_eq!(all(&replayed), all(&kept.session));
 }
 
@@ -164,7 +166,7 @@ fn a_journal_deleted_under_the_session_is_written_again_whole_and_the_user_is_to
         reply.contains("deleted or replaced") && reply.contains(":journal FILE"),
         "{reply}"
     );
-    assert!(kept.session.lost_journal().is_some());
+    assert!(kept.session.journal().lost().is_some());
     assert_eq!(std::fs::read_to_string(&kept.path).expect("there"), "mine");
     let other = kept.directory.path().join("c.journal");
     type_lines(
@@ -201,7 +203,7 @@ fn a_journal_that_goes_on_replays_as_a_whole() {
     let mut session = record.replay().unwrap_or_else(|e| panic!("{e}"));
     let mut journal = Journal::open(&path).expect("free again");
     journal.cut(record.whole_bytes).expect("cut");
-    session.keep(journal);
+    session.journal_mut().write_to(journal);
     type_lines(&mut session, &["finish 2"]);
     let record = Record::read(&path).expect("a journal");
     assert_eq!((record.entries.len(), record.torn), (3, None));
@@ -219,7 +221,9 @@ fn a_journal_that_cannot_be_written_any_more_is_told_once_and_stops_nothing() {
     if !full.exists() {
         return;
     }
-    session.keep(Journal::open(full).expect("it opens"));
+    session
+        .journal_mut()
+        .write_to(Journal::open(full).expect("it opens"));
     let say = |session: &mut Session| {
         let reply = session.submit(Command::Rename(format!("n{}", session.cursor())));
         reply.expect("a rename").0

@@ -22,7 +22,7 @@ fn taught(name: &str) -> Debugger {
 }
 
 fn tutor(debugger: &Debugger) -> &Tutor {
-    debugger.app.lesson.as_ref().unwrap()
+    debugger.app.learning.lesson.as_ref().unwrap()
 }
 
 /// A lesson on the oscillating scene with one step, in the file's second line.

@@ -25,7 +25,7 @@ fn taught(name: &str, width: u16, height: u16) -> Debugger {
 }
 
 fn tutor(debugger: &Debugger) -> &Tutor {
-    debugger.app.lesson.as_ref().unwrap()
+    debugger.app.learning.lesson.as_ref().unwrap()
 }
 
 fn shown(debugger: &Debugger) -> String {
@@ -171,7 +171,7 @@ fn what_was_done_of_the_lessons_is_kept_and_listed() {
         debugger.keep_progress_in(file.clone());
         debugger
     };
-    let done = |name: &str| Progress::read(&file).unwrap().of(name).map(|of| of.told());
+    let done = |name: &str| Progress::read(&file).unwrap().of(name).map(|of| of.words());
     let mut debugger = begin("4-oscillation");
     debugger.type_keys("Space s");
     assert_eq!(done("4-oscillation").as_deref(), Some("step 3 of 12"));
@@ -189,7 +189,7 @@ fn what_was_done_of_the_lessons_is_kept_and_listed() {
     let offers = choosing::offers(&progress);
     let offer = offers.iter().find(|offer| offer.name == "4-oscillation");
     let reached = offer.unwrap().reached.unwrap();
-    assert_eq!(reached.told(), "done, 4/5 right");
+    assert_eq!(reached.words(), "done, 4/5 right");
     // The chooser ticks what is finished, and nothing else.
     let mut chooser = Debugger::new(Theme::mono(), offers, None);
     chooser.type_text("lessons");

@@ -20,7 +20,7 @@ use stickslip::action::{Action, Context, parse};
 use stickslip::model::Mode;
 use stickslip::record::command::Command;
 use stickslip::record::differences::compare;
-use stickslip::record::snapshot::{Applied, Snapshot, SnapshotError};
+use stickslip::record::snapshot::{AppliedIntervention, Snapshot, SnapshotError};
 use stickslip::session::Session;
 use stickslip::step::event::Outcome;
 use stickslip::step::intervene::Intervention;
@@ -200,7 +200,7 @@ fn with_interventions() -> Snapshot {
     let mut steps = 0;
     let mut act = |stepper: &mut Stepper, steps: u64, intervention: Intervention| {
         stepper.intervene(&intervention).unwrap();
-        applied.push(Applied {
+        applied.push(AppliedIntervention {
             step: steps,
             intervention,
         });
@@ -248,7 +248,7 @@ fn steps_beyond_the_end_and_interventions_out_of_order_are_told() {
     let error = snapshot.replay().unwrap_err();
     assert!(matches!(error, SnapshotError::Replay(_)), "{error}");
     snapshot.steps = 2;
-    snapshot.interventions = vec![Applied {
+    snapshot.interventions = vec![AppliedIntervention {
         step: 3,
         intervention: Intervention::Increment(0.1),
     }];

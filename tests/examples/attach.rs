@@ -238,7 +238,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Writes what happens: the way to the first accepted state, and another way to it by a mode that is forced.
 pub fn run(out: &mut impl Write) -> Result<(), Box<dyn Error>> {
-    let scene = stickslip::scene::Scene::told("springs", &told(), Some(0.5))?;
+    let scene = stickslip::scene::Scene::from_message("springs", &told(), Some(0.5))?;
     let solver = Springs::new(Arc::new(scene.model.clone()));
     let mut session = Session::attached(scene, Box::new(solver), Log::default());
     let mut goes = |command: Command| -> Result<Vec<String>, Box<dyn Error>> {
@@ -258,7 +258,10 @@ pub fn run(out: &mut impl Write) -> Result<(), Box<dyn Error>> {
             .collect();
         lines.push(format!(
             "in {}, step {}",
-            branches::name(session.tree(), session.tree().current()),
+            branches::name(
+                session.timeline().tree(),
+                session.timeline().tree().current()
+            ),
             session.cursor()
         ));
         Ok(lines)

@@ -22,7 +22,7 @@ fn nodes_have_the_names_that_the_format_promises() {
     }
 }
 
-/// Exported interface problems have the nodes of chains as single nodes, which keep their names.
+/// ExportScope interface problems have the nodes of chains as single nodes, which keep their names.
 #[test]
 fn a_single_node_may_be_called_as_a_node_of_a_chain_is_and_dashes_for_dots_are_read() {
     let nodes = |id: &str| format!("{LINE}, Node(id: {id:?}, at: (4, 1))");

@@ -26,7 +26,7 @@ use std::time::{Duration, Instant};
 use stickslip::action::{self, Action, Context};
 use stickslip::record::command::Command;
 use stickslip::record::differences::compare;
-use stickslip::record::journal::{Journal, Record};
+use stickslip::record::journal::{Keep, Record};
 use stickslip::record::snapshot::Snapshot;
 use stickslip::record::story::story;
 use stickslip::scene::Scene;
@@ -282,7 +282,7 @@ fn journal() -> String {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("j");
     let mut session = Session::new(Scene::open("osc-two6", &[]).unwrap());
-    session.keep(Journal::create(&path, session.scene(), &[]).unwrap());
+    Keep::File(path.clone()).begin(&mut session).unwrap();
     for line in [
         "step 2",
         "force a sliding",
@@ -318,7 +318,7 @@ fn typed(session: &Session, line: &str) -> Result<Action, String> {
     let context = Context {
         model: Some(session.model()),
         scene: Some(session.scene()),
-        tree: Some(session.tree()),
+        tree: Some(session.timeline().tree()),
         ..Context::default()
     };
     action::parse(line, &context).map_err(|e| e.to_string())
@@ -475,7 +475,7 @@ fn lines() {
             }
             std::thread::sleep(Duration::from_micros(200));
         }
-        session.wait_for_background();
+        session.background_mut().wait();
         assert!(!session.frames().is_empty() && session.cursor() < session.frames().len());
         *steps += 1;
         let (old, long) = (*steps > 300, session.frames().len() > 2000);

@@ -4,7 +4,7 @@ use crate::counting::{alone, live};
 use std::collections::HashMap;
 use stickslip::history::frame::Frame;
 use stickslip::history::strip::Strip;
-use stickslip::history::tree::BUDGET;
+use stickslip::history::tree::Budget;
 use stickslip::record::command::{Command, Unit};
 use stickslip::scene::Scene;
 use stickslip::session::Session;
@@ -61,7 +61,7 @@ fn five_thousand_iterations_of_200_nodes_keep_within_the_budget_and_come_back_bi
         wanted.insert(step, text(&session.frame().state));
     }
     assert_eq!(session.frames().len(), ITERATIONS + 1);
-    assert_eq!(session.strips()[1].slaves(), NODES);
+    assert_eq!(session.timeline().strips()[1].slaves(), NODES);
 
     let held = || live().saturating_sub(before);
     // Lists grow by doubling; 512 bytes are for norms, monitors and what the allocator's users round up.
@@ -69,12 +69,12 @@ fn five_thousand_iterations_of_200_nodes_keep_within_the_budget_and_come_back_bi
         2 * (size_of::<Frame>() + Strip::BYTES_PER_ITERATION) + NODES * Strip::BYTES_PER_NODE + 512;
     let bounded = |session: &Session| {
         assert!(
-            session.tree().bytes() <= BUDGET,
+            session.timeline().tree().bytes() <= Budget::default().frames,
             "{}",
-            session.tree().bytes()
+            session.timeline().tree().bytes()
         );
         // The workspace of the solver is none of the history's, and small here.
-        let most = session.tree().bytes() + session.frames().len() * each + (8 << 20);
+        let most = session.timeline().tree().bytes() + session.frames().len() * each + (8 << 20);
         assert!(held() <= most, "{} held, {most} stated", held());
     };
     bounded(&session);
@@ -86,7 +86,7 @@ fn five_thousand_iterations_of_200_nodes_keep_within_the_budget_and_come_back_bi
     println!(
         "{whole} of {} frames whole, {} MB in them, {} MB in all; {} bytes a frame and strip, {} a node",
         ITERATIONS + 1,
-        session.tree().bytes() >> 20,
+        session.timeline().tree().bytes() >> 20,
         held() >> 20,
         size_of::<Frame>() + Strip::BYTES_PER_ITERATION,
         Strip::BYTES_PER_NODE,

@@ -188,7 +188,7 @@ fn of_a_cycle_of_many_nodes_the_states_of_those_that_change_are_counted_and_that
         if cycle.members.len() <= MOST || changing.is_empty() {
             continue;
         }
-        let diagnosis = Diagnosis::of(&problem, &never).unwrap();
+        let diagnosis = Diagnosis::find(&problem, &never).unwrap();
         let counted: Vec<usize> = diagnosis.problem.nodes.iter().map(|n| n.slave).collect();
         let words = words(stepper.model(), &problem, &diagnosis).join("\n");
         if counted == changing {

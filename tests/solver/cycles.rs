@@ -246,7 +246,7 @@ fn several_consistent_states_are_listed_with_how_they_differ() {
     };
     assert_eq!((cycle.period, cycle.members.len()), (2, 2));
     let problem = stuck.stepper.interface_problem().unwrap();
-    let diagnosis = Diagnosis::of(&problem, &|| false).unwrap();
+    let diagnosis = Diagnosis::find(&problem, &|| false).unwrap();
     // With the first one in touch, as it stays in the cycle, nothing is consistent.
     assert_eq!(diagnosis.cause, Cause::Several);
     let census = diagnosis.census.as_ref().unwrap();
@@ -443,7 +443,7 @@ fn a_cycle_among_hundreds_of_nodes_is_diagnosed_by_those_that_take_part() {
     let begin = Instant::now();
     let problem = cycling(stuck.stepper.interface_problem().unwrap(), cycle).unwrap();
     assert_eq!(problem.nodes.len(), 5);
-    let diagnosis = Diagnosis::of(&problem, &|| false).unwrap();
+    let diagnosis = Diagnosis::find(&problem, &|| false).unwrap();
     println!("diagnosed in {:?}", begin.elapsed());
     assert_eq!(
         (
@@ -464,10 +464,10 @@ fn a_cycle_among_hundreds_of_nodes_is_diagnosed_by_those_that_take_part() {
     // The same in the debugger, from before the cycle, where nothing of it is known yet.
     let mut session = Session::new(scene);
     session.submit(Command::Census(vec![])).unwrap();
-    session.wait_for_background();
+    session.background_mut().wait();
     let finding = session
         .background()
-        .examination(session.place())
+        .examination(session.timeline().place())
         .flatten()
         .unwrap();
     assert!(finding.fails, "{:?}", finding.lines);
@@ -478,10 +478,10 @@ fn a_cycle_among_hundreds_of_nodes_is_diagnosed_by_those_that_take_part() {
     );
     // And of chosen nodes, none of which is in the ring.
     session.submit(Command::Census(vec![10, 11])).unwrap();
-    session.wait_for_background();
+    session.background_mut().wait();
     let finding = session
         .background()
-        .examination(session.place())
+        .examination(session.timeline().place())
         .flatten()
         .unwrap();
     let census = finding.census.as_ref().unwrap();

@@ -4,7 +4,7 @@
 use crate::census::drawn;
 use crate::common::run;
 use std::sync::Arc;
-use stickslip::explain::indefinite::{Came, indefinite};
+use stickslip::explain::indefinite::{IndefiniteOutcome, indefinite};
 use stickslip::explain::page;
 use stickslip::interface::census::census;
 use stickslip::interface::definite::Compliance;
@@ -151,10 +151,10 @@ fn a_matrix_that_is_indefinite_by_rounding_is_solved_once_it_is_made_semidefinit
         let ends = Compliance::of(&problem).unwrap().ends();
         assert!((ends[0] + by).abs() < 1e-9 && (ends[1] - 2.0 - by).abs() < 1e-9);
         let found = indefinite(&problem, &|| false).unwrap();
-        let Came::Tried {
+        let IndefiniteOutcome::Tried {
             semidefinite: Some(solved),
             tolerance,
-        } = found.came
+        } = found.outcome
         else {
             panic!("{found:?}");
         };
@@ -192,5 +192,8 @@ fn a_matrix_that_is_definite_or_solved_as_it_is_is_not_blamed() {
     let w: [&[f64]; 4] = [&one, &t, &other, &t_other];
     let problem = frozen(scene(&w, &[-1.0, 0.0, -1.0, 0.0], 0.0, &[]));
     let found = indefinite(&problem, &|| false).unwrap();
-    assert!(matches!(found.came, Came::SolvedAsItIs(_)), "{found:?}");
+    assert!(
+        matches!(found.outcome, IndefiniteOutcome::SolvedAsItIs(_)),
+        "{found:?}"
+    );
 }

@@ -7,7 +7,8 @@ use ratatui::layout::Rect;
 use serde_json::{Value as Json, json};
 use std::sync::Arc;
 use stickslip::model::Model;
-use stickslip::recorded::past::{self, Past};
+use stickslip::recorded::exchange::{self, RecordedSolver};
+use stickslip::recorded::recording::Recording;
 use stickslip::recorded::story::story;
 use stickslip::session::Session as Debugged;
 use stickslip::step::event::Event;
@@ -21,7 +22,7 @@ const SIZES: [(u16, u16); 3] = [(80, 24), (120, 40), (200, 60)];
 
 /// A solver in process: what it does is written in an exchange, and what it offers is the test's to say.
 struct Toy {
-    past: Past,
+    past: RecordedSolver,
     offers: Offers,
 }
 
@@ -107,7 +108,7 @@ fn steps(states: impl IntoIterator<Item = Json>) -> Vec<(char, Json)> {
 
 /// A debugger on a solver in process.
 fn attached(text: &str, offers: Offers) -> Debugger {
-    let opened = past::open("toy", text).unwrap();
+    let opened = exchange::open("toy", text).unwrap();
     let offers = Offers {
         name: "Toy".into(),
         version: "0.7".into(),
@@ -129,7 +130,9 @@ fn three() -> String {
 }
 
 fn kept(text: &str) -> Debugger {
-    let session = Debugged::kept(past::open("kept", text).unwrap());
+    let session = Debugged::recorded(Recording::Exchange(Box::new(
+        exchange::open("kept", text).unwrap(),
+    )));
     Debugger::new(Theme::mono(), Vec::new(), Some(session))
 }
 
@@ -329,6 +332,7 @@ fn the_decision_shows_the_solver_s_words_and_where_table_2_differs() {
     debugger.type_keys("t s s");
     let session = debugger.session.as_ref().unwrap();
     let differ: Vec<bool> = session
+        .timeline()
         .strips()
         .iter()
         .map(|strip| strip.differs(0))
@@ -584,7 +588,7 @@ fn nothing_that_a_solver_tells_breaks_a_screen() {
                     assert!(!shown.contains('\u{1b}') && !shown.contains('\u{202e}'));
                 }
             }
-            // Past the end of what is told it is lost.
+            // RecordedSolver the end of what is told it is lost.
             debugger.type_keys("Esc s c S");
             debugger.text(120, 40);
         }
@@ -616,7 +620,10 @@ fn a_kept_exchange_is_gone_through_with_all_its_ways_and_nothing_follows_on_it()
     }
     let session = debugger.session.as_ref().unwrap();
     assert_eq!(
-        (session.tree().branches().len(), session.frames().len()),
+        (
+            session.timeline().tree().branches().len(),
+            session.frames().len()
+        ),
         (2, 4)
     );
     debugger.type_keys("s s s");
@@ -652,7 +659,7 @@ fn a_kept_exchange_is_gone_through_with_all_its_ways_and_nothing_follows_on_it()
 
 #[test]
 fn a_kept_exchange_is_told_as_text() {
-    let told = story("a.txt", &mut past::open("a.txt", &two_ways()).unwrap());
+    let told = story("a.txt", &mut exchange::open("a.txt", &two_ways()).unwrap());
     insta::assert_snapshot!("kept-story", told);
     let file = tempfile::NamedTempFile::new().unwrap();
     std::fs::write(file.path(), two_ways() + "< {\"type\":\"sta").unwrap();

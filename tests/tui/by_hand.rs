@@ -239,7 +239,7 @@ pub fn view<'a>(model: &'a Model, frames: &'a [Frame]) -> View<'a> {
         tree: None,
         background: None,
         start_gaps: "",
-        guest: None,
+        attached: None,
         cursor: frames.len() - 1,
         running: false,
         residuals: residuals(),

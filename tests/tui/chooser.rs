@@ -3,11 +3,10 @@
 
 use stickslip::record::journal::digest;
 use stickslip::scene::Scene;
-use stickslip::session::Session;
 use stickslip::teach::progress::Progress;
 use stickslip::tui::Debugger;
 use stickslip::tui::choosing;
-use stickslip::tui::debugger::Outside;
+use stickslip::tui::debugger::TerminalRequest;
 use stickslip::tui::keys;
 use stickslip::tui::theme::Theme;
 
@@ -21,7 +20,10 @@ fn choosing() -> Debugger {
 }
 
 fn scene_of(debugger: &Debugger) -> Option<&str> {
-    debugger.session.as_ref().map(Session::scene_name)
+    debugger
+        .session
+        .as_ref()
+        .map(|session| session.scene().name.as_str())
 }
 
 #[test]
@@ -67,7 +69,7 @@ fn what_is_typed_finds_scenes_and_lessons() {
     debugger.type_text("reading table");
     debugger.settle();
     debugger.type_keys("Enter");
-    let lesson = debugger.app.lesson.as_ref().unwrap();
+    let lesson = debugger.app.learning.lesson.as_ref().unwrap();
     assert_eq!(lesson.lesson().name, "2-table-2");
 }
 
@@ -97,7 +99,7 @@ fn escape_forgets_what_was_typed_then_goes_back_and_never_quits() {
     );
     // Only q quits, and only where nothing is typed and nothing is open.
     let mut debugger = choosing();
-    assert_eq!(press(&mut debugger, "q"), Some(Outside::Quit));
+    assert_eq!(press(&mut debugger, "q"), Some(TerminalRequest::Quit));
 }
 
 #[test]
@@ -207,5 +209,5 @@ fn a_journal_is_opened_where_it_was_left() {
     let session = other.session.as_ref().unwrap();
     assert_eq!(digest(&session.frame().state), state);
     assert!(other.text(120, 40).contains("resumed from its journal"));
-    assert_eq!(session.journal(), Some(file.as_path()));
+    assert_eq!(session.journal().path(), Some(file.as_path()));
 }

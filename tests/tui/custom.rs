@@ -7,9 +7,10 @@ use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier};
 use std::fs;
 use stickslip::action::{Colours, Keymap};
+use stickslip::history::verdicts::summaries;
 use stickslip::scene::Scene;
 use stickslip::session;
-use stickslip::tui::debugger::Outside;
+use stickslip::tui::debugger::TerminalRequest;
 use stickslip::tui::layout::Pane;
 use stickslip::tui::theme::Theme;
 use stickslip::tui::{Debugger, keys, screen};
@@ -68,12 +69,12 @@ fn a_click_selects_a_node_in_the_table_and_in_the_shape() {
         let at = place(&debugger, "Slave nodes", "b ");
         click(&mut debugger, at);
         assert_eq!(debugger.app.selected, 1, "{size:?}\n{}", text(&debugger));
-        assert_eq!(debugger.app.focus, Pane::Nodes);
+        assert_eq!(debugger.app.panes.focus, Pane::Nodes);
         let heading = place(&debugger, "Slave nodes", "Slave nodes");
         click(&mut debugger, heading);
         assert_eq!(debugger.app.selected, 1);
         debugger.type_keys("Tab Tab Tab z");
-        assert_eq!(debugger.app.focus, Pane::Shape);
+        assert_eq!(debugger.app.panes.focus, Pane::Shape);
         // Both letters stand in one row; a is the one on the left.
         let rows: Vec<String> = text(&debugger).lines().map(String::from).collect();
         let found = rows.iter().enumerate().find_map(|(y, row)| {
@@ -95,12 +96,12 @@ fn a_click_selects_a_node_in_the_table_and_in_the_shape() {
 #[test]
 fn a_click_selects_a_branch_a_step_of_the_timeline_and_a_pane() {
     let mut debugger = debugger("osc-two6", "c m x s m s s v", (120, 40));
-    let all = debugger.session.as_ref().unwrap().branches().len();
+    let all = summaries(debugger.session.as_ref().unwrap().timeline().tree()).len();
     assert!(all >= 1);
     debugger.type_keys("S S m f s v v");
-    let all = debugger.session.as_ref().unwrap().branches().len();
+    let all = summaries(debugger.session.as_ref().unwrap().timeline().tree()).len();
     assert!(all >= 2, "{}", text(&debugger));
-    debugger.app.zoomed = true;
+    debugger.app.panes.zoomed = true;
     let at = place(&debugger, "Branches", "b1: ");
     click(&mut debugger, at);
     assert_eq!(debugger.app.branch, 0, "{}", text(&debugger));
@@ -132,7 +133,7 @@ fn a_click_selects_a_branch_a_step_of_the_timeline_and_a_pane() {
     ] {
         let at = place(&debugger, title, title);
         click(&mut debugger, at);
-        assert_eq!(debugger.app.focus, pane);
+        assert_eq!(debugger.app.panes.focus, pane);
     }
 }
 
@@ -147,7 +148,7 @@ fn the_wheel_scrolls_what_it_is_over_and_the_focus_stays() {
     let shape = place(&debugger, "Shape", "Shape");
     mouse(&mut debugger, MouseEventKind::ScrollUp, shape);
     assert!(debugger.app.camera.zoom > 1.0);
-    assert_eq!(debugger.app.focus, Pane::Nodes);
+    assert_eq!(debugger.app.panes.focus, Pane::Nodes);
     debugger.type_keys("?");
     let top = text(&debugger);
     mouse(&mut debugger, MouseEventKind::ScrollDown, shape);
@@ -166,7 +167,7 @@ fn a_mouse_that_is_switched_off_does_nothing() {
     debugger.type_text(":mouse off");
     assert_eq!(
         debugger.key(&keys::press("Enter").unwrap()),
-        Some(Outside::Mouse(false))
+        Some(TerminalRequest::Mouse(false))
     );
     click(&mut debugger, at);
     assert_eq!(debugger.app.selected, 0);
@@ -184,7 +185,7 @@ fn copied(scene: &str, keys: &str, line: &str) -> (Option<String>, String) {
         }
     };
     let text = match outside {
-        Some(Outside::Copy(text)) => Some(text),
+        Some(TerminalRequest::Copy(text)) => Some(text),
         _ => None,
     };
     (text, debugger.app.message.text)
@@ -329,7 +330,7 @@ fn every_theme_tells_the_modes_by_letters_first_and_none_of_them_hides_a_cell() 
     for colours in Colours::ALL {
         let mut debugger = debugger("osc-two6", "c", (120, 40));
         let plain = text(&debugger);
-        debugger.app.theme = Theme::of(colours);
+        debugger.app.theme = Theme::new(colours);
         // The letters are the same, whatever the colours.
         assert_eq!(text(&debugger), plain);
         let area = debugger.app.area;

@@ -138,7 +138,7 @@ fn at_failure(case: &Case) -> Debugger {
 
 fn found(debugger: &Debugger) -> Examination {
     let session = debugger.session.as_ref().unwrap();
-    let found = session.background().examination(session.place());
+    let found = session.background().examination(session.timeline().place());
     found.flatten().expect("the page is made").clone()
 }
 

@@ -55,7 +55,7 @@ fn the_last_screen_of_a_film_is_that_of_the_session() {
         let session = record.replay().unwrap();
         let mut app = App::new(Theme::colour(), Vec::new());
         app.say(record.entries.last().unwrap().1.said.as_str());
-        let wanted = screen::text(&app, Some(&View::of(&session)), SIZE.0, SIZE.1);
+        let wanted = screen::text(&app, Some(&View::new(&session)), SIZE.0, SIZE.1);
         for (row, wanted) in shown.iter().zip(wanted.lines()) {
             assert_eq!(row.trim_end(), wanted, "{name}");
         }

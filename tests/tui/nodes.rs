@@ -178,6 +178,7 @@ fn outcomes_have_a_glyph_and_a_sentence() {
         jumped: false,
         unstable: None,
         motion: None,
+        found: None,
         left_range: None,
         last: false,
     };

@@ -4,10 +4,12 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
 use stickslip::explain::remedies::TrialEnd;
+use stickslip::history::tree::Budget;
 use stickslip::history::verdicts::BranchEnd;
+use stickslip::history::verdicts::summaries;
 use stickslip::model::Mode;
 use stickslip::record::command::{Command, Unit};
-use stickslip::record::journal::{Journal, Record};
+use stickslip::record::journal::{Keep, Record};
 use stickslip::record::story::story;
 use stickslip::scene::Scene;
 use stickslip::session::Session;
@@ -65,10 +67,13 @@ fn what_pushed_a_node_adds_up_to_what_changed() {
         solve(&mut session, Command::Goto { step });
         for slave in 0..2 {
             session.look(slave);
-            session.wait_for_background();
+            session.background_mut().wait();
             session.look(slave);
-            session.wait_for_background();
-            let pushes = session.background().pushes(session.place(), slave).unwrap();
+            session.background_mut().wait();
+            let pushes = session
+                .background()
+                .pushes(session.timeline().place(), slave)
+                .unwrap();
             let sum: f64 = pushes.unwrap().iter().map(|p| p.influence.f_n).sum();
             let of = |step: usize| session.frames()[step].event.as_ref().unwrap().nodes[slave].f_n;
             let change = of(step) - of(step - 1);
@@ -87,10 +92,15 @@ fn the_first_minor_iteration_of_a_major_has_nothing_before_it() {
     let mut session = session("osc-two6");
     solve(&mut session, RUN);
     solve(&mut session, Command::Goto { step: 1 });
-    assert_eq!(session.minor_before(), None);
+    assert_eq!(session.timeline().minor_before(), None);
     session.look(0);
-    session.wait_for_background();
-    assert!(session.background().pushes(session.place(), 0).is_none());
+    session.background_mut().wait();
+    assert!(
+        session
+            .background()
+            .pushes(session.timeline().place(), 0)
+            .is_none()
+    );
 }
 
 #[test]
@@ -241,7 +251,7 @@ fn remedies_are_measured_and_the_chosen_one_is_done_again_in_a_branch_of_its_own
     debugger.type_keys("Down Enter");
     let session = debugger.session.as_ref().unwrap();
     let second = &tried.trials[1];
-    let branches = session.branches();
+    let branches = summaries(session.timeline().tree());
     assert_eq!(branches.len(), 2);
     assert!(branches[1].name.ends_with(&second.label) && branches[1].is_current);
     assert_eq!(branches[1].own.minors, u64::from(second.minors));
@@ -257,8 +267,8 @@ fn every_converging_remedy_ends_in_the_state_that_its_trial_measured() {
     let mut session = session("osc-two6");
     solve(&mut session, RUN);
     solve(&mut session, Command::Remedies);
-    session.wait_for_background();
-    let (_, step) = session.place();
+    session.background_mut().wait();
+    let (_, step) = session.timeline().place();
     let trials = session.background().tried().unwrap().trials.clone();
     let mut good = 0;
     for trial in trials.into_iter().filter(|t| t.end == TrialEnd::Converged) {
@@ -269,7 +279,10 @@ fn every_converging_remedy_ends_in_the_state_that_its_trial_measured() {
         good += 1;
     }
     assert_eq!(good, 8);
-    let ends: Vec<BranchEnd> = session.branches().into_iter().map(|b| b.verdict).collect();
+    let ends: Vec<BranchEnd> = summaries(session.timeline().tree())
+        .into_iter()
+        .map(|b| b.verdict)
+        .collect();
     assert_eq!(ends[0], BranchEnd::Cycle);
     assert!(
         matches!(ends[2], BranchEnd::Same { branch: 1, .. }),
@@ -302,7 +315,7 @@ fn keys_are_answered_while_remedies_are_tried() {
 #[test]
 fn a_remedy_from_elsewhere_is_not_taken_here() {
     let mut debugger = debugger("osc-two6", "c r r S r Enter");
-    let branches = debugger.session.as_ref().unwrap().branches().len();
+    let branches = summaries(debugger.session.as_ref().unwrap().timeline().tree()).len();
     assert_eq!(branches, 2, "{}", debugger.app.message.text);
     debugger.type_keys("s Enter");
     let message = &debugger.app.message.text;
@@ -326,16 +339,23 @@ fn branches_are_walked_and_stand_beside_each_other() {
     );
     debugger.type_keys("Enter");
     let session = debugger.session.as_ref().unwrap();
-    assert_eq!((session.tree().current(), session.cursor()), (0, 2));
+    assert_eq!(
+        (session.timeline().tree().current(), session.cursor()),
+        (0, 2)
+    );
 }
 
 #[test]
 fn a_branch_that_was_left_at_its_tip_keeps_it_when_memory_is_short() {
     let scene = Scene::open("osc-inclined-cantilever", &[]).unwrap();
-    let mut session = Session::with_budget(scene, 20_000);
+    let budget = Budget {
+        frames: 20_000,
+        ..Budget::default()
+    };
+    let mut session = Session::with_budget(scene, budget);
     solve(&mut session, RUN);
     solve(&mut session, Command::Remedies);
-    session.wait_for_background();
+    session.background_mut().wait();
     let trial = session.background().tried().unwrap().trials[0].clone();
     let (label, steps) = (trial.label, trial.steps);
     solve(&mut session, Command::Follow { label, steps });
@@ -353,10 +373,10 @@ fn answers_and_remedies_are_in_the_journal_and_replay_to_the_same_bits() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("a.journal");
     let mut session = session("osc-two6");
-    session.keep(Journal::create(&path, session.scene(), &[]).unwrap());
+    Keep::File(path.clone()).begin(&mut session).unwrap();
     solve(&mut session, RUN);
     solve(&mut session, Command::Remedies);
-    session.wait_for_background();
+    session.background_mut().wait();
     for trial in session.background().tried().unwrap().trials.clone() {
         solve(&mut session, Command::Goto { step: 6 });
         let (label, steps) = (trial.label, trial.steps);
@@ -364,10 +384,10 @@ fn answers_and_remedies_are_in_the_journal_and_replay_to_the_same_bits() {
     }
     solve(&mut session, Command::Goto { step: 6 });
     solve(&mut session, Command::Census(vec![]));
-    session.wait_for_background();
+    session.background_mut().wait();
     let finding = session
         .background()
-        .examination(session.place())
+        .examination(session.timeline().place())
         .flatten()
         .unwrap();
     let starts = finding.starts(0).unwrap();
@@ -375,16 +395,26 @@ fn answers_and_remedies_are_in_the_journal_and_replay_to_the_same_bits() {
     solve(&mut session, RUN);
     let record = Record::read(&path).unwrap();
     let again = record.replay().unwrap();
-    assert_eq!(again.place(), session.place());
+    assert_eq!(again.timeline().place(), session.timeline().place());
     assert_eq!(again.frame().state, session.frame().state);
-    assert_eq!(again.branches().len(), 22);
+    assert_eq!(summaries(again.timeline().tree()).len(), 22);
     for branch in 0..22 {
-        let tip = |session: &Session| session.tree().tip(branch).unwrap().0.state.clone();
+        let tip = |session: &Session| {
+            session
+                .timeline()
+                .tree()
+                .tip(branch)
+                .unwrap()
+                .0
+                .state
+                .clone()
+        };
         assert_eq!(tip(&again), tip(&session), "b{}", branch + 1);
     }
     let told = story(&record).unwrap();
     assert!(
-        told.contains("Applied a remedy") && told.contains("Started from a consistent state"),
+        told.contains("AppliedIntervention a remedy")
+            && told.contains("Started from a consistent state"),
         "{told}"
     );
 }

@@ -13,7 +13,7 @@ use stickslip::recorded::calculix::run::{CalculixRun, Status};
 use stickslip::recorded::calculix::{self, words};
 use stickslip::recorded::recording::Recording;
 use stickslip::session::Session as Debugged;
-use stickslip::tui::debugger::{Debugger, Outside};
+use stickslip::tui::debugger::{Debugger, TerminalRequest};
 use stickslip::tui::layout::Pane;
 use stickslip::tui::theme::Theme;
 use stickslip::tui::{keys, screen};
@@ -142,7 +142,7 @@ fn contacts_are_selected_by_name() {
     debugger.type_keys("/ x y Enter");
     assert!(debugger.app.message.text.contains("xy"));
     debugger.type_keys("Shift-Tab Shift-Tab");
-    assert_ne!(debugger.app.focus, Pane::Nodes);
+    assert_ne!(debugger.app.panes.focus, Pane::Nodes);
 }
 
 #[test]
@@ -167,7 +167,7 @@ fn what_needs_a_solver_is_refused_with_the_reason() {
     debugger.type_keys(": n o n s e n s e Enter");
     assert!(debugger.app.message.text.contains("nonsense"));
     let quit = keys::press("q").unwrap();
-    assert_eq!(debugger.key(&quit), Some(Outside::Quit));
+    assert_eq!(debugger.key(&quit), Some(TerminalRequest::Quit));
 }
 
 #[test]
@@ -216,7 +216,7 @@ fn letters_tell_what_colours_tell_too() {
         (symbols, colours.count(), bold.count())
     };
     let (plain, none, bold) = shown(Theme::mono());
-    let (colour, some, _) = shown(Theme::of(Colours::Dark));
+    let (colour, some, _) = shown(Theme::new(Colours::Dark));
     assert_eq!(plain, colour);
     assert!(none == 0 && some > 0 && bold > 0);
 }

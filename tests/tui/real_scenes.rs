@@ -1,5 +1,6 @@
 //! The debugger on real scenes: what is done is seen.
 
+use stickslip::history::frame::curve;
 use stickslip::scene::Scene;
 use stickslip::session::Session;
 use stickslip::tui::Debugger;
@@ -58,7 +59,7 @@ fn the_curve_grows_by_accepted_increments_and_shrinks_on_the_way_back() {
     let mut debugger = debugger("01-pinned-beam-rough-floor");
     let points = |debugger: &Debugger| {
         let session = debugger.session.as_ref().expect("a session");
-        session.curve(0)
+        curve(&session.frames()[..=session.cursor()], 0)
     };
     assert_eq!(points(&debugger), [[0.0; 2]; 0]);
     debugger.type_keys("3 f");

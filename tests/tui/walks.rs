@@ -5,6 +5,7 @@ use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
 use std::fs;
 use std::path::Path;
+use stickslip::history::verdicts::summaries;
 use stickslip::scene::Scene;
 use stickslip::session::Session;
 use stickslip::tui::Debugger;
@@ -42,13 +43,13 @@ fn debugger(scene: &str) -> Debugger {
 /// What is on the screen and where the session is.
 fn state(debugger: &Debugger) -> (String, Vec<String>) {
     let session = debugger.session.as_ref().unwrap();
-    let branches = session.branches();
+    let branches = summaries(session.timeline().tree());
     let told = branches.iter().map(|branch| format!("{branch:?}"));
     // Seconds are no state.
     let told = told.map(|text| text.split("seconds").next().unwrap_or_default().to_owned());
     let mut place = vec![format!(
         "{:?} {:?}",
-        session.place(),
+        session.timeline().place(),
         session.frame().state.next
     )];
     place.extend(told);
@@ -258,10 +259,10 @@ fn the_key_of_an_empty_page_computes_and_a_second_press_leaves_it_open() {
         );
         // From another place it is found out anew, and not closed.
         debugger.type_keys(&format!("s {key}"));
-        assert!(debugger.app.zoomed);
+        assert!(debugger.app.panes.zoomed);
         assert!(debugger.text(120, 50).contains(shown));
         debugger.type_keys("Esc");
-        assert!(!debugger.app.zoomed);
+        assert!(!debugger.app.panes.zoomed);
     }
 }
 

@@ -103,7 +103,7 @@ fn prompt(trial: &mut Trial) -> Result<Outcome, Fault> {
 
 /// Checks states as the debugger reads them.
 fn look(report: &mut Report, scene: &Scene, name: &str, states: &[State]) {
-    let sound = match stickslip_scene::Scene::told(name, scene, None) {
+    let sound = match stickslip_scene::Scene::from_message(name, scene, None) {
         Ok(sound) => sound,
         Err(why) => {
             let mend = "`stickslip help protocol` describes the scene message";
@@ -166,7 +166,7 @@ fn taken_in(model: &Model, scene: &Scene, states: &[State]) -> Result<(), String
                 ));
             }
         };
-        let led = frame.led(&from, &told);
+        let led = frame.recorded_step(&from, &told);
         from = led
             .map_err(|fault| format!("state {number}: {fault}"))?
             .state;

@@ -1,13 +1,13 @@
 //! Parses the arguments of actions.
 
 use super::context::{Context, any_or_exact, chosen, exact, find, model, several};
-use super::meaning::{Action, ChartOf, Colours, Copied, Filter, Question, Sort, Ui, Whose};
+use super::meaning::{Action, ChartOf, Colours, CopyTarget, Filter, Question, Sort, Ui, Whose};
 use super::misread::Misread;
 use super::parameters::{parameter, set_paths};
 use super::table::{ActionEntry, Verb};
 use crate::history::breakpoints::Condition;
 use crate::history::watches::{Watch, WatchQuantity};
-use crate::record::command::{Command, Exported, To};
+use crate::record::command::{Command, ExportScope, To};
 use std::path::PathBuf;
 use stickslip_core::model::Mode;
 use stickslip_manual as manual;
@@ -39,6 +39,8 @@ impl ActionEntry {
         if words.len() > self.most_words() {
             return Err(self.misused());
         }
+        let ui = |ui| Ok(Action::Ui(ui));
+        let ask = |question| ui(Ui::Ask(question));
         let command = match &self.verb {
             Verb::Forward(unit) => Command::Forward {
                 unit: *unit,
@@ -53,7 +55,7 @@ impl ActionEntry {
                 slave: chosen(words.first().copied(), context)?,
             },
             Verb::Increment if words.is_empty() => {
-                return Ok(Action::Ui(Ui::Ask(Question::Increment)));
+                return ask(Question::Increment);
             }
             Verb::Increment => Command::Increment(increment(rest)?),
             Verb::Set => self.set(rest, &words, context)?,
@@ -80,7 +82,7 @@ impl ActionEntry {
             Verb::Rename => Command::Rename(rest.into()),
             Verb::Unwatch => Command::Unwatch(rest.into()),
             Verb::Compare => Command::Compare((!rest.is_empty()).then(|| rest.into())),
-            Verb::Break if words.is_empty() => return Ok(Action::Ui(Ui::Ask(Question::Break))),
+            Verb::Break if words.is_empty() => return ask(Question::Break),
             Verb::Break => Command::Break(condition(&words, context)?),
             Verb::Delete => Command::Delete(self.number_or_all(&words)?),
             Verb::Enable { on } => Command::Enable {
@@ -92,7 +94,7 @@ impl ActionEntry {
             Verb::Census => Command::Census(several(&words, context)?),
             Verb::Export { what, overwrite } => {
                 let frozen = match what {
-                    Exported::Shown => rest.strip_prefix("--frozen"),
+                    ExportScope::Shown => rest.strip_prefix("--frozen"),
                     _ => None,
                 };
                 let frozen = frozen.filter(|file| file.is_empty() || file.starts_with(' '));
@@ -101,7 +103,7 @@ impl ActionEntry {
                     return Err(self.misused());
                 }
                 Command::Export {
-                    what: frozen.map_or(*what, |_| Exported::Whole),
+                    what: frozen.map_or(*what, |_| ExportScope::Whole),
                     file: PathBuf::from(file),
                     overwrite: *overwrite,
                 }
@@ -115,49 +117,49 @@ impl ActionEntry {
                 }
             }
             Verb::Journal => Command::Journal((!rest.is_empty()).then(|| PathBuf::from(rest))),
-            Verb::Node if rest.is_empty() => return Ok(Action::Ui(Ui::Ask(Question::Node))),
-            Verb::Node => return Ok(Action::Ui(Ui::Select(find(rest, context)?))),
-            Verb::Open if rest.is_empty() => return Ok(Action::Ui(Ui::Ask(Question::Scene))),
-            Verb::Open => return Ok(Action::Ui(Ui::Open(rest.into()))),
+            Verb::Node if rest.is_empty() => return ask(Question::Node),
+            Verb::Node => return ui(Ui::Select(find(rest, context)?)),
+            Verb::Open if rest.is_empty() => return ask(Question::Scene),
+            Verb::Open => return ui(Ui::Open(rest.into())),
             Verb::Sort => {
                 let sort = one_of(&words, Sort::ALL, Sort::word)?;
-                return Ok(Action::Ui(Ui::Sort(sort)));
+                return ui(Ui::Sort(sort));
             }
             Verb::Filter => {
                 let filter = one_of(&words, Filter::ALL, Filter::word)?;
-                return Ok(Action::Ui(Ui::Filter(filter)));
+                return ui(Ui::Filter(filter));
             }
             Verb::Copy => {
-                let what = one_of(&words, Copied::all(), Copied::word)?;
-                return Ok(Action::Ui(Ui::Copy(what)));
+                let what = one_of(&words, CopyTarget::all(), CopyTarget::word)?;
+                return ui(Ui::Copy(what));
             }
             Verb::Colours => {
                 let rest = words.join(" ");
                 let rest = (!rest.is_empty()).then_some(rest.as_str());
                 let colours = one_of(rest.as_slice(), Colours::ALL, Colours::word)?;
-                return Ok(Action::Ui(Ui::Colours(colours)));
+                return ui(Ui::Colours(colours));
             }
             Verb::Mouse => {
                 let word = |on: bool| if on { "on" } else { "off" };
                 let on = one_of(&words, [true, false], word)?;
-                return Ok(Action::Ui(Ui::Mouse(on)));
+                return ui(Ui::Mouse(on));
             }
-            Verb::Chart => return Ok(Action::Ui(Ui::Chart(chart_of(rest, &words)?))),
-            Verb::Lesson if rest.is_empty() => return Ok(Action::Ui(Ui::Ask(Question::Lesson))),
-            Verb::Lesson => return Ok(Action::Ui(Ui::Lesson(rest.into()))),
-            Verb::Answer if rest.is_empty() => return Ok(Action::Ui(Ui::Ask(Question::Answer))),
-            Verb::Answer => return Ok(Action::Ui(Ui::Answer(rest.into()))),
+            Verb::Chart => return ui(Ui::Chart(chart_of(rest, &words)?)),
+            Verb::Lesson if rest.is_empty() => return ask(Question::Lesson),
+            Verb::Lesson => return ui(Ui::Lesson(rest.into())),
+            Verb::Answer if rest.is_empty() => return ask(Question::Answer),
+            Verb::Answer => return ui(Ui::Answer(rest.into())),
             Verb::Predict => {
                 let whose = one_of(&words, Whose::ALL, Whose::word)?;
-                return Ok(Action::Ui(Ui::Predict(whose)));
+                return ui(Ui::Predict(whose));
             }
-            Verb::Monitor if rest.is_empty() => return Ok(Action::Ui(Ui::Monitor(None))),
-            Verb::Monitor => return Ok(Action::Ui(Ui::Monitor(Some(monitor(rest, context)?)))),
-            Verb::Help if rest.is_empty() => return Ok(Action::Ui(Ui::Help)),
-            Verb::Help => return Ok(Action::Ui(Ui::Manual(manual::page(rest)?))),
-            Verb::StartFrom => return Ok(Action::Ui(Ui::StartFrom(self.number(&words)?))),
-            Verb::Apply => return Ok(Action::Ui(Ui::Apply(self.number(&words)?))),
-            Verb::Do(ui) => return Ok(Action::Ui(ui.clone())),
+            Verb::Monitor if rest.is_empty() => return ui(Ui::Monitor(None)),
+            Verb::Monitor => return ui(Ui::Monitor(Some(monitor(rest, context)?))),
+            Verb::Help if rest.is_empty() => return ui(Ui::Help),
+            Verb::Help => return ui(Ui::Manual(manual::page(rest)?)),
+            Verb::StartFrom => return ui(Ui::StartFrom(self.number(&words)?)),
+            Verb::Apply => return ui(Ui::Apply(self.number(&words)?)),
+            Verb::Do(own) => return ui(own.clone()),
         };
         Ok(Action::Session(command))
     }

@@ -2,7 +2,7 @@
 
 use super::arguments::CONDITIONS;
 use super::context::{Context, names};
-use super::meaning::{Colours, Copied, Filter, Sort, Whose};
+use super::meaning::{Colours, CopyTarget, Filter, Sort, Whose};
 use super::parameters::{parameter_lines, set_paths};
 use super::paths::beginning_with;
 use super::table::{ACTIONS, ActionEntry, Verb, by_name};
@@ -104,9 +104,7 @@ impl ActionEntry {
                 }
             }
             (Verb::Delete | Verb::Enable { .. }, 0) => vec!["all".into()],
-            (Verb::Watch, 0) => WatchQuantity::ALL
-                .map(|quantity| quantity.word().into())
-                .into(),
+            (Verb::Watch, 0) => WatchQuantity::NAMES.map(String::from).into(),
             (Verb::Watch, 1) => nodes().chain(std::iter::once("as".into())).collect(),
             (Verb::Set, 0) if context.offers.is_none() => set_paths(context),
             (Verb::Set, 1) => values(before)
@@ -119,12 +117,12 @@ impl ActionEntry {
                 let names = context.lessons.iter();
                 names.map(|lesson| lesson.name.into()).collect()
             }
-            (Verb::Predict, 0) => Whose::ALL.map(|whose| whose.word().into()).into(),
-            (Verb::Copy, 0) => Copied::all().map(|what| what.word().into()).collect(),
-            (Verb::Colours, 0) => Colours::ALL.map(|colours| colours.word().into()).into(),
+            (Verb::Predict, 0) => Whose::NAMES.map(String::from).into(),
+            (Verb::Copy, 0) => CopyTarget::all().map(|what| what.word().into()).collect(),
+            (Verb::Colours, 0) => Colours::NAMES.map(String::from).into(),
             (Verb::Mouse, 0) => ["on", "off"].map(String::from).into(),
-            (Verb::Sort, 0) => Sort::ALL.map(|sort| sort.word().into()).into(),
-            (Verb::Filter, 0) => Filter::ALL.map(|filter| filter.word().into()).into(),
+            (Verb::Sort, 0) => Sort::NAMES.map(String::from).into(),
+            (Verb::Filter, 0) => Filter::NAMES.map(String::from).into(),
             (Verb::Monitor, 0) => {
                 let monitors = context.model.into_iter().flat_map(|model| &model.monitors);
                 monitors.map(|monitor| monitor.name.clone()).collect()

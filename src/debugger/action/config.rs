@@ -145,16 +145,16 @@ mod tests {
     #[test]
     fn errors_have_file_line_column_and_a_hint() {
         let folder = tempfile::tempdir().unwrap();
-        let told = |text: &str| {
+        let describe = |text: &str| {
             std::fs::write(folder.path().join(DEBUGGER), text).unwrap();
             Config::from(folder.path()).unwrap_err().to_string()
         };
-        let wrong = told("(\n  colour: light)");
+        let wrong = describe("(\n  colour: light)");
         assert!(wrong.contains("debugger.ron:2:"), "{wrong}");
         assert!(wrong.contains("did you mean \"colours\"?"), "{wrong}");
-        let wrong = told("(colours: ligth)");
+        let wrong = describe("(colours: ligth)");
         assert!(wrong.contains("did you mean \"light\"?"), "{wrong}");
-        let wrong = told("(mouse: 3)");
+        let wrong = describe("(mouse: 3)");
         assert!(wrong.contains("it must be true or false"), "{wrong}");
     }
 }

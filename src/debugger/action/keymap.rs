@@ -317,8 +317,8 @@ mod tests {
             ("{\"step\": [\"x\"]", "keys.ron:1:"),
             ("[]", "keys.ron:1:"),
         ] {
-            let told = refused(text);
-            assert!(told.contains(wanted), "{text}\n{told}\n{wanted}");
+            let words = refused(text);
+            assert!(words.contains(wanted), "{text}\n{words}\n{wanted}");
         }
     }
 }

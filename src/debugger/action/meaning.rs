@@ -91,7 +91,7 @@ pub enum Ui {
     /// Show a page of the manual.
     Manual(&'static manual::Page),
     /// Copy to the terminal's clipboard; `None` is the selection.
-    Copy(Option<Copied>),
+    Copy(Option<CopyTarget>),
     /// Show the current keys in the format of the file.
     Keys,
     /// Change the colours; `None` shows the current choice.
@@ -217,7 +217,7 @@ pub enum Question {
 
 /// What can be copied in addition to the selection of the focused pane.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Copied {
+pub enum CopyTarget {
     /// All numbers of the selected slave node.
     Row,
     /// The last line typed.
@@ -228,11 +228,11 @@ pub enum Copied {
     Number(WatchQuantity),
 }
 
-impl Copied {
+impl CopyTarget {
     /// All variants, in the order in which they are offered.
-    pub fn all() -> impl Iterator<Item = Copied> {
-        let numbers = WatchQuantity::ALL.into_iter().map(Copied::Number);
-        [Copied::Row, Copied::Command, Copied::Keys]
+    pub fn all() -> impl Iterator<Item = CopyTarget> {
+        let numbers = WatchQuantity::ALL.into_iter().map(CopyTarget::Number);
+        [CopyTarget::Row, CopyTarget::Command, CopyTarget::Keys]
             .into_iter()
             .chain(numbers)
     }
@@ -240,10 +240,10 @@ impl Copied {
     /// The word typed for it.
     pub fn word(self) -> &'static str {
         match self {
-            Copied::Row => "row",
-            Copied::Command => "command",
-            Copied::Keys => "keys",
-            Copied::Number(quantity) => quantity.word(),
+            CopyTarget::Row => "row",
+            CopyTarget::Command => "command",
+            CopyTarget::Keys => "keys",
+            CopyTarget::Number(quantity) => quantity.word(),
         }
     }
 }

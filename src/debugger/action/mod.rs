@@ -32,7 +32,7 @@ pub use complete::{complete, takes_path};
 pub use context::{Context, exact};
 pub use keymap::Keymap;
 pub use meaning::{
-    Action, ChartOf, Colours, Copied, Filter, Page, Question, Sort, Step, Ui, Whose,
+    Action, ChartOf, Colours, CopyTarget, Filter, Page, Question, Sort, Step, Ui, Whose,
 };
 pub use misread::Misread;
 pub use parameters::{parameter, present};

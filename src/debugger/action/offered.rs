@@ -4,7 +4,7 @@
 use super::context::Context;
 use super::meaning::{Action, ChartOf, Page, Question, Ui};
 use super::table::{ActionEntry, Verb};
-use crate::record::command::{Command, Exported};
+use crate::record::command::{Command, ExportScope};
 use crate::record::export;
 use stickslip_core::model::{Friction, Mode};
 use stickslip_core::step::intervene::Intervention;
@@ -98,7 +98,7 @@ impl Need {
             Verb::StartFrom => Need::Answers,
             Verb::Apply | Verb::Census => Need::Problem,
             Verb::Export {
-                what: Exported::Core,
+                what: ExportScope::Core,
                 ..
             } => Need::Problem,
             Verb::Chart => Need::Chart,
@@ -140,7 +140,7 @@ impl Need {
             Command::Census(_) | Command::Remedies => Need::Problem,
             Command::Journal(_) => Need::Journal,
             Command::Export {
-                what: Exported::Core | Exported::Whole,
+                what: ExportScope::Core | ExportScope::Whole,
                 ..
             } => Need::Problem,
             Command::Export { file, .. } => match export::kind(file) {

@@ -4,7 +4,7 @@
 
 use super::meaning::{Page, Step, Ui};
 use super::misread::Misread;
-use crate::record::command::{Command, Exported, To, Unit};
+use crate::record::command::{Command, ExportScope, To, Unit};
 
 /// Heading under which help lists an action.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -87,7 +87,7 @@ pub(super) enum Verb {
     Census,
     Journal,
     Export {
-        what: Exported,
+        what: ExportScope,
         overwrite: bool,
     },
     Snapshot {
@@ -211,10 +211,10 @@ pub const ACTIONS: &[ActionEntry] = &[
     entry(Group::Program, "command", "", &[":"], "command", "Run any action by name; Tab completes, Up and Down recall", Verb::Do(Ui::CommandLine)),
     entry(Group::Program, "snapshot", "[FILE]", &["w"], "", "Write a snapshot of the shown state", Verb::Snapshot { overwrite: false }),
     entry(Group::Program, "snapshot!", "FILE", &[], "", "Write a snapshot over an existing file", Verb::Snapshot { overwrite: true }),
-    entry(Group::Program, "core", "FILE", &[], "", "Write the fewest nodes that still cycle as a separate scene", Verb::Export { what: Exported::Core, overwrite: false }),
-    entry(Group::Program, "core!", "FILE", &[], "", "Write the core over an existing file", Verb::Export { what: Exported::Core, overwrite: true }),
-    entry(Group::Program, "export", "[--frozen] FILE", &[], "", "Write the shown state to a file, by its extension: .svg, .png a picture; .ron the scene, with --frozen its interface problem; .dat, .mtx, .h5 the interface problem for other solvers; .vtu the state for ParaView", Verb::Export { what: Exported::Shown, overwrite: false }),
-    entry(Group::Program, "export!", "[--frozen] FILE", &[], "", "Export over an existing file", Verb::Export { what: Exported::Shown, overwrite: true }),
+    entry(Group::Program, "core", "FILE", &[], "", "Write the fewest nodes that still cycle as a separate scene", Verb::Export { what: ExportScope::Core, overwrite: false }),
+    entry(Group::Program, "core!", "FILE", &[], "", "Write the core over an existing file", Verb::Export { what: ExportScope::Core, overwrite: true }),
+    entry(Group::Program, "export", "[--frozen] FILE", &[], "", "Write the shown state to a file, by its extension: .svg, .png a picture; .ron the scene, with --frozen its interface problem; .dat, .mtx, .h5 the interface problem for other solvers; .vtu the state for ParaView", Verb::Export { what: ExportScope::Shown, overwrite: false }),
+    entry(Group::Program, "export!", "[--frozen] FILE", &[], "", "Export over an existing file", Verb::Export { what: ExportScope::Shown, overwrite: true }),
     entry(Group::Program, "journal", "[FILE]", &[], "", "Write the journal to this new file, with all entries so far; or show its path", Verb::Journal),
     entry(Group::Program, "open", "[SCENE]", &["o"], "", "Open another scene: a file, or a built-in one; a journal continues where it ended", Verb::Open),
     entry(Group::Program, "keys", "", &[], "", "Show the current keys, in the format of the file that changes them", Verb::Do(Ui::Keys)),

@@ -3,9 +3,10 @@
 use super::meaning::{Action, Question, Ui};
 use super::{ACTIONS, Context, complete, markdown, parse};
 use crate::history::breakpoints::Condition;
+use crate::history::tree::Budget;
 use crate::history::tree::Tree;
 use crate::history::watches::{Watch, WatchQuantity};
-use crate::record::command::{Command, Exported, Unit};
+use crate::record::command::{Command, ExportScope, Unit};
 use std::path::PathBuf;
 use stickslip_core::model::{Contact, Node};
 use stickslip_core::model::{Friction, Mode, Model, Settings};
@@ -200,7 +201,7 @@ fn breakpoints_take_a_condition_a_node_and_a_value() {
     let place = "3.2".parse().unwrap();
     assert_eq!(read("break at 3.2"), set(Condition::At(place)));
     assert_eq!(read("b"), Ok(Action::Ui(Ui::Ask(Question::Break))));
-    for (line, told) in [
+    for (line, text) in [
         ("break leaves beam.4", "usage: break leaves [NODE] MODE"),
         (
             "break mode beam.4 glued",
@@ -229,7 +230,7 @@ fn breakpoints_take_a_condition_a_node_and_a_value() {
             "invalid breakpoint number 'x'; usage: delete NUMBER|all",
         ),
     ] {
-        assert_eq!(read(line), Err(told.into()), "{line}");
+        assert_eq!(read(line), Err(text.into()), "{line}");
     }
     assert_eq!(
         read("disable all"),
@@ -302,16 +303,16 @@ fn export_requires_a_file_name() {
     };
     assert_eq!(
         read("core a b.ron"),
-        export(Exported::Core, "a b.ron", false)
+        export(ExportScope::Core, "a b.ron", false)
     );
-    assert_eq!(read("export! x"), export(Exported::Shown, "x", true));
+    assert_eq!(read("export! x"), export(ExportScope::Shown, "x", true));
     assert_eq!(
         read("export --frozen a b.ron"),
-        export(Exported::Whole, "a b.ron", false)
+        export(ExportScope::Whole, "a b.ron", false)
     );
     assert_eq!(
         read("export --frozen.svg"),
-        export(Exported::Shown, "--frozen.svg", false)
+        export(ExportScope::Shown, "--frozen.svg", false)
     );
     assert!(read("export --frozen").is_err());
     assert_eq!(read("core"), Err("usage: core FILE".into()));
@@ -327,7 +328,7 @@ fn branches_complete_by_number_and_by_label() {
     let start = stickslip_core::step::stepper::Stepper::new(model.clone())
         .state()
         .clone();
-    let tree = Tree::new(model, start, 1 << 20);
+    let tree = Tree::new(model, start, Budget::default());
     let context = Context {
         tree: Some(&tree),
         ..Context::default()

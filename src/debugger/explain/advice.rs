@@ -30,7 +30,7 @@ pub const FINER: &str = "a finer mesh, with smaller kinks (refine=2)";
 pub fn advice(model: &Model, state: &State, failure: &Failure) -> Vec<Advice> {
     let remedies = kinds(state, failure)
         .into_iter()
-        .filter_map(|kind| Remedy::of(kind, model, state))
+        .filter_map(|kind| Remedy::from_kind(kind, model, state))
         .map(Advice::Remedy);
     let by_hand = by_hand(model, state, failure).iter().copied();
     let by_hand = by_hand.map(Advice::ByHand);
@@ -48,7 +48,7 @@ pub fn advice(model: &Model, state: &State, failure: &Failure) -> Vec<Advice> {
     let finer = refines(failure).then_some(Advice::Finer);
     let gaps = [InitialGaps::Ramp, InitialGaps::Adjust]
         .into_iter()
-        .filter_map(|gaps| Remedy::of(RemedyKind::Gaps(gaps), model, state))
+        .filter_map(|gaps| Remedy::from_kind(RemedyKind::Gaps(gaps), model, state))
         .map(Advice::Remedy);
     let rest: Vec<Advice> = match scene_first {
         true => by_hand.chain(remedies).collect(),

@@ -98,17 +98,17 @@ pub fn examine(
     contacts: &[usize],
     stop: &dyn Fn() -> bool,
 ) -> Examination {
-    let told = |line: String| Examination {
+    let describe = |line: String| Examination {
         lines: vec![line],
         ..Examination::default()
     };
     if state.status == Status::Finished {
-        return told(DONE.into());
+        return describe(DONE.into());
     }
     let mut stepper = match stepper(model, state, posed) {
         Ok((_, stepper)) => stepper,
         Err(why) => {
-            return told(format!("The reported interface problem is invalid: {why}."));
+            return describe(format!("The reported interface problem is invalid: {why}."));
         }
     };
     let start = stepper.state().clone();

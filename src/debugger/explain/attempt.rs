@@ -47,7 +47,7 @@ impl Attempt {
         let end = stepper.drive(Until::end().interrupted_by(stop), |stepper| {
             match stepper.event().outcome {
                 Outcome::Major { after, .. } | Outcome::Refused { after, .. } => {
-                    majors.push(Major::of(stepper.state(), after));
+                    majors.push(Major::new(stepper.state(), after));
                     ControlFlow::Continue(())
                 }
                 Outcome::Increment { .. }
@@ -82,7 +82,7 @@ impl Attempt {
 }
 
 impl Major {
-    fn of(state: &State, after: Norms) -> Major {
+    fn new(state: &State, after: Norms) -> Major {
         let contacts = state.nodes.iter().map(|node| (node.mode, node.spot));
         Major {
             after,

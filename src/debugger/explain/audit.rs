@@ -19,7 +19,7 @@ const POINTS: usize = 8;
 
 /// A finding and its increment.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Found {
+pub struct WorstFinding {
     /// Increment number, from 1.
     pub increment: u32,
     /// Load factor λ at the end of the increment.
@@ -63,11 +63,11 @@ pub struct Audit {
     pub marked: u32,
     /// The worst finding for each law over all unmarked increments, in the order of [`JudgedLaw::ALL`] and then
     /// [`JudgedLaw::OF_BONDS`].
-    pub worst: [Option<Found>; 11],
+    pub worst: [Option<WorstFinding>; 11],
     /// The same for marked increments.
-    pub worst_marked: [Option<Found>; 11],
+    pub worst_marked: [Option<WorstFinding>; 11],
     /// The increment in which friction produced the most work.
-    pub work: Option<Found>,
+    pub work: Option<WorstFinding>,
     /// The master node deepest inside a slave's body.
     pub inside: Option<Inside>,
     /// The smallest principal stretch of the solids.
@@ -87,7 +87,7 @@ impl Audit {
         };
         self.increments += 1;
         self.marked += u32::from(marked.is_some());
-        let found = |finding: Finding| Found {
+        let found = |finding: Finding| WorstFinding {
             increment: event.position.increment,
             load_factor: event.load_factor,
             finding,
@@ -133,24 +133,24 @@ impl Audit {
     }
 
     /// The laws violated by unmarked increments.
-    pub fn broken(&self) -> impl Iterator<Item = &Found> {
+    pub fn broken(&self) -> impl Iterator<Item = &WorstFinding> {
         let all = self.worst.iter().flatten();
         all.filter(|found| found.finding.is_broken())
     }
 
     /// The worst finding for a law in unmarked increments.
-    pub fn of(&self, law: JudgedLaw) -> Option<&Found> {
+    pub fn of(&self, law: JudgedLaw) -> Option<&WorstFinding> {
         let mut all = self.worst.iter().flatten();
         all.find(|found| found.finding.law == law)
     }
 }
 
-fn keep_worse(worst: &mut Option<Found>, found: Option<Found>) {
+fn keep_worse(worst: &mut Option<WorstFinding>, found: Option<WorstFinding>) {
     let Some(found) = found else { return };
     let times = found.finding.times();
     #[cfg(mutants)]
     let times = stickslip_core::mutants::pick("audit-of-the-last-increment", times, f64::INFINITY);
-    let worse = |worst: &Found| times > worst.finding.times() || times.is_nan();
+    let worse = |worst: &WorstFinding| times > worst.finding.times() || times.is_nan();
     if worst.as_ref().is_none_or(worse) {
         *worst = Some(found);
     }

@@ -5,6 +5,7 @@ use crate::explain::core::{Core, core, cycle};
 use crate::explain::influence::{Influence, influences};
 use crate::explain::names;
 use crate::explain::proven;
+use crate::explain::tested;
 use stickslip_core::contact::record::ContactRecord;
 use stickslip_core::contact::state::ContactState;
 use stickslip_core::contact::table2::{Rule, Tested};
@@ -46,7 +47,7 @@ pub struct Diagnosis {
     /// The cause of the cycle.
     pub cause: Cause,
     /// Changes tried on the problem, and whether the minor iterations then settle.
-    pub ways: Vec<(Way, bool)>,
+    pub ways: Vec<(FrozenChange, bool)>,
 }
 
 /// One iteration of a cycle.
@@ -92,7 +93,7 @@ pub enum Cause {
 
 /// A change that can be tried on the frozen problem.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Way {
+pub enum FrozenChange {
     /// Start from the consistent state with this number in the census.
     Answer(usize),
     /// `settings.t_max=consistent`.
@@ -104,7 +105,7 @@ pub enum Way {
 impl Diagnosis {
     /// Diagnoses a problem whose states start a cycle; `None` if they do not, or if it has more than
     /// [`MOST_NODES`] nodes. The search for states stops early if `stop` returns true.
-    pub fn of(problem: &InterfaceProblem, stop: &dyn Fn() -> bool) -> Option<Diagnosis> {
+    pub fn find(problem: &InterfaceProblem, stop: &dyn Fn() -> bool) -> Option<Diagnosis> {
         if problem.nodes.len() > MOST_NODES {
             return None;
         }
@@ -211,8 +212,8 @@ fn phases(problem: &InterfaceProblem, period: u32) -> Option<Vec<Phase>> {
     let found = all.into_iter().enumerate().map(|(phase, records)| {
         let changed = |s: &usize| records[*s].decision.changes();
         let changed: Vec<usize> = (0..records.len()).filter(changed).collect();
-        let told = phase < MOST_PHASES && !changed.is_empty();
-        let all = told.then(|| influences(problem, before(phase), &states[phase], &changed));
+        let explains = phase < MOST_PHASES && !changed.is_empty();
+        let all = explains.then(|| influences(problem, before(phase), &states[phase], &changed));
         let all = all.flatten().unwrap_or_default();
         let pushes = changed.iter().zip(&all);
         let pushes = pushes
@@ -231,17 +232,7 @@ fn push(
     node: usize,
 ) -> Option<Push> {
     let tested = fired(records[node].decision.rule)?;
-    let of = |i: &Influence| match tested {
-        Tested::Gap => i.gap,
-        Tested::NormalForce
-        | Tested::Pressure
-        | Tested::Cover
-        | Tested::Change
-        | Tested::Error
-        | Tested::Own => i.f_n,
-        Tested::ShearForce | Tested::LeastFriction | Tested::Drag => i.f_t,
-        Tested::Slip | Tested::Room => i.slip,
-    };
+    let of = |i: &Influence| tested::effect(tested, i).1;
     let most = all
         .iter()
         .max_by(|a, b| of(a).abs().total_cmp(&of(b).abs()))?;
@@ -309,25 +300,25 @@ fn cause(
 }
 
 /// Tries changes on the frozen problem alone.
-fn ways(problem: &InterfaceProblem, census: Option<&Census>) -> Vec<(Way, bool)> {
+fn ways(problem: &InterfaceProblem, census: Option<&Census>) -> Vec<(FrozenChange, bool)> {
     let settles = |changed: &InterfaceProblem| cycle(changed).is_none() && runs(changed);
     let mut ways = Vec::new();
     for number in 0..census.map_or(0, |c| c.answers.len().min(MOST_TOLD)) {
         if let Some(started) = census.and_then(|census| started(problem, census, number)) {
-            ways.push((Way::Answer(number), settles(&started)));
+            ways.push((FrozenChange::Answer(number), settles(&started)));
         }
     }
     let mut other = problem.clone();
     if problem.settings.t_max == BoundUpdate::Lagged {
         other.settings.t_max = BoundUpdate::Consistent;
-        ways.push((Way::ConsistentLimit, settles(&other)));
+        ways.push((FrozenChange::ConsistentLimit, settles(&other)));
     }
     let mut other = problem.clone();
     other.settings.slip = match problem.settings.slip {
         SlipCount::Increment => SlipCount::Major,
         SlipCount::Major => SlipCount::Increment,
     };
-    ways.push((Way::OtherSlip, settles(&other)));
+    ways.push((FrozenChange::OtherSlip, settles(&other)));
     ways
 }
 
@@ -486,17 +477,7 @@ fn cause_words<'a>(
 fn push_words<'a>(push: &Push, phase: &Phase, name: &impl Fn(usize) -> &'a str) -> String {
     let record = &phase.records[push.node];
     let from = &push.influence;
-    let (what, value) = match push.tested {
-        Tested::Gap => ("Δg", from.gap),
-        Tested::NormalForce
-        | Tested::Pressure
-        | Tested::Cover
-        | Tested::Change
-        | Tested::Error
-        | Tested::Own => ("ΔF_n", from.f_n),
-        Tested::ShearForce | Tested::LeastFriction | Tested::Drag => ("ΔF_t", from.f_t),
-        Tested::Slip | Tested::Room => ("Δslip", from.slip),
-    };
+    let (what, value) = tested::effect(push.tested, from);
     let whom = if from.from == push.node {
         "it"
     } else {
@@ -643,20 +624,20 @@ pub fn condition_words(condition: Condition) -> &'static str {
     }
 }
 
-fn way_words(way: Way, settles: bool) -> String {
+fn way_words(way: FrozenChange, settles: bool) -> String {
     let ends = if settles {
         "settles"
     } else {
         "does not settle"
     };
     match way {
-        Way::Answer(number) => {
+        FrozenChange::Answer(number) => {
             format!(
                 "tried: starting from consistent state {}: {ends}",
                 number + 1
             )
         }
-        Way::ConsistentLimit => format!("tried: settings.t_max=consistent: {ends}"),
-        Way::OtherSlip => format!("tried: settings.slip set to its other value: {ends}"),
+        FrozenChange::ConsistentLimit => format!("tried: settings.t_max=consistent: {ends}"),
+        FrozenChange::OtherSlip => format!("tried: settings.slip set to its other value: {ends}"),
     }
 }

@@ -25,7 +25,7 @@ pub const NOT_CONDENSED: &str = "The bodies cannot be condensed to the interface
 
 /// Why it is unknown whether the minor iterations cycle.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum Untold {
+pub enum NotExamined {
     /// There is no interface problem, because the solver does not condense.
     #[error("{NOT_CONDENSED}")]
     NotCondensed,
@@ -73,15 +73,21 @@ fn nothing(why: &str) -> Examination {
     }
 }
 
+/// The frozen problem that is solved next from a state, or why there is none.
+fn next_problem(stepper: &mut Stepper, state: &State) -> Result<InterfaceProblem, &'static str> {
+    if state.status == Status::Finished {
+        return Err(DONE);
+    }
+    stepper.restore(state);
+    stepper.interface_problem().ok_or(NOT_CONDENSED)
+}
+
 /// Examines the frozen problem that is solved next from a state: the diagnosis of its cycle, or otherwise its
 /// census. Stops early if `stop` returns true.
 pub fn frozen(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -> Examination {
-    if state.status == Status::Finished {
-        return nothing(DONE);
-    }
-    stepper.restore(state);
-    let Some(problem) = stepper.interface_problem() else {
-        return nothing(NOT_CONDENSED);
+    let problem = match next_problem(stepper, state) {
+        Err(why) => return nothing(why),
+        Ok(problem) => problem,
     };
     let round = match going_round(stepper, state, &problem) {
         Err(why) => return nothing(&why.to_string()),
@@ -89,7 +95,7 @@ pub fn frozen(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -> 
     };
     let model = stepper.model();
     if let Some((problem, cycle)) = round
-        && let Some(diagnosis) = Diagnosis::of(&problem, stop)
+        && let Some(diagnosis) = Diagnosis::find(&problem, stop)
     {
         let mut lines = diagnosis::words(model, &problem, &diagnosis);
         if diagnosis.cause == Cause::NoAnswer {
@@ -147,12 +153,9 @@ pub fn examine_nodes(
     slaves: &[usize],
     stop: &dyn Fn() -> bool,
 ) -> Examination {
-    if state.status == Status::Finished {
-        return nothing(DONE);
-    }
-    stepper.restore(state);
-    let Some(problem) = stepper.interface_problem() else {
-        return nothing(NOT_CONDENSED);
+    let problem = match next_problem(stepper, state) {
+        Err(why) => return nothing(why),
+        Ok(problem) => problem,
     };
     let wanted = |place: &usize| slaves.contains(&problem.nodes[*place].slave);
     let places: Vec<usize> = (0..problem.nodes.len()).filter(wanted).collect();
@@ -198,7 +201,7 @@ pub fn going_round(
     stepper: &mut Stepper,
     state: &State,
     problem: &InterfaceProblem,
-) -> Result<Option<(InterfaceProblem, Cycle)>, Untold> {
+) -> Result<Option<(InterfaceProblem, Cycle)>, NotExamined> {
     let by_slave = |cycle: Cycle| Cycle {
         members: cycle
             .members
@@ -217,10 +220,12 @@ pub fn going_round(
     let Some(cycle) = known else {
         return Ok(None);
     };
-    let problem = stepper.interface_problem().ok_or(Untold::NotCondensed)?;
+    let problem = stepper
+        .interface_problem()
+        .ok_or(NotExamined::NotCondensed)?;
     match cycling(problem, &cycle) {
         Some(problem) => Ok(Some((problem, cycle))),
-        None => Err(Untold::TooMany(too_many(&cycle))),
+        None => Err(NotExamined::TooMany(too_many(&cycle))),
     }
 }
 

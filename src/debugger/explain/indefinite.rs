@@ -35,12 +35,12 @@ pub struct Indefinite {
     /// Smallest and largest eigenvalue (length per force).
     pub ends: [f64; 2],
     /// The conclusion.
-    pub came: Came,
+    pub outcome: IndefiniteOutcome,
 }
 
 /// Conclusion about a negative eigenvalue.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Came {
+pub enum IndefiniteOutcome {
     /// Too large to be due to rounding.
     NotByRounding,
     /// The problem is solved all the same, by this strategy of the ladder.
@@ -76,17 +76,17 @@ pub fn indefinite(problem: &InterfaceProblem, stop: &dyn Fn() -> bool) -> Option
     if least >= -compliance.round_off() {
         return None;
     }
-    let came = |came| {
+    let ended = |outcome| {
         Some(Indefinite {
             ends: [least, largest],
-            came,
+            outcome,
         })
     };
     if -least > SMALL * largest {
-        return came(Came::NotByRounding);
+        return ended(IndefiniteOutcome::NotByRounding);
     }
     if let Some((by, _)) = solved(problem, OBEYED, stop) {
-        return came(Came::SolvedAsItIs(by));
+        return ended(IndefiniteOutcome::SolvedAsItIs(by));
     }
     // Eigenvalues of the same size as the negative one become zero, too.
     let without = compliance.raised(-least, 0.0);
@@ -113,7 +113,7 @@ pub fn indefinite(problem: &InterfaceProblem, stop: &dyn Fn() -> bool) -> Option
         };
         Some((tolerance, solved))
     });
-    came(Came::Tried {
+    ended(IndefiniteOutcome::Tried {
         semidefinite,
         tolerance,
     })
@@ -205,19 +205,19 @@ pub fn words<'a>(found: &Indefinite, name: &impl Fn(usize) -> &'a str) -> Vec<St
         four(least),
         four(-least / largest)
     );
-    let (semidefinite, tolerance) = match &found.came {
-        Came::NotByRounding => {
+    let (semidefinite, tolerance) = match &found.outcome {
+        IndefiniteOutcome::NotByRounding => {
             return vec![format!(
                 "{head}: it is indefinite, not only by rounding; some forces move their points in the opposite direction"
             )];
         }
-        Came::SolvedAsItIs(by) => {
+        IndefiniteOutcome::SolvedAsItIs(by) => {
             return vec![format!(
                 "{head}: it is indefinite, perhaps by rounding; strategy {} still solves it",
                 by.name()
             )];
         }
-        Came::Tried {
+        IndefiniteOutcome::Tried {
             semidefinite,
             tolerance,
         } => (semidefinite, tolerance),

@@ -15,7 +15,7 @@ pub fn finding(model: &Model, finding: &Finding) -> String {
         slip,
     } = finding.numbers;
     let node = finding.slave.map_or("a node", |s| slave(model, s));
-    let told = match finding.law {
+    let text = match finding.law {
         JudgedLaw::Penetration => format!("{node} penetrates its surface by {:.3e}", -gap),
         JudgedLaw::Gap if finding.amount.is_infinite() => {
             format!("{node} carries a force without facing a surface")
@@ -55,7 +55,7 @@ pub fn finding(model: &Model, finding: &Finding) -> String {
         JudgedLaw::Balance => format!("the forces on {node} are not in balance"),
         JudgedLaw::Moments => "loads and reactions are not in balance".into(),
     };
-    format!("{told} ({}: {:.1e})", finding.law.name(), finding.amount)
+    format!("{text} ({}: {:.1e})", finding.law.name(), finding.amount)
 }
 
 /// Location of a finding, as part of a sentence: the node, its coordinates and its numbers.

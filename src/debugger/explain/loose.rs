@@ -50,18 +50,18 @@ pub fn loose(stepper: &mut Stepper, state: &State, motions: &[RigidMotion]) -> L
     let still = matches!(stepper.loose(&state.nodes), Singular::Rigid { .. });
     let model = stepper.model();
     let places = model.places(&state.u);
-    let mut told = Loose::default();
+    let mut found = Loose::default();
     for motion in motions.iter().take(MOST) {
         let Some(moving) = Moving::new(model, &places, state, motion) else {
             continue;
         };
-        told.lines.push(moving.pushed(state));
-        told.lines.push(moving.contacts(state, still));
-        told.lines.push(moving.stopped(state));
-        told.arrows.extend(moving.arrows());
+        found.lines.push(moving.pushed(state));
+        found.lines.push(moving.contacts(state, still));
+        found.lines.push(moving.stopped(state));
+        found.arrows.extend(moving.arrows());
     }
-    told.lines.push(since(model, state, &at_start));
-    told
+    found.lines.push(since(model, state, &at_start));
+    found
 }
 
 impl<'a> Moving<'a> {

@@ -152,11 +152,11 @@ pub fn cycle_words(model: &Model, attempt: &Attempt, round: &MajorCycle) -> Vec<
             }
         }
     }
-    let told = members.len().min(MOST_NODES);
-    if round.members.len() > told {
+    let shown = members.len().min(MOST_NODES);
+    if round.members.len() > shown {
         lines.push(format!(
             "and {} more nodes change or follow",
-            round.members.len() - told
+            round.members.len() - shown
         ));
     }
     lines.extend(residuals(attempt));

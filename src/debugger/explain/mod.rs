@@ -3,7 +3,7 @@
 //!
 //! - [`names`]: words for nodes, modes and positions; [`round_off`]: which numbers are round-off; [`report`]:
 //!   what happened, in sentences; [`judged`]: the judge's findings.
-//! - [`influence`]: which node pushed which; [`core`]: the smallest set of nodes that still cycles;
+//! - [`influence`]: which node pushed which; [`tested`]: the quantities that Table 2 tests; [`core`]: the smallest set of nodes that still cycles;
 //!   [`diagnosis`]: the cause of a cycle; [`smaller`]: whether a smaller increment has a consistent state.
 //! - [`proven`]: what a matrix proves: uniqueness, and the limit of T_max while the modes repeat;
 //!   [`indefinite`]: whether a matrix is indefinite only by rounding, and the solution without that.
@@ -14,8 +14,8 @@
 //!   steps reach; [`finer`]: a trial on a finer mesh; [`restart`]: trials of a changed scene.
 //! - [`touch`]: how far the forces depend on where nodes in new contact are held.
 //! - [`examination`]: the frozen problem of a state; [`page`]: the whole diagnosis, as the debugger shows it.
-//! - [`attached`]: the diagnosis for an attached solver, from the problem that it reports; [`pushes_told`]: the
-//!   pushes there.
+//! - [`attached`]: the diagnosis for an attached solver, from the problem that it reports; [`reported_pushes`]:
+//!   the pushes there.
 //! - [`audit`]: the judge's findings over a history; [`outline`]: the shape of a state as lines.
 
 pub mod accuracy;
@@ -39,13 +39,14 @@ pub mod names;
 pub mod outline;
 pub mod page;
 pub mod proven;
-pub mod pushes_told;
 pub mod reach;
 pub mod remedies;
 pub mod remedy;
 pub mod report;
+pub mod reported_pushes;
 pub mod restart;
 pub mod round_off;
 pub mod smaller;
 pub mod strain;
+pub mod tested;
 pub mod touch;

@@ -3,6 +3,7 @@
 use stickslip_core::contact::table2::Rule;
 use stickslip_core::model::{Mode, Model};
 use stickslip_core::step::event::Position;
+use stickslip_core::step::intervene::Start;
 
 /// Name of a slave node.
 pub fn slave(model: &Model, slave: usize) -> &str {
@@ -24,6 +25,14 @@ pub fn status(model: &Model, of: Mode) -> &'static str {
         (Some(_), Mode::Free) => "open",
         (Some(_), _) => "closed",
     }
+}
+
+/// Initial modes of slave nodes, in words.
+pub fn starts(model: &Model, starts: &[Start]) -> String {
+    let words = starts
+        .iter()
+        .map(|start| format!("{} {}", slave(model, start.slave), mode(start.mode)));
+    words.collect::<Vec<_>>().join(", ")
 }
 
 /// Modes in the order of Table 2's rows and columns.

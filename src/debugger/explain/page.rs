@@ -137,10 +137,11 @@ impl PageBuilder {
             finer: None,
             found: Examination::default(),
         };
-        let cause = MaterialCause::of(stepper.model(), state, failure);
+        let cause = MaterialCause::find(stepper.model(), state, failure);
         let certain = cause.filter(MaterialCause::is_certain);
         let words = |cause: MaterialCause| cause.words(stepper.model());
-        let overlap = Remedy::of(RemedyKind::Gaps(InitialGaps::Ramp), stepper.model(), state);
+        let overlap =
+            Remedy::from_kind(RemedyKind::Gaps(InitialGaps::Ramp), stepper.model(), state);
         page.facts.extend(overlap.map(|_| OVERLAP.to_owned()));
         page.facts.extend(certain.map(words));
         let possible = cause.filter(|cause| !cause.is_certain()).map(words);
@@ -183,34 +184,26 @@ impl PageBuilder {
     ) {
         match failure {
             Failure::Singular(Singular::Rigid { motions }) => {
-                let told = loose(stepper, state, motions);
-                self.facts.extend(told.lines);
-                self.found.arrows = told.arrows;
+                let rigid = loose(stepper, state, motions);
+                self.facts.extend(rigid.lines);
+                self.found.arrows = rigid.arrows;
             }
             Failure::MajorCycle(round) => {
                 self.found.nodes = round.members.iter().map(|member| member.0).collect();
-                match Attempt::again(stepper, state, failure, stop) {
-                    Some(attempt) => {
-                        let words = majors::cycle_words(stepper.model(), &attempt, round);
-                        self.facts.extend(words);
-                    }
-                    None => self.not_again(),
-                }
+                self.repeat(stepper, state, failure, stop, |model, attempt| {
+                    majors::cycle_words(model, attempt, round)
+                });
             }
-            Failure::MajorLimit { .. } => match Attempt::again(stepper, state, failure, stop) {
-                Some(attempt) => {
-                    let settings = &state.controls.settings;
-                    self.facts.extend(majors::limit_words(settings, &attempt));
-                }
-                None => self.not_again(),
-            },
-            Failure::Diverged { .. } => match Attempt::again(stepper, state, failure, stop) {
-                Some(attempt) => {
-                    let told = majors::flight_words(stepper.model(), state, &attempt);
-                    self.facts.extend(told);
-                }
-                None => self.not_again(),
-            },
+            Failure::MajorLimit { .. } => {
+                self.repeat(stepper, state, failure, stop, |_, attempt| {
+                    majors::limit_words(&state.controls.settings, attempt)
+                });
+            }
+            Failure::Diverged { .. } => {
+                self.repeat(stepper, state, failure, stop, |model, attempt| {
+                    majors::flight_words(model, state, attempt)
+                });
+            }
             Failure::Cycle(_)
             | Failure::MinorLimit { .. }
             | Failure::NotFound(_)
@@ -280,6 +273,21 @@ impl PageBuilder {
         }
     }
 
+    /// Repeats the failed attempt, and adds facts about it.
+    fn repeat<F: IntoIterator<Item = String>>(
+        &mut self,
+        stepper: &mut Stepper,
+        state: &State,
+        failure: &Failure,
+        stop: &dyn Fn() -> bool,
+        facts: impl FnOnce(&Model, &Attempt) -> F,
+    ) {
+        match Attempt::again(stepper, state, failure, stop) {
+            Some(attempt) => self.facts.extend(facts(stepper.model(), &attempt)),
+            None => self.not_again(),
+        }
+    }
+
     fn not_again(&mut self) {
         self.facts.push("repeated from its start, the attempt ends differently: something was changed by hand during it".into());
     }
@@ -309,10 +317,10 @@ impl PageBuilder {
         stepper.restore(state);
         if let Some(problem) = stepper.interface_problem()
             && let Some(problem) = problem.reduced(&undecided(&problem))
-            && let Some(told) = indefinite(&problem, stop)
+            && let Some(text) = indefinite(&problem, stop)
         {
             let name = |place: usize| names::slave(stepper.model(), problem.nodes[place].slave);
-            self.facts.extend(indefinite::words(&told, &name));
+            self.facts.extend(indefinite::words(&text, &name));
         }
         if self.found.lines == [NOT_CONDENSED] {
             self.facts.append(&mut self.found.lines);

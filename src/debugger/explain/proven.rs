@@ -81,8 +81,8 @@ pub fn family_words<'a>(
                     (low < high).then(|| format!("{word} {} to {}", end(low), end(high)))
                 };
                 let both = ["F_n", "F_t"].into_iter().zip(ranges);
-                let told: Vec<String> = both.filter_map(component).collect();
-                format!("{} {}", name(place), told.join(", "))
+                let lines: Vec<String> = both.filter_map(component).collect();
+                format!("{} {}", name(place), lines.join(", "))
             });
         let forces: Vec<String> = forces.collect();
         let more = match family.ranges.len().saturating_sub(MOST_NAMED) {
@@ -167,15 +167,15 @@ pub fn cycle_words<'a>(
 /// The fixed point of T_max at the first nodes.
 fn fixed_words<'a>(found: &Spiral, name: &impl Fn(usize) -> &'a str) -> Option<String> {
     let all = found.places.iter().zip(&found.fixed);
-    let told = all
+    let text = all
         .take(MOST_NAMED)
         .map(|(&place, t_max)| format!("{t_max:.4e} at {}", name(place)));
-    let told = told.collect::<Vec<_>>().join(", ");
+    let text = text.collect::<Vec<_>>().join(", ");
     let more = match found.places.len().saturating_sub(MOST_NAMED) {
         0 => String::new(),
         more => format!(", and {more} more nodes"),
     };
-    (!told.is_empty()).then(|| format!("  its fixed point: T_max = {told}{more}"))
+    (!text.is_empty()).then(|| format!("  its fixed point: T_max = {text}{more}"))
 }
 
 /// The limit of T_max from a problem's states, and its cause, in words; empty if the minor iterations settle soon.

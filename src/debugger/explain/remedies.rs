@@ -7,6 +7,7 @@ use super::advice::{Advice, advice};
 use super::examination::{Examination, frozen};
 use super::remedy::{How, Remedy, RemedyKind};
 use super::restart;
+use super::tested::Dimension;
 use std::cmp::Ordering;
 use std::ops::ControlFlow;
 use std::time::Instant;
@@ -149,7 +150,7 @@ pub fn all(
         }
     };
     for kind in KINDS {
-        if let Some(remedy) = Remedy::of(kind, model, state) {
+        if let Some(remedy) = Remedy::from_kind(kind, model, state) {
             add(remedy);
         }
     }
@@ -170,7 +171,7 @@ pub fn offered(model: &Model, state: &State, offers: &Offers, found: &Examinatio
     let parts = [RemedyKind::Part(0.5), RemedyKind::Part(0.1)];
     let parts = parts
         .into_iter()
-        .filter_map(|kind| Remedy::of(kind, model, state));
+        .filter_map(|kind| Remedy::from_kind(kind, model, state));
     let touching = [Mode::Fixed, Mode::Sliding]
         .into_iter()
         .filter_map(|mode| Remedy::touching(state, mode));
@@ -302,7 +303,8 @@ fn is_there(state: &State, event: &Event, (leg, load): (usize, f64)) -> bool {
 fn hysteresis(stepper: &Stepper, event: &Event) -> Vec<Intervention> {
     let near = |record: &ContactRecord| {
         let margins = record.decision.tests.iter().flatten();
-        let size = |tested| scale_of(tested, stepper, event);
+        let (force, length) = (event.before.scale, stepper.model().length);
+        let size = |tested| Dimension::from(tested).scale(force, length);
         margins
             .filter(|test| test.margin < 0.0)
             .all(|test| -test.margin < HYSTERESIS * size(test.tested))
@@ -322,24 +324,6 @@ fn hysteresis(stepper: &Stepper, event: &Event) -> Vec<Intervention> {
     });
     let release = held.map(|(slave, _)| Intervention::Release { slave });
     hold.chain(release).collect()
-}
-
-/// Scale of the tested quantity: a force or a length.
-fn scale_of(
-    tested: stickslip_core::contact::table2::Tested,
-    stepper: &Stepper,
-    event: &Event,
-) -> f64 {
-    use stickslip_core::contact::table2::Tested;
-    match tested {
-        Tested::NormalForce
-        | Tested::ShearForce
-        | Tested::LeastFriction
-        | Tested::Pressure
-        | Tested::Drag => event.before.scale,
-        Tested::Slip | Tested::Room | Tested::Gap => stepper.model().length,
-        Tested::Cover | Tested::Change | Tested::Error | Tested::Own => 1.0,
-    }
 }
 
 /// The judge's findings in the last accepted state.
@@ -366,22 +350,26 @@ fn left(stepper: &Stepper, event: &Event, after: &Norms) -> Left {
     }
 }
 
-/// Best first: those that converged without violations, by cost; then those with violations, by size; then the
-/// others.
-pub fn sort(trials: &mut [Trial]) {
-    let class = |trial: &Trial| match (&trial.end, &trial.left) {
+/// Order of a trial: 0 if it converged without violations, 1 with some, 2 if it did not converge.
+pub fn rank(trial: &Trial) -> u8 {
+    match (&trial.end, &trial.left) {
         (TrialEnd::Converged, Some(left)) if left.worst > CLEAN || left.held > 0 => 1,
         (TrialEnd::Converged, _) => 0,
         (TrialEnd::Against(_), _) => 1,
         _ => 2,
-    };
+    }
+}
+
+/// Best first: those that converged without violations, by cost; then those with violations, by size; then the
+/// others.
+pub fn sort(trials: &mut [Trial]) {
     let worst = |trial: &Trial| trial.left.map_or(0.0, |left| left.worst);
     trials.sort_by(|a, b| {
-        let by_size = match class(a) {
+        let by_size = match rank(a) {
             1 => worst(a).total_cmp(&worst(b)),
             _ => Ordering::Equal,
         };
-        (class(a).cmp(&class(b)))
+        (rank(a).cmp(&rank(b)))
             .then(by_size)
             .then(a.factorizations.cmp(&b.factorizations))
             .then(a.minors.cmp(&b.minors))
@@ -390,30 +378,34 @@ pub fn sort(trials: &mut [Trial]) {
 
 /// The end of a trial, in a word or two.
 pub fn end_words(end: &TrialEnd) -> String {
-    match end {
-        TrialEnd::Converged => "converged".into(),
-        TrialEnd::Against(law) => format!("violates {}", law.name()),
-        TrialEnd::Budget => format!("{BUDGET} minor"),
-        TrialEnd::Failed(Failure::Cycle(cycle)) => format!("{}-cycle", cycle.period),
-        TrialEnd::Failed(Failure::MinorLimit { .. }) => "minor limit".into(),
-        TrialEnd::Failed(Failure::MajorLimit { .. }) => "major limit".into(),
-        TrialEnd::Failed(Failure::MajorCycle(_)) => "majors cycle".into(),
-        TrialEnd::Failed(Failure::Singular(_)) => "singular".into(),
-        TrialEnd::Failed(Failure::Diverged { .. }) => "diverged".into(),
-        TrialEnd::Failed(Failure::OverConstrained { .. }) => "jammed".into(),
-        TrialEnd::Failed(Failure::Refused(_)) => "refused".into(),
-        TrialEnd::Failed(Failure::Inverted(_)) => "inverted".into(),
-        TrialEnd::Failed(Failure::CutTooOften { .. }) => "cut too often".into(),
-        TrialEnd::Failed(Failure::Restless { .. }) => "no rest".into(),
-        TrialEnd::Failed(Failure::Leapt { .. }) => "jumps".into(),
-        TrialEnd::Failed(Failure::DoubledBack) => "doubles back".into(),
-        TrialEnd::Failed(Failure::Unmoved) => "does not move".into(),
-        TrialEnd::Failed(Failure::RoundOff { .. }) => "round-off".into(),
-        TrialEnd::Failed(Failure::Reported { .. }) => "failed".into(),
-        TrialEnd::Failed(Failure::NoAnswer { .. }) => "no answer".into(),
-        TrialEnd::Failed(Failure::NotFound(NotFound::Ray)) => "ray".into(),
-        TrialEnd::Failed(Failure::LadderEnded { .. } | Failure::NotFound(_)) => "none found".into(),
-    }
+    let failure = match end {
+        TrialEnd::Converged => return "converged".into(),
+        TrialEnd::Against(law) => return format!("violates {}", law.name()),
+        TrialEnd::Budget => return format!("{BUDGET} minor"),
+        TrialEnd::Failed(failure) => failure,
+    };
+    let words = match failure {
+        Failure::Cycle(cycle) => return format!("{}-cycle", cycle.period),
+        Failure::MinorLimit { .. } => "minor limit",
+        Failure::MajorLimit { .. } => "major limit",
+        Failure::MajorCycle(_) => "majors cycle",
+        Failure::Singular(_) => "singular",
+        Failure::Diverged { .. } => "diverged",
+        Failure::OverConstrained { .. } => "jammed",
+        Failure::Refused(_) => "refused",
+        Failure::Inverted(_) => "inverted",
+        Failure::CutTooOften { .. } => "cut too often",
+        Failure::Restless { .. } => "no rest",
+        Failure::Leapt { .. } => "jumps",
+        Failure::DoubledBack => "doubles back",
+        Failure::Unmoved => "does not move",
+        Failure::RoundOff { .. } => "round-off",
+        Failure::Reported { .. } => "failed",
+        Failure::NoAnswer { .. } => "no answer",
+        Failure::NotFound(NotFound::Ray) => "ray",
+        Failure::LadderEnded { .. } | Failure::NotFound(_) => "none found",
+    };
+    words.into()
 }
 
 /// Headings of the table; the columns of [`row`].

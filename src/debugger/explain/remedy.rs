@@ -126,7 +126,7 @@ impl Remedy {
     }
 
     /// The remedy of a kind at a state; `None` if it would change nothing or does not apply.
-    pub fn of(kind: RemedyKind, model: &Model, state: &State) -> Option<Remedy> {
+    pub fn from_kind(kind: RemedyKind, model: &Model, state: &State) -> Option<Remedy> {
         let remedy = |label: &str, how: How, first: Vec<Intervention>| Remedy {
             kind,
             label: label.to_owned(),
@@ -183,7 +183,7 @@ impl Remedy {
     /// Another law for materials outside the range of theirs in a failed state, and whether the law is
     /// certainly the cause. `None` if all are inside.
     pub fn law(model: &Model, state: &State, failure: &Failure) -> Option<(Remedy, bool)> {
-        let cause = MaterialCause::of(model, state, failure)?;
+        let cause = MaterialCause::find(model, state, failure)?;
         let points = cause.before.into_iter().chain([cause.point]);
         let mut changes: Vec<(String, &'static str)> = Vec::new();
         for change in points.filter_map(|point| strain::other_law(model, &point)) {
@@ -191,11 +191,11 @@ impl Remedy {
                 changes.push(change);
             }
         }
-        let told = |(path, value): &(String, &str)| {
+        let describe = |(path, value): &(String, &str)| {
             let (_, field) = path.rsplit_once('.').unwrap_or(("", path));
             format!("{field}: {value}")
         };
-        let label = changes.first().map(told)?;
+        let label = changes.first().map(describe)?;
         let law = Remedy {
             kind: RemedyKind::Law,
             label,
@@ -231,7 +231,7 @@ fn change(
     kind: RemedyKind,
     settings: &mut Settings,
 ) -> Option<(&'static str, &'static str, String)> {
-    let told = match kind {
+    let text = match kind {
         RemedyKind::Strategy(strategy) => {
             settings.strategy = strategy;
             let label = match strategy {
@@ -305,7 +305,7 @@ fn change(
         | RemedyKind::Gaps(_)
         | RemedyKind::Law => return None,
     };
-    Some(told)
+    Some(text)
 }
 
 /// Initial modes to restart the increment with: for the nodes on their surface, or else for the closest one.

@@ -3,7 +3,7 @@
 use crate::explain::accuracy;
 use crate::explain::judged;
 use crate::explain::jumped;
-use crate::explain::names::{mode, position_in, slave};
+use crate::explain::names::{self, mode, position_in, slave};
 use crate::explain::strain;
 use stickslip_core::contact::record::ContactRecord;
 use stickslip_core::contact::table2::{Decision, Rule, Tested};
@@ -344,13 +344,13 @@ pub fn reservations(model: &Model, event: &Event) -> String {
 fn changes(model: &Model, event: &Event) -> String {
     let changed = |s: &usize| event.nodes[*s].decision.changes();
     let all: Vec<usize> = (0..event.nodes.len()).filter(changed).collect();
-    let told = |&s: &usize| {
+    let describe = |&s: &usize| {
         let d = &event.nodes[s].decision;
         format!("{} {} → {}", slave(model, s), mode(d.before), mode(d.next))
     };
     // Three changes fit in the space of two and a count.
     let most = if all.len() == 3 { 3 } else { 2 };
-    first_of(all.iter().map(told), most, ", ")
+    first_of(all.iter().map(describe), most, ", ")
 }
 
 /// Describes an intervention.
@@ -375,11 +375,10 @@ pub fn intervention(model: &Model, intervention: &Intervention) -> String {
             format!("{} is held {} until released", slave(model, *s), mode(*m))
         }
         Intervention::Assume(starts) => {
-            let told: Vec<String> = starts
-                .iter()
-                .map(|start| format!("{} {}", slave(model, start.slave), mode(start.mode)))
-                .collect();
-            format!("the next minor iteration starts with {}", told.join(", "))
+            format!(
+                "the next minor iteration starts with {}",
+                names::starts(model, starts)
+            )
         }
         Intervention::Release { slave: s } => format!("{} follows Table 2 again", slave(model, *s)),
         Intervention::Increment(increment) => {
@@ -665,23 +664,23 @@ pub fn cycle(model: &Model, cycle: &Cycle) -> String {
     let changes = |modes: &[Mode]| modes.windows(2).any(|pair| pair[0] != pair[1]);
     let (changing, following): (Vec<_>, Vec<_>) =
         cycle.members.iter().partition(|(_, modes)| changes(modes));
-    let mut told = Vec::new();
+    let mut text = Vec::new();
     if !changing.is_empty() {
-        told.push(some(changing.into_iter().map(member).collect(), "; "));
+        text.push(some(changing.into_iter().map(member).collect(), "; "));
     }
     match following.len() {
         0 => {}
         n if n > MOST_FOLLOWING => {
-            told.push(format!(
+            text.push(format!(
                 "{n} nodes keep their modes while their T_max repeats"
             ));
         }
-        _ => told.extend(following.into_iter().map(member)),
+        _ => text.extend(following.into_iter().map(member)),
     }
     format!(
         "cycle of period {} from minor {}: {}",
         cycle.period,
         cycle.start,
-        told.join("; ")
+        text.join("; ")
     )
 }

@@ -26,7 +26,7 @@ pub struct RoundOff {
 
 impl RoundOff {
     /// The limits for a scene with these norms.
-    pub fn of(model: &Model, norms: &Norms) -> RoundOff {
+    pub fn new(model: &Model, norms: &Norms) -> RoundOff {
         let ulps = TIMES * f64::EPSILON;
         let coordinates = model.nodes.iter().flat_map(|node| node.at);
         let largest = coordinates.fold(model.length, |m, x| m.max(x.abs()));

@@ -112,7 +112,7 @@ pub struct MaterialCause {
 impl MaterialCause {
     /// The element of a failed state that is outside the range of its law. `None` if all are inside, or if the failure
     /// certainly has another cause.
-    pub fn of(model: &Model, state: &State, failure: &Failure) -> Option<MaterialCause> {
+    pub fn find(model: &Model, state: &State, failure: &Failure) -> Option<MaterialCause> {
         use stickslip_core::linear::singular::Singular;
         if matches!(
             failure,
@@ -158,13 +158,13 @@ impl MaterialCause {
             true => "why",
             false => "where",
         };
-        let told = match self.point.determinant > 0.0 {
+        let text = match self.point.determinant > 0.0 {
             true => outside(model, &self.point),
             false => {
                 let (point, limit) = (inverted(model, &self.point), limit(model, &self.point));
                 format!("{point}; {limit}")
             }
         };
-        format!("{head}: {told}{before}")
+        format!("{head}: {text}{before}")
     }
 }

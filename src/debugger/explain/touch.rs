@@ -114,8 +114,8 @@ impl TouchWatch {
         let accepted = matches!(end, RunEnd::Stopped(true) | RunEnd::Finished);
         let same = accepted && stepper.event().load_factor == decided.load;
         let difference = same.then(|| difference(&decided.forces, &forces(stepper.state())));
-        let told = difference.is_none_or(|difference| difference > TOLD);
-        told.then_some(TouchDifference {
+        let counts = difference.is_none_or(|difference| difference > TOLD);
+        counts.then_some(TouchDifference {
             increment: decided.increment,
             forces: difference,
         })

@@ -82,15 +82,9 @@ pub fn label(model: &Model, intervention: &Intervention, setting: Option<(&str, 
         }
         Intervention::Assume(starts) => {
             const SHOWN: usize = 3;
-            let some = starts.iter().take(SHOWN).map(|start| {
-                format!(
-                    "{} {}",
-                    names::slave(model, start.slave),
-                    names::mode(start.mode)
-                )
-            });
+            let some = names::starts(model, &starts[..starts.len().min(SHOWN)]);
             let more = if starts.len() > SHOWN { ", …" } else { "" };
-            some.collect::<Vec<_>>().join(", ") + more
+            some + more
         }
         Intervention::Release { slave } => format!("{} released", names::slave(model, *slave)),
         Intervention::Increment(size) => format!("increment {size}"),
@@ -130,8 +124,15 @@ pub(super) fn accepted_like(tree: &Tree, branch: usize, like: &Strip) -> Option<
 
 /// Points of a branch's line where an increment was accepted, last first.
 pub(super) fn accepted(tree: &Tree, branch: usize) -> impl Iterator<Item = (usize, &Strip)> {
-    (0..tree.len(branch))
-        .rev()
-        .filter_map(move |at| tree.point(branch, at).map(|(_, strip)| (at, strip)))
-        .filter(|(_, strip)| strip.kind.is_accepted())
+    strips(tree, branch, 0).filter(|(_, strip)| strip.kind.is_accepted())
+}
+
+/// Points of a branch's line from `start` on, last first.
+pub(super) fn strips(
+    tree: &Tree,
+    branch: usize,
+    start: usize,
+) -> impl Iterator<Item = (usize, &Strip)> {
+    let points = (start..tree.len(branch)).rev();
+    points.filter_map(move |at| tree.point(branch, at).map(|(_, strip)| (at, strip)))
 }

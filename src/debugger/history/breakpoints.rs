@@ -65,18 +65,23 @@ impl FromStr for RunPlace {
     type Err = NoPlace;
 
     fn from_str(text: &str) -> Result<RunPlace, NoPlace> {
-        let wrong = || NoPlace(text.into());
-        let number = |part: &str| part.parse::<u32>().ok().filter(|number| *number > 0);
-        let numbers: Option<Vec<u32>> = text.split('.').map(number).collect();
-        match numbers.ok_or_else(wrong)?[..] {
-            [increment, ref rest @ ..] if rest.len() <= 2 => Ok(RunPlace {
-                increment,
-                major: rest.first().copied().unwrap_or(1),
-                minor: rest.get(1).copied().unwrap_or(1),
-            }),
-            _ => Err(wrong()),
-        }
+        let [increment, major, minor] = parts(text).ok_or_else(|| NoPlace(text.into()))?;
+        Ok(RunPlace {
+            increment: increment.unwrap_or(1),
+            major: major.unwrap_or(1),
+            minor: minor.unwrap_or(1),
+        })
     }
+}
+
+/// The numbers of a position `INC[.MAJOR[.MINOR]]`; the first is never missing.
+pub fn parts(text: &str) -> Option<[Option<u32>; 3]> {
+    let mut all = [None; 3];
+    for (k, part) in text.split('.').enumerate() {
+        let number = part.parse().ok().filter(|number| *number > 0)?;
+        *all.get_mut(k)? = Some(number);
+    }
+    Some(all)
 }
 
 impl fmt::Display for RunPlace {
@@ -96,10 +101,106 @@ pub struct Breakpoint {
     pub enabled: bool,
 }
 
-/// The numbers of the enabled breakpoints that are hit at a point. `before` is the previous point of the line.
-pub fn hits(breakpoints: &[Breakpoint], before: &Strip, now: &Strip) -> Vec<u32> {
-    let hit = |b: &&Breakpoint| b.enabled && b.condition.holds(before, now);
-    breakpoints.iter().filter(hit).map(|b| b.id).collect()
+/// The breakpoints of a session, oldest first.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Breakpoints {
+    all: Vec<Breakpoint>,
+    /// Number of the latest one.
+    last: u32,
+}
+
+/// The breakpoint does not exist.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("there is no breakpoint {id}; {listed}")]
+pub struct NoBreakpoint {
+    /// Its number.
+    pub id: u32,
+    /// Existing breakpoints, in words.
+    pub listed: String,
+}
+
+impl Breakpoints {
+    /// All breakpoints, oldest first.
+    pub fn all(&self) -> &[Breakpoint] {
+        &self.all
+    }
+
+    /// Adds an enabled breakpoint and describes it.
+    pub(crate) fn add(&mut self, condition: Condition, model: &Model) -> String {
+        self.last += 1;
+        let breakpoint = Breakpoint {
+            id: self.last,
+            condition,
+            enabled: true,
+        };
+        let described = format!("breakpoint {}", describe(model, &breakpoint));
+        self.all.push(breakpoint);
+        described
+    }
+
+    /// Deletes one breakpoint, or all, and lists the others.
+    pub(crate) fn delete(
+        &mut self,
+        id: Option<u32>,
+        model: &Model,
+    ) -> Result<String, NoBreakpoint> {
+        self.check(id, model)?;
+        self.all.retain(|b| id.is_some_and(|id| b.id != id));
+        Ok(self.describe(model))
+    }
+
+    /// Enables or disables one breakpoint, or all, and lists all.
+    pub(crate) fn enable(
+        &mut self,
+        id: Option<u32>,
+        on: bool,
+        model: &Model,
+    ) -> Result<String, NoBreakpoint> {
+        self.check(id, model)?;
+        let chosen = |b: &&mut Breakpoint| id.is_none_or(|id| b.id == id);
+        self.all
+            .iter_mut()
+            .filter(chosen)
+            .for_each(|b| b.enabled = on);
+        Ok(self.describe(model))
+    }
+
+    fn check(&self, id: Option<u32>, model: &Model) -> Result<(), NoBreakpoint> {
+        match id.filter(|id| self.all.iter().all(|b| b.id != *id)) {
+            Some(id) => Err(NoBreakpoint {
+                id,
+                listed: self.describe(model),
+            }),
+            None => Ok(()),
+        }
+    }
+
+    /// The numbers of the enabled breakpoints that are hit at a point. `before` is the previous point of the
+    /// line.
+    pub fn hits(&self, before: &Strip, now: &Strip) -> Vec<u32> {
+        let hit = |b: &&Breakpoint| b.enabled && b.condition.holds(before, now);
+        self.all.iter().filter(hit).map(|b| b.id).collect()
+    }
+
+    /// All breakpoints in one line.
+    pub(crate) fn describe(&self, model: &Model) -> String {
+        match self.all.is_empty() {
+            true => "there are no breakpoints; :break sets one".into(),
+            false => format!("breakpoints {}", listed(model, self.all.iter())),
+        }
+    }
+
+    /// The breakpoints that a run stopped at, as the beginning of a reply.
+    pub(crate) fn describe_hits(&self, model: &Model, hits: &[u32]) -> String {
+        let hit = self.all.iter().filter(|b| hits.contains(&b.id));
+        match hit.clone().count() {
+            0 => String::new(),
+            count => {
+                let s = if count == 1 { "" } else { "s" };
+                format!("breakpoint{s} {}: ", listed(model, hit))
+            }
+        }
+    }
 }
 
 impl Condition {
@@ -170,10 +271,15 @@ impl Condition {
 }
 
 /// Number and condition: `2 (any node leaves sliding)`.
-pub fn describe(model: &Model, breakpoint: &Breakpoint) -> String {
+fn describe(model: &Model, breakpoint: &Breakpoint) -> String {
     let off = if breakpoint.enabled { "" } else { ", disabled" };
     let condition = breakpoint.condition.describe(model);
     format!("{} ({condition}{off})", breakpoint.id)
+}
+
+fn listed<'a>(model: &Model, breakpoints: impl Iterator<Item = &'a Breakpoint>) -> String {
+    let described: Vec<String> = breakpoints.map(|b| describe(model, b)).collect();
+    described.join(", ")
 }
 
 #[cfg(test)]

@@ -143,9 +143,7 @@ fn common(tree: &Tree, a: usize, b: usize) -> Option<[usize; 2]> {
     common_load(tree, a, b).or_else(|| {
         let start = parting(tree, a, b);
         let places = |branch: usize| {
-            let own = (start..tree.len(branch)).rev();
-            own.filter_map(move |at| tree.point(branch, at).map(|(_, strip)| (at, strip)))
-                .filter(|(_, strip)| strip.kind.is_solved())
+            branches::strips(tree, branch, start).filter(|(_, strip)| strip.kind.is_solved())
         };
         let place = |strip: &Strip| {
             let at = strip.position;
@@ -241,12 +239,12 @@ fn differing(model: &Model, a: &Side, b: &Side) -> String {
     let nodes: Vec<usize> = (0..a.nodes.len().min(b.nodes.len()))
         .filter(differ)
         .collect();
-    let told = |&s: &usize| {
+    let describe = |&s: &usize| {
         let [a, b] = [a.nodes[s].next, b.nodes[s].next].map(names::mode);
         format!("{} {a}, {b}", names::slave(model, s))
     };
     match nodes.is_empty() {
         true => ", with the same modes".into(),
-        false => format!(": {}", first_of(nodes.iter().map(told), SHOWN, "; ")),
+        false => format!(": {}", first_of(nodes.iter().map(describe), SHOWN, "; ")),
     }
 }

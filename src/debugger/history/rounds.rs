@@ -144,10 +144,10 @@ pub fn words(model: &Model, rounds: &Rounds, tells_since: bool) -> String {
                     .collect();
                 format!("{} {}", names::slave(model, *slave), modes.join(" → "))
             };
-            let told: Vec<String> = members.iter().take(NAMED).map(member).collect();
+            let lines: Vec<String> = members.iter().take(NAMED).map(member).collect();
             format!(
                 "cycle of period {period}{since}: {}{}",
-                told.join("; "),
+                lines.join("; "),
                 more(members.len())
             )
         }
@@ -155,7 +155,7 @@ pub fn words(model: &Model, rounds: &Rounds, tells_since: bool) -> String {
             let member = |(slave, count): &(usize, usize)| {
                 format!("{} ({count} times)", names::slave(model, *slave))
             };
-            let told: Vec<String> = members.iter().take(NAMED).map(member).collect();
+            let lines: Vec<String> = members.iter().take(NAMED).map(member).collect();
             // Fewer iterations have had no time to repeat.
             let order = if *over < BACK {
                 ""
@@ -164,7 +164,7 @@ pub fn words(model: &Model, rounds: &Rounds, tells_since: bool) -> String {
             };
             format!(
                 "changed in the last {over} iterations{order}: {}{}",
-                told.join(", "),
+                lines.join(", "),
                 more(members.len())
             )
         }

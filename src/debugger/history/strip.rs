@@ -47,7 +47,7 @@ pub enum PointKind {
 
 impl PointKind {
     /// The kind of an iteration with this outcome.
-    pub fn of(outcome: &Outcome) -> PointKind {
+    pub fn from_outcome(outcome: &Outcome) -> PointKind {
         match outcome {
             Outcome::Minor => PointKind::Minor,
             Outcome::Damped { .. } => PointKind::Damped,
@@ -151,7 +151,7 @@ impl Strip {
     pub const BYTES_PER_ITERATION: usize = size_of::<Strip>();
 
     /// The strip of a state after a minor iteration, or before the first one.
-    pub fn of(
+    pub fn new(
         model: &Model,
         state: &State,
         event: Option<&Event>,
@@ -175,12 +175,14 @@ impl Strip {
             position: event.map_or(state.next, |event| event.position),
             load_factor: event.map_or(state.load_factor, |event| event.load_factor),
             leg: state.start.leg as u32,
-            kind: event.map_or(PointKind::Start, |event| PointKind::of(&event.outcome)),
+            kind: event.map_or(PointKind::Start, |event| {
+                PointKind::from_outcome(&event.outcome)
+            }),
             residual: event.map_or(0.0, |event| event.before.relative),
             first: event
                 .filter(|event| begins(event) || model.finished.is_some())
                 .map(|event| Box::new(event.before)),
-            after: event.and_then(after),
+            after: event.and_then(|event| norms_after(&event.outcome).copied().map(Box::new)),
             seconds,
             marks: (0..count).map(mark).collect(),
             margins: (0..count)
@@ -290,11 +292,12 @@ fn begins(event: &Event) -> bool {
     (event.position.major, event.position.minor) == (1, 1)
 }
 
-fn after(event: &Event) -> Option<Box<Norms>> {
-    match &event.outcome {
+/// Norms at the end of a major iteration, if the outcome is one.
+pub fn norms_after(outcome: &Outcome) -> Option<&Norms> {
+    match outcome {
         Outcome::Major { after, .. }
         | Outcome::Refused { after, .. }
-        | Outcome::Increment { after, .. } => Some(Box::new(*after)),
+        | Outcome::Increment { after, .. } => Some(after),
         _ => None,
     }
 }

@@ -5,11 +5,11 @@
 //! are stored separately.
 //!
 //! The [`Strip`] of a point is never discarded. Its [`Frame`] is whole (state and event) as long as all whole
-//! frames fit into [`BUDGET`] bytes. Beyond that, frames are thinned: first those inside major iterations,
+//! frames fit into [`Budget::frames`]. Beyond that, frames are thinned: first those inside major iterations,
 //! those far from the cursor before near ones; then the ends of major iterations; then every second end of an
 //! increment. A thinned frame keeps its position, intervention and monitors, and is recomputed from the nearest
 //! whole frame before it when needed. The root, the frame at the cursor and the tips of all branches are always
-//! whole. [`BRANCH_BUDGET`] limits those frames and the strips; beyond it no new branch can start.
+//! whole. [`Budget::branches`] limits those frames and the strips; beyond it no new branch can start.
 
 use crate::history::frame::Frame;
 use crate::history::strip::{PointKind, Strip};
@@ -23,11 +23,25 @@ use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::state::IncrementStart;
 use stickslip_core::step::state::State;
 
-/// Maximum size of all whole frames, in bytes.
-pub const BUDGET: usize = 256 << 20;
-/// Size in bytes of the data that is never thinned (tips of all branches, strips of all points) above which no
-/// branch can start.
-pub const BRANCH_BUDGET: usize = 256 << 20;
+/// Limits of the memory that a history takes, in bytes.
+#[derive(Debug, Clone, Copy)]
+pub struct Budget {
+    /// All whole frames.
+    pub frames: usize,
+    /// Data that is never thinned (tips of all branches, strips of all points); above this size no branch can
+    /// start.
+    pub branches: usize,
+}
+
+impl Default for Budget {
+    fn default() -> Budget {
+        Budget {
+            frames: 256 << 20,
+            branches: 256 << 20,
+        }
+    }
+}
+
 /// Part of the budget that is left in use after thinning, so that not every iteration has to thin.
 const AFTER_THINNING: f64 = 0.75;
 
@@ -79,15 +93,15 @@ pub struct Tree {
     branches: Vec<Branch>,
     current: usize,
     ledger: Ledger,
-    budget: usize,
+    budget: Budget,
     /// The state left in a thinned frame.
     hollow: State,
 }
 
 impl Tree {
     /// The tree of a session at its start.
-    pub fn new(model: Arc<Model>, start: State, budget: usize) -> Tree {
-        let strip = Strip::of(&model, &start, None, None, 0.0);
+    pub fn new(model: Arc<Model>, start: State, budget: Budget) -> Tree {
+        let strip = Strip::new(&model, &start, None, None, 0.0);
         let empty = Arc::new(Vec::new());
         let hollow = State {
             nodes: Vec::new(),
@@ -172,6 +186,11 @@ impl Tree {
         let point = size_of::<Frame>() + strip;
         let tip = self.line.frames.last().map_or(0, whole_bytes);
         (self.line.len() + away) * point + self.branches.len() * tip
+    }
+
+    /// Limits of the memory that it takes.
+    pub fn budget(&self) -> Budget {
+        self.budget
     }
 
     /// Appends a point to the tip.
@@ -313,7 +332,7 @@ impl Tree {
         let (frame, strip) = (&mut self.line.frames[at], &self.line.strips[at]);
         let again = match (&frame.intervention, before) {
             (Some(_), Some(before)) => Strip::intervention(&self.model, &state, before),
-            _ => Strip::of(&self.model, &state, event.as_deref(), before, 0.0),
+            _ => Strip::new(&self.model, &state, event.as_deref(), before, 0.0),
         };
         if frame.is_whole() {
             return true;
@@ -325,10 +344,10 @@ impl Tree {
 
     /// Thins frames until they fit into the budget, except the two being shown.
     pub fn thin(&mut self, looked_at: [usize; 2]) {
-        if self.ledger.bytes <= self.budget {
+        if self.ledger.bytes <= self.budget.frames {
             return;
         }
-        let enough = (self.budget as f64 * AFTER_THINNING) as usize;
+        let enough = (self.budget.frames as f64 * AFTER_THINNING) as usize;
         for (_, _, branch, at) in self.candidates(looked_at) {
             if self.ledger.bytes <= enough {
                 return;

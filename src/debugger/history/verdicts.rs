@@ -126,7 +126,7 @@ pub fn verdict(tree: &Tree, branch: usize) -> BranchEnd {
                     .as_deref()
                     .and_then(|event| cycle(&event.outcome));
                 strip.position.increment == tip.position.increment
-                    && own.zip(theirs).is_some_and(|(a, b)| alike(a, b))
+                    && own.zip(theirs).is_some_and(|(a, b)| is_same_cycle(a, b))
             };
             others()
                 .find(same)
@@ -188,7 +188,7 @@ fn cycle(outcome: &Outcome) -> Option<&Cycle> {
 }
 
 /// Whether two cycles have the same period, members and patterns, up to a shift.
-fn alike(a: &Cycle, b: &Cycle) -> bool {
+pub(crate) fn is_same_cycle(a: &Cycle, b: &Cycle) -> bool {
     if a.period != b.period || a.members.len() != b.members.len() {
         return false;
     }

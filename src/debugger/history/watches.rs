@@ -91,3 +91,55 @@ impl Watch {
         })
     }
 }
+
+/// The watches of a session, oldest first.
+#[derive(Debug, Default)]
+pub struct Watches(Vec<Watch>);
+
+/// Why a watch cannot be added or removed.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+pub enum WatchError {
+    /// The name is taken.
+    #[error("watch '{0}' already exists; :unwatch removes it")]
+    Exists(String),
+    /// There are no watches.
+    #[error("there are no watches; :watch adds one")]
+    Empty,
+    /// The watch does not exist: its name, and the existing ones.
+    #[error("watch '{0}' does not exist; watches: {1}")]
+    Unknown(String, String),
+}
+
+impl Watches {
+    /// Adds a watch.
+    pub(crate) fn add(&mut self, watch: Watch) -> Result<String, WatchError> {
+        if self.0.iter().any(|other| other.name == watch.name) {
+            return Err(WatchError::Exists(watch.name));
+        }
+        let reply = format!("watching {}", watch.name);
+        self.0.push(watch);
+        Ok(reply)
+    }
+
+    /// Removes the watch of this name.
+    pub(crate) fn remove(&mut self, name: &str) -> Result<String, WatchError> {
+        let names: Vec<&str> = self.0.iter().map(|watch| watch.name.as_str()).collect();
+        if names.is_empty() {
+            return Err(WatchError::Empty);
+        }
+        if !names.contains(&name) {
+            return Err(WatchError::Unknown(name.into(), names.join(", ")));
+        }
+        self.0.retain(|watch| watch.name != name);
+        Ok(format!("stopped watching {name}"))
+    }
+
+    /// The names of the watches with their values; `None` where no value has been solved.
+    pub fn values(&self, frame: &Frame) -> Vec<(&str, Option<f64>)> {
+        let value = |watch: &Watch| watch.value(frame);
+        self.0
+            .iter()
+            .map(|watch| (watch.name.as_str(), value(watch)))
+            .collect()
+    }
+}

@@ -96,7 +96,7 @@ pub enum Command {
     /// whole frozen problem.
     Export {
         /// What to write.
-        what: Exported,
+        what: ExportScope,
         /// Destination.
         file: PathBuf,
         /// Whether an existing file may be overwritten.
@@ -116,7 +116,7 @@ pub enum Command {
 
 /// What can be exported from a state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Exported {
+pub enum ExportScope {
     /// The core: the smallest set of nodes that still cycles.
     Core,
     /// The whole frozen interface problem.

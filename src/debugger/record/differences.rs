@@ -58,7 +58,7 @@ impl Differences {
     fn between(a: &Snapshot, b: &Snapshot) -> Differences {
         let mut found = Differences::default();
         found.scenes(a, b);
-        found.exact("interventions", &told(a), &told(b));
+        found.exact("interventions", &interventions(a), &interventions(b));
         found.exact("minor iterations done", &a.steps, &b.steps);
         for (what, left, right) in [
             ("increment", a.position.increment, b.position.increment),
@@ -262,7 +262,7 @@ fn word<T: Debug>(value: &T) -> String {
     }
 }
 
-fn told(snapshot: &Snapshot) -> Vec<String> {
+fn interventions(snapshot: &Snapshot) -> Vec<String> {
     snapshot
         .interventions
         .iter()

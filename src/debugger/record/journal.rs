@@ -390,14 +390,14 @@ impl Record {
 
     /// Remarks about the end of the journal; empty if it is complete.
     pub fn reservations(&self) -> String {
-        let mut told = String::new();
+        let mut text = String::new();
         if let Some(line) = self.torn {
-            let _ = write!(told, "; line {line} is incomplete and has been ignored");
+            let _ = write!(text, "; line {line} is incomplete and has been ignored");
         }
         if self.unfinished.is_some() {
-            told += "; the last motion was interrupted and is not repeated";
+            text += "; the last motion was interrupted and is not repeated";
         }
-        told
+        text
     }
 }
 
@@ -443,11 +443,6 @@ fn failure(file: &Path, doing: &'static str, source: io::Error) -> JournalError 
 fn sync_folder(file: &Path) {
     let folder = file.parent().filter(|folder| *folder != Path::new(""));
     let _ = File::open(folder.unwrap_or(Path::new("."))).and_then(|folder| folder.sync_all());
-}
-
-/// Whether a file has the extension of a journal.
-pub fn is_named_so(file: &Path) -> bool {
-    file.extension().is_some_and(|ending| ending == EXTENSION)
 }
 
 /// Default folder for journals: in the user's folder for state, or for data on systems without one.

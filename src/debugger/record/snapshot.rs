@@ -4,16 +4,17 @@
 //! resulting state. Recomputing starts the scene and repeats the steps; it does not use the recorded state.
 //! Floats are written so that they read back to the same bits, including NaN and the infinities.
 
+use crate::history::strip::norms_after;
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stickslip_core::contact::record::Forced;
 use stickslip_core::contact::table2::Rule;
 use stickslip_core::linear::norms::Norms;
 use stickslip_core::model::{Mode, Model};
 use stickslip_core::step::drive::{RunEnd, Until, drive};
-use stickslip_core::step::event::{Event, Outcome, Position};
+use stickslip_core::step::event::{Event, Position};
 use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::solver::Solver;
 use stickslip_core::step::state::{State, Status};
@@ -38,7 +39,7 @@ pub struct Snapshot {
     /// The whole scene, with all `--set` overrides.
     pub scene: Spec,
     /// Interventions in order.
-    pub interventions: Vec<Applied>,
+    pub interventions: Vec<AppliedIntervention>,
     /// Number of minor iterations.
     pub steps: u64,
     /// The last minor iteration; the first one to be solved if there is none.
@@ -50,7 +51,7 @@ pub struct Snapshot {
 /// An intervention, and the number of minor iterations before it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Applied {
+pub struct AppliedIntervention {
     /// Number of minor iterations before it.
     pub step: u64,
     /// The intervention.
@@ -168,7 +169,7 @@ impl Snapshot {
     /// `event` the last one.
     pub fn take(
         scene: &Scene,
-        applied: &[Applied],
+        applied: &[AppliedIntervention],
         steps: u64,
         state: &State,
         event: Option<&Event>,
@@ -180,7 +181,7 @@ impl Snapshot {
             interventions: applied.to_vec(),
             steps,
             position: event.map_or(state.next, |e| e.position),
-            state: Recorded::of(&scene.model, state, event),
+            state: Recorded::new(&scene.model, state, event),
         }
     }
 
@@ -317,9 +318,9 @@ impl Snapshot {
 }
 
 impl Recorded {
-    fn of(model: &Model, state: &State, event: Option<&Event>) -> Recorded {
+    fn new(model: &Model, state: &State, event: Option<&Event>) -> Recorded {
         let slaves = (0..model.contacts.len())
-            .map(|s| SlaveRecord::of(model, state, event, s))
+            .map(|s| SlaveRecord::new(model, state, event, s))
             .collect();
         let displacements = (0..model.nodes.len())
             .map(|n| displacement(model, &state.u, n))
@@ -330,7 +331,7 @@ impl Recorded {
             load_factor: event.map_or(state.start.load_factor, |e| e.load_factor),
             status: state.status.clone(),
             before: event.map(|e| e.before),
-            after: event.and_then(|e| after(&e.outcome)),
+            after: event.and_then(|e| norms_after(&e.outcome).copied()),
             slaves,
             displacements,
             shear: state.u[nodal..].to_vec(),
@@ -338,17 +339,8 @@ impl Recorded {
     }
 }
 
-fn after(outcome: &Outcome) -> Option<Norms> {
-    match outcome {
-        Outcome::Major { after, .. }
-        | Outcome::Refused { after, .. }
-        | Outcome::Increment { after, .. } => Some(*after),
-        _ => None,
-    }
-}
-
 impl SlaveRecord {
-    fn of(model: &Model, state: &State, event: Option<&Event>, slave: usize) -> SlaveRecord {
+    fn new(model: &Model, state: &State, event: Option<&Event>, slave: usize) -> SlaveRecord {
         let now = &state.nodes[slave];
         let node = model.nodes[model.contacts[slave].node].name.clone();
         // A minor iteration that cannot be solved has no records.
@@ -391,4 +383,18 @@ fn displacement(model: &Model, u: &[f64], node: usize) -> Displacement {
         y: at(1).unwrap_or(0.0),
         rotation: at(2),
     }
+}
+
+/// `SCENE-INC.MAJOR.MINOR.ron` in the working directory, numbered if that exists.
+pub fn free_name(scene: &str, at: Position) -> PathBuf {
+    let scene = files::stem(scene);
+    let stem = format!("{scene}-{}.{}.{}", at.increment, at.major, at.minor);
+    let name = |k: u32| match k {
+        0 => PathBuf::from(format!("{stem}.ron")),
+        k => PathBuf::from(format!("{stem}-{k}.ron")),
+    };
+    (0..1000)
+        .map(name)
+        .find(|name| !name.exists())
+        .unwrap_or_else(|| name(1000))
 }

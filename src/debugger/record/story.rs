@@ -23,11 +23,11 @@ pub fn story(record: &Record) -> Result<String, JournalError> {
         .collect();
     let more = if slaves > names.len() { ", …" } else { "" };
     text += &format!("Slave nodes: {}{more}.\n\n", names.join(", "));
-    let told: Vec<&Entry> = record.entries.iter().map(|(_, entry)| entry).collect();
+    let shown: Vec<&Entry> = record.entries.iter().map(|(_, entry)| entry).collect();
     let mut number = 0;
-    for (k, entry) in told.iter().enumerate() {
+    for (k, entry) in shown.iter().enumerate() {
         // Of consecutive cursor moves only the last one matters.
-        let next = told.get(k + 1);
+        let next = shown.get(k + 1);
         if is_look(entry) && next.is_some_and(|next| is_look(next)) {
             continue;
         }
@@ -73,14 +73,16 @@ pub fn done(model: &Model, entry: &Entry) -> String {
             format!("Forced {} to {} {how}.", slave(s), names::mode(*mode))
         }
         Command::Assume(starts) => {
-            let told: Vec<String> = starts
-                .iter()
-                .map(|start| format!("{} {}", slave(&start.slave), names::mode(start.mode)))
-                .collect();
-            format!("Started from a consistent state: {}.", told.join(", "))
+            format!(
+                "Started from a consistent state: {}.",
+                names::starts(model, starts)
+            )
         }
         Command::Follow { label, steps } => {
-            format!("Applied a remedy ({} steps): {label}.", steps.len())
+            format!(
+                "AppliedIntervention a remedy ({} steps): {label}.",
+                steps.len()
+            )
         }
         Command::Release { slave: s } => {
             format!("Released {}, so that Table 2 decides again.", slave(s))

@@ -45,7 +45,7 @@ pub struct WireFrame<'a> {
 
 /// Result of an iteration.
 #[derive(Clone)]
-pub struct Led {
+pub struct RecordedStep {
     /// The event of the iteration.
     pub event: Event,
     /// The state from which the next iteration starts; its identifier is set later.
@@ -61,15 +61,15 @@ pub struct Led {
 /// [`Fault::Unfit`].
 pub fn start(
     name: &str,
-    told: &message::Scene,
+    sent: &message::Scene,
     increment: Option<f64>,
-) -> Result<(Scene, Vec<Id>, Led), Fault> {
-    let scene = Scene::told(name, told, increment).map_err(|error| Fault::Unfit {
+) -> Result<(Scene, Vec<Id>, RecordedStep), Fault> {
+    let scene = Scene::from_message(name, sent, increment).map_err(|error| Fault::Unfit {
         message: "scene",
         why: error.message,
     })?;
-    let ids = told.contacts.iter().map(|contact| contact.id.clone());
-    let start = Led {
+    let ids = sent.contacts.iter().map(|contact| contact.id.clone());
+    let start = RecordedStep {
         state: State::outside_start(&scene.model),
         event: Event::nothing_yet(&scene.model),
         monitors: Vec::new(),
@@ -88,16 +88,20 @@ impl WireFrame<'_> {
     /// Converts a state message about the iteration that started from `from`.
     ///
     /// # Errors [`Fault::Unfit`] if the message does not match the scene.
-    pub fn led(&self, from: &State, told: &message::State) -> Result<Led, Fault> {
-        let at = self.check(told)?;
-        let load = told.load.unwrap_or(from.load_factor);
-        let ties = self.ties(told);
-        let mut nodes = Vec::with_capacity(told.contacts.len());
+    pub fn recorded_step(
+        &self,
+        from: &State,
+        sent: &message::State,
+    ) -> Result<RecordedStep, Fault> {
+        let at = self.check(sent)?;
+        let load = sent.load.unwrap_or(from.load_factor);
+        let ties = self.ties(sent);
+        let mut nodes = Vec::with_capacity(sent.contacts.len());
         let mut words = Vec::new();
-        for (k, found) in told.contacts.iter().enumerate() {
-            let (record, word) = self.record(from, k, found, told.spring, &ties);
+        for (k, found) in sent.contacts.iter().enumerate() {
+            let (record, word) = self.record(from, k, found, sent.spring, &ties);
             if !word.is_empty() {
-                words.resize(told.contacts.len(), String::new());
+                words.resize(sent.contacts.len(), String::new());
                 words[k] = word;
             }
             nodes.push(record);
@@ -107,34 +111,34 @@ impl WireFrame<'_> {
             .as_ref()
             .map_or(0.0, |outside| outside.largest_force);
         let force = before.max(judged::largest_force(&nodes));
-        let mut outcome = outcome(told);
+        let mut outcome = outcome(sent);
         if let Outcome::Increment { marked, .. } = &mut outcome {
             let sizes = Sizes {
-                force: force.max(judged::ROUND_OFF * told.residual.scale.unwrap_or(0.0)),
-                length: largest(told.displacements.as_deref()),
+                force: force.max(judged::ROUND_OFF * sent.residual.scale.unwrap_or(0.0)),
+                length: largest(sent.displacements.as_deref()),
             };
             *marked = judged::broken(self.model, &nodes, &sizes);
         }
         let event = Event {
             position: at,
             load_factor: load,
-            arc: told.arc,
-            drag: told.drag.unwrap_or(0.0),
+            arc: sent.arc,
+            drag: sent.drag.unwrap_or(0.0),
             nodes,
-            before: norms(&told.residual),
+            before: norms(&sent.residual),
             words: Arc::new(Words {
                 contacts: words,
                 ..Words::default()
             }),
             outcome,
         };
-        let mut state = self.next(from, told, &event);
+        let mut state = self.next(from, sent, &event);
         if let Some(outside) = &mut state.outside {
             outside.largest_force = force;
         }
         let monitors = self.model.monitors.iter().enumerate();
-        let monitor = |(k, _)| told.monitors.get(k).copied().flatten().unwrap_or(f64::NAN);
-        Ok(Led {
+        let monitor = |(k, _)| sent.monitors.get(k).copied().flatten().unwrap_or(f64::NAN);
+        Ok(RecordedStep {
             state,
             monitors: monitors.map(monitor).collect(),
             event,
@@ -145,24 +149,24 @@ impl WireFrame<'_> {
     ///
     /// # Errors
     /// [`Fault::Unfit`].
-    pub fn check(&self, told: &message::State) -> Result<Position, Fault> {
-        let at = told.at;
+    pub fn check(&self, sent: &message::State) -> Result<Position, Fault> {
+        let at = sent.at;
         let counts = [at.increment, at.attempt, at.major, at.minor];
         if counts.iter().any(|count| !(1..=MOST_COUNT).contains(count)) {
             return unfit(format!("at: counters must be from 1 to {MOST_COUNT}"));
         }
-        if told.size.is_some_and(|size| size <= 0.0) {
+        if sent.size.is_some_and(|size| size <= 0.0) {
             return unfit("size: must be positive");
         }
         let count = self.ids.len();
-        let solved = told.ended != Ended::Failure && told.ended != Ended::Cut;
-        if told.contacts.len() != count && (solved || !told.contacts.is_empty()) {
+        let solved = sent.ended != Ended::Failure && sent.ended != Ended::Cut;
+        if sent.contacts.len() != count && (solved || !sent.contacts.is_empty()) {
             return unfit(format!(
                 "it has {} contacts; the scene has {count}",
-                told.contacts.len()
+                sent.contacts.len()
             ));
         }
-        for (k, (found, id)) in told.contacts.iter().zip(self.ids).enumerate() {
+        for (k, (found, id)) in sent.contacts.iter().zip(self.ids).enumerate() {
             if found.id != *id {
                 return unfit(format!(
                     "contacts[{k}].id is {}; it must be {id}, as in the scene",
@@ -175,7 +179,7 @@ impl WireFrame<'_> {
             }
         }
         let nodes = self.model.nodes.len();
-        match &told.displacements {
+        match &sent.displacements {
             Some(all) if all.len() != nodes => unfit(format!(
                 "it has {} displacements; the scene has {nodes} nodes",
                 all.len()
@@ -185,8 +189,8 @@ impl WireFrame<'_> {
     }
 
     /// Tolerances for ties, relative to the forces.
-    fn ties(&self, told: &message::State) -> Ties {
-        let forces = told
+    fn ties(&self, sent: &message::State) -> Ties {
+        let forces = sent
             .contacts
             .iter()
             .flat_map(|found| [found.f_n, found.f_t]);
@@ -280,7 +284,7 @@ impl WireFrame<'_> {
             margin,
             tie: false,
         });
-        let mut told = found.tests.iter().copied();
+        let mut tested = found.tests.iter().copied();
         let (next, wanted) = (found.next, ours.map_or(found.next, |ours| ours.next));
         Decision {
             before: found.mode,
@@ -292,20 +296,20 @@ impl WireFrame<'_> {
                 (None, _) if forced != Forced::No => Rule::Held,
                 (None, _) => Rule::Theirs,
             },
-            tests: ours.map_or([told.next().or(own), told.next()], |ours| ours.tests),
+            tests: ours.map_or([tested.next().or(own), tested.next()], |ours| ours.tests),
             wanted: found.wanted.unwrap_or(wanted),
         }
     }
 
     /// The state from which the solver continues.
-    fn next(&self, from: &State, told: &message::State, event: &Event) -> State {
+    fn next(&self, from: &State, sent: &message::State, event: &Event) -> State {
         let mut state = from.clone();
-        if let Some(displacements) = &told.displacements {
+        if let Some(displacements) = &sent.displacements {
             let u = displacements.iter().flatten().copied().collect();
             state.u = Arc::new(u);
         }
         state.follow(event, from.place().unwrap_or(0));
-        if let Some(size) = told.size {
+        if let Some(size) = sent.size {
             Arc::make_mut(&mut state.controls).increment = size;
         }
         state
@@ -318,7 +322,7 @@ fn largest(displacements: Option<&[[f64; 2]]>) -> f64 {
     all.fold(0.0, |most: f64, [x, y]| most.max(x.hypot(*y)))
 }
 
-impl Led {
+impl RecordedStep {
     /// Sets the identifier of the state.
     pub fn state_at(&mut self, place: u64) {
         if let Some(outside) = &mut self.state.outside {
@@ -398,29 +402,29 @@ fn rule(name: &str) -> Option<Rule> {
 }
 
 /// Residual norms; unreported ones are NaN.
-fn norms(told: &message::Norms) -> Norms {
+fn norms(sent: &message::Norms) -> Norms {
     let known = |x: Option<f64>| x.unwrap_or(f64::NAN);
     Norms {
-        force: known(told.force),
-        relative: known(told.relative),
-        interface: known(told.interface),
-        correction: known(told.correction),
-        scale: known(told.scale),
-        limit: known(told.limit),
-        noise: told.noise.unwrap_or(0.0),
+        force: known(sent.force),
+        relative: known(sent.relative),
+        interface: known(sent.interface),
+        correction: known(sent.correction),
+        scale: known(sent.scale),
+        limit: known(sent.limit),
+        noise: sent.noise.unwrap_or(0.0),
     }
 }
 
-fn outcome(told: &message::State) -> Outcome {
-    let after = norms(told.after.as_ref().unwrap_or(&told.residual));
+fn outcome(sent: &message::State) -> Outcome {
+    let after = norms(sent.after.as_ref().unwrap_or(&sent.residual));
     let why = || Failure::Reported {
-        reason: shown::cut(told.reason.trim(), MOST_WORDS),
+        reason: shown::cut(sent.reason.trim(), MOST_WORDS),
         // JSON cannot represent infinity.
-        relative: told
+        relative: sent
             .after
             .map(|after| after.relative.unwrap_or(f64::INFINITY)),
     };
-    match told.ended {
+    match sent.ended {
         Ended::Iteration => Outcome::Minor,
         Ended::Equilibrium => Outcome::Major {
             after,
@@ -428,9 +432,9 @@ fn outcome(told: &message::State) -> Outcome {
         },
         Ended::Cut => Outcome::Cut {
             why: why(),
-            size: told.size.unwrap_or(f64::NAN),
+            size: sent.size.unwrap_or(f64::NAN),
         },
         Ended::Failure => Outcome::Failed(why()),
-        Ended::Increment | Ended::Done => Outcome::accepted(after, told.ended == Ended::Done),
+        Ended::Increment | Ended::Done => Outcome::accepted(after, sent.ended == Ended::Done),
     }
 }

@@ -18,7 +18,7 @@ const MOST_CHARS: usize = 2_000;
 
 /// A line of the log.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Said {
+pub struct LogLine {
     /// Source of the line.
     pub how: LogOrigin,
     /// The line, safe to print to a terminal.
@@ -31,7 +31,7 @@ pub enum LogOrigin {
     /// Standard error of the solver.
     Printed,
     /// A message of the solver.
-    Told(Level),
+    Message(Level),
     /// A remark of this program, for example that the solver was started or lost.
     Noted,
 }
@@ -41,9 +41,9 @@ impl LogOrigin {
     pub fn word(self) -> &'static str {
         match self {
             LogOrigin::Printed => "stderr",
-            LogOrigin::Told(Level::Info) => "info",
-            LogOrigin::Told(Level::Warning) => "warning",
-            LogOrigin::Told(Level::Error) => "error",
+            LogOrigin::Message(Level::Info) => "info",
+            LogOrigin::Message(Level::Warning) => "warning",
+            LogOrigin::Message(Level::Error) => "error",
             LogOrigin::Noted => "note",
         }
     }
@@ -55,7 +55,7 @@ pub struct Log(Arc<Mutex<Inner>>);
 
 #[derive(Debug, Default)]
 struct Inner {
-    lines: VecDeque<Said>,
+    lines: VecDeque<LogLine>,
     /// Number of lines so far, including dropped ones.
     count: usize,
     kept: Option<File>,
@@ -94,10 +94,10 @@ impl Log {
     }
 
     /// Adds a message of the solver.
-    pub fn told(&self, level: Level, text: &str) {
+    pub fn message(&self, level: Level, text: &str) {
         self.with(|inner| {
             text.lines()
-                .for_each(|line| inner.push(LogOrigin::Told(level), line))
+                .for_each(|line| inner.push(LogOrigin::Message(level), line))
         });
     }
 
@@ -110,7 +110,7 @@ impl Log {
     }
 
     /// The lines kept, and the number of the first one, counted from 0.
-    pub fn lines(&self) -> (usize, Vec<Said>) {
+    pub fn lines(&self) -> (usize, Vec<LogLine>) {
         self.with(|inner| {
             (
                 inner.count - inner.lines.len(),
@@ -120,7 +120,7 @@ impl Log {
     }
 
     /// The lines from a number on, if they are still kept.
-    pub fn since(&self, number: usize) -> Vec<Said> {
+    pub fn since(&self, number: usize) -> Vec<LogLine> {
         self.with(|inner| {
             let gone = inner.count - inner.lines.len();
             inner
@@ -164,7 +164,7 @@ impl Inner {
             self.lines.pop_front();
         }
         let text = shown::cut(&shown::line(&plain(line)), MOST_CHARS);
-        self.lines.push_back(Said { how, text });
+        self.lines.push_back(LogLine { how, text });
         self.count += 1;
     }
 

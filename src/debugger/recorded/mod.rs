@@ -6,16 +6,17 @@
 //! - [`decode`]: its messages as states and events; [`posed`]: its frozen interface problem; [`judged`]: the
 //!   contact laws, checked with its numbers.
 //! - [`orders`]: interventions as requests.
-//! - [`past`]: a solver replayed from its stored exchange; [`story`]: such a file as text.
+//! - [`exchange`]: a solver replayed from its stored exchange; [`story`]: such a file as text.
 //! - [`calculix`]: finished CalculiX runs; [`recording`]: opens a finished run by file name.
 
 pub mod calculix;
 pub mod decode;
+pub mod exchange;
 pub mod fault;
 pub mod judged;
 pub mod log;
 pub mod orders;
-pub mod past;
+
 pub mod posed;
 pub mod recording;
 pub mod story;

@@ -53,12 +53,12 @@ pub fn posed(problem: &Problem, ids: &[Id]) -> Result<Posed, Fault> {
     let matrix = match &problem.matrix {
         Matrix::Rows(rows) => rows.clone(),
         Matrix::Triplets {
-            size: told,
+            size: sent,
             triplets,
         } => {
-            if *told != size {
+            if *sent != size {
                 return Err(unfit(format!(
-                    "the matrix has size {told}; expected {size}"
+                    "the matrix has size {sent}; expected {size}"
                 )));
             }
             let mut rows = vec![vec![0.0; size]; size];

@@ -1,13 +1,13 @@
 //! Opens finished runs by file name, for viewing.
 
-use super::{calculix, past, story};
+use super::{calculix, exchange, story};
 use stickslip_scene::calculix::cel_of;
 use stickslip_scene::shown;
 
 /// A finished run.
 pub enum Recording {
     /// The stored exchange with an attached solver.
-    Exchange(Box<past::Opened>),
+    Exchange(Box<exchange::OpenedExchange>),
     /// A CalculiX run.
     Calculix(Box<calculix::OpenedRun>),
 }
@@ -27,7 +27,7 @@ impl Recording {
         if let Some(run) = calculix::file(name) {
             return run.map(Box::new).map(Recording::Calculix).map(Some);
         }
-        let exchange = past::file(name).transpose();
+        let exchange = exchange::file(name).transpose();
         let exchange = exchange.map_err(|why| why.to_string())?;
         Ok(exchange.map(Box::new).map(Recording::Exchange))
     }
@@ -35,7 +35,7 @@ impl Recording {
     /// Kind of the recording.
     pub fn kind(&self) -> &'static str {
         match self {
-            Recording::Exchange(_) => past::READ_ONLY,
+            Recording::Exchange(_) => exchange::READ_ONLY,
             Recording::Calculix(_) => calculix::words::READ_ONLY,
         }
     }

@@ -1,7 +1,7 @@
 //! A stored exchange as text: iterations, interventions, and cycles.
 
+use super::exchange::{Line, OpenedExchange};
 use super::log::LogOrigin;
-use super::past::{Line, Opened};
 use crate::explain::{names, report};
 use crate::history::rounds::{Rounds, rounds, words};
 use crate::history::strip::Strip;
@@ -15,7 +15,7 @@ const NAMED: usize = 6;
 const TOLD: usize = 20;
 
 /// The text of the file with this name.
-pub fn story(file: &str, opened: &mut Opened) -> String {
+pub fn story(file: &str, opened: &mut OpenedExchange) -> String {
     let model = opened.past.model().clone();
     let offers = opened.past.offers();
     let who = format!("{} {}", offers.name, offers.version);
@@ -65,13 +65,18 @@ pub fn in_common(a: &Line, b: &Line) -> usize {
 }
 
 /// The steps of a path, from a step on.
-fn way(model: &Model, past: &mut super::past::Past, line: &Line, from: usize) -> String {
+fn way(
+    model: &Model,
+    past: &mut super::exchange::RecordedSolver,
+    line: &Line,
+    from: usize,
+) -> String {
     past.rewind();
-    let mut strips = vec![Strip::of(model, past.state(), None, None, 0.0)];
+    let mut strips = vec![Strip::new(model, past.state(), None, None, 0.0)];
     let mut text = String::new();
     for (number, step) in line.iter().enumerate() {
         let before = &strips[strips.len() - 1];
-        let (strip, told) = match step {
+        let (strip, words) = match step {
             Some(intervention) => {
                 // It was accepted in the original session.
                 let _ = past.intervene(intervention);
@@ -86,7 +91,7 @@ fn way(model: &Model, past: &mut super::past::Past, line: &Line, from: usize) ->
                     break;
                 }
                 let event = past.event();
-                let strip = Strip::of(model, past.state(), Some(event), Some(before), 0.0);
+                let strip = Strip::new(model, past.state(), Some(event), Some(before), 0.0);
                 let differ: Vec<&str> = (0..model.contacts.len())
                     .filter(|&slave| strip.differs(slave))
                     .map(|slave| names::slave(model, slave))
@@ -110,7 +115,7 @@ fn way(model: &Model, past: &mut super::past::Past, line: &Line, from: usize) ->
         }
         strips.push(strip);
         if number >= from {
-            let _ = writeln!(text, "{:>5}. {told}", number + 1);
+            let _ = writeln!(text, "{:>5}. {words}", number + 1);
         }
     }
     text + &cycle(model, &strips)
@@ -125,9 +130,9 @@ fn cycle(model: &Model, strips: &[Strip]) -> String {
 }
 
 /// The last warnings and errors, and the last remark.
-fn said(opened: &Opened) -> String {
+fn said(opened: &OpenedExchange) -> String {
     let (_, lines) = opened.log.lines();
-    let grave = |how: LogOrigin| matches!(how, LogOrigin::Told(Level::Warning | Level::Error));
+    let grave = |how: LogOrigin| matches!(how, LogOrigin::Message(Level::Warning | Level::Error));
     let all: Vec<String> = lines
         .iter()
         .filter(|said| grave(said.how))

@@ -20,9 +20,9 @@ use crate::explain::attached;
 use crate::explain::examination::{Examination, examine_nodes};
 use crate::explain::influence::{NodePush, PushPath, between, pushed, pushes};
 use crate::explain::page::page;
-use crate::explain::pushes_told::{self, Iterations};
 use crate::explain::remedies::{self, Trial};
 use crate::explain::remedy::Remedy;
+use crate::explain::reported_pushes::{self, Iterations};
 use crate::record::export::shown::ExportError;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -48,7 +48,7 @@ pub type LinePlace = (usize, usize);
 
 /// The remedies tried from one position so far.
 #[derive(Debug, Clone)]
-pub struct Tried {
+pub struct RemedyTrials {
     /// Position that the trials start from.
     pub place: LinePlace,
     /// Number of remedies to try; `None` until it is known.
@@ -92,7 +92,7 @@ enum BackgroundReply {
         all: usize,
         now: String,
     },
-    Tried(Box<Trial>),
+    Trial(Box<Trial>),
     Done {
         stopped: bool,
     },
@@ -122,7 +122,7 @@ struct Helper {
 #[derive(Debug)]
 pub struct Background {
     asks: Sender<BackgroundRequest>,
-    told: Receiver<BackgroundReply>,
+    replies: Receiver<BackgroundReply>,
     stop: Arc<AtomicBool>,
     /// Requests without an answer yet.
     waiting: usize,
@@ -130,7 +130,7 @@ pub struct Background {
     /// By position: the requested nodes, and the result.
     examinations: HashMap<LinePlace, (Vec<usize>, Option<Examination>)>,
     exported: Option<Result<String, ExportError>>,
-    tried: Option<Tried>,
+    tried: Option<RemedyTrials>,
     trying: bool,
     /// Examinations running or queued.
     examining: usize,
@@ -142,17 +142,17 @@ impl Background {
     /// `spec` is the scene as written by its author, which a finer mesh may be generated from. `lender` gives
     /// access to the session's solver.
     pub fn new(model: Arc<Model>, spec: Spec, lender: Lender) -> Background {
-        Background::begun(model, Some(spec), Offers::all(), lender)
+        Background::start(model, Some(spec), Offers::all(), lender)
     }
 
     /// Starts the thread for an attached solver. Only that solver knows the deformable bodies.
-    pub fn beside(model: Arc<Model>, offers: Offers, lender: Lender) -> Background {
-        Background::begun(model, None, offers, lender)
+    pub fn attached(model: Arc<Model>, offers: Offers, lender: Lender) -> Background {
+        Background::start(model, None, offers, lender)
     }
 
-    fn begun(model: Arc<Model>, spec: Option<Spec>, offers: Offers, lender: Lender) -> Background {
+    fn start(model: Arc<Model>, spec: Option<Spec>, offers: Offers, lender: Lender) -> Background {
         let (asks, orders) = channel::<BackgroundRequest>();
-        let (news, told) = channel();
+        let (news, replies) = channel();
         let stop = Arc::new(AtomicBool::new(false));
         let flag = stop.clone();
         thread::spawn(move || {
@@ -176,7 +176,7 @@ impl Background {
         });
         Background {
             asks,
-            told,
+            replies,
             stop,
             waiting: 0,
             pushes: HashMap::new(),
@@ -206,7 +206,7 @@ impl Background {
     }
 
     /// The latest remedy trials.
-    pub fn tried(&self) -> Option<&Tried> {
+    pub fn tried(&self) -> Option<&RemedyTrials> {
         self.tried.as_ref()
     }
 
@@ -236,7 +236,7 @@ impl Background {
     }
 
     /// Records that the pushes cannot be computed: only the attached solver knows them.
-    pub(super) fn pushes_untold(&mut self, place: LinePlace, slave: usize) {
+    pub(super) fn pushes_unknown(&mut self, place: LinePlace, slave: usize) {
         self.keep_pushes(place, slave, None);
     }
 
@@ -248,13 +248,13 @@ impl Background {
     }
 
     /// Requests the examination of the state at a position, for these nodes or, if there are none, for the
-    /// relevant ones. `told` contains what the line already shows about an attached solver.
+    /// relevant ones. `findings` contains what the line already shows about an attached solver.
     pub(super) fn ask_examination(
         &mut self,
         place: LinePlace,
         state: &State,
         nodes: &[usize],
-        told: Vec<String>,
+        findings: Vec<String>,
     ) {
         let known = self.examinations.get(&place);
         if known.is_none_or(|(asked, _)| asked != nodes) {
@@ -269,7 +269,7 @@ impl Background {
                 place,
                 state,
                 nodes.to_vec(),
-                told,
+                findings,
             ));
         }
     }
@@ -280,14 +280,14 @@ impl Background {
     }
 
     /// Result of the latest export; returned once.
-    pub(super) fn exported(&mut self) -> Option<Result<String, ExportError>> {
+    pub fn exported(&mut self) -> Option<Result<String, ExportError>> {
         self.exported.take()
     }
 
     /// Tries all remedies from the state at a position.
     pub(super) fn ask_remedies(&mut self, place: LinePlace, state: &State) {
         self.stop.store(false, Ordering::Relaxed);
-        self.tried = Some(Tried {
+        self.tried = Some(RemedyTrials {
             place,
             all: None,
             now: String::new(),
@@ -314,8 +314,8 @@ impl Background {
     pub fn gather(&mut self) -> bool {
         let mut any = false;
         loop {
-            match self.told.try_recv() {
-                Ok(told) => self.take(told),
+            match self.replies.try_recv() {
+                Ok(reply) => self.take(reply),
                 Err(TryRecvError::Empty) => return any,
                 Err(TryRecvError::Disconnected) => {
                     any |= self.waiting > 0;
@@ -330,8 +330,8 @@ impl Background {
     /// Blocks until all requests are answered.
     pub fn wait(&mut self) {
         while self.waiting > 0 {
-            match self.told.recv() {
-                Ok(told) => self.take(told),
+            match self.replies.recv() {
+                Ok(reply) => self.take(reply),
                 Err(_) => self.gone(),
             }
         }
@@ -342,8 +342,8 @@ impl Background {
         (self.waiting, self.trying, self.examining) = (0, false, 0);
     }
 
-    fn take(&mut self, told: BackgroundReply) {
-        match told {
+    fn take(&mut self, reply: BackgroundReply) {
+        match reply {
             BackgroundReply::Pushes(place, slave, found) => {
                 self.keep_pushes(place, slave, found);
                 self.waiting -= 1;
@@ -378,7 +378,7 @@ impl Background {
                     (tried.all, tried.now) = (Some(all), now);
                 }
             }
-            BackgroundReply::Tried(trial) => {
+            BackgroundReply::Trial(trial) => {
                 if let Some(tried) = &mut self.tried {
                     tried.trials.push(*trial);
                     remedies::sort(&mut tried.trials);
@@ -416,14 +416,14 @@ impl Helper {
                     BetweenRuns::Reported(iterations) => {
                         let posed = self.posed_aside(&iterations.start);
                         posed.map(|posed| {
-                            pushes_told::pushes(&self.model, &iterations, &posed.ok()?, slave)
+                            reported_pushes::pushes(&self.model, &iterations, &posed.ok()?, slave)
                         })
                     }
                 };
-                let told = found.map_or(BackgroundReply::NotNow, |found| {
+                let reply = found.map_or(BackgroundReply::NotNow, |found| {
                     BackgroundReply::Pushes(place, slave, found)
                 });
-                news.send(told).ok()
+                news.send(reply).ok()
             }
             BackgroundRequest::Examination(place, state, nodes, known) if self.spec.is_none() => {
                 let found = self.examine_attached(&state, &nodes, known, stop);
@@ -441,18 +441,16 @@ impl Helper {
                 let (stepper, spec) = self.solver();
                 examine(stepper, spec, (place, &state, nodes), news, stop)
             }
-            BackgroundRequest::Export(ask) if self.spec.is_none() && is_of_problem(&ask) => {
-                let done = self
-                    .posed(&ask.state)
-                    .map_err(ExportError::from)
-                    .and_then(|posed| write_posed(&self.model, &posed, &ask));
-                let told = done.map(|()| format!("wrote {}", ask.file.display()));
-                news.send(BackgroundReply::Exported(told)).ok()
-            }
             BackgroundRequest::Export(ask) => {
-                let done = write(self.solver().0, &ask);
-                let told = done.map(|()| format!("wrote {}", ask.file.display()));
-                news.send(BackgroundReply::Exported(told)).ok()
+                let done = match self.spec.is_none() && is_of_problem(&ask) {
+                    true => self
+                        .posed(&ask.state)
+                        .map_err(ExportError::from)
+                        .and_then(|posed| write_posed(&self.model, &posed, &ask)),
+                    false => write(self.solver().0, &ask),
+                };
+                let done = done.map(|()| format!("wrote {}", ask.file.display()));
+                news.send(BackgroundReply::Exported(done)).ok()
             }
             BackgroundRequest::Remedies(state) if self.spec.is_none() => {
                 self.try_attached(&state, news, stop)
@@ -511,35 +509,40 @@ impl Helper {
         known: Vec<String>,
         stop: &AtomicBool,
     ) -> Examination {
-        let stopped = || stop.load(Ordering::Relaxed);
-        let mut found = match self.posed(state) {
-            Ok(posed) => attached::examine(&self.model, state, &posed, nodes, &stopped),
-            Err(lost) => Examination {
-                lines: vec![format!("The frozen problem is not available: {lost}.")],
-                ..Examination::default()
-            },
-        };
+        let mut found = self.examine_problem(state, nodes, stop);
         found.fails |= matches!(state.status, Status::Failed(_));
         let mut lines = known;
-        let told: Vec<String> = match &found.census {
+        let words: Vec<String> = match &found.census {
             Some(census) if self.offers.force => (1..=census.answers.len().min(2))
                 .map(|n| format!("not tried: start from the consistent state {n} (:start-from {n} forces its modes)"))
                 .collect(),
             _ => Vec::new(),
         };
-        let by_hand = self.offers.force && told.is_empty() && !lines.is_empty();
+        let by_hand = self.offers.force && words.is_empty() && !lines.is_empty();
         if found.problem.is_some() {
             lines.push("Table 2 applied to its interface problem:".into());
         }
         // An attached solver does not offer the settings of our own method.
         let offered = |line: &String| !line.starts_with("tried: settings.");
         lines.extend(found.lines.drain(..).filter(offered));
-        lines.extend(told);
+        lines.extend(words);
         if by_hand {
             lines.push("not tried: force one of the changing nodes into another mode (m)".into());
         }
         found.lines = lines;
         found
+    }
+
+    /// The examination of the interface problem that an attached solver reports.
+    fn examine_problem(&self, state: &State, nodes: &[usize], stop: &AtomicBool) -> Examination {
+        let stopped = || stop.load(Ordering::Relaxed);
+        match self.posed(state) {
+            Ok(posed) => attached::examine(&self.model, state, &posed, nodes, &stopped),
+            Err(lost) => Examination {
+                lines: vec![format!("The frozen problem is not available: {lost}.")],
+                ..Examination::default()
+            },
+        }
     }
 
     /// Tries the remedies that an attached solver offers, on that solver.
@@ -549,11 +552,7 @@ impl Helper {
         news: &Sender<BackgroundReply>,
         stop: &AtomicBool,
     ) -> Option<()> {
-        let stopped = || stop.load(Ordering::Relaxed);
-        let found = match self.posed(state) {
-            Ok(posed) => attached::examine(&self.model, state, &posed, &[], &stopped),
-            Err(_) => Examination::default(),
-        };
+        let found = self.examine_problem(state, &[], stop);
         let all = remedies::offered(&self.model, state, &self.offers, &found);
         try_all(&all, news, |remedy| {
             let (remedy, state) = (remedy.clone(), state.clone());
@@ -671,7 +670,7 @@ fn try_all(
         let (all, now) = (all.len(), remedy.label.clone());
         news.send(BackgroundReply::Trying { all, now }).ok()?;
         match attempt(remedy) {
-            Some(Some(trial)) => news.send(BackgroundReply::Tried(Box::new(trial))).ok()?,
+            Some(Some(trial)) => news.send(BackgroundReply::Trial(Box::new(trial))).ok()?,
             Some(None) => {}
             None => {
                 stopped = true;

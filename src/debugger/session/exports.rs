@@ -3,10 +3,10 @@
 use crate::explain::attached;
 use crate::explain::core::core;
 use crate::explain::diagnosis::too_many;
-use crate::explain::examination::{Untold, going_round};
+use crate::explain::examination::{NotExamined, going_round};
 use crate::explain::report;
 use crate::history::strip::Strip;
-use crate::record::command::Exported;
+use crate::record::command::ExportScope;
 use crate::record::export::shown::{ExportError, Shown};
 use crate::record::export::{self, ExportKind, Origin};
 use std::path::{Path, PathBuf};
@@ -22,7 +22,7 @@ use stickslip_scene::Scene;
 /// Request for a file made from a state.
 pub struct Export {
     /// What to write.
-    pub what: Exported,
+    pub what: ExportScope,
     /// Destination.
     pub file: PathBuf,
     /// Whether an existing file may be overwritten.
@@ -32,11 +32,11 @@ pub struct Export {
     /// The shown state.
     pub state: Box<State>,
     /// Further contents of a picture.
-    pub shown: Option<Box<Seen>>,
+    pub shown: Option<Box<PictureContext>>,
 }
 
 /// The context of a state that a picture shows.
-pub struct Seen {
+pub struct PictureContext {
     /// The scene of the run.
     pub scene: Scene,
     /// The last minor iteration.
@@ -50,16 +50,16 @@ pub struct Seen {
 /// Writes the requested file.
 pub(super) fn write(stepper: &mut Stepper, ask: &Export) -> Result<(), ExportError> {
     let bytes = match ask.what {
-        Exported::Core => {
+        ExportScope::Core => {
             let text = core_of(stepper, &ask.state, &ask.origin)?;
             return Ok(files::write(&ask.file, text, ask.overwrite)?);
         }
         // For compatibility, `whole` accepts any extension.
-        Exported::Whole => match export::kind(&ask.file) {
+        ExportScope::Whole => match export::kind(&ask.file) {
             Ok(kind) if kind.may_be_frozen => shown(stepper, ask, kind)?,
             _ => shown(stepper, ask, export::kind(Path::new("a.ron"))?)?,
         },
-        Exported::Shown => shown(stepper, ask, export::kind(&ask.file)?)?,
+        ExportScope::Shown => shown(stepper, ask, export::kind(&ask.file)?)?,
     };
     let kind = export::kind(&ask.file).ok();
     let names = match kind.filter(|_| bytes.len() > 1) {
@@ -76,9 +76,11 @@ fn core_of(stepper: &mut Stepper, state: &State, origin: &Origin) -> Result<Stri
         return Err(ExportError::Finished);
     }
     stepper.restore(state);
-    let problem = stepper.interface_problem().ok_or(Untold::NotCondensed)?;
+    let problem = stepper
+        .interface_problem()
+        .ok_or(NotExamined::NotCondensed)?;
     let (problem, cycle) = going_round(stepper, state, &problem)?.ok_or(ExportError::NoCycle)?;
-    let core = core(&problem).ok_or_else(|| Untold::TooMany(too_many(&cycle)))?;
+    let core = core(&problem).ok_or_else(|| NotExamined::TooMany(too_many(&cycle)))?;
     Ok(export::core(stepper.model(), origin, &cycle, &core)?)
 }
 
@@ -103,7 +105,7 @@ fn shown(
         strips: &seen.strips,
         last_major: seen.last_major.as_ref(),
         ended,
-        frozen: ask.what == Exported::Whole,
+        frozen: ask.what == ExportScope::Whole,
     };
     kind.made(&shown, stepper).ok_or(ExportError::OfJournal)?
 }
@@ -113,14 +115,14 @@ fn shown(
 pub(super) fn write_posed(model: &Model, posed: &Posed, ask: &Export) -> Result<(), ExportError> {
     let solver = || attached::stepper(model, &ask.state, posed).map_err(Box::new);
     let text = match (ask.what, export::kind(&ask.file)) {
-        (Exported::Core, _) => {
+        (ExportScope::Core, _) => {
             let (_, mut stepper) = solver()?;
             let start = stepper.state().clone();
             core_of(&mut stepper, &start, &ask.origin)?
         }
         (_, Ok(kind)) if kind.may_be_frozen && kind.extension != "ron" => {
             let (scene, mut stepper) = solver()?;
-            let shown = Seen {
+            let shown = PictureContext {
                 scene,
                 event: None,
                 strips: Vec::new(),
@@ -143,6 +145,6 @@ pub(super) fn write_posed(model: &Model, posed: &Posed, ask: &Export) -> Result<
 /// Whether the file is made from the frozen interface problem.
 pub(super) fn is_of_problem(ask: &Export) -> bool {
     let kind = export::kind(&ask.file);
-    ask.what != Exported::Shown
+    ask.what != ExportScope::Shown
         || kind.is_ok_and(|kind| kind.may_be_frozen && kind.extension != "ron")
 }

@@ -1,26 +1,28 @@
 //! A session of the debugger, without a terminal: commands in, frames out.
 //!
 //! - [`machine`]: the state machine: its data, and how commands start and end. Their effects are in one module
-//!   per subject: `motion` (through the history), `change` (interventions), `lists` (branches, breakpoints,
-//!   watches), `writing` (snapshots, journals), `questions` (background analyses).
+//!   per subject: `motion` (through the history), `change` (interventions), `questions` (background analyses).
+//! - [`timeline`]: the shown line of the history and the cursor; [`connection`]: the solver as the session sees
+//!   it; `current_scene`: the scene with the changes made during a run.
 //! - [`worker`]: the thread that solves; [`background`]: the thread that analyses; [`exports`]: the files it
 //!   writes.
-//! - `kept`: sessions on recorded runs.
-//! - `diary`: the journal being written; [`replay`]: repeating a journal; [`refusal`]: the errors.
+//! - `recorded_run`: sessions on recorded runs.
+//! - [`journal_writer`]: the journal being written; [`replay`]: repeating a journal; [`refusal`]: the errors.
 
 pub mod background;
 mod change;
-mod diary;
+pub mod connection;
+mod current_scene;
 pub mod exports;
-mod kept;
-mod lists;
+pub mod journal_writer;
 pub mod machine;
 mod motion;
 mod questions;
+mod recorded_run;
 pub mod refusal;
 pub mod replay;
+pub mod timeline;
 pub mod worker;
-mod writing;
 
 pub use machine::{Reply, Session};
 pub use refusal::Refusal;

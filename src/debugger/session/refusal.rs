@@ -1,6 +1,8 @@
 //! Errors of a session: why it rejects a command, and how a replay departs from its journal.
 
 use crate::history::branches::NoBranch;
+use crate::history::breakpoints::NoBreakpoint;
+use crate::history::watches::WatchError;
 use crate::record::export::shown::ExportError;
 use crate::record::journal::JournalError;
 use crate::record::snapshot::SnapshotError;
@@ -87,28 +89,12 @@ pub enum Refusal {
     /// Neither branch has solved anything.
     #[error("there is nothing to compare")]
     NothingToCompare,
-    /// The breakpoint does not exist.
-    #[error("there is no breakpoint {id}; {listed}")]
-    NoBreakpoint {
-        /// Its number.
-        id: u32,
-        /// Existing breakpoints, in words.
-        listed: String,
-    },
-    /// The name of the watch is taken.
-    #[error("watch '{0}' already exists; :unwatch removes it")]
-    Watched(String),
-    /// There are no watches.
-    #[error("there are no watches; :watch adds one")]
-    NoWatches,
-    /// The watch does not exist.
-    #[error("watch '{name}' does not exist; watches: {all}")]
-    NoWatch {
-        /// Its name.
-        name: String,
-        /// Existing watches, in words.
-        all: String,
-    },
+    /// No breakpoint with this number.
+    #[error(transparent)]
+    NoBreakpoint(#[from] NoBreakpoint),
+    /// A watch cannot be added or removed.
+    #[error(transparent)]
+    Watch(#[from] WatchError),
     /// The session has kept no entries.
     #[error("this session has kept no record of its commands, so no journal can be written")]
     Forgotten,

@@ -2,7 +2,8 @@
 
 use super::machine::Session;
 use super::refusal::Departure;
-use crate::record::command::{Command, Unit};
+use crate::history::breakpoints::Breakpoints;
+use crate::record::command::Unit;
 use crate::record::journal::{self, Entry, Journal, JournalError, Keep, Record};
 use stickslip_scene::shown;
 
@@ -20,7 +21,7 @@ impl Session {
                 self.wait();
             }
         }
-        let place = (self.tree.current(), self.cursor);
+        let place = self.timeline.place();
         if place != (entry.branch, entry.cursor) {
             return Err(Departure::Leads {
                 now: (place.0 + 1, place.1),
@@ -36,8 +37,8 @@ impl Session {
         }
         // An interrupted motion is replayed up to where it stopped.
         match entry.command.is_motion() {
-            true => self.diary.add(entry.clone()),
-            false => self.diary.replace_last(entry.clone()),
+            true => self.journal.add(entry.clone()),
+            false => self.journal.replace_last(entry.clone()),
         }
         Ok(())
     }
@@ -46,9 +47,9 @@ impl Session {
     fn travel(&mut self, solved: u64, step: usize) -> Result<(), Departure> {
         if solved > 0 {
             self.solved = 0;
-            self.cursor = self.frames().len() - 1;
+            self.timeline.move_to(self.timeline.tip());
             let count = u32::try_from(solved).map_err(|_| Departure::TooMuch)?;
-            self.solve(Unit::Minor, count, Vec::new());
+            self.solve(Unit::Minor, count, Breakpoints::default());
             self.wait();
         }
         if solved > 0 && self.solved != solved {
@@ -60,18 +61,6 @@ impl Session {
         self.jump(step)?;
         self.wait();
         Ok(())
-    }
-
-    /// The command reduced to the steps that it took, if it was interrupted.
-    pub(super) fn as_far_as_done(&self, command: Command) -> Command {
-        match command {
-            Command::Follow { label, mut steps } => {
-                let own = self.tree.branches()[self.tree.current()].from;
-                steps.truncate(self.frames().len() - own);
-                Command::Follow { label, steps }
-            }
-            command => command,
-        }
     }
 }
 
@@ -92,7 +81,7 @@ impl Record {
         mut session: Session,
         see: &mut dyn FnMut(&Session, Option<&Entry>),
     ) -> Result<Session, JournalError> {
-        session.diary.keep_in_memory();
+        session.journal.write_to_memory();
         see(&session, None);
         for (line, entry) in &self.entries {
             session.replay(entry).map_err(|departure| {
@@ -119,10 +108,10 @@ impl Keep {
     pub fn begin(&self, session: &mut Session) -> Result<(), JournalError> {
         match self {
             Keep::Nowhere => {}
-            Keep::Default => session.keep_at_default_place(),
+            Keep::Default => session.journal_mut().write_to_default_path(),
             Keep::File(path) => {
                 let journal = Journal::create(path, session.scene(), &[])?;
-                session.keep(journal);
+                session.journal_mut().write_to(journal);
             }
         }
         Ok(())

@@ -1,6 +1,6 @@
 //! The thread that runs the session's solver, our own or an attached one.
 
-use crate::history::breakpoints::{self, Breakpoint};
+use crate::history::breakpoints::Breakpoints;
 use crate::history::frame::Frame;
 use crate::history::rounds;
 use crate::history::strip::Strip;
@@ -47,7 +47,7 @@ pub enum Steps {
         /// Number of units.
         count: u32,
         /// Breakpoints that stop it early.
-        breakpoints: Vec<Breakpoint>,
+        breakpoints: Breakpoints,
     },
     /// A given sequence of steps.
     Follow {
@@ -267,7 +267,7 @@ fn run(
     solver: &mut dyn Solver,
     mut before: Strip,
     (unit, count): (Unit, u32),
-    breakpoints: &[Breakpoint],
+    breakpoints: &Breakpoints,
     news: &SyncSender<Message>,
     stop: &AtomicUsize,
 ) -> Option<()> {
@@ -286,7 +286,7 @@ fn run(
         if strip.kind.is_failure() {
             left = 0;
         }
-        hits = breakpoints::hits(breakpoints, &before, &strip);
+        hits = breakpoints.hits(&before, &strip);
         before = strip.clone();
         round = watch.as_mut().and_then(|watch| watch.see(&strip));
         let heard = news.send(Message::Made(Box::new(frame), Box::new(strip)));
@@ -320,7 +320,7 @@ fn run(
 fn seen(solver: &mut dyn Solver, before: &Strip, began: Instant) -> (Frame, Strip) {
     let seconds = began.elapsed().as_secs_f32();
     let event = Arc::new(solver.event().clone());
-    let strip = Strip::of(
+    let strip = Strip::new(
         solver.model(),
         solver.state(),
         Some(&event),

@@ -3,6 +3,7 @@
 use super::refusal::Unknown;
 use super::runs::Runs;
 use crate::history::frame::Frame;
+use crate::history::strip::norms_after;
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -10,7 +11,6 @@ use stickslip_core::contact::laws::Verdict;
 use stickslip_core::contact::record::ContactRecord;
 use stickslip_core::interface::census::census;
 use stickslip_core::interface::minor_history::Cycle;
-use stickslip_core::linear::norms::Norms;
 use stickslip_core::model::{Mode, Model};
 use stickslip_core::step::drive::{RunEnd, Until};
 use stickslip_core::step::event::{Event, Failure, Outcome};
@@ -95,7 +95,7 @@ impl Look {
         let end = stepper.drive(Until::end().minors(ENDLESS.into()), |stepper| {
             minors += 1;
             majors = stepper.event().position.major;
-            residuals.extend(after(&stepper.event().outcome).map(|after| after.relative));
+            residuals.extend(norms_after(&stepper.event().outcome).map(|after| after.relative));
             match stepper.event().outcome {
                 Outcome::Increment { .. } => ControlFlow::Break(()),
                 _ => ControlFlow::Continue(()),
@@ -134,7 +134,9 @@ impl Look {
     /// # Errors If no iteration has been solved.
     pub fn residual(&self) -> Result<f64, Unknown> {
         let event = self.event()?;
-        Ok(after(&event.outcome).unwrap_or(&event.before).relative)
+        Ok(norms_after(&event.outcome)
+            .unwrap_or(&event.before)
+            .relative)
     }
 
     /// The factor by which a sliding node's lagged T_max approaches the value for its pressure in the next
@@ -202,15 +204,5 @@ impl Look {
     /// The next mode of a slave node.
     pub fn next(&self, slave: usize) -> Mode {
         self.frame.state.nodes[slave].mode
-    }
-}
-
-/// Norms at the end of a major iteration, if the outcome is one.
-fn after(outcome: &Outcome) -> Option<&Norms> {
-    match outcome {
-        Outcome::Major { after, .. }
-        | Outcome::Refused { after, .. }
-        | Outcome::Increment { after, .. } => Some(after),
-        _ => None,
     }
 }

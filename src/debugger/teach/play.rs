@@ -1,7 +1,7 @@
 //! Plays a lesson automatically, to check that every step can be reached and every question has one answer.
 
 use super::lesson::{Lesson, LessonStep};
-use super::refusal::Unplayable;
+use super::refusal::{NotNow, Unplayable};
 use super::tutor::{AnswerKind, Tutor, TutorQuestion};
 use crate::action::Action;
 use crate::explain::names;
@@ -16,7 +16,7 @@ const MOST_STEPS: u32 = 1000;
 
 /// A question with the solver's answer and the replies, numbers filled in.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Answered {
+pub struct AnsweredQuestion {
     /// Index of the step, from 0.
     pub step: usize,
     /// The question.
@@ -32,13 +32,14 @@ pub struct Answered {
 /// Plays a lesson with the right keys and answers.
 ///
 /// # Errors For the first step that cannot be completed, with its line and column.
-pub fn play(lesson: &Arc<Lesson>) -> Result<Vec<Answered>, SceneError> {
+pub fn play(lesson: &Arc<Lesson>) -> Result<Vec<AnsweredQuestion>, SceneError> {
     let mut session = Session::new(lesson.scene.clone());
     let mut tutor = Tutor::new(lesson.clone(), session.cursor(), session.frame());
     let mut answered = Vec::new();
     while let Some(step) = lesson.steps.get(tutor.at()) {
         let at = tutor.at();
         let fault = |why: Unplayable| lesson.fault(at, why.to_string());
+        let refused = |why: NotNow| fault(why.into());
         if let Some(message) = tutor.fault() {
             return Err(lesson.fault(at, message.to_owned()));
         }
@@ -47,7 +48,7 @@ pub fn play(lesson: &Arc<Lesson>) -> Result<Vec<Answered>, SceneError> {
             LessonStep::Press { action, .. } => {
                 tutor
                     .permits(action, session.cursor(), session.frame())
-                    .map_err(|why| fault(why.into()))?;
+                    .map_err(refused)?;
                 perform(action, &mut session).map_err(fault)?;
                 tutor.settled(session.cursor(), session.frame());
                 continue;
@@ -55,7 +56,7 @@ pub fn play(lesson: &Arc<Lesson>) -> Result<Vec<Answered>, SceneError> {
             LessonStep::Ask(_) => {
                 let word = tutor.solution().unwrap_or_default();
                 let question = tutor.question();
-                answered.push(Answered {
+                answered.push(AnsweredQuestion {
                     step: at,
                     question: tutor.text().to_owned(),
                     answer: readable(&tutor, &word),
@@ -64,7 +65,7 @@ pub fn play(lesson: &Arc<Lesson>) -> Result<Vec<Answered>, SceneError> {
                 });
                 tutor
                     .answer(&word, 0, session.cursor(), session.frame())
-                    .map_err(|why| fault(why.into()))?;
+                    .map_err(refused)?;
             }
             LessonStep::Predict { right, .. } => {
                 predict(*right, &mut tutor, &mut session).map_err(fault)?
@@ -72,7 +73,7 @@ pub fn play(lesson: &Arc<Lesson>) -> Result<Vec<Answered>, SceneError> {
         }
         tutor
             .on(session.cursor(), session.frame())
-            .map_err(|why| fault(why.into()))?;
+            .map_err(refused)?;
     }
     Ok(answered)
 }

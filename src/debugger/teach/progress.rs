@@ -17,7 +17,7 @@ const BYTES: u64 = 1 << 20;
 /// Progress in a lesson.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Reached {
+pub struct LessonProgress {
     /// The largest number of steps completed so far.
     pub steps: usize,
     /// Number of steps of the lesson.
@@ -35,7 +35,7 @@ pub struct Reached {
 #[serde(deny_unknown_fields)]
 pub struct Progress {
     format: u32,
-    lessons: BTreeMap<String, Reached>,
+    lessons: BTreeMap<String, LessonProgress>,
 }
 
 impl Default for Progress {
@@ -112,7 +112,7 @@ impl Progress {
     }
 
     /// Progress in a lesson.
-    pub fn of(&self, lesson: &str) -> Option<Reached> {
+    pub fn of(&self, lesson: &str) -> Option<LessonProgress> {
         self.lessons.get(lesson).copied()
     }
 
@@ -123,7 +123,7 @@ impl Progress {
         let before = *reached;
         // If the number of steps has changed, the current one counts.
         if reached.of != lesson.steps.len() {
-            *reached = Reached::default();
+            *reached = LessonProgress::default();
         }
         reached.of = lesson.steps.len();
         reached.steps = reached.steps.max(tutor.at());
@@ -138,14 +138,14 @@ impl Progress {
     }
 }
 
-impl Reached {
+impl LessonProgress {
     /// Whether the lesson has been finished.
     pub fn is_done(&self) -> bool {
         self.ended > 0
     }
 
     /// A short description: `done, 4/4 right`, or `step 3 of 13` for the next step.
-    pub fn told(&self) -> String {
+    pub fn words(&self) -> String {
         match (self.ended, self.asked) {
             (0, _) => format!("step {} of {}", (self.steps + 1).min(self.of), self.of),
             (_, 0) => "done".into(),

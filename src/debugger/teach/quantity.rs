@@ -167,7 +167,7 @@ impl LessonQuantity {
         match self {
             LessonQuantity::Of(nodal, slave) => {
                 let record = look.record(*slave)?;
-                let round_off = RoundOff::of(&look.model, &look.event()?.before);
+                let round_off = RoundOff::new(&look.model, &look.event()?.before);
                 match nodal {
                     Nodal::Gap => Ok(round_off.length(record.gap)),
                     Nodal::Fn => Ok(round_off.force(record.f_n)),

@@ -3,7 +3,7 @@
 use super::refusal::Unknown;
 use std::sync::OnceLock;
 use stickslip_study::chart_file::Chart;
-use stickslip_study::chart_runs::Planned;
+use stickslip_study::chart_runs::PlannedChart;
 use stickslip_study::precision::{self, Cost, Measure, Point, Precision};
 use stickslip_study::{Vary, Watch};
 
@@ -34,7 +34,7 @@ impl Runs {
         let measured = self.measured.get_or_init(|| {
             let mut chart = Chart::open(&self.scene, &self.over).map_err(|e| e.to_string())?;
             chart.set.extend(self.set.iter().cloned());
-            let planned = Planned::new(chart).map_err(|e| e.to_string())?;
+            let planned = PlannedChart::new(chart).map_err(|e| e.to_string())?;
             let measure = Measure {
                 cost: Cost::Factorizations,
                 target: None,

@@ -13,10 +13,11 @@ use super::refusal::{NotNow, Unknown};
 use crate::action::{self, Action, Whose};
 use crate::explain::names::{self, MODES, TABLE_2};
 use crate::explain::report;
+use crate::explain::tested;
 use crate::history::frame::Frame;
 use crate::record::command::Command;
 use std::sync::Arc;
-use stickslip_core::contact::table2::{Decision, Rule, Test, Tested};
+use stickslip_core::contact::table2::{Decision, Rule, Test};
 use stickslip_core::model::Mode;
 use stickslip_core::step::state::Status;
 use stickslip_scene::number::four;
@@ -504,8 +505,8 @@ impl TutorQuestion {
             then: String::new(),
             tries: 0,
         };
-        let told = question.told();
-        question.then = ask.then.fill(&look, &told)?;
+        let words = question.words();
+        question.then = ask.then.fill(&look, &words)?;
         Ok(question)
     }
 
@@ -532,7 +533,7 @@ impl TutorQuestion {
     }
 
     /// The right answer in words.
-    fn told(&self) -> String {
+    fn words(&self) -> String {
         match &self.right {
             Right::Mode(mode) => names::mode(*mode).into(),
             Right::Choice(index) => format!("{}", index + 1),
@@ -552,7 +553,7 @@ impl TutorQuestion {
 
     /// The right answer with the reason.
     fn explained(&self) -> String {
-        let mut text = self.told() + ".";
+        let mut text = self.words() + ".";
         if let Some((_, decision, friction)) = &self.node {
             text += &format!(
                 " {}. {}",
@@ -643,23 +644,10 @@ fn compared(decision: &Decision) -> String {
             Some(std::cmp::Ordering::Greater) => ">",
             _ => "=",
         };
-        let (name, bound) = match test.tested {
-            Tested::NormalForce => ("F_n", "0".into()),
-            Tested::ShearForce => ("|F_t|", format!("|T_max| = {}", four(test.bound))),
-            Tested::Slip => ("slip·sgn T_max", "0".into()),
-            Tested::LeastFriction => (
-                "F_t against the slip",
-                format!("the least friction, {}", four(test.bound)),
-            ),
-            Tested::Room => ("way", format!("the room, {}", four(test.bound))),
-            Tested::Gap => ("g", "0".into()),
-            Tested::Pressure => ("F_n − k·g", "0".into()),
-            Tested::Drag => ("|F_t + k·slip|", format!("the limit, {}", four(test.bound))),
-            Tested::Cover => ("z", "0".into()),
-            Tested::Change => ("the change", "0".into()),
-            Tested::Error => ("the error", "0".into()),
-            Tested::Own => ("what it compares", "0".into()),
-        };
+        let (name, bound) = tested::sides(test.tested);
+        let bound = bound.map_or("0".into(), |bound| {
+            format!("{bound} = {}", four(test.bound))
+        });
         format!("{name} = {} {sign} {bound}", four(test.value))
     };
     let tests: Vec<String> = decision.tests.iter().flatten().map(side).collect();

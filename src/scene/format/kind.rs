@@ -5,6 +5,7 @@
 use super::error::{Path, Step};
 use super::locate::{head, locate, too_deep};
 use crate::{calculix, shown};
+use stickslip_exchange::attach::conversation;
 use stickslip_platform::input;
 
 /// The kinds of files that the program reads or writes.
@@ -34,6 +35,8 @@ pub enum FileKind {
     Cast,
     /// Contact elements of a CalculiX run.
     Contacts,
+    /// The stored exchange with an attached solver.
+    Exchange,
     /// Convergence of a CalculiX run: its increments or its residuals.
     Progress,
 }
@@ -64,9 +67,10 @@ const fn entry(
 
 /// All kinds, in the order in which they are tried.
 #[rustfmt::skip]
-const KINDS: [Entry; 13] = [
+const KINDS: [Entry; 14] = [
     entry(FileKind::Mesh, "a Gmsh mesh", "stickslip export {} -o SCENE.ron", |start| start.text.trim_start().starts_with("$MeshFormat")),
     entry(FileKind::Results, "a file of stored results", "stickslip map SCENE --resume {}", |start| start.first.starts_with("stickslip ") && start.first.contains(" results, ")),
+    entry(FileKind::Exchange, "a stored exchange with an attached solver", "stickslip {}", |start| start.text.starts_with(conversation::HEAD)),
     entry(FileKind::Contacts, "the .cel file of a finished CalculiX run", "stickslip {}", |start| is_contacts(start.first)),
     entry(FileKind::Progress, "a table of a finished CalculiX run", "stickslip {}", |start| ["SUMMARY OF JOB INFORMATION", "SUMMARY OF C0NVERGENCE INFORMATION"].contains(&start.first)),
     entry(FileKind::Cast, "a terminal recording of a session", "asciinema play {}", |start| start.first.starts_with("{\"version\"")),
@@ -128,7 +132,11 @@ impl FileKind {
         let rows = text.lines().filter(|line| !line.starts_with('#'));
         let start = Start {
             text,
-            first: rows.map(str::trim).find(|line| !line.is_empty())?,
+            // A file of comments only has none, such as the head of an exchange.
+            first: rows
+                .map(str::trim)
+                .find(|line| !line.is_empty())
+                .unwrap_or_default(),
             is_shallow: too_deep(text).is_none(),
         };
         let found = KINDS.iter().find(|entry| (entry.recognise)(&start));
@@ -227,6 +235,7 @@ mod tests {
                 "*ELEMENT,TYPE=C3D6,ELSET=contactelements_st1_in1_at1_it1\n1,2\n",
                 FileKind::Contacts,
             ),
+            ("# stickslip exchange 1\n", FileKind::Exchange),
             ("SUMMARY OF JOB INFORMATION\n STEP\n", FileKind::Progress),
             ("SUMMARY OF C0NVERGENCE INFORMATION\n", FileKind::Progress),
         ] {

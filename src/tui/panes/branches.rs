@@ -1,6 +1,7 @@
 //! The branch tree, with the outcome and cost of each branch, and a comparison of the selected branch with the current one.
 
 use crate::app::App;
+use crate::columns::rows_shown;
 use crate::layout::Pane;
 use crate::paint;
 use crate::view::View;
@@ -24,7 +25,7 @@ const NAME: usize = 12;
 /// Draws the tree and the comparison.
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let theme = &app.theme;
-    let focused = app.focus == Pane::Branches;
+    let focused = app.panes.focus == Pane::Branches;
     let Some(tree) = view.tree else {
         paint::frame(buffer, area, "Branches", focused, theme);
         return;
@@ -55,9 +56,8 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
 
 /// The first visible branch and the number of visible branches, for `room` rows.
 fn shown(at: usize, count: usize, room: usize) -> (usize, usize) {
-    let rows = count.min(room.max(3));
-    let top = at.saturating_sub(rows / 2).min(count.saturating_sub(rows));
-    (top, rows)
+    let shown = rows_shown(room.max(3), at, count);
+    (shown.start, shown.len())
 }
 
 /// The row of the tree at a screen position.
@@ -131,7 +131,7 @@ fn comparison(
     selected: usize,
     app: &App,
     view: &View,
-) -> Vec<Line<'static>> {
+) -> paint::Lines {
     let theme = &app.theme;
     let current = tree.current();
     if all.len() < 2 {

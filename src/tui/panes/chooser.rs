@@ -90,8 +90,8 @@ fn lines<'a>(left: &[&'a Offer], at: usize, width: usize, app: &App) -> (Vec<Lin
         let blank = " ".repeat(names.saturating_sub(name.width()));
         let done = match offer.reached {
             None => String::new(),
-            Some(reached) if reached.is_done() => format!("✓ {}  ", reached.told()),
-            Some(reached) => format!("{}  ", reached.told()),
+            Some(reached) if reached.is_done() => format!("✓ {}  ", reached.words()),
+            Some(reached) => format!("{}  ", reached.words()),
         };
         let room = width.saturating_sub(names + 6 + done.width());
         lines.push(Line::from(vec![
@@ -111,18 +111,15 @@ fn look(buffer: &mut Buffer, area: Rect, preview: &Preview, beside: bool, app: &
     let glance = match &preview.what {
         Ok(glance) => glance,
         Err(why) => {
-            let lines = paint::wrap(why, usize::from(area.width.saturating_sub(2)));
-            let lines = lines
-                .iter()
-                .map(|line| Line::styled(format!(" {line}"), theme.warning));
-            paint::lines(buffer, area, &lines.collect::<Vec<_>>());
+            let lines = paint::wrapped(why, area.width.into(), theme.warning);
+            paint::lines(buffer, area, &lines);
             return Rect::ZERO;
         }
     };
     let (words, picture) = match beside {
         true => {
-            let told = told(glance, area.width, app).len() as u16 + 1;
-            let rows = [Constraint::Length(told.min(WORDS)), Constraint::Fill(1)];
+            let rows = description(glance, area.width, app).len() as u16 + 1;
+            let rows = [Constraint::Length(rows.min(WORDS)), Constraint::Fill(1)];
             let [words, picture] = Layout::vertical(rows).areas(area);
             (words, picture)
         }
@@ -132,7 +129,7 @@ fn look(buffer: &mut Buffer, area: Rect, preview: &Preview, beside: bool, app: &
             (words, picture)
         }
     };
-    let mut lines = told(glance, words.width, app);
+    let mut lines = description(glance, words.width, app);
     let room = usize::from(words.height);
     if lines.len() > room && room > 0 {
         lines.truncate(room);
@@ -143,15 +140,9 @@ fn look(buffer: &mut Buffer, area: Rect, preview: &Preview, beside: bool, app: &
     picture
 }
 
-fn told(glance: &Glance, width: u16, app: &App) -> Vec<Line<'static>> {
-    let room = usize::from(width.saturating_sub(4));
-    let styled = |text: &str, style| -> Vec<Line<'static>> {
-        let lines = paint::wrap(text, room).into_iter();
-        lines
-            .map(|line| Line::styled(format!(" {line}"), style))
-            .collect()
-    };
-    let mut lines = styled(&glance.title, app.theme.heading);
-    lines.extend(styled(&glance.about, app.theme.text));
+fn description(glance: &Glance, width: u16, app: &App) -> paint::Lines {
+    let width = usize::from(width.saturating_sub(2));
+    let mut lines = paint::wrapped(&glance.title, width, app.theme.heading);
+    lines.extend(paint::wrapped(&glance.about, width, app.theme.text));
     lines
 }

@@ -29,7 +29,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         None => "Load".into(),
     };
     let title = paint::cut(&title, (area.width as usize).saturating_sub(4));
-    let inner = paint::frame(buffer, area, &title, app.focus == Pane::Curve, theme);
+    let inner = paint::frame(buffer, area, &title, app.panes.focus == Pane::Curve, theme);
     let say = |buffer: &mut Buffer, text: &'static str| {
         paint::lines(buffer, inner, &[Line::styled(text, theme.faint)]);
     };

@@ -14,11 +14,12 @@ use stickslip_core::contact::table2::{Decision, Rule, Test, Tested};
 use stickslip_core::model::Mode;
 use stickslip_core::model::TieRule;
 use stickslip_debugger::explain::bond;
-use stickslip_debugger::explain::influence::NodePush;
+use stickslip_debugger::explain::influence::{Influence, NodePush};
 use stickslip_debugger::explain::names::{self, MODES, TABLE_2};
-use stickslip_debugger::explain::pushes_told;
 use stickslip_debugger::explain::report;
+use stickslip_debugger::explain::reported_pushes;
 use stickslip_debugger::explain::round_off::NOTE;
+use stickslip_debugger::explain::tested::{self, Dimension};
 use stickslip_scene::number::{self, four, long};
 use unicode_width::UnicodeWidthStr;
 
@@ -33,13 +34,19 @@ const GRID: usize = 6;
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let theme = &app.theme;
     let count = view.model.contacts.len();
-    let slave = app.selected.min(count.saturating_sub(1));
+    let slave = app.slave(view);
     let title = if count == 0 {
         "Decision".into()
     } else {
         format!("Decision  {}", view.slave(slave))
     };
-    let inner = paint::frame(buffer, area, &title, app.focus == Pane::Decision, theme);
+    let inner = paint::frame(
+        buffer,
+        area,
+        &title,
+        app.panes.focus == Pane::Decision,
+        theme,
+    );
     if view.model.finished.is_some() {
         let words = view.words(slave).unwrap_or("No decision at the start.");
         let lines = paint::wrapped(words, inner.width.into(), theme.text);
@@ -47,7 +54,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     }
     let record = view.record(slave);
     let decision = record.map(|record| record.decision);
-    let hidden = app.hides(view, slave);
+    let hidden = app.learning.hides(view, slave);
     let tests = record.filter(|_| !hidden).map_or(Vec::new(), |record| {
         tests(&record.decision, view, inner.width as usize, theme)
     });
@@ -59,10 +66,10 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
             .collect(),
         None => tests,
     };
-    let words = match (hidden, &app.lesson) {
+    let words = match (hidden, &app.learning.lesson) {
         (false, _) => words(record, slave, view),
         (true, Some(_)) => "The numbers are in the table above. What does Table 2 choose?".into(),
-        (true, None) if view.guest.is_some() => {
+        (true, None) if view.attached.is_some() => {
             "Which mode does the solver choose next? Predict it: press a, then f, s or x.".into()
         }
         (true, None) => {
@@ -128,7 +135,7 @@ fn pushes(
     record: Option<&ContactRecord>,
     view: &View,
     theme: &Theme,
-) -> Vec<Line<'static>> {
+) -> paint::Lines {
     const MOST: usize = 6;
     let heading = |text: &str| Line::styled(format!(" {text}"), theme.heading);
     let Some(record) = record else {
@@ -138,37 +145,17 @@ fn pushes(
         return Vec::new();
     };
     let Some(found) = found else {
-        return vec![heading(match view.guest {
-            Some(guest) if pushes_told::are_told(view.model, guest.offers) => {
+        return vec![heading(match view.attached {
+            Some(attached) if reported_pushes::are_available(view.model, attached.offers) => {
                 "Who pushed it: unknown, the interface problem does not match the numbers"
             }
             Some(_) => "Who pushed it: known only to the solver",
             None => "Who pushed it: not available here",
         })];
     };
-    let tested = tested(&record.decision);
-    let of = |push: &NodePush| match tested {
-        Tested::Gap => push.influence.gap,
-        Tested::NormalForce
-        | Tested::Pressure
-        | Tested::Cover
-        | Tested::Change
-        | Tested::Error
-        | Tested::Own => push.influence.f_n,
-        Tested::ShearForce | Tested::LeastFriction | Tested::Drag => push.influence.f_t,
-        Tested::Slip | Tested::Room => push.influence.slip,
-    };
-    let symbol = match tested {
-        Tested::Gap => "Δg",
-        Tested::NormalForce
-        | Tested::Pressure
-        | Tested::Cover
-        | Tested::Change
-        | Tested::Error
-        | Tested::Own => "ΔF_n",
-        Tested::ShearForce | Tested::LeastFriction | Tested::Drag => "ΔF_t",
-        Tested::Slip | Tested::Room => "Δslip",
-    };
+    let quantity = quantity(&record.decision);
+    let of = |push: &NodePush| tested::effect(quantity, &push.influence).1;
+    let (symbol, _) = tested::effect(quantity, &Influence::default());
     let mut found: Vec<&NodePush> = found.iter().filter(|push| of(push) != 0.0).collect();
     found.sort_by(|a, b| of(b).abs().total_cmp(&of(a).abs()));
     let together: f64 = found.iter().map(|push| of(push)).sum();
@@ -209,7 +196,7 @@ fn deed(push: &NodePush, view: &View) -> String {
 }
 
 /// The quantity of the test that fired, or otherwise of the first test.
-fn tested(decision: &Decision) -> Tested {
+fn quantity(decision: &Decision) -> Tested {
     let tests = || decision.tests.iter().flatten();
     let fired = tests().find(|test| test.margin < 0.0);
     fired
@@ -221,12 +208,7 @@ fn tested(decision: &Decision) -> Tested {
 const MEASURED: usize = 15;
 
 /// All quantities of the node in this minor iteration, with explanations; shown if there is room.
-fn measured(
-    record: &ContactRecord,
-    slave: usize,
-    view: &View,
-    theme: &Theme,
-) -> Vec<Line<'static>> {
+fn measured(record: &ContactRecord, slave: usize, view: &View, theme: &Theme) -> paint::Lines {
     let round_off = view.round_off();
     let long = |value| view.long(value);
     let signed = |value: f64| {
@@ -240,7 +222,7 @@ fn measured(
     let place = match record.spot {
         None => " past the ends of every surface".into(),
         // Only the solver knows the position on the surface.
-        Some(_) if view.guest.is_some() => {
+        Some(_) if view.attached.is_some() => {
             let own = view.model.contacts[slave].surfaces.first();
             let surface = own.and_then(|own| view.model.surfaces.get(*own));
             surface.map_or(" -".into(), |surface| format!(" {}", surface.name))
@@ -286,8 +268,8 @@ fn measured(
         ),
         (
             "|F_t|/T_max",
-            match view.is_untold(record.f_t / record.t_max) {
-                true => format!(" {}", number::UNTOLD),
+            match view.is_unreported(record.f_t / record.t_max) {
+                true => format!(" {}", number::UNREPORTED),
                 false => format!(" {}", round_off.ratio(record.f_t, record.t_max)),
             },
             "used fraction of the friction limit",
@@ -339,7 +321,7 @@ fn grid(
     width: usize,
     ruled: bool,
     theme: &Theme,
-) -> Vec<Line<'static>> {
+) -> paint::Lines {
     let table = decision.and_then(table).unwrap_or(TABLE_2);
     let cell = width.saturating_sub(LABEL + 6) / 3;
     let bar = Span::styled("│ ", theme.faint);
@@ -402,7 +384,7 @@ fn grid(
 }
 
 /// The cells that can fire, one per line, if the table does not fit and the cell that fired is hidden.
-fn choices(before: Mode, theme: &Theme) -> Vec<Line<'static>> {
+fn choices(before: Mode, theme: &Theme) -> paint::Lines {
     let row = MODES.iter().position(|mode| *mode == before).unwrap_or(0);
     let cell = |(column, next): (usize, &Mode)| {
         let [first, second] = TABLE_2[row][column];
@@ -496,7 +478,7 @@ fn cell_look(
 }
 
 /// The inequalities with their values, on one line each if they fit, otherwise on two.
-fn tests(decision: &Decision, view: &View, width: usize, theme: &Theme) -> Vec<Line<'static>> {
+fn tests(decision: &Decision, view: &View, width: usize, theme: &Theme) -> paint::Lines {
     let mut lines = Vec::new();
     for test in decision.tests.iter().flatten() {
         let inequality = inequality(test, view);
@@ -522,7 +504,7 @@ fn tests(decision: &Decision, view: &View, width: usize, theme: &Theme) -> Vec<L
 }
 
 /// The forces on each of the two sides that hold a node in a corner.
-fn sides(record: &ContactRecord, slave: usize, view: &View, theme: &Theme) -> Vec<Line<'static>> {
+fn sides(record: &ContactRecord, slave: usize, view: &View, theme: &Theme) -> paint::Lines {
     let friction = &view.frame().state.controls.friction[slave];
     let Some(sides) = record.sides(friction) else {
         return Vec::new();
@@ -542,7 +524,7 @@ fn sides(record: &ContactRecord, slave: usize, view: &View, theme: &Theme) -> Ve
 }
 
 /// The state of the contact law, if it is not hard contact.
-fn bond(record: &ContactRecord, slave: usize, view: &View, theme: &Theme) -> Vec<Line<'static>> {
+fn bond(record: &ContactRecord, slave: usize, view: &View, theme: &Theme) -> paint::Lines {
     let lines = bond::lines(&view.model.contacts[slave], record);
     let line = |text: String| Line::styled(format!(" {text}"), theme.text);
     lines.into_iter().map(line).collect()
@@ -558,20 +540,8 @@ fn inequality(test: &Test, view: &View) -> String {
         Some(std::cmp::Ordering::Equal) => "=",
         None => "?",
     };
-    let (name, bound) = match test.tested {
-        Tested::NormalForce => ("F_n", "0".into()),
-        Tested::ShearForce => ("|F_t|", format!("|T_max| {}", long(test.bound))),
-        Tested::Slip => ("slip·sgn T_max", "0".into()),
-        Tested::LeastFriction => ("F_t against slip", format!("least {}", long(test.bound))),
-        Tested::Room => ("way", format!("room {}", long(test.bound))),
-        Tested::Gap => ("g", "0".into()),
-        Tested::Pressure => ("F_n − k·g", "0".into()),
-        Tested::Drag => ("|F_t + k·slip|", format!("limit {}", long(test.bound))),
-        Tested::Cover => ("z", "0".into()),
-        Tested::Change => ("change", "0".into()),
-        Tested::Error => ("error", "0".into()),
-        Tested::Own => ("its own", "0".into()),
-    };
+    let (name, bound) = tested::sides(test.tested);
+    let bound = bound.map_or("0".into(), |bound| format!("{bound} {}", long(test.bound)));
     format!(" {name} {} {sign} {bound}", long(test.value))
 }
 
@@ -579,15 +549,12 @@ fn inequality(test: &Test, view: &View) -> String {
 fn margin(test: &Test, view: &View, theme: &Theme) -> (String, Style) {
     let long = |value| view.long(value);
     let round_off = view.round_off();
-    let unit = match test.tested {
-        Tested::NormalForce
-        | Tested::ShearForce
-        | Tested::LeastFriction
-        | Tested::Pressure
-        | Tested::Drag => "force",
-        Tested::Slip | Tested::Room | Tested::Gap => "length",
-        Tested::Cover | Tested::Change | Tested::Error => "(relative)",
-        Tested::Own => "",
+    let dimension = Dimension::from(test.tested);
+    let unit = match dimension {
+        Dimension::Force => "force",
+        Dimension::Length => "length",
+        Dimension::Ratio => "(relative)",
+        Dimension::Unknown => "",
     };
     match test.tie {
         true => (
@@ -595,11 +562,12 @@ fn margin(test: &Test, view: &View, theme: &Theme) -> (String, Style) {
             theme.warning,
         ),
         false => {
-            let nothing = match unit {
-                "force" => round_off.force(test.value) == 0.0 && test.value != 0.0,
-                "length" => round_off.length(test.value) == 0.0 && test.value != 0.0,
-                _ => false,
+            let rounded = match dimension {
+                Dimension::Force => round_off.force(test.value),
+                Dimension::Length => round_off.length(test.value),
+                _ => test.value,
             };
+            let nothing = rounded == 0.0 && test.value != 0.0;
             let note = if nothing { NOTE } else { "" };
             let text = format!("margin {} {unit} {note}", long(test.margin));
             (format!("{} ", text.trim_end()), theme.faint)
@@ -612,7 +580,7 @@ fn theirs(record: &ContactRecord, slave: usize, view: &View) -> Option<String> {
     let decision = &record.decision;
     let said = view.words(slave);
     let differs = view.differs(slave);
-    if view.guest.is_none() || (said.is_none() && !differs && decision.rule != Rule::Theirs) {
+    if view.attached.is_none() || (said.is_none() && !differs && decision.rule != Rule::Theirs) {
         return None;
     }
     let next = names::mode(decision.next);

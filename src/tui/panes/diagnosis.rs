@@ -23,7 +23,7 @@ const MOST_LISTED: usize = 8;
 /// Draws the diagnosis.
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let theme = &app.theme;
-    let focused = app.focus == Pane::Diagnosis;
+    let focused = app.panes.focus == Pane::Diagnosis;
     let width = usize::from(area.width.saturating_sub(2));
     let height = usize::from(area.height.saturating_sub(2));
     let mut title = "Diagnosis".to_string();
@@ -61,7 +61,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     paint::lines(buffer, inner, &lines);
 }
 
-fn words(found: &Examination, width: usize, app: &App) -> Vec<Line<'static>> {
+fn words(found: &Examination, width: usize, app: &App) -> paint::Lines {
     let mut lines = Vec::new();
     for (index, text) in found.lines.iter().enumerate() {
         let style = match index {
@@ -82,7 +82,7 @@ fn words(found: &Examination, width: usize, app: &App) -> Vec<Line<'static>> {
 }
 
 /// The consistent states side by side, as many as fit, including the selected one.
-fn answers(found: &Examination, width: usize, app: &App, view: &View) -> Vec<Line<'static>> {
+fn answers(found: &Examination, width: usize, app: &App, view: &View) -> paint::Lines {
     let theme = &app.theme;
     let (Some(census), Some(problem)) = (&found.census, &found.problem) else {
         return Vec::new();

@@ -1,6 +1,7 @@
 //! The last two rows: the message or prompt, and the most relevant keys of the key table.
 
 use crate::app::{App, Overlay, Tone};
+use crate::commandline::Purpose;
 use crate::layout::{Pane, Places};
 use crate::paint::{self, wrapped};
 use crate::theme::Theme;
@@ -9,6 +10,9 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 use stickslip_debugger::action::{ACTIONS, ActionEntry, Group};
+use stickslip_debugger::teach::Tutor;
+use stickslip_debugger::teach::tutor::AnswerKind;
+use stickslip_scene::number;
 use unicode_width::UnicodeWidthStr;
 
 /// Actions that the footer shows at any width.
@@ -35,19 +39,18 @@ pub fn draw(buffer: &mut Buffer, places: &Places, app: &App, view: Option<&View>
     paint::over(buffer, area, &lines, &app.theme);
 }
 
-fn message(app: &App, view: Option<&View>, places: &Places, width: usize) -> Vec<Line<'static>> {
+fn message(app: &App, view: Option<&View>, places: &Places, width: usize) -> paint::Lines {
     let theme = &app.theme;
     if let Overlay::Line(line) = &app.overlay {
-        use crate::commandline::Purpose;
         let prompt = match line.purpose {
             Purpose::Command => ":".into(),
             Purpose::Node => "/".into(),
             Purpose::Answer => "your answer: ".into(),
-            Purpose::Increment => app.question(view).unwrap_or_else(|| "increment: ".into()),
+            Purpose::Increment => question(app, view).unwrap_or_else(|| "increment: ".into()),
         };
         return line.lines(&prompt, width, theme);
     }
-    if let Some(question) = app.question(view) {
+    if let Some(question) = question(app, view) {
         return wrapped(&question, width, theme.key);
     }
     if let Some(note) = app.ahead.note() {
@@ -57,7 +60,7 @@ fn message(app: &App, view: Option<&View>, places: &Places, width: usize) -> Vec
         return vec![Line::styled(format!(" {count} ×"), theme.key)];
     }
     let shown = places.panes.iter().any(|(pane, _)| *pane == Pane::Lesson);
-    if let (false, "", Some(tutor)) = (shown, app.message.text.as_str(), &app.lesson) {
+    if let (false, "", Some(tutor)) = (shown, app.message.text.as_str(), &app.learning.lesson) {
         return wrapped(&format!("▶ {}", tutor.todo()), width, theme.key);
     }
     let mut lines = said(app, view, width);
@@ -68,8 +71,45 @@ fn message(app: &App, view: Option<&View>, places: &Places, width: usize) -> Vec
     lines
 }
 
+/// The keys of the modes.
+const MODES: &str = "f free   s sliding   x fixed";
+
+/// The prompt of the message line; `None` if there is no question.
+fn question(app: &App, view: Option<&View>) -> Option<String> {
+    let view = view?;
+    match &app.overlay {
+        Overlay::Mode => {
+            let held = match view.attached.map(|attached| attached.offers) {
+                Some(offers) if !offers.hold => "this solver cannot hold it",
+                Some(offers) if !offers.force => {
+                    "capital letters only: this solver can only hold it, until M releases it"
+                }
+                _ => "capital letter: hold until M releases it",
+            };
+            Some(format!(
+                "mode of {}:  {MODES}   ({held})",
+                view.slave(app.selected)
+            ))
+        }
+        Overlay::Answer => Some(
+            match app.learning.lesson.as_ref().and_then(Tutor::question) {
+                Some(question) if question.kind == AnswerKind::Choice => {
+                    format!("your answer:  1 to {}", question.options.len())
+                }
+                Some(_) => format!("your answer:  {MODES}"),
+                None => format!("next mode of {}:  {MODES}", view.slave(app.selected)),
+            },
+        ),
+        Overlay::Line(line) if line.purpose == Purpose::Increment => Some(format!(
+            "new increment (now {}): ",
+            number::plain(view.frame().state.controls.increment)
+        )),
+        _ => None,
+    }
+}
+
 /// The last message, and the watches.
-fn said(app: &App, view: Option<&View>, width: usize) -> Vec<Line<'static>> {
+fn said(app: &App, view: Option<&View>, width: usize) -> paint::Lines {
     let theme = &app.theme;
     let aside = view.map_or("", |view| view.aside.as_str());
     let text = app.message.text.as_str();
@@ -87,35 +127,24 @@ fn said(app: &App, view: Option<&View>, width: usize) -> Vec<Line<'static>> {
     }
 }
 
-fn keys(app: &App, view: Option<&View>, places: &Places) -> Vec<Line<'static>> {
+fn keys(app: &App, view: Option<&View>, places: &Places) -> paint::Lines {
     let room = places.footer.width as usize;
+    let typed = match &app.overlay {
+        Overlay::Manual(reader) => reader.typed(),
+        Overlay::Help(help) => help.search.typed(),
+        Overlay::Solver(reader) => reader.search.typed(),
+        _ => None,
+    };
+    let page = |own: &[(&str, &str)]| {
+        let search = [("/", "search"), ("n N", "again"), ("Esc", "back")];
+        listed(&[own, &search].concat(), app)
+    };
     let line = match &app.overlay {
+        _ if typed.is_some() => listed(&[("Enter", "find"), ("Esc", "back")], app),
         Overlay::None => table_keys(app, view, places, room),
-        Overlay::Manual(reader) => match reader.typed() {
-            Some(_) => listed(&[("Enter", "find"), ("Esc", "back")], app),
-            None => listed(
-                &[
-                    ("↑↓", "scroll"),
-                    ("←→", "page"),
-                    ("/", "search"),
-                    ("n N", "again"),
-                    ("Esc", "back"),
-                ],
-                app,
-            ),
-        },
-        Overlay::Help(help) => match help.search.typed() {
-            Some(_) => listed(&[("Enter", "find"), ("Esc", "back")], app),
-            None => listed(
-                &[
-                    ("↑↓", "scroll"),
-                    ("/", "search"),
-                    ("n N", "again"),
-                    ("Esc", "back"),
-                ],
-                app,
-            ),
-        },
+        Overlay::Manual(_) => page(&[("↑↓", "scroll"), ("←→", "page")]),
+        Overlay::Help(_) => page(&[("↑↓", "scroll")]),
+        Overlay::Solver(_) => page(&[("↑↓ ←→", "scroll"), ("End", "follow")]),
         Overlay::Chart(_) => listed(
             &[
                 ("←→", "run"),
@@ -137,25 +166,14 @@ fn keys(app: &App, view: Option<&View>, places: &Places) -> Vec<Line<'static>> {
             listed(&keys, app)
         }
         Overlay::Mode => {
-            let offers = view.and_then(|view| view.guest).map(|guest| guest.offers);
+            let offers = view
+                .and_then(|view| view.attached)
+                .map(|attached| attached.offers);
             let may = |may: bool, word, not| if may { word } else { not };
             let once = may(offers.is_none_or(|offers| offers.force), "once", "(once)");
             let hold = may(offers.is_none_or(|offers| offers.hold), "hold", "(hold)");
             listed(&[("f s x", once), ("F S X", hold), ("Esc", "cancel")], app)
         }
-        Overlay::Solver(reader) => match reader.search.typed() {
-            Some(_) => listed(&[("Enter", "find"), ("Esc", "back")], app),
-            None => listed(
-                &[
-                    ("↑↓ ←→", "scroll"),
-                    ("End", "follow"),
-                    ("/", "search"),
-                    ("n N", "again"),
-                    ("Esc", "back"),
-                ],
-                app,
-            ),
-        },
         Overlay::Answer => listed(&[("Esc", "back to the panes")], app),
         Overlay::Line(line) => {
             let scenes = app.scenes();
@@ -194,7 +212,7 @@ fn hint(key: &str, label: &str, theme: &Theme) -> [Span<'static>; 2] {
 
 /// The labelled actions of the table that fit, in table order; the ones in [`ALWAYS`] get space first.
 fn table_keys(app: &App, view: Option<&View>, places: &Places, room: usize) -> Line<'static> {
-    let teaches = app.lesson.is_some() || app.guess.is_some();
+    let teaches = app.learning.lesson.is_some() || app.learning.guess.is_some();
     // An action without a key is left out; it can still be typed by name.
     let key = |entry: &'static ActionEntry| app.keymap.keys(entry).next().map(str::to_owned);
     let context = app.context(view, &[]);
@@ -247,7 +265,7 @@ fn label(entry: &ActionEntry, app: &App, places: &Places) -> String {
     if entry.name == "pane" && places.paged {
         let page = Pane::ALL
             .iter()
-            .position(|pane| *pane == app.focus)
+            .position(|pane| *pane == app.panes.focus)
             .map_or(1, |at| at + 1);
         return format!("page {page}/{}", Pane::ALL.len());
     }

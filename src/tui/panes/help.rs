@@ -2,6 +2,7 @@
 //! format of the file that changes them.
 
 use crate::paint;
+use crate::scroll::scrolled;
 use crate::theme::Theme;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -78,18 +79,8 @@ impl Help {
             self.top = self.search.find(go, self.top, &texts).unwrap_or(self.top);
             return true;
         }
-        self.top = match name {
-            "Esc" | "q" | "?" | "F1" | "Enter" => return false,
-            "Up" | "k" => top.saturating_sub(1),
-            "Down" | "j" => top + 1,
-            "PageUp" => top.saturating_sub(PAGE),
-            "PageDown" | "Space" => top + PAGE,
-            "Home" | "g" => 0,
-            "End" | "G" => last,
-            _ => top,
-        }
-        .min(last);
-        true
+        self.top = scrolled(top, name, PAGE, last).unwrap_or(top);
+        !["Esc", "q", "?", "F1", "Enter"].contains(&name)
     }
 
     fn lines(
@@ -98,7 +89,7 @@ impl Help {
         theme: &Theme,
         keymap: &Keymap,
         context: &Context,
-    ) -> Vec<Line<'static>> {
+    ) -> paint::Lines {
         match self.listing {
             Listing::Actions => page(width, theme, keymap, context),
             Listing::Keys => keys(theme, keymap),
@@ -141,7 +132,7 @@ const NAMES: usize = 23;
 
 /// The whole page. Help texts wrap on a narrow screen. Actions that the current solver does not support are dim and state the
 /// reason.
-pub fn page(width: usize, theme: &Theme, keymap: &Keymap, context: &Context) -> Vec<Line<'static>> {
+pub fn page(width: usize, theme: &Theme, keymap: &Keymap, context: &Context) -> paint::Lines {
     let finished = context.model.filter(|model| model.finished.is_some());
     let mut lines = match finished {
         Some(model) => paint::wrapped(&model.about, width, theme.warning),
@@ -192,7 +183,7 @@ pub fn page(width: usize, theme: &Theme, keymap: &Keymap, context: &Context) -> 
 }
 
 /// The current key bindings, and the file that changes them.
-fn keys(theme: &Theme, keymap: &Keymap) -> Vec<Line<'static>> {
+fn keys(theme: &Theme, keymap: &Keymap) -> paint::Lines {
     let file = config::folder().map(|folder| folder.join(config::KEYS));
     let file = file.map_or(config::KEYS.into(), |file| file.display().to_string());
     let state = match keymap.is_changed() {

@@ -15,7 +15,7 @@ use unicode_width::UnicodeWidthStr;
 /// Rows that the lesson needs at a width, with border; 0 without a lesson.
 pub fn rows(app: &App, width: u16) -> u16 {
     let inner = usize::from(width.saturating_sub(2));
-    match &app.lesson {
+    match &app.learning.lesson {
         Some(tutor) => {
             let todo = todo(tutor, inner, &app.theme);
             2 + (said(tutor, inner, &app.theme).len() + todo.len()) as u16
@@ -26,14 +26,16 @@ pub fn rows(app: &App, width: u16) -> u16 {
 
 /// Draws the lesson, with the next task at the bottom. If the text does not fit, a part of it is shown, with the key for more.
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App) {
-    let Some(tutor) = &app.lesson else { return };
+    let Some(tutor) = &app.learning.lesson else {
+        return;
+    };
     let inner = paint::frame(buffer, area, &title(tutor), false, &app.theme);
     let (width, room) = room(area, tutor, &app.theme);
     let mut lines = said(tutor, width, &app.theme);
     let (top, all) = (top(app, tutor, width, room), lines.len());
     let shown = top..(top + room).min(all);
-    let same = app.reading.edition == tutor.edition();
-    let seen = if same { app.reading.seen } else { 0 };
+    let same = app.learning.reading.edition == tutor.edition();
+    let seen = if same { app.learning.reading.seen } else { 0 };
     lines = lines.into_iter().skip(top).take(room).collect();
     let more = all > shown.end.max(seen);
     match more {
@@ -65,9 +67,9 @@ pub fn room(area: Rect, tutor: &Tutor, theme: &Theme) -> (usize, usize) {
 /// The first visible line: the latest addition to the text, or the top of a new page.
 pub fn top(app: &App, tutor: &Tutor, width: usize, room: usize) -> usize {
     let all = said(tutor, width, &app.theme).len();
-    let (now, then) = (tutor.edition(), app.reading.edition);
+    let (now, then) = (tutor.edition(), app.learning.reading.edition);
     let wanted = match now.0 == then.0 {
-        true if now.1 == then.1 => app.reading.top,
+        true if now.1 == then.1 => app.learning.reading.top,
         // The question above an answer has been read.
         true => all - remark(tutor, width, &app.theme).len(),
         false => 0,
@@ -90,26 +92,26 @@ fn title(tutor: &Tutor) -> String {
 }
 
 /// The next task, wrapped.
-fn todo(tutor: &Tutor, width: usize, theme: &Theme) -> Vec<Line<'static>> {
+fn todo(tutor: &Tutor, width: usize, theme: &Theme) -> paint::Lines {
     wrapped("▶ ", &tutor.todo(), width, theme.key)
 }
 
 /// The tutor's text, wrapped. A mark precedes the reply to an answer, so that it does not depend on colour.
-pub fn said(tutor: &Tutor, width: usize, theme: &Theme) -> Vec<Line<'static>> {
+pub fn said(tutor: &Tutor, width: usize, theme: &Theme) -> paint::Lines {
     let page = tutor.page();
     let parts = page.iter().flat_map(|part| paragraph(part, width, theme));
     parts.collect()
 }
 
 /// The tutor's reply to the last answer.
-fn remark(tutor: &Tutor, width: usize, theme: &Theme) -> Vec<Line<'static>> {
+fn remark(tutor: &Tutor, width: usize, theme: &Theme) -> paint::Lines {
     match tutor.page().last() {
         Some(part @ (Paragraph::Right(_) | Paragraph::Wrong(_))) => paragraph(part, width, theme),
         _ => Vec::new(),
     }
 }
 
-fn paragraph(part: &Paragraph, width: usize, theme: &Theme) -> Vec<Line<'static>> {
+fn paragraph(part: &Paragraph, width: usize, theme: &Theme) -> paint::Lines {
     match part {
         Paragraph::Text(text) => wrapped("", text, width, theme.text),
         Paragraph::Option(number, text) => wrapped(&format!("{number} "), text, width, theme.text),
@@ -119,7 +121,7 @@ fn paragraph(part: &Paragraph, width: usize, theme: &Theme) -> Vec<Line<'static>
 }
 
 /// A paragraph whose lines after the first are indented by the width of the mark.
-fn wrapped(mark: &str, text: &str, width: usize, style: Style) -> Vec<Line<'static>> {
+fn wrapped(mark: &str, text: &str, width: usize, style: Style) -> paint::Lines {
     let indent = mark.width();
     let lines = paint::wrap(text, width.saturating_sub(2 + indent));
     let line = |(index, words): (usize, String)| {

@@ -1,6 +1,7 @@
 //! A page of the manual over the whole screen, with scrolling, search and links to the neighbouring pages.
 
 use crate::paint;
+use crate::scroll::scrolled;
 use crate::theme::Theme;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -49,25 +50,13 @@ impl Reader {
         let last = self.lines.len().saturating_sub(1);
         match name {
             "Esc" | "q" | "?" | "F1" => return false,
-            "Up" | "k" => self.top = self.top.saturating_sub(1),
-            "Down" | "j" | "Enter" => self.top = (self.top + 1).min(last),
-            "PageUp" => self.top = self.top.saturating_sub(PAGE),
-            "PageDown" | "Space" => self.top = (self.top + PAGE).min(last),
-            "Home" | "g" => self.top = 0,
+            "Enter" => self.top = (self.top + 1).min(last),
             "End" | "G" => self.top = self.lines.len().saturating_sub(PAGE),
             "Left" | "h" => self.turn(PAGES.len() - 1),
             "Right" | "l" => self.turn(1),
-            _ => {}
+            _ => self.top = scrolled(self.top, name, PAGE, last).unwrap_or(self.top),
         }
         true
-    }
-
-    /// Scrolls by one line.
-    pub fn scroll(&mut self, up: bool) {
-        self.top = match up {
-            true => self.top.saturating_sub(1),
-            false => (self.top + 1).min(self.lines.len().saturating_sub(1)),
-        };
     }
 
     /// Opens the page `by` pages further on.

@@ -1,6 +1,7 @@
 //! The slave-node table: the values of every slave node in the shown minor iteration.
 
 use crate::app::App;
+use crate::columns::rows_shown;
 use crate::layout::Pane;
 use crate::paint;
 use crate::theme;
@@ -14,6 +15,7 @@ use stickslip_core::contact::table2::Tested;
 use stickslip_debugger::action::{Filter, Sort};
 use stickslip_debugger::explain::names;
 use stickslip_debugger::explain::round_off::RoundOff;
+use stickslip_debugger::explain::tested::Dimension;
 use stickslip_scene::number;
 use stickslip_scene::shown;
 use unicode_width::UnicodeWidthStr;
@@ -100,12 +102,18 @@ impl Columns {
 /// Draws the table.
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let count = view.model.contacts.len();
-    let selected = app.selected.min(count.saturating_sub(1));
+    let selected = app.slave(view);
     let order = app.order(view);
     let at = order.iter().position(|slave| *slave == selected);
     let at = at.unwrap_or(0);
     let title = title(at, order.len(), count, app);
-    let inner = paint::frame(buffer, area, &title, app.focus == Pane::Nodes, &app.theme);
+    let inner = paint::frame(
+        buffer,
+        area,
+        &title,
+        app.panes.focus == Pane::Nodes,
+        &app.theme,
+    );
     if count == 0 {
         paint::lines(
             buffer,
@@ -133,7 +141,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     };
     let rows = (inner.height as usize).saturating_sub(1);
     let round_off = view.round_off();
-    let top = first_row(at, rows, order.len());
+    let top = rows_shown(rows, at, order.len()).start;
     let mut lines = vec![match view.model.finished {
         None => headings(&columns, app),
         Some(_) => Line::styled(format!("{:MARKS$}contact", ""), app.theme.heading),
@@ -151,13 +159,12 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
 /// The slave node in the row at a screen position.
 pub fn slave_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usize> {
     let order = app.order(view);
-    let count = view.model.contacts.len();
-    let selected = app.selected.min(count.saturating_sub(1));
+    let selected = app.slave(view);
     let here = order.iter().position(|slave| *slave == selected);
     // Border and headings.
     let rows = usize::from(area.height).saturating_sub(3);
     let row = usize::from(at.y).checked_sub(usize::from(area.y) + 2)?;
-    let top = first_row(here.unwrap_or(0), rows, order.len());
+    let top = rows_shown(rows, here.unwrap_or(0), order.len()).start;
     let inside = row < rows && at.x > area.x && at.x + 1 < area.right();
     order.get(top + row).copied().filter(|_| inside)
 }
@@ -182,13 +189,6 @@ fn title(at: usize, shown: usize, count: usize, app: &App) -> String {
         title += ", reversed";
     }
     title
-}
-
-/// First visible row, with the selection in the middle if possible.
-fn first_row(selected: usize, rows: usize, count: usize) -> usize {
-    selected
-        .saturating_sub(rows / 2)
-        .min(count.saturating_sub(rows))
 }
 
 fn headings(columns: &Columns, app: &App) -> Line<'static> {
@@ -235,7 +235,7 @@ fn row<'a>(
 ) -> Line<'a> {
     let theme = &app.theme;
     let record = view.record(slave);
-    let hidden = app.hides(view, slave);
+    let hidden = app.learning.hides(view, slave);
     let changed = !hidden && view.mode_before(slave) != view.mode(slave);
     let differs = !hidden && view.differs(slave);
     let name_style = match (selected, changed) {
@@ -244,7 +244,7 @@ fn row<'a>(
         _ => theme.text,
     };
     let mut spans = vec![
-        Span::styled(if selected { "▸" } else { " " }, theme.focus),
+        paint::cursor(selected, theme),
         Span::styled(
             change_mark(differs, changed, !hidden && view.t_max_moves(slave)),
             theme.strong,
@@ -265,10 +265,15 @@ fn row<'a>(
         if columns.pressures {
             let forces = [record.f_n, record.f_t].map(|force| round_off.force(force));
             let found = view.model.contacts[slave].pressure(forces[0], forces[1]);
-            let told = found.map_or([String::new(), String::new()], |both| {
+            let message = found.map_or([String::new(), String::new()], |both| {
                 both.map(|value| view.cell(value, columns.number))
             });
-            let text = format!(" {:<width$}{}", told[0], told[1], width = columns.number);
+            let text = format!(
+                " {:<width$}{}",
+                message[0],
+                message[1],
+                width = columns.number
+            );
             spans.push(Span::styled(text, theme.text));
         }
     }
@@ -313,7 +318,7 @@ fn modes(
     };
     let (before, next) = (view.mode_before(slave), view.mode(slave));
     let arrow = if columns.words { " → " } else { "→" };
-    let hidden = app.hides(view, slave);
+    let hidden = app.learning.hides(view, slave);
     let (first, second) = (spell(before), if hidden { "?" } else { spell(next) });
     let next_style = if hidden {
         app.theme.strong
@@ -347,26 +352,23 @@ fn numbers(
         record.decision.changes() && tests.any(|test| test.tested == tested)
     };
     let cell = |value| view.cell(value, columns.number);
-    let force = |value: f64, tested: Tested| match decided(tested) {
-        true => cell(value),
-        false => cell(round_off.force(value)),
-    };
-    let length = |value: f64, tested: Tested| match decided(tested) {
-        true => cell(value),
-        false => cell(round_off.length(value)),
+    let number = |value: f64, tested: Tested| match Dimension::from(tested) {
+        _ if decided(tested) => cell(value),
+        Dimension::Force => cell(round_off.force(value)),
+        _ => cell(round_off.length(value)),
     };
     let ratio = match decided(Tested::ShearForce) {
-        _ if view.is_untold(record.f_t / record.t_max) => number::UNTOLD.into(),
+        _ if view.is_unreported(record.f_t / record.t_max) => number::UNREPORTED.into(),
         true => number::ratio(record.f_t, record.t_max),
         false => round_off.ratio(record.f_t, record.t_max),
     };
     let texts = [
-        length(record.gap, Tested::Gap),
-        force(record.f_n, Tested::NormalForce),
-        force(record.f_t, Tested::ShearForce),
-        force(record.t_max, Tested::ShearForce),
+        number(record.gap, Tested::Gap),
+        number(record.f_n, Tested::NormalForce),
+        number(record.f_t, Tested::ShearForce),
+        number(record.t_max, Tested::ShearForce),
         format!("{ratio:<width$}", width = columns.ratio),
-        length(record.slip, Tested::Slip),
+        number(record.slip, Tested::Slip),
     ];
     let style = |index: usize| number_style(index, record, app);
     texts
@@ -436,7 +438,7 @@ mod tests {
         for count in [1, 5, 300] {
             for rows in [1, 4, 10] {
                 for selected in 0..count {
-                    let top = first_row(selected, rows, count);
+                    let top = rows_shown(rows, selected, count).start;
                     assert!(top <= selected && selected < top + rows);
                 }
             }

@@ -8,7 +8,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
 use ratatui::text::{Line, Span};
-use stickslip_debugger::explain::remedies::{self, CLEAN, COLUMNS, Trial, TrialEnd};
+use stickslip_debugger::explain::remedies::{self, COLUMNS, Trial, TrialEnd, rank};
 use stickslip_scene::shown;
 use unicode_width::UnicodeWidthStr;
 
@@ -22,7 +22,7 @@ const NAME: usize = 26;
 /// Draws the list.
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let theme = &app.theme;
-    let focused = app.focus == Pane::Remedies;
+    let focused = app.panes.focus == Pane::Remedies;
     let tried = view.background.and_then(|background| background.tried());
     let Some(tried) = tried else {
         let inner = paint::frame(buffer, area, "Remedies", focused, theme);
@@ -86,7 +86,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         let selected = number == at;
         let name = paint::cut(&format!("{} {}", number + 1, trial.label), names);
         let mut spans = vec![
-            Span::styled(if selected { "▸" } else { " " }, theme.focus),
+            paint::cursor(selected, theme),
             Span::styled(mark, style),
             Span::raw(" "),
             Span::styled(
@@ -136,12 +136,9 @@ fn shown(rows: &[[String; 10]], width: usize) -> Vec<(usize, usize)> {
 /// Mark of a trial: converged cleanly, converged with warnings, or not converged.
 fn mark(trial: &Trial, app: &App) -> (&'static str, Style) {
     let theme = &app.theme;
-    match (&trial.end, &trial.left) {
-        (TrialEnd::Converged, Some(left)) if left.worst > CLEAN || left.held > 0 => {
-            ("~", theme.warning)
-        }
-        (TrialEnd::Converged, _) => ("✓", theme.good),
-        (TrialEnd::Against(_), _) => ("~", theme.warning),
+    match rank(trial) {
+        0 => ("✓", theme.good),
+        1 => ("~", theme.warning),
         _ => ("✗", theme.bad),
     }
 }

@@ -23,7 +23,13 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         None => "Residual by major iteration",
         Some(_) => "Residual by iteration of this attempt",
     };
-    let inner = paint::frame(buffer, area, title, app.focus == Pane::Residual, theme);
+    let inner = paint::frame(
+        buffer,
+        area,
+        title,
+        app.panes.focus == Pane::Residual,
+        theme,
+    );
     let Some((_, last)) = view.residuals.last() else {
         paint::lines(
             buffer,
@@ -34,7 +40,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     };
     let words = |value: f64| short(value, view);
     let percent = |part: f64| match part.is_nan() {
-        true => number::UNTOLD.to_owned(),
+        true => number::UNREPORTED.to_owned(),
         false => format!("{} %", number::plain(100.0 * part)),
     };
     let (main, (other, value), limit) = match &view.model.finished {
@@ -58,7 +64,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         Span::raw(limit),
     ]);
     let mut above = vec![caption];
-    let shows_judge = inner.height >= ROOM_FOR_JUDGE && !app.hides_verdict();
+    let shows_judge = inner.height >= ROOM_FOR_JUDGE && !app.learning.hides_verdict();
     above.extend(judged(view, theme).filter(|_| shows_judge));
     paint::lines(buffer, inner, &above);
     let above = above.len() as u16;
@@ -70,19 +76,19 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     };
     if convergence::fits(plot) {
         // Values that an attached solver does not report are left out.
-        let told = view
+        let text = view
             .residuals
             .iter()
-            .filter(|(_, norms)| !view.is_untold(norms.relative));
-        let points: Vec<Point> = told.map(|one| point(one, view)).collect();
+            .filter(|(_, norms)| !view.is_unreported(norms.relative));
+        let points: Vec<Point> = text.map(|one| point(one, view)).collect();
         convergence::draw(buffer, plot, &points, theme);
     }
 }
 
 /// A number of a caption; a dash if an attached solver does not report it.
 fn short(value: f64, view: &View) -> String {
-    match view.is_untold(value) {
-        true => number::UNTOLD.into(),
+    match view.is_unreported(value) {
+        true => number::UNREPORTED.into(),
         false => number::short(value),
     }
 }

@@ -46,7 +46,7 @@ const SPACING: f64 = 16.0;
 /// Draws the shape.
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let theme = &app.theme;
-    let inner = paint::frame(buffer, area, "Shape", app.focus == Pane::Shape, theme);
+    let inner = paint::frame(buffer, area, "Shape", app.panes.focus == Pane::Shape, theme);
     if view.model.finished.is_some() {
         let none = "The files of this run contain no coordinates.";
         let lines = paint::wrapped(none, inner.width.into(), theme.faint);
@@ -161,8 +161,7 @@ impl Window {
 
 /// Position of the selected node, if there is one and its position is known.
 fn selected_place(app: &App, view: &View) -> Option<Point> {
-    let slaves = &view.model.contacts;
-    let slave = slaves.get(app.selected.min(slaves.len().saturating_sub(1)))?;
+    let slave = view.model.contacts.get(app.slave(view))?;
     Some(view.place(slave.node)).filter(|place| place.iter().all(|x| x.is_finite()))
 }
 
@@ -411,9 +410,7 @@ fn heads(buffer: &mut Buffer, canvas: &Canvas, lines: &[[Dot; 2]], app: &App) {
 /// Letters of the modes at the slave nodes; the selected node is reversed and named.
 fn slaves(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view: &View) {
     let theme = &app.theme;
-    let selected = app
-        .selected
-        .min(view.model.contacts.len().saturating_sub(1));
+    let selected = app.slave(view);
     let others = (0..view.model.contacts.len()).filter(|slave| *slave != selected);
     for slave in others.chain([selected]) {
         let Some(node) = view.model.contacts.get(slave).map(|slave| slave.node) else {
@@ -423,10 +420,7 @@ fn slaves(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view
             continue;
         };
         // The shape must not reveal a mode that is still to be predicted.
-        let mode = match app.hides(view, slave) {
-            true => view.mode_before(slave),
-            false => view.mode(slave),
-        };
+        let mode = app.shown_mode(view, slave);
         let style = theme.mode(mode).add_modifier(Modifier::BOLD);
         if let Some(cell) = buffer.cell_mut((x, y)) {
             cell.set_symbol(theme::letter(mode)).set_style(style);

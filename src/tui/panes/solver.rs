@@ -3,6 +3,7 @@
 //! `:set` changes, with their current values; and the text of a finished run.
 
 use crate::paint;
+use crate::scroll::scrolled;
 use crate::theme::Theme;
 use crate::view::{View, context};
 use ratatui::buffer::Buffer;
@@ -88,26 +89,17 @@ impl SolverReader {
             self.top = self.search.find(go, top, &texts).or(self.top);
             return true;
         }
-        let to = match name {
+        match name {
             "Esc" | "q" | "Enter" | "O" => return false,
-            "Left" | "h" => {
-                self.aside = self.aside.saturating_sub(ASIDE);
-                return true;
+            "Left" | "h" => self.aside = self.aside.saturating_sub(ASIDE),
+            "Right" | "l" => self.aside += ASIDE,
+            _ => {
+                if let Some(to) = scrolled(top, name, PAGE, last) {
+                    // Scrolling back to the end follows it again.
+                    self.top = (to < last || self.page != Page::Log).then_some(to);
+                }
             }
-            "Right" | "l" => {
-                self.aside += ASIDE;
-                return true;
-            }
-            "Up" | "k" => top.saturating_sub(1),
-            "Down" | "j" => top + 1,
-            "PageUp" => top.saturating_sub(PAGE),
-            "PageDown" | "Space" => top + PAGE,
-            "Home" | "g" => 0,
-            "End" | "G" => last,
-            _ => return true,
-        };
-        // Scrolling back to the end follows it again.
-        self.top = (to < last || self.page != Page::Log).then_some(to.min(last));
+        }
         true
     }
 }
@@ -125,8 +117,8 @@ pub fn draw(
     let height = usize::from(area.height.saturating_sub(2));
     let top = reader.first(rows.len(), height);
     let name = view
-        .and_then(|view| view.guest)
-        .map_or("", |guest| &guest.offers.name);
+        .and_then(|view| view.attached)
+        .map_or("", |attached| &attached.offers.name);
     let title = reader.search.title().unwrap_or_else(|| {
         let what = match reader.page {
             Page::Log => format!("Log of {name}"),
@@ -166,18 +158,18 @@ pub fn draw(
 }
 
 fn rows(page: Page, width: usize, view: Option<&View>) -> Vec<Row> {
-    let Some((view, guest)) = view.and_then(|view| Some((view, view.guest?))) else {
+    let Some((view, attached)) = view.and_then(|view| Some((view, view.attached?))) else {
         return Vec::new();
     };
     match page {
-        Page::Log => said(guest.log.lines()),
-        Page::Run => printed(guest.log.lines().1, width),
-        Page::Parameters => parameters(&guest.offers.parameters, width, view),
+        Page::Log => said(attached.log.lines()),
+        Page::Run => printed(attached.log.lines().1, width),
+        Page::Parameters => parameters(&attached.offers.parameters, width, view),
     }
 }
 
 /// The text of a finished run; sentences wrap, tables do not.
-fn printed(lines: Vec<stickslip_debugger::recorded::log::Said>, width: usize) -> Vec<Row> {
+fn printed(lines: Vec<stickslip_debugger::recorded::log::LogLine>, width: usize) -> Vec<Row> {
     let printed = lines
         .into_iter()
         .filter(|said| said.how == LogOrigin::Printed);
@@ -193,7 +185,7 @@ fn printed(lines: Vec<stickslip_debugger::recorded::log::Said>, width: usize) ->
 }
 
 /// The log, one line per row, the newest last.
-fn said((first, lines): (usize, Vec<stickslip_debugger::recorded::log::Said>)) -> Vec<Row> {
+fn said((first, lines): (usize, Vec<stickslip_debugger::recorded::log::LogLine>)) -> Vec<Row> {
     let faint = |text: String| Row {
         text,
         style: |theme| theme.faint,
@@ -209,9 +201,9 @@ fn said((first, lines): (usize, Vec<stickslip_debugger::recorded::log::Said>)) -
     rows.extend(lines.into_iter().map(|said| Row {
         text: format!("{:<HOW$} {}", said.how.word(), said.text),
         style: match said.how {
-            LogOrigin::Told(Level::Error) => |theme| theme.bad,
-            LogOrigin::Told(Level::Warning) => |theme| theme.warning,
-            LogOrigin::Told(Level::Info) | LogOrigin::Printed => |theme| theme.text,
+            LogOrigin::Message(Level::Error) => |theme| theme.bad,
+            LogOrigin::Message(Level::Warning) => |theme| theme.warning,
+            LogOrigin::Message(Level::Info) | LogOrigin::Printed => |theme| theme.text,
             LogOrigin::Noted => |theme| theme.faint,
         },
     }));

@@ -3,7 +3,7 @@
 use crate::app::{App, Overlay};
 use crate::layout::Places;
 use crate::paint;
-use crate::view::{Guest, View};
+use crate::view::{AttachedSolver, View};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
@@ -37,10 +37,10 @@ pub fn draw(buffer: &mut Buffer, places: &Places, app: &App, view: Option<&View>
     if area.height > 2 {
         lines.insert(0, scene(app, view, area.width as usize));
     }
-    let told = outcome(app, view, area.width);
+    let outcome_lines = outcome(app, view, area.width);
     let open = matches!(app.overlay, Overlay::None);
-    let more = usize::from(open) * (told.len().min(OUTCOME) + lines.len());
-    lines.extend(told.into_iter().take(OUTCOME));
+    let more = usize::from(open) * (outcome_lines.len().min(OUTCOME) + lines.len());
+    lines.extend(outcome_lines.into_iter().take(OUTCOME));
     let below = (places.message.y.saturating_sub(area.bottom())) / 3;
     let height = area.height + (more as u16).saturating_sub(area.height).min(below);
     paint::over(buffer, Rect { height, ..area }, &lines, &app.theme);
@@ -50,11 +50,11 @@ pub fn draw(buffer: &mut Buffer, places: &Places, app: &App, view: Option<&View>
 const OUTCOME: usize = 3;
 
 /// The attached solver, how it goes back, and the counts of its warnings and errors.
-fn guest(app: &App, view: &View, guest: &Guest, width: usize) -> Line<'static> {
+fn solver_line(app: &App, view: &View, attached: &AttachedSolver, width: usize) -> Line<'static> {
     let theme = &app.theme;
-    let offers = guest.offers;
+    let offers = attached.offers;
     let name = format!("{} {}", offers.name, offers.version);
-    let (state, style) = match (guest.lost, offers.past, offers.goes_back) {
+    let (state, style) = match (attached.lost, offers.past, offers.goes_back) {
         (true, ..) => ("✗ lost; the next step restarts it", theme.bad),
         (_, Some(record), _) => (record, theme.warning),
         (.., GoesBack::ToAny) => ("attached, can go back to any state", theme.faint),
@@ -67,7 +67,7 @@ fn guest(app: &App, view: &View, guest: &Guest, width: usize) -> Line<'static> {
     let key = by_name("log")
         .ok()
         .and_then(|entry| app.keymap.keys(entry).next());
-    let counted = match app.heard.counted() {
+    let counted = match app.log_counts.words() {
         none if none.is_empty() => none,
         counted => format!("{counted} ({})", key.unwrap_or(":log")),
     };
@@ -99,8 +99,8 @@ fn guest(app: &App, view: &View, guest: &Guest, width: usize) -> Line<'static> {
 }
 
 fn scene<'a>(app: &App, view: &View<'a>, width: usize) -> Line<'a> {
-    if let Some(attached) = &view.guest {
-        return guest(app, view, attached, width);
+    if let Some(attached) = &view.attached {
+        return solver_line(app, view, attached, width);
     }
     const PROGRAM: &str = " stickslip ";
     let name = paint::cut(view.name, width.saturating_sub(PROGRAM.width()));
@@ -131,20 +131,23 @@ fn position(app: &App, view: &View, width: usize) -> Line<'static> {
             line.push_span(chart);
         }
     }
-    if view.guest.is_some_and(|guest| guest.lost) {
-        const WORDS: &str = "  ✗ lost";
-        while line.width() + WORDS.width() > width && line.spans.pop().is_some() {}
-        line.push_span(Span::styled(WORDS, app.theme.bad));
+    if view.attached.is_some_and(|attached| attached.lost) {
+        end_with(&mut line, "  ✗ lost", width, app);
     }
     if app.unkept {
         // Nothing is recorded any more, so this must stay visible.
         const LOST: [&str; 2] = ["   no journal (:journal FILE)", "  no journal"];
         let fits = |words: &&&str| line.width() + words.width() <= width;
         let words = LOST.iter().find(fits).unwrap_or(&LOST[1]);
-        while line.width() + words.width() > width && line.spans.pop().is_some() {}
-        line.push_span(Span::styled(*words, app.theme.bad));
+        end_with(&mut line, words, width, app);
     }
     line
+}
+
+/// Appends words to a line, instead of its last parts if necessary.
+fn end_with(line: &mut Line, words: &'static str, width: usize, app: &App) {
+    while line.width() + words.width() > width && line.spans.pop().is_some() {}
+    line.push_span(Span::styled(words, app.theme.bad));
 }
 
 fn place(app: &App, view: &View, apart: &str, attempt: bool) -> Line<'static> {
@@ -191,7 +194,7 @@ fn start(view: &View) -> String {
 }
 
 /// The outcome of the shown minor iteration, and the user's interventions.
-fn outcome(app: &App, view: &View, width: u16) -> Vec<Line<'static>> {
+fn outcome(app: &App, view: &View, width: u16) -> paint::Lines {
     let theme = &app.theme;
     if view.running {
         const SPINNER: [&str; 4] = ["◐", "◓", "◑", "◒"];
@@ -208,7 +211,7 @@ fn outcome(app: &App, view: &View, width: u16) -> Vec<Line<'static>> {
             at.minor,
             view.frames.len() - 1
         );
-        let again = view.guest.map_or("", |guest| guest.again);
+        let again = view.attached.map_or("", |attached| attached.again);
         let first = (!again.is_empty()).then(|| format!("   {again} first"));
         return [Some(text), first]
             .into_iter()
@@ -222,11 +225,11 @@ fn outcome(app: &App, view: &View, width: u16) -> Vec<Line<'static>> {
             theme.strong,
         ),
         (None, None) => (start(view), theme.text),
-        (None, Some(_)) if app.hides_verdict() => (
+        (None, Some(_)) if app.learning.hides_verdict() => (
             "? Accepted. Predict the judge's verdict (a)".into(),
             theme.text,
         ),
-        (None, Some(_)) if app.hides_any(view) => {
+        (None, Some(_)) if app.learning.hides_any(view) => {
             ("? Solved. Predict the next mode (a)".into(), theme.text)
         }
         (None, Some(event)) => sentence(event, view.model, app),
@@ -273,11 +276,11 @@ fn sentence(event: &Event, model: &Model, app: &App) -> (String, Style) {
         Outcome::Increment { .. } => ("✓", theme.warning),
         Outcome::Failed(_) => ("✗", theme.bad),
     };
-    let told = report::outcome(model, event);
+    let words = report::outcome(model, event);
     // The line above shows the position.
     let place = format!("{}: ", names::position_in(model, event.position));
     (
-        format!("{glyph} {}", told.strip_prefix(&place).unwrap_or(&told)),
+        format!("{glyph} {}", words.strip_prefix(&place).unwrap_or(&words)),
         style,
     )
 }

@@ -32,12 +32,18 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let strips = view.strips;
     let mut title = title(view);
     let count = view.model.contacts.len();
-    let selected = app.selected.min(count.saturating_sub(1));
+    let selected = app.slave(view);
     let rows = usize::from(area.height.saturating_sub(2 + FRAME));
     if rows < count {
         title += &format!("  node {} of {count}", selected + 1);
     }
-    let inner = paint::frame(buffer, area, &title, app.focus == Pane::Timeline, theme);
+    let inner = paint::frame(
+        buffer,
+        area,
+        &title,
+        app.panes.focus == Pane::Timeline,
+        theme,
+    );
     if view.model.finished.is_some() && area.height > 2 {
         let legend = paint::cut(LETTERS, inner.width.into());
         buffer.set_string(inner.x, area.bottom() - 1, legend, theme.faint);
@@ -131,7 +137,7 @@ pub fn slave_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usiz
     let inner = inside(area, view).filter(|inner| inner.contains(at))?;
     let count = view.model.contacts.len();
     let rows = usize::from(inner.height - FRAME);
-    let selected = app.selected.min(count.saturating_sub(1));
+    let selected = app.slave(view);
     let row = usize::from(at.y).checked_sub(usize::from(inner.y) + 3)?;
     rows_shown(rows, selected, count).nth(row)
 }

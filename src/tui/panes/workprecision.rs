@@ -71,14 +71,18 @@ pub fn draw(buffer: &mut Buffer, area: Rect, page: &ChartPage, theme: &Theme) {
         height: BELOW - 1,
         ..inner
     };
-    paint::lines(buffer, below, &told(page, theme, usize::from(inner.width)));
+    paint::lines(
+        buffer,
+        below,
+        &details(page, theme, usize::from(inner.width)),
+    );
 }
 
 fn plot_runs(buffer: &mut Buffer, plot: Rect, page: &ChartPage, theme: &Theme) {
     let chart = page.shown();
     let cost = |p: &Point| page.cost.of(p);
-    let x = LogAxis::of(chart.points.iter().map(cost));
-    let y = LogAxis::of(
+    let x = LogAxis::new(chart.points.iter().map(cost));
+    let y = LogAxis::new(
         chart
             .points
             .iter()
@@ -136,7 +140,7 @@ fn plot_runs(buffer: &mut Buffer, plot: Rect, page: &ChartPage, theme: &Theme) {
 }
 
 /// The legend of the series.
-fn series(chart: &Precision, theme: &Theme, width: usize) -> Vec<Line<'static>> {
+fn series(chart: &Precision, theme: &Theme, width: usize) -> paint::Lines {
     let one = |(k, name): (usize, &String)| {
         Line::from(vec![
             Span::styled(format!(" {} ", letter(k, false)), theme.strong),
@@ -156,7 +160,7 @@ fn series(chart: &Precision, theme: &Theme, width: usize) -> Vec<Line<'static>> 
 }
 
 /// Details of the selected run, and the source of the chart.
-fn told(page: &ChartPage, theme: &Theme, width: usize) -> Vec<Line<'static>> {
+fn details(page: &ChartPage, theme: &Theme, width: usize) -> paint::Lines {
     let chart = page.shown();
     let axis = format!(" error over {}", page.cost.axis());
     let Some(point) = chart.points.get(page.run) else {

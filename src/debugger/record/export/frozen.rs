@@ -17,6 +17,7 @@
 use crate::explain::core::Core;
 use crate::explain::names;
 use crate::explain::report;
+use crate::history::verdicts;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use stickslip_core::contact::record::{ContactRecord, Forced};
@@ -35,7 +36,7 @@ use stickslip_linalg::DenseFactors;
 use stickslip_scene::format::condensed::{Contact, Matrix, Problem};
 use stickslip_scene::format::{SceneError, read};
 use stickslip_scene::siconos::Friction2d;
-use stickslip_scene::{Scene, limits};
+use stickslip_scene::{Scene, limits, shown};
 
 /// If the inverse (relative to the springs) that yields one of the two matrices is larger than this, removing
 /// the springs loses too many digits.
@@ -90,12 +91,12 @@ pub enum NoExport {
     },
     /// The file does not behave as the problem does.
     #[error(transparent)]
-    Parted(#[from] Parted),
+    FileMismatch(#[from] FileMismatch),
 }
 
 /// How a file departs from its problem.
 #[derive(Debug, thiserror::Error)]
-pub enum Parted {
+pub enum FileMismatch {
     /// The file would not be a valid scene.
     #[error(transparent)]
     Unsound(#[from] Box<SceneError>),
@@ -136,7 +137,7 @@ pub struct Origin {
 
 impl Origin {
     /// A scene with its overrides.
-    pub fn of(scene: &Scene, at: Position, load: f64) -> Self {
+    pub fn new(scene: &Scene, at: Position, load: f64) -> Self {
         Origin {
             scene: scene.name.clone(),
             changes: scene.overrides().map(|(p, v)| format!("{p}={v}")).collect(),
@@ -195,7 +196,7 @@ pub fn core(
     );
     let text = text(model, &core.on_cycle(), title, head.into())?;
     match cycle_of(&text)? {
-        Some(found) if same_cycle(&found, &core.cycle) => Ok(text),
+        Some(found) if verdicts::is_same_cycle(&found, &core.cycle) => Ok(text),
         other => {
             let found = other.map_or("no cycle".to_owned(), |c| format!("period {}", c.period));
             Err(NoExport::OtherCycle {
@@ -555,31 +556,24 @@ fn shortened(title: &str) -> String {
     plain.take(limits::TITLE - 1).chain(['…']).collect()
 }
 
-/// A comment in lines of [`WIDTH`], broken at spaces.
-fn wrapped(text: &str) -> Vec<String> {
-    let mut lines = vec![String::new()];
-    for word in text.split_whitespace() {
-        let last = lines.len() - 1;
-        let line = &mut lines[last];
-        if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > WIDTH {
-            lines.push(format!("  {word}"));
-        } else {
-            if !line.is_empty() {
-                line.push(' ');
-            }
-            line.push_str(word);
-        }
-    }
-    lines
+/// A comment in lines of [`WIDTH`], indented after the first.
+fn wrapped(text: &str) -> impl Iterator<Item = String> {
+    let lines = shown::wrap(text, WIDTH - 2).into_iter().enumerate();
+    lines.map(|(k, line)| if k == 0 { line } else { format!("  {line}") })
+}
+
+/// The solver of an exported file at its start.
+fn stepper(text: &str) -> Result<Stepper, FileMismatch> {
+    let scene = Scene::from_text("exported scene", text, &[]).map_err(Box::new)?;
+    Ok(Stepper::new(Arc::new(scene.model)))
 }
 
 /// Steps a file and its problem together until the minor iterations settle, cycle or fail. Returns the largest
 /// relative difference of a force or length.
 ///
 /// # Errors If the two differ.
-pub fn compared(problem: &InterfaceProblem, text: &str) -> Result<f64, Parted> {
-    let scene = Scene::from_text("exported scene", text, &[]).map_err(Box::new)?;
-    let mut stepper = Stepper::new(Arc::new(scene.model));
+pub fn compared(problem: &InterfaceProblem, text: &str) -> Result<f64, FileMismatch> {
+    let mut stepper = stepper(text)?;
     // For bonds, the file contains only the contact points, not the nodes behind them.
     let mut touching = problem.clone();
     let kinematics = touching
@@ -587,7 +581,7 @@ pub fn compared(problem: &InterfaceProblem, text: &str) -> Result<f64, Parted> {
         .iter_mut()
         .filter_map(|node| node.kinematics.as_mut());
     kinematics.for_each(|over| over.bond = Bond::Hard);
-    let mut trials = Trials::new(&touching).ok_or(Parted::Memory)?;
+    let mut trials = Trials::new(&touching).ok_or(FileMismatch::Memory)?;
     let mut nodes = problem.states();
     let (mut worst, mut minor) = (0.0_f64, 0);
     let until = Until::end().minors(COMPARED.into()).past_failures();
@@ -601,17 +595,17 @@ pub fn compared(problem: &InterfaceProblem, text: &str) -> Result<f64, Parted> {
             return ControlFlow::Break(if singular {
                 Ok(())
             } else {
-                Err(Parted::Singular(minor))
+                Err(FileMismatch::Singular(minor))
             });
         };
         if event.nodes.len() != records.len() {
-            return ControlFlow::Break(Err(Parted::Unsolved(minor)));
+            return ControlFlow::Break(Err(FileMismatch::Unsolved(minor)));
         }
         for (found, wanted) in event.nodes.iter().zip(&records) {
             let modes = |r: &ContactRecord| (r.decision.before, r.decision.next);
             worst = worst.max(difference(problem, found, wanted));
             if modes(found) != modes(wanted) || worst > CLOSE {
-                return ControlFlow::Break(Err(Parted::Apart { minor, by: worst }));
+                return ControlFlow::Break(Err(FileMismatch::Apart { minor, by: worst }));
             }
         }
         match settled || failed {
@@ -621,7 +615,7 @@ pub fn compared(problem: &InterfaceProblem, text: &str) -> Result<f64, Parted> {
     });
     match end {
         RunEnd::Stopped(parted) => parted?,
-        RunEnd::Finished => return Err(Parted::Done(minor + 1)),
+        RunEnd::Finished => return Err(FileMismatch::Done(minor + 1)),
         RunEnd::Spent | RunEnd::Failed(_) | RunEnd::Interrupted => {}
     }
     Ok(worst)
@@ -646,9 +640,8 @@ fn difference(problem: &InterfaceProblem, a: &ContactRecord, b: &ContactRecord) 
 }
 
 /// The cycle of the first minor iterations of a scene; `None` if they do not cycle.
-fn cycle_of(text: &str) -> Result<Option<Cycle>, Parted> {
-    let scene = Scene::from_text("exported scene", text, &[]).map_err(Box::new)?;
-    let mut stepper = Stepper::new(Arc::new(scene.model));
+fn cycle_of(text: &str) -> Result<Option<Cycle>, FileMismatch> {
+    let mut stepper = stepper(text)?;
     while let Some(event) = stepper.step() {
         match &event.outcome {
             Outcome::Minor => {}
@@ -657,18 +650,4 @@ fn cycle_of(text: &str) -> Result<Option<Cycle>, Parted> {
         }
     }
     Ok(None)
-}
-
-/// Whether two cycles have the same period, members and patterns, up to a shift.
-fn same_cycle(a: &Cycle, b: &Cycle) -> bool {
-    let period = a.period as usize;
-    let turned = |by: usize| {
-        a.members
-            .iter()
-            .zip(&b.members)
-            .all(|((i, ours), (j, theirs))| {
-                i == j && (0..period).all(|k| ours[(k + by) % period] == theirs[k])
-            })
-    };
-    a.period == b.period && a.members.len() == b.members.len() && (0..period).any(turned)
 }

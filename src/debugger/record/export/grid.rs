@@ -256,7 +256,7 @@ fn stresses(model: &Model, state: &State, grid: &mut Grid) {
 }
 
 /// Contact record of a slave node: mode, force, and F_n, F_t, T_max, gap and slip.
-type Told = (Mode, [f64; 2], [f64; 5]);
+type ContactValues = (Mode, [f64; 2], [f64; 5]);
 
 fn contacts(model: &Model, state: &State, event: Option<&Event>, grid: &mut Grid) {
     if model.contacts.is_empty() {
@@ -269,8 +269,8 @@ fn contacts(model: &Model, state: &State, event: Option<&Event>, grid: &mut Grid
     let mut numbers = names.map(|_| vec![f64::NAN; nodes]);
     for (place, contact) in model.contacts.iter().enumerate() {
         let found = event.and_then(|event| event.nodes.get(place));
-        let told = found.map_or_else(|| at_start(state, place), of_record);
-        let Some((mode, [x, y], values)) = told else {
+        let record = found.map_or_else(|| at_start(state, place), of_record);
+        let Some((mode, [x, y], values)) = record else {
             continue;
         };
         let node = contact.node;
@@ -304,7 +304,7 @@ fn contacts(model: &Model, state: &State, event: Option<&Event>, grid: &mut Grid
     }
 }
 
-fn of_record(record: &ContactRecord) -> Option<Told> {
+fn of_record(record: &ContactRecord) -> Option<ContactValues> {
     let [c, s] = record.normal;
     let force = [
         c * record.f_n - s * record.f_t,
@@ -321,7 +321,7 @@ fn of_record(record: &ContactRecord) -> Option<Told> {
 }
 
 /// Before the first minor iteration the gap is unknown.
-fn at_start(state: &State, place: usize) -> Option<Told> {
+fn at_start(state: &State, place: usize) -> Option<ContactValues> {
     let node = state.nodes.get(place)?;
     let values = [node.f_n, node.f_t, node.t_max, f64::NAN, node.slip];
     Some((node.mode, node.force(), values))

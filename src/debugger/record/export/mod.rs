@@ -27,7 +27,7 @@ use std::path::{Path, PathBuf};
 use stickslip_core::step::stepper::Stepper;
 use stickslip_scene::problems::market;
 
-pub use frozen::{NoExport, Origin, Parted, compared, core, whole, writable};
+pub use frozen::{FileMismatch, NoExport, Origin, compared, core, whole, writable};
 
 /// Function that returns the contents of several files made from a state.
 type MakeParts = fn(&Shown, &mut Stepper) -> Result<Vec<Vec<u8>>, ExportError>;

@@ -178,11 +178,11 @@ fn shape(sheet: &mut Sheet, shown: &Shown, rows: &[usize]) -> Result<(), PlotErr
     sheet.height = top + HIGH + 0.5 * MARGIN;
     legend(sheet, &window, shown, largest)?;
     if pressure > 0.0 {
-        let told = format!(
+        let text = format!(
             "blue: contact pressure F_n / A on undeformed areas, maximum {}",
             short(pressure)
         );
-        sheet.paragraph(&[told], SMALL, GREY)?;
+        sheet.paragraph(&[text], SMALL, GREY)?;
     }
     Ok(())
 }
@@ -319,7 +319,7 @@ fn size(found: &ContactRecord) -> f64 {
 /// The largest contact force above round-off; 0 if there is none.
 fn largest(shown: &Shown) -> f64 {
     let Some(event) = shown.event else { return 0.0 };
-    let round_off = RoundOff::of(&shown.scene.model, &event.before);
+    let round_off = RoundOff::new(&shown.scene.model, &event.before);
     let sizes = event.nodes.iter().map(|found| round_off.force(size(found)));
     sizes.filter(|f| f.is_finite()).fold(0.0, f64::max)
 }
@@ -389,7 +389,7 @@ fn slaves(
         ] {
             let size = (widest([text.as_str()], SMALL)? + 4.0, 1.1 * SMALL);
             if let Some(patch) = taken.place(at(slave), size, 60.0) {
-                leader(sheet, at(slave), &patch, r);
+                sheet.leader(at(slave), &patch, r + 12.0);
                 sheet.text(patch.middle(), &text, SMALL, BLACK, Anchor::Middle);
                 break;
             }
@@ -413,21 +413,16 @@ fn radius(window: &Window, model: &Model, now: &dyn Fn(usize) -> Point) -> f64 {
     (0.34 * apart).clamp(2.0, 5.0)
 }
 
-/// A line from a node to a label that is not next to it.
-fn leader(sheet: &mut Sheet, at: (f64, f64), patch: &Patch, r: f64) {
-    let near = (
-        at.0.clamp(patch.from.0, patch.to.0),
-        at.1.clamp(patch.from.1, patch.to.1),
-    );
-    if (near.0 - at.0).hypot(near.1 - at.1) > r + 12.0 {
-        sheet.line(&[at, near], 0.6, GREY);
-    }
-}
-
 /// The mode in the shown minor iteration; before the first one, the initial mode.
 fn mode(shown: &Shown, slave: usize) -> Mode {
     let found = shown.event.and_then(|event| event.nodes.get(slave));
     found.map_or(shown.state.nodes[slave].mode, |found| found.decision.before)
+}
+
+/// A text in the legend; returns its width with the space after it.
+fn entry(sheet: &mut Sheet, at: (f64, f64), text: &str) -> Result<f64, PlotError> {
+    sheet.text(at, text, SMALL, BLACK, Anchor::Left);
+    Ok(widest([text], SMALL)? + 22.0)
 }
 
 /// The legend: modes, and the scales of lengths and forces.
@@ -441,9 +436,7 @@ fn legend(
     let mut x = MARGIN + 6.0;
     for mode in [Mode::Free, Mode::Sliding, Mode::Fixed] {
         marker(sheet, (x, y), mode, 5.0);
-        let word = names::mode(mode);
-        sheet.text((x + 12.0, y), word, SMALL, BLACK, Anchor::Left);
-        x += 12.0 + widest([word], SMALL)? + 22.0;
+        x += 12.0 + entry(sheet, (x + 12.0, y), names::mode(mode))?;
     }
     let unit = round(90.0 / window.scale);
     if unit.is_finite() && unit > 0.0 {
@@ -453,28 +446,24 @@ fn legend(
             sheet.line(&[(end, y - 5.0), (end, y + 5.0)], 1.5, BLACK);
         }
         x += wide + 8.0;
-        let text = format!("length {}", plain(unit));
-        sheet.text((x, y), &text, SMALL, BLACK, Anchor::Left);
-        x += widest([text.as_str()], SMALL)? + 22.0;
+        x += entry(sheet, (x, y), &format!("length {}", plain(unit)))?;
     }
     if largest > 0.0 {
         let unit = round(0.8 * largest);
         let wide = FORCE * unit / largest;
         sheet.arrow((x, y), (x + wide, y), 2.0, VERMILION);
         x += wide + 8.0;
-        let text = format!("contact force {}", plain(unit));
-        sheet.text((x, y), &text, SMALL, BLACK, Anchor::Left);
-        x += widest([text.as_str()], SMALL)? + 22.0;
+        x += entry(sheet, (x, y), &format!("contact force {}", plain(unit)))?;
     }
     sheet.arrow((x, y + 6.0), (x, y - 7.0), 1.0, GREY);
     sheet.text((x + 10.0, y), "outward side", SMALL, BLACK, Anchor::Left);
     let moved = moved(shown);
-    let told = format!(
+    let words = format!(
         "Displacements to scale, maximum {}; dashed: undeformed.",
         plain_four(moved)
     );
     sheet.height = y + 1.2 * LABEL;
-    sheet.paragraph(&[told], SMALL, GREY)
+    sheet.paragraph(&[words], SMALL, GREY)
 }
 
 /// Four significant digits, without trailing zeros.
@@ -561,7 +550,7 @@ fn table(sheet: &mut Sheet, shown: &Shown, rows: &[usize]) -> Result<(), PlotErr
             BLACK,
             Anchor::Left,
         );
-        let round_off = RoundOff::of(model, &event.before);
+        let round_off = RoundOff::new(model, &event.before);
         let forces = [found.f_n, found.f_t, found.t_max];
         let mut values = vec![short(round_off.length(found.gap))];
         values.extend(forces.map(|force| short(round_off.force(force))));
@@ -574,8 +563,8 @@ fn table(sheet: &mut Sheet, shown: &Shown, rows: &[usize]) -> Result<(), PlotErr
     sheet.height = y + SMALL;
     let left = model.contacts.len() - rows.len();
     if left > 0 {
-        let told = format!("and {left} more slave nodes");
-        sheet.paragraph(&[told], SMALL, GREY)?;
+        let words = format!("and {left} more slave nodes");
+        sheet.paragraph(&[words], SMALL, GREY)?;
     }
     sheet.height += 0.5 * SMALL;
     Ok(())

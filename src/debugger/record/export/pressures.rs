@@ -20,7 +20,7 @@ pub(super) fn pressures(
     let (model, Some(event)) = (&shown.scene.model, shown.event) else {
         return 0.0;
     };
-    let round_off = RoundOff::of(model, &event.before);
+    let round_off = RoundOff::new(model, &event.before);
     let mut of_node = vec![None; model.nodes.len()];
     for (contact, found) in model.contacts.iter().zip(&event.nodes) {
         let pressure = contact.pressure(round_off.force(found.f_n), 0.0);

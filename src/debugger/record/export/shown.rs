@@ -1,7 +1,7 @@
 //! The input of an export: a state and its context.
 
 use super::frozen::{NoExport, Origin};
-use crate::explain::examination::Untold;
+use crate::explain::examination::NotExamined;
 use crate::history::strip::Strip;
 use stickslip_core::interface::problem::InterfaceProblem;
 use stickslip_core::step::event::Event;
@@ -50,7 +50,7 @@ pub enum ExportError {
     NoCycle,
     /// There is no interface problem, or it has too many nodes.
     #[error(transparent)]
-    Untold(#[from] Untold),
+    NotExamined(#[from] NotExamined),
     /// No file can represent the problem.
     #[error(transparent)]
     NoExport(#[from] NoExport),
@@ -85,6 +85,8 @@ pub(super) fn problem<'a>(
         _ => shown.state,
     };
     stepper.restore(state);
-    let problem = stepper.interface_problem().ok_or(Untold::NotCondensed)?;
+    let problem = stepper
+        .interface_problem()
+        .ok_or(NotExamined::NotCondensed)?;
     Ok((problem, state))
 }

@@ -19,7 +19,7 @@ const ID: &str = "m";
 pub fn skeleton(scene: &str, file: &str, parts: &[String]) -> Result<String, SceneError> {
     let bare = text(file, parts, &[], &OutlineGuess::default());
     let lines = Scene::from_text(scene, &bare, &[])?.names().lines(ID);
-    let guessed = text(file, parts, &lines, &OutlineGuess::of(&lines));
+    let guessed = text(file, parts, &lines, &OutlineGuess::new(&lines));
     match Scene::from_text(scene, &guessed, &[]) {
         Ok(_) => Ok(guessed),
         // The guesses are not valid; leave them to the author.
@@ -38,7 +38,7 @@ struct OutlineGuess {
 }
 
 impl OutlineGuess {
-    fn of(lines: &[Line]) -> OutlineGuess {
+    fn new(lines: &[Line]) -> OutlineGuess {
         let ends = |axis: usize| {
             let all = || lines.iter().flat_map(|line| &line.at).map(|at| at[axis]);
             (

@@ -76,7 +76,7 @@ pub fn open(run: CalculixRun) -> Result<OpenedRun, String> {
         arc: false,
         drag: false,
     };
-    let mut scene = Scene::told(&run.name, &scene, None).map_err(|why| why.to_string())?;
+    let mut scene = Scene::from_message(&run.name, &scene, None).map_err(|why| why.to_string())?;
     scene.model.finished = Some(FinishedRun {
         increments: increments(&run)
             .map(|(step, k)| format!("{step}.{k}"))
@@ -95,7 +95,7 @@ pub fn open(run: CalculixRun) -> Result<OpenedRun, String> {
         log.printed(line);
     }
     for note in words::notes(&run) {
-        log.told(Level::Warning, &note);
+        log.message(Level::Warning, &note);
     }
     Ok(OpenedRun {
         scene,
@@ -257,8 +257,8 @@ impl Solver for RecordedRun {
             return Ok(false);
         }
         if iteration >= self.run.files.iterations.len() {
-            let told = format!("this is the last iteration of a {}", words::READ_ONLY);
-            return Err(Lost::new(told));
+            let text = format!("this is the last iteration of a {}", words::READ_ONLY);
+            return Err(Lost::new(text));
         }
         self.event = self.event_of(iteration);
         self.state.follow(&self.event, iteration as u64 + 1);

@@ -61,7 +61,7 @@ pub(crate) fn read_blank<T: DeserializeOwned>(text: &str) -> Result<T, String> {
 }
 
 /// Shown for a default that consists of the defaults of its fields.
-pub(crate) const OWN_DEFAULTS: &str = "all its defaults";
+pub(crate) const OWN_DEFAULTS: &str = "that of each field";
 
 /// A type name, linked to its section of the reference.
 pub(crate) fn link(name: &str) -> String {

@@ -38,7 +38,7 @@ pub struct Iterations {
 
 /// Whether a solver is asked for its problem in every iteration: it reports the problem, can return to any
 /// state, and has few enough contacts.
-pub fn are_told(model: &Model, offers: &Offers) -> bool {
+pub fn are_available(model: &Model, offers: &Offers) -> bool {
     let few = model.contacts.len() <= MOST;
     offers.problem && offers.goes_back == GoesBack::ToAny && few
 }

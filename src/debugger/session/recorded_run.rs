@@ -5,7 +5,7 @@ use super::machine::Session;
 use crate::history::branches;
 use crate::history::strip::{PointKind, Strip};
 use crate::recorded::calculix::{self, RecordedRun};
-use crate::recorded::past::{Line, Opened};
+use crate::recorded::exchange::{Line, OpenedExchange};
 use crate::recorded::recording::Recording;
 use crate::recorded::story::in_common;
 use stickslip_scene::Scene;
@@ -28,52 +28,51 @@ impl Session {
     /// The session on a finished run.
     pub fn recorded(recording: Recording) -> Session {
         match recording {
-            Recording::Exchange(opened) => Session::kept(*opened),
-            Recording::Calculix(opened) => Session::finished(*opened),
+            Recording::Exchange(opened) => Session::from_exchange(*opened),
+            Recording::Calculix(opened) => Session::from_calculix(*opened),
         }
     }
 
     /// The session on a CalculiX run: at the end of the first attempt that did not converge, otherwise at the
     /// start.
-    fn finished(opened: calculix::OpenedRun) -> Session {
+    fn from_calculix(opened: calculix::OpenedRun) -> Session {
         let solver = RecordedRun::new(&opened);
         let iterations = opened.run.files.iterations.len();
         let mut session = Session::attached(opened.scene, Box::new(solver), opened.log);
         session.take_steps(vec![None; iterations]);
         session.wait();
         let given_up = |strip: &Strip| strip.kind.is_failure() || strip.kind == PointKind::Cut;
-        let first = session.strips().iter().position(given_up);
+        let first = session.timeline.strips().iter().position(given_up);
         session.rest_at(first.unwrap_or(0));
         session
     }
 
     /// The session at the start of the first path; every other path is a branch that leaves the nearest earlier
     /// one.
-    pub fn kept(opened: Opened) -> Session {
+    fn from_exchange(opened: OpenedExchange) -> Session {
         let mut session = Session::attached(opened.scene, Box::new(opened.past), opened.log);
         let mut done: Vec<(usize, Line)> = Vec::new();
         for line in opened.lines {
-            session.go_along(&line, &done);
-            done.push((session.tree.current(), line));
+            session.add_path(&line, &done);
+            done.push((session.timeline.place().0, line));
         }
         if done.len() > 1 {
-            session.tree.switch(0);
+            session.timeline.switch(0);
         }
         session.rest_at(0);
         session
     }
 
     /// Adds a path, from the point where it leaves the earlier ones.
-    fn go_along(&mut self, line: &Line, done: &[(usize, Line)]) {
+    fn add_path(&mut self, line: &Line, done: &[(usize, Line)]) {
         let common = |(branch, before): &(usize, Line)| (in_common(line, before), *branch);
         let Some((along, branch)) = done.iter().map(common).max_by_key(|&(along, _)| along) else {
             self.take_steps(line.clone());
             self.wait();
             return;
         };
-        self.tree.switch(branch);
-        let along = along.min(self.frames().len() - 1);
-        self.cursor = self.frames().len() - 1;
+        self.timeline.switch(branch);
+        let along = along.min(self.timeline.tip());
         self.rest_at(along);
         let rest = line[along..].to_vec();
         let first = rest.iter().flatten().next();
@@ -82,7 +81,7 @@ impl Session {
             None => "otherwise".into(),
         };
         // Recorded steps never fail to run.
-        if self.follow(label, rest).is_ok() {
+        if self.follow(&label, rest).is_ok() {
             self.wait();
         }
     }

@@ -3,7 +3,7 @@
 //! The file is read once into a tree of states, like that of the original session. Steps can only follow this
 //! tree.
 
-use super::decode::{self, Led, WireFrame};
+use super::decode::{self, RecordedStep, WireFrame};
 use super::fault::Fault;
 use super::log::Log;
 use super::orders;
@@ -16,33 +16,34 @@ use stickslip_core::step::intervene::{Intervention, Refusal};
 use stickslip_core::step::places::Places;
 use stickslip_core::step::solver::{GoesBack, Lost, Offers, Solver};
 use stickslip_core::step::state::{State, Status};
-use stickslip_exchange::attach::conversation::{HEAD, STARTED};
+use stickslip_exchange::attach::conversation::STARTED;
 use stickslip_exchange::attach::message::{Hello, Id};
 use stickslip_exchange::attach::{Answer, Kept, Request, Side};
 use stickslip_exchange::broken::Broken;
 use stickslip_platform::input::{self, Unreadable};
 use stickslip_scene::Scene;
+use stickslip_scene::format::kind::FileKind;
 use stickslip_scene::format::{SceneError, read};
 
 /// Steps from the start: an iteration (`None`) or an intervention each.
 pub type Line = Vec<Option<Intervention>>;
 
 /// The solver of a stored exchange.
-pub struct Past {
+pub struct RecordedSolver {
     start: State,
     model: Arc<Model>,
-    places: Places<Option<Led>>,
+    places: Places<Option<RecordedStep>>,
     offers: Offers,
     /// The current state, and the iteration before it.
-    now: Led,
+    now: RecordedStep,
 }
 
 /// A stored exchange that has been read.
-pub struct Opened {
+pub struct OpenedExchange {
     /// The solver's scene.
     pub scene: Scene,
     /// The replayed solver.
-    pub past: Past,
+    pub past: RecordedSolver,
     /// All paths through the tree, in the order in which their ends were reached.
     pub lines: Vec<Line>,
     /// Log of the solver.
@@ -55,10 +56,9 @@ pub const READ_ONLY: &str = "stored exchange (read-only)";
 const MOST_BYTES: u64 = 1 << 30;
 
 /// Reads a stored exchange; `None` if the file is something else.
-pub fn file(name: &str) -> Option<Result<Opened, SceneError>> {
+pub fn file(name: &str) -> Option<Result<OpenedExchange, SceneError>> {
     let path = Path::new(name);
-    let head = input::start(path, HEAD.len() as u64).ok()?;
-    (head == HEAD.as_bytes()).then(|| {
+    (FileKind::of_file(path)? == FileKind::Exchange).then(|| {
         let not_read = |why: Unreadable| read::not_read(name, &why);
         let large = "too large for an exchange";
         let mut bytes = input::bytes(path, MOST_BYTES, large).map_err(not_read)?;
@@ -77,7 +77,7 @@ pub fn file(name: &str) -> Option<Result<Opened, SceneError>> {
 /// Reads a stored exchange; `name` is that of the file.
 ///
 /// # Errors If it is damaged.
-pub fn open(name: &str, text: &str) -> Result<Opened, SceneError> {
+pub fn open(name: &str, text: &str) -> Result<OpenedExchange, SceneError> {
     let kept = Kept::read(text).map_err(|broken| read::of_file(name, broken))?;
     let log = Log::default();
     let mut reader = ExchangeReader::new();
@@ -97,7 +97,7 @@ pub fn open(name: &str, text: &str) -> Result<Opened, SceneError> {
             Side::Asked => reader.asked(Request::read(&line.text).map_err(broken)?),
             // An invalid message ended the original session.
             Side::Answered => match Answer::read(&line.text) {
-                Ok(Answer::Message { level, text }) => log.told(level, &text),
+                Ok(Answer::Message { level, text }) => log.message(level, &text),
                 Ok(answer) => reader
                     .answered(name, answer)
                     .map_err(|fault| SceneError::whole(name, fault.to_string()))?,
@@ -113,7 +113,7 @@ pub fn open(name: &str, text: &str) -> Result<Opened, SceneError> {
     else {
         return Err(SceneError::whole(name, Fault::NoScene.to_string()));
     };
-    let past = Past {
+    let past = RecordedSolver {
         offers: Offers {
             name: met.hello.name,
             version: met.hello.version,
@@ -126,7 +126,7 @@ pub fn open(name: &str, text: &str) -> Result<Opened, SceneError> {
         model: Arc::new(met.scene.model.clone()),
         places,
     };
-    Ok(Opened {
+    Ok(OpenedExchange {
         lines: past
             .places
             .ends()
@@ -141,8 +141,8 @@ pub fn open(name: &str, text: &str) -> Result<Opened, SceneError> {
 /// State of the reader.
 struct ExchangeReader {
     hello: Option<Hello>,
-    met: Option<Met>,
-    places: Places<Option<Led>>,
+    met: Option<Greeting>,
+    places: Places<Option<RecordedStep>>,
     /// Current state of the solver, and the interventions there.
     at: u64,
     changed: Vec<Intervention>,
@@ -152,11 +152,11 @@ struct ExchangeReader {
 }
 
 /// The solver and its scene.
-struct Met {
+struct Greeting {
     scene: Scene,
     hello: Hello,
     ids: Vec<Id>,
-    start: Led,
+    start: RecordedStep,
 }
 
 impl ExchangeReader {
@@ -190,17 +190,17 @@ impl ExchangeReader {
         let pending = self.pending.take();
         match (answer, pending) {
             (Answer::Hello(hello), _) => self.hello = Some(*hello),
-            (Answer::Scene(told), _) if self.met.is_none() => {
+            (Answer::Scene(sent), _) if self.met.is_none() => {
                 let hello = self.hello.clone().ok_or(Fault::NoScene)?;
-                let (scene, ids, start) = decode::start(name, &told, None)?;
-                self.met = Some(Met {
+                let (scene, ids, start) = decode::start(name, &sent, None)?;
+                self.met = Some(Greeting {
                     scene,
                     hello,
                     ids,
                     start,
                 });
             }
-            (Answer::State(told), _) => self.led(&told)?,
+            (Answer::State(sent), _) => self.recorded_step(&sent)?,
             (Answer::Saved { token }, _) => {
                 self.tokens.insert(token.to_string(), self.at);
             }
@@ -220,12 +220,15 @@ impl ExchangeReader {
     }
 
     /// The current state of the solver, without the interventions there.
-    fn state<'a>(&'a self, met: &'a Met) -> &'a State {
+    fn state<'a>(&'a self, met: &'a Greeting) -> &'a State {
         let led = self.places.get(self.at).and_then(Option::as_ref);
         &led.unwrap_or(&met.start).state
     }
 
-    fn led(&mut self, told: &stickslip_exchange::attach::message::State) -> Result<(), Fault> {
+    fn recorded_step(
+        &mut self,
+        sent: &stickslip_exchange::attach::message::State,
+    ) -> Result<(), Fault> {
         let met = self.met.as_ref().ok_or(Fault::NoScene)?;
         let asked = std::mem::take(&mut self.changed);
         if let Some(place) = self.places.follows(self.at, &asked) {
@@ -242,7 +245,7 @@ impl ExchangeReader {
             ids: &met.ids,
             decides: met.hello.decides,
         };
-        let led = frame.led(&from, told)?;
+        let led = frame.recorded_step(&from, sent)?;
         self.at = self.places.add(self.at, asked, Some(led));
         if let Some(Some(led)) = self.places.get_mut(self.at) {
             led.state_at(self.at);
@@ -251,7 +254,7 @@ impl ExchangeReader {
     }
 }
 
-impl Past {
+impl RecordedSolver {
     /// Returns to the start.
     pub fn rewind(&mut self) {
         self.now.state.clone_from(&self.start);
@@ -259,7 +262,7 @@ impl Past {
     }
 
     /// The next recorded iteration from the current state.
-    fn next(&self) -> Option<&Led> {
+    fn next(&self) -> Option<&RecordedStep> {
         let place = self
             .places
             .follows(self.now.state.place()?, self.now.state.asked())?;
@@ -267,7 +270,7 @@ impl Past {
     }
 }
 
-impl Solver for Past {
+impl Solver for RecordedSolver {
     fn model(&self) -> &Arc<Model> {
         &self.model
     }

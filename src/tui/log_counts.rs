@@ -6,7 +6,7 @@ use stickslip_exchange::attach::message::Level;
 
 /// How much of a solver's log has been counted.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Heard {
+pub struct LogCounts {
     /// Lines counted so far.
     lines: usize,
     /// Number of warnings.
@@ -15,28 +15,28 @@ pub struct Heard {
     pub errors: usize,
 }
 
-impl Heard {
+impl LogCounts {
     /// Counts the new lines. Returns whether there are any, and the last warning or error among them, with its level.
-    pub fn hear(&mut self, log: &Log) -> (bool, Option<String>) {
+    pub fn count(&mut self, log: &Log) -> (bool, Option<String>) {
         let count = log.count();
         if count == self.lines {
             return (false, None);
         }
-        let mut told = None;
+        let mut last = None;
         for said in log.since(self.lines) {
             match said.how {
-                LogOrigin::Told(Level::Warning) => self.warnings += 1,
-                LogOrigin::Told(Level::Error) => self.errors += 1,
+                LogOrigin::Message(Level::Warning) => self.warnings += 1,
+                LogOrigin::Message(Level::Error) => self.errors += 1,
                 _ => continue,
             }
-            told = Some(format!("solver {}: {}", said.how.word(), said.text));
+            last = Some(format!("solver {}: {}", said.how.word(), said.text));
         }
         self.lines = count;
-        (true, told)
+        (true, last)
     }
 
     /// The number of warnings and errors in words; empty if there are none.
-    pub fn counted(&self) -> String {
+    pub fn words(&self) -> String {
         let of = |count: usize, what: &str| match count {
             0 => None,
             1 => Some(format!("1 {what}")),

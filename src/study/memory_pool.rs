@@ -21,7 +21,7 @@ struct Taken {
 
 /// Memory that runs take and return.
 #[derive(Debug)]
-pub struct Room {
+pub struct MemoryPool {
     free: f64,
     taken: Mutex<Taken>,
     given: Condvar,
@@ -29,21 +29,21 @@ pub struct Room {
 
 /// The memory of a run, returned when dropped.
 #[derive(Debug)]
-pub struct Place<'a> {
-    room: &'a Room,
+pub struct MemoryShare<'a> {
+    pool: &'a MemoryPool,
     bytes: f64,
 }
 
-impl Default for Room {
-    fn default() -> Room {
-        Room::new(memory::free())
+impl Default for MemoryPool {
+    fn default() -> MemoryPool {
+        MemoryPool::new(memory::free())
     }
 }
 
-impl Room {
+impl MemoryPool {
     /// Memory of this many bytes.
-    pub fn new(free: f64) -> Room {
-        Room {
+    pub fn new(free: f64) -> MemoryPool {
+        MemoryPool {
             free,
             taken: Mutex::default(),
             given: Condvar::new(),
@@ -51,7 +51,7 @@ impl Room {
     }
 
     /// Waits until a run of a model fits.
-    pub fn take(&self, model: &Model) -> Place<'_> {
+    pub fn take(&self, model: &Model) -> MemoryShare<'_> {
         let layout = [model.dofs.len(), model.contacts.len(), model.bodies.len()];
         let known = self.taken().known.get(&layout).copied();
         let bytes = known.unwrap_or_else(|| {
@@ -62,13 +62,13 @@ impl Room {
         self.wait(bytes)
     }
 
-    fn wait(&self, bytes: f64) -> Place<'_> {
+    fn wait(&self, bytes: f64) -> MemoryShare<'_> {
         let full = |taken: &mut Taken| taken.runs > 0 && taken.bytes + bytes > self.free;
         let taken = self.given.wait_while(self.taken(), full);
         let mut taken = taken.unwrap_or_else(|e| e.into_inner());
         taken.bytes += bytes;
         taken.runs += 1;
-        Place { room: self, bytes }
+        MemoryShare { pool: self, bytes }
     }
 
     fn taken(&self) -> MutexGuard<'_, Taken> {
@@ -76,13 +76,13 @@ impl Room {
     }
 }
 
-impl Drop for Place<'_> {
+impl Drop for MemoryShare<'_> {
     fn drop(&mut self) {
-        let mut taken = self.room.taken();
+        let mut taken = self.pool.taken();
         taken.bytes -= self.bytes;
         taken.runs -= 1;
         drop(taken);
-        self.room.given.notify_all();
+        self.pool.given.notify_all();
     }
 }
 
@@ -94,13 +94,13 @@ mod tests {
     #[test]
     fn parallel_runs_fit_in_memory_and_one_always_runs() {
         for (bytes, most) in [(40.0, 2), (100.0, 1), (1e9, 1)] {
-            let room = Room::new(100.0);
+            let pool = MemoryPool::new(100.0);
             let (now, seen) = (AtomicUsize::new(0), AtomicUsize::new(0));
             std::thread::scope(|scope| {
                 for _ in 0..6 {
                     scope.spawn(|| {
                         for _ in 0..20 {
-                            let place = room.wait(bytes);
+                            let place = pool.wait(bytes);
                             let at_work = now.fetch_add(1, Ordering::SeqCst) + 1;
                             seen.fetch_max(at_work, Ordering::SeqCst);
                             std::thread::yield_now();

@@ -1,0 +1,92 @@
+//! The lesson on the screen: paging through text that does not fit, and answering its questions.
+
+use crate::app::{App, Overlay};
+use crate::layout::Pane;
+use crate::learning::VisibleLines;
+use crate::panes::lesson;
+use crate::screen;
+use crate::view::View;
+use stickslip_debugger::action::Whose;
+
+const NO_LESSON: &str = "no lesson is open; press L to start one";
+
+impl App {
+    /// Shows the next part of the lesson's text, or continues the lesson if all of it has been shown.
+    pub(super) fn continue_lesson(&mut self, view: Option<&View>) {
+        let visible = self.lesson_lines(view);
+        self.learning.note(visible);
+        if let Some(lines) = visible.filter(|_| self.learning.is_unread(visible)) {
+            if lines.to == 0 {
+                // On a tiny screen the lesson replaces the table.
+                self.panes.zoomed = false;
+                self.panes.look_at(Pane::Nodes);
+            } else {
+                let reading = &mut self.learning.reading;
+                reading.top = lines.to.min(reading.seen);
+            }
+            let visible = self.lesson_lines(view);
+            self.learning.note(visible);
+            return self.say("");
+        }
+        let continued = match (&mut self.learning.lesson, view) {
+            (Some(tutor), Some(view)) => tutor.on(view.cursor, view.frame()),
+            _ => return self.complain(NO_LESSON),
+        };
+        self.report(continued.map(|()| String::new()));
+    }
+
+    /// Shows the lesson text from the top.
+    pub(super) fn reread(&mut self) {
+        match &self.learning.lesson {
+            Some(_) => self.learning.reading.top = 0,
+            None => self.complain(NO_LESSON),
+        }
+    }
+
+    /// Answers the lesson's question, or checks a prediction.
+    pub(super) fn answer(&mut self, word: &str, view: Option<&View>) {
+        let Some(view) = view else {
+            return self.complain("open a scene first");
+        };
+        if let Err(why) = self.learning.check_read(self.lesson_lines(Some(view))) {
+            return self.complain(why);
+        }
+        let answered = self.learning.answer(word, self.selected, view);
+        self.report(answered);
+    }
+
+    /// Switches prediction mode.
+    pub(super) fn predict(&mut self, whose: Option<Whose>, view: Option<&View>) {
+        let switched = match view {
+            Some(view) => self.learning.predict(whose, view),
+            None => Err("open a scene first".into()),
+        };
+        self.report(switched);
+    }
+
+    /// The visible part of the lesson, if the screen size is known.
+    pub(super) fn lesson_lines(&self, view: Option<&View>) -> Option<VisibleLines> {
+        let tutor = self.learning.lesson.as_ref()?;
+        let covered = matches!(
+            self.overlay,
+            Overlay::Help { .. }
+                | Overlay::Manual(_)
+                | Overlay::Chooser(_)
+                | Overlay::Chart(_)
+                | Overlay::Solver(_)
+        );
+        if self.area.is_empty() || covered {
+            return None;
+        }
+        let places = screen::places(self, view, self.area);
+        let place = places.panes.iter().find(|(pane, _)| *pane == Pane::Lesson);
+        let (width, room) = match place {
+            Some((_, area)) => lesson::room(*area, tutor, &self.theme),
+            None => (usize::from(self.area.width.saturating_sub(2)), 0),
+        };
+        let all = lesson::said(tutor, width, &self.theme).len();
+        let from = lesson::top(self, tutor, width, room);
+        let to = if room == 0 { 0 } else { (from + room).min(all) };
+        Some(VisibleLines { from, to, all })
+    }
+}
