@@ -10,7 +10,7 @@ use stickslip::step::recovery::{self, fallback::Fallback, left_out::LeftOut};
 use stickslip::step::stepper::Stepper;
 
 /// Minor iterations after which a run counts as not finished.
-const PATIENCE: u64 = 20_000;
+const PATIENCE: u64 = 60_000;
 
 /// A built-in scene and what is changed in it.
 type Changed = (&'static str, &'static [(&'static str, &'static str)]);

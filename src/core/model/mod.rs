@@ -64,7 +64,7 @@ pub struct Model {
     pub increment: f64,
     /// Increment on each leg of the path (positive); empty if all legs use `increment`.
     pub increments: Vec<f64>,
-    /// Size below which a failing increment is no longer cut. `None` stands for 1/64 of the leg's increment.
+    /// Size below which a failing increment is no longer cut. `None` means 1/64 of the leg's increment.
     pub least: Option<f64>,
     /// What to do with an increment that jumps to another equilibrium branch.
     pub jumps: Jumps,

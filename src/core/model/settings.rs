@@ -48,14 +48,14 @@ documented! {
         /// 1e-6.
         #[serde(skip_serializing_if = "is_default_limit_load")]
         pub limit_load: f64,
-        /// Whether the strategy `ladder` searches for a way out where an increment fails. Default: auto.
+        /// Whether the strategy `ladder` searches for other solutions where an increment fails. Default: auto.
         #[serde(skip_serializing_if = "SearchMode::is_default")]
         pub search: SearchMode,
         /// Maximum number of factorizations that a run spends on such searches; a minor iteration counts as one, a major iteration
         /// as one more. 0 means 4 times those of the rest of the run. Default: 0.
         #[serde(skip_serializing_if = "is_default_limit")]
         pub search_limit: u32,
-        /// What becomes of gaps that are there before the first increment. Default: keep.
+        /// How gaps before the first increment are treated. Default: keep.
         #[serde(skip_serializing_if = "InitialGaps::is_default")]
         pub initial_gaps: InitialGaps,
         /// With `initial_gaps: adjust`, nodes with a gap up to this value are moved onto their surface too (length). Default: 0.
@@ -232,7 +232,7 @@ documented! {
 }
 
 documented! {
-    /// Whether to search for a way out where an increment fails.
+    /// Whether to search for other solutions where an increment fails.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
     #[serde(rename_all = "lowercase")]
     pub enum SearchMode {
