@@ -338,7 +338,9 @@ impl<'a> Gives<'a> {
             [p[0] - x[0], p[1] - x[1]]
         };
         let step = if on.1.xi > 0.0 { -STEP } else { STEP };
-        let bend = [0, 1].map(|k| (foot(on.1.xi + step).1[k] - d[k]) / step);
+        // Of second order: exact for elements up to degree 3.
+        let [one, two] = [step, 2.0 * step].map(|by| foot(on.1.xi + by).1);
+        let bend = [0, 1].map(|k| (4.0 * one[k] - two[k] - 3.0 * d[k]) / (2.0 * step));
         let m = dot(d, d);
         slope * m.sqrt() / (m - dot(to, bend))
     }
