@@ -14,7 +14,7 @@ use stickslip::step::state::IncrementStart;
 use stickslip::step::stepper::Stepper;
 
 /// Minor iterations after which a run is given up, so that one that goes on forever ends the same way everywhere.
-const PATIENCE: usize = 20_000;
+const PATIENCE: usize = 100_000;
 /// Forces that are this part of what the stiffest section bears before it is strained by 1 are as exact as can be had.
 const ROUNDING: f64 = 1e-7;
 /// Passages from one element to another within an attempt that make hopping.

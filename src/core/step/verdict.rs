@@ -128,7 +128,7 @@ fn is_slip(law: JudgedLaw) -> bool {
 
 /// The worst violation of a law: slip first, since it can be repaired, and the touch of an open node last, since it may be
 /// harmless.
-fn worst_of(verdict: &Verdict) -> Option<Finding> {
+pub(super) fn worst_of(verdict: &Verdict) -> Option<Finding> {
     let rank = |finding: &Finding| match finding.law {
         law if is_slip(law) => 2,
         JudgedLaw::Touch => 0,

@@ -24,6 +24,7 @@ use super::retry::{Effect, Recovery, Retry};
 use super::stalled::Stalled;
 use crate::contact::laws::{Finding, JudgedLaw, Verdict};
 use crate::linear::norms::Norms;
+use crate::linear::source::{Accepted, At};
 use crate::step::event::{Failure, Moves, Outcome, Slow};
 use crate::step::jump::Landing;
 
@@ -31,6 +32,7 @@ use crate::step::iterate::Iterate;
 use crate::step::pace::Pace;
 use crate::step::stepper::Stepper;
 use crate::step::sub_increment::SubIncrement;
+use crate::step::verdict::worst_of;
 use crate::step::watch::StabilityWatch;
 use std::sync::Arc;
 
@@ -151,6 +153,10 @@ impl Stepper {
             return slower.unwrap_or_else(|| self.end_motion(why));
         }
         if motion.coming_to_rest {
+            if let Some(found) = self.now.violated_since_origin(&after) {
+                self.now.state.next_major();
+                return self.end_motion(Failure::Refused(found));
+            }
             // The other branch has a different pace.
             self.now.state.pace = Pace::default();
             let jumped = motion.travelled + moved > JUMP * self.now.model.length;
@@ -180,6 +186,22 @@ impl Stepper {
 }
 
 impl Iterate {
+    /// The law that the state violates over the whole damped motion of a search: its start and end are accepted states. `None` if
+    /// it violates none, or if the scene requests damped motions.
+    fn violated_since_origin(&mut self, after: &Norms) -> Option<Finding> {
+        let origin = self.state.searched.origin.clone()?;
+        let at = At {
+            accepted: Accepted {
+                u: &origin.u,
+                history: &origin.history,
+                contacts: &origin.nodes,
+            },
+            ..self.state.at()
+        };
+        let worst = worst_of(&self.source.judge(&at, after));
+        worst.filter(|found| found.law != JudgedLaw::Touch)
+    }
+
     /// Prepares a damped motion from the last equilibrium, with constant loads. `None` if the state there cannot be linearised.
     pub(super) fn release(&mut self, part: SubIncrement) -> Option<()> {
         self.restart(part);
