@@ -414,7 +414,11 @@ impl<'a> Run<'a> {
             ..
         } = &self.tally;
         let name = &scene.name;
-        let loads = |all: &[f64]| first_of(all.iter().map(|&x| four(x)), MOST_STRETCHES, ", ");
+        let loads = |all: &[f64]| {
+            let mut texts: Vec<String> = all.iter().map(|&x| four(x)).collect();
+            texts.dedup();
+            first_of(texts, MOST_STRETCHES, ", ")
+        };
         for (by, found) in found {
             let (by, at) = (by.words(), loads(found));
             notify(&format!("{name}: found with {by} at load {at}"));
