@@ -26,7 +26,7 @@ pub fn document(suite: &str, cases: &[TestCase]) -> String {
     let failures = count(|result| matches!(result, TestResult::Failed(..)));
     let errors = count(|result| matches!(result, TestResult::Error(_)));
     let seconds: f64 = cases.iter().map(|case| case.seconds).sum();
-    let suite = escaped(suite);
+    let suite = attribute(suite);
     let mut text = format!(
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"{suite}\" tests=\"{}\" failures=\"{failures}\" errors=\"{errors}\" skipped=\"0\" time=\"{seconds:.3}\">\n",
         cases.len()
@@ -36,20 +36,20 @@ pub fn document(suite: &str, cases: &[TestCase]) -> String {
         let _ = write!(
             text,
             "  <testcase classname=\"{suite}\" name=\"{}\" time=\"{:.3}\"",
-            escaped(&case.name),
+            attribute(&case.name),
             case.seconds
         );
         text += &match &case.result {
             TestResult::Passed => "/>\n".to_owned(),
             TestResult::Failed(summary, details) => format!(
                 ">\n    <failure message=\"{}\">{}</failure>\n  </testcase>\n",
-                escaped(summary),
+                attribute(summary),
                 escaped(details)
             ),
             TestResult::Error(why) => {
                 format!(
                     ">\n    <error message=\"{}\"/>\n  </testcase>\n",
-                    escaped(why)
+                    attribute(why)
                 )
             }
         };
@@ -57,7 +57,12 @@ pub fn document(suite: &str, cases: &[TestCase]) -> String {
     text + "</testsuite>\n"
 }
 
-/// Text for an element or an attribute. Characters that XML does not allow are shown as `\u{1b}`.
+/// Text for an attribute, in which plain line ends would be read as spaces.
+fn attribute(text: &str) -> String {
+    escaped(text).replace('\n', "&#10;").replace('\t', "&#9;")
+}
+
+/// Text for an element. Characters that XML does not allow are shown as `\u{1b}`.
 fn escaped(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
     for letter in shown::text(text).chars() {
@@ -67,8 +72,6 @@ fn escaped(text: &str) -> String {
             '>' => safe += "&gt;",
             '"' => safe += "&quot;",
             '\'' => safe += "&apos;",
-            '\n' => safe += "&#10;",
-            '\t' => safe += "&#9;",
             '\u{fffe}' | '\u{ffff}' => safe.extend(letter.escape_unicode()),
             other => safe.push(other),
         }
@@ -101,7 +104,7 @@ mod tests {
             "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n\
              <testsuite name=\"stickslip replay\" tests=\"3\" failures=\"1\" errors=\"1\" skipped=\"0\" time=\"0.750\">\n  \
              <testcase classname=\"stickslip replay\" name=\"a&lt;b&gt;.ron\" time=\"0.250\">\n    \
-             <failure message=\"1 &quot;difference&quot;\">a &lt; b &amp;&amp; &quot;c&quot; &gt; &apos;d&apos;&#10;]]&gt;&lt;/failure&gt;\\u{1b}\\u{ffff}</failure>\n  \
+             <failure message=\"1 &quot;difference&quot;\">a &lt; b &amp;&amp; &quot;c&quot; &gt; &apos;d&apos;\n]]&gt;&lt;/failure&gt;\\u{1b}\\u{ffff}</failure>\n  \
              </testcase>\n  \
              <testcase classname=\"stickslip replay\" name=\"c.ron\" time=\"0.250\"/>\n  \
              <testcase classname=\"stickslip replay\" name=\"d.ron\" time=\"0.250\">\n    \

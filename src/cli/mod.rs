@@ -170,7 +170,7 @@ pub fn main() -> ExitCode {
                 | Command::Help(_)
         )
     ) {
-        // These never write files over existing ones.
+        // These have nothing to finish; a file that they replace gets its new content in one step.
         interrupt::end_at_once();
     }
     let ended = match &cli.command {

@@ -94,7 +94,7 @@ records! {
         outcome: &'static str,
         /// Exit code of the program
         exit_code: u8,
-        /// How the run ended, as the text output has it; null if nothing is to report
+        /// How the run ended, as the text output has it; null if the load was reached
         message: Option<String>,
         /// Accepted increments
         increments: u64,
@@ -322,7 +322,7 @@ records! {
 
     /// A finding of the judge.
     FindingRecord "finding" {
-        /// The law (page `theory`)
+        /// The law (page `verification`)
         law: &'static str,
         /// Whether the amount exceeds its tolerance
         violated: bool,

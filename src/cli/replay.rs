@@ -24,9 +24,9 @@ pub struct Args {
     solver: SolverArgs,
     #[command(flatten)]
     json: JsonArgs,
-    /// Writes one test case per snapshot as JUnit XML, for CI systems
-    #[arg(long, value_name = "FILE")]
-    junit: Option<PathBuf>,
+    /// Writes a test case per snapshot as JUnit XML (page json); - is standard output, instead of the text there
+    #[arg(long, value_name = "FILE|-")]
+    junit: Option<String>,
     /// Overwrites existing files
     #[arg(long)]
     force: bool,
@@ -57,17 +57,18 @@ impl Replayed {
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
-    let junit = args.junit.as_ref().map(|path| path.to_string_lossy());
-    distinct(&[("--json", args.json.to()), ("--junit", junit.as_deref())])?;
+    let junit = args.junit.as_deref();
+    distinct(&[("--json", args.json.to()), ("--junit", junit)])?;
+    let says = !args.json.is_on_standard_output() && junit != Some("-");
     let json = args.json.open(args.force)?;
-    let junit = junit.map(|to| Sink::open(&to, args.force)).transpose()?;
+    let junit = junit.map(|to| Sink::open(to, args.force)).transpose()?;
     let mut exit = Exit::Good;
     let (mut records, mut cases) = (Vec::new(), Vec::new());
     for file in &args.files {
         let began = Instant::now();
         let replayed = one(file, &args.solver)?;
         let seconds = began.elapsed().as_secs_f64();
-        tell(file, &replayed, !args.json.is_on_standard_output())?;
+        tell(file, &replayed, says)?;
         let this = replayed.exit();
         // An unreadable file is worse than one that differs.
         if this as u8 > exit as u8 {
