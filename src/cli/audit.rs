@@ -3,13 +3,17 @@
 use super::base::{Error, Exit, SetArgs, notify, say};
 use super::course::Course;
 use super::interrupt::Interrupt;
+use super::json::{self, JsonArgs};
+use super::records::{
+    AuditRecord, FailureRecord, FindingRecord, HistoryRecord, InsideRecord, StretchRecord,
+};
 use std::path::Path;
 use std::sync::Arc;
 use stickslip_core::contact::laws::JudgedLaw;
 use stickslip_core::model::Model;
 use stickslip_core::step::drive::RunEnd;
 use stickslip_core::step::event::Outcome;
-use stickslip_debugger::explain::audit::{Audit, WorstFinding};
+use stickslip_debugger::explain::audit::{Audit, Inside, Stretched, WorstFinding};
 use stickslip_debugger::explain::judged;
 use stickslip_debugger::explain::names;
 use stickslip_debugger::explain::report;
@@ -27,19 +31,37 @@ pub struct Args {
     inputs: Vec<String>,
     #[command(flatten)]
     set: SetArgs,
+    #[command(flatten)]
+    json: JsonArgs,
+    /// Overwrites an existing file
+    #[arg(long, requires = "json")]
+    force: bool,
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
     let interrupt = Interrupt::listen();
+    let json = args.json.open(args.force)?;
     let mut exit = Exit::Good;
+    let mut histories = Vec::new();
     for input in &args.inputs {
         let course = open(input, args)?;
-        match one(&course, &interrupt)? {
-            Exit::Good => {}
-            Exit::Interrupted => return Ok(Exit::Interrupted),
-            other => exit = other,
+        let history = one(&course, !args.json.is_on_standard_output(), &interrupt)?;
+        match history.outcome {
+            INTERRUPTED => exit = Exit::Interrupted,
+            _ if history.violated => exit = Exit::Unconverged,
+            _ => {}
+        }
+        histories.push(history);
+        if exit == Exit::Interrupted {
+            break;
         }
     }
+    let record = AuditRecord {
+        schema: "stickslip-audit-1",
+        exit_code: exit as u8,
+        histories,
+    };
+    json::write(json, &record)?;
     Ok(exit)
 }
 
@@ -58,7 +80,10 @@ fn open(input: &str, args: &Args) -> Result<Course, Error> {
     Course::of_snapshot(input, Snapshot::read(path)?)
 }
 
-fn one(course: &Course, interrupt: &Interrupt) -> Result<Exit, Error> {
+const INTERRUPTED: &str = "interrupted";
+
+/// Audits a history; `says` is whether the report is printed.
+fn one(course: &Course, says: bool, interrupt: &Interrupt) -> Result<HistoryRecord, Error> {
     let mut stepper = solver(Arc::new(course.scene.model.clone()));
     let mut audit = Audit::default();
     let name = &course.scene.name;
@@ -68,11 +93,14 @@ fn one(course: &Course, interrupt: &Interrupt) -> Result<Exit, Error> {
             audit.take(stepper);
         }
     })?;
+    let model = &course.scene.model;
+    let mut history = record(name, model, &audit);
     let failed = match end {
         RunEnd::Stopped(error) => return Err(error),
         RunEnd::Interrupted => {
             notify(&format!("{name}: interrupted"));
-            return Ok(Exit::Interrupted);
+            history.outcome = INTERRUPTED;
+            return Ok(history);
         }
         RunEnd::Failed(failure) => {
             let event = stepper.event();
@@ -80,16 +108,76 @@ fn one(course: &Course, interrupt: &Interrupt) -> Result<Exit, Error> {
         }
         RunEnd::Finished | RunEnd::Spent => None,
     };
-    let model = &course.scene.model;
-    say(&table(name, model, &audit))?;
+    if says {
+        say(&table(name, model, &audit))?;
+    }
     if let Some((position, load, failure)) = failed {
         let text = report::failure(model, stepper.state(), position, load, &failure);
         notify(&format!("{name}: history ends early: {text}"));
+        history.outcome = "failed";
+        history.failure = Some(FailureRecord::new(model, position, load, &failure));
     }
-    Ok(match audit.broken().next() {
-        Some(_) => Exit::Unconverged,
-        None => Exit::Good,
-    })
+    Ok(history)
+}
+
+/// The report as data.
+fn record(name: &str, model: &Model, audit: &Audit) -> HistoryRecord {
+    let finding = |found: &WorstFinding| finding_record(model, found);
+    let stretch = |found: &Stretched| stretch_record(model, found);
+    HistoryRecord {
+        name: name.to_owned(),
+        outcome: "finished",
+        violated: audit.broken().next().is_some(),
+        increments: audit.increments,
+        marked: audit.marked,
+        findings: audit.worst.iter().flatten().map(finding).collect(),
+        marked_findings: audit.worst_marked.iter().flatten().map(finding).collect(),
+        work: audit.work.as_ref().map(finding),
+        stretch: audit.stretch.as_ref().map(stretch),
+        outside_range: audit.outside.as_ref().map(stretch),
+        master_inside: audit
+            .inside
+            .as_ref()
+            .map(|found| inside_record(model, found)),
+        failure: None,
+    }
+}
+
+fn finding_record(model: &Model, found: &WorstFinding) -> FindingRecord {
+    let finding = &found.finding;
+    FindingRecord {
+        law: finding.law.name(),
+        violated: finding.is_broken(),
+        increment: found.increment,
+        load: found.load_factor,
+        node: finding
+            .slave
+            .map(|slave| names::slave(model, slave).to_owned()),
+        amount: finding.amount,
+        allowed: finding.allowed,
+    }
+}
+
+fn stretch_record(model: &Model, found: &Stretched) -> StretchRecord {
+    let body = model.bodies.get(found.point.body);
+    StretchRecord {
+        increment: found.increment,
+        load: found.load_factor,
+        body: body.map(|body| body.name.clone()).unwrap_or_default(),
+        element: found.point.element + 1,
+        stretch: found.point.stretch,
+        determinant: found.point.determinant,
+    }
+}
+
+fn inside_record(model: &Model, found: &Inside) -> InsideRecord {
+    InsideRecord {
+        increment: found.increment,
+        load: found.load_factor,
+        node: model.nodes[found.node].name.clone(),
+        body: model.bodies[found.body].name.clone(),
+        depth: found.depth,
+    }
 }
 
 /// The report as text.

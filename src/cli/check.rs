@@ -1,6 +1,8 @@
 //! `stickslip check`: validates a scene and estimates its cost.
 
 use super::base::{Error, Exit, SceneArgs, notify, say};
+use super::json::{self, JsonArgs};
+use super::records::CheckRecord;
 use stickslip_scene::Scene;
 use stickslip_scene::cost::Cost;
 use stickslip_scene::format::paths;
@@ -12,33 +14,66 @@ pub struct Args {
     #[command(flatten)]
     scene: SceneArgs,
     /// Lists every value that --set can change: path, value and range (separated by tabs)
-    #[arg(long)]
+    #[arg(long, conflicts_with = "json")]
     paths: bool,
+    #[command(flatten)]
+    json: JsonArgs,
+    /// Overwrites an existing file
+    #[arg(long, requires = "json")]
+    force: bool,
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
     let scene = args.scene.open()?;
-    let text = if args.paths {
-        all_paths(&scene)
-    } else {
-        format!("{}: sound\n{}", scene.name, Cost::of(&scene))
-    };
-    say(&text)?;
-    if !args.paths {
-        for remark in &scene.remarks {
-            notify(&format!("note: {remark}"));
-        }
-        for note in scene.names().notes(scene.spec.refine) {
-            notify(&format!("note: {note}"));
-        }
-        for warning in gaps::warnings(&scene.model) {
-            notify(&format!("warning: {warning}"));
-        }
-        if let Some(warning) = precision::warning(&scene.model) {
-            notify(&format!("warning: {warning}"));
-        }
+    if args.paths {
+        say(&all_paths(&scene))?;
+        return Ok(Exit::Good);
     }
+    let json = args.json.open(args.force)?;
+    let cost = Cost::of(&scene);
+    if !args.json.is_on_standard_output() {
+        say(&format!("{}: sound\n{cost}", scene.name))?;
+    }
+    let mut notes = scene.remarks.clone();
+    notes.extend(scene.names().notes(scene.spec.refine));
+    for note in &notes {
+        notify(&format!("note: {note}"));
+    }
+    let mut warnings = gaps::warnings(&scene.model);
+    warnings.extend(precision::warning(&scene.model));
+    for warning in &warnings {
+        notify(&format!("warning: {warning}"));
+    }
+    json::write(json, &record(&scene, cost, notes, warnings))?;
     Ok(Exit::Good)
+}
+
+fn record(scene: &Scene, cost: Cost, notes: Vec<String>, warnings: Vec<String>) -> CheckRecord {
+    CheckRecord {
+        schema: "stickslip-check-1",
+        scene: scene.name.clone(),
+        exit_code: Exit::Good as u8,
+        nodes: cost.nodes.0,
+        nodes_on_bodies: cost.nodes.1,
+        unknowns: cost.unknowns(),
+        translations: cost.translations,
+        rotations: cost.rotations,
+        shear_forces: cost.shears,
+        body_forces: cost.forces,
+        interface_forces: cost.interface,
+        restrained: cost.held,
+        bodies: cost.bodies,
+        surfaces: cost.surfaces,
+        slaves: cost.slaves,
+        laws: cost.laws,
+        axis: cost.axis,
+        gaps: cost.gaps,
+        history: cost.history,
+        solvers: cost.solvers,
+        without: cost.without,
+        notes,
+        warnings,
+    }
 }
 
 fn all_paths(scene: &Scene) -> String {

@@ -25,6 +25,8 @@ mod grids;
 mod groups;
 mod help;
 mod interrupt;
+mod json;
+mod junit;
 mod lesson;
 mod list;
 mod man;
@@ -33,10 +35,12 @@ mod outputs;
 mod place;
 mod progress;
 mod record;
+mod records;
 mod remedies;
 mod replay;
 mod resume;
 mod run;
+mod run_outputs;
 mod serve;
 mod show;
 mod sink;
@@ -45,6 +49,7 @@ mod story;
 mod study;
 mod sweep;
 mod table;
+mod tally;
 
 use base::{Exit, notify, say};
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
@@ -165,7 +170,7 @@ pub fn main() -> ExitCode {
                 | Command::Help(_)
         )
     ) {
-        // These never write files over existing ones.
+        // These have nothing to finish; a file that they replace gets its new content in one step.
         interrupt::end_at_once();
     }
     let ended = match &cli.command {
@@ -217,6 +222,11 @@ fn parsed() -> Result<Cli, clap::Error> {
 /// All subcommands with their arguments and options, for the manual.
 pub fn commands() -> String {
     help::commands(Cli::command())
+}
+
+/// The records that `--json` writes with their fields, for the manual.
+pub fn json_records() -> String {
+    records::markdown()
 }
 
 /// Checks a command line without running it; `words` follow the program's name.

@@ -2,9 +2,12 @@
 //! result.
 
 use super::base::{Error, Exit, SceneArgs, notify, quoted, run_to_end, say};
+use super::json::{self, JsonArgs};
+use super::records::{FailureKind, FailureRecord, RemediesRecord, RemedyRecord};
 use std::sync::Arc;
 use stickslip_debugger::explain::page;
-use stickslip_debugger::explain::remedies::{self, COLUMNS, TrialEnd};
+use stickslip_debugger::explain::remedies::{self, COLUMNS, Left, Trial, TrialEnd};
+use stickslip_debugger::explain::remedy::Remedy;
 use stickslip_debugger::explain::report;
 use stickslip_scene::Scene;
 use stickslip_scene::shown::aligned;
@@ -16,6 +19,11 @@ Exit codes: 0 a remedy gets the scene past the failure, or nothing fails; 3 no r
 pub struct Args {
     #[command(flatten)]
     scene: SceneArgs,
+    #[command(flatten)]
+    json: JsonArgs,
+    /// Overwrites an existing file
+    #[arg(long, requires = "json")]
+    force: bool,
 }
 
 /// The command that tries the remedies of a scene, with its options.
@@ -31,35 +39,53 @@ pub fn command(scene: &Scene) -> String {
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
     let scene = args.scene.open()?;
+    let json = args.json.open(args.force)?;
     let spec = Some(&scene.spec);
+    let mut record = RemediesRecord {
+        schema: "stickslip-remedies-1",
+        scene: scene.name.clone(),
+        exit_code: Exit::Good as u8,
+        failure: None,
+        facts: Vec::new(),
+        remedies: Vec::new(),
+    };
     let mut stepper = solver(Arc::new(scene.model.clone()));
     let Some(failure) = run_to_end(&mut stepper) else {
         notify("the scene converges; nothing to remedy");
+        json::write(json, &record)?;
         return Ok(Exit::Good);
     };
     let state = stepper.state().clone();
     let (model, event) = (stepper.model().clone(), stepper.event());
-    notify(&report::failure(
-        &model,
-        &state,
-        event.position,
-        event.load_factor,
-        &failure,
-    ));
-    for line in page::facts(&mut stepper, &state, &failure, &|| false) {
+    let (at, load) = (event.position, event.load_factor);
+    record.failure = Some(FailureRecord::new(&model, at, load, &failure));
+    notify(&report::failure(&model, &state, at, load, &failure));
+    record.facts = page::facts(&mut stepper, &state, &failure, &|| false);
+    for line in &record.facts {
         notify(&format!("  {line}"));
     }
-    let mut trials = Vec::new();
+    let (mut trials, mut untried) = (Vec::new(), Vec::new());
     for remedy in remedies::all(&mut stepper, &state, spec, &|| false) {
-        trials.extend(remedies::attempt(
-            &mut stepper,
-            &state,
-            spec,
-            &remedy,
-            &|| false,
-        ));
+        match remedies::attempt(&mut stepper, &state, spec, &remedy, &|| false) {
+            Some(trial) => trials.push(trial),
+            None => untried.push(remedy),
+        }
     }
     remedies::sort(&mut trials);
+    if !args.json.is_on_standard_output() {
+        say(&table(&trials))?;
+    }
+    let any = trials.iter().any(|trial| trial.end == TrialEnd::Converged);
+    let exit = if any { Exit::Good } else { Exit::Unconverged };
+    record.exit_code = exit as u8;
+    record.remedies = trials.iter().map(tried).collect();
+    record.remedies.extend(untried.iter().map(not_tried));
+    json::write(json, &record)?;
+    Ok(exit)
+}
+
+/// The trials as text.
+fn table(trials: &[Trial]) -> String {
     let mut headings = vec!["remedy".to_owned()];
     headings.extend(COLUMNS.map(String::from));
     headings.push("how".to_owned());
@@ -70,7 +96,52 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         row.push(trial.how.typed());
         row
     }));
-    say(&(aligned(&rows, 1).join("\n") + "\n"))?;
-    let any = trials.iter().any(|trial| trial.end == TrialEnd::Converged);
-    Ok(if any { Exit::Good } else { Exit::Unconverged })
+    aligned(&rows, 1).join("\n") + "\n"
+}
+
+fn not_tried(remedy: &Remedy) -> RemedyRecord {
+    RemedyRecord {
+        remedy: remedy.label.clone(),
+        command: remedy.how.typed(),
+        tried: false,
+        outcome: None,
+        failure: None,
+        law: None,
+        minors: None,
+        majors: None,
+        factorizations: None,
+        seconds: None,
+        penetration: None,
+        tension: None,
+        shear: None,
+        residual: None,
+        held: None,
+    }
+}
+
+fn tried(trial: &Trial) -> RemedyRecord {
+    let (outcome, failure, law) = match &trial.end {
+        TrialEnd::Converged => ("converged", None, None),
+        TrialEnd::Against(law) => ("law-violated", None, Some(law.name())),
+        TrialEnd::Failed(failure) => ("failed", Some(FailureKind::of(failure).word()), None),
+        TrialEnd::Budget => ("limit", None, None),
+    };
+    let left = |of: fn(&Left) -> f64| trial.left.as_ref().map(of);
+    RemedyRecord {
+        remedy: trial.label.clone(),
+        command: trial.how.typed(),
+        tried: true,
+        outcome: Some(outcome),
+        failure,
+        law,
+        minors: Some(trial.minors),
+        majors: Some(trial.majors),
+        factorizations: Some(trial.factorizations),
+        seconds: Some(trial.seconds),
+        penetration: left(|left| left.penetration),
+        tension: left(|left| left.tension),
+        shear: left(|left| left.shear),
+        residual: left(|left| left.residual),
+        held: trial.left.map(|left| left.held),
+    }
 }

@@ -1,10 +1,19 @@
 //! `stickslip replay`: recomputes snapshots, and compares.
 
-use super::base::{Error, Exit, notify, say, scene_instead};
+use super::base::{Error, Exit, distinct, notify, say, scene_instead};
+use super::json::{self, JsonArgs};
+use super::junit::{self, TestCase, TestResult};
+use super::records::{DifferenceRecord, ReplayRecord, ReplayedRecord};
+use super::sink::Sink;
 use super::solver::SolverArgs;
 use std::path::{Path, PathBuf};
-use stickslip_debugger::record::differences::compare;
+use std::time::Instant;
+use stickslip_debugger::record::differences::{Difference, Differences, compare};
 use stickslip_debugger::record::snapshot::{Snapshot, SnapshotError};
+use stickslip_platform::files::finish_all;
+
+/// Maximum number of differences per snapshot in the record.
+const MOST_DIFFERENCES: usize = 100;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -13,27 +22,102 @@ pub struct Args {
     files: Vec<PathBuf>,
     #[command(flatten)]
     solver: SolverArgs,
+    #[command(flatten)]
+    json: JsonArgs,
+    /// Writes a test case per snapshot as JUnit XML (page json); - is standard output, instead of the text there
+    #[arg(long, value_name = "FILE|-")]
+    junit: Option<String>,
+    /// Overwrites existing files
+    #[arg(long)]
+    force: bool,
+}
+
+/// What recomputing a snapshot found.
+enum Replayed {
+    /// The snapshot is equal, or differs.
+    Compared {
+        recorded: Box<Snapshot>,
+        minors: u64,
+        differences: Differences,
+    },
+    /// Its steps cannot be repeated.
+    NotRepeatable(Box<Snapshot>, String),
+    /// It cannot be read, and why.
+    Unreadable(String),
+}
+
+impl Replayed {
+    fn exit(&self) -> Exit {
+        match self {
+            Replayed::Compared { differences, .. } if differences.is_empty() => Exit::Good,
+            Replayed::Compared { .. } | Replayed::NotRepeatable(..) => Exit::Differ,
+            Replayed::Unreadable(_) => Exit::Bad,
+        }
+    }
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
+    let junit = args.junit.as_deref();
+    distinct(&[("--json", args.json.to()), ("--junit", junit)])?;
+    let says = !args.json.is_on_standard_output() && junit != Some("-");
+    let json = args.json.open(args.force)?;
+    let junit = junit.map(|to| Sink::open(to, args.force)).transpose()?;
     let mut exit = Exit::Good;
+    let (mut records, mut cases) = (Vec::new(), Vec::new());
     for file in &args.files {
-        let this = one(file, &args.solver)?;
+        let began = Instant::now();
+        let replayed = one(file, &args.solver)?;
+        let seconds = began.elapsed().as_secs_f64();
+        tell(file, &replayed, says)?;
+        let this = replayed.exit();
         // An unreadable file is worse than one that differs.
         if this as u8 > exit as u8 {
             exit = this;
         }
+        records.push(record(file, &replayed, seconds));
+        cases.push(TestCase {
+            name: file.display().to_string(),
+            seconds,
+            result: result(&replayed),
+        });
     }
+    write(
+        json,
+        junit,
+        &cases,
+        ReplayRecord {
+            schema: "stickslip-replay-1",
+            exit_code: exit as u8,
+            snapshots: records,
+        },
+    )?;
     Ok(exit)
 }
 
-fn one(file: &Path, solver: &SolverArgs) -> Result<Exit, Error> {
-    let shown = file.display();
+/// Writes the requested files, all or none.
+fn write(
+    json: Option<Sink>,
+    junit: Option<Sink>,
+    cases: &[TestCase],
+    record: ReplayRecord,
+) -> Result<(), Error> {
+    let mut files = Vec::new();
+    if let Some(mut sink) = junit {
+        sink.send(&junit::document("stickslip replay", cases))?;
+        files.extend(sink.into_file());
+    }
+    if let Some(sink) = json {
+        files.extend(json::unfinished(sink, &record)?);
+    }
+    Ok(finish_all(files)?)
+}
+
+fn one(file: &Path, solver: &SolverArgs) -> Result<Replayed, Error> {
     let recorded = match Snapshot::read(file) {
-        Ok(recorded) => recorded,
+        Ok(recorded) => Box::new(recorded),
         Err(error) => {
-            notify(&scene_instead(file).unwrap_or_else(|| error.to_string()));
-            return Ok(Exit::Bad);
+            let why = scene_instead(file).unwrap_or_else(|| error.to_string());
+            return Ok(Replayed::Unreadable(why));
         }
     };
     let replayed = match solver.is_named() {
@@ -43,27 +127,104 @@ fn one(file: &Path, solver: &SolverArgs) -> Result<Exit, Error> {
         }
         false => recorded.replay(),
     };
-    let found = match replayed {
-        Ok(found) => found,
+    Ok(match replayed {
+        Ok(found) => Replayed::Compared {
+            minors: found.steps,
+            differences: compare(&recorded, &found),
+            recorded,
+        },
         Err(error @ SnapshotError::Replay(_)) => {
-            say(&format!("{shown}: {error}\n"))?;
-            return Ok(Exit::Differ);
+            Replayed::NotRepeatable(recorded, error.to_string())
         }
-        Err(error) => {
-            notify(&format!("{shown}: {error}"));
-            return Ok(Exit::Bad);
+        Err(error) => Replayed::Unreadable(format!("{}: {error}", file.display())),
+    })
+}
+
+/// Prints the result; `says` is whether standard output carries text.
+fn tell(file: &Path, replayed: &Replayed, says: bool) -> Result<(), Error> {
+    let file = file.display();
+    let text = match replayed {
+        Replayed::Unreadable(why) => {
+            notify(why);
+            return Ok(());
+        }
+        Replayed::NotRepeatable(_, why) => format!("{file}: {why}\n"),
+        Replayed::Compared {
+            minors,
+            differences,
+            ..
+        } if differences.is_empty() => {
+            format!("{file}: equal, after {minors} minor iterations\n")
+        }
+        Replayed::Compared { differences, .. } => {
+            format!("{file}: differs (left: recorded, right: recomputed)\n{differences}")
         }
     };
-    let differences = compare(&recorded, &found);
-    if differences.is_empty() {
-        say(&format!(
-            "{shown}: equal, after {} minor iterations\n",
-            found.steps
-        ))?;
-        return Ok(Exit::Good);
+    if says {
+        say(&text)?;
     }
-    say(&format!(
-        "{shown}: differs (left: recorded, right: recomputed)\n{differences}"
-    ))?;
-    Ok(Exit::Differ)
+    Ok(())
+}
+
+/// The result as data.
+fn record(file: &Path, replayed: &Replayed, seconds: f64) -> ReplayedRecord {
+    let (outcome, message, snapshot) = match replayed {
+        Replayed::Compared {
+            recorded,
+            differences,
+            ..
+        } => match differences.is_empty() {
+            true => ("equal", None, Some(recorded)),
+            false => ("differs", None, Some(recorded)),
+        },
+        Replayed::NotRepeatable(recorded, why) => ("not-repeatable", Some(why), Some(recorded)),
+        Replayed::Unreadable(why) => ("unreadable", Some(why), None),
+    };
+    let (minors, rows) = match replayed {
+        Replayed::Compared {
+            minors,
+            differences,
+            ..
+        } => (Some(*minors), differences.rows.as_slice()),
+        _ => (None, [].as_slice()),
+    };
+    let at = snapshot.map(|snapshot| snapshot.position);
+    ReplayedRecord {
+        file: file.display().to_string(),
+        outcome,
+        message: message.cloned(),
+        scene: snapshot.map(|snapshot| snapshot.name.clone()),
+        increment: at.map(|at| at.increment),
+        attempt: at.map(|at| at.attempt),
+        major: at.map(|at| at.major),
+        minor: at.map(|at| at.minor),
+        minors,
+        differences: rows.len(),
+        first: rows.iter().take(MOST_DIFFERENCES).map(difference).collect(),
+        seconds,
+    }
+}
+
+fn difference(row: &Difference) -> DifferenceRecord {
+    DifferenceRecord {
+        node: row.node.clone(),
+        field: row.field.clone(),
+        expected: row.left.clone(),
+        found: row.right.clone(),
+        apart: row.apart.map(|(apart, _)| apart),
+        allowed: row.apart.map(|(_, allowed)| allowed),
+    }
+}
+
+/// The result as that of a test.
+fn result(replayed: &Replayed) -> TestResult {
+    match replayed {
+        Replayed::Unreadable(why) => TestResult::Error(why.clone()),
+        Replayed::NotRepeatable(_, why) => TestResult::Failed(why.clone(), String::new()),
+        Replayed::Compared { differences, .. } => match differences.rows.len() {
+            0 => TestResult::Passed,
+            1 => TestResult::Failed("1 difference".into(), differences.to_string()),
+            n => TestResult::Failed(format!("{n} differences"), differences.to_string()),
+        },
+    }
 }

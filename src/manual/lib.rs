@@ -64,6 +64,7 @@ pages! {
     interfaces "interfaces" "pages/interfaces.md" "Interface problems from other programs and for other solvers";
     paraview "paraview" "pages/paraview.md" "Results in ParaView, of each increment, major or minor iteration";
     command_line "command-line" "pages/command-line.md" "Subcommands, files, exit codes";
+    json "json" "pages/json.md" "Results as JSON and JUnit, for scripts and CI: all fields";
     keys "keys" "pages/keys.md" "Keys and actions of the debugger; branches, breakpoints, journals";
     glossary "glossary" "pages/glossary.md" "Terms of this program and the paper, and what other codes call them";
     studies "studies" "pages/studies.md" "Many runs of a scene; the paper's figures";

@@ -19,6 +19,8 @@ mod chart;
 mod threads;
 // Pictures and other files of what is there: whole, equal, and of the state that they say.
 mod export;
+// Results as data agree with tables, text and exit codes, and have the fields of their page.
+mod json;
 // Files for ParaView and for other solvers.
 mod vtu;
 // Shells complete command lines, and man shows the pages.

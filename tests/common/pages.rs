@@ -58,6 +58,7 @@ fn made(marker: &str) -> Option<String> {
         "python" => Some(python(what)),
         "keys" => list(stickslip::action::markdown()),
         "commands" => list(stickslip::cli::commands()),
+        "records" => list(stickslip::cli::json_records()),
         "reference" => list(markdown::types().unwrap()),
         "settings" => list(markdown::settings().unwrap()),
         "keywords" => list(keywords()),
@@ -271,7 +272,7 @@ pub fn arguments(line: &str) -> Option<Vec<&str>> {
     // What stands behind is the shell's.
     let mut words: Vec<&str> = words.take_while(|word| *word != ">").collect();
     // A subcommand that is only named need not have what it takes.
-    if let [_] | [_, "--csv"] = words[..] {
+    if let [_] | [_, "--csv" | "--json" | "--junit"] = words[..] {
         words.truncate(1);
         words.push("--help");
     }

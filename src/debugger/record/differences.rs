@@ -25,8 +25,10 @@ pub const TOLERANCE: f64 = 1e-9;
 /// One difference.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Difference {
-    /// What differs, such as `beam.end f_n`.
-    pub what: String,
+    /// Name of the node. `None` if the difference concerns the whole state.
+    pub node: Option<String>,
+    /// What differs, such as `f_n`.
+    pub field: String,
     /// Value on the left, as text.
     pub left: String,
     /// Value on the right, as text.
@@ -35,11 +37,47 @@ pub struct Difference {
     pub apart: Option<(f64, f64)>,
 }
 
+impl Difference {
+    /// What differs, with the node: `beam.end f_n`.
+    fn what(&self) -> String {
+        match (&self.node, self.field.as_str()) {
+            (None, field) => field.to_owned(),
+            (Some(node), SLAVE | NODE) => format!("{} {node}", self.field),
+            (Some(node), field) => format!("{node} {field}"),
+        }
+    }
+}
+
+/// Field of a slave node that only one side has.
+const SLAVE: &str = "slave";
+/// Field of a node that only one side has.
+const NODE: &str = "node";
+
 /// All differences; displayed as a table.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Differences {
     /// One row per difference.
     pub rows: Vec<Difference>,
+}
+
+/// What is compared: a field of the whole state, or of a node.
+#[derive(Clone, Copy)]
+struct Item<'a> {
+    node: Option<&'a str>,
+    field: &'a str,
+}
+
+impl<'a> From<&'a str> for Item<'a> {
+    fn from(field: &'a str) -> Item<'a> {
+        Item { node: None, field }
+    }
+}
+
+impl<'a> From<(&'a str, &'a str)> for Item<'a> {
+    fn from((node, field): (&'a str, &'a str)) -> Item<'a> {
+        let node = Some(node);
+        Item { node, field }
+    }
 }
 
 /// Scales of forces and lengths.
@@ -95,7 +133,7 @@ impl Differences {
         let (left, right) = (values(a), values(b));
         for (path, pair) in paired(&left, &right) {
             let text = |value: Option<&String>| value.map_or(ABSENT.to_owned(), Clone::clone);
-            self.exact_text(&format!("scene {path}"), text(pair.0), text(pair.1));
+            self.exact_text(format!("scene {path}").as_str(), text(pair.0), text(pair.1));
         }
         if self.rows.len() == before {
             self.exact_text(
@@ -116,7 +154,7 @@ impl Differences {
             by_name(&b.slaves, |s| &s.node),
         );
         for (node, pair) in paired(&left, &right) {
-            if let Some((left, right)) = self.both(&format!("slave {node}"), pair) {
+            if let Some((left, right)) = self.both(node, SLAVE, pair) {
                 self.slave(left, right, scales);
             }
         }
@@ -125,14 +163,14 @@ impl Differences {
             by_name(&b.displacements, |d| &d.node),
         );
         for (node, pair) in paired(&left, &right) {
-            if let Some((left, right)) = self.both(&format!("node {node}"), pair) {
+            if let Some((left, right)) = self.both(node, NODE, pair) {
                 self.displacement(left, right, scales);
             }
         }
         self.exact("number of shear forces", &a.shear.len(), &b.shear.len());
         for (k, (left, right)) in a.shear.iter().zip(&b.shear).enumerate() {
             self.number(
-                &format!("shear force {}", k + 1),
+                format!("shear force {}", k + 1).as_str(),
                 *left,
                 *right,
                 scales.force,
@@ -141,21 +179,21 @@ impl Differences {
     }
 
     fn slave(&mut self, a: &SlaveRecord, b: &SlaveRecord, scales: &Scales) {
-        let name = &a.node;
+        let name = a.node.as_str();
         let rule = |s: &SlaveRecord| s.rule.map_or(ABSENT, Rule::name).to_owned();
         for (what, left, right) in [
             ("mode", names::mode(a.mode), names::mode(b.mode)),
             ("next", names::mode(a.next), names::mode(b.next)),
         ] {
-            self.exact_text(&format!("{name} {what}"), left.into(), right.into());
+            self.exact_text((name, what), left.into(), right.into());
         }
-        self.exact_text(&format!("{name} rule"), rule(a), rule(b));
-        self.exact(&format!("{name} forced"), &a.forced, &b.forced);
+        self.exact_text((name, "rule"), rule(a), rule(b));
+        self.exact((name, "forced"), &a.forced, &b.forced);
         match (a.gap, b.gap) {
             (Some(left), Some(right)) => {
-                self.number(&format!("{name} gap"), left, right, scales.length);
+                self.number((name, "gap"), left, right, scales.length);
             }
-            (left, right) => self.exact(&format!("{name} gap"), &left, &right),
+            (left, right) => self.exact((name, "gap"), &left, &right),
         }
         for (what, left, right, scale) in [
             ("f_n", a.f_n, b.f_n, scales.force),
@@ -163,25 +201,29 @@ impl Differences {
             ("t_max", a.t_max, b.t_max, scales.force),
             ("slip", a.slip, b.slip, scales.length),
         ] {
-            self.number(&format!("{name} {what}"), left, right, scale);
+            self.number((name, what), left, right, scale);
         }
     }
 
     fn displacement(&mut self, a: &Displacement, b: &Displacement, scales: &Scales) {
-        let name = &a.node;
-        self.number(&format!("{name} x"), a.x, b.x, scales.length);
-        self.number(&format!("{name} y"), a.y, b.y, scales.length);
+        let name = a.node.as_str();
+        self.number((name, "x"), a.x, b.x, scales.length);
+        self.number((name, "y"), a.y, b.y, scales.length);
         match (a.rotation, b.rotation) {
             (Some(left), Some(right)) => {
-                self.number(&format!("{name} rotation"), left, right, 1.0);
+                self.number((name, "rotation"), left, right, 1.0);
             }
-            (left, right) => self.exact(&format!("{name} rotation"), &left, &right),
+            (left, right) => self.exact((name, "rotation"), &left, &right),
         }
     }
 
     fn norms(&mut self, when: &str, a: Option<&Norms>, b: Option<&Norms>, scales: &Scales) {
         let (Some(a), Some(b)) = (a, b) else {
-            self.exact(&format!("residual {when}"), &a.is_some(), &b.is_some());
+            self.exact(
+                format!("residual {when}").as_str(),
+                &a.is_some(),
+                &b.is_some(),
+            );
             return;
         };
         for (what, left, right, scale) in [
@@ -190,7 +232,12 @@ impl Differences {
             ("interface", a.interface, b.interface, 1.0),
             ("correction", a.correction, b.correction, 1.0),
         ] {
-            self.number(&format!("residual {when}, {what}"), left, right, scale);
+            self.number(
+                format!("residual {when}, {what}").as_str(),
+                left,
+                right,
+                scale,
+            );
         }
     }
 
@@ -198,37 +245,44 @@ impl Differences {
     /// to compare.
     fn both<'a, T>(
         &mut self,
-        what: &str,
+        node: &str,
+        field: &str,
         pair: (Option<&&'a T>, Option<&&'a T>),
     ) -> Option<(&'a T, &'a T)> {
         match pair {
             (Some(left), Some(right)) => Some((left, right)),
             (left, right) => {
                 let text = |there: bool| if there { "there" } else { ABSENT }.to_owned();
-                self.exact_text(what, text(left.is_some()), text(right.is_some()));
+                let (left, right) = (text(left.is_some()), text(right.is_some()));
+                self.exact_text((node, field), left, right);
                 None
             }
         }
     }
 
-    fn exact<T: PartialEq + Debug>(&mut self, what: &str, left: &T, right: &T) {
+    fn exact<'a, T: PartialEq + Debug>(&mut self, item: impl Into<Item<'a>>, left: &T, right: &T) {
         if left != right {
-            self.exact_text(what, word(left), word(right));
+            self.exact_text(item, word(left), word(right));
         }
     }
 
-    fn exact_text(&mut self, what: &str, left: String, right: String) {
+    fn exact_text<'a>(&mut self, item: impl Into<Item<'a>>, left: String, right: String) {
         if left != right {
-            self.rows.push(Difference {
-                what: what.to_owned(),
-                left,
-                right,
-                apart: None,
-            });
+            self.add(item.into(), left, right, None);
         }
     }
 
-    fn number(&mut self, what: &str, left: f64, right: f64, scale: f64) {
+    fn add(&mut self, item: Item, left: String, right: String, apart: Option<(f64, f64)>) {
+        self.rows.push(Difference {
+            node: item.node.map(str::to_owned),
+            field: item.field.to_owned(),
+            left,
+            right,
+            apart,
+        });
+    }
+
+    fn number<'a>(&mut self, item: impl Into<Item<'a>>, left: f64, right: f64, scale: f64) {
         // Equality covers the infinities, whose difference is NaN.
         if left == right || (left.is_nan() && right.is_nan()) {
             return;
@@ -241,12 +295,8 @@ impl Differences {
         if apart <= allowed && apart.is_finite() {
             return;
         }
-        self.rows.push(Difference {
-            what: what.to_owned(),
-            left: format!("{left:?}"),
-            right: format!("{right:?}"),
-            apart: Some((apart, allowed)),
-        });
+        let (left, right) = (format!("{left:?}"), format!("{right:?}"));
+        self.add(item.into(), left, right, Some((apart, allowed)));
     }
 }
 
@@ -340,7 +390,7 @@ impl fmt::Display for Differences {
         lines.extend(
             self.rows
                 .iter()
-                .map(|r| [r.what.clone(), r.left.clone(), r.right.clone(), apart(r)]),
+                .map(|r| [r.what(), r.left.clone(), r.right.clone(), apart(r)]),
         );
         for line in shown::aligned(&lines, lines[0].len()) {
             writeln!(f, "{line}")?;

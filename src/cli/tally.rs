@@ -1,0 +1,406 @@
+//! Counters, warnings and notes of `stickslip run`.
+
+use super::base::{Error, Sent, notify};
+use super::progress::Progress;
+use super::records::{FallbackRecord, MonitorRecord, SlaveRecord, StabilityRecord};
+use super::run_outputs::{RunOutputs, first_closed, send};
+use super::table;
+use std::collections::BTreeMap;
+use stickslip_core::contact::record::ContactRecord;
+use stickslip_core::linear::norms::Norms;
+use stickslip_core::linear::stability::Stability;
+use stickslip_core::step::event::{Event, Moves, Outcome};
+use stickslip_core::step::recovery::fallback::Fallback;
+use stickslip_core::step::solver::Solver;
+use stickslip_debugger::explain::accuracy;
+use stickslip_debugger::explain::bond;
+use stickslip_debugger::explain::names;
+use stickslip_debugger::explain::report;
+use stickslip_debugger::explain::touch::TouchWatch;
+use stickslip_debugger::history::rounds::{self, CycleWatch};
+use stickslip_debugger::history::strip::Strip;
+use stickslip_scene::Scene;
+use stickslip_scene::number::six;
+use stickslip_scene::shown::aligned;
+
+/// Warnings that are printed individually; others are only counted.
+const MOST_WARNINGS: u32 = 10;
+/// Maximum number of slave nodes in the final table.
+const MOST_SLAVES: usize = 40;
+/// Maximum number of load ranges or loads listed in a message about stability.
+pub const MOST_STRETCHES: usize = 8;
+
+/// Warnings and notes of a run: printed as they arise, and stored for `--json`.
+#[derive(Default)]
+pub struct Messages {
+    /// Whether only warnings are printed.
+    quiet: bool,
+    pub warnings: Vec<String>,
+    pub notes: Vec<String>,
+}
+
+impl Messages {
+    pub fn new(quiet: bool) -> Messages {
+        Messages {
+            quiet,
+            ..Messages::default()
+        }
+    }
+
+    /// Adds a warning, which is always printed.
+    pub fn warn(&mut self, text: String) {
+        notify(&format!("warning: {text}"));
+        self.warnings.push(text);
+    }
+
+    /// Adds a warning about the scene, which is printed unless the run is quiet.
+    pub fn warn_of_scene(&mut self, text: String) {
+        if !self.quiet {
+            notify(&format!("warning: {text}"));
+        }
+        self.warnings.push(text);
+    }
+
+    /// Adds a note, which is printed unless the run is quiet.
+    pub fn note(&mut self, text: String) {
+        if !self.quiet {
+            notify(&format!("note: {text}"));
+        }
+        self.notes.push(text);
+    }
+}
+
+/// Counters and results of a run.
+pub struct Tally<'a> {
+    pub scene: &'a Scene,
+    pub messages: Messages,
+    pub progress: Progress,
+    /// Minor iterations in total, and in the current increment.
+    pub steps: u64,
+    minors: u64,
+    /// Accepted increments, and their major iterations.
+    pub accepted: u64,
+    pub majors: u64,
+    /// Increments accepted with a warning.
+    doubtful: u32,
+    /// Load factors of increments that were accepted with a fallback.
+    pub found: BTreeMap<Fallback, Vec<f64>>,
+    /// Load factors of accepted increments that jumped, and of those that lost stability.
+    pub jumps: Vec<f64>,
+    pub losses: Vec<f64>,
+    /// Number of strategy changes and step-size reductions.
+    notes: u32,
+    /// Norms of the accepted increment with the largest round-off in its forces.
+    noisiest: Norms,
+    /// Largest relative error of an accepted increment that is within its limit.
+    reached: f64,
+    /// Largest natural map of forces that their modes do not determine.
+    settled: Option<f64>,
+    /// Stability of the accepted states, if requested.
+    pub stability: Option<Stretches>,
+    /// Maximum iterations per increment of an attached solver, and the detection of repeating modes.
+    most: Option<(u64, CycleWatch)>,
+    /// Monitors and slave-node values after the last accepted increment.
+    pub monitors: Vec<f64>,
+    slaves: Vec<ContactRecord>,
+    /// Present if `touch: auto` has a choice.
+    pub touch: Option<TouchWatch>,
+}
+
+impl<'a> Tally<'a> {
+    /// `most` limits the iterations per increment of an attached solver.
+    pub fn new(scene: &'a Scene, quiet: bool, stability: bool, most: Option<u64>) -> Self {
+        Tally {
+            scene,
+            messages: Messages::new(quiet),
+            progress: Progress::new(quiet),
+            steps: 0,
+            minors: 0,
+            accepted: 0,
+            majors: 0,
+            doubtful: 0,
+            found: BTreeMap::new(),
+            jumps: Vec::new(),
+            losses: Vec::new(),
+            notes: 0,
+            noisiest: Norms::default(),
+            reached: 0.0,
+            settled: None,
+            stability: stability.then(Stretches::default),
+            most: most.map(|most| (most, CycleWatch::default())),
+            monitors: Vec::new(),
+            slaves: Vec::new(),
+            touch: None,
+        }
+    }
+
+    /// Records and reports a minor iteration.
+    pub fn see(
+        &mut self,
+        solver: &mut dyn Solver,
+        outputs: &mut RunOutputs,
+    ) -> Result<Sent, Error> {
+        if let Some((grids, stepper)) = outputs.grids.as_mut().zip(solver.stepper()) {
+            grids.see(stepper)?;
+        }
+        let event = solver.event();
+        if let Some(touch) = &mut self.touch {
+            touch.see(event, solver.state());
+        }
+        (self.steps, self.minors) = (self.steps + 1, self.minors + 1);
+        self.progress.show(event, self.steps);
+        let sent = send(&mut outputs.trace, || {
+            let friction = &solver.state().controls.friction;
+            table::trace_rows(&self.scene.model, friction, event)
+        })?;
+        match event.outcome {
+            // The failure is reported even if no reader is left.
+            Outcome::Failed(_) => return Ok(Sent::Well),
+            Outcome::Climbed { .. }
+            | Outcome::Cut { .. }
+            | Outcome::Leaps { .. }
+            | Outcome::Turns { .. }
+            | Outcome::Fallback { .. }
+            | Outcome::Damped { .. }
+            | Outcome::Refused { .. } => self.note(event),
+            Outcome::Increment { .. } => {
+                let sent = first_closed(sent, self.accept(solver, outputs)?);
+                return Ok(outputs.after(sent));
+            }
+            Outcome::Moves(Moves::LetsGo { .. }) => self.note(event),
+            Outcome::Minor
+            | Outcome::Major { .. }
+            | Outcome::HeldBack { .. }
+            | Outcome::Moves(_) => {}
+        }
+        Ok(outputs.after(sent))
+    }
+
+    /// If an attached solver has exceeded its maximum iterations in this increment, a message that describes its last modes.
+    pub fn endless(&mut self, solver: &dyn Solver) -> Option<String> {
+        let (most, watch) = self.most.as_mut()?;
+        let (event, state) = (solver.event(), solver.state());
+        watch.see(&Strip::new(solver.model(), state, Some(event), None, 0.0));
+        if self.minors < *most {
+            return None;
+        }
+        let rounds = watch
+            .now()
+            .map(|now| rounds::words(solver.model(), &now, false));
+        Some(format!(
+            "stopped after {most} iterations in one increment (--most): {}",
+            rounds.unwrap_or_else(|| "the modes no longer change".into())
+        ))
+    }
+
+    fn accept(&mut self, solver: &mut dyn Solver, outputs: &mut RunOutputs) -> Result<Sent, Error> {
+        self.monitors.clear();
+        solver.monitors(&mut self.monitors);
+        let stability = self.stability.is_some().then(|| match solver.stepper() {
+            Some(stepper) => stepper.stability(),
+            None => Stability::NotKnown,
+        });
+        let event = solver.event();
+        self.slaves.clone_from(&event.nodes);
+        self.warn(event);
+        let (minors, monitors) = (self.minors, &self.monitors);
+        if let Some((stretches, stability)) = self.stability.as_mut().zip(stability) {
+            stretches.add(event.load_factor, stability);
+        }
+        let model = &self.scene.model;
+        let u = &solver.state().start.u;
+        let row = || table::csv_row(model, event, minors, monitors, stability, u);
+        let sent = send(&mut outputs.csv, row)?;
+        self.accepted += 1;
+        self.majors += u64::from(event.position.major);
+        self.minors = 0;
+        Ok(sent)
+    }
+
+    /// Prints modes and forces of the last accepted increment, for scenes without monitors.
+    pub fn tell_slaves(&self) {
+        if self.slaves.is_empty() {
+            return;
+        }
+        let heads = ["", "node", "mode", "gap", "F_n", "F_t"];
+        let mut table = vec![heads.map(str::to_owned).to_vec()];
+        let contacts = &self.scene.model.contacts;
+        let bonds = contacts.iter().any(|contact| !contact.bond.is_hard());
+        if bonds {
+            table[0].extend(["F_n/A", "F_t/A", "law"].map(str::to_owned));
+        }
+        for (slave, found) in self.slaves.iter().enumerate().take(MOST_SLAVES) {
+            table.push(vec![
+                String::new(),
+                names::slave(&self.scene.model, slave).to_owned(),
+                names::mode(found.decision.before).to_owned(),
+                six(found.gap),
+                six(found.f_n),
+                six(found.f_t),
+            ]);
+            if let (true, Some(row)) = (bonds, table.last_mut()) {
+                let contact = &contacts[slave];
+                let by_area = contact.pressure(found.f_n, found.f_t);
+                let text = by_area.map_or(["-".into(), "-".into()], |both| both.map(six));
+                row.extend(text);
+                row.push(bond::name(contact).to_owned());
+            }
+        }
+        for line in aligned(&table, 3) {
+            notify(&line);
+        }
+        if self.slaves.len() > MOST_SLAVES {
+            let more = self.slaves.len() - MOST_SLAVES;
+            notify(&format!(
+                "  and {more} more slave nodes; --trace writes all"
+            ));
+        }
+    }
+
+    /// Reports a recovery of the strategy.
+    fn note(&mut self, event: &Event) {
+        self.notes += 1;
+        if self.notes <= MOST_WARNINGS {
+            self.progress.clear();
+            self.messages
+                .note(report::outcome(&self.scene.model, event));
+        }
+    }
+
+    /// Reports what the last increment was accepted in spite of.
+    fn warn(&mut self, event: &Event) {
+        let Outcome::Increment {
+            after,
+            jumped,
+            unstable,
+            found,
+            ..
+        } = event.outcome
+        else {
+            return;
+        };
+        if let Some(by) = found {
+            self.found.entry(by).or_default().push(event.load_factor);
+        }
+        match unstable {
+            Some(_) => self.losses.push(event.load_factor),
+            None if jumped => self.jumps.push(event.load_factor),
+            None => {}
+        }
+        if after.noise > self.noisiest.noise {
+            self.noisiest = after;
+        }
+        let error = after.relative.max(after.interface);
+        if let Some(error) = accuracy::natural_map(event) {
+            self.settled = Some(self.settled.map_or(error, |most| most.max(error)));
+        } else if error <= after.limit {
+            self.reached = self.reached.max(error);
+        }
+        let although = report::reservations(&self.scene.model, event);
+        if although.is_empty() {
+            return;
+        }
+        self.doubtful += 1;
+        if self.doubtful <= MOST_WARNINGS {
+            let (increment, load) = (event.position.increment, event.load_factor);
+            self.progress.clear();
+            self.messages.warn(format!(
+                "increment {increment} (load {load}) was accepted{although}"
+            ));
+        }
+    }
+
+    /// Adds the warnings and notes that summarise the run.
+    pub fn sum_up(&mut self) {
+        if self.doubtful > MOST_WARNINGS {
+            self.messages.warn(format!(
+                "{} increments in total were accepted with warnings",
+                self.doubtful
+            ));
+        }
+        if let Some(left) = accuracy::left(&self.noisiest) {
+            self.messages.warn(left);
+        }
+        let tolerance = self.scene.model.settings.tolerance;
+        if let Some(raised) = accuracy::raised(tolerance, self.reached) {
+            self.messages.note(raised);
+        }
+        if let Some(error) = self.settled {
+            self.messages.note(accuracy::not_unique(error));
+        }
+        if self.notes > MOST_WARNINGS {
+            self.messages.note(format!(
+                "{} such notes in total; the rest is not shown",
+                self.notes
+            ));
+        }
+    }
+
+    /// The monitors of the last accepted increment.
+    pub fn monitors(&self) -> Vec<MonitorRecord> {
+        let all = self.scene.model.monitors.iter().zip(&self.monitors);
+        all.map(|(monitor, &value)| MonitorRecord {
+            name: monitor.name.clone(),
+            value,
+        })
+        .collect()
+    }
+
+    /// The slave nodes in the last accepted increment.
+    pub fn slaves(&self) -> Vec<SlaveRecord> {
+        let slave = |(slave, found): (usize, &ContactRecord)| SlaveRecord {
+            node: names::slave(&self.scene.model, slave).to_owned(),
+            mode: names::mode(found.decision.before),
+            gap: found.gap,
+            f_n: found.f_n,
+            f_t: found.f_t,
+        };
+        self.slaves.iter().enumerate().map(slave).collect()
+    }
+
+    /// The increments that were accepted with a fallback.
+    pub fn fallbacks(&self) -> Vec<FallbackRecord> {
+        let of = |(by, loads): (&Fallback, &Vec<f64>)| {
+            let fallback = by.words();
+            let record = move |&load: &f64| FallbackRecord { fallback, load };
+            loads.iter().map(record).collect::<Vec<_>>()
+        };
+        self.found.iter().flat_map(of).collect()
+    }
+}
+
+/// Load ranges of equal stability, each with its initial load.
+#[derive(Default)]
+pub struct Stretches(Vec<(f64, Stability)>);
+
+impl Stretches {
+    fn add(&mut self, load: f64, stability: Stability) {
+        if self.0.last().is_none_or(|(_, last)| *last != stability) {
+            self.0.push((load, stability));
+        }
+    }
+
+    /// The ranges.
+    pub fn records(&self) -> Vec<StabilityRecord> {
+        let record = |&(load, stability): &(f64, Stability)| StabilityRecord {
+            load,
+            stability: stability.to_string(),
+        };
+        self.0.iter().map(record).collect()
+    }
+
+    /// A one-line summary; `None` if no increment was accepted.
+    pub fn words(&self) -> Option<String> {
+        if self.0.is_empty() {
+            return None;
+        }
+        let stretch =
+            |(load, stability): &(f64, Stability)| format!("{stability} from load {load}");
+        let first: Vec<String> = self.0.iter().take(MOST_STRETCHES).map(stretch).collect();
+        let more = match self.0.len().saturating_sub(MOST_STRETCHES) {
+            0 => String::new(),
+            more => format!(", and {more} more changes; --csv lists all"),
+        };
+        Some(format!("stability: {}{more}", first.join(", ")))
+    }
+}
