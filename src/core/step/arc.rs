@@ -275,7 +275,7 @@ impl Iterate {
 impl State {
     /// Whether the state is on the path of the previous increment, or behind the start of this one.
     fn doubles_back(&self) -> bool {
-        let state = &*self;
+        let state = self;
         let Some(way) = &state.way else { return false };
         #[cfg(mutants)]
         if crate::mutants::is_active("arc-step-doubles-back") {
