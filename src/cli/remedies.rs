@@ -46,8 +46,8 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         event.load_factor,
         &failure,
     ));
-    for line in page::facts(&mut stepper, &state, &failure, &|| false) {
-        notify(&format!("  {line}"));
+    for line in page::causes(&mut stepper, &state, &failure, &|| false) {
+        notify(&format!("  why: {line}"));
     }
     let mut trials = Vec::new();
     for remedy in remedies::all(&mut stepper, &state, spec, &|| false) {

@@ -395,9 +395,14 @@ impl<'a> Run<'a> {
                 notify(&format!(
                     "  `{remedies}` tries every remedy; in the debugger, d shows the cause"
                 ));
-                // The limit load is printed last.
-                for line in page::facts(&mut scratch, &state, failure, &|| interrupt.came()) {
-                    notify(&format!("  {line}"));
+                let stop = || interrupt.came();
+                let most = (&self.tally.scene.spec, self.tally.steps);
+                for line in page::causes(&mut scratch, &state, failure, &stop) {
+                    notify(&format!("  why: {line}"));
+                }
+                let works = page::first_that_works(&mut scratch, &state, failure, most, &stop);
+                if let Some(line) = works {
+                    notify(&format!("  try: {}", line.words()));
                 }
                 Exit::Unconverged
             }
