@@ -402,7 +402,7 @@ impl<'a> Run<'a> {
                 }
                 let works = page::first_that_works(&mut scratch, &state, failure, most, &stop);
                 if let Some(line) = works {
-                    notify(&format!("  try: {}", line.words()));
+                    notify(&format!("  try: {}", line.option()));
                 }
                 Exit::Unconverged
             }

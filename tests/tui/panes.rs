@@ -147,7 +147,7 @@ fn an_answer_by_its_number_starts_all_of_its_nodes_in_one_step() {
 fn where_no_state_is_consistent_the_screen_says_which_condition_fails_by_least() {
     let debugger = debugger("osc-coh-none", "c d");
     let text = text(&debugger, 80, 24);
-    assert!(text.contains("why: no modes of a are consistent"), "{text}");
+    assert!(text.contains("no modes of a are consistent"), "{text}");
     assert!(
         text.contains("none of 4 assignments is consistent"),
         "{text}"
@@ -390,7 +390,7 @@ fn answers_and_remedies_are_in_the_journal_and_replay_to_the_same_bits() {
         .examination(session.timeline().place())
         .flatten()
         .unwrap();
-    let starts = finding.starts(0).unwrap();
+    let starts = finding.found.starts(0).unwrap();
     solve(&mut session, Command::Assume(starts));
     solve(&mut session, RUN);
     let record = Record::read(&path).unwrap();

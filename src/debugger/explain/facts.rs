@@ -5,6 +5,8 @@
 pub enum Part {
     /// The cause, with node, body, element and numbers.
     Why,
+    /// What happened in a finished run.
+    Report,
     /// Which node pushes which, one change of mode per line.
     Loop,
     /// The consistent states of the frozen problem.
@@ -17,12 +19,19 @@ pub enum Part {
 
 impl Part {
     /// The parts below Try.
-    pub const BELOW: [Part; 4] = [Part::Loop, Part::Census, Part::Rates, Part::Details];
+    pub const BELOW: [Part; 5] = [
+        Part::Report,
+        Part::Loop,
+        Part::Census,
+        Part::Rates,
+        Part::Details,
+    ];
 
     /// Heading of the part.
     pub fn heading(self) -> &'static str {
         match self {
             Part::Why => "Why",
+            Part::Report => "Report",
             Part::Loop => "Loop",
             Part::Census => "Census",
             Part::Rates => "Rates",

@@ -22,7 +22,7 @@ pub fn headline(model: &Model, state: &State, failure: &Failure) -> String {
 }
 
 /// The failure without lists of modes.
-fn brief(model: &Model, failure: &Failure) -> String {
+pub fn brief(model: &Model, failure: &Failure) -> String {
     let named = |slaves: &mut dyn Iterator<Item = usize>| {
         first_of(slaves.map(|s| slave(model, s)), MOST, ", ")
     };

@@ -31,6 +31,7 @@ use stickslip_core::step::event::Failure;
 use stickslip_core::step::state::{State, Status};
 use stickslip_core::step::stepper::Stepper;
 use stickslip_scene::format::spec::Spec;
+use stickslip_scene::gaps::turned;
 use stickslip_scene::number::four;
 
 /// Shown if the first increment fails and nodes start inside their surface.
@@ -284,6 +285,9 @@ impl PageBuilder {
         let overlap =
             Remedy::from_kind(RemedyKind::Gaps(InitialGaps::Ramp), stepper.model(), state);
         page.facts.extend(overlap.map(|_| Fact::why(OVERLAP)));
+        let turned = turned(stepper.model());
+        let turned = turned.iter().map(|found| found.words(stepper.model()));
+        page.facts.extend(turned.map(Fact::why));
         page.facts.extend(certain.map(words));
         let possible = cause.filter(|cause| !cause.is_certain()).map(words);
         page.explain(stepper, state, failure, stop);
@@ -483,7 +487,7 @@ impl PageBuilder {
     /// The remedies tried for the page: the consistent states, and those for this kind of failure.
     fn remedies(&self, model: &Model, state: &State, failure: &Failure) -> Vec<Remedy> {
         let mut all = Remedy::answers(model, &self.found);
-        all.truncate(2);
+        all.truncate(if turned(model).is_empty() { 2 } else { 0 });
         let certain = matches!(Remedy::law(model, state, failure), Some((_, true)));
         let advised = advised(model, state, failure);
         let is_law = |remedy: &Remedy| remedy.kind == RemedyKind::Law;
@@ -546,10 +550,7 @@ fn finer_line(finer: &Finer) -> TryLine {
     let (outcome, end) = match &finer.run.failure {
         None => (
             TryOutcome::Works,
-            format!(
-                "tried from the start: passes this load, {} minor iterations",
-                finer.run.minors
-            ),
+            format!("tried from the start: passes, {} minors", finer.run.minors),
         ),
         Some(Some(failure)) => {
             let end = remedies::end_words(&TrialEnd::Failed(failure.clone()));

@@ -34,11 +34,11 @@ impl TryLine {
     pub fn tried(trial: &Trial) -> TryLine {
         let works = helps(trial);
         let minors = match trial.minors {
-            1 => "1 minor iteration".to_owned(),
-            n => format!("{n} minor iterations"),
+            1 => "1 minor".to_owned(),
+            n => format!("{n} minors"),
         };
         let end = match (works, &trial.how) {
-            (true, How::Restart(_)) => format!("tried from the start: passes this load, {minors}"),
+            (true, How::Restart(_)) => format!("tried from the start: passes, {minors}"),
             (true, _) => format!("tried: converges, {minors}"),
             (false, _) if trial.end == TrialEnd::Converged => {
                 "tried: held nodes violate a law".to_owned()
@@ -87,6 +87,22 @@ impl TryLine {
             TryOutcome::Works => "✓",
             TryOutcome::Untried => "?",
             TryOutcome::Fails => "✗",
+        }
+    }
+
+    /// What to type, or the label of what has no command.
+    pub fn command(&self) -> &str {
+        match self.typed.as_str() {
+            "" => &self.label,
+            typed => typed,
+        }
+    }
+
+    /// The line with options for the command line instead of a command of the debugger.
+    pub fn option(&self) -> String {
+        match self.trial.as_ref().map(|trial| &trial.how) {
+            Some(How::Set(path, value)) => format!("--set {path}={value} ({})", self.end),
+            _ => format!("{} ({})", self.command(), self.end),
         }
     }
 

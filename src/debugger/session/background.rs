@@ -281,6 +281,11 @@ impl Background {
         }
     }
 
+    /// Stores a page that is made without the thread.
+    pub(super) fn set_examination(&mut self, place: LinePlace, page: DiagnosisPage) {
+        self.examinations.insert(place, (Vec::new(), Some(page)));
+    }
+
     /// Requests an export.
     pub(super) fn ask_export(&mut self, export: Export) {
         self.send(BackgroundRequest::Export(export));

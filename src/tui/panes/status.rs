@@ -263,7 +263,7 @@ fn diagnosed(page: &DiagnosisPage) -> String {
     let what = page.what.split_once(": ").map_or("", |(_, what)| what);
     match page.works() {
         None => format!("✗ {what}"),
-        Some(line) => format!("✗ {what}. Try: {}", line.words()),
+        Some(line) => format!("✗ {what}. Try {}", line.command()),
     }
 }
 
