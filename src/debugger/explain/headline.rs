@@ -13,12 +13,13 @@ const MOST: usize = 3;
 
 /// The line for a failed state.
 pub fn headline(model: &Model, state: &State, failure: &Failure) -> String {
-    format!(
-        "increment {}, load {}: {}",
-        state.next.increment,
-        plain(state.load_factor),
-        brief(model, failure)
-    )
+    at(state, &brief(model, failure))
+}
+
+/// A line with the increment and load of a state.
+pub fn at(state: &State, text: &str) -> String {
+    let load = plain(state.load_factor);
+    format!("increment {}, load {load}: {text}", state.next.increment)
 }
 
 /// The failure without lists of modes.
@@ -28,13 +29,13 @@ pub fn brief(model: &Model, failure: &Failure) -> String {
     };
     match failure {
         Failure::Cycle(cycle) => format!(
-            "contact modes repeat with period {} from minor iteration {} ({})",
+            "contact modes repeat with period {} from minor {} ({})",
             cycle.period,
             cycle.start,
             named(&mut cycle.members.iter().map(|member| member.0))
         ),
         Failure::MajorCycle(round) => format!(
-            "major iterations repeat with period {} from major iteration {} ({})",
+            "major iterations repeat with period {} from major {} ({})",
             round.period,
             round.start,
             named(&mut round.members.iter().map(|member| member.0))

@@ -10,7 +10,7 @@ use super::diagnosis::undecided;
 use super::examination::{DONE, Examination, frozen, nothing};
 use super::facts::{Fact, Part};
 use super::finer::{Finer, finer};
-use super::headline::headline;
+use super::headline::{at, headline};
 use super::indefinite::{self, indefinite};
 use super::judged;
 use super::jumped::leads_away;
@@ -466,9 +466,12 @@ impl PageBuilder {
             self.facts.extend(lines);
         }
         self.facts.append(&mut self.found.facts);
-        let is_cause = !self.found.fails;
-        self.facts
-            .extend(is_cause.then(|| Fact::new(Part::Details, self.found.head.clone())));
+        if !self.found.fails {
+            // The head is all that is known where nothing else is.
+            let explained = self.facts.iter().any(|fact| fact.part == Part::Why);
+            let part = if explained { Part::Details } else { Part::Why };
+            self.facts.push(Fact::new(part, self.found.head.clone()));
+        }
     }
 
     /// The load at which friction is used up or contact is lost, if that is the cause: then it comes first.
@@ -479,9 +482,14 @@ impl PageBuilder {
         failure: &Failure,
         stop: &dyn Fn() -> bool,
     ) {
-        if let Some(text) = limit_load(stepper, state, failure, stop) {
-            self.facts.insert(0, Fact::why(text));
+        let Some(text) = limit_load(stepper, state, failure, stop) else {
+            return;
+        };
+        // A body that is held up to a load is not simply loose.
+        if matches!(failure, Failure::Singular(Singular::Rigid { .. })) {
+            self.what = at(state, "equilibrium ends before this load");
         }
+        self.facts.insert(0, Fact::why(text));
     }
 
     /// The remedies tried for the page: the consistent states, and those for this kind of failure.

@@ -47,7 +47,7 @@ impl TryLine {
         };
         TryLine {
             label: trial.label.clone(),
-            typed: trial.how.typed(),
+            typed: typed(&trial.how),
             outcome: match works {
                 true => TryOutcome::Works,
                 false => TryOutcome::Fails,
@@ -63,7 +63,7 @@ impl TryLine {
         let about = about.map_or(String::new(), |seconds| format!(", about {seconds:.0} s"));
         TryLine {
             label: remedy.label.clone(),
-            typed: remedy.how.typed(),
+            typed: typed(&remedy.how),
             outcome: TryOutcome::Untried,
             end: format!("not tried yet{about}"),
             trial: None,
@@ -112,6 +112,14 @@ impl TryLine {
             "" => format!("{} ({})", self.label, self.end),
             typed => format!("{}: {typed} ({})", self.label, self.end),
         }
+    }
+}
+
+/// What to type; empty if only Enter on the line does it.
+fn typed(how: &How) -> String {
+    match how {
+        How::Listed => String::new(),
+        _ => how.typed(),
     }
 }
 
