@@ -106,8 +106,10 @@ records! {
         load: f64,
         /// Why and where the run failed
         failure: Option<FailureRecord>,
-        /// Cause of the failure, as lines of text: where, why, limit load
-        facts: Vec<String>,
+        /// Causes of the failure, as lines of text
+        why: Vec<String>,
+        /// The first remedy that a trial showed to work; null if none did
+        works: Option<String>,
         /// Increments that were accepted with a fallback
         fallbacks: Vec<FallbackRecord>,
         /// Loads of increments that jumped to another branch of equilibrium
@@ -192,8 +194,8 @@ records! {
         exit_code: u8,
         /// The first failure; null if the scene converges
         failure: Option<FailureRecord>,
-        /// Cause of the failure, as lines of text
-        facts: Vec<String>,
+        /// Causes of the failure, as lines of text
+        why: Vec<String>,
         /// Remedies, best first; those that were not tried come last
         remedies: Vec<RemedyRecord>,
     }

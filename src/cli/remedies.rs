@@ -46,7 +46,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         scene: scene.name.clone(),
         exit_code: Exit::Good as u8,
         failure: None,
-        facts: Vec::new(),
+        why: Vec::new(),
         remedies: Vec::new(),
     };
     let mut stepper = solver(Arc::new(scene.model.clone()));
@@ -60,9 +60,9 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     let (at, load) = (event.position, event.load_factor);
     record.failure = Some(FailureRecord::new(&model, at, load, &failure));
     notify(&report::failure(&model, &state, at, load, &failure));
-    record.facts = page::facts(&mut stepper, &state, &failure, &|| false);
-    for line in &record.facts {
-        notify(&format!("  {line}"));
+    record.why = page::causes(&mut stepper, &state, &failure, &|| false);
+    for line in &record.why {
+        notify(&format!("  why: {line}"));
     }
     let (mut trials, mut untried) = (Vec::new(), Vec::new());
     for remedy in remedies::all(&mut stepper, &state, spec, &|| false) {

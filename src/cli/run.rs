@@ -108,7 +108,8 @@ struct RunResult {
     message: Option<String>,
     failure: Option<FailureRecord>,
     /// Cause of the failure.
-    facts: Vec<String>,
+    why: Vec<String>,
+    works: Option<String>,
 }
 
 impl RunResult {
@@ -118,7 +119,8 @@ impl RunResult {
             outcome,
             message: None,
             failure: None,
-            facts: Vec::new(),
+            why: Vec::new(),
+            works: None,
         }
     }
 }
@@ -258,10 +260,16 @@ impl<'a> Run<'a> {
         notify(&format!(
             "  `{remedies}` tries every remedy; in the debugger, d shows the cause"
         ));
-        // The limit load is printed last.
-        result.facts = page::facts(&mut scratch, state, failure, &|| interrupt.came());
-        for line in &result.facts {
-            notify(&format!("  {line}"));
+        let stop = || interrupt.came();
+        let most = (&self.tally.scene.spec, self.tally.steps);
+        result.why = page::causes(&mut scratch, state, failure, &stop);
+        for line in &result.why {
+            notify(&format!("  why: {line}"));
+        }
+        let works = page::first_that_works(&mut scratch, state, failure, most, &stop);
+        result.works = works.map(|line| line.option());
+        if let Some(line) = &result.works {
+            notify(&format!("  try: {line}"));
         }
         result
     }
@@ -281,7 +289,8 @@ impl<'a> Run<'a> {
             minors: tally.steps,
             load: self.solver.state().start.load_factor,
             failure: result.failure,
-            facts: result.facts,
+            why: result.why,
+            works: result.works,
             fallbacks: tally.fallbacks(),
             jumps: tally.jumps.clone(),
             unstable: tally.losses.clone(),

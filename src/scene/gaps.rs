@@ -99,7 +99,8 @@ pub fn words(model: &Model) -> Vec<String> {
 
 /// Warnings about the initial state, one sentence each, the most serious first.
 pub fn warnings(model: &Model) -> Vec<String> {
-    let mut all = turned(model);
+    let turned = turned(model);
+    let mut all: Vec<String> = turned.iter().map(|found| found.words(model)).collect();
     let gaps = start_gaps(model);
     for found in gaps.iter().filter(|found| !found.inside.is_empty()) {
         let names = some(model, &found.inside);
@@ -130,8 +131,31 @@ pub fn warnings(model: &Model) -> Vec<String> {
     all
 }
 
-/// Surfaces whose outward side faces the same way as those of all bodies with slave nodes on them.
-pub fn turned(model: &Model) -> Vec<String> {
+/// A surface with the wrong orientation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct TurnedSurface {
+    /// Number of the surface.
+    pub surface: usize,
+    /// Number of slave nodes that it faces away from, and of all above it.
+    pub away: [usize; 2],
+}
+
+impl TurnedSurface {
+    /// Describes the surface, and what to do.
+    pub fn words(&self, model: &Model) -> String {
+        let name = &model.surfaces[self.surface].name;
+        let nodes = match self.away {
+            [away, all] if away == all => "all its slave nodes".to_owned(),
+            [away, all] => format!("{away} of its {all} slave nodes"),
+        };
+        format!(
+            "surface {name} faces away from {nodes}: its outward side, on the right of its walk, points the same way as the outward sides of their bodies, so they start behind it; set reverse, or walk it in the other direction"
+        )
+    }
+}
+
+/// Surfaces whose outward side faces the same way as those of the bodies of most slave nodes on them.
+pub fn turned(model: &Model) -> Vec<TurnedSurface> {
     let stands = stands(&model.nodes, &model.surfaces, &model.contacts);
     let outward = outward(model);
     let looks = |surface: usize| {
@@ -149,17 +173,13 @@ pub fn turned(model: &Model) -> Vec<String> {
                 })
             });
         let over: Vec<f64> = over.collect();
-        !over.is_empty() && over.iter().all(|cosine| *cosine > SAME_WAY)
-    };
-    (0..model.surfaces.len())
-        .filter(|&surface| looks(surface))
-        .map(|surface| {
-            let name = &model.surfaces[surface].name;
-            format!(
-                "surface {name} faces away from all its slave nodes: its outward side, on the right of its walk, points the same way as the outward sides of their bodies, so they start behind it; set reverse, or walk it in the other direction"
-            )
+        let away = over.iter().filter(|cosine| **cosine > SAME_WAY).count();
+        (2 * away > over.len()).then_some(TurnedSurface {
+            surface,
+            away: [away, over.len()],
         })
-        .collect()
+    };
+    (0..model.surfaces.len()).filter_map(looks).collect()
 }
 
 /// Unit normal on the right of an element, at these shape function derivatives.

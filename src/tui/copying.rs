@@ -88,7 +88,7 @@ fn selected_text(app: &App, view: &View) -> Result<NamedText, String> {
         Pane::Diagnosis => {
             let found = view.examination().flatten();
             let found = found.ok_or("no diagnosis yet; press d")?;
-            Ok(("the diagnosis".into(), found.lines.join("\n")))
+            Ok(("the diagnosis".into(), found.lines().join("\n")))
         }
     }
 }

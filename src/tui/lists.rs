@@ -5,7 +5,10 @@ use crate::layout::Pane;
 use crate::screen;
 use crate::view::View;
 use stickslip_debugger::action::{Page, Step};
+use stickslip_debugger::explain::page::DiagnosisPage;
+use stickslip_debugger::explain::remedies::Trial;
 use stickslip_debugger::explain::remedy::How;
+use stickslip_debugger::explain::try_list::TryOutcome;
 use stickslip_debugger::history::verdicts::{self, summaries};
 use stickslip_debugger::record::command::{Command, To};
 
@@ -68,12 +71,48 @@ impl App {
         None
     }
 
-    /// Enter in the diagnosis: starts from the selected state, or runs the analysis if there is no result yet.
+    /// Enter in the diagnosis: takes the selected line of Try, or starts from the selected state; runs the analysis if there is
+    /// no result yet.
     pub(super) fn take_answer(&mut self, view: Option<&View>) -> Option<Effect> {
-        match view.and_then(View::examination) {
-            None => self.ask_page(Pane::Diagnosis, view),
-            Some(_) => self.start_from(self.answer, view),
+        let Some(found) = view.and_then(View::examination) else {
+            return self.ask_page(Pane::Diagnosis, view);
+        };
+        match found.filter(|page| !page.tries.is_empty()) {
+            Some(page) => self.take_try(page, view),
+            None => self.start_from(self.answer, view),
         }
+    }
+
+    /// Takes the selected line of Try: repeats its trial in a branch, or tries it if the trials were interrupted.
+    fn take_try(&mut self, page: &DiagnosisPage, view: Option<&View>) -> Option<Effect> {
+        let line = page.tries.get(self.answer.min(page.tries.len() - 1))?;
+        let label = &line.label;
+        match &line.trial {
+            Some(trial) if !matches!(trial.how, How::Restart(_)) => {
+                return self.follow(trial, view);
+            }
+            _ if line.typed.starts_with("--set") && line.outcome != TryOutcome::Untried => {
+                self.complain(format!(
+                    "{label} changes the scene: restart with {}",
+                    line.typed
+                ));
+            }
+            _ if line.typed.is_empty() => {
+                self.say(format!("{label}: nothing can try this for you"))
+            }
+            _ if page.is_complete() => {
+                return self.submit(Command::Census(Vec::new()), view);
+            }
+            _ => self.say(format!("{label}: the trials are running")),
+        }
+        None
+    }
+
+    /// Repeats a trial in a branch.
+    fn follow(&mut self, trial: &Trial, view: Option<&View>) -> Option<Effect> {
+        self.panes.zoomed = false;
+        let (label, steps) = (trial.label.clone(), trial.steps.clone());
+        self.submit(Command::Follow { label, steps }, view)
     }
 
     /// Enter in the remedies: applies the selected one, or tries all if there is no result yet.
@@ -95,7 +134,7 @@ impl App {
     /// Starts from a consistent state found by the census.
     pub(super) fn start_from(&mut self, number: usize, view: Option<&View>) -> Option<Effect> {
         let found = view?.examination().flatten();
-        match found.and_then(|found| found.starts(number)) {
+        match found.and_then(|page| page.found.starts(number)) {
             Some(starts) => return self.submit(Command::Assume(starts), view),
             None if found.is_none() => {
                 self.complain("consistent states are not known here yet; run :census");
@@ -135,9 +174,7 @@ impl App {
             ));
             return None;
         }
-        self.panes.zoomed = false;
-        let (label, steps) = (trial.label.clone(), trial.steps.clone());
-        self.submit(Command::Follow { label, steps }, view)
+        self.follow(trial, view)
     }
 
     /// Finds a text in the focused list: a branch, a remedy, or otherwise a slave node. An empty text repeats the last search.
@@ -181,8 +218,13 @@ impl App {
         {
             return self.submit(Command::Goto { step: to }, view);
         }
-        let answers =
-            view.and_then(|view| Some(view.examination()??.census.as_ref()?.answers.len()));
+        let answers = view.and_then(|view| view.examination()?).map(|page| {
+            let census = page.found.census.as_ref();
+            match page.tries.len() {
+                0 => census.map_or(0, |census| census.answers.len()),
+                tries => tries,
+            }
+        });
         let list = match self.panes.focus {
             Pane::Branches => {
                 let count = view.and_then(|view| Some(view.tree?.branches().len()));

@@ -112,7 +112,7 @@ impl App {
             }
             (Pane::Diagnosis, _) => {
                 let found = view.examination().flatten();
-                let last = found.map_or(0, |found| found.lines.len());
+                let last = found.map_or(0, |found| found.lines().len());
                 self.scroll = match up {
                     true => self.scroll.saturating_sub(LINES),
                     false => (self.scroll + LINES).min(last),

@@ -7,8 +7,8 @@ use stickslip_core::step::event::{Event, Outcome, Position};
 use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::solver::Offers;
 use stickslip_debugger::action::Context;
-use stickslip_debugger::explain::examination::Examination;
 use stickslip_debugger::explain::influence::NodePush;
+use stickslip_debugger::explain::page::DiagnosisPage;
 use stickslip_debugger::explain::remedies::Trial;
 use stickslip_debugger::explain::round_off::RoundOff;
 use stickslip_debugger::history::frame::Frame;
@@ -98,7 +98,7 @@ impl<'a> View<'a> {
     }
 
     /// The diagnosis of the problem that is solved next from here; the inner `None` while it is being computed.
-    pub fn examination(&self) -> Option<Option<&'a Examination>> {
+    pub fn examination(&self) -> Option<Option<&'a DiagnosisPage>> {
         self.background?
             .examination((self.tree?.current(), self.cursor))
     }

@@ -244,7 +244,7 @@ fn a_failed_run_agrees_with_its_trace_and_text_quiet_or_not() {
         }
     }
     let told = err(&output);
-    for line in list(&record["facts"])
+    for line in list(&record["why"])
         .iter()
         .chain([&record["message"], &failure["words"]])
     {

@@ -3,6 +3,7 @@
 
 use crate::common::{Run, force, go_on, run, scene};
 use stickslip::explain::diagnosis::{Cause, Diagnosis, words};
+use stickslip::explain::facts::Part;
 use stickslip::explain::influence::influences;
 use stickslip::interface::problem::InterfaceProblem;
 use stickslip::interface::trials::Trials;
@@ -52,7 +53,7 @@ fn the_small_scenes_are_diagnosed_as_their_notes_say() {
         };
         assert_eq!(cycle.period, period, "{name}");
         let lines = words(run.stepper.model(), &problem, &diagnosis);
-        assert!(lines.len() >= 3 && lines[0].starts_with("why: "), "{name}");
+        assert!(lines.len() >= 3 && lines[0].part == Part::Why, "{name}");
     }
 }
 

@@ -276,9 +276,8 @@ fn a_wheel_that_crushes_its_soil_is_told_so_and_the_law_that_helps_was_tried() {
     assert!(run.failure.is_some());
     assert!(checked(&run)[1] > 0.0);
     let (state, failure) = (run.stepper.state().clone(), run.failure.unwrap().1);
-    let facts = page::facts(&mut run.stepper, &state, &failure, &|| false);
+    let facts = page::causes(&mut run.stepper, &state, &failure, &|| false);
     for part in [
-        "why: ",
         "of soil",
         "a stretch of 0.2883",
         "softens below 0.5774",
@@ -301,14 +300,10 @@ fn the_law_of_an_inverted_element_is_the_first_that_is_tried_and_helps() {
     let state = run.stepper.state().clone();
     let spec = Some(&collapses.spec);
     let found = page::page(&mut run.stepper, &state, spec, &|| false, &mut |_| {}).unwrap();
-    let first = |head: &str| {
-        let mut lines = found.lines.iter();
-        lines.find(|line| line.starts_with(head)).unwrap()
-    };
-    assert!(first("why: ").contains("element 14 of g"));
-    let helps =
-        "do: 1. law: neohookean: --set materials.rubber.law=neohookean (tried from the start";
-    assert!(first("do: ").starts_with(helps), "{:#?}", found.lines);
+    assert!(found.why[0].contains("element 14 of g"));
+    let first = &found.tries[0];
+    assert_eq!(first.typed, "--set materials.rubber.law=neohookean");
+    assert!(first.end.starts_with("tried from the start"), "{first:?}");
 }
 
 #[test]

@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 use std::sync::Arc;
 use stickslip::explain::diagnosis::{Diagnosis, words};
 use stickslip::explain::examination::{examine_nodes, going_round};
+use stickslip::explain::facts::Fact;
 use stickslip::explain::page::page;
 use stickslip::format::condensed::Problem;
 use stickslip::interface::census::{BUDGET, MOST, by_blocks, census, search};
@@ -161,11 +162,16 @@ fn a_count_and_a_page_that_are_stopped_keep_what_was_found_and_say_that_it_is_no
     let state = stepper.state().clone();
     let all: Vec<usize> = (0..20).collect();
     let counted = examine_nodes(&mut stepper, &state, &all, &|| true);
-    let words = counted.lines.join("\n");
+    let words = texts(&counted.facts);
     assert!(words.contains("incomplete after 0 branches"), "{words}");
     let mut parts = 0;
     let whole = page(&mut stepper, &state, None, &|| true, &mut |_| parts += 1);
     assert_eq!((whole, parts), (None, 1));
+}
+
+fn texts(facts: &[Fact]) -> String {
+    let texts: Vec<&str> = facts.iter().map(|fact| fact.text.as_str()).collect();
+    texts.join("\n")
 }
 
 #[test]
@@ -190,7 +196,7 @@ fn of_a_cycle_of_many_nodes_the_states_of_those_that_change_are_counted_and_that
         }
         let diagnosis = Diagnosis::find(&problem, &never).unwrap();
         let counted: Vec<usize> = diagnosis.problem.nodes.iter().map(|n| n.slave).collect();
-        let words = words(stepper.model(), &problem, &diagnosis).join("\n");
+        let words = texts(&words(stepper.model(), &problem, &diagnosis));
         if counted == changing {
             of_changing += 1;
             let told = format!("the states of the {} whose modes change", changing.len());

@@ -253,14 +253,21 @@ fn several_consistent_states_are_listed_with_how_they_differ() {
     let states: Vec<String> = census.answers.iter().map(|a| a.answer.letters()).collect();
     assert_eq!(states, ["F+F", "FF+", "F++"]);
     let lines = words(stuck.stepper.model(), &problem, &diagnosis);
-    let has = |text: &str| assert!(lines.iter().any(|l| l.contains(text)), "{text}: {lines:#?}");
+    let has = |text: &str| {
+        assert!(
+            lines.iter().any(|l| l.text.contains(text)),
+            "{text}: {lines:#?}"
+        )
+    };
     has("3 combinations of modes of c1, c2 and c3 are consistent");
     has("how they differ:");
     has(
         "c2: sliding with F_t > 0 in 1, F_n 4.0000e0, F_t 0.0000e0; free in 2, gap 8.0000e0; sliding",
     );
     assert!(
-        !lines.iter().any(|l| l.trim_start().starts_with("c1: ")),
+        !lines
+            .iter()
+            .any(|l| l.text.trim_start().starts_with("c1: ")),
         "{lines:#?}"
     );
 }
@@ -470,11 +477,11 @@ fn a_cycle_among_hundreds_of_nodes_is_diagnosed_by_those_that_take_part() {
         .examination(session.timeline().place())
         .flatten()
         .unwrap();
-    assert!(finding.fails, "{:?}", finding.lines);
+    assert!(finding.found.fails, "{:?}", finding.lines());
     assert!(
-        finding.lines[0].contains("c1, c2, c3, c4 and c5"),
+        finding.what.contains("c1, c2, c3, c4 and c5"),
         "{:?}",
-        finding.lines
+        finding.lines()
     );
     // And of chosen nodes, none of which is in the ring.
     session.submit(Command::Census(vec![10, 11])).unwrap();
@@ -484,15 +491,17 @@ fn a_cycle_among_hundreds_of_nodes_is_diagnosed_by_those_that_take_part() {
         .examination(session.timeline().place())
         .flatten()
         .unwrap();
-    let census = finding.census.as_ref().unwrap();
+    let census = finding.found.census.as_ref().unwrap();
     assert_eq!((census.tried, census.answers.len()), (4, 1));
     assert_eq!(census.answers[0].answer.letters(), "+F");
     assert!(
-        finding.lines[0].starts_with("For c11, c12, with all other nodes"),
+        finding
+            .what
+            .starts_with("For c11, c12, with all other nodes"),
         "{:?}",
-        finding.lines
+        finding.lines()
     );
     // Its start is taken for these nodes alone, and the minor iterations go on.
-    let starts = finding.starts(0).unwrap();
+    let starts = finding.found.starts(0).unwrap();
     assert_eq!(starts.iter().map(|s| s.slave).collect::<Vec<_>>(), [10, 11]);
 }

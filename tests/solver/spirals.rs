@@ -206,7 +206,7 @@ fn page_of(failed: common::Run) -> Vec<String> {
     let state = stepper.state().clone();
     let mut seen = |_: &_| ();
     let page = page::page(&mut stepper, &state, None, &|| false, &mut seen);
-    page.unwrap().lines
+    page.unwrap().lines()
 }
 
 #[test]
@@ -225,9 +225,12 @@ fn on_the_page_of_a_minor_limit_the_rate_comes_before_what_to_do() {
     );
     let lines = page_of(failed);
     let place = |start: &str| lines.iter().position(|line| line.starts_with(start));
-    let why = place("why: the modes have settled; T_max converges by a factor of 0.94");
-    assert!(why.is_some() && why < place("do: 1."), "{lines:#?}");
-    assert!(place("  its fixed point: T_max = ").is_some(), "{lines:#?}");
+    let why = place("Why: the modes have settled; T_max converges by a factor of 0.94");
+    assert!(why.is_some() && why < place("Try 1:"), "{lines:#?}");
+    assert!(
+        place("    its fixed point: T_max = ").is_some(),
+        "{lines:#?}"
+    );
 }
 
 #[test]

@@ -222,7 +222,7 @@ fn what_is_selected_is_copied_and_named() {
     assert!(force.unwrap().parse::<f64>().is_ok_and(|f| f < 0.0));
     assert!(told.starts_with("copied f_n a: "), "{told}");
     let (found, _) = copied("osc-two6", "c d", "");
-    assert!(found.unwrap().contains("\ncensus: 1 of 16"));
+    assert!(found.unwrap().contains("of a and b: 1 of 16"));
     let (remedy, _) = copied("osc-two6", "c r Down", "");
     assert!(remedy.unwrap().contains("\tconverged\t"));
     let (keys, _) = copied("osc-two6", "", "copy keys");

@@ -2,8 +2,8 @@
 
 use std::sync::Arc;
 use stickslip::contact::laws::{Finding, JudgedLaw, JudgedNumbers};
-use stickslip::explain::examination::Examination;
-use stickslip::explain::page::page;
+use stickslip::explain::page::{DiagnosisPage, page};
+use stickslip::explain::try_list::TryOutcome;
 use stickslip::scene::Scene;
 use stickslip::session::Session;
 use stickslip::step::event::Failure;
@@ -136,7 +136,7 @@ fn at_failure(case: &Case) -> Debugger {
     debugger
 }
 
-fn found(debugger: &Debugger) -> Examination {
+fn found(debugger: &Debugger) -> DiagnosisPage {
     let session = debugger.session.as_ref().unwrap();
     let found = session.background().examination(session.timeline().place());
     found.flatten().expect("the page is made").clone()
@@ -152,13 +152,18 @@ fn every_way_to_fail_has_a_page_that_says_what_why_and_what_was_tried() {
         };
         assert!((case.is_meant)(&failure), "{}: {failure:?}", case.name);
         let found = found(&debugger);
-        let any = |head: &str| found.lines.iter().any(|line| line.starts_with(head));
-        assert!(any("what: "), "{}: {:#?}", case.name, found.lines);
-        let tried = any("do: 1. ") || any("did not help: ") || any("not tried: ");
-        assert!(tried, "{}: {:#?}", case.name, found.lines);
-        let advised = found.lines.iter().filter(|line| line.starts_with("do: "));
-        for advice in advised {
-            assert!(advice.contains("(tried"), "{}: {advice}", case.name);
+        assert!(found.what.starts_with("increment "), "{}", case.name);
+        assert!(!found.why.is_empty(), "{}: {:#?}", case.name, found.lines());
+        assert!(
+            !found.tries.is_empty(),
+            "{}: {:#?}",
+            case.name,
+            found.lines()
+        );
+        for line in &found.tries {
+            let is_tried = line.end.starts_with("tried");
+            let outcome = line.outcome != TryOutcome::Untried;
+            assert_eq!(is_tried, outcome, "{}: {}", case.name, line.words());
         }
         for (width, height) in [(80, 24), (120, 40), (200, 60)] {
             let name = format!("{}-{width}x{height}", case.name);
@@ -191,27 +196,26 @@ fn a_state_that_the_judge_refuses_has_a_page_with_the_law_the_node_and_what_is_a
     let mut stepper = Stepper::new(Arc::new(session.model().clone()));
     let spec = Some(&session.scene().spec);
     let found = page(&mut stepper, &state, spec, &|| false, &mut |_| {}).unwrap();
-    let told = found.lines.join("\n");
+    let told = found.lines().join("\n");
     let name = &session.model().nodes[session.model().contacts[0].node].name;
     for part in [
         "cone",
         name.as_str(),
         "F_t 0.7 (limit 0.5)",
         "limit 1.0e-9",
-        "do: 1. ",
-        "a finer mesh, refine=2",
+        "Try 1: ✓ ",
+        "a finer mesh: --set refine=2",
     ] {
         assert!(told.contains(part), "{part}: {told}");
     }
-    assert_eq!(found.nodes, [0]);
+    assert_eq!(found.found.nodes, [0]);
 }
 
 #[test]
 fn an_inverted_element_is_named_first_and_marked_in_the_shape() {
     let case = CASES.iter().find(|case| case.name == "inverted").unwrap();
     let mut debugger = at_failure(case);
-    let lines = found(&debugger).lines;
-    let why = lines.iter().find(|line| line.starts_with("why: ")).unwrap();
+    let why = &found(&debugger).why[0];
     for part in ["element 14 of g", "stretch", "law: svk"] {
         assert!(why.contains(part), "{why}");
     }
@@ -227,17 +231,15 @@ fn the_two_scenes_of_a_stranger_are_cured_by_what_their_pages_say() {
         let case = CASES.iter().find(|case| case.name == name).unwrap();
         let mut debugger = at_failure(case);
         let found = found(&debugger);
-        let first = found.lines.iter().find(|line| line.starts_with("do: 1. "));
-        let first = first.unwrap();
+        let first = found.works().unwrap();
         // What the page says is typed, and nothing else.
-        let (_, command) = first.split_once(": :").unwrap();
-        let command = command.split_once(" (tried").unwrap().0;
+        let command = first.typed.strip_prefix(':').unwrap();
         debugger.type_keys(":");
         debugger.type_text(command);
         debugger.type_keys("Enter c");
         // The strip comes loose once more where all of its load is gone again: then nothing can hold it.
         let frames = debugger.session.as_ref().unwrap().frames();
         let loads = frames.iter().map(|frame| frame.state.start.load_factor);
-        assert_eq!(loads.fold(0.0, f64::max), 1.0, "{name}: {first}");
+        assert_eq!(loads.fold(0.0, f64::max), 1.0, "{name}: {first:?}");
     }
 }

@@ -146,8 +146,8 @@ fn an_answer_by_its_number_starts_all_of_its_nodes_in_one_step() {
 #[test]
 fn where_no_state_is_consistent_the_screen_says_which_condition_fails_by_least() {
     let debugger = debugger("osc-coh-none", "c d");
-    let text = text(&debugger, 80, 24);
-    assert!(text.contains("why: no modes of a are consistent"), "{text}");
+    let text = text(&debugger, 80, 40);
+    assert!(text.contains("no modes of a are consistent"), "{text}");
     assert!(
         text.contains("none of 4 assignments is consistent"),
         "{text}"
@@ -162,6 +162,34 @@ fn a_census_is_held_at_the_start_too_and_says_that_there_is_no_cycle() {
     let text = text(&debugger, 80, 24);
     assert!(text.contains("do not cycle from here"), "{text}");
     assert!(text.contains("1 of 4 assignments is consistent"), "{text}");
+}
+
+#[test]
+fn enter_takes_the_selected_line_of_try_in_a_new_branch() {
+    let mut debugger = debugger("osc-two6", "c d");
+    let seen = text(&debugger, 80, 24);
+    assert!(seen.contains("▸1 ✓ the ladder of strategies"), "{seen}");
+    debugger.type_keys("Down Enter");
+    let session = debugger.session.as_ref().unwrap();
+    assert_eq!(session.timeline().tree().branches().len(), 2);
+    assert_eq!(session.frame().state.status, Status::Finished);
+    assert!(matches!(
+        session.frames()[7].intervention,
+        Some(Intervention::Assume(_))
+    ));
+}
+
+#[test]
+fn the_page_of_a_finished_run_is_its_report() {
+    let debugger = debugger("02-two-cantilevers-smooth", "c d");
+    let seen = text(&debugger, 120, 40);
+    for part in [
+        "The history is complete: ",
+        "Report",
+        "most iterations: increment ",
+    ] {
+        assert!(seen.contains(part), "{part}: {seen}");
+    }
 }
 
 #[test]
@@ -189,7 +217,9 @@ fn the_timeline_moves_the_whole_screen() {
 fn the_timeline_marks_the_cursor_and_forced_modes_without_colour_too() {
     for theme in [Theme::colour(), Theme::mono()] {
         let mut debugger = Debugger::new(theme, vec![], Some(session("osc-two6")));
-        debugger.type_keys("c d Enter s t");
+        debugger.type_keys("c :");
+        debugger.type_text("start-from 1");
+        debugger.type_keys("Enter s t");
         let area = Rect::new(0, 0, 80, 24);
         let mut buffer = Buffer::empty(area);
         screen::draw(&mut buffer, area, &debugger.app, debugger.view().as_ref());
@@ -390,7 +420,7 @@ fn answers_and_remedies_are_in_the_journal_and_replay_to_the_same_bits() {
         .examination(session.timeline().place())
         .flatten()
         .unwrap();
-    let starts = finding.starts(0).unwrap();
+    let starts = finding.found.starts(0).unwrap();
     solve(&mut session, Command::Assume(starts));
     solve(&mut session, RUN);
     let record = Record::read(&path).unwrap();

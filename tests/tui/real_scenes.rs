@@ -103,7 +103,7 @@ fn a_person_ends_the_oscillation() {
     debugger.type_keys("c");
     let cycle = debugger.text(120, 40);
     assert!(
-        cycle.contains("✗ cycle of period 2 from minor 1: beam.5 free → fixed"),
+        cycle.contains("✗ contact modes repeat with period 2 from minor 1 (beam.5)"),
         "{cycle}"
     );
     debugger.type_keys("m s");

@@ -241,7 +241,7 @@ fn what_is_typed_behind_something_that_waits_keeps_its_place_in_the_line() {
 
 #[test]
 fn the_key_of_an_empty_page_computes_and_a_second_press_leaves_it_open() {
-    for (key, shown) in [("d", "census: 1 of 16"), ("r", "converge; Enter")] {
+    for (key, shown) in [("d", "of a and b: 1 of 16"), ("r", "converge; Enter")] {
         let mut debugger = debugger("osc-two6");
         debugger.type_keys("s");
         // The page is in sight, and has nothing to tell.

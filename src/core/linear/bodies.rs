@@ -267,6 +267,10 @@ impl Source for Bodies {
         self.system.asked(&self.model)
     }
 
+    fn largest_residual(&self) -> Option<(usize, f64)> {
+        self.system.largest(&self.model)
+    }
+
     fn kinematics(&self, contact: usize) -> Option<NodeKinematics> {
         self.system.kinematics(contact)
     }

@@ -97,6 +97,17 @@ impl System {
         largest / self.norms.scale.max(f64::MIN_POSITIVE)
     }
 
+    /// The degree of freedom with the largest out-of-balance force in the last linearisation, and that force; moments are
+    /// divided by the scene's length.
+    pub fn largest(&self, model: &Model) -> Option<(usize, f64)> {
+        let equations = model.dofs.equation.iter().enumerate();
+        let forces = equations.filter_map(|(d, equation)| {
+            let lever = self.sizes.lever(d)?;
+            Some((d, self.residual[(*equation)?].abs() / lever))
+        });
+        forces.max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
     /// Changes the target load of the last linearisation at the same displacements. Apart from prescribed displacements, nothing
     /// else changes if no element has a history.
     pub fn aim(&mut self, model: &Model, at: &At<'_>) {

@@ -216,6 +216,12 @@ pub trait Source: Send {
         f64::INFINITY
     }
 
+    /// The degree of freedom with the largest out-of-balance force in the last linearisation, and that force; `None` if the
+    /// source does not know it.
+    fn largest_residual(&self) -> Option<(usize, f64)> {
+        None
+    }
+
     /// Position of a contact relative to its surface in the last linearisation; `None` without a surface.
     fn kinematics(&self, contact: usize) -> Option<NodeKinematics>;
 

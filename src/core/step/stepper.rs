@@ -251,6 +251,11 @@ impl Stepper {
         Some(self.now.norms)
     }
 
+    /// The degree of freedom with the largest out-of-balance force in the last linearisation, and that force; `None` if unknown.
+    pub fn largest_residual(&self) -> Option<(usize, f64)> {
+        self.now.source.largest_residual()
+    }
+
     /// Whether the minor iterations are solved on the condensed interface.
     pub fn condenses(&self) -> bool {
         self.now.source.condenses(&self.now.state.controls.settings)

@@ -11,6 +11,7 @@ use stickslip_core::model::{
 };
 use stickslip_core::step::event::Failure;
 use stickslip_core::step::state::State;
+use stickslip_scene::gaps::turned;
 
 /// A possible measure.
 #[derive(Debug, Clone, PartialEq)]
@@ -28,6 +29,15 @@ pub const FINER: &str = "a finer mesh, with smaller kinks (refine=2)";
 
 /// What to do about a failure, in order of preference.
 pub fn advice(model: &Model, state: &State, failure: &Failure) -> Vec<Advice> {
+    let turned = turned(model).into_iter();
+    let reverse: Vec<Advice> = turned
+        .filter_map(|found| Remedy::from_kind(RemedyKind::Reverse(found.surface), model, state))
+        .map(Advice::Remedy)
+        .collect();
+    // Against a wrong side nothing else helps.
+    if !reverse.is_empty() {
+        return reverse;
+    }
     let remedies = kinds(state, failure)
         .into_iter()
         .filter_map(|kind| Remedy::from_kind(kind, model, state))

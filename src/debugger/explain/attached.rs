@@ -99,7 +99,7 @@ pub fn examine(
     stop: &dyn Fn() -> bool,
 ) -> Examination {
     let describe = |line: String| Examination {
-        lines: vec![line],
+        head: line,
         ..Examination::default()
     };
     if state.status == Status::Finished {

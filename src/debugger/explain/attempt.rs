@@ -20,6 +20,8 @@ pub struct Major {
     pub after: Norms,
     /// Values of all degrees of freedom.
     pub u: Arc<Vec<f64>>,
+    /// The node with the largest out-of-balance force, and that force; `None` if unknown.
+    pub largest: Option<(usize, f64)>,
     /// Mode of each slave node, and its point on the surface.
     pub contacts: Vec<(Mode, Option<SurfacePoint>)>,
 }
@@ -47,7 +49,7 @@ impl Attempt {
         let end = stepper.drive(Until::end().interrupted_by(stop), |stepper| {
             match stepper.event().outcome {
                 Outcome::Major { after, .. } | Outcome::Refused { after, .. } => {
-                    majors.push(Major::new(stepper.state(), after));
+                    majors.push(Major::new(stepper, after));
                     ControlFlow::Continue(())
                 }
                 Outcome::Increment { .. }
@@ -82,10 +84,19 @@ impl Attempt {
 }
 
 impl Major {
-    fn new(state: &State, after: Norms) -> Major {
+    fn new(stepper: &Stepper, after: Norms) -> Major {
+        let (state, dofs) = (stepper.state(), &stepper.model().dofs);
+        let largest = stepper.largest_residual().and_then(|(dof, force)| {
+            let has = |node: &usize| {
+                let first = dofs.first[*node];
+                (first..first + usize::from(dofs.count[*node])).contains(&dof)
+            };
+            Some(((0..dofs.first.len()).find(has)?, force))
+        });
         let contacts = state.nodes.iter().map(|node| (node.mode, node.spot));
         Major {
             after,
+            largest,
             u: state.u.clone(),
             contacts: contacts.collect(),
         }

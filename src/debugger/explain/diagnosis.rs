@@ -2,6 +2,7 @@
 //! and in words.
 
 use crate::explain::core::{Core, core, cycle};
+use crate::explain::facts::{Fact, Part};
 use crate::explain::influence::{Influence, influences};
 use crate::explain::names;
 use crate::explain::proven;
@@ -16,6 +17,7 @@ use stickslip_core::interface::trials::Trials;
 use stickslip_core::model::{BoundUpdate, SlipCount};
 use stickslip_core::model::{Mode, Model};
 use stickslip_core::strategy::method;
+use stickslip_scene::shown::{aligned, first_of};
 
 /// Maximum number of nodes of a diagnosed problem: each iteration of its cycle requires dense solves of twice
 /// that size. A larger scene is reduced to the nodes that take part in the cycle ([`cycling`]).
@@ -26,8 +28,12 @@ const BRANCHES: usize = census::BUDGET / 10;
 const AT_FULL: f64 = 20.0;
 /// Maximum number of consistent states listed.
 const MOST_TOLD: usize = 12;
-/// Maximum number of iterations of a period listed.
+/// Maximum number of iterations of a period whose pushes are computed.
 const MOST_PHASES: usize = 12;
+/// Maximum number of pushes listed.
+const MOST_PUSHES: usize = 24;
+/// Maximum number of nodes named in a sentence.
+const MOST_NAMES: usize = 6;
 
 /// Diagnosis of a cycle.
 #[derive(Debug, Clone, PartialEq)]
@@ -350,50 +356,80 @@ fn runs(problem: &InterfaceProblem) -> bool {
         .any(|(_, settled)| settled)
 }
 
-/// The diagnosis in words, one line each, most important first, with node names of the scene.
-pub fn words(model: &Model, problem: &InterfaceProblem, diagnosis: &Diagnosis) -> Vec<String> {
+/// What cycles, in one line.
+pub fn head(model: &Model, problem: &InterfaceProblem, diagnosis: &Diagnosis) -> String {
+    let members = diagnosis.cycle.members.iter();
+    let names: Vec<_> = members
+        .map(|member| names::slave(model, problem.nodes[member.0].slave))
+        .collect();
+    format!(
+        "The minor iterations cycle with period {} from here: {}.",
+        diagnosis.cycle.period,
+        list(&names)
+    )
+}
+
+/// The diagnosis in words, with node names of the scene.
+pub fn words(model: &Model, problem: &InterfaceProblem, diagnosis: &Diagnosis) -> Vec<Fact> {
     let name = |place: usize| names::slave(model, problem.nodes[place].slave);
     let studied = |place: usize| names::slave(model, diagnosis.problem.nodes[place].slave);
     // Nodes left out of the problem, and nodes of the problem left out of the census.
     let left_out = model.contacts.len() > problem.nodes.len()
         || undecided(problem).len() > diagnosis.problem.nodes.len();
-    let mut lines = vec![format!(
-        "why: {}",
-        cause_words(diagnosis, left_out, &studied)
-    )];
-    for (k, phase) in diagnosis.phases.iter().enumerate().take(MOST_PHASES) {
-        for push in &phase.pushes {
-            let at = format!("minor {} of the cycle", k + 1);
-            lines.push(format!("{at}: {}", push_words(push, phase, &name)));
-        }
-    }
-    if diagnosis.phases.len() > MOST_PHASES {
-        let more = diagnosis.phases.len() - MOST_PHASES;
-        lines.push(format!("and {more} more minor iterations"));
-    }
-    lines.extend(proven::cycle_words(problem, &name));
+    let mut facts = vec![Fact::why(cause_words(diagnosis, left_out, &studied))];
+    facts.extend(Fact::all(Part::Loop, loop_table(diagnosis, &name)));
     if let Some(core) = &diagnosis.core
         && core.places.len() < diagnosis.cycle.members.len()
     {
         let names: Vec<_> = core.places.iter().map(|&place| name(place)).collect();
-        lines.push(format!(
+        let text = format!(
             "core: {} still cycle{} (period {}) with all other modes frozen",
             list(&names),
             if names.len() == 1 { "s" } else { "" },
             core.cycle.period
-        ));
+        );
+        facts.push(Fact::new(Part::Loop, text));
     }
     if let Some(census) = &diagnosis.census {
-        lines.extend(of_which_words(problem, diagnosis));
+        let mut lines: Vec<String> = of_which_words(problem, diagnosis).into_iter().collect();
         lines.extend(census_words(census, &studied));
         lines.extend(proven::family_words(&diagnosis.problem, census, &studied));
+        facts.extend(Fact::all(Part::Census, lines));
     }
-    lines.extend(
-        diagnosis
-            .ways
-            .iter()
-            .map(|&(way, settles)| way_words(way, settles)),
-    );
+    let rates = proven::cycle_words(problem, &name);
+    facts.extend(Fact::all(Part::Rates, rates));
+    let ways = diagnosis.ways.iter();
+    let ways = ways.map(|&(way, settles)| way_words(way, settles));
+    facts.extend(Fact::all(Part::Details, ways));
+    facts
+}
+
+/// The loop of pushes as a table, one change of mode per line.
+fn loop_table<'a>(diagnosis: &Diagnosis, name: &impl Fn(usize) -> &'a str) -> Vec<String> {
+    let phases = diagnosis.phases.iter().enumerate();
+    let pushes = phases.flat_map(|(k, phase)| {
+        let rows = phase.pushes.iter();
+        rows.map(move |push| (k + 1, phase, push))
+    });
+    let heads = ["minor", "cause", "effect", "Δ"].map(String::from);
+    let rows = pushes
+        .clone()
+        .take(MOST_PUSHES)
+        .map(|(minor, phase, push)| push_row(minor, push, phase, name));
+    let rows: Vec<[String; 4]> = [heads].into_iter().chain(rows).collect();
+    let mut lines = match rows.len() {
+        1 => Vec::new(),
+        _ => aligned(&rows, 3),
+    };
+    let changes = |phase: &Phase| {
+        let records = phase.records.iter();
+        records.filter(|record| record.decision.changes()).count()
+    };
+    let all: usize = diagnosis.phases.iter().map(changes).sum();
+    let more = all.saturating_sub(pushes.count().min(MOST_PUSHES));
+    if more > 0 {
+        lines.push(format!("and {more} more changes of modes"));
+    }
     lines
 }
 
@@ -426,6 +462,7 @@ fn list(names: &[&str]) -> String {
     match names {
         [] => String::new(),
         [one] => one.to_string(),
+        all if all.len() > MOST_NAMES => first_of(all, MOST_NAMES, ", "),
         [some @ .., last] => format!("{} and {last}", some.join(", ")),
     }
 }
@@ -474,29 +511,33 @@ fn cause_words<'a>(
     }
 }
 
-fn push_words<'a>(push: &Push, phase: &Phase, name: &impl Fn(usize) -> &'a str) -> String {
-    let record = &phase.records[push.node];
-    let from = &push.influence;
-    let (what, value) = tested::effect(push.tested, from);
-    let whom = if from.from == push.node {
-        "it"
-    } else {
-        name(push.node)
+fn push_row<'a>(
+    minor: usize,
+    push: &Push,
+    phase: &Phase,
+    name: &impl Fn(usize) -> &'a str,
+) -> [String; 4] {
+    let (what, value) = tested::effect(push.tested, &push.influence);
+    let source = name(push.influence.from);
+    let cause = match push.from_modes {
+        [a, b] if a == b => format!("new T_max of {source}"),
+        [_, Mode::Free] => format!("{source} opens"),
+        [Mode::Free, _] => format!("{source} closes"),
+        [_, Mode::Sliding] => format!("{source} slides"),
+        [_, Mode::Fixed] => format!("{source} sticks"),
     };
-    let source = name(from.from);
-    let doing = match push.from_modes {
-        [a, b] if a == b => format!("the new T_max of {source}"),
-        [_, Mode::Free] => format!("the opening of {source}"),
-        [Mode::Free, _] => format!("the closing of {source}"),
-        [_, Mode::Sliding] => format!("the sliding of {source}"),
-        [_, Mode::Fixed] => format!("the sticking of {source}"),
+    let does = match phase.records[push.node].decision.next {
+        Mode::Free => "opens",
+        Mode::Sliding => "slides",
+        Mode::Fixed => "sticks",
     };
-    let did = match record.decision.next {
-        Mode::Free => "open",
-        Mode::Sliding => "slide",
-        Mode::Fixed => "stick",
-    };
-    format!("{doing} made {whom} {did}: {what} = {value:.4e}")
+    let effect = format!("{} {does}", name(push.node));
+    [
+        minor.to_string(),
+        cause,
+        effect,
+        format!("{what} = {value:.4e}"),
+    ]
 }
 
 pub(super) fn census_words<'a>(census: &Census, name: &impl Fn(usize) -> &'a str) -> Vec<String> {
@@ -506,12 +547,21 @@ pub(super) fn census_words<'a>(census: &Census, name: &impl Fn(usize) -> &'a str
         (tried, _) => tried.to_string(),
     };
     let count = census.answers.len();
+    let nodes = census.answers.first().map(|found| &found.answer);
+    let nodes = nodes.or(census.nearest.as_ref().map(|(answer, ..)| answer));
+    let names: Vec<_> = (0..nodes.map_or(0, |answer| answer.nodes.len()))
+        .map(name)
+        .collect();
+    let of = match names.is_empty() {
+        true => String::new(),
+        false => format!("of {}: ", list(&names)),
+    };
     let mut lines = vec![match (count, census.exact) {
-        (0, true) => format!("census: none of {all} assignments is consistent"),
-        (1, true) => format!("census: 1 of {all} assignments is consistent"),
-        (n, true) => format!("census: {n} of {all} assignments are consistent"),
-        (0, false) => format!("census: none of {all} assignments has been found consistent so far"),
-        (n, false) => format!("census: at least {n} of {all} assignments are consistent"),
+        (0, true) => format!("{of}none of {all} assignments is consistent"),
+        (1, true) => format!("{of}1 of {all} assignments is consistent"),
+        (n, true) => format!("{of}{n} of {all} assignments are consistent"),
+        (0, false) => format!("{of}none of {all} assignments has been found consistent so far"),
+        (n, false) => format!("{of}at least {n} of {all} assignments are consistent"),
     }];
     match (census.visited, census.exact) {
         (0, true) => {}

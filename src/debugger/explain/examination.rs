@@ -3,6 +3,7 @@
 
 use super::core::cycle;
 use super::diagnosis::{self, Cause, Diagnosis, MOST_NODES, cycling, started, too_many};
+use super::facts::{Fact, Part};
 use super::names;
 use super::proven;
 use super::smaller::smaller;
@@ -37,16 +38,16 @@ pub enum NotExamined {
 /// Result of an examination.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Examination {
-    /// The text, line by line: what happened, where, why, what to do, and details.
-    pub lines: Vec<String>,
+    /// What was found, in one line.
+    pub head: String,
+    /// The facts.
+    pub facts: Vec<Fact>,
     /// Whether the minor iterations cycle from here, or the increment failed.
     pub fails: bool,
     /// Slave numbers of the nodes concerned.
     pub nodes: Vec<usize>,
     /// Motion of unrestrained bodies: points, with directions of length one at most.
     pub arrows: Vec<[[f64; 2]; 2]>,
-    /// The analysis in progress; empty when all are done.
-    pub going_on: String,
     /// The problem of the census.
     pub problem: Option<InterfaceProblem>,
     /// All consistent states; `None` if they were not counted.
@@ -66,9 +67,10 @@ impl Examination {
     }
 }
 
-fn nothing(why: &str) -> Examination {
+/// An examination without a result, and why.
+pub fn nothing(why: &str) -> Examination {
     Examination {
-        lines: vec![why.into()],
+        head: why.into(),
         ..Examination::default()
     }
 }
@@ -97,12 +99,15 @@ pub fn frozen(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -> 
     if let Some((problem, cycle)) = round
         && let Some(diagnosis) = Diagnosis::find(&problem, stop)
     {
-        let mut lines = diagnosis::words(model, &problem, &diagnosis);
+        let mut facts = diagnosis::words(model, &problem, &diagnosis);
+        let head = diagnosis::head(model, &problem, &diagnosis);
         if diagnosis.cause == Cause::NoAnswer {
-            lines.extend(smaller(stepper, state).map(|found| found.words()));
+            let found = smaller(stepper, state);
+            facts.extend(found.map(|found| Fact::new(Part::Details, found.words())));
         }
         return Examination {
-            lines,
+            head,
+            facts,
             fails: true,
             nodes: cycle.members.iter().map(|member| member.0).collect(),
             problem: Some(diagnosis.problem),
@@ -112,20 +117,22 @@ pub fn frozen(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -> 
     }
     let undecided = diagnosis::undecided(&problem);
     let name = |place: usize| names::slave(model, problem.nodes[place].slave);
-    let mut proven = Vec::new();
+    let mut proven: Vec<Fact> = Vec::new();
     if problem.nodes.len() <= MOST_NODES {
-        proven = proven::slow_words(&problem, &name);
+        proven = Fact::all(Part::Rates, proven::slow_words(&problem, &name));
         if let Status::Failed(Failure::MinorLimit { .. }) = state.status
             && let Some(first) = proven.first_mut()
         {
-            first.insert_str(0, "why: ");
+            first.part = Part::Why;
         }
-        proven.push(proven::uniqueness_words(uniqueness(&problem), &name));
+        let unique = proven::uniqueness_words(uniqueness(&problem), &name);
+        proven.push(Fact::new(Part::Census, unique));
     }
     if undecided.len() > MOST_SEARCHED {
         let mut found = nothing("The minor iterations do not cycle from here.");
-        found.lines.extend(proven);
-        found.lines.push(proven::too_many(undecided.len()));
+        found.facts.extend(proven);
+        let many = proven::too_many(undecided.len());
+        found.facts.push(Fact::new(Part::Census, many));
         return found;
     }
     let Some(studied) = problem.reduced(&undecided) else {
@@ -133,15 +140,16 @@ pub fn frozen(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -> 
     };
     let head = "The minor iterations do not cycle from here.";
     let mut found = counted(model, &studied, head, stop);
-    found.lines.extend(proven);
+    found.facts.extend(proven);
     if found
         .census
         .as_ref()
         .is_some_and(|census| census.answers.is_empty())
     {
+        let smaller = smaller(stepper, state);
         found
-            .lines
-            .extend(smaller(stepper, state).map(|found| found.words()));
+            .facts
+            .extend(smaller.map(|found| Fact::new(Part::Details, found.words())));
     }
     found
 }
@@ -181,11 +189,11 @@ fn counted(
         Ok(census) => census,
     };
     let name = |place: usize| names::slave(model, studied.nodes[place].slave);
-    let mut lines = vec![head.to_owned()];
-    lines.extend(diagnosis::census_words(&census, &name));
+    let mut lines = diagnosis::census_words(&census, &name);
     lines.extend(proven::family_words(studied, &census, &name));
     Examination {
-        lines,
+        head: head.to_owned(),
+        facts: Fact::all(Part::Census, lines),
         census: Some(census),
         problem: Some(studied.clone()),
         ..Examination::default()

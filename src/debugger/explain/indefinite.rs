@@ -197,6 +197,19 @@ fn by_pivoting(problem: &InterfaceProblem, tolerance: f64) -> Option<Answer> {
     })
 }
 
+impl Indefinite {
+    /// Whether rounding of the entries may be the cause of a failure.
+    pub fn is_by_rounding(&self) -> bool {
+        match &self.outcome {
+            IndefiniteOutcome::NotByRounding | IndefiniteOutcome::SolvedAsItIs(_) => false,
+            IndefiniteOutcome::Tried {
+                semidefinite,
+                tolerance,
+            } => semidefinite.is_some() || tolerance.is_some(),
+        }
+    }
+}
+
 /// The analysis in words, most important first.
 pub fn words<'a>(found: &Indefinite, name: &impl Fn(usize) -> &'a str) -> Vec<String> {
     let [least, largest] = found.ends;
@@ -230,7 +243,7 @@ pub fn words<'a>(found: &Indefinite, name: &impl Fn(usize) -> &'a str) -> Vec<St
         )];
     }
     let mut lines = vec![format!(
-        "why: {head}: it is indefinite, perhaps by rounding of its entries"
+        "{head}: it is indefinite, perhaps by rounding of its entries"
     )];
     lines.push(match tolerance {
         Some((tolerance, solved)) => format!(

@@ -1,6 +1,7 @@
 //! Describes unrestrained bodies: their motion, its direction under the loads, what would stop it, and since
 //! when they are loose.
 
+use super::facts::{Fact, Part};
 use super::names::slave;
 use std::collections::HashSet;
 use stickslip_core::contact::projection::{Projection, projection_at, tangent};
@@ -24,8 +25,8 @@ const NONE: f64 = 1e-9;
 /// Description of loose bodies, with arrows for the shape.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Loose {
-    /// The text.
-    pub lines: Vec<String>,
+    /// The facts.
+    pub facts: Vec<Fact>,
     /// Points on a moving body, with directions of length one at most.
     pub arrows: Vec<[[f64; 2]; 2]>,
 }
@@ -55,12 +56,14 @@ pub fn loose(stepper: &mut Stepper, state: &State, motions: &[RigidMotion]) -> L
         let Some(moving) = Moving::new(model, &places, state, motion) else {
             continue;
         };
-        found.lines.push(moving.pushed(state));
-        found.lines.push(moving.contacts(state, still));
-        found.lines.push(moving.stopped(state));
+        found.facts.push(Fact::why(moving.pushed(state)));
+        found.facts.push(Fact::why(moving.contacts(state, still)));
+        let stopped = moving.stopped(state);
+        found.facts.push(Fact::new(Part::Details, stopped));
         found.arrows.extend(moving.arrows());
     }
-    found.lines.push(since(model, state, &at_start));
+    let since = since(model, state, &at_start);
+    found.facts.push(Fact::new(Part::Details, since));
     found
 }
 
@@ -155,10 +158,7 @@ impl<'a> Moving<'a> {
                 format!("the loads turn it with moment {}", four(power))
             }
         };
-        format!(
-            "where: body {} {moves} (→ in the shape); {loads}",
-            self.name()
-        )
+        format!("body {} {moves} (→ in the shape); {loads}", self.name())
     }
 
     /// How many contacts of the body are open, slide or stick; `still` if it is loose with these modes.
@@ -167,8 +167,7 @@ impl<'a> Moving<'a> {
         let count = |mode: Mode| own.iter().filter(|s| state.nodes[**s].mode == mode).count();
         let (free, sliding, fixed) = (count(Mode::Free), count(Mode::Sliding), count(Mode::Fixed));
         if own.is_empty() {
-            return "why: the body has no contact, and its supports do not prevent this motion"
-                .into();
+            return "the body has no contact, and its supports do not prevent this motion".into();
         }
         let why = match (free, sliding, fixed) {
             (_, 0, 0) if still => "an open node has no resistance",
@@ -179,7 +178,7 @@ impl<'a> Moving<'a> {
             _ => "the sticking nodes do not prevent this motion",
         };
         format!(
-            "why: of the body's {} contacts, {free} are open, {sliding} slide, {fixed} stick; {why}",
+            "of the body's {} contacts, {free} are open, {sliding} slide, {fixed} stick; {why}",
             own.len()
         )
     }

@@ -2,13 +2,16 @@
 //! the geometry of the next iteration rejects, or slow convergence.
 
 use super::attempt::{Attempt, Major};
+use super::facts::{Fact, Part};
 use super::names::{mode, slave};
 use super::report::place;
 use stickslip_core::contact::element::SurfaceElement;
+use stickslip_core::contact::projection::SurfacePoint;
 use stickslip_core::model::{Geometry, Mode, Model, ResidualMethod, Settings};
 use stickslip_core::step::major_history::{MajorCycle, Stop};
 use stickslip_core::step::state::State;
 use stickslip_scene::number::four;
+use stickslip_scene::shown::first_of;
 
 /// Maximum number of cycle members described.
 const MOST_NODES: usize = 2;
@@ -16,8 +19,11 @@ const MOST_NODES: usize = 2;
 const MOST_RESIDUALS: usize = 8;
 /// Number of major iterations from which a rate is computed.
 const OVER: usize = 6;
-/// An error that falls by less than this factor per major iteration counts as constant.
+/// An error that falls by less than this factor in a major iteration does not fall.
 const FALLS: f64 = 0.98;
+/// Maximum number of major iterations whose changes are listed, and of nodes in each.
+const MOST_MAJORS: usize = 8;
+const MOST_CHANGES: usize = 3;
 
 /// The kink between two neighbouring elements of a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -84,7 +90,7 @@ fn slope(element: SurfaceElement<'_>, places: &[[f64; 2]], xi: f64) -> [f64; 2] 
 }
 
 /// Describes where and why the major iterations cycle.
-pub fn cycle_words(model: &Model, attempt: &Attempt, round: &MajorCycle) -> Vec<String> {
+pub fn cycle_words(model: &Model, attempt: &Attempt, round: &MajorCycle) -> Vec<Fact> {
     let from = attempt.majors.len().saturating_sub(round.period as usize);
     let around = &attempt.majors[from..];
     let Some(last) = around.last() else {
@@ -120,43 +126,46 @@ pub fn cycle_words(model: &Model, attempt: &Attempt, round: &MajorCycle) -> Vec<
                     surface.is_some_and(|surface| !surface.smooth.is_empty())
                 };
                 let meet = kink.map_or(String::new(), |kink| format!(", {}", kink.words()));
-                lines.push(format!(
-                    "where: {name}, now at {here}, alternates between {one} and {other}{meet}; {moves}"
-                ));
-                lines.push(match kink {
+                lines.push(Fact::why(format!(
+                    "{name}, now at {here}, alternates between {one} and {other}{meet}; {moves}"
+                )));
+                lines.push(Fact::why(match kink {
                     Some(kink) if kink.degrees >= 0.0 => format!(
-                        "why: between the elements its normal turns by {} degrees, and its forces with it: on each element they push it across the edge onto the other",
+                        "between the elements its normal turns by {} degrees, and its forces with it: on each element they push it across the edge onto the other",
                         four(kink.degrees)
                     ),
-                    Some(_) => "why: in a concave corner both sides press on the node, but only one can hold it; it then penetrates the other".to_owned(),
-                    None if is_smooth(a.0) && is_smooth(b.0) => "why: the surface is smooth, but its curvature differs between the elements: the steps from each of them are too long".to_owned(),
-                    None => "why: the two elements do not meet, and from each of them the other one is closer".to_owned(),
-                });
+                    Some(_) => "in a concave corner both sides press on the node, but only one can hold it; it then penetrates the other".to_owned(),
+                    None if is_smooth(a.0) && is_smooth(b.0) => "the surface is smooth, but its curvature differs between the elements: the steps from each of them are too long".to_owned(),
+                    None => "the two elements do not meet, and from each of them the other one is closer".to_owned(),
+                }));
             }
             (None, Some([a, b])) => {
-                lines.push(format!(
-                    "where: {name}, now at {here}, alternates between {} and {}; {moves}",
+                lines.push(Fact::why(format!(
+                    "{name}, now at {here}, alternates between {} and {}; {moves}",
                     mode(a),
                     mode(b)
-                ));
-                lines.push(format!(
-                    "why: with the geometry and forces that result from {}, Table 2 decides {} in the next major iteration, and vice versa",
+                )));
+                lines.push(Fact::why(format!(
+                    "with the geometry and forces that result from {}, Table 2 decides {} in the next major iteration, and vice versa",
                     mode(a),
                     mode(b)
-                ));
+                )));
             }
             (None, None) => {
-                lines.push(format!(
-                    "where: {name}, now at {here}, follows the others; {moves}"
-                ));
+                lines.push(Fact::why(format!(
+                    "{name}, now at {here}, follows the others; {moves}"
+                )));
             }
         }
     }
     let shown = members.len().min(MOST_NODES);
     if round.members.len() > shown {
-        lines.push(format!(
-            "and {} more nodes change or follow",
-            round.members.len() - shown
+        lines.push(Fact::new(
+            Part::Details,
+            format!(
+                "{} more nodes change or follow",
+                round.members.len() - shown
+            ),
         ));
     }
     lines.extend(residuals(attempt));
@@ -190,56 +199,123 @@ fn moved(model: &Model, around: &[Major], node: usize) -> f64 {
 }
 
 /// The last residuals, in one line.
-fn residuals(attempt: &Attempt) -> Option<String> {
+fn residuals(attempt: &Attempt) -> Option<Fact> {
     let errors = attempt.errors();
     let from = errors.len().saturating_sub(MOST_RESIDUALS);
     let shown: Vec<String> = errors[from..].iter().map(|e| format!("{e:.1e}")).collect();
     (!shown.is_empty()).then(|| {
-        format!(
+        let text = format!(
             "residual after major {} to {}: {}",
             from + 1,
             errors.len(),
             shown.join(", ")
-        )
+        );
+        Fact::new(Part::Rates, text)
     })
 }
 
-/// Describes an increment that reached the limit of major iterations: the convergence rate, how many more it
-/// would take, and what the rate depends on.
-pub fn limit_words(settings: &Settings, attempt: &Attempt) -> Vec<String> {
+/// Describes an increment that reached the limit of major iterations: the convergence rate and how many more it
+/// would take if the residuals fall one after another, otherwise which nodes change; and what the rate depends on.
+pub fn limit_words(model: &Model, settings: &Settings, attempt: &Attempt) -> Vec<Fact> {
     let errors = attempt.errors();
     let mut lines = Vec::new();
     let limit = attempt
         .majors
         .last()
         .map_or(0.0, |m| m.after.limit.max(settings.tolerance));
-    if let Some(rate) = rate(&errors)
-        && let Some(&last) = errors.last()
-    {
-        lines.push(match rate < FALLS {
-            true => format!(
-                "why: the error falls by a factor of {} per iteration; about {:.0} more would reach {limit:.1e}",
-                four(rate),
-                ((limit / last).ln() / rate.ln()).ceil().max(1.0)
-            ),
-            false => format!(
-                "why: the error does not fall (factor {} per iteration), so more iterations would not help",
-                four(rate)
-            ),
-        });
+    match (rate(&errors), errors.last()) {
+        (Some(rate), Some(&last)) => lines.push(Fact::why(format!(
+            "the residual falls by a factor of {} per major iteration; about {:.0} more would reach {limit:.1e}",
+            four(rate),
+            ((limit / last).ln() / rate.ln()).ceil().max(1.0)
+        ))),
+        _ => lines.extend(not_falling(model, attempt)),
     }
     lines.extend(residuals(attempt));
     if settings.geometry == Geometry::Frozen {
-        lines.push("what the rate depends on: settings.geometry is frozen, so the tangent neglects that normals and projections turn with the motion; with sliding nodes, convergence is linear at best".into());
+        lines.push(Fact::new(Part::Rates, "settings.geometry is frozen, so the tangent neglects that normals and projections turn with the motion; with sliding nodes, convergence is linear at best"));
     }
     if settings.residual == ResidualMethod::Accumulate {
-        lines.push("what the rate depends on: settings.residual is accumulate, so each linearisation error stays in the contact forces until it is corrected".into());
+        lines.push(Fact::new(Part::Rates, "settings.residual is accumulate, so each linearisation error stays in the contact forces until it is corrected"));
     }
     lines
 }
 
+/// Describes major iterations whose residuals do not fall one after another: where the largest one is, and which nodes
+/// change in each iteration.
+pub fn not_falling(model: &Model, attempt: &Attempt) -> Vec<Fact> {
+    let mut facts = Vec::new();
+    let (errors, from) = (attempt.errors(), attempt.majors.len().saturating_sub(OVER));
+    let last = &errors[from..];
+    if last.len() > 1 {
+        let least = last.iter().copied().fold(f64::INFINITY, f64::min);
+        let largest = last.iter().copied().fold(0.0, f64::max);
+        facts.push(Fact::why(format!(
+            "the residuals of the last {} major iterations lie between {least:.1e} and {largest:.1e} and do not fall one after another",
+            last.len()
+        )));
+    }
+    if let Some(text) = attempt
+        .majors
+        .last()
+        .and_then(|major| largest(model, major))
+    {
+        facts.push(Fact::why(text));
+    }
+    let changes = changes(model, &attempt.majors);
+    let shown = &changes[changes.len().saturating_sub(MOST_MAJORS)..];
+    if let Some(text) = shown.last() {
+        facts.push(Fact::why(format!("still changing: {text}")));
+    }
+    facts.extend(Fact::all(Part::Rates, shown.iter().cloned()));
+    facts
+}
+
+/// The node and body of the largest residual after a major iteration.
+fn largest(model: &Model, major: &Major) -> Option<String> {
+    let (node, force) = major.largest?;
+    let body = model
+        .bodies
+        .iter()
+        .find(|body| body.nodes.contains(&node))?;
+    let [x, y] = model.place(&major.u, node).map(four);
+    Some(format!(
+        "the largest residual is {} at node {} of {} at ({x}, {y})",
+        four(force),
+        model.nodes[node].name,
+        body.name
+    ))
+}
+
+/// The slave nodes that change in each major iteration, one line per iteration.
+fn changes(model: &Model, majors: &[Major]) -> Vec<String> {
+    let pairs = majors.windows(2).enumerate();
+    let line = |(k, pair): (usize, &[Major])| {
+        let [before, now] = pair else {
+            return None;
+        };
+        let nodes = before.contacts.iter().zip(&now.contacts).enumerate();
+        let changed = nodes.filter_map(|(s, ((mode_a, on_a), (mode_b, on_b)))| {
+            let name = slave(model, s);
+            if mode_a != mode_b {
+                return Some(format!("{name} {} → {}", mode(*mode_a), mode(*mode_b)));
+            }
+            let on = |on: &Option<SurfacePoint>| on.map(|on| (on.surface, on.element));
+            (*mode_b != Mode::Free && on(on_a) != on(on_b))
+                .then(|| format!("{name} onto {}", place(model, on(on_b))))
+        });
+        let changed: Vec<String> = changed.collect();
+        let text = match changed.is_empty() {
+            true => "no node".to_owned(),
+            false => first_of(changed, MOST_CHANGES, ", "),
+        };
+        Some(format!("major {}: {text}", k + 2))
+    };
+    pairs.filter_map(line).collect()
+}
+
 /// Describes divergence: the node that moved furthest, and the errors.
-pub fn flight_words(model: &Model, state: &State, attempt: &Attempt) -> Vec<String> {
+pub fn flight_words(model: &Model, state: &State, attempt: &Attempt) -> Vec<Fact> {
     let way = |node: usize| {
         let (now, then) = (
             model.place(&state.u, node),
@@ -250,26 +326,29 @@ pub fn flight_words(model: &Model, state: &State, attempt: &Attempt) -> Vec<Stri
     let nodes = model.bodies.iter().flat_map(|body| &body.nodes).copied();
     let furthest = nodes.max_by(|a, b| way(*a).total_cmp(&way(*b)));
     let place = furthest.map(|node| {
-        format!(
-            "where: {} moved furthest from the last equilibrium, by {} (scene length {})",
+        Fact::why(format!(
+            "{} moved furthest from the last equilibrium, by {} (scene length {})",
             model.nodes[node].name,
             four(way(node)),
             four(model.length)
-        )
+        ))
     });
-    let mut lines: Vec<String> = place.into_iter().collect();
-    lines.push("why: the tangent at the last equilibrium points far away from the next one: the load is close to the limit load, or the increment is too large for the curvature of the path".into());
+    let mut lines: Vec<Fact> = place.into_iter().collect();
+    lines.push(Fact::why("the tangent at the last equilibrium points far away from the next one: the load is close to the limit load, or the increment is too large for the curvature of the path"));
     lines.extend(residuals(attempt));
     lines
 }
 
-/// Convergence factor over the last few errors; `None` if there are too few.
+/// Convergence factor over the last few errors; `None` if there are too few, or if they do not fall one after another.
 pub fn rate(errors: &[f64]) -> Option<f64> {
     let last = errors.len().checked_sub(1)?;
     let from = last.saturating_sub(OVER);
     let steps = last - from;
+    let falls = errors[from..]
+        .windows(2)
+        .all(|pair| pair[1] < FALLS * pair[0]);
     let fallen = errors[last] / errors[from];
-    (steps >= 2 && fallen.is_finite() && fallen > 0.0).then(|| fallen.powf(1.0 / steps as f64))
+    (steps >= 2 && falls && fallen > 0.0).then(|| fallen.powf(1.0 / steps as f64))
 }
 
 #[cfg(test)]
@@ -277,11 +356,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_rate_matches_a_geometric_sequence_and_needs_three_numbers() {
+    fn a_rate_matches_a_geometric_sequence_and_needs_three_numbers_that_fall() {
         let errors: Vec<f64> = (0..12).map(|k| 3.0 * 0.83_f64.powi(k)).collect();
         let found = rate(&errors).expect("there are enough");
         assert!((found - 0.83).abs() < 1e-12, "{found}");
         assert_eq!(rate(&errors[..2]), None);
         assert_eq!(rate(&[1.0, f64::NAN, f64::NAN]), None);
+        // Residuals that hop have no rate, even if the last one is the smallest.
+        assert_eq!(rate(&[1e-2, 1e-4, 8e-3, 2e-4, 5e-3, 1e-5]), None);
     }
 }

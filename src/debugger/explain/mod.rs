@@ -13,7 +13,8 @@
 //!   unrestrained bodies; [`strain`]: solids outside the range of their law; [`reach`]: the load that smaller
 //!   steps reach; [`finer`]: a trial on a finer mesh; [`restart`]: trials of a changed scene.
 //! - [`touch`]: how far the forces depend on where nodes in new contact are held.
-//! - [`examination`]: the frozen problem of a state; [`page`]: the whole diagnosis, as the debugger shows it.
+//! - [`examination`]: the frozen problem of a state; [`page`]: the whole diagnosis, as the debugger shows it; [`headline`]: what
+//!   happened in one line; [`facts`]: the parts of the page; [`try_list`]: what can be done, with the outcome of each trial.
 //! - [`attached`]: the diagnosis for an attached solver, from the problem that it reports; [`reported_pushes`]:
 //!   the pushes there.
 //! - [`audit`]: the judge's findings over a history; [`outline`]: the shape of a state as lines.
@@ -27,7 +28,9 @@ pub mod bond;
 pub mod core;
 pub mod diagnosis;
 pub mod examination;
+pub mod facts;
 pub mod finer;
+pub mod headline;
 pub mod indefinite;
 pub mod influence;
 pub mod judged;
@@ -50,3 +53,4 @@ pub mod smaller;
 pub mod strain;
 pub mod tested;
 pub mod touch;
+pub mod try_list;

@@ -7,8 +7,10 @@
 use super::advice::{Advice, FINER, advice};
 use super::attempt::Attempt;
 use super::diagnosis::undecided;
-use super::examination::{DONE, Examination, NOT_CONDENSED, frozen};
+use super::examination::{DONE, Examination, frozen, nothing};
+use super::facts::{Fact, Part};
 use super::finer::{Finer, finer};
+use super::headline::{at, headline};
 use super::indefinite::{self, indefinite};
 use super::judged;
 use super::jumped::leads_away;
@@ -21,6 +23,7 @@ use super::remedies::{self, Trial, TrialEnd, attempt};
 use super::remedy::{How, Remedy, RemedyKind};
 use super::report::{describe_failure, sound};
 use super::strain::MaterialCause;
+use super::try_list::{self, TryLine, TryOutcome, helps};
 use stickslip_core::linear::norms::Norms;
 use stickslip_core::linear::singular::Singular;
 use stickslip_core::model::{Body, BodyKind, InitialGaps, Model};
@@ -28,10 +31,11 @@ use stickslip_core::step::event::Failure;
 use stickslip_core::step::state::{State, Status};
 use stickslip_core::step::stepper::Stepper;
 use stickslip_scene::format::spec::Spec;
-use stickslip_scene::number::{four, plain};
+use stickslip_scene::gaps::turned;
+use stickslip_scene::number::four;
 
 /// Shown if the first increment fails and nodes start inside their surface.
-const OVERLAP: &str = "where: nodes start inside their surface; settings.initial_gaps=ramp moves them out over the first leg of the path, adjust moves them onto the surface";
+const OVERLAP: &str = "nodes start inside their surface; settings.initial_gaps=ramp moves them out over the first leg of the path, adjust moves them onto the surface";
 /// Maximum number of remedies tried for the page; the list of remedies tries all.
 const MOST_TRIED: usize = 6;
 
@@ -42,35 +46,33 @@ pub fn page(
     state: &State,
     spec: Option<&Spec>,
     stop: &dyn Fn() -> bool,
-    tell: &mut dyn FnMut(&Examination),
-) -> Option<Examination> {
+    tell: &mut dyn FnMut(&DiagnosisPage),
+) -> Option<DiagnosisPage> {
     let Status::Failed(failure) = &state.status else {
-        return Some(match state.status {
-            Status::Finished => Examination {
-                lines: vec![DONE.into()],
-                ..Examination::default()
-            },
-            _ => {
-                let found = frozen(stepper, state, stop);
-                if stop() {
-                    tell(&found);
-                    return None;
-                }
-                found
-            }
-        });
+        let found = match state.status {
+            Status::Finished => nothing(DONE),
+            _ => frozen(stepper, state, stop),
+        };
+        let found = DiagnosisPage::new(found);
+        if stop() {
+            tell(&found);
+            return None;
+        }
+        return Some(found);
     };
     let mut page = PageBuilder::of(stepper, state, failure, stop);
     tell(&page.shown("trying remedies …"));
-    let remedies = page.remedies(stepper.model(), state, failure);
-    for remedy in &remedies {
+    page.pending = page.remedies(stepper.model(), state, failure);
+    while !page.pending.is_empty() {
+        let remedy = &page.pending[0].clone();
         tell(&page.shown(&format!("trying {} …", remedy.label)));
         match attempt(stepper, state, spec, remedy, stop) {
-            Some(trial) => page.trials.push((remedy.clone(), trial)),
+            Some(trial) => page.trials.push(trial),
             // The scene cannot be changed this way, so there is no trial.
             None if matches!(remedy.how, How::Restart(_)) && !stop() => {}
             None => return None,
         }
+        page.pending.remove(0);
     }
     if page.refines
         && let Some(spec) = spec
@@ -81,39 +83,178 @@ pub fn page(
             return None;
         }
     }
-    page.facts.extend(limit_load(stepper, state, failure, stop));
+    page.add_limit_load(stepper, state, failure, stop);
     if page.asks_how_far(failure) {
         tell(&page.shown("checking how far smaller steps reach …"));
         let reached = reach(stepper, state, stop)?;
-        let far = format!("how far: {}", reached.words(stepper.model(), failure));
-        page.facts.push(far);
+        let far = reached.words(stepper.model(), failure);
+        page.facts.push(Fact::new(Part::Details, far));
     }
     Some(page.shown(""))
 }
 
-/// The part of a failure's page that needs no trials, as printed by `run`.
-pub fn facts(
+/// The causes of a failure, without trials.
+pub fn causes(
     stepper: &mut Stepper,
     state: &State,
     failure: &Failure,
     stop: &dyn Fn() -> bool,
 ) -> Vec<String> {
-    let page = PageBuilder::of(stepper, state, failure, stop);
-    let mut lines = page.facts;
-    lines.extend(page.found.lines);
-    lines.extend(limit_load(stepper, state, failure, stop));
-    lines
+    let mut page = PageBuilder::of(stepper, state, failure, stop);
+    page.add_limit_load(stepper, state, failure, stop);
+    page.shown("").why
 }
+
+/// The first remedy that a trial shows to work, for `run`. Only remedies that a scene file or `--set` can contain are tried,
+/// until the trials take as many minor iterations as `most`.
+pub fn first_that_works(
+    stepper: &mut Stepper,
+    state: &State,
+    failure: &Failure,
+    (spec, most): (&Spec, u64),
+    stop: &dyn Fn() -> bool,
+) -> Option<TryLine> {
+    let mut minors = 0;
+    for remedy in advised(stepper.model(), state, failure) {
+        let typed = matches!(remedy.how, How::Set(..) | How::Restart(_));
+        if !typed || minors >= most || stop() {
+            continue;
+        }
+        let Some(trial) = attempt(stepper, state, Some(spec), &remedy, stop) else {
+            continue;
+        };
+        minors += u64::from(trial.minors);
+        if helps(&trial) {
+            return Some(TryLine::tried(&trial));
+        }
+    }
+    None
+}
+
+/// The remedies for a failure that can be tried, in order of preference.
+fn advised(model: &Model, state: &State, failure: &Failure) -> Vec<Remedy> {
+    let pieces = advice(model, state, failure).into_iter();
+    let remedies = pieces.filter_map(|piece| match piece {
+        Advice::Remedy(remedy) => Some(remedy),
+        Advice::ByHand(_) | Advice::Finer => None,
+    });
+    remedies.collect()
+}
+
+/// The diagnosis of a state, as the debugger shows it.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct DiagnosisPage {
+    /// What happened, in one line.
+    pub what: String,
+    /// The causes, at most [`MOST_WHY`].
+    pub why: Vec<String>,
+    /// What can be done, with the outcome of each trial, best first.
+    pub tries: Vec<TryLine>,
+    /// The other facts, by part.
+    pub below: Vec<(Part, Vec<String>)>,
+    /// The analysis in progress; empty when all are done.
+    pub going_on: String,
+    /// The examination of the frozen problem.
+    pub found: Examination,
+}
+
+impl DiagnosisPage {
+    /// The page of a state that has not failed.
+    pub fn new(found: Examination) -> DiagnosisPage {
+        DiagnosisPage::with_facts(found.head.clone(), found.facts.clone(), found)
+    }
+
+    /// The page of an attached solver's state: what it reports, the examination of its interface problem, and what can be
+    /// done by hand.
+    pub fn attached(
+        reported: Vec<String>,
+        mut found: Examination,
+        tries: Vec<TryLine>,
+    ) -> DiagnosisPage {
+        let mut reported = reported.into_iter();
+        let head = std::mem::take(&mut found.head);
+        let what = reported.next();
+        let mut facts: Vec<Fact> = reported.map(Fact::why).collect();
+        let what = match what {
+            None => head,
+            Some(what) => {
+                let applied = match found.problem {
+                    Some(_) => format!("Table 2 applied to its interface problem: {head}"),
+                    None => head,
+                };
+                facts.push(Fact::new(Part::Details, applied));
+                what
+            }
+        };
+        facts.append(&mut found.facts);
+        DiagnosisPage {
+            tries,
+            ..DiagnosisPage::with_facts(what, facts, found)
+        }
+    }
+
+    /// A page with these facts; causes beyond the first few become details.
+    fn with_facts(what: String, facts: Vec<Fact>, found: Examination) -> DiagnosisPage {
+        let (mut why, mut rest): (Vec<Fact>, Vec<Fact>) =
+            facts.into_iter().partition(|fact| fact.part == Part::Why);
+        let more = why.split_off(why.len().min(MOST_WHY)).into_iter();
+        rest.extend(more.map(|fact| Fact::new(Part::Details, fact.text)));
+        let of = |part: Part| {
+            let lines = rest.iter().filter(|fact| fact.part == part);
+            let lines: Vec<String> = lines.map(|fact| fact.text.clone()).collect();
+            (!lines.is_empty()).then_some((part, lines))
+        };
+        DiagnosisPage {
+            what,
+            why: why.into_iter().map(|fact| fact.text).collect(),
+            below: Part::BELOW.into_iter().filter_map(of).collect(),
+            found,
+            ..DiagnosisPage::default()
+        }
+    }
+
+    /// Whether no trial is running any more.
+    pub fn is_complete(&self) -> bool {
+        !self.going_on.starts_with("trying")
+    }
+
+    /// The first line of Try that works.
+    pub fn works(&self) -> Option<&TryLine> {
+        let mut tries = self.tries.iter();
+        tries.find(|line| line.outcome == TryOutcome::Works)
+    }
+
+    /// The page as text, one fact per line.
+    pub fn lines(&self) -> Vec<String> {
+        let mut lines = match self.found.fails {
+            true => vec![format!("What: {}", self.what)],
+            false => vec![self.what.clone()],
+        };
+        lines.extend(self.why.iter().map(|text| format!("Why: {text}")));
+        let tries = self.tries.iter().enumerate();
+        lines.extend(
+            tries.map(|(k, line)| format!("Try {}: {} {}", k + 1, line.mark(), line.words())),
+        );
+        for (part, texts) in &self.below {
+            lines.push(format!("{}:", part.heading()));
+            lines.extend(texts.iter().map(|text| format!("  {text}")));
+        }
+        lines
+    }
+}
+
+/// Maximum number of causes.
+const MOST_WHY: usize = 3;
 
 /// The page in progress.
 struct PageBuilder {
-    what: Vec<String>,
-    /// Where and why.
-    facts: Vec<String>,
+    what: String,
+    facts: Vec<Fact>,
     /// Remedies in the scene's file or by hand.
     by_hand: Vec<&'static str>,
-    /// Trials of remedies.
-    trials: Vec<(Remedy, Trial)>,
+    /// Remedies that are still to be tried, and the trials of the others.
+    pending: Vec<Remedy>,
+    trials: Vec<Trial>,
     /// Whether a finer mesh can help.
     refines: bool,
     finer: Option<Finer>,
@@ -129,9 +270,10 @@ impl PageBuilder {
         stop: &dyn Fn() -> bool,
     ) -> PageBuilder {
         let mut page = PageBuilder {
-            what: Vec::new(),
+            what: headline(stepper.model(), state, failure),
             facts: Vec::new(),
             by_hand: Vec::new(),
+            pending: Vec::new(),
             trials: Vec::new(),
             refines: false,
             finer: None,
@@ -139,10 +281,13 @@ impl PageBuilder {
         };
         let cause = MaterialCause::find(stepper.model(), state, failure);
         let certain = cause.filter(MaterialCause::is_certain);
-        let words = |cause: MaterialCause| cause.words(stepper.model());
+        let words = |cause: MaterialCause| Fact::why(cause.words(stepper.model()));
         let overlap =
             Remedy::from_kind(RemedyKind::Gaps(InitialGaps::Ramp), stepper.model(), state);
-        page.facts.extend(overlap.map(|_| OVERLAP.to_owned()));
+        page.facts.extend(overlap.map(|_| Fact::why(OVERLAP)));
+        let turned = turned(stepper.model());
+        let turned = turned.iter().map(|found| found.words(stepper.model()));
+        page.facts.extend(turned.map(Fact::why));
         page.facts.extend(certain.map(words));
         let possible = cause.filter(|cause| !cause.is_certain()).map(words);
         page.explain(stepper, state, failure, stop);
@@ -155,22 +300,8 @@ impl PageBuilder {
                 Advice::Remedy(_) => {}
             }
         }
-        page.what.push(format!(
-            "what: increment {} to load {}: {}",
-            state.next.increment,
-            plain(state.load_factor),
-            match failure {
-                // The members are described one by one below.
-                Failure::MajorCycle(round) => format!(
-                    "major iterations cycle with period {} from major {}; {} nodes take part",
-                    round.period,
-                    round.start,
-                    round.members.len()
-                ),
-                _ => describe_failure(model, failure),
-            }
-        ));
-        page.what.push(format!("{}.", sound(state.next, state)));
+        let sound = format!("{}.", sound(state.next, state));
+        page.facts.push(Fact::new(Part::Details, sound));
         page
     }
 
@@ -185,7 +316,7 @@ impl PageBuilder {
         match failure {
             Failure::Singular(Singular::Rigid { motions }) => {
                 let rigid = loose(stepper, state, motions);
-                self.facts.extend(rigid.lines);
+                self.facts.extend(rigid.facts);
                 self.found.arrows = rigid.arrows;
             }
             Failure::MajorCycle(round) => {
@@ -195,8 +326,8 @@ impl PageBuilder {
                 });
             }
             Failure::MajorLimit { .. } => {
-                self.repeat(stepper, state, failure, stop, |_, attempt| {
-                    majors::limit_words(&state.controls.settings, attempt)
+                self.repeat(stepper, state, failure, stop, |model, attempt| {
+                    majors::limit_words(model, &state.controls.settings, attempt)
                 });
             }
             Failure::Diverged { .. } => {
@@ -223,14 +354,12 @@ impl PageBuilder {
             Failure::Refused(found) => {
                 self.found.nodes.extend(found.slave);
                 let model = stepper.model();
-                self.facts.push(format!(
-                    "where: {}",
-                    judged::place(model, &model.places(&state.u), found)
-                ));
-                self.facts.push(format!(
-                    "why: the iterations have converged, but the state violates a law: {} is {:.1e}, limit {:.1e}",
+                let place = judged::place(model, &model.places(&state.u), found);
+                self.facts.push(Fact::why(place));
+                self.facts.push(Fact::why(format!(
+                    "the iterations have converged, but the state violates a law: {} is {:.1e}, limit {:.1e}",
                     found.law.name(), found.amount, found.allowed
-                ));
+                )));
             }
             Failure::CutTooOften { slave, last, .. } => {
                 self.found.nodes.push(*slave);
@@ -238,43 +367,44 @@ impl PageBuilder {
             }
             Failure::OverConstrained { slave, .. } => {
                 self.found.nodes.push(*slave);
-                self.facts.extend(over_constrained(stepper, state, *slave));
+                let over = over_constrained(stepper, state, *slave);
+                self.facts.extend(over.map(Fact::why));
             }
             Failure::Singular(Singular::Unexplained) => {
-                self.facts.push(unexplained(stepper.model()).into());
+                self.facts.push(Fact::why(unexplained(stepper.model())));
             }
             Failure::Leapt {
                 unstable: Some(stability),
                 ..
-            } => self.facts.push(format!(
-                "why: {}, even with the smallest increment: no stable equilibrium is near",
+            } => self.facts.push(Fact::why(format!(
+                "{}, even with the smallest increment: no stable equilibrium is near",
                 leads_away(*stability)
-            )),
+            ))),
             Failure::Leapt {
                 motion, predicted, ..
             } => {
-                self.facts.push(format!(
-                    "why: the motion is {:.1} times what the tangent and the previous increments predict, even with the smallest increment: load control skips the part of the path between the two states",
+                self.facts.push(Fact::why(format!(
+                    "the motion is {:.1} times what the tangent and the previous increments predict, even with the smallest increment: load control skips the part of the path between the two states",
                     motion / predicted.max(f64::MIN_POSITIVE)
-                ));
+                )));
             }
-            Failure::DoubledBack => self.facts.push(
-                "why: displacements and load turn back along the last increment: the path turns by more than a right angle here, or ends".into(),
-            ),
-            Failure::Unmoved => self.facts.push(
-                "why: the tangent at the start of the increment does not change what history.arc measures".into(),
-            ),
-            Failure::Restless { .. } => self.facts.push(
-                "why: beyond the last equilibrium load nothing stops the motion".into(),
-            ),
-            Failure::RoundOff { .. } => self.facts.extend(stiffest(stepper.model())),
+            Failure::DoubledBack => self.facts.push(Fact::why(
+                "displacements and load turn back along the last increment: the path turns by more than a right angle here, or ends",
+            )),
+            Failure::Unmoved => self.facts.push(Fact::why(
+                "the tangent at the start of the increment does not change what history.arc measures",
+            )),
+            Failure::Restless { .. } => self.facts.push(Fact::why(
+                "beyond the last equilibrium load nothing stops the motion",
+            )),
+            Failure::RoundOff { .. } => self.facts.extend(stiffest(stepper.model()).map(Fact::why)),
             // The element comes first.
             Failure::Inverted(_) => {}
         }
     }
 
     /// Repeats the failed attempt, and adds facts about it.
-    fn repeat<F: IntoIterator<Item = String>>(
+    fn repeat<F: IntoIterator<Item = Fact>>(
         &mut self,
         stepper: &mut Stepper,
         state: &State,
@@ -289,7 +419,10 @@ impl PageBuilder {
     }
 
     fn not_again(&mut self) {
-        self.facts.push("repeated from its start, the attempt ends differently: something was changed by hand during it".into());
+        self.facts.push(Fact::new(
+            Part::Details,
+            "repeated from its start, the attempt ends differently: something was changed by hand during it",
+        ));
     }
 
     /// The first strategy's failure in this major iteration, before the ladder continued.
@@ -301,9 +434,12 @@ impl PageBuilder {
         self.found
             .nodes
             .extend(members.iter().map(|member| member.0));
-        self.facts.push(format!(
-            "where: the first strategy failed: {}",
-            describe_failure(model, first)
+        self.facts.push(Fact::new(
+            Part::Details,
+            format!(
+                "the first strategy failed: {}",
+                describe_failure(model, first)
+            ),
         ));
     }
 
@@ -315,40 +451,65 @@ impl PageBuilder {
         self.found.arrows = arrows;
         self.found.nodes.extend(nodes);
         stepper.restore(state);
-        if let Some(problem) = stepper.interface_problem()
+        let given = |body: &Body| matches!(body.kind, BodyKind::Linear(_));
+        // Only a matrix that was written down has been rounded; computed ones are exact to round-off.
+        if stepper.model().bodies.iter().any(given)
+            && let Some(problem) = stepper.interface_problem()
             && let Some(problem) = problem.reduced(&undecided(&problem))
             && let Some(text) = indefinite(&problem, stop)
         {
             let name = |place: usize| names::slave(stepper.model(), problem.nodes[place].slave);
-            self.facts.extend(indefinite::words(&text, &name));
+            let mut lines = Fact::all(Part::Details, indefinite::words(&text, &name));
+            if let Some(first) = lines.first_mut().filter(|_| text.is_by_rounding()) {
+                first.part = Part::Why;
+            }
+            self.facts.extend(lines);
         }
-        if self.found.lines == [NOT_CONDENSED] {
-            self.facts.append(&mut self.found.lines);
+        self.facts.append(&mut self.found.facts);
+        if !self.found.fails {
+            // The head is all that is known where nothing else is.
+            let explained = self.facts.iter().any(|fact| fact.part == Part::Why);
+            let part = if explained { Part::Details } else { Part::Why };
+            self.facts.push(Fact::new(part, self.found.head.clone()));
         }
+    }
+
+    /// The load at which friction is used up or contact is lost, if that is the cause: then it comes first.
+    fn add_limit_load(
+        &mut self,
+        stepper: &mut Stepper,
+        state: &State,
+        failure: &Failure,
+        stop: &dyn Fn() -> bool,
+    ) {
+        let Some(text) = limit_load(stepper, state, failure, stop) else {
+            return;
+        };
+        // A body that is held up to a load is not simply loose.
+        if matches!(failure, Failure::Singular(Singular::Rigid { .. })) {
+            self.what = at(state, "equilibrium ends before this load");
+        }
+        self.facts.insert(0, Fact::why(text));
     }
 
     /// The remedies tried for the page: the consistent states, and those for this kind of failure.
     fn remedies(&self, model: &Model, state: &State, failure: &Failure) -> Vec<Remedy> {
         let mut all = Remedy::answers(model, &self.found);
-        all.truncate(2);
-        if let Some((law, true)) = Remedy::law(model, state, failure) {
-            all.insert(0, law);
+        all.truncate(if turned(model).is_empty() { 2 } else { 0 });
+        let certain = matches!(Remedy::law(model, state, failure), Some((_, true)));
+        let advised = advised(model, state, failure);
+        let is_law = |remedy: &Remedy| remedy.kind == RemedyKind::Law;
+        if certain {
+            all.splice(0..0, advised.iter().filter(|r| is_law(r)).cloned());
         }
-        all.extend(
-            advice(model, state, failure)
-                .into_iter()
-                .filter_map(|piece| match piece {
-                    Advice::Remedy(remedy) if remedy.kind != RemedyKind::Law => Some(remedy),
-                    Advice::Remedy(_) | Advice::ByHand(_) | Advice::Finer => None,
-                }),
-        );
+        all.extend(advised.into_iter().filter(|r| !is_law(r)));
         all.truncate(MOST_TRIED);
         all
     }
 
     /// Whether to check how far smaller steps reach: not if a trial has reached the load.
     fn asks_how_far(&self, failure: &Failure) -> bool {
-        let helped = self.trials.iter().any(|(_, trial)| helps(trial));
+        let helped = self.trials.iter().any(helps);
         let can = !matches!(
             failure,
             Failure::Singular(Singular::Rigid { .. })
@@ -360,108 +521,60 @@ impl PageBuilder {
     }
 
     /// The page so far.
-    fn shown(&self, going_on: &str) -> Examination {
-        let mut lines = self.what.clone();
-        let mut details = Vec::new();
-        // Where and why come before what to do, everything else after it.
-        for fact in &self.facts {
-            match HEADS.iter().any(|head| fact.starts_with(head)) {
-                true => lines.push(fact.clone()),
-                false => details.push(fact.clone()),
-            }
-        }
-        // The cause in the frozen problem also comes first.
-        let all = &self.found.lines;
-        let explains = |line: &&String| HEADS.iter().any(|head| line.starts_with(head));
-        let first = match all.iter().any(|line| explains(&line)) {
-            true => all.iter().filter(explains).collect(),
-            false => all.iter().take(1).collect::<Vec<_>>(),
-        };
-        lines.extend(first.iter().map(|line| (*line).clone()));
-        lines.extend(self.to_do());
-        lines.extend(details);
-        let rest = all.iter().filter(|line| !first.contains(line));
-        lines.extend(rest.cloned());
-        Examination {
-            lines,
+    fn shown(&self, going_on: &str) -> DiagnosisPage {
+        let found = Examination {
             fails: true,
-            going_on: going_on.to_owned(),
             ..self.found.clone()
+        };
+        DiagnosisPage {
+            tries: self.tries(),
+            going_on: going_on.to_owned(),
+            ..DiagnosisPage::with_facts(self.what.clone(), self.facts.clone(), found)
         }
     }
 
-    /// Remedies, best first: those that helped, those that did not, and those not tried.
-    fn to_do(&self) -> Vec<String> {
-        let mut trials: Vec<&(Remedy, Trial)> = self
-            .trials
-            .iter()
-            .filter(|(_, trial)| helps(trial))
-            .collect();
-        // A remedy that lasts over later increments is better than one for this increment only.
-        trials.sort_by_key(|(remedy, trial)| {
-            let lasts = matches!(
-                remedy.how,
-                How::Set(..) | How::Increment(_) | How::IncrementOn(..)
-            );
-            // A cause in the scene can be removed only by changing the scene.
-            let scene = matches!(remedy.how, How::Restart(_));
-            (!scene, !lasts, trial.factorizations, trial.minors)
+    /// The list Try, best first.
+    fn tries(&self) -> Vec<TryLine> {
+        let mut lines: Vec<TryLine> = self.trials.iter().map(TryLine::tried).collect();
+        let seconds = self.trials.iter().map(|trial| trial.seconds);
+        let seconds = seconds.fold(None, |most: Option<f64>, s| {
+            Some(most.map_or(s, |m| m.max(s)))
         });
-        let helped = trials.iter().map(|(remedy, trial)| {
-            let minors = match trial.minors {
-                1 => "1 minor iteration".to_owned(),
-                n => format!("{n} minor iterations"),
-            };
-            let from = match remedy.how {
-                How::Restart(_) => "tried from the start: passes this load",
-                _ => "tried: converges",
-            };
-            format!(
-                "{}: {} ({from}, {minors})",
-                remedy.label,
-                remedy.how.typed()
-            )
-        });
-        let finer = self.finer.iter();
-        let finer = finer.filter(|finer| finer.run.failure.is_none());
-        let finer = finer.map(|finer| {
-            format!(
-                "a finer mesh: --set refine={} (tried from the start: passes this load, {} minor iterations)",
-                finer.refine, finer.run.minors
-            )
-        });
-        let mut lines: Vec<String> = helped
-            .chain(finer)
-            .enumerate()
-            .map(|(k, text)| format!("do: {}. {text}", k + 1))
-            .collect();
-        let mut vain: Vec<String> = self
-            .trials
-            .iter()
-            .filter(|(_, trial)| !helps(trial))
-            .map(|(remedy, trial)| {
-                format!("{} ({})", remedy.label, remedies::end_words(&trial.end))
-            })
-            .collect();
-        vain.extend(self.finer.iter().filter_map(|finer| {
-            let end = match finer.run.failure.as_ref()? {
-                Some(failure) => remedies::end_words(&TrialEnd::Failed(failure.clone())),
-                None => format!("{} minor", finer.run.minors),
-            };
-            Some(format!("a finer mesh, refine={} ({end})", finer.refine))
-        }));
-        if !vain.is_empty() {
-            lines.push(format!("did not help: {}", vain.join(", ")));
+        let pending = self.pending.iter();
+        lines.extend(pending.map(|remedy| TryLine::untried(remedy, seconds)));
+        match &self.finer {
+            Some(finer) => lines.push(finer_line(finer)),
+            None if self.refines => lines.push(TryLine::by_hand(FINER)),
+            None => {}
         }
-        let finer = (self.refines && self.finer.is_none()).then_some(FINER);
-        let untried: Vec<&str> = finer
-            .into_iter()
-            .chain(self.by_hand.iter().copied())
-            .collect();
-        if !untried.is_empty() {
-            lines.push(format!("not tried: {}", untried.join("; ")));
-        }
+        lines.extend(self.by_hand.iter().map(|text| TryLine::by_hand(text)));
+        try_list::sort(&mut lines);
         lines
+    }
+}
+
+/// The line of a finer mesh that was tried.
+fn finer_line(finer: &Finer) -> TryLine {
+    let (outcome, end) = match &finer.run.failure {
+        None => (
+            TryOutcome::Works,
+            format!("tried from the start: passes, {} minors", finer.run.minors),
+        ),
+        Some(Some(failure)) => {
+            let end = remedies::end_words(&TrialEnd::Failed(failure.clone()));
+            (TryOutcome::Fails, format!("tried: {end}"))
+        }
+        Some(None) => (
+            TryOutcome::Fails,
+            format!("tried: {} minor", finer.run.minors),
+        ),
+    };
+    TryLine {
+        label: "a finer mesh".into(),
+        typed: format!("--set refine={}", finer.refine),
+        outcome,
+        end,
+        trial: None,
     }
 }
 
@@ -470,10 +583,10 @@ fn unexplained(model: &Model) -> &'static str {
     let given = |body: &Body| matches!(body.kind, BodyKind::Linear(_));
     match model.bodies.iter().any(given) {
         true => {
-            "why: in one direction the forces do not change: the matrix of a body is singular and no contact restrains it, or the load has reached its maximum on this branch (a limit point)"
+            "in one direction the forces do not change: the matrix of a body is singular and no contact restrains it, or the load has reached its maximum on this branch (a limit point)"
         }
         false => {
-            "why: in one direction the forces do not change, although every body is held: the load has reached its maximum on this branch (a limit point), or contacts and supports are redundant"
+            "in one direction the forces do not change, although every body is held: the load has reached its maximum on this branch (a limit point), or contacts and supports are redundant"
         }
     }
 }
@@ -487,7 +600,7 @@ fn over_constrained(stepper: &mut Stepper, state: &State, slave: usize) -> Optio
     let [x, y] = model.place(&state.u, contact.node).map(four);
     let [n_x, n_y] = over.normal.map(four);
     Some(format!(
-        "where: {} at ({x}, {y}), its gap {} along the normal ({n_x}, {n_y}); supports or prescribed motions fix it along that normal, and its surface is rigid",
+        "{} at ({x}, {y}), its gap {} along the normal ({n_x}, {n_y}); supports or prescribed motions fix it along that normal, and its surface is rigid",
         names::slave(model, slave),
         four(over.gap)
     ))
@@ -510,17 +623,9 @@ fn stiffest(model: &Model) -> Option<String> {
         .filter_map(|body| Some((body, stiffness(body)?)));
     let (body, (word, value)) = all.max_by(|a, b| a.1.1.total_cmp(&b.1.1))?;
     Some(format!(
-        "why: body {} is the stiffest, {word} = {}: its forces are large numbers that cancel, with a round-off above {:.0e} of the loads",
+        "body {} is the stiffest, {word} = {}: its forces are large numbers that cancel, with a round-off above {:.0e} of the loads",
         body.name,
         four(value),
         Norms::LOUDEST
     ))
-}
-
-/// First words of the lines that come before what to do.
-const HEADS: [&str; 5] = ["where:", "why:", "what would", "since when:", "how far:"];
-
-/// Whether a trial reached the load without violations.
-fn helps(trial: &Trial) -> bool {
-    trial.end == TrialEnd::Converged && trial.left.is_none_or(|left| left.held == 0)
 }

@@ -360,20 +360,31 @@ pub fn rank(trial: &Trial) -> u8 {
     }
 }
 
-/// Best first: those that converged without violations, by cost; then those with violations, by size; then the
-/// others.
-pub fn sort(trials: &mut [Trial]) {
+/// Order of two trials, best first: those that converged without violations, then those with violations, by size, then the
+/// others. Of those that converged, a change of the scene comes first, because only it removes a cause in the scene; then
+/// what lasts over later increments; then by cost.
+pub fn compare(a: &Trial, b: &Trial) -> Ordering {
     let worst = |trial: &Trial| trial.left.map_or(0.0, |left| left.worst);
-    trials.sort_by(|a, b| {
-        let by_size = match rank(a) {
-            1 => worst(a).total_cmp(&worst(b)),
-            _ => Ordering::Equal,
-        };
-        (rank(a).cmp(&rank(b)))
-            .then(by_size)
-            .then(a.factorizations.cmp(&b.factorizations))
-            .then(a.minors.cmp(&b.minors))
-    });
+    let by_size = match (rank(a), rank(b)) {
+        (1, 1) => worst(a).total_cmp(&worst(b)),
+        _ => Ordering::Equal,
+    };
+    let lasts = |trial: &Trial| match (rank(trial), &trial.how) {
+        (2, _) => 0,
+        (_, How::Restart(_)) => 0,
+        (_, How::Set(..) | How::Increment(_) | How::IncrementOn(..)) => 1,
+        (_, How::StartFrom(_) | How::Listed) => 2,
+    };
+    (rank(a).cmp(&rank(b)))
+        .then(by_size)
+        .then(lasts(a).cmp(&lasts(b)))
+        .then(a.factorizations.cmp(&b.factorizations))
+        .then(a.minors.cmp(&b.minors))
+}
+
+/// Sorts trials, best first.
+pub fn sort(trials: &mut [Trial]) {
+    trials.sort_by(compare);
 }
 
 /// The end of a trial, in a word or two.

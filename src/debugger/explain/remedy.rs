@@ -53,6 +53,8 @@ pub enum RemedyKind {
     Hysteresis,
     /// Treatment of nodes that start inside their surface; tried from the start of the scene.
     Gaps(InitialGaps),
+    /// The surface with this number the other way round; tried from the start of the scene.
+    Reverse(usize),
     /// A material law whose range contains the state of a solid; tried from the start of the scene.
     Law,
 }
@@ -135,6 +137,11 @@ impl Remedy {
         };
         match kind {
             RemedyKind::Answer(_) | RemedyKind::Law => None,
+            RemedyKind::Reverse(surface) => {
+                let name = &model.surfaces.get(surface)?.name;
+                let how = How::Restart(vec![(format!("surfaces.{name}.reverse"), "true")]);
+                Some(remedy(&format!("reverse surface {name}"), how, Vec::new()))
+            }
             RemedyKind::Gaps(gaps) => {
                 // Only the first increment starts with the overlap.
                 let starts = state.next.increment == 1;
@@ -303,6 +310,7 @@ fn change(
         | RemedyKind::Start(_)
         | RemedyKind::Hysteresis
         | RemedyKind::Gaps(_)
+        | RemedyKind::Reverse(_)
         | RemedyKind::Law => return None,
     };
     Some(text)

@@ -154,10 +154,6 @@ impl MaterialCause {
             ),
             _ => String::new(),
         };
-        let head = match self.is_certain() {
-            true => "why",
-            false => "where",
-        };
         let text = match self.point.determinant > 0.0 {
             true => outside(model, &self.point),
             false => {
@@ -165,6 +161,6 @@ impl MaterialCause {
                 format!("{point}; {limit}")
             }
         };
-        format!("{head}: {text}{before}")
+        format!("{text}{before}")
     }
 }

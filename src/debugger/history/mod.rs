@@ -4,7 +4,7 @@
 //!   discarded.
 //! - [`tree`]: the branches, within a memory budget; [`branches`]: their names and cost; [`compare`]: two of
 //!   them side by side; [`verdicts`]: how each one ended.
-//! - [`rounds`]: whether the modes on a line repeat.
+//! - [`rounds`]: whether the modes on a line repeat; [`run_report`]: the report of a finished run.
 //! - [`breakpoints`]: where a run stops; [`watches`]: quantities to observe.
 
 pub mod branches;
@@ -12,6 +12,7 @@ pub mod breakpoints;
 pub mod compare;
 pub mod frame;
 pub mod rounds;
+pub mod run_report;
 pub mod strip;
 pub mod tree;
 pub mod verdicts;

@@ -18,11 +18,13 @@ use super::exports::{Export, is_of_problem, write, write_posed};
 use super::worker::Lender;
 use crate::explain::attached;
 use crate::explain::examination::{Examination, examine_nodes};
+use crate::explain::facts::Fact;
 use crate::explain::influence::{NodePush, PushPath, between, pushed, pushes};
-use crate::explain::page::page;
+use crate::explain::page::{DiagnosisPage, page};
 use crate::explain::remedies::{self, Trial};
 use crate::explain::remedy::Remedy;
 use crate::explain::reported_pushes::{self, Iterations};
+use crate::explain::try_list::TryLine;
 use crate::record::export::shown::ExportError;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -85,7 +87,7 @@ enum BackgroundReply {
     Examination {
         place: LinePlace,
         nodes: Vec<usize>,
-        found: Option<Box<Examination>>,
+        found: Option<Box<DiagnosisPage>>,
         going_on: bool,
     },
     Trying {
@@ -128,7 +130,7 @@ pub struct Background {
     waiting: usize,
     pushes: HashMap<(LinePlace, usize), Option<Vec<NodePush>>>,
     /// By position: the requested nodes, and the result.
-    examinations: HashMap<LinePlace, (Vec<usize>, Option<Examination>)>,
+    examinations: HashMap<LinePlace, (Vec<usize>, Option<DiagnosisPage>)>,
     exported: Option<Result<String, ExportError>>,
     tried: Option<RemedyTrials>,
     trying: bool,
@@ -201,7 +203,7 @@ impl Background {
     }
 
     /// The examination at a position; the inner value is `None` while it is running.
-    pub fn examination(&self, place: LinePlace) -> Option<Option<&Examination>> {
+    pub fn examination(&self, place: LinePlace) -> Option<Option<&DiagnosisPage>> {
         Some(self.examinations.get(&place)?.1.as_ref())
     }
 
@@ -257,7 +259,12 @@ impl Background {
         findings: Vec<String>,
     ) {
         let known = self.examinations.get(&place);
-        if known.is_none_or(|(asked, _)| asked != nodes) {
+        let stopped = |found: &Option<DiagnosisPage>| {
+            found
+                .as_ref()
+                .is_some_and(|found| found.going_on == STOPPED)
+        };
+        if known.is_none_or(|(asked, found)| asked != nodes || stopped(found)) {
             if self.examinations.len() >= KEPT {
                 self.examinations.clear();
             }
@@ -272,6 +279,11 @@ impl Background {
                 findings,
             ));
         }
+    }
+
+    /// Stores a page that is made without the thread.
+    pub(super) fn set_examination(&mut self, place: LinePlace, page: DiagnosisPage) {
+        self.examinations.insert(place, (Vec::new(), Some(page)));
     }
 
     /// Requests an export.
@@ -508,29 +520,23 @@ impl Helper {
         nodes: &[usize],
         known: Vec<String>,
         stop: &AtomicBool,
-    ) -> Examination {
+    ) -> DiagnosisPage {
         let mut found = self.examine_problem(state, nodes, stop);
         found.fails |= matches!(state.status, Status::Failed(_));
-        let mut lines = known;
-        let words: Vec<String> = match &found.census {
-            Some(census) if self.offers.force => (1..=census.answers.len().min(2))
-                .map(|n| format!("not tried: start from the consistent state {n} (:start-from {n} forces its modes)"))
-                .collect(),
-            _ => Vec::new(),
-        };
-        let by_hand = self.offers.force && words.is_empty() && !lines.is_empty();
-        if found.problem.is_some() {
-            lines.push("Table 2 applied to its interface problem:".into());
+        let count = found.census.as_ref().map_or(0, |c| c.answers.len());
+        let answers = (1..=count.min(2)).map(|n| {
+            format!("start from the consistent state {n} (:start-from {n} forces its modes)")
+        });
+        let mut tries: Vec<String> = answers.collect();
+        if tries.is_empty() && !known.is_empty() {
+            tries.push("force one of the changing nodes into another mode (m)".into());
         }
+        let tries = tries.iter().filter(|_| self.offers.force);
+        let tries = tries.map(|text| TryLine::by_hand(text)).collect();
         // An attached solver does not offer the settings of our own method.
-        let offered = |line: &String| !line.starts_with("tried: settings.");
-        lines.extend(found.lines.drain(..).filter(offered));
-        lines.extend(words);
-        if by_hand {
-            lines.push("not tried: force one of the changing nodes into another mode (m)".into());
-        }
-        found.lines = lines;
-        found
+        let offered = |fact: &Fact| !fact.text.starts_with("tried: settings.");
+        found.facts.retain(offered);
+        DiagnosisPage::attached(known, found, tries)
     }
 
     /// The examination of the interface problem that an attached solver reports.
@@ -539,7 +545,7 @@ impl Helper {
         match self.posed(state) {
             Ok(posed) => attached::examine(&self.model, state, &posed, nodes, &stopped),
             Err(lost) => Examination {
-                lines: vec![format!("The frozen problem is not available: {lost}.")],
+                head: format!("The frozen problem is not available: {lost}."),
                 ..Examination::default()
             },
         }
@@ -612,7 +618,7 @@ fn examine(
     stop: &AtomicBool,
 ) -> Option<()> {
     let stopped = || stop.load(Ordering::Relaxed);
-    let send = |found: Option<Examination>, going_on: bool| {
+    let send = |found: Option<DiagnosisPage>, going_on: bool| {
         news.send(BackgroundReply::Examination {
             place,
             nodes: nodes.clone(),
@@ -630,7 +636,7 @@ fn examine(
             &mut |part| drop(send(Some(part.clone()), true)),
         ),
         some => {
-            let found = examine_nodes(stepper, state, some, &stopped);
+            let found = DiagnosisPage::new(examine_nodes(stepper, state, some, &stopped));
             match stopped() {
                 false => Some(found),
                 true => {

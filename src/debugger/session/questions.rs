@@ -4,8 +4,11 @@ use super::background::BetweenRuns;
 use super::exports::{Export, PictureContext};
 use super::machine::Session;
 use super::refusal::Refusal;
+use crate::explain::examination::Examination;
+use crate::explain::page::DiagnosisPage;
 use crate::explain::report;
 use crate::explain::reported_pushes;
+use crate::history::run_report::run_report;
 use crate::history::strip::PointKind;
 use crate::record::command::ExportScope;
 use crate::record::export::shown::ExportError;
@@ -55,6 +58,19 @@ impl Session {
         };
         let mut reply = String::new();
         let state = &timeline.frame().state;
+        if state.status == Status::Finished && nodes.is_empty() && connection.log().is_none() {
+            let end = timeline.cursor() + 1;
+            let (strips, frames) = (&timeline.strips()[..end], &timeline.frames()[..end]);
+            let (head, facts) = run_report(timeline.model(), strips, frames);
+            let found = Examination {
+                head,
+                facts,
+                ..Examination::default()
+            };
+            self.background
+                .set_examination(timeline.place(), DiagnosisPage::new(found));
+            return "the diagnosis (d) shows the report of the run".into();
+        }
         // The solver moves to this state to report its problem, together with all changes made there.
         if connection.offers().problem {
             let way = connection.way_back(timeline, timeline.cursor());

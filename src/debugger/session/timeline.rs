@@ -393,15 +393,11 @@ impl Timeline {
     /// repeat.
     pub(super) fn findings(&self) -> Vec<String> {
         let what = match &self.frame().state.status {
-            Status::Failed(failure) => Some(format!(
-                "what: {}",
-                report::describe_failure(self.model(), failure)
-            )),
+            Status::Failed(failure) => Some(report::describe_failure(self.model(), failure)),
             _ => None,
         };
         let found = rounds(&self.strips()[..=self.cursor]);
-        let place =
-            found.map(|found| format!("where: {}", rounds::words(self.model(), &found, true)));
+        let place = found.map(|found| rounds::words(self.model(), &found, true));
         what.into_iter().chain(place).collect()
     }
 

@@ -1,5 +1,5 @@
-//! The diagnosis: why the minor iterations cycle from the shown state, or which states are consistent. The consistent states are
-//! listed side by side; the selected one can be started from.
+//! The diagnosis: What, Why and Try, and below them the loop, the census, the rates and the details. Enter takes the selected line
+//! of Try. If nothing failed, the consistent states are listed side by side, and Enter starts from the selected one.
 
 use crate::app::App;
 use crate::layout::Pane;
@@ -7,10 +7,13 @@ use crate::paint;
 use crate::view::View;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
+use ratatui::style::Style;
 use ratatui::text::{Line, Span};
 use stickslip_core::interface::census::Census;
 use stickslip_core::interface::problem::NodeAnswer;
-use stickslip_debugger::explain::examination::Examination;
+use stickslip_debugger::explain::facts::Part;
+use stickslip_debugger::explain::page::DiagnosisPage;
+use stickslip_debugger::explain::try_list::TryOutcome;
 use stickslip_scene::number;
 use stickslip_scene::shown;
 
@@ -39,15 +42,22 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
             .into_iter()
             .map(|line| Line::styled(line, theme.faint))
             .collect(),
-        Ok(found) => {
-            let answers = answers(found, width, app, view);
-            if !found.going_on.is_empty() {
-                title += &format!(" ({})", found.going_on);
+        Ok(page) => {
+            if !page.going_on.is_empty() {
+                title += &format!(" ({})", page.going_on);
             }
-            let mut lines = words(found, width, app);
-            // The list of states must be visible; the text above it scrolls.
+            let (mut lines, selected) = words(page, width, app);
+            let mut answers = answers(page, width, app, view);
+            if page.found.fails {
+                lines.append(&mut answers);
+            }
+            // A list of states to select from must be visible; the text above it scrolls.
             let room = height.saturating_sub(answers.len());
-            let top = app.scroll.min(lines.len().saturating_sub(room));
+            let least = match app.scroll {
+                0 => (selected + 1).saturating_sub(room),
+                scroll => scroll,
+            };
+            let top = least.min(lines.len().saturating_sub(room));
             if room < lines.len() {
                 let end = top + room;
                 title += &format!("  lines {} to {end} of {} (PageDown)", top + 1, lines.len());
@@ -61,29 +71,89 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     paint::lines(buffer, inner, &lines);
 }
 
-fn words(found: &Examination, width: usize, app: &App) -> paint::Lines {
+/// Width of the column of headings.
+const HEADINGS: usize = 7;
+
+/// The page as lines, and the row of the selected line of Try.
+fn words(page: &DiagnosisPage, width: usize, app: &App) -> (paint::Lines, usize) {
+    let theme = &app.theme;
     let mut lines = Vec::new();
-    for (index, text) in found.lines.iter().enumerate() {
-        let style = match index {
-            0 if found.fails => app.theme.strong,
-            _ if text.starts_with("do:") => app.theme.strong,
-            _ => app.theme.text,
+    let strong = match page.found.fails {
+        true => theme.strong,
+        false => theme.text,
+    };
+    hang(&mut lines, "What", &page.what, (width, strong), app);
+    for (k, text) in page.why.iter().enumerate() {
+        let heading = if k == 0 { "Why" } else { "" };
+        hang(&mut lines, heading, text, (width, theme.text), app);
+    }
+    let at = app.answer.min(page.tries.len().saturating_sub(1));
+    let mut selected = 0;
+    for (k, line) in page.tries.iter().enumerate() {
+        let heading = if k == 0 { "Try" } else { "" };
+        let style = match line.outcome {
+            _ if k == at => theme.selected,
+            TryOutcome::Works => theme.good,
+            TryOutcome::Untried => theme.text,
+            TryOutcome::Fails => theme.faint,
         };
-        let indent = text.len() - text.trim_start().len() + 1;
-        for (part, line) in paint::wrap(text.trim_start(), width.saturating_sub(indent + 4))
-            .into_iter()
-            .enumerate()
-        {
-            let indent = if part == 0 { indent } else { indent + 3 };
-            lines.push(Line::styled(format!("{:indent$}{line}", ""), style));
+        let cursor = if k == at { "▸" } else { " " };
+        let text = format!("{cursor}{} {} {}", k + 1, line.mark(), line.words());
+        hang(&mut lines, heading, &text, (width, style), app);
+        if k == at {
+            selected = lines.len() - 1;
         }
     }
-    lines
+    for (part, texts) in &page.below {
+        let heading = format!(" {}", part.heading());
+        lines.push(Line::styled(heading, theme.heading));
+        for text in texts {
+            match part {
+                // A table is not wrapped.
+                Part::Loop => {
+                    let text = paint::cut(text, width.saturating_sub(4));
+                    lines.push(Line::styled(format!("   {text}"), theme.text));
+                }
+                _ => below(&mut lines, text, width, app),
+            }
+        }
+    }
+    (lines, selected)
+}
+
+/// Adds a text next to a heading; further lines are indented to the text.
+fn hang(
+    lines: &mut paint::Lines,
+    heading: &str,
+    text: &str,
+    (width, style): (usize, Style),
+    app: &App,
+) {
+    let wrapped = paint::wrap(text, width.saturating_sub(HEADINGS + 1));
+    for (k, part) in wrapped.into_iter().enumerate() {
+        let heading = if k == 0 { heading } else { "" };
+        let heading = format!(" {heading:<width$}", width = HEADINGS - 1);
+        lines.push(Line::from(vec![
+            Span::styled(heading, app.theme.heading),
+            Span::styled(part, style),
+        ]));
+    }
+}
+
+/// Adds a line below a heading; its further lines are indented.
+fn below(lines: &mut paint::Lines, text: &str, width: usize, app: &App) {
+    let indent = text.len() - text.trim_start().len() + 3;
+    let wrapped = paint::wrap(text.trim_start(), width.saturating_sub(indent + 3));
+    for (k, part) in wrapped.into_iter().enumerate() {
+        let indent = if k == 0 { indent } else { indent + 2 };
+        let text = format!("{:indent$}{part}", "");
+        lines.push(Line::styled(text, app.theme.text));
+    }
 }
 
 /// The consistent states side by side, as many as fit, including the selected one.
-fn answers(found: &Examination, width: usize, app: &App, view: &View) -> paint::Lines {
-    let theme = &app.theme;
+fn answers(page: &DiagnosisPage, width: usize, app: &App, view: &View) -> paint::Lines {
+    let (theme, found) = (&app.theme, &page.found);
     let (Some(census), Some(problem)) = (&found.census, &found.problem) else {
         return Vec::new();
     };
@@ -91,7 +161,13 @@ fn answers(found: &Examination, width: usize, app: &App, view: &View) -> paint::
     if count == 0 {
         return Vec::new();
     }
-    let at = app.answer.min(count - 1);
+    // Where there are lines of Try, those are selected.
+    let selects = page.tries.is_empty();
+    let at = if selects {
+        app.answer.min(count - 1)
+    } else {
+        0
+    };
     let fit = (width.saturating_sub(NAME + 2) / CELL).clamp(1, count);
     let first = (at + 1).saturating_sub(fit);
     let shown = first..(first + fit).min(count);
@@ -100,12 +176,12 @@ fn answers(found: &Examination, width: usize, app: &App, view: &View) -> paint::
         theme.heading,
     )];
     for number in shown.clone() {
-        let style = if number == at {
+        let style = if selects && number == at {
             theme.selected
         } else {
             theme.heading
         };
-        let mark = if number == at { "▸" } else { " " };
+        let mark = if selects && number == at { "▸" } else { " " };
         let text = format!("{mark}{} ", number + 1);
         let rest = format!(
             "{:<width$}",
@@ -148,10 +224,13 @@ fn answers(found: &Examination, width: usize, app: &App, view: &View) -> paint::
     } else {
         String::new()
     };
-    let text = format!(
-        "{more} Up and Down select, Enter starts from it (:start-from {})",
-        at + 1
-    );
+    let text = match selects {
+        true => format!(
+            "{more} Up and Down select, Enter starts from it (:start-from {})",
+            at + 1
+        ),
+        false => format!("{more} :start-from N starts from state N"),
+    };
     lines.push(Line::styled(format!(" {}", text.trim_start()), theme.faint));
     lines
 }

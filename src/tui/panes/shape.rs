@@ -367,7 +367,8 @@ fn forces(canvas: &mut Canvas, window: &Window, app: &App, view: &View) -> f64 {
 
 /// The diagnosis, if the solve fails in the shown state.
 fn found<'a>(view: &View<'a>) -> Option<&'a Examination> {
-    view.examination().flatten().filter(|found| found.fails)
+    let page = view.examination().flatten()?;
+    Some(&page.found).filter(|found| found.fails)
 }
 
 /// The worst point of the solids, if it is inverted or outside the range of its law.

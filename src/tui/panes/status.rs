@@ -16,6 +16,7 @@ use stickslip_core::step::solver::GoesBack;
 use stickslip_core::step::state::Status;
 use stickslip_debugger::action::by_name;
 use stickslip_debugger::explain::names;
+use stickslip_debugger::explain::page::DiagnosisPage;
 use stickslip_debugger::explain::report;
 use stickslip_scene::number;
 use unicode_width::UnicodeWidthStr;
@@ -232,7 +233,12 @@ fn outcome(app: &App, view: &View, width: u16) -> paint::Lines {
         (None, Some(_)) if app.learning.hides_any(view) => {
             ("? Solved. Predict the next mode (a)".into(), theme.text)
         }
-        (None, Some(event)) => sentence(event, view.model, app),
+        (None, Some(event)) => match view.examination().flatten() {
+            Some(page) if page.found.fails && matches!(event.outcome, Outcome::Failed(_)) => {
+                (diagnosed(page), theme.bad)
+            }
+            _ => sentence(event, view.model, app),
+        },
     };
     // Further lines are indented to the words after the glyph.
     let words = paint::wrap(&text, (width as usize).saturating_sub(4));
@@ -249,6 +255,16 @@ fn outcome(app: &App, view: &View, width: u16) -> paint::Lines {
         }
     }
     lines
+}
+
+/// What failed, and the first line of Try that works.
+fn diagnosed(page: &DiagnosisPage) -> String {
+    // The line above shows the position.
+    let what = page.what.split_once(": ").map_or("", |(_, what)| what);
+    match page.works() {
+        None => format!("✗ {what}"),
+        Some(line) => format!("✗ {what}. Try {}", line.command()),
+    }
 }
 
 /// The outcome of a minor iteration as a sentence with a glyph.

@@ -1,0 +1,59 @@
+//! What happened, in one line: the increment, its load, and the failure with at most a few node names.
+
+use super::names::slave;
+use super::report::describe_failure;
+use stickslip_core::model::Model;
+use stickslip_core::step::event::Failure;
+use stickslip_core::step::state::State;
+use stickslip_scene::number::plain;
+use stickslip_scene::shown::first_of;
+
+/// Maximum number of nodes named.
+const MOST: usize = 3;
+
+/// The line for a failed state.
+pub fn headline(model: &Model, state: &State, failure: &Failure) -> String {
+    at(state, &brief(model, failure))
+}
+
+/// A line with the increment and load of a state.
+pub fn at(state: &State, text: &str) -> String {
+    let load = plain(state.load_factor);
+    format!("increment {}, load {load}: {text}", state.next.increment)
+}
+
+/// The failure without lists of modes.
+pub fn brief(model: &Model, failure: &Failure) -> String {
+    let named = |slaves: &mut dyn Iterator<Item = usize>| {
+        first_of(slaves.map(|s| slave(model, s)), MOST, ", ")
+    };
+    match failure {
+        Failure::Cycle(cycle) => format!(
+            "contact modes repeat with period {} from minor {} ({})",
+            cycle.period,
+            cycle.start,
+            named(&mut cycle.members.iter().map(|member| member.0))
+        ),
+        Failure::MajorCycle(round) => format!(
+            "major iterations repeat with period {} from major {} ({})",
+            round.period,
+            round.start,
+            named(&mut round.members.iter().map(|member| member.0))
+        ),
+        Failure::NoAnswer { .. } => "no modes are consistent in this increment".into(),
+        Failure::LadderEnded { first, .. } => format!(
+            "no strategy found a consistent state; first failure: {}",
+            brief(model, first)
+        ),
+        Failure::CutTooOften {
+            slave: s,
+            cuts,
+            last,
+        } => format!(
+            "cut {cuts} times because of {}: {}",
+            slave(model, *s),
+            brief(model, last)
+        ),
+        _ => describe_failure(model, failure),
+    }
+}

@@ -1,0 +1,140 @@
+//! The report of a finished run: cuts and their causes, jumps, loss of stability, the worst element, and the increments with the
+//! most iterations and the longest time.
+
+use super::frame::Frame;
+use super::strip::{PointKind, Strip};
+use crate::explain::facts::{Fact, Part};
+use crate::explain::headline::brief;
+use crate::explain::strain;
+use stickslip_core::fem::deformation::deformation;
+use stickslip_core::model::Model;
+use stickslip_core::step::event::Outcome;
+use stickslip_scene::number::{four, plain};
+use stickslip_scene::shown::first_of;
+
+/// Maximum number of cuts, loads and increments listed.
+const MOST: usize = 4;
+/// Shortest time of an increment that is listed (s).
+const SLOW: f32 = 1.0;
+
+/// Cost of an accepted increment, with its failed attempts.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+struct Cost {
+    increment: u32,
+    load: f64,
+    minors: u32,
+    seconds: f32,
+}
+
+/// One line on the whole run, and the report.
+pub fn run_report(model: &Model, strips: &[Strip], frames: &[Frame]) -> (String, Vec<Fact>) {
+    let costs = costs(strips);
+    let minors: u32 = costs.iter().map(|cost| cost.minors).sum();
+    let load = costs.last().map_or(0.0, |cost| cost.load);
+    let head = format!(
+        "The history is complete: {} increments to load {}, {minors} minor iterations.",
+        costs.len(),
+        plain(load)
+    );
+    let mut lines = cuts(model, strips, frames);
+    let loads = |is: &dyn Fn(&Strip, &Frame) -> bool| {
+        let all = strips.iter().zip(frames);
+        let all = all.filter(|(strip, frame)| is(strip, frame));
+        let loads: Vec<String> = all.map(|(strip, _)| plain(strip.load_factor)).collect();
+        (!loads.is_empty()).then(|| first_of(loads, MOST, ", "))
+    };
+    let jumped =
+        |strip: &Strip, _: &Frame| matches!(strip.kind, PointKind::Jumped | PointKind::LastJumped);
+    let unstable = |_: &Strip, frame: &Frame| {
+        let outcome = frame.event.as_ref().map(|event| &event.outcome);
+        matches!(
+            outcome,
+            Some(Outcome::Increment {
+                unstable: Some(_),
+                ..
+            })
+        )
+    };
+    lines.extend(loads(&jumped).map(|loads| format!("jumps to another branch at load {loads}")));
+    lines.extend(loads(&unstable).map(|loads| format!("becomes unstable at load {loads}")));
+    lines.extend(worst_element(model, frames));
+    lines.extend(most("most iterations", &costs, |cost| {
+        (cost.minors as f32, format!("{} minor", cost.minors))
+    }));
+    let slow: Vec<Cost> = costs.into_iter().filter(|c| c.seconds >= SLOW).collect();
+    lines.extend(most("slowest", &slow, |cost| {
+        (cost.seconds, format!("{:.1} s", cost.seconds))
+    }));
+    (head, Fact::all(Part::Report, lines))
+}
+
+/// The cost of each accepted increment.
+fn costs(strips: &[Strip]) -> Vec<Cost> {
+    let mut all = Vec::new();
+    let mut cost = Cost::default();
+    for strip in strips.iter().filter(|strip| strip.kind.is_solved()) {
+        cost.minors += 1;
+        cost.seconds += strip.seconds;
+        if strip.kind.is_accepted() {
+            (cost.increment, cost.load) = (strip.position.increment, strip.load_factor);
+            all.push(std::mem::take(&mut cost));
+        }
+    }
+    all
+}
+
+/// The cuts, with their causes where they are still in memory.
+fn cuts(model: &Model, strips: &[Strip], frames: &[Frame]) -> Vec<String> {
+    let is_cut = |strip: &Strip| strip.kind == PointKind::Cut;
+    let count = strips.iter().filter(|strip| is_cut(strip)).count();
+    if count == 0 {
+        return vec!["no increment was cut".into()];
+    }
+    let plural = if count == 1 { "" } else { "s" };
+    let mut lines = vec![format!(
+        "{count} cut{plural} or other restart{plural} of an increment"
+    )];
+    let all = strips.iter().zip(frames).filter(|(strip, _)| is_cut(strip));
+    let causes = all.filter_map(|(strip, frame)| {
+        let why = match &frame.event.as_ref()?.outcome {
+            Outcome::Cut { why, .. } | Outcome::Leaps { why, .. } => why,
+            Outcome::Turns { why, .. } | Outcome::Fallback { why, .. } => why,
+            _ => return None,
+        };
+        let increment = strip.position.increment;
+        let load = plain(strip.load_factor);
+        Some(format!(
+            "  increment {increment}, load {load}: {}",
+            brief(model, why)
+        ))
+    });
+    lines.extend(causes.take(MOST));
+    lines
+}
+
+/// The element with the worst deformation at the end.
+fn worst_element(model: &Model, frames: &[Frame]) -> Option<String> {
+    let frame = frames.last().filter(|frame| frame.is_whole())?;
+    let found = deformation(model, &frame.state.u)?;
+    if let Some(point) = found.outside {
+        return Some(strain::outside(model, &point));
+    }
+    let point = found.smallest;
+    let element = strain::element(model, &point);
+    Some(format!(
+        "worst element: {element}, smallest principal stretch {}",
+        four(point.stretch)
+    ))
+}
+
+/// The increments with the largest values.
+fn most(what: &str, costs: &[Cost], of: impl Fn(&Cost) -> (f32, String)) -> Option<String> {
+    let mut costs = costs.to_vec();
+    costs.sort_by(|a, b| of(b).0.total_cmp(&of(a).0));
+    let words = costs.iter().take(MOST).map(|cost| {
+        let (increment, load) = (cost.increment, plain(cost.load));
+        format!("increment {increment} at load {load} ({})", of(cost).1)
+    });
+    let words: Vec<String> = words.collect();
+    (!words.is_empty()).then(|| format!("{what}: {}", words.join(", ")))
+}
