@@ -2,14 +2,18 @@
 //! period, members, consistent states, cause.
 
 use crate::common::{Run, force, go_on, run, scene};
+use std::sync::Arc;
+use stickslip::explain::advice::{Advice, advice};
 use stickslip::explain::diagnosis::{Cause, Diagnosis, words};
 use stickslip::explain::facts::Part;
 use stickslip::explain::influence::influences;
 use stickslip::interface::problem::InterfaceProblem;
 use stickslip::interface::trials::Trials;
 use stickslip::model::Mode;
+use stickslip::scene::gaps::turned;
 use stickslip::step::event::Failure;
 use stickslip::step::state::Status;
+use stickslip::step::stepper::Stepper;
 
 fn failed(name: &str) -> (Run, InterfaceProblem, Diagnosis) {
     let mut run = run(&scene(name, &[]));
@@ -140,4 +144,27 @@ fn influences_add_up_to_what_happened() {
             }
         }
     }
+}
+
+#[test]
+fn a_surface_that_most_of_its_nodes_are_behind_is_the_wrong_way_round_and_reversing_it_helps() {
+    let file = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/tests/findings/surface-the-wrong-way-round.ron"
+    );
+    let reversed = scene(file, &[]);
+    let found = turned(&reversed.model);
+    assert_eq!(found.len(), 1);
+    assert_eq!(found[0].away, [21, 39]);
+    let state = Stepper::new(Arc::new(reversed.model.clone()))
+        .state()
+        .clone();
+    let advised = advice(&reversed.model, &state, &Failure::DoubledBack);
+    let [Advice::Remedy(remedy)] = advised.as_slice() else {
+        panic!("{advised:?}");
+    };
+    assert_eq!(remedy.how.typed(), "--set surfaces.punch.reverse=true");
+    let right = scene(file, &[("surfaces.punch.reverse", "true")]);
+    assert!(turned(&right.model).is_empty());
+    assert!(run(&right).failure.is_none());
 }

@@ -286,12 +286,18 @@ impl PageBuilder {
             Remedy::from_kind(RemedyKind::Gaps(InitialGaps::Ramp), stepper.model(), state);
         page.facts.extend(overlap.map(|_| Fact::why(OVERLAP)));
         let turned = turned(stepper.model());
+        let is_turned = !turned.is_empty();
         let turned = turned.iter().map(|found| found.words(stepper.model()));
         page.facts.extend(turned.map(Fact::why));
         page.facts.extend(certain.map(words));
         let possible = cause.filter(|cause| !cause.is_certain()).map(words);
         page.explain(stepper, state, failure, stop);
         page.facts.extend(possible);
+        if is_turned {
+            // The wrong side explains the rest.
+            let causes = page.facts.iter_mut().filter(|fact| fact.part == Part::Why);
+            causes.skip(1).for_each(|fact| fact.part = Part::Details);
+        }
         let model = stepper.model();
         for piece in advice(model, state, failure) {
             match piece {
