@@ -227,9 +227,10 @@ fn a_failed_run_agrees_with_its_trace_and_text_quiet_or_not() {
     for field in ["increment", "attempt", "major", "minor"] {
         assert_eq!(failure[field].to_string(), last[field], "{field}");
     }
+    let increments = record["increments"].to_string();
     let end: Vec<_> = table
         .iter()
-        .filter(|row| row["increment"] == record["increments"].to_string())
+        .filter(|row| row["increment"] == increments)
         .collect();
     let slaves = list(&record["slaves"]);
     assert!(!slaves.is_empty());
