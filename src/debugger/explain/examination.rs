@@ -103,7 +103,7 @@ pub fn frozen(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -> 
         let head = diagnosis::head(model, &problem, &diagnosis);
         if diagnosis.cause == Cause::NoAnswer {
             let found = smaller(stepper, state);
-            facts.extend(found.map(|found| Fact::new(Part::Details, found.words())));
+            facts.extend(found.map(|found| Fact::why(found.words())));
         }
         return Examination {
             head,
@@ -149,7 +149,7 @@ pub fn frozen(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -> 
         let smaller = smaller(stepper, state);
         found
             .facts
-            .extend(smaller.map(|found| Fact::new(Part::Details, found.words())));
+            .extend(smaller.map(|found| Fact::why(found.words())));
     }
     found
 }

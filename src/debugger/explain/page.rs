@@ -36,6 +36,8 @@ use stickslip_scene::number::four;
 
 /// Shown if the first increment fails and nodes start inside their surface.
 const OVERLAP: &str = "nodes start inside their surface; settings.initial_gaps=ramp moves them out over the first leg of the path, adjust moves them onto the surface";
+/// Maximum number of consistent states that are tried.
+const MOST_STATES: usize = 4;
 /// Maximum number of remedies tried for the page; the list of remedies tries all.
 const MOST_TRIED: usize = 6;
 
@@ -501,7 +503,11 @@ impl PageBuilder {
     /// The remedies tried for the page: the consistent states, and those for this kind of failure.
     fn remedies(&self, model: &Model, state: &State, failure: &Failure) -> Vec<Remedy> {
         let mut all = Remedy::answers(model, &self.found);
-        all.truncate(if turned(model).is_empty() { 2 } else { 0 });
+        all.truncate(if turned(model).is_empty() {
+            MOST_STATES
+        } else {
+            0
+        });
         let certain = matches!(Remedy::law(model, state, failure), Some((_, true)));
         let advised = advised(model, state, failure);
         let is_law = |remedy: &Remedy| remedy.kind == RemedyKind::Law;

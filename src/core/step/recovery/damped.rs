@@ -153,13 +153,13 @@ impl Stepper {
             return slower.unwrap_or_else(|| self.end_motion(why));
         }
         if motion.coming_to_rest {
-            let jumped = motion.travelled + moved > JUMP * self.now.model.length;
-            if !jumped && let Some(found) = self.now.violated_since_origin(&after) {
+            if let Some(found) = self.now.violated_since_origin(&after) {
                 self.now.state.next_major();
                 return self.end_motion(Failure::Refused(found));
             }
             // The other branch has a different pace.
             self.now.state.pace = Pace::default();
+            let jumped = motion.travelled + moved > JUMP * self.now.model.length;
             self.now.state.watch = StabilityWatch::default();
             let landing = Landing {
                 jumped,
@@ -186,8 +186,8 @@ impl Stepper {
 }
 
 impl Iterate {
-    /// The law that the state violates over the whole damped motion of a search, which has not jumped: its start and end are
-    /// accepted states of one branch. `None` if it violates none, or if the scene requests damped motions.
+    /// The law that the state violates over the whole damped motion of a search: its start and end are accepted states. `None` if
+    /// it violates none, or if the scene requests damped motions.
     fn violated_since_origin(&mut self, after: &Norms) -> Option<Finding> {
         let origin = self.state.searched.origin.clone()?;
         let at = At {
