@@ -384,7 +384,7 @@ fn the_terminal_reports_the_mouse_only_while_it_is_wanted() {
     let mut session = started(&none, &[]);
     session.see("nothing is solved yet");
     assert_eq!(modes(&session), on);
-    session.type_and_see("c", "period 6");
+    session.type_and_see("c", "repeat with period 6");
     let rows = session.text();
     let row = rows.lines().position(|row| row.contains("* b ")).unwrap();
     session.type_and_see(&format!("\x1b[<0;8;{}M", row + 1), "Decision  b");

@@ -148,7 +148,7 @@ fn advised(model: &Model, state: &State, failure: &Failure) -> Vec<Remedy> {
 pub struct DiagnosisPage {
     /// What happened, in one line.
     pub what: String,
-    /// The causes, at most [`MOST_WHY`].
+    /// The causes, at most three.
     pub why: Vec<String>,
     /// What can be done, with the outcome of each trial, best first.
     pub tries: Vec<TryLine>,
