@@ -25,7 +25,7 @@ pub fn main(list: &Benchmarks, out: &OutputArgs) -> Result<Exit, Error> {
     let compared = compared.map_err(|e| Error::Usage(e.to_string()))?;
     outputs.write_table(&table(list, &compared))?;
     if !out.quiet {
-        tell_table(list, &compared);
+        report_table(list, &compared);
     }
     let all = compared.len();
     let count = |is: fn(&Standing) -> bool| compared.iter().filter(|c| is(&c.standing)).count();
@@ -38,7 +38,7 @@ pub fn main(list: &Benchmarks, out: &OutputArgs) -> Result<Exit, Error> {
     })
 }
 
-fn tell_table(list: &Benchmarks, compared: &[ComparedBenchmark]) {
+fn report_table(list: &Benchmarks, compared: &[ComparedBenchmark]) {
     notify(&list.title);
     if !list.about.is_empty() {
         notify(&list.about);

@@ -535,7 +535,7 @@ impl FailureKind {
             FailureKind::PathReversal => "the path would return to where it came from",
             FailureKind::ZeroMeasure => "the measure of the path does not change",
             FailureKind::BranchJump => "the increment may have jumped to another branch",
-            FailureKind::NoRest => "a damped motion does not come to rest",
+            FailureKind::NoRest => "a damped motion does not settle",
             FailureKind::Diverged => "residual or displacements grew without bound",
             FailureKind::NoConsistentState => "no combination of modes is consistent",
             FailureKind::LadderEnded => "no strategy of the ladder succeeded",

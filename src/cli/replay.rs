@@ -68,7 +68,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         let began = Instant::now();
         let replayed = one(file, &args.solver)?;
         let seconds = began.elapsed().as_secs_f64();
-        tell(file, &replayed, says)?;
+        print(file, &replayed, says)?;
         let this = replayed.exit();
         // An unreadable file is worse than one that differs.
         if this as u8 > exit as u8 {
@@ -141,7 +141,7 @@ fn one(file: &Path, solver: &SolverArgs) -> Result<Replayed, Error> {
 }
 
 /// Prints the result; `says` is whether standard output carries text.
-fn tell(file: &Path, replayed: &Replayed, says: bool) -> Result<(), Error> {
+fn print(file: &Path, replayed: &Replayed, says: bool) -> Result<(), Error> {
     let file = file.display();
     let text = match replayed {
         Replayed::Unreadable(why) => {

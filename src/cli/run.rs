@@ -189,9 +189,9 @@ impl<'a> Run<'a> {
     fn notify(&mut self, end: Ending, args: &Args, interrupt: &Interrupt) -> RunResult {
         self.tally.sum_up();
         if !args.quiet {
-            self.tell_summary(args.outputs.csv.is_none());
+            self.report_summary(args.outputs.csv.is_none());
             if self.tally.scene.model.monitors.is_empty() {
-                self.tally.tell_slaves();
+                self.tally.report_slaves();
             }
         }
         if let Some(touch) = self.tally.touch.as_ref().filter(|_| !interrupt.came())
@@ -205,51 +205,51 @@ impl<'a> Run<'a> {
                 let state = self.solver.state();
                 let (kind, words) = (FailureKind::SolverLost, lost.to_string());
                 let failure = FailureRecord::reported(kind, words, state.next, state.load_factor);
-                return self.tell_lost(failure);
+                return self.report_lost(failure);
             }
         };
         match end {
-            RunEnd::Finished | RunEnd::Spent => self.tell_branches(),
+            RunEnd::Finished | RunEnd::Spent => self.report_branches(),
             // A reader that closes the pipe has all the data it wants.
             RunEnd::Stopped(Closed::Pipe) => RunResult::new(Exit::Good, "finished"),
             RunEnd::Stopped(Closed::Endless(words)) => {
                 let (event, kind) = (self.solver.event(), FailureKind::IterationLimit);
                 let (at, load) = (event.position, event.load_factor);
-                self.tell_lost(FailureRecord::reported(kind, words, at, load))
+                self.report_lost(FailureRecord::reported(kind, words, at, load))
             }
             RunEnd::Interrupted => {
                 let at = names::position(self.solver.state().next);
                 let result = RunResult::new(Exit::Interrupted, "interrupted");
-                self.tell(result, format!("interrupted before {at}"))
+                self.with_message(result, format!("interrupted before {at}"))
             }
-            RunEnd::Failed(failure) => self.tell_failure(&failure, interrupt),
+            RunEnd::Failed(failure) => self.report_failure(&failure, interrupt),
         }
     }
 
     /// Prints the message of a result, and adds it.
-    fn tell(&self, mut result: RunResult, message: String) -> RunResult {
+    fn with_message(&self, mut result: RunResult, message: String) -> RunResult {
         notify(&format!("{}: {message}", self.tally.scene.name));
         result.message = Some(message);
         result
     }
 
     /// Reports an attached solver that cannot continue, or does not end.
-    fn tell_lost(&self, failure: FailureRecord) -> RunResult {
+    fn report_lost(&self, failure: FailureRecord) -> RunResult {
         let mut result = RunResult::new(Exit::Unconverged, "failed");
         let words = failure.words.clone();
         result.failure = Some(failure);
-        self.tell(result, words)
+        self.with_message(result, words)
     }
 
     /// Reports where and why the run failed.
-    fn tell_failure(&self, failure: &Failure, interrupt: &Interrupt) -> RunResult {
+    fn report_failure(&self, failure: &Failure, interrupt: &Interrupt) -> RunResult {
         let (event, state) = (self.solver.event(), self.solver.state());
         let (model, at, load) = (&self.tally.scene.model, event.position, event.load_factor);
-        self.tell_marks();
+        self.report_marks();
         let mut result = RunResult::new(Exit::Unconverged, "failed");
         result.failure = Some(FailureRecord::new(model, at, load, failure));
         let text = report::failure(model, state, at, load, failure);
-        let mut result = self.tell(result, text);
+        let mut result = self.with_message(result, text);
         if !self.is_own {
             // Only an attached solver knows the cause.
             notify("  `stickslip attach` opens it in the debugger; d shows the cause");
@@ -303,7 +303,7 @@ impl<'a> Run<'a> {
     }
 
     /// Reports where the accepted states leave the branch of stable equilibrium.
-    fn tell_marks(&self) {
+    fn report_marks(&self) {
         let Tally {
             scene,
             found,
@@ -336,9 +336,9 @@ impl<'a> Run<'a> {
     }
 
     /// Reports whether the accepted states follow the requested stable path; the exit code reflects it, too.
-    fn tell_branches(&self) -> RunResult {
+    fn report_branches(&self) -> RunResult {
         let model = &self.tally.scene.model;
-        self.tell_marks();
+        self.report_marks();
         let event = self.solver.event();
         if event.is_cut_short(model) {
             let (arc, load) = (four(event.arc.unwrap_or(f64::NAN)), event.load_factor);
@@ -347,7 +347,7 @@ impl<'a> Run<'a> {
                 four(load),
                 model.path.last().unwrap_or(&f64::NAN)
             );
-            return self.tell(RunResult::new(Exit::Unconverged, "incomplete"), text);
+            return self.with_message(RunResult::new(Exit::Unconverged, "incomplete"), text);
         }
         let exit = match model.jumps {
             Jumps::Cut | Jumps::Stop | Jumps::Dynamic if !self.tally.losses.is_empty() => {
@@ -358,7 +358,7 @@ impl<'a> Run<'a> {
         RunResult::new(exit, "finished")
     }
 
-    fn tell_summary(&self, monitors: bool) {
+    fn report_summary(&self, monitors: bool) {
         notify(&format!(
             "{}: {} increments accepted, up to load {}; {} major and {} minor iterations",
             self.tally.scene.name,

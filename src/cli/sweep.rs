@@ -93,10 +93,10 @@ impl SweepArgs {
         let store = Store::open(&keeping, sweep).map_err(|e| failed(e.into()))?;
         let (cells, [unit, step]) = (&sweep.cells, sweep.units);
         if let Some(missing) = store.missing(cells) {
-            tell_missing(&missing, cells.len(), unit);
+            report_missing(&missing, cells.len(), unit);
             return Ok(Exit::Incomplete);
         }
-        tell_machines(&store);
+        report_machines(&store);
         let progress = self.out.progress(sweep.steps(), step);
         let watch = Watch {
             stop: &|| interrupt.came(),
@@ -151,7 +151,7 @@ fn count_done<T: Outcome>(results: &[Option<T>]) -> usize {
 }
 
 /// Reports other machines that computed results, since last digits can differ between machines and tables name only this one.
-fn tell_machines<T: Outcome>(store: &Store<T>) {
+fn report_machines<T: Outcome>(store: &Store<T>) {
     let here = origin::processor();
     let others: Vec<&str> = store.machines().filter(|other| *other != here).collect();
     if !others.is_empty() {
@@ -175,7 +175,7 @@ pub fn failed(error: RunError) -> Error {
 /// Maximum number of ranges and commands in a message.
 const MOST: usize = 8;
 
-fn tell_missing(missing: &Missing, all: usize, unit: &str) {
+fn report_missing(missing: &Missing, all: usize, unit: &str) {
     let count = missing.cells.len();
     notify(&format!(
         "{count} of {all} {unit} are missing (numbers from 0, in the order of the table): {}",

@@ -218,7 +218,7 @@ impl<'a> Tally<'a> {
     }
 
     /// Prints modes and forces of the last accepted increment, for scenes without monitors.
-    pub fn tell_slaves(&self) {
+    pub fn report_slaves(&self) {
         if self.slaves.is_empty() {
             return;
         }

@@ -1,4 +1,4 @@
-//! The search for ways out: scenes that fail without it, and the costs that it is limited to.
+//! The search after a failed increment: scenes that fail without it, and the limit of its cost.
 
 use std::sync::Arc;
 use stickslip::scene::Scene;
@@ -93,6 +93,6 @@ fn no_search_spends_more_than_its_limit() {
     let limit = whole / 2;
     let limited = run(name, &[("settings.search_limit", &limit.to_string())]);
     assert!(limited.failure.is_some());
-    // The attempt in which the limit is reached is finished.
-    assert!(limited.spent <= limit + 600, "{} of {limit}", limited.spent);
+    // The attempt in which the limit is reached is finished: at most 60 major iterations, here with one minor iteration each.
+    assert!(limited.spent <= limit + 120, "{} of {limit}", limited.spent);
 }

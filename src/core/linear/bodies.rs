@@ -130,13 +130,24 @@ impl Bodies {
     }
 }
 
+/// Value of a monitor that needs only displacements and contacts; not a number for the others.
+pub(super) fn value(watched: &Watched, contacts: &[Contact], at: &At<'_>) -> f64 {
+    match watched {
+        Watched::Displacement { dof } => at.u[*dof],
+        Watched::Contact { slaves, axis } => {
+            let k = if *axis == Axis::X { 0 } else { 1 };
+            slaves.iter().map(|&s| at.contacts[s].force()[k]).sum()
+        }
+        Watched::Modes { slaves, mode } => in_mode(at.contacts, slaves, *mode),
+        Watched::Drift { slaves } => largest_drift(at.contacts, slaves),
+        Watched::Pressure { slaves, shear } => pressure(contacts, at.contacts, slaves, *shear),
+        Watched::Arc => at.arc,
+        Watched::Told { .. } | Watched::Reaction { .. } => f64::NAN,
+    }
+}
+
 /// Pressure or shear of the contact where its magnitude is largest.
-pub(super) fn pressure(
-    contacts: &[Contact],
-    states: &[ContactState],
-    slaves: &[usize],
-    shear: bool,
-) -> f64 {
+fn pressure(contacts: &[Contact], states: &[ContactState], slaves: &[usize], shear: bool) -> f64 {
     let of = |&s: &usize| {
         let both = contacts[s].pressure(states[s].f_n, states[s].f_t)?;
         Some(both[usize::from(shear)])
@@ -252,7 +263,8 @@ impl Source for Bodies {
     fn aim(&mut self, at: &At<'_>) -> bool {
         // A following pressure has a stiffness that depends on the load.
         let dead = self.system.pressures.is_empty();
-        let holds = dead && at.accepted.history.is_empty() && !self.system.is_dragged(at);
+        let holds =
+            dead && at.accepted.history.is_empty() && !(self.system.dragged || at.drag.is_some());
         if holds {
             self.system.aim(&self.model, at);
         }
@@ -527,18 +539,6 @@ impl Source for Bodies {
 
     fn monitor(&self, watched: &Watched, at: &At<'_>) -> f64 {
         match watched {
-            Watched::Displacement { dof } => at.u[*dof],
-            Watched::Contact { slaves, axis } => {
-                let k = if *axis == Axis::X { 0 } else { 1 };
-                slaves.iter().map(|&s| at.contacts[s].force()[k]).sum()
-            }
-            Watched::Modes { slaves, mode } => in_mode(at.contacts, slaves, *mode),
-            Watched::Drift { slaves } => largest_drift(at.contacts, slaves),
-            Watched::Pressure { slaves, shear } => {
-                pressure(&self.model.contacts, at.contacts, slaves, *shear)
-            }
-            Watched::Arc => at.arc,
-            Watched::Told { .. } => f64::NAN,
             // Use the load of the current displacements, not of the next target.
             Watched::Reaction { dof } => {
                 let loads = self.model.loads.iter().filter(|load| load.dof == *dof);
@@ -550,6 +550,7 @@ impl Source for Bodies {
                 });
                 self.system.internal()[*dof] - load - self.system.interaction(*dof)
             }
+            _ => value(watched, &self.model.contacts, at),
         }
     }
 }

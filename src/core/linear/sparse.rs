@@ -10,7 +10,7 @@
 //! the touching contacts; sweeps use the blocks of W ([`crate::interface::sweep`]).
 
 use crate::contact::projection::{SurfacePoint, projection_at};
-use crate::contact::state::{ContactState, in_mode, largest_drift};
+use crate::contact::state::ContactState;
 use crate::contact::stick_point::pierced;
 use crate::contact::table1::{Equation, RelativeMotion};
 use crate::contact::tracking::Ground;
@@ -22,12 +22,12 @@ use crate::interface::response::InterfaceResponse;
 use crate::interface::rows;
 use crate::interface::sweep::Sweep;
 use crate::linalg::{DenseFactors, Factors, Pattern, SolveError};
-use crate::linear::bodies::pressure;
+use crate::linear::bodies::value;
 use crate::linear::norms::Norms;
 use crate::linear::source::{At, SUSPICIOUS, Solved, Source, Work};
 use crate::linear::sparse_contacts::sparse_contacts;
 use crate::linear::violation::violation;
-use crate::model::{Axis, Bond, Friction, Linear, Model, Settings, Watched};
+use crate::model::{Bond, Friction, Linear, Model, Settings, Watched};
 use crate::strategy::SETTLED;
 use std::sync::Arc;
 
@@ -519,19 +519,6 @@ impl Source for SparseInterface {
     }
 
     fn monitor(&self, watched: &Watched, at: &At<'_>) -> f64 {
-        match watched {
-            Watched::Displacement { dof } => at.u[*dof],
-            Watched::Contact { slaves, axis } => {
-                let k = if *axis == Axis::X { 0 } else { 1 };
-                slaves.iter().map(|&s| at.contacts[s].force()[k]).sum()
-            }
-            Watched::Modes { slaves, mode } => in_mode(at.contacts, slaves, *mode),
-            Watched::Drift { slaves } => largest_drift(at.contacts, slaves),
-            Watched::Pressure { slaves, shear } => {
-                pressure(&self.model.contacts, at.contacts, slaves, *shear)
-            }
-            Watched::Arc => at.arc,
-            Watched::Told { .. } | Watched::Reaction { .. } => f64::NAN,
-        }
+        value(watched, &self.model.contacts, at)
     }
 }

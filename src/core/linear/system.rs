@@ -71,7 +71,7 @@ pub struct System {
     /// Work done so far.
     pub done: Work,
     /// Whether the last linearisation contains a drag.
-    dragged: bool,
+    pub(super) dragged: bool,
     /// Whether `whole` is scaled for the current linearisation.
     pub(super) scaled: bool,
     pub(super) bodies: Option<Condensation>,
@@ -324,11 +324,6 @@ impl System {
             let diagonal = |e: usize| pattern.slot(e, e);
             stiffen(model, at, &self.sizes, diagonal, &mut self.stiffness);
         }
-    }
-
-    /// Whether the last linearisation contains a drag, or the next one needs one.
-    pub fn is_dragged(&self, at: &At<'_>) -> bool {
-        self.dragged || at.drag.is_some()
     }
 
     /// Updates the pattern if a slave node has moved to another element with unknowns; rigid elements have no entries.

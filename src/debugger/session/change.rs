@@ -82,8 +82,8 @@ impl Session {
         Ok(self.take_steps(steps) + &reply)
     }
 
-    /// Starts a sequence of steps from the cursor, which is at the tip; returns what the solver has to repeat
-    /// first, as the beginning of a reply.
+    /// Starts a sequence of steps at the cursor, the end of the branch. Returns the iterations that the solver must repeat first,
+    /// as the beginning of a reply.
     pub(super) fn take_steps(&mut self, steps: Vec<Option<Intervention>>) -> String {
         let before = self.timeline.strip().clone();
         self.work(self.cursor(), Task::Run, Steps::Follow { before, steps })
