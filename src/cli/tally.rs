@@ -20,7 +20,7 @@ use stickslip_debugger::explain::touch::TouchWatch;
 use stickslip_debugger::history::rounds::{self, CycleWatch};
 use stickslip_debugger::history::strip::Strip;
 use stickslip_scene::Scene;
-use stickslip_scene::number::six;
+use stickslip_scene::number::{plain, six};
 use stickslip_scene::shown::aligned;
 
 /// Warnings that are printed individually; others are only counted.
@@ -302,7 +302,7 @@ impl<'a> Tally<'a> {
         }
         self.doubtful += 1;
         if self.doubtful <= MOST_WARNINGS {
-            let (increment, load) = (event.position.increment, event.load_factor);
+            let (increment, load) = (event.position.increment, plain(event.load_factor));
             self.progress.clear();
             self.messages.warn(format!(
                 "increment {increment} (load {load}) was accepted{although}"
@@ -394,8 +394,9 @@ impl Stretches {
         if self.0.is_empty() {
             return None;
         }
-        let stretch =
-            |(load, stability): &(f64, Stability)| format!("{stability} from load {load}");
+        let stretch = |(load, stability): &(f64, Stability)| {
+            format!("{stability} from load {}", plain(*load))
+        };
         let first: Vec<String> = self.0.iter().take(MOST_STRETCHES).map(stretch).collect();
         let more = match self.0.len().saturating_sub(MOST_STRETCHES) {
             0 => String::new(),

@@ -10,7 +10,7 @@ use stickslip_core::linear::singular::{LooseMotion, RigidMotion, Singular};
 use stickslip_core::model::{Factor, Mode, Model};
 use stickslip_core::step::state::State;
 use stickslip_core::step::stepper::Stepper;
-use stickslip_scene::number::four;
+use stickslip_scene::number::{four, plain};
 use stickslip_scene::shown::first_of;
 
 /// Maximum number of motions described.
@@ -291,7 +291,7 @@ impl<'a> Moving<'a> {
 
 /// Since when the body is loose.
 fn since(model: &Model, state: &State, at_start: &Singular) -> String {
-    let load = state.start.load_factor;
+    let load = plain(state.start.load_factor);
     if matches!(at_start, Singular::Rigid { .. }) {
         return match state.next.increment {
             0 | 1 => "since when: from the start, with the initial modes of its nodes".into(),
@@ -311,7 +311,7 @@ fn since(model: &Model, state: &State, at_start: &Singular) -> String {
         true => format!("since when: after load {load}, at which it was held"),
         false => format!(
             "since when: after load {load}, at which it was held; on the way to {}, {} lost contact or stick",
-            state.load_factor,
+            plain(state.load_factor),
             first_of(let_go, MOST_NODES, ", ")
         ),
     }

@@ -265,7 +265,9 @@ pub fn not_falling(model: &Model, attempt: &Attempt) -> Vec<Fact> {
     let changes = changes(model, &attempt.majors);
     let shown = &changes[changes.len().saturating_sub(MOST_MAJORS)..];
     if let Some(text) = shown.last() {
-        facts.push(Fact::why(format!("still changing: {text}")));
+        facts.push(Fact::why(format!(
+            "last change of modes or elements: {text}"
+        )));
     }
     facts.extend(Fact::all(Part::Rates, shown.iter().cloned()));
     facts
@@ -280,14 +282,12 @@ fn largest(model: &Model, major: &Major) -> Option<String> {
         .find(|body| body.nodes.contains(&node))?;
     let [x, y] = model.place(&major.u, node).map(four);
     Some(format!(
-        "the largest residual is {} at node {} of {} at ({x}, {y})",
-        four(force),
-        model.nodes[node].name,
-        body.name
+        "the largest residual is {force:.3e} at node {} of {} at ({x}, {y})",
+        model.nodes[node].name, body.name
     ))
 }
 
-/// The slave nodes that change in each major iteration, one line per iteration.
+/// The slave nodes that change, one line for each major iteration with changes.
 fn changes(model: &Model, majors: &[Major]) -> Vec<String> {
     let pairs = majors.windows(2).enumerate();
     let line = |(k, pair): (usize, &[Major])| {
@@ -305,11 +305,8 @@ fn changes(model: &Model, majors: &[Major]) -> Vec<String> {
                 .then(|| format!("{name} onto {}", place(model, on(on_b))))
         });
         let changed: Vec<String> = changed.collect();
-        let text = match changed.is_empty() {
-            true => "no node".to_owned(),
-            false => first_of(changed, MOST_CHANGES, ", "),
-        };
-        Some(format!("major {}: {text}", k + 2))
+        let text = first_of(changed, MOST_CHANGES, ", ");
+        (!text.is_empty()).then(|| format!("major {}: {text}", k + 2))
     };
     pairs.filter_map(line).collect()
 }

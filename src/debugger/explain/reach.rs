@@ -11,7 +11,7 @@ use stickslip_core::step::event::{Failure, Moves, Outcome};
 use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::state::State;
 use stickslip_core::step::stepper::Stepper;
-use stickslip_scene::number::six;
+use stickslip_scene::number::{plain, six};
 
 /// Smallest step, as a fraction of the increment.
 const FINEST: f64 = 1.0 / 4096.0;
@@ -40,18 +40,19 @@ impl Reach {
     /// Describes the result; `first` is the failure of the increment.
     pub fn words(&self, model: &Model, first: &Failure) -> String {
         let Reach { load, wanted, .. } = self;
+        let [at, to] = [load, wanted].map(|&load| plain(load));
         match &self.ends {
             None if load == wanted => {
-                format!("smaller steps reach load {wanted}")
+                format!("smaller steps reach load {to}")
             }
-            None => format!("smaller steps reach at least load {load}"),
+            None => format!("smaller steps reach at least load {at}"),
             Some((size, failure)) => {
                 let why = match discriminant(failure) == discriminant(first) {
                     true => "the same failure".to_owned(),
                     false => report::describe_failure(model, failure),
                 };
                 let far = match *load == self.from {
-                    true => format!("not even a step of {size:.1e} beyond load {load} succeeds"),
+                    true => format!("not even a step of {size:.1e} beyond load {at} succeeds"),
                     false => format!("smaller steps reach load {}", six(*load)),
                 };
                 format!("{far}; there: {why}")

@@ -18,7 +18,7 @@ use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::major_history::{MajorCycle, Stop};
 use stickslip_core::step::state::State;
 use stickslip_core::step::way::Change;
-use stickslip_scene::number::{four, six};
+use stickslip_scene::number::{four, plain, six};
 use stickslip_scene::shown::first_of;
 
 /// Why Table 2 decided as it did; `friction` is whether there is any.
@@ -157,19 +157,25 @@ pub fn outcome(model: &Model, event: &Event) -> String {
         Outcome::Damped {
             cycle: c,
             target: aim,
-        } => format!("{at}: {}; damped: solves load {aim} first", cycle(model, c)),
+        } => format!(
+            "{at}: {}; damped: solves load {} first",
+            cycle(model, c),
+            plain(*aim)
+        ),
         Outcome::Climbed { why, to } => format!(
             "{at}: {}; continues with strategy {}",
             describe_failure(model, why),
             to.name()
         ),
         Outcome::Cut { why, size } => format!(
-            "{at}: {}; the increment is cut to {size}",
-            describe_failure(model, why)
+            "{at}: {}; the increment is cut to {}",
+            describe_failure(model, why),
+            six(*size)
         ),
         Outcome::Leaps { why, size } => format!(
-            "{at}: {}; no equilibrium is near, so the whole increment {size} is solved",
-            describe_failure(model, why)
+            "{at}: {}; no equilibrium is near, so the whole increment {} is solved",
+            describe_failure(model, why),
+            six(*size)
         ),
         Outcome::Turns { why, changes } => {
             let change = |change: &Change| {
@@ -195,9 +201,10 @@ pub fn outcome(model: &Model, event: &Event) -> String {
         }
         Outcome::Moves(moves) => format!("{at}: {}", self::moves(model, moves)),
         Outcome::Fallback { why, by, size } => format!(
-            "{at}: {}; tries {} (size {size})",
+            "{at}: {}; tries {} (size {})",
             describe_failure(model, why),
-            by.words()
+            by.words(),
+            six(*size)
         ),
         Outcome::Major { after, settled } => {
             let leaves = |node: &ContactRecord| node.decision.rule == Rule::CornerReleases;
@@ -225,7 +232,7 @@ pub fn outcome(model: &Model, event: &Event) -> String {
             let left = left.map_or(String::new(), |left| format!("; {left}"));
             format!(
                 "{at}: load {} accepted{found}{}{left}{end}",
-                event.load_factor,
+                plain(event.load_factor),
                 reservations(model, event)
             )
         }
@@ -237,8 +244,9 @@ pub fn outcome(model: &Model, event: &Event) -> String {
 fn moves(model: &Model, moves: &Moves) -> String {
     match moves {
         Moves::LetsGo { why, load } => format!(
-            "{}; no equilibrium is near that of load {load}: a damped motion starts there",
-            describe_failure(model, why)
+            "{}; no equilibrium is near that of load {}: a damped motion starts there",
+            describe_failure(model, why),
+            plain(*load)
         ),
         Moves::Step { motion, number } => {
             format!("step {number} of a damped motion, by {motion:.3e}")
@@ -334,7 +342,7 @@ pub fn reservations(model: &Model, event: &Event) -> String {
         text += &format!(
             ", after a damped motion of {} steps from the equilibrium at load {} (energy {} dissipated)",
             motion.steps,
-            motion.from,
+            plain(motion.from),
             six(motion.dissipated)
         );
     }
@@ -405,8 +413,9 @@ pub fn failure(model: &Model, state: &State, at: Position, load: f64, failure: &
         n => format!(" in attempt {n}"),
     };
     format!(
-        "increment {} (load {load}){again}, major {}, minor {}: {}; {}",
+        "increment {} (load {}){again}, major {}, minor {}: {}; {}",
         at.increment,
+        plain(load),
         at.major,
         at.minor,
         describe_failure(model, failure),
@@ -416,7 +425,7 @@ pub fn failure(model: &Model, state: &State, at: Position, load: f64, failure: &
 
 /// The last equilibrium of a failed run.
 pub fn sound(at: Position, state: &State) -> String {
-    let accepted = state.start.load_factor;
+    let accepted = plain(state.start.load_factor);
     match at.increment {
         0 | 1 => format!("no equilibrium after the start (load {accepted})"),
         n => format!(

@@ -1,6 +1,6 @@
 //! The list Try of the diagnosis page: what can be done, with the outcome of each trial.
 
-use super::remedies::{self, Trial, TrialEnd, compare};
+use super::remedies::{self, BUDGET, Trial, TrialEnd, compare};
 use super::remedy::{How, Remedy};
 
 /// Outcome of a line of the list.
@@ -42,6 +42,9 @@ impl TryLine {
             (true, _) => format!("tried: converges, {minors}"),
             (false, _) if trial.end == TrialEnd::Converged => {
                 "tried: held nodes violate a law".to_owned()
+            }
+            (false, _) if trial.end == TrialEnd::Budget => {
+                format!("tried: no convergence within {BUDGET} minors")
             }
             (false, _) => format!("tried: {}", remedies::end_words(&trial.end)),
         };

@@ -1,7 +1,7 @@
 //! The top of the screen: the scene, the position of the solver, and the outcome of the last minor iteration.
 
 use crate::app::{App, Overlay};
-use crate::layout::Places;
+use crate::layout::{Pane, Places};
 use crate::paint;
 use crate::view::{AttachedSolver, View};
 use ratatui::buffer::Buffer;
@@ -39,7 +39,8 @@ pub fn draw(buffer: &mut Buffer, places: &Places, app: &App, view: Option<&View>
         lines.insert(0, scene(app, view, area.width as usize));
     }
     let outcome_lines = outcome(app, view, area.width);
-    let open = matches!(app.overlay, Overlay::None);
+    // The diagnosis repeats the outcome, and needs its rows.
+    let open = matches!(app.overlay, Overlay::None) && app.panes.focus != Pane::Diagnosis;
     let more = usize::from(open) * (outcome_lines.len().min(OUTCOME) + lines.len());
     lines.extend(outcome_lines.into_iter().take(OUTCOME));
     let below = (places.message.y.saturating_sub(area.bottom())) / 3;
