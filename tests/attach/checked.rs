@@ -128,6 +128,7 @@ const WRONGS: &[(&str, &str, &str)] = &[
         "problem",
         "matrix[0][1]: invalid type: null",
     ),
+    ("load-drifts", "order", "in the same attempt"),
     ("deaf-to-bye", "bye", "does not end"),
 ];
 
@@ -154,6 +155,7 @@ fn each_wrong_is_found_by_its_check() {
         for (how, what, told) in [
             ("upside-down", "laws", "compression is positive"),
             ("flat", "problem", "gap = W f + q"),
+            ("flat-first", "problem", "gap = W f + q"),
             ("deaf", "increment", "`load` must be the load factor"),
         ] {
             scope.spawn(move || {

@@ -1,7 +1,7 @@
 //! A solver between the debugger and another: what that offers in `hello` is changed on the way.
 //!
 //! Its first argument is what `restore` becomes, the second names parts of the others, by commas: `blind` leaves out forces,
-//! `upside-down` turns their sign in the states, `flat` halves the matrix of its problem, `deaf` answers `set` without handing it on.
+//! `upside-down` turns their sign in the states, `flat` halves the matrix of its problem, `flat-first` only in its second answer, `deaf` answers `set` without handing it on.
 
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Write};
@@ -38,6 +38,7 @@ pub fn main(arguments: &[String]) -> ExitCode {
             }
         }
     });
+    let mut problems = 0;
     let mut out = std::io::stdout().lock();
     for line in BufReader::new(child.stdout.take().unwrap()).lines() {
         let line = line.unwrap();
@@ -50,8 +51,12 @@ pub fn main(arguments: &[String]) -> ExitCode {
             true if line.starts_with("{\"type\":\"state\"") && how == "upside-down" => {
                 changed(&line, upside_down)
             }
-            true if line.starts_with("{\"type\":\"problem\"") && how == "flat" => {
-                changed(&line, flat)
+            true if line.starts_with("{\"type\":\"problem\"") && how.starts_with("flat") => {
+                problems += 1;
+                match how == "flat" || problems == 2 {
+                    true => changed(&line, flat),
+                    false => line,
+                }
             }
             true => line,
         };

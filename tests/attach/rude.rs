@@ -301,7 +301,10 @@ impl Rude {
         json!({
             "type": "state",
             "at": {"increment": (n - 1) / EACH + 1, "minor": (n - 1) % EACH + 1},
-            "load": ((n - 1) / EACH + 1) as f64 * EACH as f64 / ALL as f64,
+            "load": match self.is("load-drifts") {
+                true => n as f64 / ALL as f64,
+                false => ((n - 1) / EACH + 1) as f64 * EACH as f64 / ALL as f64,
+            },
             "ended": match of { 0 if n == ALL => "done", 0 => "increment", _ => "iteration" },
             "contacts": contacts,
             "residual": {"relative": 0.1},

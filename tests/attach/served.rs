@@ -24,6 +24,8 @@ pub fn tests() -> Vec<Trial> {
         what_is_not_offered_is_refused_with_the_reason,
         a_journal_leads_to_the_same_bits_against_the_solver_and_to_others_against_another,
         who_pushed_a_contact_is_told_as_of_the_scene_itself,
+        a_lagged_t_max_is_inferred_from_the_iterations_of_a_solver,
+        without_a_rule_that_reproduces_the_solver_neither_cause_nor_pushes_are_given,
     ]
 }
 
@@ -405,4 +407,45 @@ fn without_stretch(table: &str) -> String {
             .map(|(rest, _)| rest.to_owned() + "\n")
     };
     table.lines().filter_map(cut).collect()
+}
+
+/// The page of the diagnosis after a served scene has failed, behind a filter.
+fn page_of_failure(name: &str, how: &str) -> String {
+    let mut session = session(start(name, "any", how), &Log::default());
+    does(&mut session, forward(Unit::Run, 1));
+    does(&mut session, Command::Census(Vec::new()));
+    session.background_mut().wait();
+    let page = session.background().examination(session.timeline().place());
+    page.flatten().unwrap().lines().join("\n")
+}
+
+fn a_lagged_t_max_is_inferred_from_the_iterations_of_a_solver() {
+    for name in [
+        "osc-lag4",
+        "osc-zig3",
+        "osc-slowlag",
+        "osc-two6",
+        "osc-drag65",
+    ] {
+        let page = page_of_failure(name, "");
+        let inferred = "a lagged T_max reproduces the solver's";
+        assert!(
+            page.contains(inferred) && !page.contains("cannot reach"),
+            "{page}"
+        );
+    }
+    // The only mode that slides is held by the pushes of its own lagged T_max.
+    let page = page_of_failure("osc-lag4", "");
+    assert!(
+        page.contains("new T_max of a  a opens   ΔF_n = -5.6209e0"),
+        "{page}"
+    );
+}
+
+/// With half of its matrix, the problem is not the one that the solver iterates on.
+fn without_a_rule_that_reproduces_the_solver_neither_cause_nor_pushes_are_given() {
+    let page = page_of_failure("osc-lag4", "flat");
+    let words = "of the solver's 4 minor iterations here, its interface problem reproduces 1 with";
+    assert!(page.contains(words) && !page.contains("Loop"), "{page}");
+    assert!(!page.contains("never reaches"), "{page}");
 }

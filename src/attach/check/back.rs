@@ -1,7 +1,7 @@
 //! Checks that saved states are restored exactly.
 
 use super::report::{Outcome, fails, good, not_offered};
-use super::steps::otherwise;
+use super::steps::difference;
 use super::trial::{Trial, at, is_last};
 use serde_json::Value;
 use stickslip_core::model::Mode;
@@ -80,9 +80,7 @@ fn comes_back(
         }
         let how = match now {
             None => "the step was refused".to_owned(),
-            Some(now) => {
-                otherwise(then, &now).unwrap_or_else(|| "numbers differ in the last digits".into())
-            }
+            Some(now) => difference(then, &now),
         };
         let found = format!("after restoring iteration {place}, iteration {number} differs: {how}");
         return Ok(Some((found, MEND)));

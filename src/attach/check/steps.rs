@@ -222,6 +222,16 @@ fn unfollowed(before: &State, state: &State) -> Option<(String, &'static str)> {
             "advance `at`: minors within a major, majors after equilibrium, attempts after cut, increments after increment",
         ));
     }
+    if let [Some(then), Some(now)] = [before.load, state.load]
+        && same_attempt(before.at, state.at)
+        && before.arc.is_none()
+        && then != now
+    {
+        return Some((
+            format!("load {now:?} after {then:?} in the same attempt"),
+            "`load` is the load factor at the end of the increment",
+        ));
+    }
     // In a new major iteration the geometry may change modes: a node reaches a corner, or the end of a surface.
     if before.ended != Ended::Iteration {
         return None;
@@ -322,7 +332,7 @@ fn unlawful(found: &Found, small: f64) -> Option<(String, &'static str)> {
 /// Checks that the states after a restart are the same.
 pub fn determinism(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
     const MEND: &str = "fix seeds and thread counts; a solver that differs after a restart cannot go back by replaying";
-    let mut bits = None;
+    let (mut bits, mut texts) = (None, false);
     for (then, number) in states.iter().zip(1..) {
         let now = trial.step()?;
         if now.as_ref() == Some(then) {
@@ -340,9 +350,13 @@ pub fn determinism(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault>
                 MEND,
             ));
         }
-        bits = bits.or(Some(number));
+        match numbers(then) == numbers(&now) {
+            true => texts = true,
+            false => bits = bits.or(Some(number)),
+        }
     }
     Ok(good(match bits {
+        None if texts => "same numbers after a restart; texts differ".into(),
         None => "bit-identical after a restart".into(),
         Some(number) => format!(
             "same modes after a restart; numbers differ in the last digits from iteration {number} on"
@@ -350,8 +364,28 @@ pub fn determinism(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault>
     }))
 }
 
+/// A state without its texts.
+fn numbers(state: &State) -> State {
+    let mut state = state.clone();
+    state.reason.clear();
+    state
+        .contacts
+        .iter_mut()
+        .for_each(|found| found.rule.clear());
+    state
+}
+
+/// How two states differ.
+pub fn difference(then: &State, now: &State) -> String {
+    let rest = match numbers(then) == numbers(now) {
+        true => "only texts differ",
+        false => "numbers differ in the last digits",
+    };
+    otherwise(then, now).unwrap_or_else(|| rest.into())
+}
+
 /// The first difference between two states in position, outcome or modes.
-pub fn otherwise(then: &State, now: &State) -> Option<String> {
+fn otherwise(then: &State, now: &State) -> Option<String> {
     if then.at != now.at {
         return Some("another position (`at`)".into());
     }

@@ -5,8 +5,10 @@
 //! load zero to one. It is examined like a frozen problem of our own bodies; results are reported with the node
 //! numbers of the solver's scene.
 
-use super::examination::{DONE, Examination, examine_nodes, frozen};
+use super::examination::{DONE, Examination, census, examine_nodes, frozen};
+use super::facts::{Fact, Part};
 use super::names;
+use super::walk::{ReportedIterations, walk};
 use std::sync::Arc;
 use stickslip_core::model::{InitialState, Mode, Model, Strategy};
 use stickslip_core::step::solver::{Posed, PosedForm};
@@ -16,6 +18,10 @@ use stickslip_scene::Scene;
 use stickslip_scene::format::SceneError;
 use stickslip_scene::format::condensed::{Contact, Matrix, Problem};
 use stickslip_scene::limits;
+
+/// Shown without reported minor iterations of the problem.
+const NOT_COMPARED: &str =
+    "Table 2 applied to its interface problem; not compared with minor iterations of the solver";
 
 /// The scene of a reported problem, starting with the modes of a state.
 pub fn problem(model: &Model, state: &State, posed: &Posed) -> Problem {
@@ -78,23 +84,19 @@ fn id(name: &str, place: usize) -> String {
 /// The scene of a reported problem, and our solver at its start.
 ///
 /// # Errors If the problem is invalid.
-pub fn stepper(
-    model: &Model,
-    state: &State,
-    posed: &Posed,
-) -> Result<(Scene, Stepper), SceneError> {
-    let spec = problem(model, state, posed).spec();
-    let scene = Scene::from_spec("the interface problem", spec)?;
+pub fn stepper(problem: Problem) -> Result<(Scene, Stepper), SceneError> {
+    let scene = Scene::from_spec("the interface problem", problem.spec())?;
     let stepper = Stepper::new(Arc::new(scene.model.clone()));
     Ok((scene, stepper))
 }
 
 /// Examines the problem that is solved next from a state, for these contacts or, if there are none, for all
-/// relevant ones. Stops early if `stop` returns true.
+/// relevant ones. If no rule reproduces the reported minor iterations, consistent states are counted, but no cause is given. Stops early if `stop` returns true.
 pub fn examine(
     model: &Model,
     state: &State,
     posed: &Posed,
+    reported: &ReportedIterations,
     contacts: &[usize],
     stop: &dyn Fn() -> bool,
 ) -> Examination {
@@ -105,14 +107,21 @@ pub fn examine(
     if state.status == Status::Finished {
         return describe(DONE.into());
     }
-    let mut stepper = match stepper(model, state, posed) {
+    let walk = walk(model, state, posed, reported);
+    let mut asked = reported.problem(model, state, posed);
+    if let Some(walk) = &walk {
+        asked.settings = walk.settings;
+    }
+    let mut stepper = match stepper(asked) {
         Ok((_, stepper)) => stepper,
         Err(why) => {
             return describe(format!("The reported interface problem is invalid: {why}."));
         }
     };
     let start = stepper.state().clone();
+    let is_other = walk.as_ref().is_some_and(|walk| !walk.is_complete());
     let mut found = match contacts {
+        [] if is_other => census(&mut stepper, &start, stop),
         [] => frozen(&mut stepper, &start, stop),
         some => {
             let place = |slave: &usize| posed.contacts.iter().position(|known| known == slave);
@@ -120,6 +129,9 @@ pub fn examine(
             examine_nodes(&mut stepper, &start, &places, stop)
         }
     };
+    let part = if is_other { Part::Why } else { Part::Details };
+    let compared = walk.map_or_else(|| NOT_COMPARED.to_owned(), |walk| walk.words());
+    found.facts.push(Fact::new(part, compared));
     // Maps nodes of the problem to contacts of the scene.
     let slave = |place: usize| posed.contacts.get(place).copied().unwrap_or(place);
     found.nodes = found.nodes.iter().map(|&place| slave(place)).collect();

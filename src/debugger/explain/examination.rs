@@ -115,7 +115,6 @@ pub fn frozen(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -> 
             ..Examination::default()
         };
     }
-    let undecided = diagnosis::undecided(&problem);
     let name = |place: usize| names::slave(model, problem.nodes[place].slave);
     let mut proven: Vec<Fact> = Vec::new();
     if problem.nodes.len() <= MOST_NODES {
@@ -128,18 +127,8 @@ pub fn frozen(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -> 
         let unique = proven::uniqueness_words(uniqueness(&problem), &name);
         proven.push(Fact::new(Part::Census, unique));
     }
-    if undecided.len() > MOST_SEARCHED {
-        let mut found = nothing("The minor iterations do not cycle from here.");
-        found.facts.extend(proven);
-        let many = proven::too_many(undecided.len());
-        found.facts.push(Fact::new(Part::Census, many));
-        return found;
-    }
-    let Some(studied) = problem.reduced(&undecided) else {
-        return nothing("The frozen interface problem is singular here.");
-    };
     let head = "The minor iterations do not cycle from here.";
-    let mut found = counted(model, &studied, head, stop);
+    let mut found = of_undecided(model, &problem, head, stop);
     found.facts.extend(proven);
     if found
         .census
@@ -152,6 +141,35 @@ pub fn frozen(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -> 
             .extend(smaller.map(|found| Fact::why(found.words())));
     }
     found
+}
+
+/// The census of the frozen problem that is solved next from a state, whatever its minor iterations do.
+pub fn census(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -> Examination {
+    let head = "Another solver's iteration: consistent states only.";
+    match next_problem(stepper, state) {
+        Err(why) => nothing(why),
+        Ok(problem) => of_undecided(stepper.model(), &problem, head, stop),
+    }
+}
+
+/// The census of all nodes with more than one possible mode.
+fn of_undecided(
+    model: &Model,
+    problem: &InterfaceProblem,
+    head: &str,
+    stop: &dyn Fn() -> bool,
+) -> Examination {
+    let undecided = diagnosis::undecided(problem);
+    if undecided.len() > MOST_SEARCHED {
+        let mut found = nothing(head);
+        let many = proven::too_many(undecided.len());
+        found.facts.push(Fact::new(Part::Census, many));
+        return found;
+    }
+    match problem.reduced(&undecided) {
+        Some(studied) => counted(model, &studied, head, stop),
+        None => nothing("The frozen interface problem is singular here."),
+    }
 }
 
 /// The census of these slave nodes at a state, with all others frozen. Stops early if `stop` returns true.

@@ -15,8 +15,8 @@
 //! - [`touch`]: how far the forces depend on where nodes in new contact are held.
 //! - [`examination`]: the frozen problem of a state; [`page`]: the whole diagnosis, as the debugger shows it; [`headline`]: what
 //!   happened in one line; [`facts`]: the parts of the page; [`try_list`]: what can be done, with the outcome of each trial.
-//! - [`attached`]: the diagnosis for an attached solver, from the problem that it reports; [`reported_pushes`]:
-//!   the pushes there.
+//! - [`attached`]: the diagnosis for an attached solver, from the problem that it reports; [`walk`]: which
+//!   iteration that solver performs; [`reported_pushes`]: the pushes there.
 //! - [`audit`]: the judge's findings over a history; [`outline`]: the shape of a state as lines.
 
 pub mod accuracy;
@@ -54,3 +54,4 @@ pub mod strain;
 pub mod tested;
 pub mod touch;
 pub mod try_list;
+pub mod walk;

@@ -180,11 +180,7 @@ impl DiagnosisPage {
         let what = match what {
             None => head,
             Some(what) => {
-                let applied = match found.problem {
-                    Some(_) => format!("Table 2 applied to its interface problem: {head}"),
-                    None => head,
-                };
-                facts.push(Fact::new(Part::Details, applied));
+                facts.push(Fact::new(Part::Details, head));
                 what
             }
         };

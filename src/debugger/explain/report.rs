@@ -213,11 +213,17 @@ pub fn outcome(model: &Model, event: &Event) -> String {
                 (true, true) => format!("minor iterations settled, then {}", changes(model, event)),
                 (false, _) => "minor iterations stopped before settling".to_owned(),
             };
-            format!(
-                "{at}: {how}; residual {:.3e}, limit {:.1e}",
-                after.relative.max(after.interface),
-                after.limit
-            )
+            // An attached solver may report neither.
+            let residual = after.relative.max(after.interface);
+            let numbers = [
+                (!residual.is_nan()).then(|| format!("residual {residual:.3e}")),
+                (!after.limit.is_nan()).then(|| format!("limit {:.1e}", after.limit)),
+            ];
+            let numbers: Vec<String> = numbers.into_iter().flatten().collect();
+            match numbers.is_empty() {
+                true => format!("{at}: {how}"),
+                false => format!("{at}: {how}; {}", numbers.join(", ")),
+            }
         }
         Outcome::Refused { why, .. } => format!(
             "{at}: refused: {}; continues, counting net slip from here on",

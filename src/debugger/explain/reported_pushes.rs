@@ -58,7 +58,8 @@ pub fn pushes(
     let [before, after] = &iterations.found;
     let earlier = ReportedPushes::new(posed, &before.nodes)?;
     let later = ReportedPushes::new(posed, &after.nodes)?;
-    let (_, mut stepper) = attached::stepper(model, &iterations.start, posed).ok()?;
+    let (_, mut stepper) =
+        attached::stepper(attached::problem(model, &iterations.start, posed)).ok()?;
     let mut problem = stepper.interface_problem()?;
     if earlier.follows_law(posed) && later.follows_law(posed) {
         problem.settings.t_max = BoundUpdate::Consistent;

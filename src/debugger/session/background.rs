@@ -25,6 +25,7 @@ use crate::explain::remedies::{self, Trial};
 use crate::explain::remedy::Remedy;
 use crate::explain::reported_pushes::{self, Iterations};
 use crate::explain::try_list::TryLine;
+use crate::explain::walk::ReportedIterations;
 use crate::record::export::shown::ExportError;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -65,10 +66,18 @@ pub struct RemedyTrials {
 
 enum BackgroundRequest {
     Pushes(LinePlace, usize, BetweenRuns),
-    /// Strings: facts already known about an attached solver's state.
-    Examination(LinePlace, Box<State>, Vec<usize>, Vec<String>),
+    Examination(LinePlace, Box<State>, Vec<usize>, Reported),
     Remedies(Box<State>),
     Export(Export),
+}
+
+/// What a line shows about an attached solver; empty for our own.
+#[derive(Default)]
+pub(super) struct Reported {
+    /// How it failed, and whether its modes repeat.
+    pub findings: Vec<String>,
+    /// The latest minor iterations of the frozen problem.
+    pub iterations: ReportedIterations,
 }
 
 /// The two minor iterations whose difference is the push on a node.
@@ -250,13 +259,13 @@ impl Background {
     }
 
     /// Requests the examination of the state at a position, for these nodes or, if there are none, for the
-    /// relevant ones. `findings` contains what the line already shows about an attached solver.
+    /// relevant ones. `reported` contains what the line shows about an attached solver.
     pub(super) fn ask_examination(
         &mut self,
         place: LinePlace,
         state: &State,
         nodes: &[usize],
-        findings: Vec<String>,
+        reported: Reported,
     ) {
         let known = self.examinations.get(&place);
         let stopped = |found: &Option<DiagnosisPage>| {
@@ -276,7 +285,7 @@ impl Background {
                 place,
                 state,
                 nodes.to_vec(),
-                findings,
+                reported,
             ));
         }
     }
@@ -437,8 +446,10 @@ impl Helper {
                 });
                 news.send(reply).ok()
             }
-            BackgroundRequest::Examination(place, state, nodes, known) if self.spec.is_none() => {
-                let found = self.examine_attached(&state, &nodes, known, stop);
+            BackgroundRequest::Examination(place, state, nodes, reported)
+                if self.spec.is_none() =>
+            {
+                let found = self.examine_attached(&state, &nodes, reported, stop);
                 let found = (!stop.load(Ordering::Relaxed)).then(|| Box::new(found));
                 news.send(BackgroundReply::Examination {
                     place,
@@ -512,16 +523,17 @@ impl Helper {
         Some(posed)
     }
 
-    /// The examination of an attached solver's state: the `known` facts, then the analysis of its interface
+    /// The examination of an attached solver's state: what it reported, then the analysis of its interface
     /// problem.
     fn examine_attached(
         &self,
         state: &State,
         nodes: &[usize],
-        known: Vec<String>,
+        reported: Reported,
         stop: &AtomicBool,
     ) -> DiagnosisPage {
-        let mut found = self.examine_problem(state, nodes, stop);
+        let mut found = self.examine_problem(state, nodes, &reported.iterations, stop);
+        let known = reported.findings;
         found.fails |= matches!(state.status, Status::Failed(_));
         let count = found.census.as_ref().map_or(0, |c| c.answers.len());
         let answers = (1..=count.min(2)).map(|n| {
@@ -540,10 +552,16 @@ impl Helper {
     }
 
     /// The examination of the interface problem that an attached solver reports.
-    fn examine_problem(&self, state: &State, nodes: &[usize], stop: &AtomicBool) -> Examination {
+    fn examine_problem(
+        &self,
+        state: &State,
+        nodes: &[usize],
+        iterations: &ReportedIterations,
+        stop: &AtomicBool,
+    ) -> Examination {
         let stopped = || stop.load(Ordering::Relaxed);
         match self.posed(state) {
-            Ok(posed) => attached::examine(&self.model, state, &posed, nodes, &stopped),
+            Ok(posed) => attached::examine(&self.model, state, &posed, iterations, nodes, &stopped),
             Err(lost) => Examination {
                 head: format!("The frozen problem is not available: {lost}."),
                 ..Examination::default()
@@ -558,7 +576,7 @@ impl Helper {
         news: &Sender<BackgroundReply>,
         stop: &AtomicBool,
     ) -> Option<()> {
-        let found = self.examine_problem(state, &[], stop);
+        let found = self.examine_problem(state, &[], &ReportedIterations::default(), stop);
         let all = remedies::offered(&self.model, state, &self.offers, &found);
         try_all(&all, news, |remedy| {
             let (remedy, state) = (remedy.clone(), state.clone());

@@ -113,7 +113,10 @@ fn shown(
 /// Writes the interface problem that an attached solver reports, or its core, possibly in another program's
 /// format.
 pub(super) fn write_posed(model: &Model, posed: &Posed, ask: &Export) -> Result<(), ExportError> {
-    let solver = || attached::stepper(model, &ask.state, posed).map_err(Box::new);
+    let solver = || {
+        let problem = attached::problem(model, &ask.state, posed);
+        attached::stepper(problem).map_err(Box::new)
+    };
     let text = match (ask.what, export::kind(&ask.file)) {
         (ExportScope::Core, _) => {
             let (_, mut stepper) = solver()?;

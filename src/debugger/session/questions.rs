@@ -1,6 +1,6 @@
 //! Questions about the shown state that the background thread answers, and snapshots of it.
 
-use super::background::BetweenRuns;
+use super::background::{BetweenRuns, Reported};
 use super::exports::{Export, PictureContext};
 use super::machine::Session;
 use super::refusal::Refusal;
@@ -52,9 +52,9 @@ impl Session {
     /// only, if any are given.
     pub(super) fn census(&mut self, nodes: &[usize]) -> String {
         let (timeline, connection) = (&self.timeline, &mut self.connection);
-        let known = match connection.log() {
-            Some(_) => timeline.findings(),
-            None => Vec::new(),
+        let reported = match connection.log() {
+            Some(_) => timeline.reported(),
+            None => Reported::default(),
         };
         let mut reply = String::new();
         let state = &timeline.frame().state;
@@ -82,7 +82,7 @@ impl Session {
             connection.reach(Some(state).filter(asks));
         }
         self.background
-            .ask_examination(timeline.place(), state, nodes, known);
+            .ask_examination(timeline.place(), state, nodes, reported);
         reply + "the diagnosis (d) will show the result"
     }
 

@@ -1,10 +1,12 @@
 //! The history of a session as it is shown: the current line of its tree of branches, and the cursor on it.
 
+use super::background::Reported;
 use super::refusal::Refusal;
 use super::worker::Steps;
 use crate::explain::influence::PushPath;
 use crate::explain::report;
 use crate::explain::reported_pushes::Iterations;
+use crate::explain::walk::ReportedIterations;
 use crate::history::branches;
 use crate::history::breakpoints::Breakpoints;
 use crate::history::compare::{self, Comparison};
@@ -23,6 +25,9 @@ use stickslip_core::step::event::{Event, Position};
 use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::state::{State, Status};
 use stickslip_scene::shown;
+
+/// Maximum number of minor iterations compared with the interface problem of an attached solver.
+const MOST_REPORTED: usize = 200;
 
 /// A tree of branches, and the cursor on its current line.
 pub struct Timeline {
@@ -389,16 +394,42 @@ impl Timeline {
         }
     }
 
-    /// What the line shows about an attached solver up to the cursor: how it failed, and whether its modes
-    /// repeat.
-    pub(super) fn findings(&self) -> Vec<String> {
+    /// What the line shows about an attached solver up to the cursor.
+    pub(super) fn reported(&self) -> Reported {
         let what = match &self.frame().state.status {
             Status::Failed(failure) => Some(report::describe_failure(self.model(), failure)),
             _ => None,
         };
         let found = rounds(&self.strips()[..=self.cursor]);
         let place = found.map(|found| rounds::words(self.model(), &found, true));
-        what.into_iter().chain(place).collect()
+        Reported {
+            findings: what.into_iter().chain(place).collect(),
+            iterations: self.iterations_reported(),
+        }
+    }
+
+    /// The minor iterations of the shown major one since the last change by the user, oldest first; empty if a frame among them
+    /// was thinned, or the major iteration has ended.
+    fn iterations_reported(&self) -> ReportedIterations {
+        let shown = self.frame().state.next;
+        let of_major = |frame: &&Frame| {
+            let event = frame.event.as_ref();
+            frame.is_whole()
+                && frame.intervention.is_none()
+                && event.is_some_and(|event| major(event.position) == major(shown))
+        };
+        let frames = &self.frames()[..=self.cursor];
+        let events = frames.iter().rev().take_while(of_major).take(MOST_REPORTED);
+        let mut events: Vec<_> = events.filter_map(|frame| frame.event.clone()).collect();
+        events.reverse();
+        let before = frames.len().checked_sub(events.len() + 1);
+        let start = before
+            .map(|at| &frames[at])
+            .filter(|frame| frame.is_whole());
+        ReportedIterations {
+            start: start.map(|frame| Box::new(frame.state.clone())),
+            events,
+        }
     }
 
     /// The latest strips up to the cursor, oldest first, for a picture.
