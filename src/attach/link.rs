@@ -17,6 +17,7 @@ use std::time::{Duration, Instant};
 use stickslip_debugger::recorded::fault::Fault;
 use stickslip_debugger::recorded::log::Log;
 use stickslip_exchange::attach::conversation::STARTED;
+use stickslip_exchange::attach::message::Level;
 use stickslip_exchange::attach::{Answer, Line, Lines, MOST_BYTES, Request, Side};
 use stickslip_scene::shown;
 
@@ -68,6 +69,8 @@ pub struct Link {
     log: Log,
     stop: Arc<AtomicUsize>,
     interrupts: bool,
+    /// The first line that was not a message, since the last answer and of all.
+    stray: [Option<Fault>; 2],
 }
 
 impl Link {
@@ -115,6 +118,7 @@ impl Link {
             log: log.clone(),
             stop,
             interrupts: false,
+            stray: [None, None],
         })
     }
 
@@ -128,11 +132,26 @@ impl Link {
         self.stop = asks;
     }
 
-    /// Sends a request, and waits for the answer.
+    /// The first line on standard output that was not a message.
+    pub fn stray(&self) -> Option<&Fault> {
+        self.stray[1].as_ref()
+    }
+
+    /// Sends a request, and waits for the answer. Lines that are no messages become warnings in the log.
     ///
     /// # Errors
-    /// The fault that ended the solver; it cannot be used afterwards.
+    /// The fault that ended the solver; it cannot be used afterwards. Without an answer, a line that was not a message is the
+    /// fault.
     pub fn ask(&mut self, request: &Request, within: Duration) -> Result<Answer, Fault> {
+        let answer = self.exchange(request, within);
+        let stray = self.stray[0].take();
+        match (answer, stray) {
+            (Err(Fault::Silent { .. } | Fault::Died { .. }), Some(stray)) => Err(stray),
+            (answer, _) => answer,
+        }
+    }
+
+    fn exchange(&mut self, request: &Request, within: Duration) -> Result<Answer, Fault> {
         let mut waiting = Waiting::new(request, within);
         // Lines that arrived since the last answer.
         while let Ok(line) = self.output.try_recv() {
@@ -162,7 +181,17 @@ impl Link {
         waiting: &Waiting,
     ) -> Result<Option<Answer>, Fault> {
         let line = line.map_err(|error| self.died(&error.to_string(), waiting))?;
-        match self.read(line, waiting)? {
+        let answer = match self.read(line, waiting) {
+            Err(stray @ Fault::Junk { .. }) => {
+                self.log.message(Level::Warning, &stray.to_string());
+                self.stray
+                    .each_mut()
+                    .map(|first| first.get_or_insert_with(|| stray.clone()));
+                return Ok(None);
+            }
+            answer => answer?,
+        };
+        match answer {
             Answer::Message { level, text } => {
                 self.log.message(level, &text);
                 Ok(None)
@@ -209,7 +238,10 @@ impl Link {
                 return Err(Fault::Junk { why, line });
             }
         };
-        self.log.exchanged(Side::Answered, &text);
+        match text.trim_start().starts_with('{') {
+            true => self.log.exchanged(Side::Answered, &text),
+            false => self.log.exchanged(Side::Noted, &format!("not a message: {text}")),
+        }
         Answer::read(&text).map_err(|broken| {
             let letters = text.trim_start();
             let why = match broken.at {

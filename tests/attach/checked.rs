@@ -77,7 +77,7 @@ fn our_own_solver_passes_every_check() {
 const WRONGS: &[(&str, &str, &str)] = &[
     ("version", "start", "uses version 2"),
     ("same-id", "scene", "a is already used"),
-    ("text", "step", "is not a message"),
+    ("text-then-answer", "output", "is not a message"),
     ("nan", "step", "write null instead"),
     ("wrong-id", "states", "it must be 7, as in the scene"),
     (

@@ -12,6 +12,7 @@ pub fn tests() -> Vec<Trial> {
     crate::tests![
         each_fault_of_a_step_has_a_name_and_leaves_what_was_done,
         each_fault_at_the_start_has_a_name,
+        a_stray_line_on_standard_output_is_a_warning_and_the_answer_counts,
         the_command_line_ends_with_3_after_a_fault_and_with_2_before_the_first_step,
         a_solver_that_died_once_is_started_anew_and_comes_to_the_same,
         one_that_is_another_when_started_again_is_not_believed,
@@ -56,23 +57,18 @@ const FAULTS: &[(&str, bool, &str)] = &[
     ),
     (
         "text",
-        false,
+        true,
         r#"that is not a message (not a JSON object): "Iteration 3: residual 1.0e-3"; it must print to standard error"#,
     ),
-    (
-        "text-then-answer",
-        false,
-        "that is not a message (not a JSON object)",
-    ),
-    ("binary", false, "that is not a message (not UTF-8)"),
+    ("binary", true, "that is not a message (not UTF-8)"),
     (
         "ansi",
-        false,
+        true,
         r#"(not a JSON object): "\u{1b}[2J\u{1b}]0;owned\u{7}\u{9b}31m""#,
     ),
-    ("blank", false, "that is not a message (an empty line)"),
-    ("number", false, r#"(not a JSON object): "42""#),
-    ("array", false, "(not a JSON object)"),
+    ("blank", true, "that is not a message (an empty line)"),
+    ("number", true, r#"(not a JSON object): "42""#),
+    ("array", true, "(not a JSON object)"),
     (
         "nan",
         false,
@@ -282,6 +278,23 @@ fn each_fault_of_a_step_has_a_name_and_leaves_what_was_done() {
             });
         }
     });
+}
+
+fn a_stray_line_on_standard_output_is_a_warning_and_the_answer_counts() {
+    let rude = Rude::new("text-then-answer");
+    let mut session = rude.attach().unwrap();
+    for _ in 0..4 {
+        does(&mut session, minor());
+    }
+    assert_eq!(session.frames().len(), 5);
+    let log = session.connection().log().unwrap().lines().1;
+    let warning = "is not a message (not a JSON object): \"Iteration 3: residual 1.0e-3\"";
+    assert!(
+        log.iter().any(|line| line.text.contains(warning)),
+        "{log:#?}"
+    );
+    drop(session);
+    rude.is_gone();
 }
 
 /// What a solver does at its start, and what is said of it.

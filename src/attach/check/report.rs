@@ -95,7 +95,7 @@ pub(super) fn not_tried(found: impl Into<String>, why: String) -> Outcome {
 }
 
 /// How to fix a fault.
-fn mend(fault: &Fault) -> &'static str {
+pub(super) fn mend(fault: &Fault) -> &'static str {
     match fault {
         Fault::NotStarted { .. } => {
             "give a program that can be started, with its arguments, after --"

@@ -76,8 +76,17 @@ pub fn stepping(report: &mut Report, mut trial: Trial) -> Vec<State> {
     if goes_on {
         report.add("answers", prompt(&mut trial));
     }
+    report.add("output", Ok(output(&trial)));
     look(report, &trial.scene, &trial.hello.name, &states);
     states
+}
+
+/// Checks that standard output has only messages.
+fn output(trial: &Trial) -> Outcome {
+    match trial.link.stray() {
+        None => good("only messages on standard output"),
+        Some(stray) => fails(stray.to_string(), super::report::mend(stray)),
+    }
 }
 
 /// Checks the round-trip time of a request without work.
