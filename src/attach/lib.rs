@@ -19,4 +19,8 @@ pub use attached::Attached;
 pub use link::Start;
 
 /// The Python module of the protocol.
-pub const PYTHON: &str = include_str!("stickslip_attach.py");
+pub const PYTHON: &str = include_str!("clients/stickslip_attach.py");
+/// The C and C++ header for solvers that keep their loops, with its implementation.
+pub const C: &str = include_str!("clients/stickslip_attach.h");
+/// The Fortran module on top of that header.
+pub const FORTRAN: &str = include_str!("clients/stickslip_attach.f90");

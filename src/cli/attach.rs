@@ -1,11 +1,11 @@
-//! `stickslip attach`: steps an external solver in the debugger, checks its protocol, or prints the Python module for writing one.
+//! `stickslip attach`: steps an external solver in the debugger, checks its protocol, or prints a client for writing one.
 
 use super::base::{Error, Exit, notify, say};
 use super::debugger::{DEBUGGER, needs_terminal};
 use super::front;
 use super::solver::SolverArgs;
 use std::path::PathBuf;
-use stickslip_attach::{PYTHON, check};
+use stickslip_attach::{C, FORTRAN, PYTHON, check};
 use stickslip_debugger::record::journal::Keep;
 use stickslip_debugger::session::Session;
 
@@ -19,6 +19,12 @@ pub struct Args {
     /// Prints the Python module of the protocol (a single file)
     #[arg(long, conflicts_with = "command")]
     python: bool,
+    /// Prints the C and C++ header for solvers that keep their loops
+    #[arg(long, conflicts_with_all = ["command", "python"])]
+    c: bool,
+    /// Prints the Fortran module on top of the C header
+    #[arg(long, conflicts_with_all = ["command", "python", "c"])]
+    fortran: bool,
     /// Writes the session's journal to a new file [default: in the user's state directory]
     #[arg(long, value_name = "FILE", conflicts_with = "no_journal")]
     journal: Option<PathBuf>,
@@ -31,8 +37,9 @@ pub struct Args {
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
-    if args.python {
-        say(PYTHON)?;
+    let clients = [(args.python, PYTHON), (args.c, C), (args.fortran, FORTRAN)];
+    if let Some((_, text)) = clients.iter().find(|(asked, _)| *asked) {
+        say(text)?;
         return Ok(Exit::Good);
     }
     if !args.solver.is_named() {

@@ -13,6 +13,7 @@ mod faults;
 mod filter;
 mod floods;
 mod kept;
+mod loops;
 mod rude;
 mod served;
 mod side;
@@ -43,6 +44,7 @@ fn main() -> ExitCode {
     }
     let mut tests: Vec<Trial> = faults::tests();
     tests.extend(floods::tests());
+    tests.extend(loops::tests());
     tests.extend(served::tests());
     tests.extend(kept::tests());
     tests.extend(checked::tests());

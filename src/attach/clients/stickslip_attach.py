@@ -21,11 +21,14 @@ Only implemented methods are offered to the debugger::
 message with NaN is refused, and the refusal names its position. Standard output carries only messages: everything that the
 solver prints, from Python, C or Fortran, goes to standard error.
 
+A solver that keeps its own loops uses `Loops` instead: one call of `pause` in the innermost loop.
+
 Requires Python 3.9 or newer and only its standard library. Part of stickslip, MIT or Apache-2.0.
 """
 
 import copy
 import json
+import mmap
 import os
 import queue
 import signal
@@ -35,7 +38,7 @@ import traceback
 from dataclasses import asdict, dataclass, field
 from typing import Any, Callable, ClassVar, Optional, Union
 
-__all__ = ["Parameter", "Refused", "Solver", "attach"]
+__all__ = ["Loops", "Parameter", "Refused", "Solver", "attach"]
 
 Message = dict[str, Any]
 Id = Union[int, str]
@@ -170,6 +173,58 @@ def attach(make: Callable[[], Solver]) -> None:
         pass  # The debugger is gone.
 
 
+class Loops:
+    """A solver that keeps its own loops::
+
+        loops = Loops(scene, name="Mine")             # the scene, as `Solver.scene` returns it
+        for load in loads:
+            while not settled:
+                modes = loops.modes(modes)            # the user may force others
+                ...
+                loops.pause(ended="iteration", load=load, contacts={"mode": modes, "next": chosen, "gap": gaps})
+        loops.end()
+
+    The debugger goes back to any state without code of the solver: each saved state is a copy of the process (`os.fork`). This
+    requires a system with fork, and one process without threads or files that it writes during the run; otherwise pass
+    `forks=False`, and the debugger replays from the start.
+    """
+
+    def __init__(self, scene: Message, name: str = "solver", version: str = "", forks: bool = True) -> None:
+        global _line
+        _line = _Line()
+        self.solver = _Looped(scene, name, version)
+        self.session = (_Forks if forks and hasattr(os, "fork") else _Session)(self.solver)
+        self.answer()
+
+    def modes(self, chosen: list[str]) -> list[str]:
+        """The modes of the next solve: the chosen ones, or what the user forces."""
+        forced, self.solver.forced = self.solver.forced, {}
+        return [forced.get(contact, mode) for contact, mode in zip(self.session.ids, chosen)]
+
+    def pause(self, **state: Any) -> None:
+        """Report an iteration (the keys that `Solver.step` returns), and wait until the debugger asks for the next one."""
+        assert _line is not None
+        self.solver.state = state
+        _line.say(self.session.answer({"type": "step"}))
+        self.answer()
+
+    def end(self) -> None:
+        """Answer until the debugger leaves."""
+        self.session.course.over = True
+        self.answer()
+
+    def answer(self) -> None:
+        """Answer requests until the next step."""
+        assert _line is not None
+        while (ask := _line.read()) is not None and ask.get("type") != "bye":
+            if ask.get("type") == "step" and not self.session.course.over:
+                return
+            if ask.get("type") != "interrupt":
+                _line.say(self.session.answer(ask))
+        self.session.leave()
+        os._exit(0)
+
+
 class _Line:
     """The connection to the debugger, on private copies of standard input and output."""
 
@@ -201,6 +256,13 @@ class _Line:
                     self.requests.put(ask)
         self.interrupted.set()
         self.requests.put(None)
+
+    def read(self) -> Optional[Message]:
+        """The next request, without a thread, and letter by letter: the rest belongs to whichever copy of the process continues."""
+        line = b""
+        while (part := os.read(self.source, 1)) not in (b"", b"\n"):
+            line += part
+        return _request(line) if part else None
 
     def stop(self, *_: Any) -> None:
         """A signal ends the current request. A signal between requests is ignored."""
@@ -374,8 +436,68 @@ class _Session:
         self.solver.held = self.course.held
         return {"type": "ok"}
 
+    def leave(self) -> None:
+        """Called before the process ends."""
+
     def problem(self, ask: Message) -> Message:
         return {"type": "problem", "contacts": self.ids, "kind": "compliance", **self.solver.problem()}
+
+
+class _Looped(Solver):
+    """The solver of `Loops`, as its session sees it."""
+
+    def __init__(self, scene: Message, name: str, version: str) -> None:
+        self.described, self.state = scene, {}
+        self.name, self.version = name, version  # type: ignore[misc]
+        self.forced: dict[Id, str] = {}
+
+    def scene(self) -> Message:
+        return self.described
+
+    def step(self) -> Message:
+        return self.state
+
+    def force(self, contact: Id, mode: str) -> None:
+        self.forced[contact] = mode
+
+
+class _Forks(_Session):
+    """A session whose saved states are copies of the process, which wait at a pipe."""
+
+    MOST = 200
+
+    def __init__(self, solver: Solver) -> None:
+        super().__init__(solver)
+        signal.signal(signal.SIGCHLD, signal.SIG_IGN)
+        self.count = mmap.mmap(-1, 1)  # Shared by all copies.
+        # Opened before the first copy, so that all copies know all of them.
+        self.wake = [os.pipe() for _ in range(self.MOST)]
+
+    def offers(self, method: str) -> bool:
+        return method == "restore" or super().offers(method)
+
+    def save(self, ask: Message) -> Message:
+        token = self.count[0]
+        if token == self.MOST:
+            raise Refused(f"at most {self.MOST} states are saved")
+        if os.fork() == 0:
+            self.count[0] = token + 1
+            return {"type": "saved", "token": token}
+        while os.read(self.wake[token][0], 1) == b"r":
+            if os.fork() == 0:
+                return {"type": "ok"}
+        os._exit(0)
+
+    def restore(self, ask: Message) -> Message:
+        token: Any = ask.get("token")
+        if token not in range(self.count[0]):
+            raise Refused(f"no saved state {token!r}")
+        os.write(self.wake[token][1], b"r")
+        os._exit(0)
+
+    def leave(self) -> None:
+        for token in range(self.count[0]):
+            os.write(self.wake[token][1], b"q")
 
 
 def _request(line: bytes) -> Message:

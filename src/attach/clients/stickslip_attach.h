@@ -1,0 +1,358 @@
+/* Attach a solver written in C, C++ or Fortran to stickslip, the debugger for contact iterations. POSIX, C99 or C++.
+ *
+ * The solver keeps its loops. It describes the scene once, reports each contact in its innermost loop, and calls ss_pause there:
+ *
+ *     ss_begin("Block on a slope", "my solver", "1.0");
+ *     for (each increment) for (each iteration) {
+ *         for (each contact c) mode[c] = ss_mode(c, mode[c]);         // the user may force another mode
+ *         ... solve, and choose the next modes ...
+ *         for (each contact c) ss_contact_result(c, was[c], mode[c], gap, f_n, f_t, limit, slip);
+ *         ss_pause("iteration", load, residual, tolerance);
+ *     }
+ *     ss_end();
+ *
+ * `stickslip attach -- ./solver` then steps it. In one source file, define SS_IMPLEMENTATION before this header is included; for
+ * Fortran, compile it alone: cc -x c -DSS_IMPLEMENTATION -c stickslip_attach.h -o stickslip_attach.o
+ *
+ * Going back: each state that the debugger saves is a copy of the process (fork), so that the solver needs no code for it. This
+ * requires one process without threads, MPI or files that it writes during the run; otherwise define SS_NO_FORK, and the debugger
+ * replays from the start. At most SS_STATES states are kept.
+ *
+ * Standard output is the protocol's: what the solver prints there goes to standard error. Numbers that are unknown are NAN.
+ * Part of stickslip, MIT or Apache-2.0.
+ */
+#ifndef STICKSLIP_ATTACH_H
+#define STICKSLIP_ATTACH_H
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Modes of a contact. */
+enum { SS_FREE = 0, SS_SLIDING = 1, SS_FIXED = 2 };
+
+/* The scene, before ss_begin. Nodes and contacts are numbered from 0; a surface is a chain of nodes with the outward side on the
+   right of the walk, and `rigid` is 1 if it does not move. */
+int ss_node(double x, double y);
+void ss_line(int from, int to);
+void ss_surface(const char *name, const int *nodes, int count, int rigid);
+int ss_contact(int node, const char *surface, double mu, double cohesion, int mode);
+
+/* Connects to the debugger; returns when it asks for the first iteration. */
+void ss_begin(const char *title, const char *name, const char *version);
+
+/* The mode that a contact takes in the next solve: `chosen`, or what the user forces. */
+int ss_mode(int contact, int chosen);
+
+/* The result of this iteration: mode of this solve and of the next one, gap (negative is penetration), normal force (compression
+   positive) and tangential force on the slave node, T_max with the sign of the friction force, slip. */
+void ss_contact_result(int contact, int mode, int next, double gap, double f_n, double f_t, double limit, double slip);
+void ss_displacement(int node, double x, double y);
+
+/* Reports the iteration, and returns when the debugger asks for the next one. `ended` is the level that ended with it: "iteration",
+   "equilibrium" (a major iteration), "increment", "cut", "failure" or "done"; `residual` is relative. */
+void ss_pause(const char *ended, double load, double residual, double tolerance);
+
+/* Answers until the debugger leaves. */
+void ss_end(void);
+
+#ifdef __cplusplus
+}
+#endif
+#endif
+
+#ifdef SS_IMPLEMENTATION
+#undef SS_IMPLEMENTATION
+#ifndef _DEFAULT_SOURCE
+#define _DEFAULT_SOURCE
+#endif
+#include <fcntl.h>
+#include <math.h>
+#include <signal.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#ifndef SS_STATES
+#define SS_STATES 200
+#endif
+
+static const char *const ss_modes[] = {"free", "sliding", "fixed"};
+
+struct ss_text { char *letters; size_t length, room; };
+
+struct ss_found { int mode, next; double gap, f_n, f_t, limit, slip; };
+
+static struct {
+    int in, out, nodes, contacts, over;
+    struct ss_text node_list, line_list, surface_list, contact_list, scene, hello, state;
+    struct ss_found *found;
+    int *held, *once;             /* -1: the solver's own choice */
+    char *is_once;                /* whether the mode of this solve was forced once */
+    double (*moved)[2];
+    int increment, attempt, major, minor;
+    int *saved;                   /* number of saved states, shared by all copies */
+    int wake[SS_STATES][2];       /* a pipe for each saved state, opened before the first so that all copies know all of them */
+} ss;
+
+static void ss_add(struct ss_text *text, const char *format, ...) {
+    va_list values;
+    size_t length;
+    va_start(values, format);
+    length = (size_t)vsnprintf(NULL, 0, format, values);
+    va_end(values);
+    if (text->length + length + 1 > text->room) {
+        text->room = 2 * (text->length + length + 1);
+        text->letters = (char *)realloc(text->letters, text->room);
+        if (!text->letters) { fputs("stickslip_attach: out of memory\n", stderr); _exit(1); }
+    }
+    va_start(values, format);
+    vsnprintf(text->letters + text->length, length + 1, format, values);
+    va_end(values);
+    text->length += length;
+}
+
+static void ss_number(struct ss_text *text, const char *key, double value) {
+    if (isfinite(value)) ss_add(text, ",\"%s\":%.17g", key, value);
+    else ss_add(text, ",\"%s\":null", key);
+}
+
+/* Text in quotes. */
+static void ss_quoted(struct ss_text *text, const char *words) {
+    ss_add(text, "\"");
+    for (; *words; words++) {
+        if (*words == '"' || *words == '\\') ss_add(text, "\\%c", *words);
+        else if ((unsigned char)*words < 32) ss_add(text, "\\u%04x", *words);
+        else ss_add(text, "%c", *words);
+    }
+    ss_add(text, "\"");
+}
+
+static void *ss_grown(void *list, int count, size_t size) {
+    void *grown = realloc(list, (size_t)(count + 1) * size);
+    if (!grown) { fputs("stickslip_attach: out of memory\n", stderr); _exit(1); }
+    memset((char *)grown + (size_t)count * size, 0, size);
+    return grown;
+}
+
+int ss_node(double x, double y) {
+    ss.moved = (double(*)[2])ss_grown(ss.moved, ss.nodes, sizeof *ss.moved);
+    ss_add(&ss.node_list, "%s{\"at\":[%.17g,%.17g]}", ss.nodes ? "," : "", x, y);
+    return ss.nodes++;
+}
+
+void ss_line(int from, int to) { ss_add(&ss.line_list, "%s[%d,%d]", ss.line_list.length ? "," : "", from, to); }
+
+void ss_surface(const char *name, const int *nodes, int count, int rigid) {
+    int k;
+    ss_add(&ss.surface_list, "%s{\"name\":", ss.surface_list.length ? "," : "");
+    ss_quoted(&ss.surface_list, name);
+    ss_add(&ss.surface_list, ",\"rigid\":%s,\"nodes\":[", rigid ? "true" : "false");
+    for (k = 0; k < count; k++) ss_add(&ss.surface_list, "%s%d", k ? "," : "", nodes[k]);
+    ss_add(&ss.surface_list, "]}");
+}
+
+int ss_contact(int node, const char *surface, double mu, double cohesion, int mode) {
+    int c = ss.contacts;
+    ss.found = (struct ss_found *)ss_grown(ss.found, c, sizeof *ss.found);
+    ss.held = (int *)ss_grown(ss.held, c, sizeof *ss.held);
+    ss.once = (int *)ss_grown(ss.once, c, sizeof *ss.once);
+    ss.is_once = (char *)ss_grown(ss.is_once, c, 1);
+    ss.held[c] = ss.once[c] = -1;
+    ss_add(&ss.contact_list, "%s{\"id\":%d,\"node\":%d,\"mode\":\"%s\",\"surface\":", c ? "," : "", c, node, ss_modes[mode]);
+    ss_quoted(&ss.contact_list, surface);
+    ss_add(&ss.contact_list, ",\"friction\":{\"mu\":%.17g,\"cohesion\":%.17g}}", mu, cohesion);
+    return ss.contacts++;
+}
+
+static void ss_send(const char *text, size_t length) {
+    while (length > 0) {
+        ssize_t wrote = write(ss.out, text, length);
+        if (wrote <= 0) _exit(1); /* The debugger is gone. */
+        text += wrote;
+        length -= (size_t)wrote;
+    }
+}
+
+static void ss_say(const char *text) { ss_send(text, strlen(text)); }
+
+/* A line of the input, read letter by letter: the rest belongs to whichever copy of the process continues. */
+static int ss_read(char *line, int room) {
+    int n = 0;
+    while (read(ss.in, line + n, 1) == 1) {
+        if (line[n] == '\n') { line[n] = 0; return 1; }
+        if (n < room - 2) n++;
+    }
+    return 0;
+}
+
+static void ss_quit(void) {
+    int k;
+    for (k = 0; ss.saved && k < *ss.saved; k++) if (write(ss.wake[k][1], "q", 1) < 0) break;
+    _exit(0);
+}
+
+/* Saves the state: this process waits as the saved state, and its copy continues. */
+static void ss_save(void) {
+#ifdef SS_NO_FORK
+    ss_say("{\"type\":\"refused\",\"reason\":\"no states are saved\"}\n");
+#else
+    char answer[64], word;
+    int token = *ss.saved;
+    pid_t copy;
+    if (token >= SS_STATES) { ss_say("{\"type\":\"refused\",\"reason\":\"too many saved states\"}\n"); return; }
+    copy = fork();
+    if (copy < 0) { ss_say("{\"type\":\"refused\",\"reason\":\"fork failed\"}\n"); return; }
+    if (copy == 0) {
+        *ss.saved = token + 1;
+        snprintf(answer, sizeof answer, "{\"type\":\"saved\",\"token\":%d}\n", token);
+        ss_say(answer);
+        return;
+    }
+    while (read(ss.wake[token][0], &word, 1) == 1 && word == 'r')
+        if (fork() == 0) { ss_say("{\"type\":\"ok\"}\n"); return; }
+    _exit(0);
+#endif
+}
+
+static const char *ss_value(const char *line, const char *key) {
+    const char *at = strstr(line, key);
+    return at ? at + strlen(key) : NULL;
+}
+
+/* The number of a key; -1 without one. */
+static int ss_integer(const char *line, const char *key) {
+    const char *at = ss_value(line, key);
+    return at && *at >= '0' && *at <= '9' ? atoi(at) : -1;
+}
+
+static void ss_restore(const char *line) {
+    int number = ss_integer(line, "\"token\":");
+    if (!ss.saved || number < 0 || number >= *ss.saved) { ss_say("{\"type\":\"refused\",\"reason\":\"no such state\"}\n"); return; }
+    if (write(ss.wake[number][1], "r", 1) == 1) _exit(0);
+}
+
+static void ss_force(const char *line, int releases) {
+    const char *mode = ss_value(line, "\"mode\":\"");
+    int c = ss_integer(line, "\"contact\":"), forced = -1, k;
+    for (k = 0; mode && k < 3; k++) if (!strncmp(mode, ss_modes[k], strlen(ss_modes[k]))) forced = k;
+    if (c < 0 || c >= ss.contacts || (forced < 0 && !releases)) {
+        ss_say("{\"type\":\"refused\",\"reason\":\"no such contact or mode\"}\n");
+        return;
+    }
+    ss.held[c] = !releases && strstr(line, "\"hold\":true") ? forced : -1;
+    ss.once[c] = releases || ss.held[c] >= 0 ? -1 : forced;
+    ss_say("{\"type\":\"ok\"}\n");
+}
+
+/* Answers requests until the next step. */
+static void ss_answer(void) {
+    char line[8192];
+    while (ss_read(line, sizeof line)) {
+        const char *type = ss_value(line, "\"type\":\"");
+        if (!type) ss_say("{\"type\":\"refused\",\"reason\":\"no type\"}\n");
+        else if (!strncmp(type, "hello\"", 6)) ss_send(ss.hello.letters, ss.hello.length);
+        else if (!strncmp(type, "scene\"", 6)) ss_send(ss.scene.letters, ss.scene.length);
+        else if (!strncmp(type, "step\"", 5) && !ss.over) return;
+        else if (!strncmp(type, "step\"", 5)) ss_say("{\"type\":\"refused\",\"reason\":\"the history is complete\"}\n");
+        else if (!strncmp(type, "save\"", 5)) ss_save();
+        else if (!strncmp(type, "restore\"", 8)) ss_restore(line);
+        else if (!strncmp(type, "force\"", 6)) ss_force(line, 0);
+        else if (!strncmp(type, "release\"", 8)) ss_force(line, 1);
+        else if (!strncmp(type, "bye\"", 4)) ss_quit();
+        else if (strncmp(type, "interrupt\"", 10)) ss_say("{\"type\":\"refused\",\"reason\":\"not offered\"}\n");
+    }
+    ss_quit();
+}
+
+void ss_begin(const char *title, const char *name, const char *version) {
+    int nothing = open("/dev/null", O_RDONLY), k;
+    (void)k;
+    fflush(stdout);
+    ss.in = dup(0);
+    ss.out = dup(1);
+    dup2(nothing, 0);
+    dup2(2, 1);
+    close(nothing);
+    signal(SIGCHLD, SIG_IGN);
+    ss.increment = ss.attempt = ss.major = ss.minor = 1;
+#ifndef SS_NO_FORK
+    ss.saved = (int *)mmap(NULL, sizeof *ss.saved, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (ss.saved == MAP_FAILED) ss.saved = NULL;
+    for (k = 0; ss.saved && k < SS_STATES; k++) if (pipe(ss.wake[k])) ss.saved = NULL;
+#endif
+    ss_add(&ss.hello, "{\"type\":\"hello\",\"protocol\":1,\"name\":");
+    ss_quoted(&ss.hello, name);
+    ss_add(&ss.hello, ",\"version\":");
+    ss_quoted(&ss.hello, version);
+    ss_add(&ss.hello, ",\"abilities\":{\"force\":true,\"hold\":true,\"restore\":\"%s\"}}\n", ss.saved ? "any" : "none");
+    ss_add(&ss.scene, "{\"type\":\"scene\",\"title\":");
+    ss_quoted(&ss.scene, title);
+    ss_add(&ss.scene, ",\"nodes\":[%s],\"lines\":[%s],\"surfaces\":[%s],\"contacts\":[%s]}\n",
+           ss.node_list.letters ? ss.node_list.letters : "", ss.line_list.letters ? ss.line_list.letters : "",
+           ss.surface_list.letters ? ss.surface_list.letters : "", ss.contact_list.letters ? ss.contact_list.letters : "");
+    ss_answer();
+}
+
+int ss_mode(int contact, int chosen) {
+    int once = ss.once[contact];
+    ss.once[contact] = -1;
+    ss.is_once[contact] = once >= 0;
+    return ss.held[contact] >= 0 ? ss.held[contact] : once >= 0 ? once : chosen;
+}
+
+void ss_contact_result(int contact, int mode, int next, double gap, double f_n, double f_t, double limit, double slip) {
+    struct ss_found found = {mode, next, gap, f_n, f_t, limit, slip};
+    ss.found[contact] = found;
+}
+
+void ss_displacement(int node, double x, double y) {
+    ss.moved[node][0] = x;
+    ss.moved[node][1] = y;
+}
+
+void ss_pause(const char *ended, double load, double residual, double tolerance) {
+    struct ss_text *state = &ss.state;
+    int c, k;
+    state->length = 0;
+    ss_add(state, "{\"type\":\"state\",\"at\":{\"increment\":%d,\"attempt\":%d,\"major\":%d,\"minor\":%d},\"ended\":", ss.increment,
+           ss.attempt, ss.major, ss.minor);
+    ss_quoted(state, ended);
+    ss_number(state, "load", load);
+    ss_add(state, ",\"residual\":{\"force\":null");
+    ss_number(state, "relative", residual);
+    ss_number(state, "limit", tolerance);
+    ss_add(state, "},\"contacts\":[");
+    for (c = 0; c < ss.contacts; c++) {
+        const struct ss_found *found = &ss.found[c];
+        int next = ss.held[c] >= 0 ? ss.held[c] : found->next;
+        ss_add(state, "%s{\"id\":%d,\"mode\":\"%s\",\"next\":\"%s\"", c ? "," : "", c, ss_modes[found->mode], ss_modes[next]);
+        if (ss.held[c] >= 0) ss_add(state, ",\"forced\":\"held\",\"wanted\":\"%s\"", ss_modes[found->next]);
+        else if (ss.is_once[c]) ss_add(state, ",\"forced\":\"once\"");
+        ss_number(state, "gap", found->gap);
+        ss_number(state, "f_n", found->f_n);
+        ss_number(state, "f_t", found->f_t);
+        ss_number(state, "limit", found->limit);
+        ss_number(state, "slip", found->slip);
+        ss_add(state, "}");
+    }
+    ss_add(state, "],\"displacements\":[");
+    for (k = 0; k < ss.nodes; k++) ss_add(state, "%s[%.17g,%.17g]", k ? "," : "", ss.moved[k][0], ss.moved[k][1]);
+    ss_add(state, "]}\n");
+    ss_send(state->letters, state->length);
+    ss.over = !strcmp(ended, "done");
+    ss.minor++;
+    if (!strcmp(ended, "equilibrium")) ss.major++;
+    else if (!strcmp(ended, "increment")) { ss.increment++; ss.attempt = ss.major = 1; }
+    else if (!strcmp(ended, "cut")) { ss.attempt++; ss.major = 1; }
+    if (strcmp(ended, "iteration")) ss.minor = 1;
+    ss_answer();
+}
+
+void ss_end(void) {
+    ss.over = 1;
+    ss_answer();
+}
+#endif

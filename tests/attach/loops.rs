@@ -1,0 +1,154 @@
+//! Solvers that keep their loops: the clients that `stickslip attach --c`, `--fortran` and `--python` print, in the smallest solver.
+
+use super::served::session;
+use super::side::{PATIENT, does};
+use libtest_mimic::Trial;
+use std::path::Path;
+use std::process::Command as Process;
+use stickslip::attach::check::{Verdict, check};
+use stickslip::attach::{C, FORTRAN, PYTHON, Start};
+use stickslip::model::Mode;
+use stickslip::record::command::{Command, Unit};
+use stickslip::recorded::log::Log;
+
+pub fn tests() -> Vec<Trial> {
+    crate::tests![
+        a_solver_in_c_fortran_or_python_keeps_its_loops_and_passes_every_check,
+        a_branch_of_a_forked_state_leaves_the_other_one_as_it_was,
+    ]
+}
+
+const SOURCES: [(&str, &str); 3] = [
+    ("loops.c", include_str!("loops.c")),
+    ("loops.f90", include_str!("loops.f90")),
+    ("loops.py", include_str!("loops.py")),
+];
+const HEADER: [&str; 6] = [
+    "cc",
+    "-x",
+    "c",
+    "-DSS_IMPLEMENTATION",
+    "-c",
+    "stickslip_attach.h",
+];
+
+fn built(folder: &Path, commands: &[&[&str]]) {
+    let clients = [
+        ("stickslip_attach.h", C),
+        ("stickslip_attach.f90", FORTRAN),
+        ("stickslip_attach.py", PYTHON),
+    ];
+    for (name, text) in clients.iter().chain(&SOURCES) {
+        std::fs::write(folder.join(name), text).unwrap();
+    }
+    for command in commands {
+        let done = Process::new(command[0])
+            .args(&command[1..])
+            .current_dir(folder)
+            .output();
+        let done = done.unwrap();
+        assert!(
+            done.status.success(),
+            "{}",
+            String::from_utf8_lossy(&done.stderr)
+        );
+    }
+}
+
+fn start(command: &[&str]) -> Start {
+    Start {
+        start: PATIENT,
+        answer: PATIENT,
+        ..Start::new(command.iter().map(|word| (*word).to_owned()).collect())
+    }
+}
+
+/// C everywhere; the other two where the system has them.
+fn a_solver_in_c_fortran_or_python_keeps_its_loops_and_passes_every_check() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).display().to_string();
+    let header = [&HEADER[..], &["-o", "stickslip_c.o"]].concat();
+    built(
+        folder.path(),
+        &[
+            &header,
+            &["cc", "loops.c", "stickslip_c.o", "-lm", "-o", "loops"],
+        ],
+    );
+    let has = |program: &str| Process::new(program).arg("--version").output().is_ok();
+    let mut commands = vec![vec![at("loops")]];
+    if has("gfortran") {
+        let fortran = [
+            "gfortran",
+            "stickslip_attach.f90",
+            "loops.f90",
+            "stickslip_c.o",
+            "-o",
+            "loops_f",
+        ];
+        built(folder.path(), &[&fortran]);
+        commands.push(vec![at("loops_f")]);
+    }
+    if has("python3") {
+        commands.push(vec!["python3".to_owned(), at("loops.py")]);
+    }
+    for command in commands {
+        let words: Vec<&str> = command.iter().map(String::as_str).collect();
+        let report = check(&start(&words), &Log::default());
+        assert_eq!(report.failed(), 0, "{}", report.text());
+        let restored = report
+            .checks
+            .iter()
+            .find(|check| check.what == "restore")
+            .unwrap();
+        assert_eq!(restored.verdict, Verdict::Good);
+        assert!(
+            restored.found.starts_with("40 states restored"),
+            "{}",
+            restored.found
+        );
+    }
+}
+
+fn a_branch_of_a_forked_state_leaves_the_other_one_as_it_was() {
+    let folder = tempfile::tempdir().unwrap();
+    let header = [&HEADER[..], &["-o", "stickslip_c.o"]].concat();
+    let link = ["cc", "loops.c", "stickslip_c.o", "-lm", "-o", "loops"];
+    built(folder.path(), &[&header, &link]);
+    let command = folder.path().join("loops").display().to_string();
+    let mut session = session(start(&[&command]), &Log::default());
+    let forward = |count| Command::Forward {
+        unit: Unit::Minor,
+        count,
+    };
+    does(&mut session, forward(4));
+    let modes = |session: &stickslip::session::Session| -> Vec<Mode> {
+        let frames = session.frames().iter().skip(1);
+        frames
+            .map(|frame| frame.event.as_ref().unwrap().nodes[0].decision.before)
+            .collect()
+    };
+    let period = [Mode::Free, Mode::Fixed];
+    assert_eq!(modes(&session), [period, period].concat());
+    does(&mut session, Command::Census(Vec::new()));
+    session.background_mut().wait();
+    let page = session.background().examination(session.timeline().place());
+    let page = page.flatten().unwrap().lines().join("\n");
+    assert!(page.contains("cycle of period 2"), "{page}");
+    // Another branch from the third iteration, and back to the end of the first one.
+    does(&mut session, Command::Goto { step: 3 });
+    does(
+        &mut session,
+        Command::Force {
+            slave: 0,
+            mode: Mode::Fixed,
+            hold: true,
+        },
+    );
+    does(&mut session, forward(2));
+    let last = session.frames().last().unwrap().event.clone().unwrap();
+    assert_eq!(last.nodes[0].decision.before, Mode::Fixed);
+    does(&mut session, Command::Goto { step: 0 });
+    does(&mut session, forward(1));
+    assert_eq!(session.cursor(), 1);
+}
