@@ -17,9 +17,9 @@ use std::time::{Duration, Instant};
 use stickslip_debugger::recorded::fault::Fault;
 use stickslip_debugger::recorded::log::Log;
 use stickslip_exchange::attach::conversation::STARTED;
-use stickslip_exchange::attach::message::Level;
+use stickslip_exchange::attach::message::{Level, Progress};
 use stickslip_exchange::attach::{Answer, Line, Lines, MOST_BYTES, Request, Side};
-use stickslip_scene::shown;
+use stickslip_scene::{number, shown};
 
 /// Polling interval for interrupts.
 const LOOK: Duration = Duration::from_millis(10);
@@ -144,6 +144,7 @@ impl Link {
     /// fault.
     pub fn ask(&mut self, request: &Request, within: Duration) -> Result<Answer, Fault> {
         let answer = self.exchange(request, within);
+        self.log.set_progress(None);
         let stray = self.stray[0].take();
         match (answer, stray) {
             (Err(Fault::Silent { .. } | Fault::Died { .. }), Some(stray)) => Err(stray),
@@ -184,9 +185,9 @@ impl Link {
         let answer = match self.read(line, waiting) {
             Err(stray @ Fault::Junk { .. }) => {
                 self.log.message(Level::Warning, &stray.to_string());
-                self.stray
-                    .each_mut()
-                    .map(|first| first.get_or_insert_with(|| stray.clone()));
+                for first in &mut self.stray {
+                    first.get_or_insert_with(|| stray.clone());
+                }
                 return Ok(None);
             }
             answer => answer?,
@@ -194,6 +195,10 @@ impl Link {
         match answer {
             Answer::Message { level, text } => {
                 self.log.message(level, &text);
+                Ok(None)
+            }
+            Answer::Progress(progress) => {
+                self.log.set_progress(Some(words(&progress)));
                 Ok(None)
             }
             Answer::Bye { reason } => Err(Fault::Bye {
@@ -445,6 +450,17 @@ impl Drop for Link {
         self.signal(Signal::KILL);
         let _ = self.child.wait();
     }
+}
+
+/// Progress in words, safe to print to a terminal.
+fn words(progress: &Progress) -> String {
+    let amount = match (progress.done, progress.of) {
+        (Some(done), Some(of)) => format!("{} of {}", number::plain(done), number::plain(of)),
+        (Some(done), None) => number::plain(done),
+        (None, _) => String::new(),
+    };
+    let text = shown::cut(progress.text.trim(), NAME);
+    [text, amount].join(" ").trim().to_owned()
 }
 
 /// State of a wait for an answer.

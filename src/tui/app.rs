@@ -18,6 +18,7 @@ use crate::view::{View, context};
 use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 use std::fmt;
+use std::time::Duration;
 use stickslip_debugger::action::{
     Action, ChartOf, Colours, Context, Filter, Keymap, Misread, Sort, Ui,
 };
@@ -179,8 +180,8 @@ pub struct App {
     pub ahead: Ahead,
     /// Whether the journal was lost.
     pub unkept: bool,
-    /// Counter that animates the spinner.
-    pub tick: usize,
+    /// Duration of the current computation, in steps of [`TURN`].
+    pub busy: Duration,
     /// The last motion, which Enter repeats.
     pub(super) last: Option<Command>,
     /// Lines entered at `:`, oldest first.
@@ -191,6 +192,8 @@ pub struct App {
 
 /// Largest count that can be typed.
 const MOST: u32 = 1_000_000;
+/// Time between two pictures of the spinner.
+pub const TURN: Duration = Duration::from_millis(250);
 
 impl App {
     /// A new screen; without a scene it shows the chooser first.
@@ -227,7 +230,7 @@ impl App {
             loading: None,
             ahead: Ahead::default(),
             unkept: false,
-            tick: 0,
+            busy: Duration::ZERO,
             last: None,
             history: Vec::new(),
             sought: String::new(),

@@ -1,6 +1,6 @@
 //! The debugger without its terminal: an [`App`], a session, and the queue of keys that wait for the solver. Keys in, screens out.
 
-use crate::app::{App, Effect, Opens, Overlay};
+use crate::app::{App, Effect, Opens, Overlay, TURN};
 use crate::chartpage::{ChartPage, NoPage};
 use crate::choosing::{self, Looking, Offer};
 use crate::keys;
@@ -552,9 +552,13 @@ impl Debugger {
         };
         let (frames, busy) = (session.frames().len(), session.is_running());
         let grown = frames != std::mem::replace(&mut self.frames, frames);
-        if busy && grown {
-            self.app.tick += 1;
-        }
+        let turns = if busy {
+            self.begun.elapsed().as_millis() / TURN.as_millis()
+        } else {
+            0
+        };
+        let elapsed = TURN * turns as u32;
+        let turned = elapsed != std::mem::replace(&mut self.app.busy, elapsed);
         let panicked = terminal::panic_elsewhere();
         let failed = panicked.is_some();
         if let Some(message) = panicked {
@@ -562,7 +566,7 @@ impl Debugger {
                 "internal error in the solver, please report it: {message}"
             ));
         }
-        measured || heard || seen || said || grown || failed || was_busy != busy
+        measured || heard || seen || said || grown || turned || failed || was_busy != busy
     }
 
     /// Requests background analyses that the panes need for the shown iteration and the selected node. Returns whether any was

@@ -2,7 +2,7 @@
 
 use super::program::{code, err, out, program};
 use super::served::seen;
-use super::side::{Rude, does, is_harmless, minor};
+use super::side::{PATIENT, Rude, does, is_harmless, minor};
 use libtest_mimic::Trial;
 use std::time::{Duration, Instant};
 use stickslip::model::Mode;
@@ -12,6 +12,7 @@ pub fn tests() -> Vec<Trial> {
     crate::tests![
         each_fault_of_a_step_has_a_name_and_leaves_what_was_done,
         each_fault_at_the_start_has_a_name,
+        the_progress_of_a_step_is_known_while_it_lasts,
         a_stray_line_on_standard_output_is_a_warning_and_the_answer_counts,
         the_command_line_ends_with_3_after_a_fault_and_with_2_before_the_first_step,
         a_solver_that_died_once_is_started_anew_and_comes_to_the_same,
@@ -278,6 +279,34 @@ fn each_fault_of_a_step_has_a_name_and_leaves_what_was_done() {
             });
         }
     });
+}
+
+fn the_progress_of_a_step_is_known_while_it_lasts() {
+    let mut rude = Rude::new("progress-and-hang");
+    rude.start.answer = Duration::from_secs(3);
+    let mut session = rude.attach().unwrap();
+    for _ in 0..2 {
+        does(&mut session, minor());
+    }
+    let log = session.connection().log().unwrap().clone();
+    assert_eq!(log.progress(), None);
+    let seen = std::thread::spawn({
+        let log = log.clone();
+        move || {
+            let until = Instant::now() + PATIENT;
+            while Instant::now() < until && log.progress().is_none() {
+                std::thread::sleep(Duration::from_millis(10));
+            }
+            log.progress()
+        }
+    });
+    does(&mut session, minor());
+    let seen = seen.join().unwrap().expect("the solver reported it");
+    assert!(seen.ends_with("CG 30 of 200"), "{seen}");
+    is_harmless(&seen);
+    assert_eq!(log.progress(), None, "the request has ended");
+    drop(session);
+    rude.is_gone();
 }
 
 fn a_stray_line_on_standard_output_is_a_warning_and_the_answer_counts() {

@@ -352,6 +352,10 @@ impl Rude {
                 false
             }
             "text" => instead("Iteration 3: residual 1.0e-3"),
+            "progress-and-hang" => {
+                say(&json!({"type": "progress", "text": "\u{1b}[2JCG", "done": 30, "of": 200}));
+                forever()
+            }
             "text-then-answer" => {
                 raw(b"Iteration 3: residual 1.0e-3\n");
                 false

@@ -36,5 +36,5 @@ fn every_message_on_the_page_of_the_protocol_is_read_whole() {
         assert!(request.iter().chain(&answer).any(whole), "{line}");
         kinds.insert(value["type"].to_string());
     }
-    assert_eq!(kinds.len(), 16, "all messages are shown: {kinds:?}");
+    assert_eq!(kinds.len(), 17, "all messages are shown: {kinds:?}");
 }

@@ -147,6 +147,11 @@ class Solver:
         if _line is not None:
             _line.say(_text({"type": "message", "level": level, "text": text}))
 
+    def progress(self, text: str, done: Optional[float] = None, of: Optional[float] = None) -> None:
+        """Show the user how far a long step is."""
+        if _line is not None:
+            _line.say(_text({"type": "progress", "text": text, "done": done, "of": of}))
+
 
 def attach(make: Callable[[], Solver]) -> None:
     """Create the solver, and answer the debugger until it disconnects.

@@ -98,6 +98,7 @@ pub fn open(name: &str, text: &str) -> Result<OpenedExchange, SceneError> {
             // An invalid message ended the original session.
             Side::Answered => match Answer::read(&line.text) {
                 Ok(Answer::Message { level, text }) => log.message(level, &text),
+                Ok(Answer::Progress(_)) => {}
                 Ok(answer) => reader
                     .answered(name, answer)
                     .map_err(|fault| SceneError::whole(name, fault.to_string()))?,

@@ -61,6 +61,8 @@ struct Inner {
     kept: Option<File>,
     /// Why the exchange can no longer be stored.
     lost: Option<String>,
+    /// How far the solver is with the current request.
+    progress: Option<String>,
 }
 
 impl Log {
@@ -99,6 +101,16 @@ impl Log {
             text.lines()
                 .for_each(|line| inner.push(LogOrigin::Message(level), line))
         });
+    }
+
+    /// Sets how far the solver is with the current request.
+    pub fn set_progress(&self, progress: Option<String>) {
+        self.with(|inner| inner.progress = progress);
+    }
+
+    /// How far the solver is with the current request, if it reports that.
+    pub fn progress(&self) -> Option<String> {
+        self.with(|inner| inner.progress.clone())
     }
 
     /// Adds a remark of this program.

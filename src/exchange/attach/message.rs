@@ -93,6 +93,8 @@ pub enum Answer {
         /// The text.
         text: String,
     },
+    /// How far the solver is with the current request; not an answer to it.
+    Progress(Progress),
     /// The solver exits on its own.
     Bye {
         /// Reason.
@@ -118,6 +120,20 @@ impl std::fmt::Display for Id {
             Id::Text(text) => text.fmt(f),
         }
     }
+}
+
+/// How far a solver is with a request.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Progress {
+    /// What it does.
+    #[serde(default)]
+    pub text: String,
+    /// Units of work done.
+    #[serde(default)]
+    pub done: Option<f64>,
+    /// All units.
+    #[serde(default)]
+    pub of: Option<f64>,
 }
 
 /// Severity of a message.
@@ -558,6 +574,7 @@ impl Answer {
             Answer::Saved { .. } => "saved",
             Answer::Problem(_) => "problem",
             Answer::Message { .. } => "message",
+            Answer::Progress(_) => "progress",
             Answer::Bye { .. } => "bye",
         }
     }

@@ -1,6 +1,6 @@
 //! The top of the screen: the scene, the position of the solver, and the outcome of the last minor iteration.
 
-use crate::app::{App, Overlay};
+use crate::app::{App, Overlay, TURN};
 use crate::layout::{Pane, Places};
 use crate::paint;
 use crate::view::{AttachedSolver, View};
@@ -200,14 +200,21 @@ fn outcome(app: &App, view: &View, width: u16) -> paint::Lines {
     let theme = &app.theme;
     if view.running {
         const SPINNER: [&str; 4] = ["◐", "◓", "◑", "◒"];
-        let turn = SPINNER[app.tick % SPINNER.len()];
+        let turns = (app.busy.as_millis() / TURN.as_millis()) as usize;
+        let turn = SPINNER[turns % SPINNER.len()];
         let at = view
             .frames
             .last()
             .map(|frame| frame.state.next)
             .unwrap_or_default();
+        let took = match app.busy.as_secs() {
+            0 | 1 => String::new(),
+            seconds => format!(", {seconds} s"),
+        };
+        let progress = view.attached.and_then(|attached| attached.log.progress());
+        let progress = progress.map_or(String::new(), |text| format!("; {text}"));
         let text = format!(
-            " {turn} solving: increment {}, major {}, minor {}; {} steps so far; Ctrl-C stops",
+            " {turn} solving: increment {}, major {}, minor {}; {} steps so far{took}{progress}; Ctrl-C stops",
             at.increment,
             at.major,
             at.minor,
