@@ -162,9 +162,12 @@ pub fn did_you_mean_file(missing: &str) -> String {
     let folder = path.parent().filter(|folder| *folder != FilePath::new(""));
     let entries = std::fs::read_dir(folder.unwrap_or(FilePath::new(".")));
     let names = entries.into_iter().flatten().flatten();
-    let in_folder = |name| folder.map_or(FilePath::new("").join(&name), |folder| folder.join(&name));
+    let in_folder =
+        |name| folder.map_or(FilePath::new("").join(&name), |folder| folder.join(&name));
     let paths = names.map(|entry| in_folder(entry.file_name()));
-    let mut paths: Vec<String> = paths.map(|path| path.to_string_lossy().into_owned()).collect();
+    let mut paths: Vec<String> = paths
+        .map(|path| path.to_string_lossy().into_owned())
+        .collect();
     // The order of a folder differs between machines.
     paths.sort_unstable();
     did_you_mean(missing, paths.iter().map(String::as_str))
