@@ -37,7 +37,10 @@ pub fn draw(buffer: &mut Buffer, places: &Places, app: &App, view: Option<&View>
         height,
         ..places.footer
     };
-    if area.y < places.message.y && matches!(app.overlay, Overlay::None | Overlay::Line(_)) {
+    // The text of a lesson needs its rows.
+    let lesson = places.panes.iter().any(|(pane, _)| *pane == Pane::Lesson);
+    let bare = matches!(app.overlay, Overlay::None | Overlay::Line(_)) && !lesson;
+    if bare && view.is_some() && area.y < places.message.y {
         for x in area.left()..area.right() {
             buffer[(x, area.y - 1)] = buffer[(x, places.message.y - 1)].clone();
         }
