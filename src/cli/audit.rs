@@ -21,7 +21,7 @@ use stickslip_debugger::explain::strain;
 use stickslip_debugger::record::snapshot::Snapshot;
 use stickslip_scene::Scene;
 use stickslip_scene::format::kind::FileKind;
-use stickslip_scene::number::four;
+use stickslip_scene::number::{four, plain};
 use stickslip_scene::solver::solver;
 
 #[derive(Debug, clap::Args)]
@@ -205,7 +205,7 @@ fn table(name: &str, model: &Model, audit: &Audit) -> String {
             "stretch",
             four(found.point.stretch),
             found.increment,
-            found.load_factor,
+            plain(found.load_factor),
             strain::element(model, &found.point)
         );
     }
@@ -237,7 +237,7 @@ fn table(name: &str, model: &Model, audit: &Audit) -> String {
         text += &format!(
             "  also: from increment {} (load {}) on: {}\n",
             found.increment,
-            found.load_factor,
+            plain(found.load_factor),
             strain::left(model, &found.point)
         );
     }
@@ -245,7 +245,7 @@ fn table(name: &str, model: &Model, audit: &Audit) -> String {
         text += &format!(
             "  also: increment {} (load {}): master node {} penetrates {} by {:.3e}; contact tests only slave nodes\n",
             inside.increment,
-            inside.load_factor,
+            plain(inside.load_factor),
             model.nodes[inside.node].name,
             model.bodies[inside.body].name,
             inside.depth
@@ -255,7 +255,8 @@ fn table(name: &str, model: &Model, audit: &Audit) -> String {
 }
 
 fn place(found: &WorstFinding) -> String {
-    format!("increment {} (load {})", found.increment, found.load_factor)
+    let load = plain(found.load_factor);
+    format!("increment {} (load {load})", found.increment)
 }
 
 fn row(model: &Model, law: JudgedLaw, found: &WorstFinding) -> String {

@@ -4,7 +4,7 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use std::ffi::OsString;
 use std::path::Path;
 use stickslip_scene::builtin;
-use stickslip_scene::format::error::did_you_mean;
+use stickslip_scene::format::error::{did_you_mean, did_you_mean_file};
 use stickslip_scene::shown::wrap;
 
 /// The groups in the order of a typical workflow.
@@ -89,10 +89,14 @@ pub fn unknown(word: &str) -> Option<String> {
     if is_known {
         return None;
     }
-    let near = match did_you_mean(word, names()) {
-        none if none.is_empty() => did_you_mean(word, builtin::list().iter().map(|own| own.name)),
-        near => near,
-    };
+    let scenes = builtin::list().iter().map(|own| own.name);
+    let near = [
+        did_you_mean_file(word),
+        did_you_mean(word, names()),
+        did_you_mean(word, scenes),
+    ];
+    let near = near.into_iter().find(|near| !near.is_empty());
+    let near = near.unwrap_or_default();
     let word = stickslip_scene::format::error::quoted(word);
     Some(format!(
         "{word} is not a subcommand, a file or a built-in scene{near} (see `stickslip --help`, `stickslip list`)"

@@ -2,7 +2,9 @@
 
 use std::io::{self, IsTerminal, Write};
 use std::time::{Duration, Instant};
+use stickslip_core::model::Model;
 use stickslip_core::step::event::Event;
+use stickslip_core::step::state::State;
 use stickslip_debugger::explain::names;
 
 /// Interval between two progress lines.
@@ -26,15 +28,15 @@ impl Progress {
     }
 
     /// Shows an event, at most once per [`INTERVAL`]; `steps` is the number of minor iterations so far.
-    pub fn show(&mut self, event: &Event, steps: u64) {
+    pub fn show(&mut self, model: &Model, state: &State, event: &Event, steps: u64) {
         if !self.wanted || self.last.elapsed() < INTERVAL {
             return;
         }
         let at = names::position(event.position);
-        let load = event.load_factor;
+        let load = names::load_of(model, state.start.leg, event.load_factor);
         let _ = write!(
             io::stderr(),
-            "\r\x1b[K{at}, load {load}; {steps} minor iterations"
+            "\r\x1b[K{load}: {at}; {steps} minor iterations so far"
         );
         (self.shown, self.last) = (true, Instant::now());
     }

@@ -23,7 +23,7 @@ use stickslip_debugger::record::snapshot::Snapshot;
 use stickslip_platform::files::Output;
 use stickslip_scene::Scene;
 use stickslip_scene::gaps;
-use stickslip_scene::number::four;
+use stickslip_scene::number::{four, plain, six};
 use stickslip_scene::shown;
 use stickslip_scene::shown::first_of;
 use stickslip_scene::solver::solver;
@@ -345,7 +345,7 @@ impl<'a> Run<'a> {
             let text = format!(
                 "path incomplete: its maximum length {arc} was reached at load {} instead of load {}; page limit-points",
                 four(load),
-                model.path.last().unwrap_or(&f64::NAN)
+                plain(model.path.last().copied().unwrap_or(f64::NAN))
             );
             return self.with_message(RunResult::new(Exit::Unconverged, "incomplete"), text);
         }
@@ -363,7 +363,7 @@ impl<'a> Run<'a> {
             "{}: {} increments accepted, up to load {}; {} major and {} minor iterations",
             self.tally.scene.name,
             self.tally.accepted,
-            self.solver.state().start.load_factor,
+            plain(self.solver.state().start.load_factor),
             self.tally.majors,
             self.tally.steps,
         ));
@@ -382,7 +382,8 @@ impl<'a> Run<'a> {
             .iter()
             .zip(&self.tally.monitors)
         {
-            notify(&format!("  {} {value:?}", shown::padded(&monitor.name, 12)));
+            let name = shown::padded(&monitor.name, 12);
+            notify(&format!("  {name} {}", six(*value)));
         }
     }
 }

@@ -6,6 +6,7 @@ use super::records::{FallbackRecord, MonitorRecord, SlaveRecord, StabilityRecord
 use super::run_outputs::{RunOutputs, first_closed, send};
 use super::table;
 use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
 use stickslip_core::contact::record::ContactRecord;
 use stickslip_core::linear::norms::Norms;
 use stickslip_core::linear::stability::Stability;
@@ -25,6 +26,8 @@ use stickslip_scene::shown::aligned;
 
 /// Warnings that are printed individually; others are only counted.
 const MOST_WARNINGS: u32 = 10;
+/// Recoveries up to this number need no summary.
+const LEAST_SUMMARY: u32 = 3;
 /// Maximum number of slave nodes in the final table.
 const MOST_SLAVES: usize = 40;
 /// Maximum number of load ranges or loads listed in a message about stability.
@@ -88,8 +91,10 @@ pub struct Tally<'a> {
     /// Load factors of accepted increments that jumped, and of those that lost stability.
     pub jumps: Vec<f64>,
     pub losses: Vec<f64>,
-    /// Number of strategy changes and step-size reductions.
-    notes: u32,
+    /// What kept the run going, each with how often and its first and last increment.
+    recoveries: BTreeMap<&'static str, (u32, RangeInclusive<u32>)>,
+    /// Bodies without enough contact to be held, with the first and last increment in which they were.
+    loose: BTreeMap<String, RangeInclusive<u32>>,
     /// Norms of the accepted increment with the largest round-off in its forces.
     noisiest: Norms,
     /// Largest relative error of an accepted increment that is within its limit.
@@ -122,7 +127,8 @@ impl<'a> Tally<'a> {
             found: BTreeMap::new(),
             jumps: Vec::new(),
             losses: Vec::new(),
-            notes: 0,
+            recoveries: BTreeMap::new(),
+            loose: BTreeMap::new(),
             noisiest: Norms::default(),
             reached: 0.0,
             settled: None,
@@ -148,7 +154,9 @@ impl<'a> Tally<'a> {
             touch.see(event, solver.state());
         }
         (self.steps, self.minors) = (self.steps + 1, self.minors + 1);
-        self.progress.show(event, self.steps);
+        let state = solver.state();
+        self.progress
+            .show(&self.scene.model, state, event, self.steps);
         let sent = send(&mut outputs.trace, || {
             let friction = &solver.state().controls.friction;
             table::trace_rows(&self.scene.model, friction, event)
@@ -257,13 +265,26 @@ impl<'a> Tally<'a> {
         }
     }
 
+    /// Number of recoveries so far.
+    fn count_notes(&self) -> u32 {
+        self.recoveries.values().map(|(count, _)| count).sum()
+    }
+
     /// Reports a recovery of the strategy.
     fn note(&mut self, event: &Event) {
-        self.notes += 1;
-        if self.notes <= MOST_WARNINGS {
+        let now = event.position.increment;
+        let extended = |seen: &RangeInclusive<u32>| *seen.start()..=now;
+        if let Some(kind) = report::recovery(&event.outcome) {
+            let seen = self.recoveries.entry(kind).or_insert((0, now..=now));
+            *seen = (seen.0 + 1, extended(&seen.1));
+        }
+        for body in report::loose_bodies(&event.outcome) {
+            let seen = self.loose.entry(body.to_owned()).or_insert(now..=now);
+            *seen = extended(seen);
+        }
+        if self.count_notes() <= MOST_WARNINGS {
             self.progress.clear();
-            self.messages
-                .note(report::outcome(&self.scene.model, event));
+            self.messages.note(report::note(&self.scene.model, event));
         }
     }
 
@@ -328,11 +349,24 @@ impl<'a> Tally<'a> {
         if let Some(error) = self.settled {
             self.messages.note(accuracy::not_unique(error));
         }
-        if self.notes > MOST_WARNINGS {
-            self.messages.note(format!(
-                "{} such notes in total; the rest is not shown",
-                self.notes
-            ));
+        let within = |seen: &RangeInclusive<u32>| match (seen.start(), seen.end()) {
+            (first, last) if first == last => format!("increment {first}"),
+            (first, last) => format!("increments {first} to {last}"),
+        };
+        let loose = self.loose.iter();
+        let loose: Vec<String> = loose
+            .map(|(body, seen)| format!("loose until first contact: {body}, {}", within(seen)))
+            .collect();
+        for line in loose {
+            self.messages.note(line);
+        }
+        if self.count_notes() > LEAST_SUMMARY {
+            let kinds = self.recoveries.iter();
+            let kinds: Vec<String> = kinds
+                .map(|(kind, (count, seen))| format!("{kind} {count} × ({})", within(seen)))
+                .collect();
+            self.messages
+                .note(format!("in total: {}", kinds.join(", ")));
         }
     }
 

@@ -69,7 +69,7 @@ pub fn bytes(path: &Path, most: u64, what: &'static str) -> Result<Vec<u8>, Unre
 pub fn beside(own: &Path, named: &str) -> Result<PathBuf, String> {
     let parts = || Path::new(named).components();
     if named.is_empty() || !parts().all(|part| matches!(part, Component::Normal(_))) {
-        return Err("the file must lie beside this one or in a folder below, with a relative path without ..".to_owned());
+        return Err("the file must be in the same folder as this one or below it; expected a relative path without ..".to_owned());
     }
     let folder = own.parent().unwrap_or(Path::new(""));
     let path = folder.join(named);

@@ -424,9 +424,9 @@ pub fn placed(file: &str, text: &str, overrides: &[Override], fault: Fault) -> S
 
 fn no_such_scene(name: &str) -> String {
     let names = || builtin::list().iter().map(|scene| scene.name);
-    format!(
-        "no such file or built-in scene{} (built-in: {})",
-        error::did_you_mean(name, names()),
-        names().collect::<Vec<_>>().join(", ")
-    )
+    let near = match error::did_you_mean_file(name) {
+        none if none.is_empty() => error::did_you_mean(name, names()),
+        near => near,
+    };
+    format!("no such file or built-in scene{near} (`stickslip list` shows the built-in ones)")
 }

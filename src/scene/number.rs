@@ -58,8 +58,8 @@ pub fn plain(value: f64) -> String {
     }
 }
 
-/// |F_t| over |T_max|: the fraction of friction used. Near 1 the distance from 1 is shown instead, so that `1` is a tie and
-/// `1-3e-9` is not. A dash if there is neither force nor friction.
+/// |F_t| over |T_max|: the fraction of friction used, with more decimals near 1, where a mode switches. A dash if there is neither
+/// force nor friction.
 pub fn ratio(f_t: f64, t_max: f64) -> String {
     if t_max == 0.0 {
         return if f_t == 0.0 {
@@ -69,12 +69,11 @@ pub fn ratio(f_t: f64, t_max: f64) -> String {
         };
     }
     let ratio = (f_t / t_max).abs();
-    // The difference of the magnitudes keeps the digits that the quotient loses.
-    let off = (f_t.abs() - t_max.abs()) / t_max.abs();
+    let off = ratio - 1.0;
     match () {
         _ if f_t == 0.0 => "0".into(),
-        _ if off == 0.0 => "1".into(),
-        _ if off.abs() < 5e-5 => format!("1{off:+.0e}"),
+        _ if off.abs() < 5e-7 => "1".into(),
+        _ if off.abs() < 5e-5 => format!("{ratio:.6}"),
         _ if !(1e-3..1e3).contains(&ratio) => format!("{ratio:.1e}"),
         _ => format!("{ratio:.4}"),
     }
@@ -123,10 +122,12 @@ mod tests {
     }
 
     #[test]
-    fn a_near_tie_does_not_look_like_a_tie() {
+    fn a_ratio_of_one_has_no_round_off_and_a_near_tie_is_visible() {
         assert_eq!(ratio(1.0, -1.0), "1");
-        assert_eq!(ratio(1.0 - 3e-9, 1.0), "1-3e-9");
-        assert_eq!(ratio(1.0 + 3e-9, 1.0), "1+3e-9");
+        assert_eq!(ratio(1.0 - 2e-11, 1.0), "1");
+        assert_eq!(ratio(1.0 + 6e-16, 1.0), "1");
+        assert_eq!(ratio(1.0 - 3e-6, 1.0), "0.999997");
+        assert_eq!(ratio(1.0 + 3e-6, 1.0), "1.000003");
         assert_eq!(ratio(0.5, 1.0), "0.5000");
         assert_eq!(ratio(0.0, 0.0), "–");
         assert_eq!(ratio(1.0, 0.0), "∞");

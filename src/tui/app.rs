@@ -130,6 +130,8 @@ pub struct App {
     pub keymap: Keymap,
     /// The chosen colours, which the environment can override.
     pub colours: Colours,
+    /// Whether the colours follow the terminal's background.
+    pub finds_colours: bool,
     /// Whether mouse support is on.
     pub mouse: bool,
     /// The area of the last draw.
@@ -202,6 +204,7 @@ impl App {
             theme,
             keymap: Keymap::default(),
             colours: Colours::default(),
+            finds_colours: false,
             mouse: true,
             area: Rect::new(0, 0, 80, 24),
             overlay: Overlay::None,
@@ -341,11 +344,19 @@ impl App {
         }
     }
 
+    /// Follows the terminal's background, unless the user has chosen colours.
+    pub(super) fn find_colours(&mut self, light: bool) {
+        if self.finds_colours {
+            self.colours = Colours::for_background(light);
+            self.theme = Theme::chosen(self.colours);
+        }
+    }
+
     /// Changes the colours, unless the environment asks for none.
     fn colour(&mut self, colours: Option<Colours>) {
         let overruled = theme::wants_no_colour();
         if let Some(colours) = colours {
-            self.colours = colours;
+            (self.colours, self.finds_colours) = (colours, false);
             self.theme = Theme::chosen(colours);
         }
         match overruled && self.colours != Colours::None {

@@ -9,6 +9,7 @@
 
 pub mod ahead;
 pub mod app;
+mod background;
 pub mod camera;
 pub mod canvas;
 pub mod cast;

@@ -1,14 +1,16 @@
 //! The event loop, and the entry points: a scene, a session, a lesson, or the chooser.
 
 use crate::app::App;
+use crate::background::{self, Reply};
 use crate::debugger::{Debugger, TerminalRequest, offers};
 use crate::terminal::{self, Signals, Terminal};
-use crate::theme::Theme;
+use crate::theme::{Theme, wants_no_colour};
 use crossterm::event::{self, Event};
 use ratatui::layout::Rect;
 use signal_hook::consts::SIGHUP;
 use std::io::{self, IsTerminal};
 use std::time::{Duration, Instant};
+use stickslip_debugger::action::Colours;
 use stickslip_debugger::action::config::Config;
 use stickslip_debugger::record::journal::{JournalError, Keep};
 use stickslip_debugger::session::Session;
@@ -101,9 +103,14 @@ fn in_terminal(session: Option<Session>) -> Result<Debugger, Error> {
 
 /// A debugger with the user's configuration.
 fn configured(config: Config, session: Option<Session>) -> Debugger {
-    let mut debugger = Debugger::new(Theme::chosen(config.colours), offers(), session);
+    let environment = std::env::var("COLORFGBG").ok();
+    let ground = background::is_light(environment.as_deref()).map(Colours::for_background);
+    let chosen = config.colours.or(ground);
+    let colours = chosen.unwrap_or_default();
+    let mut debugger = Debugger::new(Theme::chosen(colours), offers(), session);
     let app = &mut debugger.app;
-    (app.keymap, app.colours, app.mouse) = (config.keymap, config.colours, config.mouse);
+    (app.keymap, app.colours, app.mouse) = (config.keymap, colours, config.mouse);
+    app.finds_colours = chosen.is_none() && !wants_no_colour();
     debugger
 }
 
@@ -111,6 +118,9 @@ fn run_on(mut debugger: Debugger) -> Result<(), Error> {
     let signals = Signals::listen()?;
     let ended = Terminal::enter().and_then(|mut terminal| {
         terminal.heed_mouse(debugger.app.mouse)?;
+        if debugger.app.finds_colours {
+            terminal.ask_background()?;
+        }
         // The terminal is restored before anything is printed.
         events(&mut debugger, &mut terminal, &signals)
     });
@@ -151,6 +161,8 @@ const LEAST_WAIT: Duration = Duration::from_micros(200);
 fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -> io::Result<()> {
     let mut changed = true;
     let mut drawn = Instant::now();
+    let mut reply = Reply::default();
+    reply.expected = debugger.app.finds_colours;
     while signals.end().is_none() {
         changed |= debugger.advance();
         while let Some(outside) = debugger.outside.pop_front() {
@@ -173,7 +185,11 @@ fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -
             (false, true) => BUSY,
             (false, false) => IDLE,
         };
-        let mut input = next_event(wait)?;
+        let mut input = next_event(wait, &mut reply)?;
+        if let Some(light) = reply.light.take() {
+            changed = true;
+            debugger.app.find_colours(light);
+        }
         while let Some(event) = input {
             changed = true;
             if let Some(outside) = debugger.event(&event)
@@ -184,7 +200,7 @@ fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -
             debugger.breathe();
             // Redraws during a burst of keys, too.
             input = match drawn.elapsed() < BUSY {
-                true => next_event(Duration::ZERO)?,
+                true => next_event(Duration::ZERO, &mut reply)?,
                 false => None,
             };
         }
@@ -200,12 +216,21 @@ fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -
     Ok(())
 }
 
-/// The next event within `wait`, if any. Pending input is always found.
-fn next_event(wait: Duration) -> io::Result<Option<Event>> {
-    match event::poll(wait.max(LEAST_WAIT))? {
-        true => event::read().map(Some),
-        false => Ok(None),
+/// The next event within `wait`, if any, without the terminal's reply. Pending input is always found.
+fn next_event(wait: Duration, reply: &mut Reply) -> io::Result<Option<Event>> {
+    let mut next = reply.next();
+    while next.is_none() && event::poll(wait.max(LEAST_WAIT))? {
+        reply.push(event::read()?);
+        next = reply.next();
+        if reply.light.is_some() {
+            return Ok(next);
+        }
     }
+    if next.is_none() {
+        reply.release();
+        next = reply.next();
+    }
+    Ok(next)
 }
 
 /// Executes requests that need the event loop; returns true to quit.

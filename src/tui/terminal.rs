@@ -6,6 +6,7 @@
 //! over and restoring, so a signal in between cannot leave either incomplete.
 
 use crate::app::App;
+use crate::background;
 use crate::screen;
 use crate::view::View;
 use crossterm::clipboard::CopyToClipboard;
@@ -103,6 +104,12 @@ impl Terminal {
             true => execute!(stdout(), HeedMouse),
             false => execute!(stdout(), LeaveMouse),
         }
+    }
+
+    /// Asks for the background colour; the reply arrives among the keys.
+    pub fn ask_background(&mut self) -> io::Result<()> {
+        stdout().write_all(background::QUERY.as_bytes())?;
+        stdout().flush()
     }
 
     /// Copies a text to the clipboard, if the terminal allows it (OSC 52).

@@ -82,7 +82,7 @@ impl<'a> Start<'a> {
         let mut command = CommandBuilder::new(self.program);
         command.args(&self.arguments);
         command.cwd(directory.path());
-        for name in ["NO_COLOR", "ENV"] {
+        for name in ["NO_COLOR", "COLORFGBG", "ENV"] {
             command.env_remove(name);
         }
         command.env("HOME", state.path());

@@ -82,7 +82,7 @@ fn an_unknown_scene_is_answered_with_those_that_there_are() {
         error.contains("did you mean \"01-pinned-beam-rough-floor\"?"),
         "{error}"
     );
-    assert!(error.contains("osc-inclined-cantilever"), "{error}");
+    assert!(error.contains("stickslip list"), "{error}");
 }
 
 #[test]

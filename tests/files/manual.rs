@@ -195,7 +195,10 @@ fn the_keys_and_colours_in_the_manual_can_be_read() {
     let config = Config::from(folder.path()).unwrap_or_else(|e| panic!("{e}"));
     let name = |key| config.keymap.by_key(key).map(|entry| entry.name);
     assert_eq!((name("j"), name(">")), (Some("step"), None));
-    assert_eq!((config.colours, config.mouse), (Colours::Light, false));
+    assert_eq!(
+        (config.colours, config.mouse),
+        (Some(Colours::Light), false)
+    );
 }
 
 #[test]

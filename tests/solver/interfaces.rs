@@ -375,7 +375,7 @@ fn what_a_stored_stiffness_cannot_mean_is_refused_with_its_place() {
             .replace("job.sti", outside);
         fs::write(&file, text).unwrap();
         let error = refusal(&folder, &file);
-        assert!(error.contains("must lie beside this one"), "{error}");
+        assert!(error.contains("must be in the same folder"), "{error}");
         stored(&folder, good);
     }
     assert!(Path::new(&file).exists());

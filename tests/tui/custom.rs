@@ -429,7 +429,7 @@ fn a_copy_goes_to_the_terminal_as_one_order_of_harmless_letters_colours_or_not()
     // "a\tfree\tfree"
     let wanted = "\x1b]52;c;YQlmcmVlCWZyZWU=\x1b\\";
     assert!(raw.contains(wanted), "{raw:?}");
-    assert_eq!(raw.matches("\x1b]").count(), 1);
+    assert_eq!(raw.matches("\x1b]52").count(), 1);
 }
 
 #[test]
@@ -459,6 +459,38 @@ fn the_user_s_files_give_keys_and_colours_and_no_color_wins() {
     session.see(" x step");
     assert!(!black(&session));
     session.type_and_see(":colours light\r", "the environment sets NO_COLOR");
+    session.quit();
+}
+
+#[test]
+fn colours_follow_a_light_background_and_keys_around_the_reply_are_kept() {
+    let nothing = folder(&[]);
+    let tinted = |session: &Session, wanted: u8| {
+        let free = |screen: &vt100::Screen| {
+            let (rows, columns) = screen.size();
+            let (rows, columns) = (rows.get(), columns.get());
+            let mut cells = (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column)));
+            cells.any(|(row, column)| {
+                let cell = screen.cell(row, column).unwrap();
+                cell.fgcolor() == vt100::Color::Idx(wanted)
+            })
+        };
+        session.wait(&format!("colour {wanted}"), free);
+    };
+    // Free nodes are cyan on a dark background and blue on a light one.
+    let (cyan, blue) = (6, 4);
+    let mut session = started(&nothing, &[]);
+    session.see(" s step");
+    tinted(&session, cyan);
+    session.keys("s\x1b]11;rgb:ffff/ffff/dddd\x1b\\s");
+    session.see("minor 2");
+    tinted(&session, blue);
+    session.type_and_see(":colours dark\r", "colours: dark");
+    tinted(&session, cyan);
+    session.quit();
+    let mut session = started(&nothing, &[("COLORFGBG", "0;15")]);
+    session.type_and_see("s", "minor 1");
+    tinted(&session, blue);
     session.quit();
 }
 

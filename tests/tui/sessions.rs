@@ -181,7 +181,7 @@ fn a_screen_that_somebody_else_wrote_on_is_drawn_anew_when_asked() {
 fn long_run() -> Session {
     let mut session = Start::debugger(&[FLOOR, "--set", "history.increment=1e-6"]).go();
     session.see("nothing is solved yet");
-    session.type_and_see("c", "solving: increment");
+    session.type_and_see("c", "solving: load");
     session
 }
 
@@ -468,7 +468,7 @@ fn a_session_that_was_killed_in_the_midst_of_a_run_resumes_before_it_and_says_so
         .go();
     session.see("nothing is solved yet");
     session.type_and_see("3s", "minor 3");
-    session.type_and_see("c", "solving: increment");
+    session.type_and_see("c", "solving: load");
     session.signal("KILL");
     session.end();
     let mut session = Start::debugger(&["resume"])

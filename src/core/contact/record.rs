@@ -2,7 +2,7 @@
 
 use crate::contact::corner::{Side, split};
 use crate::contact::projection::SurfacePoint;
-use crate::contact::table2::{Decision, Rule};
+use crate::contact::table2::{Decision, Rule, Test, Tested};
 use crate::model::{Friction, Mode};
 use serde::{Deserialize, Serialize};
 
@@ -60,6 +60,12 @@ impl ContactRecord {
         let decision = &self.decision;
         let own = !matches!(decision.rule, Rule::Held | Rule::Waits);
         own && self.forced == Forced::No && decision.wanted != decision.next
+    }
+
+    /// Whether a test of this node's decision is a tie. Without friction limit, tests of friction compare 0 with 0 and decide nothing.
+    pub fn is_tie(&self, test: &Test) -> bool {
+        let of_friction = matches!(test.tested, Tested::ShearForce | Tested::Slip);
+        test.tie && !(of_friction && self.t_max == 0.0)
     }
 
     /// The force from each of the two sides that hold the node, in walking order; `friction` is that of one side. With friction

@@ -158,7 +158,7 @@ pub struct Test {
     pub tie: bool,
 }
 
-/// Reads a name; unknown ones stand for the solver's own rules.
+/// Reads a name; an unknown one means a rule of the solver.
 fn tested<'de, D: Deserializer<'de>>(from: D) -> Result<Tested, D::Error> {
     let name: StringDeserializer<NoName> = String::deserialize(from)?.into_deserializer();
     Ok(Tested::deserialize(name).unwrap_or(Tested::Own))
@@ -168,7 +168,7 @@ fn infinite() -> f64 {
     f64::INFINITY
 }
 
-/// JSON has no infinity; `null` stands for it.
+/// Reads `null` as infinity, which JSON does not have.
 fn or_infinite<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
     Ok(Option::deserialize(from)?.unwrap_or(f64::INFINITY))
 }

@@ -1,6 +1,6 @@
 //! Positions of the slave nodes at the start of a major iteration: S*, anchor, drift, and corners.
 //!
-//! Where two elements meet in a concave corner, a node that comes to rest there may alternate between them forever. Therefore a
+//! Where two elements meet in a concave corner, a node that stops there may alternate between them forever. Therefore a
 //! sliding node that returns to the element that it left, and any node beyond both sides, is held in the corner: it is fixed
 //! there, about the mean of the two normals, with the friction of both sides together ([`crate::contact::corner`]). At the
 //! friction bound it slides out along one side, as from any fixed mode. If a node slid into the corner since the last accepted

@@ -87,7 +87,7 @@ impl Sizes {
     }
 
     /// The forces of interest: loads, contact forces, and reactions of prescribed displacements; `reaction` returns the reaction
-    /// force. Without loads, at least the force that moves the softest body as far as the scene has moved.
+    /// force. Without loads, at least the force that moves the softest body by the largest displacement of the scene.
     pub fn wanted(&self, model: &Model, at: &At<'_>, reaction: impl Fn(usize) -> f64) -> f64 {
         let mut wanted = self.reference;
         for node in at.contacts {

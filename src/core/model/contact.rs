@@ -22,7 +22,7 @@ pub struct Surface {
 }
 
 impl Surface {
-    /// A rigid line through two nodes that goes on past both; its outward side is on the right of the walk.
+    /// An endless rigid line through two nodes; its outward side is on the right of the walk.
     pub fn endless(name: &str, nodes: [usize; 2]) -> Self {
         Surface {
             name: name.to_owned(),

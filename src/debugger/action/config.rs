@@ -4,7 +4,7 @@
 //!
 //! ```ron
 //! (
-//!     colours: light,     // dark (default), light, high_contrast, none; NO_COLOR wins
+//!     colours: light,     // auto (default: as the background), dark, light, high_contrast, none; NO_COLOR wins
 //!     mouse: false,       // default: true
 //! )
 //! ```
@@ -28,8 +28,8 @@ const MOST: u64 = 1 << 20;
 pub struct Config {
     /// The keys.
     pub keymap: Keymap,
-    /// The colours.
-    pub colours: Colours,
+    /// The colours; `None` follows the terminal's background.
+    pub colours: Option<Colours>,
     /// Whether mouse support is on.
     pub mouse: bool,
 }
@@ -38,7 +38,7 @@ impl Default for Config {
     fn default() -> Self {
         Config {
             keymap: Keymap::default(),
-            colours: Colours::default(),
+            colours: None,
             mouse: true,
         }
     }
@@ -57,6 +57,7 @@ struct Written {
 #[serde(rename_all = "snake_case")]
 enum WrittenColours {
     #[default]
+    Auto,
     Dark,
     Light,
     HighContrast,
@@ -93,10 +94,11 @@ impl Config {
             let written: Written = read::value(&file, &text, "configuration")?;
             config.mouse = written.mouse;
             config.colours = match written.colours {
-                WrittenColours::Dark => Colours::Dark,
-                WrittenColours::Light => Colours::Light,
-                WrittenColours::HighContrast => Colours::HighContrast,
-                WrittenColours::None => Colours::None,
+                WrittenColours::Auto => None,
+                WrittenColours::Dark => Some(Colours::Dark),
+                WrittenColours::Light => Some(Colours::Light),
+                WrittenColours::HighContrast => Some(Colours::HighContrast),
+                WrittenColours::None => Some(Colours::None),
             };
         }
         if let Some((file, text)) = text(&folder.join(KEYS))? {
@@ -137,7 +139,7 @@ mod tests {
         let config = config().unwrap();
         assert_eq!(
             (config.colours, config.mouse),
-            (Colours::HighContrast, false)
+            (Some(Colours::HighContrast), false)
         );
         assert_eq!(config.keymap.by_key("x").map(|e| e.name), Some("copy"));
     }

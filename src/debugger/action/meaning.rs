@@ -262,6 +262,16 @@ pub enum Colours {
     None,
 }
 
+impl Colours {
+    /// The colours for a light or dark background.
+    pub fn for_background(light: bool) -> Colours {
+        match light {
+            true => Colours::Light,
+            false => Colours::Dark,
+        }
+    }
+}
+
 stickslip_core::words! {
     Colours, ALL, word:
     Dark "dark",

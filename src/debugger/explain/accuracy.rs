@@ -44,7 +44,7 @@ pub fn natural_map(event: &Event) -> Option<f64> {
     first_test(event).filter(|_| settled).map(|test| test.value)
 }
 
-/// Says so.
+/// The note [`not_unique`] for an event whose forces are not unique.
 pub fn settled(event: &Event) -> Option<String> {
     natural_map(event).map(not_unique)
 }

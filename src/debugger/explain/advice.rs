@@ -205,7 +205,9 @@ fn by_hand(model: &Model, state: &State, failure: &Failure) -> &'static [&'stati
         Failure::Refused(_) => &["a smaller history.least"],
         Failure::Inverted(_) => &["a load or prescribed motion that compresses the element less"],
         Failure::Restless { .. } => &["a support or surface that stops the motion"],
-        Failure::CutTooOften { .. } => &["the debugger, to see the states it alternates between"],
+        Failure::CutTooOften { .. } => {
+            &["stepping through its last attempts, to see the states it alternates between"]
+        }
         Failure::Leapt { .. } => match model.jumps {
             Jumps::Stop => &[
                 "history.jumps=cut, to continue on the other branch",

@@ -57,3 +57,15 @@ pub fn brief(model: &Model, failure: &Failure) -> String {
         _ => describe_failure(model, failure),
     }
 }
+
+/// The failure without lists of modes, cut at the end of a part if it would not fit into a line with its position.
+pub fn first_part(model: &Model, failure: &Failure) -> String {
+    const LONGEST: usize = 80;
+    let mut text = brief(model, failure);
+    if let Some((end, _)) = text.char_indices().nth(LONGEST) {
+        let ends = ["; ", ": ", ", "].map(|between| text[..end].rfind(between));
+        let end = ends[0].max(ends[1]).or(ends[2]);
+        text.truncate(end.unwrap_or(text.len()));
+    }
+    text
+}

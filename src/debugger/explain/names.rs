@@ -4,6 +4,7 @@ use stickslip_core::contact::table2::Rule;
 use stickslip_core::model::{Mode, Model};
 use stickslip_core::step::event::Position;
 use stickslip_core::step::intervene::Start;
+use stickslip_scene::number::plain;
 
 /// Name of a slave node.
 pub fn slave(model: &Model, slave: usize) -> &str {
@@ -89,6 +90,19 @@ pub fn position_in(model: &Model, at: Position) -> String {
         ),
         None => position(at),
     }
+}
+
+/// How far a run is: the load factor, where its leg of the path ends, and which leg that is if there are several.
+pub fn load_of(model: &Model, leg: usize, load: f64) -> String {
+    let legs = model.path.len().saturating_sub(1);
+    // At the end of the path the last leg's end still applies.
+    let leg = (leg + 1).min(legs);
+    let end = model.path.get(leg).copied().unwrap_or(load);
+    let which = match legs {
+        0 | 1 => String::new(),
+        _ => format!(" (leg {leg} of {legs})"),
+    };
+    format!("load {} of {}{which}", plain(load), plain(end))
 }
 
 /// The position of a minor iteration.

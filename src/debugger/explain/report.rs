@@ -1,6 +1,7 @@
 //! Sentences about what happened, shared by the command line and the debugger.
 
 use crate::explain::accuracy;
+use crate::explain::headline::first_part;
 use crate::explain::judged;
 use crate::explain::jumped;
 use crate::explain::names::{self, mode, position_in, slave};
@@ -130,6 +131,16 @@ pub fn reason(decision: &Decision, friction: bool) -> String {
 
 /// The outcome of a minor iteration.
 pub fn outcome(model: &Model, event: &Event) -> String {
+    outcome_with(model, event, describe_failure)
+}
+
+/// The outcome of a minor iteration on one line: the first part of a long failure.
+pub fn note(model: &Model, event: &Event) -> String {
+    outcome_with(model, event, first_part)
+}
+
+/// The outcome of a minor iteration, with failures described by `failed`.
+fn outcome_with(model: &Model, event: &Event, failed: fn(&Model, &Failure) -> String) -> String {
     let at = position_in(model, event.position);
     if !event.words.iteration.is_empty() {
         return format!("{at}: {}", event.words.iteration);
@@ -159,22 +170,22 @@ pub fn outcome(model: &Model, event: &Event) -> String {
             target: aim,
         } => format!(
             "{at}: {}; damped: solves load {} first",
-            cycle(model, c),
+            failed(model, &Failure::Cycle(c.clone())),
             plain(*aim)
         ),
         Outcome::Climbed { why, to } => format!(
             "{at}: {}; continues with strategy {}",
-            describe_failure(model, why),
+            failed(model, why),
             to.name()
         ),
         Outcome::Cut { why, size } => format!(
             "{at}: {}; the increment is cut to {}",
-            describe_failure(model, why),
+            failed(model, why),
             six(*size)
         ),
         Outcome::Leaps { why, size } => format!(
             "{at}: {}; no equilibrium is near, so the whole increment {} is solved",
-            describe_failure(model, why),
+            failed(model, why),
             six(*size)
         ),
         Outcome::Turns { why, changes } => {
@@ -185,24 +196,24 @@ pub fn outcome(model: &Model, event: &Event) -> String {
             let changes: Vec<String> = changes.iter().map(change).collect();
             format!(
                 "{at}: {}; the path has a corner, after which {}",
-                describe_failure(model, why),
+                failed(model, why),
                 changes.join(", ")
             )
         }
         Outcome::HeldBack { why, stiffness } => {
             let why = why.as_ref().map_or_else(
                 || "a node slides too far or against its force".to_owned(),
-                |why| describe_failure(model, why),
+                |why| failed(model, why),
             );
             format!(
                 "{at}: {why}; the major iteration restarts with slip stiffness {}",
                 four(*stiffness)
             )
         }
-        Outcome::Moves(moves) => format!("{at}: {}", self::moves(model, moves)),
+        Outcome::Moves(moves) => format!("{at}: {}", self::moves(model, moves, failed)),
         Outcome::Fallback { why, by, size } => format!(
             "{at}: {}; tries {} (size {})",
-            describe_failure(model, why),
+            failed(model, why),
             by.words(),
             six(*size)
         ),
@@ -242,16 +253,44 @@ pub fn outcome(model: &Model, event: &Event) -> String {
                 reservations(model, event)
             )
         }
-        Outcome::Failed(failure) => format!("{at}: {}", describe_failure(model, failure)),
+        Outcome::Failed(failure) => format!("{at}: {}", failed(model, failure)),
     }
 }
 
+/// The kind of an event that kept a run going after a failure, for counting; `None` for other events.
+pub fn recovery(outcome: &Outcome) -> Option<&'static str> {
+    Some(match outcome {
+        Outcome::Damped { .. } => "increment damped",
+        Outcome::Climbed { .. } => "strategy changed",
+        Outcome::Cut { .. } => "increment cut",
+        Outcome::Leaps { .. } => "whole increment solved",
+        Outcome::Turns { .. } => "corner of the path found",
+        Outcome::Fallback { .. } => "fallback tried",
+        Outcome::Refused { .. } => "state refused",
+        Outcome::Moves(Moves::LetsGo { .. }) => "damped motion started",
+        _ => return None,
+    })
+}
+
+/// The bodies that failed to be held in an event that kept a run going.
+pub fn loose_bodies(outcome: &Outcome) -> Vec<&str> {
+    let (Outcome::Climbed { why, .. } | Outcome::Cut { why, .. } | Outcome::Fallback { why, .. }) =
+        outcome
+    else {
+        return Vec::new();
+    };
+    let Failure::Singular(Singular::Rigid { motions }) = why else {
+        return Vec::new();
+    };
+    motions.iter().map(|motion| motion.body.as_str()).collect()
+}
+
 /// Describes a damped motion.
-fn moves(model: &Model, moves: &Moves) -> String {
+fn moves(model: &Model, moves: &Moves, failed: fn(&Model, &Failure) -> String) -> String {
     match moves {
         Moves::LetsGo { why, load } => format!(
             "{}; no equilibrium is near that of load {}: a damped motion starts there",
-            describe_failure(model, why),
+            failed(model, why),
             plain(*load)
         ),
         Moves::Step { motion, number } => {
@@ -259,7 +298,7 @@ fn moves(model: &Model, moves: &Moves) -> String {
         }
         Moves::Slower(slow) => {
             let why = match slow {
-                Slow::Failed(why) => describe_failure(model, why),
+                Slow::Failed(why) => failed(model, why),
                 Slow::Far { motion } => format!("the step would move by {motion:.3e}"),
                 Slow::Unstable => "the step would end in an unstable state".to_owned(),
             };
@@ -396,7 +435,7 @@ pub fn intervention(model: &Model, intervention: &Intervention) -> String {
         }
         Intervention::Release { slave: s } => format!("{} follows Table 2 again", slave(model, *s)),
         Intervention::Increment(increment) => {
-            format!("the increment restarts with size {increment}")
+            format!("the increment restarts with size {}", plain(*increment))
         }
         Intervention::Friction(f) => format!(
             "friction angle {} degrees, cohesion {}",

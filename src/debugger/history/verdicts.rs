@@ -6,6 +6,7 @@ use super::strip::PointKind;
 use super::tree::Tree;
 use stickslip_core::interface::minor_history::Cycle;
 use stickslip_core::step::event::{Failure, Outcome, Position};
+use stickslip_scene::number::plain;
 
 /// How a branch ends so far. Branches are numbers in [`Tree::branches`].
 #[derive(Debug, Clone, PartialEq)]
@@ -211,9 +212,15 @@ pub fn describe(tree: &Tree, verdict: &BranchEnd) -> String {
         BranchEnd::Running => "running".into(),
         BranchEnd::Accepted => "accepted".into(),
         BranchEnd::Marked => "accepted, but fails the check".into(),
-        BranchEnd::Same { branch, load } => format!("same state as {} at load {load}", b(branch)),
+        BranchEnd::Same { branch, load } => {
+            format!("same state as {} at load {}", b(branch), plain(*load))
+        }
         BranchEnd::Other { branch, load } => {
-            format!("valid, but different from {} at load {load}", b(branch))
+            format!(
+                "valid, but different from {} at load {}",
+                b(branch),
+                plain(*load)
+            )
         }
         BranchEnd::SameCycle { branch } => format!("same cycle as {}", name(tree, *branch)),
         BranchEnd::Cycle => "cycle".into(),

@@ -340,7 +340,7 @@ fn seen(solver: &mut dyn Solver, before: &Strip, began: Instant) -> (Frame, Stri
     (frame, strip)
 }
 
-/// Takes a given sequence of steps as far as possible, and sends `message` of each; `None` if the receiver is
+/// Takes a given sequence of steps until one fails, and sends `message` of each; `None` if the receiver is
 /// gone.
 fn follow(
     solver: &mut dyn Solver,

@@ -1,7 +1,7 @@
 //! The protocol by which the debugger steps a solver in another process: lines of JSON, version [`PROTOCOL`].
 //!
 //! The debugger sends requests ([`Request`]) and the solver answers ([`Answer`]), one message per line. JSON has no infinity and
-//! NaN: `null` stands for infinite or missing numbers. Floats are written with enough digits to be read back exactly. The
+//! NaN: infinite and missing numbers are written as `null`. Floats are written with enough digits to be read back exactly. The
 //! manual's page `protocol` describes all messages; the types here define the same in Rust.
 //!
 //! - [`message`]: the messages; `reading`: converts them to and from lines.

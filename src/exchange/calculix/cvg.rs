@@ -2,7 +2,7 @@
 //!
 //! Columns: step, increment, attempt, iteration, number of contact elements; then in percent the largest residual force relative
 //! to the mean force, the largest displacement correction relative to the largest displacement increment, and the same two for
-//! heat flux and temperature. 1e-30 stands for 0/0, and 1e30 for x/0 (CalculiX's writecvg.f).
+//! heat flux and temperature. CalculiX writes 0/0 as 1e-30 and x/0 as 1e30 (writecvg.f).
 
 use super::Table;
 use super::cel::At;

@@ -272,7 +272,7 @@ fn include_files_must_be_in_the_folder_of_the_deck() {
     for outside in ["../mesh.inp", "/etc/passwd", "a/../../b"] {
         let found = refusal(&format!("*INCLUDE, INPUT={outside}\n"));
         assert!(
-            found.starts_with("job.inp:1:1: ") && found.contains("must lie beside"),
+            found.starts_with("job.inp:1:1: ") && found.contains("must be in the same folder"),
             "{found}"
         );
     }

@@ -3,6 +3,7 @@
 use crate::shown;
 use crate::shown::first_of;
 use std::fmt;
+use std::path::Path as FilePath;
 
 /// One step from a value of the scene file to a value inside it.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -155,9 +156,26 @@ pub fn did_you_mean<'a>(wrong: &str, candidates: impl IntoIterator<Item = &'a st
     }
 }
 
+/// As [`did_you_mean`], for the path of a missing file and the files in its folder.
+pub fn did_you_mean_file(missing: &str) -> String {
+    let path = FilePath::new(missing);
+    let folder = path.parent().filter(|folder| *folder != FilePath::new(""));
+    let entries = std::fs::read_dir(folder.unwrap_or(FilePath::new(".")));
+    let names = entries.into_iter().flatten().flatten();
+    let in_folder =
+        |name| folder.map_or(FilePath::new("").join(&name), |folder| folder.join(&name));
+    let paths = names.map(|entry| in_folder(entry.file_name()));
+    let mut paths: Vec<String> = paths
+        .map(|path| path.to_string_lossy().into_owned())
+        .collect();
+    // The order of a folder differs between machines.
+    paths.sort_unstable();
+    did_you_mean(missing, paths.iter().map(String::as_str))
+}
+
 /// The candidate with the smallest edit distance, if that is at most a third of the differing part.
 ///
-/// The common prefix is ignored, so `settings.foo` is not close to `settings.slip` despite their long common part.
+/// The common start and end are ignored, so `settings.foo` is not close to `settings.slip`, and `wall.ron` not to `beam.ron`.
 pub(crate) fn nearest<'a>(
     wrong: &str,
     candidates: impl IntoIterator<Item = &'a str>,
@@ -169,6 +187,9 @@ pub(crate) fn nearest<'a>(
         let right: Vec<char> = right.chars().take(LONGEST + 1).collect();
         let same = wrong.iter().zip(&right).take_while(|(a, b)| a == b).count();
         let (a, b) = (&wrong[same..], &right[same..]);
+        let end = a.iter().rev().zip(b.iter().rev());
+        let end = end.take_while(|(a, b)| a == b).count();
+        let (a, b) = (&a[..a.len() - end], &b[..b.len() - end]);
         let most = a
             .len()
             .div_ceil(3)
@@ -255,6 +276,7 @@ mod tests {
         assert_eq!(nearest("refin", ["refine"]), Some("refine"));
         assert_eq!(nearest("wall", ["beam.end", "floor"]), None);
         assert_eq!(nearest("settings.foo", ["settings.slip"]), None);
+        assert_eq!(nearest("wall.ron", ["beam.ron"]), None);
         assert_eq!(nearest("z", ["x"]), None);
         assert_eq!(nearest("", ["x"]), None);
         let chars = |text: &str| text.chars().collect::<Vec<_>>();

@@ -1,7 +1,7 @@
 //! Reads the text of a file into a [`Spec`]; errors of syntax and type have a location.
 
 use super::condensed::Problem;
-use super::error::{Path, SceneError, did_you_mean, quoted, shortened};
+use super::error::{Path, SceneError, did_you_mean, did_you_mean_file, quoted, shortened};
 use super::kind::{FileKind, mistaken};
 use super::locate::{byte_at, line_and_column, locate, path_at, too_deep};
 use super::notation;
@@ -145,7 +145,17 @@ pub fn not_read(file: &str, error: &Unreadable) -> SceneError {
             Unreadable::NoText { line, column } => Some((*line, *column)),
             _ => None,
         },
-        ..SceneError::whole(file, error.to_string())
+        ..SceneError::whole(file, format!("{error}{}", near(file, error)))
+    }
+}
+
+/// `; did you mean "clip.ron"?` for a missing file with a similar name.
+pub fn near(file: &str, error: &Unreadable) -> String {
+    match error {
+        Unreadable::Failed(error) if error.kind() == std::io::ErrorKind::NotFound => {
+            did_you_mean_file(file)
+        }
+        _ => String::new(),
     }
 }
 

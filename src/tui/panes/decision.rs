@@ -56,7 +56,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let decision = record.map(|record| record.decision);
     let hidden = app.learning.hides(view, slave);
     let tests = record.filter(|_| !hidden).map_or(Vec::new(), |record| {
-        tests(&record.decision, view, inner.width as usize, theme)
+        tests(record, view, inner.width as usize, theme)
     });
     let tests: Vec<Line> = match record.filter(|_| !hidden) {
         Some(record) => tests
@@ -478,11 +478,14 @@ fn cell_look(
 }
 
 /// The inequalities with their values, on one line each if they fit, otherwise on two.
-fn tests(decision: &Decision, view: &View, width: usize, theme: &Theme) -> paint::Lines {
+fn tests(record: &ContactRecord, view: &View, width: usize, theme: &Theme) -> paint::Lines {
     let mut lines = Vec::new();
-    for test in decision.tests.iter().flatten() {
+    for test in record.decision.tests.iter().flatten() {
         let inequality = inequality(test, view);
-        let (margin, style) = margin(test, view, theme);
+        let (margin, style) = match test.tie && !record.is_tie(test) {
+            true => ("no friction ".to_owned(), theme.faint),
+            false => margin(test, view, theme),
+        };
         let style_left = if test.margin < 0.0 && !test.tie {
             theme.strong
         } else {
@@ -613,9 +616,8 @@ fn words(record: Option<&ContactRecord>, slave: usize, view: &View) -> String {
         Some(text) => text,
         None => report::reason(decision, record.t_max != 0.0),
     };
-    let frictionless =
-        matches!(decision.rule, Rule::SlidingStays | Rule::SlidingPasses) && record.t_max == 0.0;
-    if !frictionless && decision.tests.iter().flatten().any(|test| test.tie) {
+    let mut tests = decision.tests.iter().flatten();
+    if tests.any(|test| record.is_tie(test)) {
         text += match view.frame().state.controls.settings.ties {
             TieRule::Keep => " A tie keeps the mode.",
             TieRule::Printed => " An exact tie, decided by the table as printed.",

@@ -18,7 +18,8 @@ use unicode_width::UnicodeWidthStr;
 /// Actions that the footer shows at any width.
 const ALWAYS: [&str; 3] = ["pane", "help", "quit"];
 
-/// Draws message and keys. A message that needs more rows starts further up, over the panes.
+/// Draws message and keys. A message that needs more rows starts further up, over the last rows inside the panes; their lower
+/// borders move above it.
 pub fn draw(buffer: &mut Buffer, places: &Places, app: &App, view: Option<&View>) {
     let width = places.message.width as usize;
     let mut lines = message(app, view, places, width);
@@ -36,6 +37,14 @@ pub fn draw(buffer: &mut Buffer, places: &Places, app: &App, view: Option<&View>
         height,
         ..places.footer
     };
+    // The text of a lesson needs its rows.
+    let lesson = places.panes.iter().any(|(pane, _)| *pane == Pane::Lesson);
+    let bare = matches!(app.overlay, Overlay::None | Overlay::Line(_)) && !lesson;
+    if bare && view.is_some() && area.y < places.message.y {
+        for x in area.left()..area.right() {
+            buffer[(x, area.y - 1)] = buffer[(x, places.message.y - 1)].clone();
+        }
+    }
     paint::over(buffer, area, &lines, &app.theme);
 }
 

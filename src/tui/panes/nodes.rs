@@ -388,13 +388,8 @@ fn number_style(column: usize, record: &ContactRecord, app: &App) -> Style {
         5 => Tested::Slip,
         _ => return app.theme.text,
     };
-    match record
-        .decision
-        .tests
-        .iter()
-        .flatten()
-        .any(|test| test.tested == tested && test.tie)
-    {
+    let mut tests = record.decision.tests.iter().flatten();
+    match tests.any(|test| test.tested == tested && record.is_tie(test)) {
         true => app.theme.warning,
         false => app.theme.text,
     }

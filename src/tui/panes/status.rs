@@ -49,7 +49,7 @@ pub fn draw(buffer: &mut Buffer, places: &Places, app: &App, view: Option<&View>
 }
 
 /// Maximum number of lines for the outcome.
-const OUTCOME: usize = 3;
+const OUTCOME: usize = 2;
 
 /// The attached solver, how it goes back, and the counts of its warnings and errors.
 fn solver_line(app: &App, view: &View, attached: &AttachedSolver, width: usize) -> Line<'static> {
@@ -202,23 +202,20 @@ fn outcome(app: &App, view: &View, width: u16) -> paint::Lines {
         const SPINNER: [&str; 4] = ["◐", "◓", "◑", "◒"];
         let turns = (app.busy.as_millis() / TURN.as_millis()) as usize;
         let turn = SPINNER[turns % SPINNER.len()];
-        let at = view
-            .frames
-            .last()
-            .map(|frame| frame.state.next)
-            .unwrap_or_default();
+        let far = view.frames.last().map_or(String::new(), |frame| {
+            let state = &frame.state;
+            let load = names::load_of(view.model, state.start.leg, state.load_factor);
+            format!("{load}, {}", names::position(state.next))
+        });
         let took = match app.busy.as_secs() {
             0 | 1 => String::new(),
             seconds => format!(", {seconds} s"),
         };
         let progress = view.attached.and_then(|attached| attached.log.progress());
         let progress = progress.map_or(String::new(), |text| format!("; {text}"));
+        let steps = view.frames.len() - 1;
         let text = format!(
-            " {turn} solving: increment {}, major {}, minor {}; {} steps so far{took}{progress}; Ctrl-C stops",
-            at.increment,
-            at.major,
-            at.minor,
-            view.frames.len() - 1
+            " {turn} solving: {far}; {steps} steps so far{took}{progress}; Ctrl-C stops"
         );
         let again = view.attached.map_or("", |attached| attached.again);
         let first = (!again.is_empty()).then(|| format!("   {again} first"));
@@ -249,12 +246,21 @@ fn outcome(app: &App, view: &View, width: u16) -> paint::Lines {
         },
     };
     // Further lines are indented to the words after the glyph.
-    let words = paint::wrap(&text, (width as usize).saturating_sub(4));
+    let room = (width as usize).saturating_sub(4);
+    let mut words = paint::wrap(&text, room);
+    let aside = interventions(view).map(|text| paint::cut(&text, room));
+    if words.len() > OUTCOME {
+        words.truncate(OUTCOME);
+        if let Some(last) = words.last_mut() {
+            let aside = aside.as_ref().map_or(0, |text| text.width() + 3);
+            *last = paint::cut(&format!("{last} …"), room.saturating_sub(aside).max(1));
+        }
+    }
     let indent = |index: usize| if index == 0 { " " } else { "   " };
     let line =
         |(index, words): (usize, String)| Line::styled(format!("{}{words}", indent(index)), style);
     let mut lines: Vec<Line> = words.into_iter().enumerate().map(line).collect();
-    if let Some(text) = interventions(view) {
+    if let Some(text) = aside {
         match lines.last_mut() {
             Some(last) if last.width() + 3 + text.width() <= width as usize => {
                 last.push_span(Span::styled(format!("   {text}"), theme.warning));

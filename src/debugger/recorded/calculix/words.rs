@@ -98,6 +98,9 @@ pub fn attempt(run: &CalculixRun, attempt: usize) -> String {
         "failed" => format!("not converged in {iterations}; the run ends here"),
         _ => format!("{iterations}; end unknown: the run was stopped or is still running"),
     };
+    if let Some(cycle) = cycle(run, attempt) {
+        let _ = write!(text, "; {cycle}");
+    }
     if let Some(row) = this.row {
         let start = match row.converged {
             true => row.total_time - row.size,
@@ -106,9 +109,6 @@ pub fn attempt(run: &CalculixRun, attempt: usize) -> String {
         // Remove round-off from subtracting printed numbers.
         let start = (start * 1e6).round() / 1e6;
         let _ = write!(text, "; time {} + {}", plain(start), plain(row.size));
-    }
-    if let Some(cycle) = cycle(run, attempt) {
-        let _ = write!(text, "; {cycle}");
     }
     text
 }
