@@ -27,3 +27,11 @@ impl Broken {
         }
     }
 }
+
+/// Returns an error from a location and a formatted message: `bail!(place, "{name} is defined twice")`.
+#[macro_export]
+macro_rules! bail {
+    ($place:expr, $($message:tt)+) => {
+        return Err(($place, format!($($message)+)).into())
+    };
+}

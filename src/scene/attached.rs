@@ -7,7 +7,7 @@
 use super::limits;
 use super::nodes::Names;
 use crate::format::contact_law::FrictionSpec;
-use crate::format::error::{Fault, at};
+use crate::format::error::{Fault, at, fault};
 use crate::format::spec::{History, Spec};
 use crate::shown;
 use std::collections::{HashMap, HashSet};
@@ -65,10 +65,11 @@ pub fn told(text: &str) -> Result<Scene, Fault> {
     let here = at!["attached"];
     match Answer::read(text) {
         Ok(Answer::Scene(scene)) => Ok(*scene),
-        Ok(other) => {
-            let message = format!("this is a {} message, not a scene", other.kind());
-            Err(Fault::new(here, message))
-        }
+        Ok(other) => Err(fault!(
+            here,
+            "this is a {} message, not a scene",
+            other.kind()
+        )),
         Err(broken) => Err(Fault::new(here, broken.message)),
     }
 }

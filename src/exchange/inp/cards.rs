@@ -9,6 +9,7 @@
 //! Case and spaces within words do not matter, as in CalculiX. Parameters continue on the next line after a trailing comma.
 
 use super::source::{Fault, Place, SourceLine, plain};
+use crate::bail;
 
 /// A keyword with its parameters and data.
 #[derive(Debug)]
@@ -62,10 +63,10 @@ pub(super) fn cards<'t>(
             }
             Some(card) => card.lines.push(line),
             None => {
-                return Err(Fault::new(
+                bail!(
                     line.place(0),
-                    "data before the first keyword; a deck begins with a keyword, e.g. *HEADING or *NODE",
-                ));
+                    "data before the first keyword; a deck begins with a keyword, e.g. *HEADING or *NODE"
+                );
             }
         }
     }
@@ -81,10 +82,10 @@ impl<'t> Card<'t> {
         let key = plain(word);
         let place = line.place(star);
         if key.is_empty() {
-            return Err(Fault::new(
+            bail!(
                 place,
-                "the star must be followed by a keyword; comments start with two stars",
-            ));
+                "the star must be followed by a keyword; comments start with two stars"
+            );
         }
         let (parameters, open) = match end < line.text.len() {
             true => parameters_of(line, end + 1)?,
@@ -114,11 +115,11 @@ impl<'t> Card<'t> {
                     _ => format!("supported are {}", known.join(", ")),
                 };
                 let name = short(&parameter.name);
-                let message = format!(
+                bail!(
+                    parameter.place,
                     "*{}: the parameter {name} is not supported; {list}",
                     self.shown
                 );
-                return Err(Fault::new(parameter.place, message));
             }
         }
         Ok(())
@@ -227,10 +228,7 @@ fn parameters_of(line: SourceLine<'_>, from: usize) -> Result<(Vec<Parameter>, b
         };
         let name = plain(name);
         if name.is_empty() {
-            return Err(Fault::new(
-                place,
-                "a parameter has no name before its \"=\"",
-            ));
+            bail!(place, "a parameter has no name before its \"=\"");
         }
         parameters.push(Parameter { name, value, place });
     }

@@ -3,6 +3,7 @@
 use super::cards::{Card, CardCell, cells, short};
 use super::deck::{Deck, Element, ElementType, Faces, Family, Node, Set, Surface};
 use super::source::{Fault, Place, plain};
+use crate::bail;
 use crate::mesh::CellKind;
 use std::collections::{BTreeMap, HashMap};
 
@@ -67,14 +68,11 @@ fn nodes(card: &Card<'_>, deck: &mut Deck, names: &mut Names) -> Result<(), Faul
         }
         if z != 0.0 {
             let at = cells.get(3).map_or(label.place(), CardCell::place);
-            return Err(Fault::new(
-                at,
-                format!("node {number} is at z = {z:?}; only z = 0 is supported"),
-            ));
+            bail!(at, "node {number} is at z = {z:?}; only z = 0 is supported");
         }
         let place = label.place();
         if names.nodes.insert(number, deck.nodes.len()).is_some() {
-            return Err(Fault::new(place, format!("node {number} is defined twice")));
+            bail!(place, "node {number} is defined twice");
         }
         deck.nodes.push(Node {
             label: number,
@@ -144,10 +142,7 @@ fn elements(card: &Card<'_>, deck: &mut Deck, names: &mut Names) -> Result<(), F
         }
         let place = label.place();
         if names.elements.insert(number, deck.elements.len()).is_some() {
-            return Err(Fault::new(
-                place,
-                format!("element {number} is defined twice"),
-            ));
+            bail!(place, "element {number} is defined twice");
         }
         deck.elements.push(Element {
             label: number,
@@ -396,13 +391,11 @@ fn add(
     };
     let place = card.place_of(parameter);
     if name.chars().all(|c| c.is_ascii_digit()) {
-        return Err(Fault::new(
+        bail!(
             place,
-            format!(
-                "the set name {} looks like a number; start it with a letter",
-                short(name)
-            ),
-        ));
+            "the set name {} looks like a number; start it with a letter",
+            short(name)
+        );
     }
     let (sets, all) = match kind {
         MeshKind::Nodes => (&mut names.node_sets, &mut deck.node_sets),

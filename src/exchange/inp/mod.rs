@@ -24,8 +24,8 @@ pub use deck::Deck;
 use deck::{Remark, Value};
 use keywords::{Treatment, nearest, treatment};
 use mesh::Names;
-pub use source::{DECK_BYTES, Include, Place, Wrong};
-use source::{Fault, Sources};
+use source::Sources;
+pub use source::{DECK_BYTES, Fault, Include, Place, Wrong};
 
 /// Whether a text could be a deck: its first line that is neither blank nor a comment begins with a star.
 pub fn is_one(text: &str) -> bool {

@@ -6,6 +6,7 @@ use super::deck::{
 };
 use super::mesh::{MeshKind, Names, set_of, surface_of};
 use super::source::{Fault, Place};
+use crate::bail;
 
 /// The card to which subsequent cards belong.
 #[derive(Debug, Default)]
@@ -218,15 +219,13 @@ fn behavior(card: &Card<'_>, deck: &mut Deck, open: &Open) -> Result<(), Fault> 
             return Ok(());
         }
         _ => {
-            return Err(Fault::new(
+            bail!(
                 card.place_of(NAME),
-                format!(
-                    "*{}: {NAME}={} is not supported: nonlinear pressure laws do not give a complementarity \
+                "*{}: {NAME}={} is not supported: nonlinear pressure laws do not give a complementarity \
                      problem; it must be HARD, LINEAR or TIED",
-                    card.shown,
-                    short(law)
-                ),
-            ));
+                card.shown,
+                short(law)
+            );
         }
     }
     let interaction = of_interaction(card, deck, open)?;
@@ -337,10 +336,11 @@ fn solid_section(card: &Card<'_>, deck: &mut Deck, names: &Names) -> Result<(), 
 fn beam_section(card: &Card<'_>, deck: &mut Deck, names: &Names) -> Result<(), Fault> {
     card.only(&["ELSET", "MATERIAL", "SECTION"])?;
     if card.required("SECTION")? != "RECT" {
-        return Err(Fault::new(
+        bail!(
             card.place_of("SECTION"),
-            format!("*{}: only SECTION=RECT is supported", card.shown),
-        ));
+            "*{}: only SECTION=RECT is supported",
+            card.shown
+        );
     }
     let (set, material) = (section_set(card, names)?, section_material(card, deck)?);
     suits(card, deck, set, true)?;
@@ -349,27 +349,27 @@ fn beam_section(card: &Card<'_>, deck: &mut Deck, names: &Names) -> Result<(), F
     };
     let words = cells(*sides);
     let [width, height] = words.as_slice() else {
-        return Err(Fault::new(
+        bail!(
             sides.place(0),
-            "unexpected value; a rectangle has two thicknesses, across the plane and in the plane",
-        ));
+            "unexpected value; a rectangle has two thicknesses, across the plane and in the plane"
+        );
     };
     if let Some(axis) = rest.first() {
         let words = cells(*axis);
         let part = |k: usize| number_or_zero(&words, k, "a component of the section's first axis");
         let (x, y, z) = (part(0)?, part(1)?, part(2)?);
         if x != 0.0 || y != 0.0 || z == 0.0 {
-            return Err(Fault::new(
+            bail!(
                 axis.place(0),
-                "the section's first axis must be perpendicular to the plane, as 0, 0, -1; the first thickness is measured along it",
-            ));
+                "the section's first axis must be perpendicular to the plane, as 0, 0, -1; the first thickness is measured along it"
+            );
         }
     }
     if let Some(more) = rest.get(1) {
-        return Err(Fault::new(
+        bail!(
             more.place(0),
-            "unexpected line; a beam section has two data lines",
-        ));
+            "unexpected line; a beam section has two data lines"
+        );
     }
     let form = Form::Rectangle {
         width: positive(width, "the thickness across the plane")?,
@@ -392,10 +392,10 @@ fn two_surfaces(
 ) -> Result<(usize, usize), Fault> {
     let words = cells(line);
     let [slave, master] = words.as_slice() else {
-        return Err(Fault::new(
+        bail!(
             line.place(0),
-            "two surfaces were expected, the slave and the master",
-        ));
+            "two surfaces were expected, the slave and the master"
+        );
     };
     let pair = (surface_of(slave, names)?, surface_of(master, names)?);
     if pair.0 == pair.1 {

@@ -6,6 +6,7 @@ use super::deck::{
 };
 use super::mesh::{MeshKind, Names, members_of, set_of, side_of, surface_of};
 use super::source::{Fault, Place, SourceLine, plain};
+use crate::bail;
 
 /// State of reading the steps.
 #[derive(Debug, Default)]
@@ -127,16 +128,16 @@ fn in_step<'a>(card: &Card<'_>, open: &'a mut OpenStep) -> Result<&'a mut Step, 
 fn time(card: &Card<'_>, deck: &mut Deck, open: &mut OpenStep) -> Result<(), Fault> {
     card.only(&["DIRECT", "SOLVER", "TIMERESET", "STABILIZE"])?;
     if card.has("STABILIZE") {
-        return Err(Fault::new(
+        bail!(
             card.place_of("STABILIZE"),
-            "*STATIC: STABILIZE adds damping that is not part of the model; leave it out",
-        ));
+            "*STATIC: STABILIZE adds damping that is not part of the model; leave it out"
+        );
     }
     if card.has("TIMERESET") {
-        return Err(Fault::new(
+        bail!(
             card.place_of("TIMERESET"),
-            "*STATIC: TIME RESET is not supported; time continues over the steps",
-        ));
+            "*STATIC: TIME RESET is not supported; time continues over the steps"
+        );
     }
     if card.has("SOLVER") {
         deck.remark(
@@ -148,10 +149,7 @@ fn time(card: &Card<'_>, deck: &mut Deck, open: &mut OpenStep) -> Result<(), Fau
         [] => Vec::new(),
         [line] => cells(*line),
         [_, more, ..] => {
-            return Err(Fault::new(
-                more.place(0),
-                "unexpected line; *STATIC has one data line",
-            ));
+            bail!(more.place(0), "unexpected line; *STATIC has one data line");
         }
     };
     let positive = |k: usize, what: &str| match words.get(k).filter(|cell| !cell.text.is_empty()) {
@@ -338,10 +336,10 @@ fn force(
     for line in &card.lines {
         let words = cells(*line);
         let [first, second, third] = words.as_slice() else {
-            return Err(Fault::new(
+            bail!(
                 line.place(0),
-                "a node or a set, a direction and a force were expected",
-            ));
+                "a node or a set, a direction and a force were expected"
+            );
         };
         let value = third.number("a force")?;
         let direction = match second.whole("a direction")? {
@@ -382,10 +380,10 @@ fn load(
     for line in &card.lines {
         let words = cells(*line);
         let [first, label, rest @ ..] = words.as_slice() else {
-            return Err(Fault::new(
+            bail!(
                 line.place(0),
-                "an element or a set, a load name and its size were expected",
-            ));
+                "an element or a set, a load name and its size were expected"
+            );
         };
         let elements = members_of(first, deck, names, MeshKind::Elements)?;
         names.count(elements.len(), first.place())?;
@@ -513,10 +511,7 @@ struct Pressed {
 fn pressed_surface(line: SourceLine<'_>, deck: &Deck, names: &Names) -> Result<Pressed, Fault> {
     let words = cells(line);
     let [first, label, size] = words.as_slice() else {
-        return Err(Fault::new(
-            line.place(0),
-            "a surface, P and a pressure were expected",
-        ));
+        bail!(line.place(0), "a surface, P and a pressure were expected");
     };
     if plain(label.text) != "P" {
         return Err(label.wrong(format!(
