@@ -12,8 +12,8 @@ use crate::format::spec::{History, Spec};
 use crate::shown;
 use std::collections::{HashMap, HashSet};
 use stickslip_core::model::{
-    Body, BodyKind, Bond, Contact, Control, Form, Friction, InitialState, Jumps, Linear, Model,
-    Monitor, Node, Surface, ToldKind, Watched,
+    Body, BodyKind, Bond, Contact, Control, Form, Friction, Jumps, Linear, Model, Monitor, Node,
+    Surface, ToldKind, Watched,
 };
 use stickslip_exchange::attach::Answer;
 use stickslip_exchange::attach::message::{self, Scene};
@@ -230,14 +230,11 @@ fn surfaces(scene: &Scene) -> Result<Surfaces<'_>, Fault> {
                 told.name
             ));
         }
-        surfaces.push(Surface {
-            name: shown::cut(&told.name, limits::NAME),
-            elements: told.nodes.windows(2).map(<[usize]>::to_vec).collect(),
-            rigid: told.rigid,
-            endless: false,
-            smooth: Vec::new(),
-            gives: Vec::new(),
-        });
+        surfaces.push(Surface::new(
+            &shown::cut(&told.name, limits::NAME),
+            told.nodes.windows(2).map(<[usize]>::to_vec).collect(),
+            told.rigid,
+        ));
     }
     Ok((surfaces, numbers))
 }
@@ -278,15 +275,10 @@ fn contacts(scene: &Scene, surfaces: &HashMap<&str, usize>) -> Result<Vec<Contac
             ));
         }
         contacts.push(Contact {
-            node: told.node,
-            surfaces: surface,
-            friction,
             start: told.mode,
-            state: InitialState::default(),
-            overlap: 0.0,
             bond: bond(told),
             area: told.area,
-            facing: None,
+            ..Contact::new(told.node, surface, friction)
         });
     }
     Ok(contacts)

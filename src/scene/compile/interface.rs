@@ -162,15 +162,9 @@ pub(super) fn slaves(
             let fresh_ones: Vec<usize> = found.into_iter().filter(|node| !met(node)).collect();
             for node in fresh_ones {
                 let slave = Contact {
-                    node,
-                    surfaces: on.clone(),
-                    friction: Friction::default(),
                     start: group.start,
                     state: group.state,
-                    overlap: 0.0,
-                    bond: Default::default(),
-                    area: None,
-                    facing: None,
+                    ..Contact::new(node, on.clone(), Friction::default())
                 };
                 let fresh = taken.insert(node);
                 check_slave(&slave, fresh, names, surfaces, &members, length).map_err(fault)?;
