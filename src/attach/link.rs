@@ -240,7 +240,9 @@ impl Link {
         };
         match text.trim_start().starts_with('{') {
             true => self.log.exchanged(Side::Answered, &text),
-            false => self.log.exchanged(Side::Noted, &format!("not a message: {text}")),
+            false => self
+                .log
+                .exchanged(Side::Noted, &format!("not a message: {text}")),
         }
         Answer::read(&text).map_err(|broken| {
             let letters = text.trim_start();

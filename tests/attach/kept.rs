@@ -69,7 +69,16 @@ fn a_kept_exchange_has_every_branch_with_the_same_states() {
 }
 
 fn an_exchange_that_ended_in_a_fault_is_read_up_to_it() {
-    for how in ["ansi", "binary", "text-then-answer", "half", "exit", "nan", "escapes", "twice"] {
+    for how in [
+        "ansi",
+        "binary",
+        "text-then-answer",
+        "half",
+        "exit",
+        "nan",
+        "escapes",
+        "twice",
+    ] {
         let rude = Rude::hurried(how);
         let file = rude.folder().join("kept.exchange");
         let log = Log::default();
