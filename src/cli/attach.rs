@@ -1,6 +1,6 @@
 //! `stickslip attach`: steps an external solver in the debugger, checks its protocol, or prints a client for writing one.
 
-use super::base::{Error, Exit, notify, say};
+use super::base::{Error, Exit, notify, say, usage};
 use super::debugger::{DEBUGGER, needs_terminal};
 use super::front;
 use super::solver::SolverArgs;
@@ -43,8 +43,8 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         return Ok(Exit::Good);
     }
     if !args.solver.is_named() {
-        return Err(Error::Usage(
-            "no solver given; use stickslip attach -- COMMAND… (`stickslip help protocol` describes the protocol)".into(),
+        return Err(usage!(
+            "no solver given; use stickslip attach -- COMMAND… (`stickslip help protocol` describes the protocol)"
         ));
     }
     if args.check {

@@ -1,6 +1,6 @@
 //! `stickslip audit`: the largest violation of each law over entire histories.
 
-use super::base::{Error, Exit, SetArgs, notify, say};
+use super::base::{Error, Exit, SetArgs, notify, say, usage};
 use super::course::Course;
 use super::interrupt::Interrupt;
 use super::json::{self, JsonArgs};
@@ -73,9 +73,9 @@ fn open(input: &str, args: &Args) -> Result<Course, Error> {
         return Ok(Course::of_scene(Scene::open(input, &args.set.set)?));
     }
     if !args.set.set.is_empty() {
-        return Err(Error::Usage(format!(
+        return Err(usage!(
             "{input}: snapshots are audited as recorded; --set is for scenes only"
-        )));
+        ));
     }
     Course::of_snapshot(input, Snapshot::read(path)?)
 }

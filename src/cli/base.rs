@@ -60,6 +60,21 @@ pub enum Error {
     Output(io::Error),
 }
 
+/// A usage error with a formatted message.
+macro_rules! usage {
+    ($($message:tt)+) => {
+        $crate::cli::base::Error::Usage(format!($($message)+))
+    };
+}
+pub(crate) use usage;
+
+impl Error {
+    /// Another error as one of usage.
+    pub fn usage(error: impl ToString) -> Error {
+        Error::Usage(error.to_string())
+    }
+}
+
 fn how_to_overwrite(error: &FileError) -> &'static str {
     match error {
         FileError::Exists(_) => " (use --force)",
@@ -177,10 +192,10 @@ pub fn distinct(named: &[(&str, Option<&str>)]) -> Result<(), Error> {
     let Some(name) = twice else { return Ok(()) };
     let options: Vec<&str> = named.iter().map(|(option, _)| *option).collect();
     let (last, first) = options.split_last().unwrap_or((&"", &[]));
-    Err(Error::Usage(format!(
+    Err(usage!(
         "{name}: only one of {} and {last} can write to this file",
         first.join(", ")
-    )))
+    ))
 }
 
 /// The message for a missing file that has the name of a built-in scene; `None` for other names.

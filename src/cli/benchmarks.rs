@@ -22,7 +22,7 @@ pub fn main(list: &Benchmarks, out: &OutputArgs) -> Result<Exit, Error> {
         done: &|_| {},
     };
     let compared = list.run(out.jobs(), &watch);
-    let compared = compared.map_err(|e| Error::Usage(e.to_string()))?;
+    let compared = compared.map_err(Error::usage)?;
     outputs.write_table(&table(list, &compared))?;
     if !out.quiet {
         report_table(list, &compared);

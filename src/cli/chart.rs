@@ -1,6 +1,6 @@
 //! `stickslip chart`: error over cost for different settings.
 
-use super::base::{Error, Exit, NoValue, SetArgs};
+use super::base::{Error, Exit, NoValue, SetArgs, usage};
 use super::interrupt::Interrupt;
 use super::outputs::Outputs;
 use super::sweep::{Report, SweepArgs, failed};
@@ -75,7 +75,7 @@ fn cost(text: &str) -> Result<Cost, NoValue> {
 pub fn main(args: &Args) -> Result<Exit, Error> {
     if let Some(file) = &args.from {
         let name = file.display().to_string();
-        let text = precision_table::open(file).map_err(|e| Error::Usage(e.to_string()))?;
+        let text = precision_table::open(file).map_err(Error::usage)?;
         let charts = precision_table::read(&name, &text, args.cost, args.target);
         let charts = charts.map_err(|error| {
             let text = mistaken(&name, &text, FileKind::ChartTable);
@@ -86,9 +86,9 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         return Ok(Exit::Good);
     }
     if let Some(shard) = args.sweep.part().filter(|_| args.sweep.out.writes()) {
-        return Err(Error::Usage(format!(
+        return Err(usage!(
             "--shard {shard} runs only part of the cells, but a chart compares all; use --log, then --merge"
-        )));
+        ));
     }
     let interrupt = Interrupt::listen();
     let mut planned = Vec::new();
@@ -116,7 +116,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
             let own = std::mem::replace(&mut results, rest);
             charts.push(Precision::new(planned, own, measure).map_err(|e| match e {
                 PrecisionError::Run(error) => failed(*error),
-                error => Error::Usage(error.to_string()),
+                error => Error::usage(error),
             })?);
         }
         Ok(report(charts))

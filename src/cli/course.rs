@@ -1,6 +1,6 @@
 //! A sequence of steps to repeat: a scene to its end, or a snapshot's history with its interventions.
 
-use super::base::Error;
+use super::base::{Error, usage};
 use super::interrupt::Interrupt;
 use std::ops::ControlFlow;
 use stickslip_core::step::drive::{RunEnd, Until};
@@ -63,7 +63,7 @@ impl Course {
             while let Some(next) = applied.next_if(|a| a.step == done) {
                 stepper
                     .intervene(&next.intervention)
-                    .map_err(|e| Error::Usage(format!("{name}: after step {done}: {e}")))?;
+                    .map_err(|e| usage!("{name}: after step {done}: {e}"))?;
             }
             Ok(())
         };

@@ -1,6 +1,6 @@
 //! `stickslip [SCENE]`: the debugger.
 
-use super::base::{Error, Exit, SetArgs};
+use super::base::{Error, Exit, SetArgs, usage};
 use super::front;
 use super::groups;
 use std::io::IsTerminal;
@@ -42,7 +42,7 @@ impl Args {
 
 pub fn main(args: Args) -> Result<Exit, Error> {
     if args.scene.is_none() && !args.set.set.is_empty() {
-        return Err(Error::Usage("--set needs a scene".into()));
+        return Err(usage!("--set needs a scene"));
     }
     if let Some(text) = args.scene.as_deref().and_then(groups::unknown) {
         return Err(Error::Usage(text));
@@ -71,9 +71,7 @@ pub fn main(args: Args) -> Result<Exit, Error> {
 fn view(recording: Recording, name: &str, args: &Args) -> Result<Exit, Error> {
     let kind = recording.kind();
     if let Some(asked) = args.changed() {
-        return Err(Error::Usage(format!(
-            "{asked} cannot be used with this input: {kind}"
-        )));
+        return Err(usage!("{asked} cannot be used with this input: {kind}"));
     }
     needs_terminal(DEBUGGER, &format!("story {name}` prints it as text"))?;
     let words = recording.greeting();
@@ -88,8 +86,8 @@ pub const DEBUGGER: &str = "the debugger";
 pub fn needs_terminal(what: &str, instead: &str) -> Result<(), Error> {
     match std::io::stdin().is_terminal() && std::io::stdout().is_terminal() {
         true => Ok(()),
-        false => Err(Error::Usage(format!(
+        false => Err(usage!(
             "{what} needs a terminal, but stdin or stdout is not one; `stickslip {instead}"
-        ))),
+        )),
     }
 }

@@ -1,7 +1,7 @@
 //! `stickslip export INPUT -o FILE`: converts a scene, snapshot, journal or mesh; the extension selects the format
 //! ([`stickslip_debugger::record::export`]).
 
-use super::base::{Error, Exit, SetArgs, notify};
+use super::base::{Error, Exit, SetArgs, notify, usage};
 use super::course::Course;
 use super::front;
 use super::interrupt::Interrupt;
@@ -111,7 +111,7 @@ fn input_kind(input: &str) -> FileKind {
 /// A scene that imports a mesh.
 fn around_mesh(args: &Args, kind: &ExportKind) -> Result<Vec<u8>, Error> {
     let file = &args.input;
-    let usage = |why: &str| Error::Usage(format!("{file}: {why}"));
+    let usage = |why: &str| usage!("{file}: {why}");
     if kind.extension != "ron" || args.frozen {
         return Err(usage(
             "a mesh can only be exported as a scene that imports it: -o FILE.ron",
@@ -139,10 +139,10 @@ fn around_mesh(args: &Args, kind: &ExportKind) -> Result<Vec<u8>, Error> {
 /// The film of a journal.
 fn film(args: &Args) -> Result<Vec<u8>, Error> {
     if input_kind(&args.input) != FileKind::Journal {
-        return Err(Error::Usage(format!(
+        return Err(usage!(
             "{}: not a journal; .cast files are made from a journal of the debugger (:journal shows its path)",
             args.input
-        )));
+        ));
     }
     scene_only(args, "a journal is replayed as recorded")?;
     let record = Record::read(Path::new(&args.input))?;
@@ -157,10 +157,7 @@ fn scene_only(args: &Args, why: &str) -> Result<(), Error> {
         (false, _) => "--set",
         (true, Some(_)) => "--at",
     };
-    Err(Error::Usage(format!(
-        "{}: {why}; {given} is for scenes only",
-        args.input
-    )))
+    Err(usage!("{}: {why}; {given} is for scenes only", args.input))
 }
 
 fn open(args: &Args) -> Result<Course, Error> {
@@ -173,10 +170,10 @@ fn open(args: &Args) -> Result<Course, Error> {
         }
         FileKind::Journal => {
             let name = &args.input;
-            Err(Error::Usage(format!(
+            Err(usage!(
                 "{name}: a journal can only be exported as .cast; `w` in the debugger (`stickslip resume {name}`) \
                  writes a snapshot of the shown state"
-            )))
+            ))
         }
         _ => Ok(Course::of_scene(Scene::open(&args.input, &args.set.set)?)),
     }

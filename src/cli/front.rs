@@ -13,24 +13,20 @@ pub fn ready() -> Result<(), Error> {
 
 /// Opens the debugger on a scene, or on the chooser.
 pub fn debug(scene: Option<String>, set: &[(String, String)], keep: &Keep) -> Result<(), Error> {
-    tui::run(scene, set, keep).map_err(usage_error)
+    tui::run(scene, set, keep).map_err(Error::usage)
 }
 
 /// Opens the debugger on a replayed session.
 pub fn resume(session: Session, words: &str) -> Result<(), Error> {
-    tui::resume(session, words).map_err(usage_error)
+    tui::resume(session, words).map_err(Error::usage)
 }
 
 /// Starts a guided lesson.
 pub fn lesson(lesson: Lesson) -> Result<(), Error> {
-    tui::run_lesson(lesson).map_err(usage_error)
+    tui::run_lesson(lesson).map_err(Error::usage)
 }
 
 /// Converts a journal to a film.
 pub fn film(record: &Record, session: Session) -> Result<String, Error> {
     Ok(tui::cast::film(record, session)?)
-}
-
-fn usage_error(error: impl ToString) -> Error {
-    Error::Usage(error.to_string())
 }

@@ -8,7 +8,7 @@ use stickslip_debugger::teach::Lesson;
 /// Fails: this build has no debugger.
 pub fn ready() -> Result<(), Error> {
     let text = "this build has no debugger; cargo install stickslip --features tui";
-    Err(Error::Usage(text.to_owned()))
+    Err(Error::usage(text))
 }
 
 pub fn debug(_: Option<String>, _: &[(String, String)], _: &Keep) -> Result<(), Error> {

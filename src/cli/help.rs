@@ -1,6 +1,6 @@
 //! `stickslip help [TOPIC]`: shows and searches the manual's pages, and shows the help of subcommands.
 
-use super::base::{Error, Exit, print, say};
+use super::base::{Error, Exit, print, say, usage};
 use std::ffi::OsString;
 use std::io::{IsTerminal, Write};
 use std::process::{Command, Stdio};
@@ -23,7 +23,7 @@ pub fn main(args: &Args, program: clap::Command) -> Result<Exit, Error> {
         (None, Some(word)) => search(word),
         (None, None) => contents(),
         (Some(topic), _) if program.find_subcommand(topic).is_some() => subcommand(topic, program),
-        (Some(topic), _) => show(manual::page(topic).map_err(|why| Error::Usage(why.to_string()))?),
+        (Some(topic), _) => show(manual::page(topic).map_err(Error::usage)?),
     }
 }
 
@@ -48,9 +48,7 @@ fn search(word: &str) -> Result<Exit, Error> {
     let hits = manual::search(word);
     if hits.is_empty() {
         let word = stickslip_scene::shown::cut(word, 40);
-        return Err(Error::Usage(format!(
-            "no page of the manual contains '{word}'"
-        )));
+        return Err(usage!("no page of the manual contains '{word}'"));
     }
     let mut text = String::new();
     let mut above = ("", String::new());

@@ -1,6 +1,6 @@
 //! `--json`: the result of a subcommand as data, to standard output or to a file. The records are in [`super::records`].
 
-use super::base::Error;
+use super::base::{Error, usage};
 use super::sink::Sink;
 use serde::Serialize;
 use std::fmt::Write;
@@ -56,7 +56,7 @@ pub fn unfinished(mut sink: Sink, record: &impl Serialize) -> Result<Option<Outp
 /// A record as text. Numbers have as many digits as needed to read back the same bits; those that are not finite are null.
 fn text(record: &impl Serialize) -> Result<String, Error> {
     let text = serde_json::to_string_pretty(record);
-    let text = text.map_err(|error| Error::Usage(format!("--json: {error}")))?;
+    let text = text.map_err(|error| usage!("--json: {error}"))?;
     let mut safe = String::with_capacity(text.len() + 1);
     let mut units = [0; 2];
     for letter in text.chars() {

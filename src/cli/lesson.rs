@@ -40,7 +40,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
 /// The built-in lessons, one per line, with the user's progress.
 fn list() -> Result<String, Error> {
     let progress = match progress::place() {
-        Some(file) => Progress::read(&file).map_err(|why| Error::Usage(why.to_string()))?,
+        Some(file) => Progress::read(&file).map_err(Error::usage)?,
         None => Progress::default(),
     };
     let lessons: Vec<_> = teach::list()

@@ -1,6 +1,6 @@
 //! `stickslip man`: pages for man, one for the program and one for each subcommand.
 
-use super::base::{Error, Exit, notify, say};
+use super::base::{Error, Exit, notify, say, usage};
 use clap_mangen::Man;
 use std::path::PathBuf;
 use stickslip_platform::files;
@@ -23,8 +23,7 @@ pub fn main(args: &Args, mut program: clap::Command) -> Result<Exit, Error> {
         say(&page(&program)?)?;
         return Ok(Exit::Good);
     };
-    std::fs::create_dir_all(folder)
-        .map_err(|why| Error::Usage(format!("{}: {why}", folder.display())))?;
+    std::fs::create_dir_all(folder).map_err(|why| usage!("{}: {why}", folder.display()))?;
     let mut pages = Vec::new();
     for command in std::iter::once(&program).chain(program.get_subcommands()) {
         let name = command.get_display_name().unwrap_or(command.get_name());

@@ -1,6 +1,6 @@
 //! `stickslip map`: where the iterations converge.
 
-use super::base::{Error, Exit, NoValue, SetArgs, put};
+use super::base::{Error, Exit, NoValue, SetArgs, put, usage};
 use super::interrupt::Interrupt;
 use super::sweep::{Report, SweepArgs};
 use std::ops::RangeInclusive;
@@ -164,7 +164,7 @@ fn study(args: &Args) -> Result<Study, Error> {
     for over in &args.over {
         if vary.iter().any(|other| other.path == over.path) {
             let path = &over.path;
-            return Err(Error::Usage(format!("--over {path}: given twice")));
+            return Err(usage!("--over {path}: given twice"));
         }
         vary.push(over.clone());
     }

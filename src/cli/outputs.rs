@@ -81,7 +81,7 @@ impl Outputs {
     /// build cannot draw.
     pub fn open(args: &OutputArgs) -> Result<Outputs, Error> {
         if args.draws() {
-            pen::ready().map_err(undrawn)?;
+            pen::ready().map_err(Error::usage)?;
         }
         let named =
             |path: &Option<PathBuf>| path.as_ref().map(|p| p.to_string_lossy().into_owned());
@@ -112,13 +112,13 @@ impl Outputs {
     ) -> Result<(), Error> {
         let mut files = Vec::new();
         if self.svg.is_some() || self.png.is_some() {
-            let sheet = picture().map_err(undrawn)?;
+            let sheet = picture().map_err(Error::usage)?;
             if let Some(output) = self.svg {
-                let svg = sheet.svg().map_err(undrawn)?;
+                let svg = sheet.svg().map_err(Error::usage)?;
                 files.push(written(output, svg.as_bytes())?);
             }
             if let Some(output) = self.png {
-                files.push(written(output, &sheet.png().map_err(undrawn)?)?);
+                files.push(written(output, &sheet.png().map_err(Error::usage)?)?);
             }
         }
         if let Some(mut sink) = self.csv {
@@ -139,10 +139,6 @@ impl Outputs {
         }
         Ok(())
     }
-}
-
-fn undrawn(error: PlotError) -> Error {
-    Error::Usage(error.to_string())
 }
 
 fn written(mut output: Output, bytes: &[u8]) -> Result<Output, Error> {

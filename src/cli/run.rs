@@ -1,6 +1,6 @@
 //! `stickslip run`: solves a scene from start to end.
 
-use super::base::{Error, Exit, Sent, notify};
+use super::base::{Error, Exit, Sent, notify, usage};
 use super::interrupt::Interrupt;
 use super::json;
 use super::records::{FailureKind, FailureRecord, RunRecord};
@@ -52,8 +52,8 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     let interrupt = Interrupt::listen();
     let Subject { scene, mut solver } = args.subject.open(args.force)?;
     if args.outputs.vtu.is_some() && args.subject.solver.is_named() {
-        return Err(Error::Usage(
-            "--vtu cannot be used with an attached solver, which reports only its contacts".into(),
+        return Err(usage!(
+            "--vtu cannot be used with an attached solver, which reports only its contacts"
         ));
     }
     let asks = Arc::new(AtomicUsize::new(0));

@@ -1,6 +1,6 @@
 //! The subject of a run: a scene for stickslip's own solver, or an attached solver.
 
-use super::base::{Error, SetArgs};
+use super::base::{Error, SetArgs, usage};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
@@ -66,7 +66,7 @@ impl SolverArgs {
                     }
                     _ => format!("the file cannot be written: {error}"),
                 };
-                Error::Usage(format!("{}: {how}", path.display()))
+                usage!("{}: {how}", path.display())
             })?;
         }
         Ok(log)
@@ -76,7 +76,7 @@ impl SolverArgs {
     pub fn attach(&self, overwrite: bool) -> Result<(Scene, Attached, Log), Error> {
         let log = self.log(overwrite)?;
         let attached = Attached::attach(self.start(), log.clone());
-        let (scene, attached) = attached.map_err(|fault| Error::Usage(fault.to_string()))?;
+        let (scene, attached) = attached.map_err(Error::usage)?;
         Ok((scene, attached, log))
     }
 }
@@ -104,9 +104,9 @@ impl SubjectArgs {
     pub fn open(&self, overwrite: bool) -> Result<Subject, Error> {
         if self.solver.is_named() {
             if let Some((path, _)) = self.set.set.first() {
-                return Err(Error::Usage(format!(
+                return Err(usage!(
                     "--set {path}: only for scenes; set a solver's parameters by its arguments or in the debugger (:set)"
-                )));
+                ));
             }
             let (scene, attached, _) = self.solver.attach(overwrite)?;
             return Ok(Subject {
@@ -123,7 +123,7 @@ impl SubjectArgs {
 /// A new session for a journal, at its start.
 pub fn session_of(record: &Record, solver: &SolverArgs) -> Result<Session, Error> {
     let (file, header) = (&record.file, &record.header);
-    let wrong = |why: String| Err(Error::Usage(format!("{file}: {why}")));
+    let wrong = |why: String| Err(usage!("{file}: {why}"));
     match (solver.is_named(), &header.scene.attached) {
         (false, None) => Ok(Session::new(record.scene()?)),
         (true, Some(_)) => {

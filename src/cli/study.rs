@@ -1,6 +1,6 @@
 //! `stickslip study`: runs a scene with many settings, and makes a table and a figure.
 
-use super::base::{Error, Exit, SetArgs};
+use super::base::{Error, Exit, SetArgs, usage};
 use super::benchmarks;
 use super::interrupt::Interrupt;
 use super::sweep::{Report, SweepArgs};
@@ -81,10 +81,10 @@ fn refuse_changes(args: &Args) -> Result<(), Error> {
     ];
     match given.iter().find(|(_, given)| *given) {
         None => Ok(()),
-        Some((option, _)) => Err(Error::Usage(format!(
+        Some((option, _)) => Err(usage!(
             "{}: benchmarks cannot be changed; {option} is for studies and scenes only",
             args.study
-        ))),
+        )),
     }
 }
 
@@ -93,7 +93,7 @@ fn plan(args: &Args) -> Result<Plan, Error> {
     for (k, vary) in args.vary.iter().enumerate() {
         if args.vary[..k].iter().any(|other| other.path == vary.path) {
             let path = &vary.path;
-            return Err(Error::Usage(format!("--vary {path}: given twice")));
+            return Err(usage!("--vary {path}: given twice"));
         }
         study.vary(vary.clone());
     }

@@ -1,6 +1,6 @@
 //! Shared by all sweeps: `--shard`, `--log`, `--merge`, running, and reporting.
 
-use super::base::{Error, Exit, notify, quoted};
+use super::base::{Error, Exit, notify, quoted, usage};
 use super::interrupt::Interrupt;
 use super::outputs::{OutputArgs, Outputs};
 use std::path::PathBuf;
@@ -65,7 +65,7 @@ impl SweepArgs {
 
     fn keeping(&self) -> Result<Keeping, Error> {
         let shard = self.shard.unwrap_or(Shard::WHOLE);
-        let wrong = |why: &str| Err(Error::Usage(format!("--shard {shard} {why}")));
+        let wrong = |why: &str| Err(usage!("--shard {shard} {why}"));
         if self.part().is_some() && self.out.draws() {
             return wrong(
                 "runs only part of the cells; draw the picture with --merge from all logs",
@@ -168,7 +168,7 @@ pub fn failed(error: RunError) -> Error {
         RunError::Log(LogError::Busy(_) | LogError::File { .. }) | RunError::Threads(_) => {
             Error::Again(error.to_string())
         }
-        _ => Error::Usage(error.to_string()),
+        _ => Error::usage(error),
     }
 }
 

@@ -27,3 +27,17 @@ impl Broken {
         }
     }
 }
+
+impl From<((usize, usize), String)> for Broken {
+    fn from(((line, column), message): ((usize, usize), String)) -> Self {
+        Broken::at(line, column, message)
+    }
+}
+
+/// Returns an error from a location and a formatted message: `bail!(place, "{name} is defined twice")`.
+#[macro_export]
+macro_rules! bail {
+    ($place:expr, $($message:tt)+) => {
+        return Err(($place, format!($($message)+)).into())
+    };
+}

@@ -10,6 +10,7 @@
 //! A symmetric matrix is stored by its lower half, a skew-symmetric one by the part below the diagonal. Case and additional words
 //! in the first line do not matter. Patterns, which have no values, and complex matrices are rejected.
 
+use crate::bail;
 use crate::broken::Broken;
 use crate::problem::{Matrix, is_there};
 use crate::words::{Words, quoted};
@@ -37,9 +38,10 @@ pub fn read(text: &str) -> Result<Matrix, Broken> {
     let rows = words.count("the number of rows")?;
     let columns = words.count("the number of columns")?;
     if symmetry != Symmetry::General && rows != columns {
-        return Err(words.broken(format!(
+        bail!(
+            words.place(),
             "a matrix with {rows} rows and {columns} columns cannot be symmetric or skew-symmetric"
-        )));
+        );
     }
     let entries = match coordinate {
         true => coordinates(&mut words, rows, columns, symmetry)?,
@@ -138,7 +140,10 @@ fn coordinates(
         };
         let (row, column) = (index(rows, "a row")?, index(columns, "a column")?);
         if symmetry == Symmetry::Skew && row == column {
-            return Err(words.broken("a skew-symmetric matrix has no diagonal entries"));
+            bail!(
+                words.place(),
+                "a skew-symmetric matrix has no diagonal entries"
+            );
         }
         let value = words.number("an entry")?;
         add(&mut entries, row, column, value, symmetry);

@@ -17,6 +17,7 @@
 //! A global problem is recognised by the size of its first matrix; if M has the same size as W would, by the three whole numbers
 //! at the start of H and by more words than a local problem would have left. Trailing text in the file is ignored.
 
+use crate::bail;
 use crate::broken::Broken;
 use crate::problem::{Global, Local, Matrix, Problem, is_there};
 use crate::words::Words;
@@ -39,9 +40,10 @@ pub fn read(text: &str) -> Result<Problem, Broken> {
     let mut words = Words::new(text);
     let contacts = head(&mut words)?;
     let Some(size) = contacts.checked_mul(2) else {
-        return Err(words.broken(format!(
+        bail!(
+            words.place(),
             "the problem has {contacts} contacts, which is far too many"
-        )));
+        );
     };
     body(&mut words, contacts, size)
 }
@@ -60,20 +62,25 @@ fn head(words: &mut Words<'_>) -> Result<usize, Broken> {
     match words.count("the dimension")? {
         2 => {}
         3 => {
-            return Err(words.broken(
-                "the problem is three-dimensional (dimension 3); only plane problems (2) are supported",
-            ));
+            bail!(
+                words.place(),
+                "the problem is three-dimensional (dimension 3); only plane problems (2) are supported"
+            );
         }
         other => {
-            return Err(words.broken(format!(
+            bail!(
+                words.place(),
                 "the file begins with {other}; a Siconos friction problem begins with its dimension, 2, and \
                  a scene with a bracket"
-            )));
+            );
         }
     }
     let contacts = words.count("the number of contacts")?;
     if contacts == 0 {
-        return Err(words.broken("the problem has 0 contacts; it must have at least 1"));
+        bail!(
+            words.place(),
+            "the problem has 0 contacts; it must have at least 1"
+        );
     }
     Ok(contacts)
 }
@@ -129,9 +136,10 @@ fn matrix(
         1 => blocks,
         2 => sparse,
         other => {
-            return Err(words.broken(format!(
+            bail!(
+                words.place(),
                 "{name} is in storage {other}; it must be 0 (dense), 1 (sparse blocks) or 2 (CSparse)"
-            )));
+            );
         }
     };
     let (of_rows, of_columns) = (
@@ -143,7 +151,7 @@ fn matrix(
         None => words.count(&of_rows)?,
     };
     if rows == 0 {
-        return Err(words.broken(format!("{name} has 0 rows; it must have at least 1")));
+        bail!(words.place(), "{name} has 0 rows; it must have at least 1");
     }
     if size.is_none() {
         squared(words, rows, local, &of_rows)?;
@@ -193,9 +201,10 @@ fn blocks(
         return Ok(entries);
     }
     if count > rows.saturating_mul(columns) {
-        return Err(words.broken(format!(
+        bail!(
+            words.place(),
             "{name} has {count} blocks, more than it has entries"
-        )));
+        );
     }
     let down = words.count_up_to(rows, "the number of block rows")?;
     let across = words.count_up_to(columns, "the number of block columns")?;
@@ -208,9 +217,10 @@ fn blocks(
         let begin = words.count_up_to(count, "the first block of a block row")?;
         let least = begins.last().copied().unwrap_or(0);
         if begin < least || (k == 0 && begin != 0) || (k == down && begin != count) {
-            return Err(words.broken(format!(
+            bail!(
+                words.place(),
                 "{begin} is not a valid first block of a block row; the list must start at 0, be ascending, and end at {count}"
-            )));
+            );
         }
         begins.push(begin);
     }
@@ -245,14 +255,15 @@ fn ends(
         let end = words.count_up_to(size, &format!("the end of a {what}"))?;
         let least = ends.last().map_or(1, |last| last + 1);
         if end < least || (k + 1 == count && end != size) {
-            return Err(words.broken(format!(
+            bail!(
+                words.place(),
                 "a {what} ends at {end}; the ends must be ascending, up to {size}"
-            )));
+            );
         }
         ends.push(end);
     }
     if ends.is_empty() {
-        return Err(words.broken(format!("{name} has no {what}")));
+        bail!(words.place(), "{name} has no {what}");
     }
     Ok(ends)
 }

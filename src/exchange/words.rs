@@ -1,5 +1,6 @@
 //! Splits a text into words and tracks their positions.
 
+use crate::bail;
 use crate::broken::Broken;
 
 /// Maximum number of characters of a word in a message.
@@ -60,7 +61,7 @@ impl<'t> Words<'t> {
         let trimmed = self.rest.trim_start();
         let end = trimmed.find(char::is_whitespace).unwrap_or(trimmed.len());
         if end == 0 {
-            return Err(self.broken(format!("the file ends where {what} was expected")));
+            bail!(self.place(), "the file ends where {what} was expected");
         }
         self.last = self.whole.len() - trimmed.len();
         self.rest = &trimmed[end..];

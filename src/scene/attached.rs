@@ -7,13 +7,13 @@
 use super::limits;
 use super::nodes::Names;
 use crate::format::contact_law::FrictionSpec;
-use crate::format::error::{Fault, at};
+use crate::format::error::{Fault, at, fault};
 use crate::format::spec::{History, Spec};
 use crate::shown;
 use std::collections::{HashMap, HashSet};
 use stickslip_core::model::{
-    Body, BodyKind, Bond, Contact, Control, Form, Friction, InitialState, Jumps, Linear, Model,
-    Monitor, Node, Surface, ToldKind, Watched,
+    Body, BodyKind, Bond, Contact, Control, Form, Friction, Jumps, Linear, Model, Monitor, Node,
+    Surface, ToldKind, Watched,
 };
 use stickslip_exchange::attach::Answer;
 use stickslip_exchange::attach::message::{self, Scene};
@@ -65,10 +65,11 @@ pub fn told(text: &str) -> Result<Scene, Fault> {
     let here = at!["attached"];
     match Answer::read(text) {
         Ok(Answer::Scene(scene)) => Ok(*scene),
-        Ok(other) => {
-            let message = format!("this is a {} message, not a scene", other.kind());
-            Err(Fault::new(here, message))
-        }
+        Ok(other) => Err(fault!(
+            here,
+            "this is a {} message, not a scene",
+            other.kind()
+        )),
         Err(broken) => Err(Fault::new(here, broken.message)),
     }
 }
@@ -229,14 +230,11 @@ fn surfaces(scene: &Scene) -> Result<Surfaces<'_>, Fault> {
                 told.name
             ));
         }
-        surfaces.push(Surface {
-            name: shown::cut(&told.name, limits::NAME),
-            elements: told.nodes.windows(2).map(<[usize]>::to_vec).collect(),
-            rigid: told.rigid,
-            endless: false,
-            smooth: Vec::new(),
-            gives: Vec::new(),
-        });
+        surfaces.push(Surface::new(
+            &shown::cut(&told.name, limits::NAME),
+            told.nodes.windows(2).map(<[usize]>::to_vec).collect(),
+            told.rigid,
+        ));
     }
     Ok((surfaces, numbers))
 }
@@ -277,15 +275,10 @@ fn contacts(scene: &Scene, surfaces: &HashMap<&str, usize>) -> Result<Vec<Contac
             ));
         }
         contacts.push(Contact {
-            node: told.node,
-            surfaces: surface,
-            friction,
             start: told.mode,
-            state: InitialState::default(),
-            overlap: 0.0,
             bond: bond(told),
             area: told.area,
-            facing: None,
+            ..Contact::new(told.node, surface, friction)
         });
     }
     Ok(contacts)

@@ -8,7 +8,7 @@
 use super::curves::{lagrange, point, sin_cos_degrees};
 use super::geometry;
 use super::limits;
-use crate::format::error::{Fault, Path};
+use crate::format::error::{AtPath, Fault, Path, bail, fault};
 use crate::format::spec::{Place, Point, Side, Sides};
 use stickslip_core::model::ElementKind;
 
@@ -217,13 +217,13 @@ pub(crate) fn block(
     }
     for (k, ratio) in [shape.grading.0, shape.grading.1].into_iter().enumerate() {
         if !(1.0 / limits::GRADING..=limits::GRADING).contains(&ratio) {
-            let message = format!(
+            bail!(
+                here.then("grading").then(k),
                 "the grading is {ratio:?} (last element length over first); it must be between {:?} and \
                  {:?}",
                 1.0 / limits::GRADING,
                 limits::GRADING
             );
-            return Err(Fault::new(here.then("grading").then(k), message));
         }
     }
     let corners = corners(here, shape)?;
@@ -249,7 +249,7 @@ pub(crate) fn block(
             Side::Arc { center } => arc_side(&path.then("center"), *center, ends, stations)?,
             Side::Along { chain: id } => {
                 let path = path.then("chain");
-                let (points, m) = chain(id).map_err(|message| Fault::new(path.clone(), message))?;
+                let (points, m) = chain(id).at(&path)?;
                 chain_side(&path, id, &points, m, ends, stations)?
             }
         };
@@ -270,30 +270,30 @@ fn corners(here: &Path, shape: &Shape<'_>) -> Result<[Point; 4], Fault> {
         [low, high] => [low, (high.0, low.1), high, (low.0, high.1)],
         [a, b, c, d] => [a, b, c, d],
         _ => {
-            let message = format!(
+            bail!(
+                list,
                 "the list has {} corners; it must have two opposite ones, lower left and upper right, or all four",
                 shape.corners.len()
             );
-            return Err(Fault::new(list, message));
         }
     };
     let curved = shape.sides.around().map(|side| side.is_some());
     let straight = |k: usize| !curved[k] && !curved[(k + 3) % 4];
     if let Some(k) = (0..4).find(|&k| straight(k) && !is_open(&corners, k)) {
         let (x, y) = corners[k];
-        let message = format!(
+        bail!(
+            list,
             "the block is folded or flat at its corner ({x:?}, {y:?}); list the corners anticlockwise \
              (lower left, lower right, upper right, upper left), with every angle below 180 degrees"
         );
-        return Err(Fault::new(list, message));
     }
     if let Some(k) = (0..4).find(|&k| corners[k] == corners[(k + 1) % 4]) {
         let (x, y) = corners[k];
-        let message = format!(
+        bail!(
+            list,
             "the {} side has zero length: both ends are at ({x:?}, {y:?})",
             EDGES[k]
         );
-        return Err(Fault::new(list, message));
     }
     Ok(corners)
 }
@@ -344,16 +344,19 @@ fn arc_side(
     let (a, b) = (arm(ends.0), arm(ends.1));
     let (r, q) = (a.0.hypot(a.1), b.0.hypot(b.1));
     if (r - q).abs() > SAME_LENGTH * r.max(q) {
-        let message = format!(
+        bail!(
+            path,
             "the corners {:?} and {:?} are {r} and {q} away from the center; an arc needs equal radii",
-            ends.0, ends.1
+            ends.0,
+            ends.1
         );
-        return Err(Fault::new(path.clone(), message));
     }
     let turn = (a.0 * b.1 - a.1 * b.0).atan2(a.0 * b.0 + a.1 * b.1);
     if turn.abs() > std::f64::consts::PI * (1.0 - SAME_LENGTH) {
-        let message = "the corners are opposite each other, so the direction of the arc is ambiguous; divide the block";
-        return Err(Fault::new(path.clone(), message));
+        bail!(
+            path,
+            "the corners are opposite each other, so the direction of the arc is ambiguous; divide the block"
+        );
     }
     let on_arc = |s: f64| {
         let (sin, cos) = (turn * s).sin_cos();
@@ -374,7 +377,7 @@ fn chain_side(
     stations: &[f64],
 ) -> Result<Vec<Point>, Fault> {
     let (Some(first), Some(last)) = (points.first().copied(), points.last().copied()) else {
-        return Err(Fault::new(path.clone(), "the chain is empty"));
+        bail!(path, "the chain is empty");
     };
     let apart = |a: Point, b: Point| (a.0 - b.0).hypot(a.1 - b.1);
     let near = SAME_LENGTH * apart(ends.0, ends.1);
@@ -382,11 +385,12 @@ fn chain_side(
     let mut walked = points.to_vec();
     if !fits(first, last) {
         if !fits(last, first) {
-            let message = format!(
+            bail!(
+                path,
                 "the chain {id:?} runs from {first:?} to {last:?}; it must connect the corners {:?} and {:?}",
-                ends.0, ends.1
+                ends.0,
+                ends.1
             );
-            return Err(Fault::new(path.clone(), message));
         }
         walked.reverse();
     }
@@ -421,13 +425,13 @@ fn check_elements(here: &Path, grid: Grid, at: &[Point]) -> Result<(), Fault> {
         return Ok(());
     };
     let place = place / grid.per_cell();
-    let message = format!(
+    Err(fault!(
+        here,
         "the block is folded in element {} from the left, {} from the bottom: its Jacobian is not \
          positive; list the corners anticlockwise, and check curved and graded sides",
         place % grid.columns + 1,
         place / grid.columns + 1
-    );
-    Err(Fault::new(here.clone(), message))
+    ))
 }
 
 /// Rotates and moves points.

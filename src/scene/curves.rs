@@ -1,7 +1,7 @@
 //! Points along lines, arcs and Lagrange curves.
 
 use super::limits;
-use crate::format::error::{Fault, Path};
+use crate::format::error::{Fault, Path, bail, fault};
 use crate::format::spec::Point;
 
 pub(crate) fn point(path: &Path, (x, y): Point) -> Result<(), Fault> {
@@ -33,11 +33,9 @@ pub(crate) fn check_chain_count(
     } else {
         below.to_string()
     };
-    Err(Fault::new(
-        path.clone(),
-        format!(
-            "{count} nodes do not form complete elements of {per_element} nodes with shared ends; {fits} would"
-        ),
+    Err(fault!(
+        path,
+        "{count} nodes do not form complete elements of {per_element} nodes with shared ends; {fits} would"
     ))
 }
 
@@ -63,10 +61,10 @@ pub(crate) fn line(here: &Path, from: Point, to: Point, n: usize) -> Result<Vec<
     point(&here.then("from"), from)?;
     point(&here.then("to"), to)?;
     if from == to {
-        return Err(Fault::new(
+        bail!(
             here.then("to"),
-            format!("the line has zero length: it starts and ends at {to:?}"),
-        ));
+            "the line has zero length: it starts and ends at {to:?}"
+        );
     }
     let between = |a: f64, b: f64, t: f64| a * (1.0 - t) + b * t;
     let at = |t| (between(from.0, to.0, t), between(from.1, to.1, t));
@@ -83,20 +81,18 @@ pub(crate) fn arc(
     point(&here.then("center"), center)?;
     limits::finite(&here.then("radius"), radius, "the radius")?;
     if radius <= 0.0 {
-        return Err(Fault::new(
+        bail!(
             here.then("radius"),
-            format!("the radius is {radius:?}; it must be positive"),
-        ));
+            "the radius is {radius:?}; it must be positive"
+        );
     }
     limits::finite(&here.then("from"), from, "the angle")?;
     limits::finite(&here.then("to"), to, "the angle")?;
     if from == to || (to - from).abs() > 360.0 {
-        return Err(Fault::new(
+        bail!(
             here.then("to"),
-            format!(
-                "the arc runs from {from:?} to {to:?} degrees; it must turn by more than 0 and at most 360"
-            ),
-        ));
+            "the arc runs from {from:?} to {to:?} degrees; it must turn by more than 0 and at most 360"
+        );
     }
     let at = |t: f64| {
         let (sin, cos) = sin_cos_degrees(from * (1.0 - t) + to * t);
@@ -129,10 +125,7 @@ pub(crate) fn through(
     for (k, at) in points.iter().enumerate() {
         point(&list.then(k), *at)?;
         if k > 0 && points[k - 1] == *at {
-            return Err(Fault::new(
-                list.then(k),
-                format!("the point {at:?} is repeated"),
-            ));
+            bail!(list.then(k), "the point {at:?} is repeated");
         }
     }
     check_chain_count(&list, points.len(), m)?;

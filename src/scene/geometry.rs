@@ -1,7 +1,7 @@
 //! Checks the geometry of elements, and measures the distance of a point from a chain of elements.
 
 use super::limits;
-use crate::format::error::{Fault, Path};
+use crate::format::error::{Fault, Path, bail};
 use stickslip_core::fem::continuum;
 use stickslip_core::model::{ElementKind, Node};
 
@@ -28,11 +28,11 @@ pub(crate) fn check_elements(
                 &nodes[element[0]].name,
                 &nodes[element[element.len() - 1]].name,
             );
-            let message = format!(
+            bail!(
+                path,
                 "the element {first} to {last} is folded: its Jacobian vanishes or changes sign; space its \
                  nodes more evenly"
             );
-            return Err(Fault::new(path.clone(), message));
         }
     }
     Ok(())
@@ -57,7 +57,7 @@ fn check_distances(
         } else {
             continue;
         };
-        return Err(Fault::new(path.clone(), message));
+        return Err(Fault::new(path, message));
     }
     Ok(())
 }

@@ -6,7 +6,7 @@
 //! `rest`; nodes without a cell are left out.
 
 use super::limits;
-use crate::format::error::{Fault, Path, at, quoted, some_of};
+use crate::format::error::{Fault, Path, at, fault, quoted, some_of};
 use crate::format::given::{Cells, NodeSet, SideSet};
 use crate::format::spec::Nodes;
 use crate::format::{SceneError, Spec, read};
@@ -56,12 +56,7 @@ pub(super) fn resolve(spec: &mut Spec, scene: &str) -> Result<bool, Refused> {
 }
 
 fn read(here: &Path, scene: &str, file: &str) -> Result<Mesh, Refused> {
-    let unread = |message: String| {
-        Refused::Here(Fault::new(
-            here.clone(),
-            format!("{}: {message}", quoted(file)),
-        ))
-    };
+    let unread = |message: String| Refused::Here(fault!(here, "{}: {message}", quoted(file)));
     let path = input::beside(std::path::Path::new(scene), file).map_err(unread)?;
     mesh(&path.to_string_lossy()).map_err(|error| match error {
         NoMesh::Unread(message) => unread(message),

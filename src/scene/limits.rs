@@ -3,7 +3,7 @@
 //! The limits protect the machine from typos (`elements: 100000000`). The size of a valid large scene is limited by its memory
 //! ([`super::memory`], [`super::cost`]).
 
-use crate::format::error::{Fault, Path};
+use crate::format::error::{Fault, Path, fault};
 use stickslip_core::linear::estimate::bytes;
 
 /// Maximum number of nodes after refinement: indices in the stiffness have 32 bits.
@@ -42,9 +42,9 @@ pub(crate) fn finite(path: &Path, value: f64, what: &str) -> Result<(), Fault> {
     if value.abs() <= MAGNITUDE {
         return Ok(());
     }
-    Err(Fault::new(
-        path.clone(),
-        format!("{what} is {value:?}; it must be a finite number between -1e12 and 1e12"),
+    Err(fault!(
+        path,
+        "{what} is {value:?}; it must be a finite number between -1e12 and 1e12"
     ))
 }
 
@@ -53,9 +53,9 @@ pub(crate) fn stiffness(path: &Path, value: f64, what: &str) -> Result<(), Fault
     if (STIFFNESS.0..=STIFFNESS.1).contains(&value) {
         return Ok(());
     }
-    Err(Fault::new(
-        path.clone(),
-        format!("{what} is {value:?}; a stiffness must be positive and finite (1e-30 to 1e30)"),
+    Err(fault!(
+        path,
+        "{what} is {value:?}; a stiffness must be positive and finite (1e-30 to 1e30)"
     ))
 }
 
@@ -70,9 +70,9 @@ pub(crate) fn count(
         return Ok(());
     }
     let (least, most) = (range.start(), range.end());
-    Err(Fault::new(
-        path.clone(),
-        format!("{what} is {value}; it must be {least} to {most}"),
+    Err(fault!(
+        path,
+        "{what} is {value}; it must be {least} to {most}"
     ))
 }
 
@@ -81,8 +81,10 @@ pub(crate) fn entries(list: &str, length: usize) -> Result<(), Fault> {
     if length <= ENTRIES {
         return Ok(());
     }
-    let message = format!("the list has {length} entries; at most {ENTRIES} are allowed");
-    Err(Fault::new(crate::format::error::at![list], message))
+    Err(fault!(
+        crate::format::error::at![list],
+        "the list has {length} entries; at most {ENTRIES} are allowed"
+    ))
 }
 
 /// Error if at least this many bytes are needed but not available; `setting` is `settings.memory`.
@@ -101,9 +103,10 @@ pub(crate) fn memory(wanted: f64, setting: Option<f64>) -> Result<(), String> {
 /// Limits the total number of element nodes, so that a chain used repeatedly does not fill the memory.
 pub(crate) fn element_nodes(path: &Path, total: usize, setting: Option<f64>) -> Result<(), Fault> {
     memory(total as f64 * NODE_BYTES / 4.0, setting).map_err(|why| {
-        let message =
-            format!("with this item, the elements have {total} nodes in total, which need {why}");
-        Fault::new(path.clone(), message)
+        fault!(
+            path,
+            "with this item, the elements have {total} nodes in total, which need {why}"
+        )
     })
 }
 
@@ -144,8 +147,8 @@ pub(crate) fn id(path: &Path, id: &str) -> Result<(), Fault> {
         return Ok(());
     };
     let shown = crate::format::error::quoted(id);
-    Err(Fault::new(
-        path.clone(),
-        format!("the id {shown} {wrong}; an id consists of letters, digits, - and _"),
+    Err(fault!(
+        path,
+        "the id {shown} {wrong}; an id consists of letters, digits, - and _"
     ))
 }

@@ -82,10 +82,8 @@ pub struct Benchmark {
     /// The monitor that is compared.
     pub of: String,
     /// A monitor to divide by.
-    #[serde(default)]
     pub over: Option<String>,
     /// Load factor of the comparison. `None`: the last.
-    #[serde(default)]
     pub at: Option<f64>,
     /// The source of the value.
     pub source: String,
@@ -94,10 +92,8 @@ pub struct Benchmark {
     /// Tolerance for the difference from it, relative.
     pub within: f64,
     /// What `within` and `drift` are relative to. `None`: the value itself.
-    #[serde(default)]
     pub scale: Option<f64>,
     /// Our own earlier value. `None` if there is none yet.
-    #[serde(default)]
     pub own: Option<f64>,
     /// Tolerance for the difference from our own value.
     #[serde(default = "default_drift")]

@@ -246,7 +246,6 @@ struct StudyFile {
     title: String,
     #[serde(default)]
     about: String,
-    #[serde(default)]
     scene: Option<String>,
     #[serde(default)]
     scenes: Vec<String>,
@@ -254,9 +253,7 @@ struct StudyFile {
     vary: Vec<Vary>,
     #[serde(default, deserialize_with = "pairs")]
     set: Vec<(String, String)>,
-    #[serde(default)]
     x: Option<String>,
-    #[serde(default)]
     y: Option<String>,
 }
 

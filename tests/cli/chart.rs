@@ -1,6 +1,6 @@
 //! Work-precision charts: what they measure, against what, and that failures are drawn.
 
-use crate::program::{code, err, program, well};
+use crate::program::{code, err, program, well, words};
 use std::collections::HashMap;
 use std::path::Path;
 use std::process::Output;
@@ -26,25 +26,11 @@ const BEAM: &str = "01-pinned-beam-rough-floor";
 #[test]
 fn the_elastica_is_the_reference_of_problem_04_and_the_cheapest_mesh_is_named() {
     let directory = tempfile::tempdir().unwrap();
-    let arguments = [
-        CIRCLE,
-        "--over",
-        "refine=1,2,4",
-        "--set",
-        "history.increment=0.5",
-        "--target",
-        "2e-4",
-        "--cost",
-        "minors",
-        "--repeats",
-        "1",
-        "--csv",
-        "-",
-        "--svg",
-        "a.svg",
-        "--png",
-        "a.png",
-    ];
+    let arguments = format!(
+        "{CIRCLE} --over refine=1,2,4 --set history.increment=0.5 --target 2e-4 --cost minors --repeats 1 \
+            --csv - --svg a.svg --png a.png"
+    );
+    let arguments = words(&arguments);
     let output = ran(directory.path(), &arguments);
     let table = rows(&output);
     let errors: Vec<f64> = table.iter().map(|r| number(r, "error")).collect();
@@ -88,19 +74,10 @@ fn the_elastica_is_the_reference_of_problem_04_and_the_cheapest_mesh_is_named() 
 #[test]
 fn without_a_table_the_finest_run_is_the_reference_and_says_so() {
     let directory = tempfile::tempdir().unwrap();
-    let arguments = [
-        "05-cantilever-elastic-block",
-        "--over",
-        "refine=1,2",
-        "--set",
-        "history.path[1]=0.1",
-        "--set",
-        "history.increment=0.1",
-        "--repeats",
-        "1",
-        "--csv",
-        "-",
-    ];
+    let arguments = words(
+        "05-cantilever-elastic-block --over refine=1,2 --set history.path[1]=0.1 --set \
+            history.increment=0.1 --repeats 1 --csv -",
+    );
     let output = ran(directory.path(), &arguments);
     let table = rows(&output);
     assert_eq!(
@@ -121,19 +98,10 @@ fn without_a_table_the_finest_run_is_the_reference_and_says_so() {
 #[test]
 fn a_run_that_fails_is_a_row_and_a_cross_on_the_rail() {
     let directory = tempfile::tempdir().unwrap();
-    let arguments = [
-        BEAM,
-        "--set",
-        "history.jumps=stop",
-        "--over",
-        "majors=60,1",
-        "--repeats",
-        "1",
-        "--csv",
-        "-",
-        "--svg",
-        "a.svg",
-    ];
+    let arguments = format!(
+        "{BEAM} --set history.jumps=stop --over majors=60,1 --repeats 1 --csv - --svg a.svg"
+    );
+    let arguments = words(&arguments);
     let output = ran(directory.path(), &arguments);
     let table = rows(&output);
     assert_eq!(table[0]["status"], "whole");
@@ -151,14 +119,7 @@ fn a_run_that_fails_is_a_row_and_a_cross_on_the_rail() {
 #[test]
 fn a_chart_is_measured_by_any_monitor_contact_forces_included() {
     let directory = tempfile::tempdir().unwrap();
-    let common = [
-        "--over",
-        "increment=0.05,0.025",
-        "--repeats",
-        "1",
-        "--csv",
-        "-",
-    ];
+    let common = words("--over increment=0.05,0.025 --repeats 1 --csv -");
     let by = |names: &[&str]| {
         let by: Vec<&str> = names.iter().flat_map(|name| ["--by", *name]).collect();
         let more = ["--svg", "a.svg", "--force"];
@@ -199,29 +160,16 @@ fn a_table_of_ones_own_is_a_reference_with_its_legs() {
     let directory = tempfile::tempdir().unwrap();
     let fine = program(
         directory.path(),
-        &[
-            "run",
-            BEAM,
-            "--set",
-            "history.increment=0.05",
-            "--csv",
-            "own.csv",
-        ],
+        &words(&format!(
+            "run {BEAM} --set history.increment=0.05 --csv own.csv"
+        )),
     )
     .output()
     .unwrap();
     assert!(fine.status.success());
-    let arguments = [
-        BEAM,
-        "--over",
-        "increment=0.05,0.025",
-        "--reference",
-        "own.csv",
-        "--repeats",
-        "1",
-        "--csv",
-        "-",
-    ];
+    let arguments =
+        format!("{BEAM} --over increment=0.05,0.025 --reference own.csv --repeats 1 --csv -");
+    let arguments = words(&arguments);
     let output = ran(directory.path(), &arguments);
     let table = rows(&output);
     // The same run as its own reference, over both legs: on the way back each load has another displacement.
@@ -233,28 +181,14 @@ fn a_table_of_ones_own_is_a_reference_with_its_legs() {
 #[test]
 fn the_middle_of_the_times_is_taken_and_the_counts_are_those_of_a_run() {
     let directory = tempfile::tempdir().unwrap();
-    let arguments = [
-        CIRCLE,
-        "--over",
-        "increment=0.5,1.75",
-        "--repeats",
-        "3",
-        "--csv",
-        "-",
-    ];
+    let arguments = format!("{CIRCLE} --over increment=0.5,1.75 --repeats 3 --csv -");
+    let arguments = words(&arguments);
     let output = ran(directory.path(), &arguments);
     let table = rows(&output);
     assert!(table.iter().all(|r| r["repeats"] == "3"));
     let run = program(
         directory.path(),
-        &[
-            "run",
-            CIRCLE,
-            "--set",
-            "history.increment=0.5",
-            "--csv",
-            "-",
-        ],
+        &words(&format!("run {CIRCLE} --set history.increment=0.5 --csv -")),
     )
     .output()
     .unwrap();
@@ -299,22 +233,11 @@ fn wrong_usage_is_refused_with_2() {
 #[test]
 fn a_table_is_drawn_again_as_it_was_and_tables_of_other_programs_too() {
     let directory = tempfile::tempdir().unwrap();
-    let first = [
-        CIRCLE,
-        "--over",
-        "refine=1,2",
-        "--set",
-        "history.increment=0.5",
-        "--repeats",
-        "1",
-        "--csv",
-        "a.csv",
-    ];
+    let first =
+        format!("{CIRCLE} --over refine=1,2 --set history.increment=0.5 --repeats 1 --csv a.csv");
+    let first = words(&first);
     assert!(ran(directory.path(), &first).status.success());
-    let output = ran(
-        directory.path(),
-        &["--from", "a.csv", "--csv", "-", "--target", "1"],
-    );
+    let output = ran(directory.path(), &words("--from a.csv --csv - --target 1"));
     let again = rows(&output);
     let table = std::fs::read_to_string(directory.path().join("a.csv")).unwrap();
     assert_eq!(again.len(), 2);
@@ -330,7 +253,7 @@ fn a_table_is_drawn_again_as_it_was_and_tables_of_other_programs_too() {
     std::fs::write(directory.path().join("peers.csv"), peers).unwrap();
     let output = ran(
         directory.path(),
-        &["--from", "peers.csv", "--svg", "b.svg", "--csv", "-"],
+        &words("--from peers.csv --svg b.svg --csv -"),
     );
     let table = rows(&output);
     assert_eq!(

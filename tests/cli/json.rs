@@ -1,6 +1,6 @@
 //! `--json` and `--junit`: the records have the fields of the page, and agree with tables, text and exit codes.
 
-use crate::program::{code, err, interrupted, out, program, rows, well};
+use crate::program::{code, err, interrupted, out, program, rows, well, words};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -259,7 +259,8 @@ fn a_failed_run_agrees_with_its_trace_and_text_quiet_or_not() {
 #[test]
 fn an_interrupted_run_writes_its_record() {
     let folder = tempfile::tempdir().unwrap();
-    let long = ["run", BEAM, "--set", "history.increment=5e-6", "--csv", "-"];
+    let long = format!("run {BEAM} --set history.increment=5e-6 --csv -");
+    let long = words(&long);
     let mut run = program(folder.path(), &[&long[..], &["--json", "a.json"]].concat());
     let child = run.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
     let mut child = child.unwrap();
@@ -297,7 +298,7 @@ fn a_file_is_never_overwritten_unasked_and_leaves_the_text_as_it_is() {
     assert_eq!(fs::read_to_string(&file).unwrap(), "mine");
     well(&check(&["--json", "a.json", "--force"]));
     assert_eq!(fs::read_to_string(&file).unwrap(), written);
-    let both = ran(&["run", BEAM, "--csv", "-", "--json", "-"]);
+    let both = ran(&words(&format!("run {BEAM} --csv - --json -")));
     assert_eq!((code(&both), out(&both)), (2, String::new()));
     let bad = ran(&["run", "no-such-scene", "--json"]);
     assert_eq!((code(&bad), out(&bad)), (2, String::new()));

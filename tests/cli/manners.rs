@@ -1,6 +1,6 @@
 //! What the command line says where something else was meant, and with which code it ends.
 
-use crate::program::{code, err, out, program, well};
+use crate::program::{code, err, out, program, well, words};
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Output, Stdio};
@@ -118,18 +118,8 @@ fn the_help_has_the_subcommands_in_groups() {
         .lines()
         .filter(|line| line.ends_with(':') && !line.starts_with(' '))
         .collect();
-    let wanted = [
-        "Solve:",
-        "Debug:",
-        "Attach:",
-        "Record:",
-        "Sweep:",
-        "Learn:",
-        "Files:",
-        "Install:",
-        "Arguments:",
-        "Options:",
-    ];
+    let wanted =
+        words("Solve: Debug: Attach: Record: Sweep: Learn: Files: Install: Arguments: Options:");
     assert_eq!(heads, wanted);
     for word in ["run", "export", "story", "map"] {
         let line = format!("  {word} ");
@@ -166,16 +156,9 @@ fn remedies_say_by_their_code_whether_any_works() {
 #[test]
 fn what_else_is_written_is_whole_though_the_reader_of_one_table_left() {
     let directory = tempfile::tempdir().unwrap();
-    let arguments = [
-        "run",
-        "02-two-cantilevers-rough",
-        "--set",
-        "history.increment=0.001",
-        "--csv",
-        "-",
-        "--snapshot",
-        "end.ron",
-    ];
+    let arguments = words(
+        "run 02-two-cantilevers-rough --set history.increment=0.001 --csv - --snapshot end.ron",
+    );
     let mut child = program(directory.path(), &arguments)
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())

@@ -1,6 +1,6 @@
 //! Convergence maps: what they count, how they are judged, and that a kill loses nothing.
 
-use crate::program::{code, err, interrupted, program, rows, well};
+use crate::program::{code, err, interrupted, program, rows, well, words};
 use std::collections::HashMap;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
@@ -45,14 +45,13 @@ fn random_problems_are_the_same_every_time_and_however_many_run_at_once() {
 fn totals_count_what_the_rows_say() {
     let directory = tempfile::tempdir().unwrap();
     let run = |more: &[&str]| {
-        let same = ["--random", "80", "--over", T_MAX, "--csv", "-"];
+        let same = format!("--random 80 --over {T_MAX} --csv -");
+        let same = words(&same);
         well(&ran(directory.path(), &[&same[..], more].concat()))
     };
     let mut counted: HashMap<String, (u64, u64)> = HashMap::new();
     for row in rows(&run(&[])) {
-        let kind = [
-            "nodes", "form", "cohesion", "answers", "strategy", "verdict",
-        ];
+        let kind = words("nodes form cohesion answers strategy verdict");
         let kind: Vec<&str> = kind.iter().map(|&name| row[name].as_str()).collect();
         let sums = counted.entry(kind.join(" ")).or_default();
         sums.0 += 1;
@@ -63,9 +62,7 @@ fn totals_count_what_the_rows_say() {
     let totals = rows(&totals);
     assert_eq!(totals.len(), counted.len());
     for row in totals {
-        let kind = [
-            "nodes", "form", "cohesion", "answers", "strategy", "verdict",
-        ];
+        let kind = words("nodes form cohesion answers strategy verdict");
         let kind: Vec<&str> = kind.iter().map(|&name| row[name].as_str()).collect();
         let sums = counted[&kind.join(" ")];
         let number = |name: &str| row[name].parse::<u64>().unwrap();
@@ -76,20 +73,10 @@ fn totals_count_what_the_rows_say() {
 #[test]
 fn what_table_2_makes_of_random_problems_is_counted_honestly() {
     let directory = tempfile::tempdir().unwrap();
-    let arguments = [
-        "--random",
-        "300",
-        "--over",
-        T_MAX,
-        "--set",
-        "settings.strategy=table2",
-        "--set",
-        "settings.touch=ratio",
-        "--csv",
-        "-",
-        "--svg",
-        "a.svg",
-    ];
+    let arguments = format!(
+        "--random 300 --over {T_MAX} --set settings.strategy=table2 --set settings.touch=ratio --csv - --svg a.svg"
+    );
+    let arguments = words(&arguments);
     let output = ran(directory.path(), &arguments);
     let table = rows(&well(&output));
     let count = |verdict: &str| table.iter().filter(|r| r["verdict"] == verdict).count();
@@ -122,15 +109,7 @@ fn what_table_2_makes_of_random_problems_is_counted_honestly() {
 #[test]
 fn a_random_problem_written_out_ends_as_it_did_on_the_map() {
     let directory = tempfile::tempdir().unwrap();
-    let arguments = [
-        "--random",
-        "40",
-        "--over",
-        "t_max=lagged",
-        "--csv",
-        "a.csv",
-        "--quiet",
-    ];
+    let arguments = words("--random 40 --over t_max=lagged --csv a.csv --quiet");
     well(&ran(directory.path(), &arguments));
     for row in rows(&read(directory.path(), "a.csv")) {
         let file = format!("{}.ron", row["problem"]);
@@ -155,7 +134,7 @@ fn a_random_problem_written_out_ends_as_it_did_on_the_map() {
 #[test]
 fn the_default_strategy_solves_every_random_problem_that_has_an_answer_and_invents_none() {
     let directory = tempfile::tempdir().unwrap();
-    let arguments = ["--random", "200", "--seed", "11", "--csv", "-"];
+    let arguments = words("--random 200 --seed 11 --csv -");
     let table = rows(&well(&ran(directory.path(), &arguments)));
     let mut names: Vec<&str> = table.iter().map(|r| r["strategy"].as_str()).collect();
     names.dedup();
@@ -371,18 +350,8 @@ fn a_run_that_nothing_can_be_compared_with_says_so() {
 #[test]
 fn a_scene_that_cycles_is_a_cycle_on_the_map_and_in_the_picture() {
     let directory = tempfile::tempdir().unwrap();
-    let arguments = [
-        "osc-two3",
-        "osc-two6",
-        "--over",
-        "settings.minors=40,50",
-        "--csv",
-        "-",
-        "--svg",
-        "a.svg",
-        "--png",
-        "a.png",
-    ];
+    let arguments =
+        words("osc-two3 osc-two6 --over settings.minors=40,50 --csv - --svg a.svg --png a.png");
     let output = ran(directory.path(), &arguments);
     let table = rows(&well(&output));
     let found: Vec<_> = table

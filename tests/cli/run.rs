@@ -1,6 +1,6 @@
 //! The program from outside: exit codes, what goes to which stream, and what happens to files.
 
-use crate::program::{code, err, interrupted, names, out, program, rows, well};
+use crate::program::{code, err, interrupted, names, out, program, rows, well, words};
 use std::io::{BufRead, BufReader, Read};
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
@@ -64,7 +64,8 @@ fn without_csv_a_run_prints_a_summary_with_the_monitors_to_standard_error() {
 #[test]
 fn a_trace_has_a_row_for_every_minor_iteration_and_agrees_with_the_csv() {
     let directory = tempfile::tempdir().unwrap();
-    let arguments = ["run", BEAM, "--csv", "a.csv", "--trace", "-", "-q"];
+    let arguments = format!("run {BEAM} --csv a.csv --trace - -q");
+    let arguments = words(&arguments);
     let output = ran_in(directory.path(), &arguments);
     assert_eq!(code(&output), 0, "{}", err(&output));
     let trace = out(&output);
@@ -113,7 +114,9 @@ fn numbers_of_the_csv_read_back_to_the_bits_of_the_solver() {
 
 #[test]
 fn a_cycle_ends_with_3_and_is_told_with_place_nodes_and_the_command_that_tries_remedies() {
-    let output = ran(&["run", OSC, "--csv", "-", "--set", "history.increment=0.02"]);
+    let output = ran(&words(&format!(
+        "run {OSC} --csv - --set history.increment=0.02"
+    )));
     assert_eq!(code(&output), 3);
     assert_eq!(whole_rows(&out(&output)), 2, "what converged before");
     let told = err(&output);
@@ -144,23 +147,12 @@ fn a_mechanism_is_named_with_body_and_motion() {
 
 #[test]
 fn an_increment_that_is_accepted_unsettled_is_not_accepted_in_silence() {
-    let limits = [
-        "run",
-        BEAM,
-        "--quiet",
-        "--set",
-        "settings.minors=1",
-        "--set",
-        "settings.at_minor_limit=accept",
-        "--set",
-        "settings.majors=1",
-        "--set",
-        "settings.at_major_limit=accept",
-        "--set",
-        "history.path[1]=0.02",
-        "--set",
-        "history.path[2]=0.03",
-    ];
+    let limits = format!(
+        "run {BEAM} --quiet --set settings.minors=1 --set settings.at_minor_limit=accept --set \
+            settings.majors=1 --set settings.at_major_limit=accept --set history.path[1]=0.02 --set \
+            history.path[2]=0.03"
+    );
+    let limits = words(&limits);
     let output = ran(&limits);
     assert_eq!(code(&output), 0, "{}", err(&output));
     let told = err(&output);
@@ -188,7 +180,7 @@ fn bad_input_ends_with_2_and_one_line() {
         &["check", BEAM, "--set", "friction.angel=3"],
         &["check", BEAM, "--set", "friction.angle=95"],
         &["run", BEAM, "--csv", "no/such/directory/a.csv"],
-        &["run", BEAM, "--csv", "-", "--trace", "-"],
+        &words(&format!("run {BEAM} --csv - --trace -")),
         &["replay", "no-such-file.ron"],
         &["replay", "noise.ron"],
         &["replay", "bad.ron"],
@@ -312,7 +304,7 @@ fn files_are_overwritten_only_when_asked_and_that_is_known_before_the_solve() {
     }
     let same = ran_in(
         directory.path(),
-        &["run", ROUGH, "--csv", "new", "--trace", "new"],
+        &words(&format!("run {ROUGH} --csv new --trace new")),
     );
     assert_eq!(code(&same), 2);
     assert_eq!(names(directory.path()), ["precious"]);
@@ -321,18 +313,10 @@ fn files_are_overwritten_only_when_asked_and_that_is_known_before_the_solve() {
 #[test]
 fn a_failing_run_leaves_whole_files() {
     let directory = tempfile::tempdir().unwrap();
-    let arguments = [
-        "run",
-        OSC,
-        "--csv",
-        "a.csv",
-        "--trace",
-        "a.trace",
-        "--snapshot",
-        "a.ron",
-        "--set",
-        "history.increment=0.02",
-    ];
+    let arguments = format!(
+        "run {OSC} --csv a.csv --trace a.trace --snapshot a.ron --set history.increment=0.02"
+    );
+    let arguments = words(&arguments);
     let output = ran_in(directory.path(), &arguments);
     assert_eq!(code(&output), 3);
     assert_eq!(names(directory.path()), ["a.csv", "a.ron", "a.trace"]);
@@ -395,7 +379,7 @@ fn what_is_recorded_replays_and_what_differs_is_told() {
     assert!(err(&output).contains("format 7"), "{}", err(&output));
     assert!(out(&output).contains("a.ron: equal"), "the others are done");
 
-    let output = ran(&["record", BEAM, "--at", "3", "-o", "a.ron"]);
+    let output = ran(&words(&format!("record {BEAM} --at 3 -o a.ron")));
     assert_eq!(code(&output), 2, "never overwritten unasked");
 }
 
@@ -410,7 +394,7 @@ fn record_names_its_file_and_tells_a_place_that_is_not_reached() {
     assert_eq!(code(&output), 3);
     assert!(err(&output).contains("2 not reached"), "{}", err(&output));
     assert_eq!(names(directory.path()), [file]);
-    let output = ran(&["record", OSC, "--at", "1.1.1", "-o", "-"]);
+    let output = ran(&words(&format!("record {OSC} --at 1.1.1 -o -")));
     assert!(out(&output).starts_with("(\n    format: 1,"));
 }
 
@@ -441,37 +425,17 @@ fn a_reader_that_closes_the_pipe_is_no_panic_and_no_interruption() {
         &["show", BEAM],
         &["audit", OSC, "--set", "settings.strategy=ladder"],
         &["remedies", OSC],
-        &["record", OSC, "--at", "1.1.1", "-o", "-"],
-        &[
-            "run",
-            OSC,
-            "--set",
-            "settings.strategy=ladder",
-            "--csv",
-            "-",
-            "-q",
-        ],
-        &[
-            "study",
-            OSC,
-            "--vary",
-            "settings.strategy=ladder",
-            "--csv",
-            "-",
-            "-q",
-        ],
-        &["map", OSC, "--strategies", "ladder", "--csv", "-", "-q"],
-        &[
-            "chart",
-            OSC,
-            "--over",
-            "settings.strategy=ladder,sliding",
-            "--repeats",
-            "1",
-            "--csv",
-            "-",
-            "-q",
-        ],
+        &words(&format!("record {OSC} --at 1.1.1 -o -")),
+        &words(&format!(
+            "run {OSC} --set settings.strategy=ladder --csv - -q"
+        )),
+        &words(&format!(
+            "study {OSC} --vary settings.strategy=ladder --csv - -q"
+        )),
+        &words(&format!("map {OSC} --strategies ladder --csv - -q")),
+        &words(&format!(
+            "chart {OSC} --over settings.strategy=ladder,sliding --repeats 1 --csv - -q"
+        )),
     ] {
         let (reader, writer) = std::io::pipe().unwrap();
         drop(reader);

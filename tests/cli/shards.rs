@@ -1,6 +1,6 @@
 //! Sweeps in pieces: shards put together are the whole, byte for byte, whatever became of their logs on the way.
 
-use crate::program::{code, err, program, well};
+use crate::program::{code, err, program, well, words};
 use proptest::prelude::*;
 use std::path::Path;
 use std::process::{Command, Output, Stdio};
@@ -263,10 +263,7 @@ fn a_part_is_no_table_and_a_shard_is_k_of_n() {
         (&["--shard", "1/3"][..], "--log"),
         (&["--shard", "0/3", "--log", "a"], "K/N"),
         (&["--shard", "4/3", "--log", "a"], "K/N"),
-        (
-            &["--shard", "1/3", "--log", "a", "--svg", "a.svg"],
-            "with --merge",
-        ),
+        (&words("--shard 1/3 --log a --svg a.svg"), "with --merge"),
         (&["--log", "a", "--merge", "b"], "cannot be used"),
         (&["--resume", "a", "--merge", "b"], "cannot be used"),
         (

@@ -2,7 +2,7 @@
 
 use crate::program::{code, err, interrupted, names, out, program};
 use std::num::NonZeroUsize;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
 use stickslip::scene::Scene;
 use stickslip::step::event::Outcome;
@@ -337,16 +337,19 @@ fn study_files_are_read_and_their_errors_have_a_place() {
     assert!(Study::from_text("s.ron", "(title: \"T\")").is_err());
 }
 
+/// A folder with a copy of a scene, and the scene's text.
+fn folder_with_scene(directory: &Path) -> (PathBuf, &'static str) {
+    let folder = directory.join("mine");
+    let scene = stickslip::scene::builtin::find(ROUGH).unwrap().text;
+    std::fs::create_dir(&folder).unwrap();
+    std::fs::write(folder.join("scene.ron"), scene).unwrap();
+    (folder, scene)
+}
+
 #[test]
 fn a_study_file_and_the_scene_beside_it_are_found_and_arguments_go_over_it() {
     let directory = tempfile::tempdir().unwrap();
-    let folder = directory.path().join("mine");
-    std::fs::create_dir(&folder).unwrap();
-    let scene = stickslip::scene::builtin::find(ROUGH)
-        .unwrap()
-        .text
-        .to_owned();
-    std::fs::write(folder.join("scene.ron"), scene).unwrap();
+    let (folder, _) = folder_with_scene(directory.path());
     let text = "(title: \"T\", scene: \"scene.ron\", vary: [(\"history.increment\", [0.5, 1.25])])";
     std::fs::write(folder.join("study.ron"), text).unwrap();
     let rows_of = |arguments: &[&str]| {
@@ -407,15 +410,9 @@ fn a_study_writes_all_of_its_files_or_none() {
 #[test]
 fn what_a_study_names_lies_beside_it_or_below_or_is_built_in() {
     let directory = tempfile::tempdir().unwrap();
-    let folder = directory.path().join("mine");
-    std::fs::create_dir(&folder).unwrap();
-    let scene = stickslip::scene::builtin::find(ROUGH)
-        .unwrap()
-        .text
-        .to_owned();
-    std::fs::write(folder.join("scene.ron"), &*scene).unwrap();
+    let (folder, scene) = folder_with_scene(directory.path());
     // What lies where the program runs is not what the study means.
-    std::fs::write(directory.path().join("other.ron"), &*scene).unwrap();
+    std::fs::write(directory.path().join("other.ron"), scene).unwrap();
     let named = |scene: &str| {
         let text = format!("(title: \"T\", scene: {scene:?}, vary: [(\"increment\", [1.25])])");
         std::fs::write(folder.join("study.ron"), text).unwrap();

@@ -3,7 +3,7 @@
 //! `RAYON_NUM_THREADS` is what a library that takes threads by itself would follow; `--jobs` is how many runs go side by
 //! side.
 
-use crate::program::{code, err, out, program};
+use crate::program::{code, err, out, program, words};
 use std::path::Path;
 
 const BLOCKS: &str = concat!(
@@ -75,23 +75,8 @@ fn studies_and_maps_have_the_same_bits_with_one_job_and_with_two() {
             "--vary",
             "friction.angle=5,20,35",
         ],
-        &[
-            "map",
-            "--random",
-            "40",
-            "--seed",
-            "11",
-            "--over",
-            "t_max=lagged,consistent",
-        ],
-        &[
-            "map",
-            "osc-two3",
-            "osc-two6",
-            "osc-inclined-cantilever",
-            "--over",
-            "settings.minors=40,50",
-        ],
+        &words("map --random 40 --seed 11 --over t_max=lagged,consistent"),
+        &words("map osc-two3 osc-two6 osc-inclined-cantilever --over settings.minors=40,50"),
     ] {
         let tables = THREADS.map(|threads| {
             let more = ["--csv", "-", "--jobs", threads];

@@ -1,6 +1,6 @@
 //! `run --vtu` and `export -o FILE.vtu`: which files there are, what stands in them, and that none is lost.
 
-use crate::program::{code, err, names, out, program, rows, well};
+use crate::program::{code, err, names, out, program, rows, well, words};
 use std::fs;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -113,7 +113,7 @@ fn the_smallest_stretch_of_the_cells_is_the_last_column_of_the_table() {
 fn a_run_leaves_a_file_for_each_increment_and_a_collection_over_the_load() {
     let directory = tempfile::tempdir().unwrap();
     let here = directory.path();
-    let run = ran(here, &["run", ROUGH, "--vtu", "a/b", "--csv", "-"]);
+    let run = ran(here, &words(&format!("run {ROUGH} --vtu a/b --csv -")));
     well(&run);
     let table = rows(&out(&run));
     let folder = here.join("a/b");
@@ -136,9 +136,8 @@ fn a_run_leaves_a_file_for_each_increment_and_a_collection_over_the_load() {
 fn every_minor_iteration_has_a_file_where_that_is_asked_for_and_the_time_is_its_number() {
     let directory = tempfile::tempdir().unwrap();
     let here = directory.path();
-    let arguments = [
-        "run", CYCLES, "--vtu", "v", "--each", "minor", "--trace", "-",
-    ];
+    let arguments = format!("run {CYCLES} --vtu v --each minor --trace -");
+    let arguments = words(&arguments);
     let run = ran(here, &arguments);
     assert_eq!(code(&run), 3, "it cycles: {}", err(&run));
     let mut minors: Vec<_> = rows(&out(&run))
@@ -163,11 +162,14 @@ fn no_file_is_overwritten_unasked_and_nothing_is_solved_before_that_is_seen() {
     well(&ran(here, &["run", ROUGH, "--vtu", "v", "-q"]));
     let file = here.join("v").join(format!("{ROUGH}.pvd"));
     fs::write(&file, "mine").unwrap();
-    let again = ran(here, &["run", ROUGH, "--vtu", "v", "--csv", "-"]);
+    let again = ran(here, &words(&format!("run {ROUGH} --vtu v --csv -")));
     assert_eq!((code(&again), out(&again)), (2, String::new()));
     assert!(err(&again).contains("--force"), "{}", err(&again));
     assert_eq!(fs::read_to_string(&file).unwrap(), "mine");
-    well(&ran(here, &["run", ROUGH, "--vtu", "v", "-q", "--force"]));
+    well(&ran(
+        here,
+        &words(&format!("run {ROUGH} --vtu v -q --force")),
+    ));
     assert!(fs::read_to_string(&file).unwrap().contains("DataSet"));
     let lonely = ran(here, &["run", ROUGH, "--each", "minor"]);
     assert_eq!(code(&lonely), 2, "{}", err(&lonely));
@@ -181,7 +183,7 @@ fn a_state_is_exported_as_the_run_writes_it() {
     well(&ran(here, &["export", ROUGH, "-o", "end.vtu"]));
     well(&ran(
         here,
-        &["export", ROUGH, "-o", "third.vtu", "--at", "3"],
+        &words(&format!("export {ROUGH} -o third.vtu --at 3")),
     ));
     let text = |name: &str| fs::read_to_string(here.join(name)).unwrap();
     let files = collection(&text(&format!("v/{ROUGH}.pvd")));
@@ -225,10 +227,7 @@ fn a_frozen_problem_goes_into_files_for_every_solver_and_says_the_same_in_all() 
     assert_eq!(spec("p_W.mtx"), spec("p.dat"));
     // The files beside the matrix are as safe as the matrix.
     fs::remove_file(here.join("p_W.mtx")).unwrap();
-    let again = ran(
-        here,
-        &["export", "osc-zig3", "--at", "1.1.1", "-o", "p_W.mtx"],
-    );
+    let again = ran(here, &words("export osc-zig3 --at 1.1.1 -o p_W.mtx"));
     assert_eq!(code(&again), 2, "{}", err(&again));
     assert!(!here.join("p_W.mtx").exists());
     let stiff = ran(here, &["export", "osc-zig3", "-o", "p_K.mtx"]);

@@ -79,7 +79,12 @@ pub fn go_on(mut run: Run) -> Run {
 
 /// Forces a slave node in a run that failed.
 pub fn force(run: &mut Run, slave: usize, mode: stickslip::model::Mode, hold: bool) {
-    run.stepper
+    force_in(&mut run.stepper, slave, mode, hold);
+}
+
+/// Forces a slave node.
+pub fn force_in(stepper: &mut Stepper, slave: usize, mode: stickslip::model::Mode, hold: bool) {
+    stepper
         .intervene(&Intervention::Force { slave, mode, hold })
         .unwrap();
 }

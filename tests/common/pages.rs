@@ -189,8 +189,8 @@ fn modules(package: &str) -> String {
 fn keywords() -> String {
     use stickslip_exchange::inp::keywords::{KEYWORDS, Treatment};
     let line = |(name, treatment): &(&str, Treatment)| match treatment {
-        Treatment::Read("") => format!("- `{name}`: read\n"),
-        Treatment::Read(how) => format!("- `{name}`: read: {how}\n"),
+        Treatment::Read("", _) => format!("- `{name}`: read\n"),
+        Treatment::Read(how, _) => format!("- `{name}`: read: {how}\n"),
         Treatment::Ignored(why) => format!("- `{name}`: passed over: {why}\n"),
         Treatment::Refused(why) => format!("- `{name}`: refused: {why}\n"),
     };

@@ -23,6 +23,11 @@ pub fn program(directory: &Path, arguments: &[&str]) -> Command {
     command
 }
 
+/// The words of a command line without quotes.
+pub fn words(line: &str) -> Vec<&str> {
+    line.split_whitespace().collect()
+}
+
 pub fn code(output: &Output) -> i32 {
     output.status.code().unwrap()
 }

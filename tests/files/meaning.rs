@@ -110,37 +110,22 @@ fn settings_from_outside_reach_the_model_and_are_named_in_messages() {
     let scene = scene.with("settings.t_max", "consistent").unwrap();
     assert_eq!(scene.model.settings.t_max, BoundUpdate::Consistent);
     assert_eq!(scene.model.contacts[0].friction.angle, 20.0);
-    let cases = [
-        (
-            "friction.angle",
-            "95",
-            "--set friction.angle=95: the friction angle is 95.0",
-        ),
-        ("friction.angel", "20", "did you mean friction.angle?"),
-        ("friction", "3", "it has friction.angle, friction.cohesion"),
-        (
-            "settings.t_max",
-            "foo",
-            "it must be one of lagged, consistent",
-        ),
-        ("settings.foo", "1", "settings has settings.strategy"),
-        ("refine", "-1", "it must be a whole number"),
-        ("refine", "0", "--set refine=0: refine is 0"),
-        (
-            "nodes.beam.elments",
-            "2",
-            "did you mean nodes.beam.elements?",
-        ),
-        ("history.increment", "nan", "it must be a number"),
-        ("surfaces.floor.reverse", "yes", "it must be true or false"),
-        (
-            "bodies.beam.material",
-            "x",
-            "--set bodies.beam.material=x: no material called",
-        ),
-        ("", "x", "the scene has no value"),
-    ];
-    for (path, value, expected) in cases {
+    let cases = "\
+        friction.angle=95 | --set friction.angle=95: the friction angle is 95.0
+        friction.angel=20 | did you mean friction.angle?
+        friction=3 | it has friction.angle, friction.cohesion
+        settings.t_max=foo | it must be one of lagged, consistent
+        settings.foo=1 | settings has settings.strategy
+        refine=-1 | it must be a whole number
+        refine=0 | --set refine=0: refine is 0
+        nodes.beam.elments=2 | did you mean nodes.beam.elements?
+        history.increment=nan | it must be a number
+        surfaces.floor.reverse=yes | it must be true or false
+        bodies.beam.material=x | --set bodies.beam.material=x: no material called
+        =x | the scene has no value";
+    for case in cases.lines() {
+        let (change, expected) = case.trim().split_once(" | ").unwrap();
+        let (path, value) = change.split_once('=').unwrap();
         let error = with(path, value).expect_err(path).to_string();
         assert!(
             error.contains(expected),

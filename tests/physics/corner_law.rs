@@ -12,7 +12,7 @@ use stickslip::contact::projection::SurfacePoint;
 use stickslip::contact::state::ContactState;
 use stickslip::contact::table2::Rule;
 use stickslip::contact::tracking::Ground;
-use stickslip::model::{Bond, Contact, Friction, InitialState, Mode, Surface};
+use stickslip::model::{Contact, Friction, InitialState, Mode, Surface};
 use stickslip::scene::Scene;
 use stickslip::step::event::Outcome;
 use stickslip::step::stepper::Stepper;
@@ -194,14 +194,7 @@ fn a_node_goes_back_to_the_side_that_it_came_along_where_friction_is_below_the_l
         [1.0, -rise],
         [-1.0, -rise],
     ];
-    let surface = |elements: Vec<Vec<usize>>| Surface {
-        name: "s".into(),
-        elements,
-        rigid: true,
-        endless: false,
-        smooth: Vec::new(),
-        gives: Vec::new(),
-    };
+    let surface = |elements: Vec<Vec<usize>>| Surface::new("s", elements, true);
     let on = |surface: usize, element: usize, xi: f64| SurfacePoint {
         surface,
         element,
@@ -224,17 +217,7 @@ fn a_node_goes_back_to_the_side_that_it_came_along_where_friction_is_below_the_l
             [on(0, 0, -0.5), on(1, 0, 0.5)],
         ),
     ] {
-        let slave = Contact {
-            node: 0,
-            surfaces: (0..surfaces.len()).collect(),
-            friction,
-            start: Mode::Free,
-            state: InitialState::default(),
-            overlap: 0.0,
-            bond: Bond::Hard,
-            area: None,
-            facing: None,
-        };
+        let slave = Contact::new(0, (0..surfaces.len()).collect(), friction);
         let ground = Ground {
             surfaces,
             positions: &positions,

@@ -4,9 +4,8 @@ use std::sync::Arc;
 use stickslip::contact::balance::{self, Forces};
 use stickslip::contact::judge::{Judge, Seen};
 use stickslip::contact::laws::{JudgedLaw, Scales, Verdict};
-use stickslip::model::InitialState;
+use stickslip::model::Friction;
 use stickslip::model::{Bond, Contact, Surface};
-use stickslip::model::{Friction, Mode};
 use stickslip::scene::Scene;
 use stickslip::step::event::{Failure, Outcome};
 use stickslip::step::stepper::Stepper;
@@ -80,28 +79,14 @@ fn between_floor_and_wall(from: [f64; 2], to: [f64; 2]) -> Vec<JudgedLaw> {
 }
 
 fn surface(elements: Vec<Vec<usize>>) -> Surface {
-    Surface {
-        name: "s".into(),
-        elements,
-        rigid: true,
-        endless: false,
-        smooth: Vec::new(),
-        gives: Vec::new(),
-    }
+    Surface::new("s", elements, true)
 }
 
 /// Node 0, which may touch all these surfaces.
 fn slave(surfaces: &[Surface], friction: Friction, bond: Bond) -> Contact {
     Contact {
-        node: 0,
-        surfaces: (0..surfaces.len()).collect(),
-        friction,
-        start: Mode::Free,
-        state: InitialState::default(),
-        overlap: 0.0,
         bond,
-        area: None,
-        facing: None,
+        ..Contact::new(0, (0..surfaces.len()).collect(), friction)
     }
 }
 

@@ -429,28 +429,20 @@ fn laws_that_make_no_sense_are_refused_with_what_would() {
         };
         block.scene().map(|_| ()).unwrap_err()
     };
-    for (pair, friction, wanted) in [
-        (
-            ", law: Penalty(stiffness: 0.0)",
-            "()",
-            "it must be positive",
-        ),
-        (
-            ", law: Penalty(stiffness: -1.0)",
-            "()",
-            "it must be positive",
-        ),
-        (", stick: 0.0", "()", "it must be positive"),
-        (", area: -2.0", "()", "it must be positive"),
-        (", law: Tied, stick: 3.0", "()", "leave stick out"),
-        (
-            ", law: Tied, friction: Some((angle: 2.0))",
-            "()",
-            "leave friction out",
-        ),
-        (", law: Tied, start: sliding", "()", "leave start out"),
-        ("", "(adhesion: -1.0)", "must not be negative"),
-    ] {
+    let cases = "\
+        , law: Penalty(stiffness: 0.0) | () | it must be positive
+        , law: Penalty(stiffness: -1.0) | () | it must be positive
+        , stick: 0.0 | () | it must be positive
+        , area: -2.0 | () | it must be positive
+        , law: Tied, stick: 3.0 | () | leave stick out
+        , law: Tied, friction: Some((angle: 2.0)) | () | leave friction out
+        , law: Tied, start: sliding | () | leave start out
+         | (adhesion: -1.0) | must not be negative";
+    for case in cases.lines() {
+        let parts: Vec<&str> = case.split(" | ").map(str::trim).collect();
+        let [pair, friction, wanted] = parts[..] else {
+            panic!("{case}");
+        };
         let message = refused(pair, friction);
         assert!(message.contains(wanted), "{pair} {friction}: {message}");
     }

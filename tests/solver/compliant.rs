@@ -76,6 +76,12 @@ fn counted(model: Arc<Model>) -> Census {
     census(&Stepper::new(model).interface_problem().unwrap()).unwrap()
 }
 
+/// The census of the problem with the springs in its matrix.
+fn counted_in_matrix(problem: &Problem, give: &[[f64; 2]]) -> Census {
+    let none = vec![[0.0; 2]; give.len()];
+    counted(compliant(&hard(problem, give), &none, &[]))
+}
+
 /// What a node's answer has to agree in.
 fn numbers(census: &Census) -> Vec<Vec<[f64; 4]>> {
     let nodes = |found: &stickslip::interface::census::Consistent| {
@@ -92,11 +98,7 @@ fn a_problem_with_springs_at_its_contacts_has_the_states_of_hard_contact_with_th
     for seed in 0..250 {
         let problem = problem(seed);
         let give = give(problem.contacts.len(), seed);
-        let truth = counted(compliant(
-            &hard(&problem, &give),
-            &vec![[0.0; 2]; give.len()],
-            &[],
-        ));
+        let truth = counted_in_matrix(&problem, &give);
         for solver in ["condensed", "augmented"] {
             let found = counted(compliant(&problem, &give, &[("settings.solver", solver)]));
             let [found, truth] = [numbers(&found), numbers(&truth)];
@@ -136,11 +138,7 @@ fn no_strategy_accepts_another_state_where_springs_give_way_and_the_ladder_finds
     for seed in 0..250 {
         let problem = problem(seed);
         let give = give(problem.contacts.len(), seed);
-        let truth = counted(compliant(
-            &hard(&problem, &give),
-            &vec![[0.0; 2]; give.len()],
-            &[],
-        ));
+        let truth = counted_in_matrix(&problem, &give);
         with_answer += usize::from(!truth.answers.is_empty());
         for (k, strategy) in Strategy::NAMES.into_iter().enumerate() {
             let solver = if seed % 2 == 0 {

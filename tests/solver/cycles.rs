@@ -47,15 +47,7 @@ fn smooth(m: &[Vec<f64>], gaps: &[f64], touching: &[usize]) -> Scene {
         matrix: Matrix::Compliance(rows.collect()),
         free: Vec::new(),
         spacing: Some(1.0),
-        history: History {
-            path: vec![0.0, 1.0],
-            increment: 1.0,
-            increments: Vec::new(),
-            least: None,
-            jumps: Default::default(),
-            control: Default::default(),
-            arc: Default::default(),
-        },
+        history: History::default(),
         settings: by_table_2(),
     };
     Scene::from_text("planted", &problem.text(&[]), &[]).unwrap_or_else(|e| panic!("{e}"))
@@ -349,15 +341,7 @@ fn random(n: usize, random: &mut Random) -> InterfaceProblem {
         ),
         free: Vec::new(),
         spacing: None,
-        history: History {
-            path: vec![0.0, 1.0],
-            increment: 1.0,
-            increments: Vec::new(),
-            least: None,
-            jumps: Default::default(),
-            control: Default::default(),
-            arc: Default::default(),
-        },
+        history: History::default(),
         settings: by_table_2(),
     };
     let scene = Scene::from_spec("random", problem.spec()).unwrap();

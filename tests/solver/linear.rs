@@ -32,13 +32,8 @@ fn problem(contacts: Vec<Contact>, matrix: Matrix, free: Vec<f64>) -> Problem {
         free,
         spacing: None,
         history: History {
-            path: vec![0.0, 1.0],
             increment: 0.25,
-            increments: Vec::new(),
-            least: None,
-            jumps: Default::default(),
-            control: Default::default(),
-            arc: Default::default(),
+            ..History::default()
         },
         settings: Settings::default(),
     }

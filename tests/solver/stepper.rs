@@ -1,6 +1,6 @@
 //! What the solver does at the edges: singular systems, supports at the interface, limits, cycles, settings.
 
-use crate::common::{self, Run, force, go_on, number, run, scene, table};
+use crate::common::{self, Run, force, force_in, go_on, number, run, scene, table};
 use stickslip::contact::record::Forced;
 use stickslip::linear::singular::{LooseMotion, Singular};
 use stickslip::model::Mode;
@@ -188,13 +188,7 @@ fn one_minor_iteration_per_major_is_a_setting_and_smooth_contact_does_not_mind()
 fn a_held_mode_stays_against_table_2_and_is_marked_until_released() {
     let scene = scene("01-pinned-beam-rough-floor", &[("history.path[2]", "0.2")]);
     let mut stepper = stickslip::step::stepper::Stepper::new(std::sync::Arc::new(scene.model));
-    stepper
-        .intervene(&Intervention::Force {
-            slave: 0,
-            mode: Mode::Fixed,
-            hold: true,
-        })
-        .unwrap();
+    force_in(&mut stepper, 0, Mode::Fixed, true);
     for _ in 0..5 {
         let event = stepper.step().unwrap();
         assert_eq!(event.nodes[0].forced, Forced::Held(Mode::Fixed));

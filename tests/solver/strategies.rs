@@ -1,7 +1,7 @@
 //! Strategies of the minor iterations: none accepts what is no Coulomb state, the ladder finds an answer wherever there
 //! is one, says so where there is none, and cuts the increment.
 
-use crate::common::{run, scene, stepped};
+use crate::common::{force_in, run, scene, stepped};
 use crate::hyperstatic::Numbers;
 use std::sync::Arc;
 use stickslip::contact::table2::Rule;
@@ -12,10 +12,9 @@ use stickslip::interface::method::NotFound;
 use stickslip::interface::trials::Trials;
 use stickslip::linear::singular::Singular;
 use stickslip::model::{Friction, Mode, Model, Settings};
-use stickslip::model::{InitialState, Jumps, Strategy};
+use stickslip::model::{InitialState, Strategy};
 use stickslip::scene::Scene;
 use stickslip::step::event::{Failure, Outcome};
-use stickslip::step::intervene::Intervention;
 use stickslip::step::stepper::Stepper;
 
 /// A random interface problem with a positive definite stiffness; some have cohesion, and perhaps no answer.
@@ -65,13 +64,8 @@ pub fn problem(seed: u64) -> Problem {
         free: Vec::new(),
         spacing: None,
         history: History {
-            path: vec![0.0, 1.0],
-            increment: 1.0,
-            increments: Vec::new(),
             least: Some(1.0),
-            jumps: Jumps::default(),
-            control: Default::default(),
-            arc: Default::default(),
+            ..History::default()
         },
         settings: Settings::default(),
     }
@@ -354,13 +348,7 @@ fn a_loose_body_is_still_told_and_no_contact_without_force_holds_it() {
 fn a_mode_that_the_user_holds_is_left_to_the_user() {
     let set = [("settings.strategy", "ladder")];
     let mut stepper = Stepper::new(Arc::new(scene("osc-touch2", &set).model));
-    stepper
-        .intervene(&Intervention::Force {
-            slave: 0,
-            mode: Mode::Fixed,
-            hold: true,
-        })
-        .unwrap();
+    force_in(&mut stepper, 0, Mode::Fixed, true);
     while let Some(event) = stepper.step() {
         assert!(!matches!(event.outcome, Outcome::Climbed { .. }));
         assert_eq!(event.nodes[0].decision.before, Mode::Fixed);

@@ -8,7 +8,7 @@ use stickslip::contact::table2::{Entry, Numbers, Ties, decide};
 use stickslip::history::frame::Frame;
 use stickslip::linear::norms::Norms;
 use stickslip::model::{Beam, Body, BodyKind, Contact, Dofs, Node, Surface};
-use stickslip::model::{Friction, Mode, Model, Settings};
+use stickslip::model::{Friction, Mode, Model};
 use stickslip::step::event::Position;
 use stickslip::step::event::{Event, Outcome};
 use stickslip::step::state::State;
@@ -33,8 +33,6 @@ pub fn model(slaves: usize) -> Model {
         _ => (0..count - 1).map(|k| vec![k, k + 1]).collect(),
     };
     Model {
-        title: "A beam over a floor".into(),
-        about: String::new(),
         bodies: vec![Body {
             name: "beam".into(),
             nodes: (0..count).collect(),
@@ -46,31 +44,8 @@ pub fn model(slaves: usize) -> Model {
                 first_shear: None,
             }),
         }],
-        // The outward side is on the right: walked towards −x, the floor looks up.
-        surfaces: vec![Surface {
-            name: "floor".into(),
-            elements: vec![vec![count + 2, count + 1], vec![count + 1, count]],
-            rigid: true,
-            endless: false,
-            smooth: Vec::new(),
-            gives: Vec::new(),
-        }],
-        contacts: (0..slaves)
-            .map(|node| Contact {
-                node,
-                surfaces: vec![0],
-                friction: Friction {
-                    angle: 20.0,
-                    cohesion: 0.0,
-                },
-                start: Mode::Free,
-                state: Default::default(),
-                overlap: 0.0,
-                bond: Default::default(),
-                area: None,
-                facing: None,
-            })
-            .collect(),
+        increment: 0.1,
+        budget: 1e9,
         dofs: Dofs {
             first: (0..nodes.len()).map(|node| 3 * node).collect(),
             count: vec![3; nodes.len()],
@@ -78,22 +53,28 @@ pub fn model(slaves: usize) -> Model {
             equations: 0,
             inner: 0,
         },
-        nodes,
-        loads: vec![],
-        pressures: Vec::new(),
-        prescribed: vec![],
-        path: vec![0.0, 1.0],
-        increment: 0.1,
-        increments: Vec::new(),
-        least: None,
-        jumps: Default::default(),
-        control: Default::default(),
-        arc: Default::default(),
-        settings: Settings::default(),
-        budget: 1e9,
-        finished: None,
-        monitors: vec![],
         length: 4.0,
+        ..Model::of_contacts(
+            "A beam over a floor",
+            nodes,
+            vec![Surface::new(
+                "floor",
+                vec![vec![count + 2, count + 1], vec![count + 1, count]],
+                true,
+            )],
+            (0..slaves)
+                .map(|node| {
+                    Contact::new(
+                        node,
+                        vec![0],
+                        Friction {
+                            angle: 20.0,
+                            cohesion: 0.0,
+                        },
+                    )
+                })
+                .collect(),
+        )
     }
 }
 

@@ -16,31 +16,13 @@ fn keys_become_commands() {
     let back = |unit, count| Effect::Submit(Command::Back { unit, count });
     let force = |slave, mode, hold| Effect::Submit(Command::Force { slave, mode, hold });
     let ask = |keys: &str| press(&mut app(), &view, keys);
-    assert_eq!(
-        ask("s n f c"),
-        [
-            forward(Unit::Minor, 1),
-            forward(Unit::Major, 1),
-            forward(Unit::Increment, 1),
-            forward(Unit::Run, 1)
-        ]
-    );
-    assert_eq!(
-        ask("S N F C"),
-        [
-            back(Unit::Minor, 1),
-            back(Unit::Major, 1),
-            back(Unit::Increment, 1),
-            back(Unit::Run, 1)
-        ]
-    );
+    let units = [Unit::Minor, Unit::Major, Unit::Increment, Unit::Run];
+    assert_eq!(ask("s n f c"), units.map(|unit| forward(unit, 1)));
+    assert_eq!(ask("S N F C"), units.map(|unit| back(unit, 1)));
+    let by_function_keys = [Unit::Minor, Unit::Major, Unit::Run];
     assert_eq!(
         ask("F11 F10 F5"),
-        [
-            forward(Unit::Minor, 1),
-            forward(Unit::Major, 1),
-            forward(Unit::Run, 1)
-        ]
+        by_function_keys.map(|unit| forward(unit, 1))
     );
     assert_eq!(
         ask("1 0 s Enter"),

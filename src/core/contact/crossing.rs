@@ -98,14 +98,7 @@ mod tests {
     use super::*;
 
     fn surface(name: &str, nodes: [usize; 2]) -> Surface {
-        Surface {
-            name: name.into(),
-            elements: vec![nodes.to_vec()],
-            rigid: true,
-            endless: false,
-            smooth: Vec::new(),
-            gives: Vec::new(),
-        }
+        Surface::new(name, vec![nodes.to_vec()], true)
     }
 
     fn spots() -> [SurfacePoint; 2] {

@@ -114,14 +114,7 @@ mod tests {
     }
 
     fn surface(m: usize) -> Surface {
-        Surface {
-            name: "s".into(),
-            elements: vec![(1..=m).collect()],
-            rigid: false,
-            endless: false,
-            smooth: Vec::new(),
-            gives: Vec::new(),
-        }
+        Surface::new("s", vec![(1..=m).collect()], false)
     }
 
     /// Compares with central differences, at node 0 over the surface.

@@ -21,7 +21,7 @@
 //! All amounts are relative to the scene's length or force. Lengths and forces have separate tolerances, because very stiff
 //! bodies reduce the accuracy of forces but not of positions.
 
-use crate::contact::corner::Side;
+use crate::contact::corner::{Side, dot};
 use crate::contact::element::{SurfaceElement, closed};
 use crate::contact::facing::{MOST, faced};
 use crate::contact::feet::{self, Foot, direction, place, speed};
@@ -547,10 +547,6 @@ fn is_past_end_at(
     let to = [point[0] - foot.at[0], point[1] - foot.at[1]];
     let t = direction(SurfaceElement::of(chain, element), positions, xi).unwrap_or([0.0; 2]);
     xi * dot(to, t) > near
-}
-
-fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
 }
 
 fn size(v: [f64; 2]) -> f64 {

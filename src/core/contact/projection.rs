@@ -568,14 +568,7 @@ mod tests {
     use crate::fem::lagrange::shape;
 
     fn surface(elements: Vec<Vec<usize>>) -> Vec<Surface> {
-        vec![Surface {
-            name: "s".into(),
-            elements,
-            rigid: true,
-            endless: false,
-            smooth: Vec::new(),
-            gives: Vec::new(),
-        }]
+        vec![Surface::new("s", elements, true)]
     }
 
     /// A flat floor of two 3-node elements, walked towards −x, so that +y is outward.

@@ -44,14 +44,12 @@ pub struct ContactState {
     pub spot: Option<SurfacePoint>,
     /// Half the angle (radians) between the normals of the two sides that hold the node where they meet; S* is then that point.
     /// Positive in a concave corner, negative on a convex vertex. `None` if a single side holds it.
-    #[serde(default)]
     pub corner: Option<f64>,
     /// The point on the second surface, if the corner is between two surfaces ([`crate::contact::crossing`]); S* is the one on
     /// the first.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub second: Option<SurfacePoint>,
     /// The last master element that the node left in the current increment, if any.
-    #[serde(default)]
     pub left: Option<usize>,
     /// Outward normal at the start of the current major iteration.
     pub normal: [f64; 2],

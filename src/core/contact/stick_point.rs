@@ -121,14 +121,7 @@ mod tests {
     use crate::contact::projection::projection_at;
 
     fn surface(elements: Vec<Vec<usize>>) -> Surface {
-        Surface {
-            name: "s".into(),
-            elements,
-            rigid: true,
-            endless: false,
-            smooth: Vec::new(),
-            gives: Vec::new(),
-        }
+        Surface::new("s", elements, true)
     }
 
     fn spot(element: usize, xi: f64) -> SurfacePoint {

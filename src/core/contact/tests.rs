@@ -20,14 +20,7 @@ fn chain(places: &[[f64; 2]], round: bool) -> Surface {
     if round {
         elements.push(vec![count - 1, 0]);
     }
-    let mut surface = Surface {
-        name: "s".into(),
-        elements,
-        rigid: false,
-        endless: false,
-        smooth: Vec::new(),
-        gives: Vec::new(),
-    };
+    let mut surface = Surface::new("s", elements, false);
     smooth(&mut surface, &nodes);
     surface
 }

@@ -87,17 +87,7 @@ impl Constant {
 
     /// A model for stepping it: a history of the load factor, and settings.
     pub fn model(&self, path: Vec<f64>, increment: f64, settings: Settings) -> Model {
-        let contact = |(node, &friction)| Contact {
-            node,
-            surfaces: Vec::new(),
-            friction,
-            start: Mode::Free,
-            state: Default::default(),
-            overlap: 0.0,
-            bond: Bond::Hard,
-            area: None,
-            facing: None,
-        };
+        let contact = |(node, &friction)| Contact::new(node, Vec::new(), friction);
         let node = |k: usize| Node {
             name: format!("contact.{}", k + 1),
             at: [0.0; 2],
@@ -108,28 +98,17 @@ impl Constant {
             touch => touch,
         };
         Model {
-            title: "A constant interface".into(),
-            about: String::new(),
-            nodes: (0..self.gaps.len()).map(node).collect(),
-            bodies: Vec::new(),
-            surfaces: Vec::new(),
-            contacts: self.friction.iter().enumerate().map(contact).collect(),
-            dofs: Dofs::default(),
-            loads: Vec::new(),
-            pressures: Vec::new(),
-            prescribed: Vec::new(),
             path,
             increment,
-            increments: Vec::new(),
-            least: None,
-            jumps: Default::default(),
-            control: Default::default(),
-            arc: Default::default(),
             settings: Settings { touch, ..settings },
-            monitors: Vec::new(),
-            budget: f64::INFINITY,
-            finished: None,
+            dofs: Dofs::default(),
             length: self.length,
+            ..Model::of_contacts(
+                "A constant interface",
+                (0..self.gaps.len()).map(node).collect(),
+                Vec::new(),
+                self.friction.iter().enumerate().map(contact).collect(),
+            )
         }
     }
 

@@ -22,15 +22,23 @@ pub struct Surface {
 }
 
 impl Surface {
+    /// A surface of Lagrange elements without local flexibilities.
+    pub fn new(name: &str, elements: Vec<Vec<usize>>, rigid: bool) -> Self {
+        Surface {
+            name: name.to_owned(),
+            elements,
+            rigid,
+            endless: false,
+            smooth: Vec::new(),
+            gives: Vec::new(),
+        }
+    }
+
     /// An endless rigid line through two nodes; its outward side is on the right of the walk.
     pub fn endless(name: &str, nodes: [usize; 2]) -> Self {
         Surface {
-            name: name.to_owned(),
-            elements: vec![nodes.to_vec()],
-            rigid: true,
             endless: true,
-            smooth: Vec::new(),
-            gives: Vec::new(),
+            ..Surface::new(name, vec![nodes.to_vec()], true)
         }
     }
 }

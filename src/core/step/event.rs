@@ -314,7 +314,7 @@ pub enum Failure {
         /// Predicted motion (length).
         predicted: f64,
         /// Kind of instability: set if the end state is unstable and the start state was not known to be unstable.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[serde(skip_serializing_if = "Option::is_none")]
         unstable: Option<Stability>,
     },
     /// A damped motion past a limit point does not end at rest.
@@ -372,7 +372,6 @@ pub enum Failure {
         /// Text from the solver; may be empty.
         reason: String,
         /// Residual at the end, relative to the forces, if the solver reported it.
-        #[serde(default)]
         relative: Option<f64>,
     },
 }

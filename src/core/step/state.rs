@@ -73,7 +73,7 @@ pub struct State {
     pub correction: f64,
     /// Displacements at which the current stiffness of the bodies was computed; `None` for those of the current major iteration
     /// ([`crate::model::Refactor`]).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub factored: Option<Arc<Vec<f64>>>,
     /// Record of how fast the scene moves.
     #[serde(default)]
@@ -82,13 +82,13 @@ pub struct State {
     #[serde(default, skip_serializing_if = "StabilityWatch::is_new")]
     pub watch: StabilityWatch,
     /// How sliding is held back in the current attempt ([`crate::step::recovery::proximal`]). `None` if it is not.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub brake: Option<Brake>,
     /// Arc-length data of the path. `None` under load control.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub way: Option<Box<Way>>,
     /// Damped motion past a limit point that is in progress; each of its steps is an attempt at the increment.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub motion: Option<Motion>,
     /// The fallback that is tried if the halves of the increment have failed.
     #[serde(rename = "detour", default, skip_serializing_if = "Option::is_none")]
@@ -97,7 +97,7 @@ pub struct State {
     #[serde(default, skip_serializing_if = "Searches::is_new")]
     pub searched: Searches,
     /// Position of an attached solver, which stores its own data. `None` for the built-in solver.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub outside: Option<Box<Outside>>,
     /// Whether and how the solver can continue.
     pub status: Status,
@@ -127,12 +127,12 @@ pub struct Searches {
     #[serde(default)]
     pub run: u32,
     /// The fallback of the search that helped last; the next failed increment tries it first.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub adopted: Option<Fallback>,
     /// Load factor of the equilibrium from which the last damped motion began.
     pub released: Option<f64>,
     /// That equilibrium, while the motion is in progress.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub origin: Option<Arc<IncrementStart>>,
 }
 
@@ -184,7 +184,6 @@ pub struct IncrementStart {
     /// Internal variables of the elements ([`crate::fem::assembly::Assembly::advance`]); zeros before the first increment.
     pub history: Vec<f64>,
     /// Verdict of the judge when the state was accepted. `None` before the first increment.
-    #[serde(default)]
     pub verdict: Option<Verdict>,
 }
 

@@ -16,7 +16,7 @@ pub struct SubIncrement {
     pub part: u32,
     /// Load factor at the end of the increment of which this is the first part, cut off by the golden section. `None` if it is
     /// not such a part.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub rest: Option<f64>,
 }
 

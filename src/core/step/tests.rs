@@ -136,37 +136,24 @@ fn cornered(solver: LinearSolver, pressed: [f64; 2]) -> Stepper {
         }),
     };
     // Outside is on the right of the walk: above the floor walked towards −x, and next to the wall walked upwards.
-    let surface = |name: &str, nodes: [usize; 2]| Surface {
-        name: name.into(),
-        elements: vec![nodes.to_vec()],
-        rigid: true,
-        endless: false,
-        smooth: Vec::new(),
-        gives: Vec::new(),
-    };
-    let contact = |surface: usize| Contact {
-        node: 0,
-        surfaces: vec![surface],
-        friction: Friction::default(),
-        start: Mode::Free,
-        state: Default::default(),
-        overlap: 0.0,
-        bond: Default::default(),
-        area: None,
-        facing: None,
-    };
+    let surface = |name: &str, nodes: [usize; 2]| Surface::new(name, vec![nodes.to_vec()], true);
+    let contact = |surface: usize| Contact::new(0, vec![surface], Friction::default());
     let load = |(dof, value)| Load {
         dof,
         value,
         scale: Default::default(),
     };
     let model = Model {
-        title: "In a corner".into(),
-        about: String::new(),
-        nodes: nodes.collect(),
         bodies: vec![body],
-        surfaces: vec![surface("floor", [1, 2]), surface("wall", [2, 3])],
-        contacts: vec![contact(0), contact(1)],
+        loads: [(0, -15.0 * pressed[0]), (1, -15.0 * pressed[1])]
+            .map(load)
+            .into(),
+        increment: 0.25,
+        settings: Settings {
+            solver,
+            ..Settings::default()
+        },
+        budget: 1e9,
         dofs: Dofs {
             first: vec![0, 2, 4, 6],
             count: vec![2; 4],
@@ -174,26 +161,13 @@ fn cornered(solver: LinearSolver, pressed: [f64; 2]) -> Stepper {
             equations: 2,
             inner: 0,
         },
-        loads: [(0, -15.0 * pressed[0]), (1, -15.0 * pressed[1])]
-            .map(load)
-            .into(),
-        pressures: Vec::new(),
-        prescribed: Vec::new(),
-        path: vec![0.0, 1.0],
-        increment: 0.25,
-        increments: Vec::new(),
-        least: None,
-        jumps: Default::default(),
-        control: Default::default(),
-        arc: Default::default(),
-        settings: Settings {
-            solver,
-            ..Settings::default()
-        },
-        monitors: Vec::new(),
-        budget: 1e9,
         length: 1.0,
-        finished: None,
+        ..Model::of_contacts(
+            "In a corner",
+            nodes.collect(),
+            vec![surface("floor", [1, 2]), surface("wall", [2, 3])],
+            vec![contact(0), contact(1)],
+        )
     };
     Stepper::new(Arc::new(model))
 }

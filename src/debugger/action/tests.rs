@@ -9,7 +9,7 @@ use crate::history::watches::{Watch, WatchQuantity};
 use crate::record::command::{Command, ExportScope, Unit};
 use std::path::PathBuf;
 use stickslip_core::model::{Contact, Node};
-use stickslip_core::model::{Friction, Mode, Model, Settings};
+use stickslip_core::model::{Friction, Mode, Model};
 use stickslip_scene::Scene;
 
 fn model() -> Model {
@@ -20,40 +20,13 @@ fn model() -> Model {
             at: [0.0; 2],
         })
         .into();
-    let slave = |node| Contact {
-        node,
-        surfaces: vec![],
-        friction: Friction::default(),
-        start: Mode::Free,
-        state: Default::default(),
-        overlap: 0.0,
-        bond: Default::default(),
-        area: None,
-        facing: None,
-    };
+    let slave = |node| Contact::new(node, vec![], Friction::default());
     Model {
-        title: String::new(),
-        about: String::new(),
-        nodes,
-        bodies: vec![],
-        surfaces: vec![],
-        contacts: vec![slave(1), slave(2)],
-        dofs: Default::default(),
-        loads: vec![],
-        pressures: Vec::new(),
-        prescribed: vec![],
-        path: vec![0.0, 1.0],
         increment: 0.1,
-        increments: Vec::new(),
-        least: None,
-        jumps: Default::default(),
-        control: Default::default(),
-        arc: Default::default(),
-        settings: Settings::default(),
-        monitors: vec![],
         budget: 1e9,
+        dofs: Default::default(),
         length: 1.0,
-        finished: None,
+        ..Model::of_contacts("", nodes, vec![], vec![slave(1), slave(2)])
     }
 }
 

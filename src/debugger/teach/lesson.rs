@@ -11,7 +11,7 @@ use stickslip_core::contact::laws::JudgedLaw;
 use stickslip_core::model::{Mode, Model};
 use stickslip_scene::embedded::EmbeddedFile;
 use stickslip_scene::embedded_all;
-use stickslip_scene::format::error::{Path, SceneError, at, did_you_mean};
+use stickslip_scene::format::error::{AtPath, Path, SceneError, at, bail, did_you_mean, fault};
 use stickslip_scene::format::kind::FileKind;
 use stickslip_scene::format::{Fault, read};
 use stickslip_scene::{Scene, placed};
@@ -246,12 +246,16 @@ fn runs(spec: &LessonSpec, scene: &Scene) -> Result<Option<Arc<Runs>>, Fault> {
         return Ok(None);
     }
     if matches!(spec.scene, SceneSpec::Scene(_)) {
-        let message = "a chart requires a named scene: scene: Name(…)";
-        return Err(Fault::new(at!["chart"], message));
+        bail!(
+            at!["chart"],
+            "a chart requires a named scene: scene: Name(…)"
+        );
     }
-    let over = spec.chart.iter().enumerate().map(|(index, text)| {
-        Vary::parse(text).map_err(|why| Fault::new(at!["chart", index], why.to_string()))
-    });
+    let over = spec
+        .chart
+        .iter()
+        .enumerate()
+        .map(|(index, text)| Vary::parse(text).at(at!["chart", index]));
     let over = over.collect::<Result<Vec<_>, Fault>>()?;
     let runs = Runs::new(scene.name.clone(), over, spec.set.clone());
     Ok(Some(Arc::new(runs)))
@@ -273,7 +277,7 @@ impl LessonReader<'_> {
 
     fn steps(&self, spec: &LessonSpec) -> Result<Vec<LessonStep>, Fault> {
         if spec.steps.is_empty() {
-            return Err(Fault::new(at!["steps"], "a lesson needs at least one step"));
+            bail!(at!["steps"], "a lesson needs at least one step");
         }
         let steps = spec.steps.iter().enumerate();
         steps
@@ -288,14 +292,13 @@ impl LessonReader<'_> {
                 Ok(LessonStep::Text(self.template(path, text, LONGEST_TEXT)?))
             }
             StepSpec::Press { text: words, press } => {
-                let (action, how) = press_of(press, &self.context())
-                    .map_err(|why| Fault::new(path.then("press"), why.to_string()))?;
+                let (action, how) = press_of(press, &self.context()).at(path.then("press"))?;
                 let text = text(words)?;
                 Ok(LessonStep::Press { text, action, how })
             }
-            StepSpec::Predict { right: 0, .. } => Err(Fault::new(
+            StepSpec::Predict { right: 0, .. } => Err(fault!(
                 path.then("right"),
-                "at least one right prediction is required",
+                "at least one right prediction is required"
             )),
             StepSpec::Predict { text: words, right } => Ok(LessonStep::Predict {
                 text: text(words)?,
@@ -309,8 +312,10 @@ impl LessonReader<'_> {
                 then,
             } => {
                 if *ahead > FARTHEST {
-                    let message = format!("a question can look ahead by at most {FARTHEST}");
-                    return Err(Fault::new(path.then("ahead"), message));
+                    bail!(
+                        path.then("ahead"),
+                        "a question can look ahead by at most {FARTHEST}"
+                    );
                 }
                 let answer = self.answer(path.then("answer"), answer)?;
                 let hint = self.template(path.then("hint"), hint, LONGEST_REMARK)?;
@@ -318,8 +323,7 @@ impl LessonReader<'_> {
                     Answer::Number(quantity, _) if *ahead == 0 => Some(quantity),
                     _ => None,
                 };
-                hint.check_hint(asked)
-                    .map_err(|why| Fault::new(path.then("hint"), why.to_string()))?;
+                hint.check_hint(asked).at(path.then("hint"))?;
                 Ok(LessonStep::Ask(Ask {
                     text: text(words)?,
                     answer,
@@ -347,7 +351,7 @@ impl LessonReader<'_> {
     }
 
     fn node(&self, path: Path, name: &str) -> Result<usize, Fault> {
-        action::exact(name, &self.context()).map_err(|why| Fault::new(path, why.to_string()))
+        action::exact(name, &self.context()).at(path)
     }
 
     fn answer(&self, path: Path, answer: &AnswerSpec) -> Result<Answer, Fault> {
@@ -355,21 +359,21 @@ impl LessonReader<'_> {
             AnswerSpec::Mode { node } => Answer::Mode(self.node(path.then("node"), node)?),
             AnswerSpec::Rule { node } => Answer::Rule(self.node(path.then("node"), node)?),
             AnswerSpec::Number { of, tolerance } => {
-                let quantity = LessonQuantity::read(of, &self.context())
-                    .map_err(|why| Fault::new(path.then("of"), why.to_string()))?;
+                let quantity = LessonQuantity::read(of, &self.context()).at(path.then("of"))?;
                 if !quantity.is_number() {
-                    return Err(Fault::new(path.then("of"), format!("{of} is not a number")));
+                    bail!(path.then("of"), "{of} is not a number");
                 }
                 if !(0.0..1.0).contains(tolerance) {
-                    let message = "the tolerance is relative: 0 for exact, 0.01 for one per cent";
-                    return Err(Fault::new(path.then("tolerance"), message));
+                    bail!(
+                        path.then("tolerance"),
+                        "the tolerance is relative: 0 for exact, 0.01 for one per cent"
+                    );
                 }
                 Answer::Number(quantity, *tolerance)
             }
             AnswerSpec::Choice(choices) => {
                 if !(2..=MOST_CHOICES).contains(&choices.len()) {
-                    let message = format!("a question needs 2 to {MOST_CHOICES} choices");
-                    return Err(Fault::new(path, message));
+                    bail!(path, "a question needs 2 to {MOST_CHOICES} choices");
                 }
                 let all = choices.iter().enumerate();
                 let read = all.map(|(k, (text, when))| {
@@ -383,8 +387,7 @@ impl LessonReader<'_> {
     }
 
     fn number(&self, path: &Path, text: &str) -> Result<LessonQuantity, Fault> {
-        quantity::number(text, &self.context())
-            .map_err(|why| Fault::new(path.clone(), why.to_string()))
+        quantity::number(text, &self.context()).at(path)
     }
 
     fn truth(&self, path: Path, when: &When) -> Result<Truth, Fault> {
@@ -402,17 +405,14 @@ impl LessonReader<'_> {
                 let all = || JudgedLaw::ALL.into_iter().chain(JudgedLaw::OF_BONDS);
                 let law = all().find(|law| law.name() == name);
                 let names = || all().map(JudgedLaw::name).collect::<Vec<_>>().join(", ");
-                let none = || Fault::new(path, format!("unknown law {name:?}; laws: {}", names()));
+                let none = || fault!(path, "unknown law {name:?}; laws: {}", names());
                 Truth::Breaks(law.ok_or_else(none)?)
             }
             When::Less(a, b) => Truth::Less(self.number(&path, a)?, self.number(&path, b)?),
             When::Close(a, b) => Truth::Close(self.number(&path, a)?, self.number(&path, b)?),
             When::Cheapest { run, error } => {
                 let settings = quantity::settings(run);
-                Truth::Cheapest(
-                    settings.map_err(|why| Fault::new(path, why.to_string()))?,
-                    *error,
-                )
+                Truth::Cheapest(settings.at(path)?, *error)
             }
             When::Right => Truth::Known(true),
             When::Wrong => Truth::Known(false),

@@ -163,7 +163,7 @@ pub struct Hello {
     #[serde(default)]
     pub abilities: Abilities,
     /// The rules by which it chooses modes, if the debugger should check them.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub decides: Option<Decides>,
     /// Parameters that can be changed during a run.
     #[serde(default)]
@@ -219,10 +219,8 @@ pub struct Parameter {
     /// Current value.
     pub value: Value,
     /// Lower bound; `None` if there is none.
-    #[serde(default)]
     pub least: Option<f64>,
     /// Upper bound; `None` if there is none.
-    #[serde(default)]
     pub most: Option<f64>,
     /// The options of a choice.
     #[serde(default)]
@@ -267,7 +265,7 @@ pub struct Scene {
     /// The slave nodes.
     pub contacts: Vec<Contact>,
     /// Load factors at the start and at the end of the history.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub load: Option<[f64; 2]>,
     /// Numbers that states report.
     #[serde(default)]
@@ -321,7 +319,6 @@ pub struct Contact {
     /// Index into [`Scene::nodes`].
     pub node: usize,
     /// Name of the surface that it may touch.
-    #[serde(default)]
     pub surface: Option<String>,
     /// Coulomb's law.
     #[serde(default)]
@@ -330,10 +327,10 @@ pub struct Contact {
     #[serde(default)]
     pub mode: Mode,
     /// Undeformed tributary area.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub area: Option<f64>,
     /// Compliances in series along n and t (length per force); a touching node penetrates by compliance times force.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub gives: Option<[f64; 2]>,
     /// Whether it is tied to its point of the surface, in tension too.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
@@ -344,10 +341,10 @@ pub struct Contact {
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Friction {
     /// Coefficient.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub mu: Option<f64>,
     /// The same as an angle in degrees; takes precedence over `mu`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub angle: Option<f64>,
     /// Friction without a normal force (force).
     #[serde(default)]
@@ -360,7 +357,6 @@ pub struct State {
     /// Number of the iteration.
     pub at: Position,
     /// Load factor at the end of the increment.
-    #[serde(default)]
     pub load: Option<f64>,
     /// The level that ended with this iteration.
     pub ended: Ended,
@@ -368,7 +364,7 @@ pub struct State {
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub reason: String,
     /// Size of the next increment after a cut (load factor).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub size: Option<f64>,
     /// All contacts in scene order; empty if the iteration could not be solved.
     pub contacts: Vec<Found>,
@@ -376,22 +372,22 @@ pub struct State {
     #[serde(default)]
     pub residual: Norms,
     /// Norms at the end of a major iteration.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub after: Option<Norms>,
     /// Displacements of the scene's nodes along x and y (length); unchanged if omitted.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub displacements: Option<Vec<[f64; 2]>>,
     /// Stiffness that relates gaps to forces, for [`Decides::Newton`] (force per length).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub spring: Option<f64>,
     /// Values of the scene's monitors, if an increment was accepted.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub monitors: Vec<Option<f64>>,
     /// Arc along the path, if the scene declares it.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub arc: Option<f64>,
     /// Drag of the current damped motion (force per length).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub drag: Option<f64>,
 }
 
@@ -423,52 +419,47 @@ pub struct Found {
     /// Mode of the next solve.
     pub next: Mode,
     /// Gap after the solve (length); negative is penetration.
-    #[serde(default)]
     pub gap: Option<f64>,
     /// Normal force; compression is positive.
-    #[serde(default)]
     pub f_n: Option<f64>,
     /// Tangential force along t.
-    #[serde(default)]
     pub f_t: Option<f64>,
     /// T_max, with the sign of the friction force on a sliding node.
-    #[serde(default)]
     pub limit: Option<f64>,
     /// Motion of the surface relative to the node along t (length).
-    #[serde(default)]
     pub slip: Option<f64>,
     /// Rule that selected the next mode: the name of a row of Table 2, or the solver's own text.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub rule: String,
     /// Signed distance from switching; positive if the mode is kept (force or length).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub margin: Option<f64>,
     /// The tested inequalities.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub tests: Vec<Test>,
     /// Mode selected by the rules, if it was overridden (by a hold).
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub wanted: Option<Mode>,
     /// T_max used in this solve.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub limit_used: Option<f64>,
     /// Distance along the surface from the stick point, with the sign of slip.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub drift: Option<f64>,
     /// Outward normal of the master.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub normal: Option<[f64; 2]>,
     /// The closest point on the master.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub foot: Option<[f64; 2]>,
     /// Half the angle (radians) between the normals of the two sides of a corner that holds the node.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub corner: Option<f64>,
     /// Whether the supports carry a force component.
     #[serde(default, skip_serializing_if = "no")]
     pub carried: [bool; 2],
     /// Whether the mode of this or the next solve was forced from outside.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub forced: Option<Forced>,
     /// False beyond the ends of all surfaces, where no contact is possible.
     #[serde(default = "yes", skip_serializing_if = "Clone::clone")]

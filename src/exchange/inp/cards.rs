@@ -8,7 +8,9 @@
 //!
 //! Case and spaces within words do not matter, as in CalculiX. Parameters continue on the next line after a trailing comma.
 
+use super::Done;
 use super::source::{Fault, Place, SourceLine, plain};
+use crate::bail;
 
 /// A keyword with its parameters and data.
 #[derive(Debug)]
@@ -31,6 +33,9 @@ pub(super) struct Parameter {
     pub place: Place,
 }
 
+/// All parameters are supported.
+pub(super) const ANY: &[&str] = &["*"];
+
 /// A word of a data line.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct CardCell<'t> {
@@ -40,9 +45,7 @@ pub(super) struct CardCell<'t> {
 }
 
 /// The cards of a deck.
-pub(super) fn cards<'t>(
-    lines: impl Iterator<Item = SourceLine<'t>>,
-) -> Result<Vec<Card<'t>>, Fault> {
+pub(super) fn cards<'t>(lines: impl Iterator<Item = SourceLine<'t>>) -> Done<Vec<Card<'t>>> {
     let mut cards: Vec<Card<'t>> = Vec::new();
     let mut open = false;
     for line in lines {
@@ -62,10 +65,10 @@ pub(super) fn cards<'t>(
             }
             Some(card) => card.lines.push(line),
             None => {
-                return Err(Fault::new(
+                bail!(
                     line.place(0),
-                    "data before the first keyword; a deck begins with a keyword, e.g. *HEADING or *NODE",
-                ));
+                    "data before the first keyword; a deck begins with a keyword, e.g. *HEADING or *NODE"
+                );
             }
         }
     }
@@ -74,17 +77,17 @@ pub(super) fn cards<'t>(
 
 impl<'t> Card<'t> {
     /// A card without its data, and whether its parameters continue on the next line.
-    fn begin(line: SourceLine<'t>) -> Result<(Card<'t>, bool), Fault> {
+    fn begin(line: SourceLine<'t>) -> Done<(Card<'t>, bool)> {
         let star = line.text.find('*').unwrap_or(0);
         let end = line.text.find(',').unwrap_or(line.text.len());
         let word = line.text.get(star + 1..end).unwrap_or_default().trim();
         let key = plain(word);
         let place = line.place(star);
         if key.is_empty() {
-            return Err(Fault::new(
+            bail!(
                 place,
-                "the star must be followed by a keyword; comments start with two stars",
-            ));
+                "the star must be followed by a keyword; comments start with two stars"
+            );
         }
         let (parameters, open) = match end < line.text.len() {
             true => parameters_of(line, end + 1)?,
@@ -105,27 +108,30 @@ impl<'t> Card<'t> {
         Fault::new(self.place, format!("*{}: {message}", self.shown))
     }
 
+    /// An error about a parameter.
+    pub fn wrong_at(&self, name: &str, message: impl std::fmt::Display) -> Fault {
+        Fault::new(self.place_of(name), format!("*{}: {message}", self.shown))
+    }
+
     /// Rejects parameters other than these.
-    pub fn only(&self, known: &[&str]) -> Result<(), Fault> {
-        for parameter in &self.parameters {
-            if !known.contains(&parameter.name.as_str()) {
-                let list = match known {
-                    [] => "it has no supported parameters".to_owned(),
-                    _ => format!("supported are {}", known.join(", ")),
-                };
-                let name = short(&parameter.name);
-                let message = format!(
-                    "*{}: the parameter {name} is not supported; {list}",
-                    self.shown
-                );
-                return Err(Fault::new(parameter.place, message));
-            }
-        }
-        Ok(())
+    pub fn only(&self, known: &[&str]) -> Done {
+        let is_known = |name: &str| known == ANY || known.contains(&name);
+        let Some(other) = self.parameters.iter().find(|own| !is_known(&own.name)) else {
+            return Ok(());
+        };
+        let list = match known {
+            [] => "it has no supported parameters".to_owned(),
+            _ => format!("supported are {}", known.join(", ")),
+        };
+        let what = format!(
+            "the parameter {} is not supported; {list}",
+            short(&other.name)
+        );
+        Err(self.wrong_at(&other.name, what))
     }
 
     pub fn parameter(&self, name: &str) -> Option<&Parameter> {
-        self.parameters.iter().find(|p| p.name == name)
+        self.parameters.iter().find(|p| p.name == plain(name))
     }
 
     pub fn has(&self, name: &str) -> bool {
@@ -133,43 +139,47 @@ impl<'t> Card<'t> {
     }
 
     /// The value of a parameter, if present.
-    pub fn value(&self, name: &str) -> Result<Option<&str>, Fault> {
+    pub fn value(&self, name: &str) -> Done<Option<&str>> {
         let Some(parameter) = self.parameter(name) else {
             return Ok(None);
         };
         match parameter.value.as_deref() {
             Some(value) if !value.is_empty() => Ok(Some(value)),
-            _ => Err(Fault::new(
-                parameter.place,
-                format!(
-                    "*{}: {name} has no value; it must be {name}=...",
-                    self.shown
-                ),
-            )),
+            _ => Err(self.wrong_at(name, format!("{name} has no value; it must be {name}=..."))),
         }
     }
 
-    pub fn required(&self, name: &str) -> Result<&str, Fault> {
+    pub fn required(&self, name: &str) -> Done<&str> {
         self.value(name)?
             .ok_or_else(|| self.wrong(format!("the parameter {name}=... is missing")))
     }
 
     /// The index of a parameter's value in a list of words; 0 if the parameter is missing.
-    pub fn choice(&self, name: &str, words: &[&str]) -> Result<usize, Fault> {
+    pub fn choice(&self, name: &str, words: &[&str]) -> Done<usize> {
         let Some(value) = self.value(name)? else {
             return Ok(0);
         };
         let found = words.iter().position(|word| plain(word) == value);
-        found.ok_or_else(|| {
-            let place = self.parameter(name).map_or(self.place, |p| p.place);
-            let message = format!(
-                "*{}: {name}={} is not supported; it must be {}",
-                self.shown,
-                short(value),
-                words.join(" or ")
-            );
-            Fault::new(place, message)
-        })
+        found.ok_or_else(|| self.unlike(name, value, &words.join(" or ")))
+    }
+
+    /// A length given by a parameter; `kind` describes it in messages.
+    pub fn length(&self, name: &str, kind: &str) -> Done<Option<f64>> {
+        let Some(value) = self.value(name)? else {
+            return Ok(None);
+        };
+        match value.parse::<f64>() {
+            Ok(length) if length.is_finite() && length >= 0.0 => Ok(Some(length)),
+            _ => Err(self.unlike(name, value, kind)),
+        }
+    }
+
+    fn unlike(&self, name: &str, value: &str, kind: &str) -> Fault {
+        let value = short(value);
+        self.wrong_at(
+            name,
+            format!("{name}={value} is not supported; it must be {kind}"),
+        )
     }
 
     /// Location of a parameter.
@@ -178,28 +188,23 @@ impl<'t> Card<'t> {
     }
 
     /// The only data line.
-    pub fn one_line(&self, what: &str) -> Result<Vec<CardCell<'t>>, Fault> {
+    pub fn one_line(&self, what: &str) -> Done<Vec<CardCell<'t>>> {
         match self.lines.as_slice() {
             [line] => Ok(cells(*line)),
-            [] => Err(self.wrong(format!("a line with {what} is missing"))),
-            [_, more, ..] => Err(Fault::new(
-                more.place(0),
-                format!(
-                    "*{}: unexpected second data line; only one with {what} is allowed",
-                    self.shown
-                ),
-            )),
+            [] => bail!(self, "a line with {what} is missing"),
+            [_, more, ..] => bail!(
+                more,
+                "*{}: unexpected second data line; only one with {what} is allowed",
+                self.shown
+            ),
         }
     }
 
     /// Rejects data lines.
-    pub fn no_lines(&self) -> Result<(), Fault> {
+    pub fn no_lines(&self) -> Done {
         match self.lines.first() {
             None => Ok(()),
-            Some(line) => Err(Fault::new(
-                line.place(0),
-                format!("*{} has no data; a keyword was expected", self.shown),
-            )),
+            Some(line) => bail!(line, "*{} has no data; a keyword was expected", self.shown),
         }
     }
 
@@ -209,7 +214,7 @@ impl<'t> Card<'t> {
     }
 }
 
-fn parameters_of(line: SourceLine<'_>, from: usize) -> Result<(Vec<Parameter>, bool), Fault> {
+fn parameters_of(line: SourceLine<'_>, from: usize) -> Done<(Vec<Parameter>, bool)> {
     let mut parameters = Vec::new();
     let mut open = true;
     let mut byte = from;
@@ -227,10 +232,7 @@ fn parameters_of(line: SourceLine<'_>, from: usize) -> Result<(Vec<Parameter>, b
         };
         let name = plain(name);
         if name.is_empty() {
-            return Err(Fault::new(
-                place,
-                "a parameter has no name before its \"=\"",
-            ));
+            bail!(place, "a parameter has no name before its \"=\"");
         }
         parameters.push(Parameter { name, value, place });
     }
@@ -266,32 +268,50 @@ impl CardCell<'_> {
     }
 
     /// A number; Fortran exponents with D are accepted too.
-    pub fn number(&self, what: &str) -> Result<f64, Fault> {
+    pub fn number(&self, what: &str) -> Done<f64> {
         let read = self.text.parse().ok().or_else(|| {
             let fortran: String = self.text.replace(['d', 'D'], "e");
             fortran.parse().ok()
         });
-        read.filter(|value: &f64| value.is_finite()).ok_or_else(|| {
-            self.wrong(format!(
-                "found {:?} where {what}, a number, was expected",
-                short(self.text)
-            ))
-        })
+        read.filter(|value: &f64| value.is_finite())
+            .ok_or_else(|| self.unlike(what, "a number"))
     }
 
     /// A nonnegative whole number.
-    pub fn whole(&self, what: &str) -> Result<u64, Fault> {
-        self.text.parse().map_err(|_| {
-            self.wrong(format!(
-                "found {:?} where {what}, a whole number, was expected",
-                short(self.text)
-            ))
-        })
+    pub fn whole(&self, what: &str) -> Done<u64> {
+        self.text
+            .parse()
+            .map_err(|_| self.unlike(what, "a whole number"))
+    }
+
+    fn unlike(&self, what: &str, kind: &str) -> Fault {
+        let found = short(self.text);
+        self.wrong(format!(
+            "found {found:?} where {what}, {kind}, was expected"
+        ))
+    }
+}
+
+impl From<(&CardCell<'_>, String)> for Fault {
+    fn from((cell, message): (&CardCell<'_>, String)) -> Self {
+        cell.wrong(message)
+    }
+}
+
+impl From<(&SourceLine<'_>, String)> for Fault {
+    fn from((line, message): (&SourceLine<'_>, String)) -> Self {
+        Fault::new(line.place(0), message)
+    }
+}
+
+impl From<(&Card<'_>, String)> for Fault {
+    fn from((card, message): (&Card<'_>, String)) -> Self {
+        card.wrong(message)
     }
 }
 
 /// The number at an index of a line; 0 if omitted.
-pub(super) fn number_or_zero(cells: &[CardCell<'_>], at: usize, what: &str) -> Result<f64, Fault> {
+pub(super) fn number_or_zero(cells: &[CardCell<'_>], at: usize, what: &str) -> Done<f64> {
     match cells.get(at).filter(|cell| !cell.text.is_empty()) {
         Some(cell) => cell.number(what),
         None => Ok(0.0),

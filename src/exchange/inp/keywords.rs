@@ -1,10 +1,14 @@
-//! Keywords: supported, ignored, and unsupported ones, with alternatives.
+//! Keywords: supported ones with their parameters and readers, ignored ones, and unsupported ones with alternatives.
+
+use super::cards::{ANY, Card};
+use super::{Done, Reader};
+use Pass::{Laws, Mesh, Model, Step};
 
 /// Treatment of a keyword.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy)]
 pub enum Treatment {
     /// Supported; with a note on its interpretation, if needed.
-    Read(&'static str),
+    Read(&'static str, Option<Reading>),
     /// Ignored and listed by `check`; with the reason.
     Ignored(&'static str),
     /// Unsupported; with the reason and an alternative.
@@ -12,6 +16,38 @@ pub enum Treatment {
 }
 
 use Treatment::{Ignored, Read, Refused};
+
+/// When and how the cards of a keyword are read.
+#[derive(Debug, Clone, Copy)]
+pub struct Reading {
+    pub(super) pass: Pass,
+    /// The supported parameters.
+    pub(super) parameters: &'static [&'static str],
+    pub(super) read: fn(&mut Reader, &Card<'_>) -> Done,
+}
+
+/// The passes over the cards. The last two are one pass, but cards of the model must come before the first step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Pass {
+    Mesh,
+    Laws,
+    Model,
+    Step,
+}
+
+const fn read(
+    note: &'static str,
+    pass: Pass,
+    parameters: &'static [&'static str],
+    read: fn(&mut Reader, &Card<'_>) -> Done,
+) -> Treatment {
+    let reading = Reading {
+        pass,
+        parameters,
+        read,
+    };
+    Read(note, Some(reading))
+}
 
 const OUTPUT: &str = "output is selected on the command line";
 const HEAT: &str = "it concerns temperatures, which are not supported";
@@ -26,18 +62,32 @@ const CHANGES: &str = "contact definitions must be the same in all steps";
 
 /// The known keywords, in alphabetical order.
 pub const KEYWORDS: &[(&str, Treatment)] = &[
-    ("AMPLITUDE", Read("tabular, in step or total time")),
+    (
+        "AMPLITUDE",
+        read(
+            "tabular, in step or total time",
+            Laws,
+            &["NAME", "TIME", "DEFINITION", "VALUE"],
+            Reader::amplitude,
+        ),
+    ),
     ("ASSEMBLY", Refused(ASSEMBLED)),
     (
         "BEAM SECTION",
-        Read(
+        read(
             "SECTION=RECT with its first axis across the plane: EA, EI, and GA with the shear factor 5/6",
+            Model,
+            &["ELSET", "MATERIAL", "SECTION"],
+            Reader::beam_section,
         ),
     ),
     (
         "BOUNDARY",
-        Read(
+        read(
             "directions 1 and 2, and 6 on beams; other zero values are fulfilled by plane problems",
+            Step,
+            &["OP", "AMPLITUDE", "TYPE"],
+            Reader::boundary,
         ),
     ),
     ("BUCKLE", Refused(OTHER)),
@@ -45,7 +95,12 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
     ("CHANGE SURFACE BEHAVIOR", Refused(CHANGES)),
     (
         "CLOAD",
-        Read("on axisymmetric elements, the force on the whole ring"),
+        read(
+            "on axisymmetric elements, the force on the whole ring",
+            Step,
+            &["OP", "AMPLITUDE"],
+            Reader::force,
+        ),
     ),
     ("CONDUCTIVITY", Ignored(HEAT)),
     (
@@ -60,7 +115,12 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
     ("CONTACT OUTPUT", Ignored(OUTPUT)),
     (
         "CONTACT PAIR",
-        Read("both types as node to surface; masters are the sides of the second surface"),
+        read(
+            "both types as node to surface; masters are the sides of the second surface",
+            Model,
+            &["INTERACTION", "TYPE", "SMALLSLIDING", "ADJUST"],
+            Reader::pair,
+        ),
     ),
     ("CONTACT PRINT", Ignored(OUTPUT)),
     (
@@ -77,31 +137,56 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
         Refused("dashpots are not supported; only *STATIC steps are"),
     ),
     ("DEFORMATION PLASTICITY", Refused(INELASTIC)),
-    ("DENSITY", Read("for GRAV in *DLOAD")),
+    (
+        "DENSITY",
+        read("for GRAV in *DLOAD", Laws, &[], Reader::density),
+    ),
     ("DEPVAR", Refused(INELASTIC)),
     ("DISTRIBUTING COUPLING", Refused(COUPLED)),
     ("DISTRIBUTION", Refused(FRAMES)),
     (
         "DLOAD",
-        Read("P1 to P4, GRAV, BX and BY; pressure follows the side in steps with NLGEOM"),
+        read(
+            "P1 to P4, GRAV, BX and BY; pressure follows the side in steps with NLGEOM",
+            Step,
+            &["OP", "AMPLITUDE"],
+            Reader::load,
+        ),
     ),
-    ("DSLOAD", Read("P")),
+    (
+        "DSLOAD",
+        read("P", Step, &["OP", "AMPLITUDE"], Reader::surface_load),
+    ),
     ("DYNAMIC", Refused(OTHER)),
     ("EL FILE", Ignored(OUTPUT)),
     ("EL PRINT", Ignored(OUTPUT)),
-    ("ELASTIC", Read("isotropic")),
+    (
+        "ELASTIC",
+        read("isotropic", Laws, &["TYPE"], Reader::elastic),
+    ),
     (
         "ELEMENT",
-        Read(
+        read(
             "CPE, CPS, CAX with 3, 4, 6, 8 nodes and 8R; B21, B22, B31, B31R, B32, B32R as plane elements",
+            Mesh,
+            &["TYPE", "ELSET"],
+            Reader::elements,
         ),
     ),
     ("ELEMENT OUTPUT", Ignored(OUTPUT)),
-    ("ELSET", Read("")),
+    (
+        "ELSET",
+        read(
+            "",
+            Mesh,
+            &["ELSET", "GENERATE", "UNSORTED", "INTERNAL"],
+            Reader::element_set,
+        ),
+    ),
     ("END ASSEMBLY", Refused(ASSEMBLED)),
     ("END INSTANCE", Refused(ASSEMBLED)),
     ("END PART", Refused(ASSEMBLED)),
-    ("END STEP", Read("")),
+    ("END STEP", read("", Step, &[], Reader::end)),
     ("ENERGY FILE", Ignored(OUTPUT)),
     ("ENERGY OUTPUT", Ignored(OUTPUT)),
     ("EQUATION", Refused(COUPLED)),
@@ -110,18 +195,26 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
     ("FREQUENCY", Refused(OTHER)),
     (
         "FRICTION",
-        Read("with the stick slope as the stiffness of elastic slip"),
+        read(
+            "with the stick slope as the stiffness of elastic slip",
+            Laws,
+            &["SLIPTOLERANCE"],
+            Reader::friction,
+        ),
     ),
     (
         "GAP",
         Refused("gap elements are not supported; use *CONTACT PAIR"),
     ),
     ("GAP CONDUCTANCE", Ignored(HEAT)),
-    ("HEADING", Read("as the title")),
+    ("HEADING", read("as the title", Mesh, ANY, Reader::heading)),
     ("HEAT TRANSFER", Refused(OTHER)),
     ("HYPERELASTIC", Refused(INELASTIC)),
     ("HYPERFOAM", Refused(INELASTIC)),
-    ("INCLUDE", Read("files in the folder of the deck or below")),
+    (
+        "INCLUDE",
+        Read("files in the folder of the deck or below", None),
+    ),
     (
         "INITIAL CONDITIONS",
         Ignored("only TYPE=TEMPERATURE, because temperatures are ignored"),
@@ -130,7 +223,7 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
     ("KINEMATIC", Refused(COUPLED)),
     ("KINEMATIC COUPLING", Refused(COUPLED)),
     ("MASS", Ignored("it only affects *DYNAMIC steps")),
-    ("MATERIAL", Read("")),
+    ("MATERIAL", read("", Laws, &["NAME"], Reader::material)),
     ("MODAL DYNAMIC", Refused(OTHER)),
     ("MODEL CHANGE", Refused(CHANGES)),
     ("MONITOR", Ignored(OUTPUT)),
@@ -139,14 +232,30 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
         "NO ANALYSIS",
         Refused("it would disable the solve; leave it out"),
     ),
-    ("NODE", Read("in the plane z = 0")),
+    (
+        "NODE",
+        read("in the plane z = 0", Mesh, &["NSET"], Reader::nodes),
+    ),
     ("NODE FILE", Ignored(OUTPUT)),
     ("NODE OUTPUT", Ignored(OUTPUT)),
     (
         "NODE PRINT",
-        Read("U of a set of at most 20 nodes, as monitors"),
+        read(
+            "U of a set of at most 20 nodes, as monitors",
+            Step,
+            ANY,
+            Reader::print,
+        ),
     ),
-    ("NSET", Read("")),
+    (
+        "NSET",
+        read(
+            "",
+            Mesh,
+            &["NSET", "GENERATE", "UNSORTED", "INTERNAL"],
+            Reader::node_set,
+        ),
+    ),
     ("ORIENTATION", Refused(FRAMES)),
     ("OUTPUT", Ignored(OUTPUT)),
     ("PART", Refused(ASSEMBLED)),
@@ -173,15 +282,44 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
         "SHELL SECTION",
         Refused("shells are three-dimensional; only plane elements are supported"),
     ),
-    ("SOLID SECTION", Read("including the thickness")),
+    (
+        "SOLID SECTION",
+        read(
+            "including the thickness",
+            Model,
+            &["ELSET", "MATERIAL"],
+            Reader::solid_section,
+        ),
+    ),
     ("SPECIFIC HEAT", Ignored(HEAT)),
     ("SPRING", Refused("springs are not supported")),
     (
         "STATIC",
-        Read("the first, minimum and maximum increment and the duration of the step"),
+        read(
+            "the first, minimum and maximum increment and the duration of the step",
+            Step,
+            &["DIRECT", "SOLVER", "TIMERESET", "STABILIZE"],
+            Reader::time,
+        ),
     ),
     ("STEADY STATE DYNAMICS", Refused(OTHER)),
-    ("STEP", Read("NLGEOM, INC, AMPLITUDE")),
+    (
+        "STEP",
+        read(
+            "NLGEOM, INC, AMPLITUDE",
+            Step,
+            &[
+                "NLGEOM",
+                "INC",
+                "AMPLITUDE",
+                "NAME",
+                "UNSYMM",
+                "INCF",
+                "INCF1",
+            ],
+            Reader::begin,
+        ),
+    ),
     (
         "SUBMODEL",
         Refused("submodels are not supported; prescribe displacements by *BOUNDARY"),
@@ -189,20 +327,41 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
     ("SUBSTRUCTURE GENERATE", Refused(OTHER)),
     (
         "SURFACE",
-        Read("of sides of elements, or of nodes (slaves only)"),
+        read(
+            "of sides of elements, or of nodes (slaves only)",
+            Mesh,
+            &["NAME", "TYPE", "INTERNAL"],
+            Reader::surface,
+        ),
     ),
     (
         "SURFACE BEHAVIOR",
-        Read("HARD; LINEAR as a penalty; TIED as LINEAR in tension too"),
+        read(
+            "HARD; LINEAR as a penalty; TIED as LINEAR in tension too",
+            Laws,
+            &["PRESSUREOVERCLOSURE", "PRESSURE-OVERCLOSURE"],
+            Reader::behavior,
+        ),
     ),
-    ("SURFACE INTERACTION", Read("")),
+    (
+        "SURFACE INTERACTION",
+        read("", Laws, &["NAME"], Reader::interaction),
+    ),
     (
         "TEMPERATURE",
         Refused(
             "thermal expansion is not supported; leave the temperatures out, or prescribe displacements by *BOUNDARY",
         ),
     ),
-    ("TIE", Read("as contacts that neither open nor slide")),
+    (
+        "TIE",
+        read(
+            "as contacts that neither open nor slide",
+            Model,
+            &["NAME", "POSITIONTOLERANCE", "ADJUST", "TYPE"],
+            Reader::tie,
+        ),
+    ),
     ("TIME POINTS", Ignored(OUTPUT)),
     ("TRANSFORM", Refused(FRAMES)),
     ("UNCOUPLED TEMPERATURE-DISPLACEMENT", Refused(OTHER)),

@@ -19,13 +19,14 @@ mod step;
 #[cfg(test)]
 mod tests;
 
+use crate::bail;
 use cards::Card;
 pub use deck::Deck;
 use deck::{Remark, Value};
-use keywords::{Treatment, nearest, treatment};
+use keywords::{Pass, Reading, Treatment, nearest, treatment};
 use mesh::Names;
-pub use source::{DECK_BYTES, Include, Place, Wrong};
-use source::{Fault, Sources};
+use source::Sources;
+pub use source::{DECK_BYTES, Fault, Include, Place, Wrong};
 
 /// Whether a text could be a deck: its first line that is neither blank nor a comment begins with a star.
 pub fn is_one(text: &str) -> bool {
@@ -60,72 +61,88 @@ pub fn read(name: &str, text: &str, include: &mut Include<'_>) -> Result<Deck, W
     })
 }
 
-fn whole(sources: &Sources) -> Result<Deck, Fault> {
+/// State of reading a deck.
+#[derive(Debug, Default)]
+pub struct Reader {
+    deck: Deck,
+    names: Names,
+    /// The step that has begun.
+    step: Option<deck::Step>,
+    has_time: bool,
+    /// NLGEOM stays on in later steps until it is switched off.
+    nlgeom: bool,
+}
+
+/// The result of reading a part of a deck.
+type Done<T = ()> = Result<T, Fault>;
+
+fn whole(sources: &Sources) -> Done<Deck> {
     let cards = cards::cards(sources.lines())?;
-    let mut deck = Deck {
-        files: sources.names.clone(),
-        ..Deck::default()
-    };
+    let mut reader = Reader::default();
+    reader.deck.files = sources.names.clone();
+    let mut readings = Vec::with_capacity(cards.len());
     for card in &cards {
-        known(card, &mut deck)?;
+        readings.push(reader.known(card)?);
     }
-    let mut names = Names::default();
-    let (mut properties, mut steps) = (property::Open::default(), step::OpenStep::default());
-    for card in &cards {
-        mesh::read(card, &mut deck, &mut names)?;
-    }
-    for card in &cards {
-        property::define(card, &mut deck, &mut properties)?;
-    }
-    for card in &cards {
-        if property::apply(card, &mut deck, &names)? {
-            step::before(card, &steps)?;
+    for passes in [&[Pass::Mesh][..], &[Pass::Laws], &[Pass::Model, Pass::Step]] {
+        for (card, reading) in cards.iter().zip(&readings) {
+            let Some(reading) = reading.filter(|own| passes.contains(&own.pass)) else {
+                continue;
+            };
+            card.only(reading.parameters)?;
+            (reading.read)(&mut reader, card)?;
+            if reading.pass == Pass::Model && reader.step.is_some() {
+                bail!(
+                    card,
+                    "it belongs to the model and must come before the first *STEP"
+                );
+            }
         }
-        step::read(card, &mut deck, &mut names, &mut steps)?;
     }
-    let last = cards.last().map_or(
-        Place {
-            file: 0,
-            line: 1,
-            column: 1,
-        },
-        |card| card.place,
-    );
-    step::finish(&deck, &steps, last)?;
+    let start = Place {
+        file: 0,
+        line: 1,
+        column: 1,
+    };
+    reader.finish(cards.last().map_or(start, |card| card.place))?;
+    let mut deck = reader.deck;
     deck.remarks
         .sort_by_key(|remark| (remark.place.file, remark.place.line));
     Ok(deck)
 }
 
-/// Rejects unsupported keywords, and adds warnings about ignored ones.
-fn known(card: &Card<'_>, deck: &mut Deck) -> Result<(), Fault> {
-    match treatment(&card.key) {
-        Some(Treatment::Refused(why)) => {
-            return Err(card.wrong(why));
+impl Reader {
+    /// Rejects unsupported keywords, and adds warnings about ignored ones.
+    fn known(&mut self, card: &Card<'_>) -> Done<Option<Reading>> {
+        match card.key.as_str() {
+            "ELEMENT" => drop(mesh::element_type(card)?),
+            "INITIALCONDITIONS" => {
+                card.choice("TYPE", &["TEMPERATURE"])?;
+                card.required("TYPE")?;
+            }
+            _ => {}
         }
-        None => {
-            let like = nearest(&card.key)
-                .map_or_else(String::new, |name| format!("; did you mean *{name}?"));
-            return Err(card.wrong(format!("it is not a supported keyword{like}")));
-        }
-        Some(Treatment::Read(_)) => {}
-        Some(Treatment::Ignored(why)) => {
-            deck.remark(card.place, format!("*{} is ignored: {why}", card.shown))
+        match treatment(&card.key) {
+            Some(Treatment::Refused(why)) => bail!(card, "{why}"),
+            None => {
+                let like = nearest(&card.key)
+                    .map_or_else(String::new, |name| format!("; did you mean *{name}?"));
+                bail!(card, "it is not a supported keyword{like}")
+            }
+            Some(Treatment::Read(_, reading)) => Ok(reading),
+            Some(Treatment::Ignored(why)) => {
+                let what = format!("*{} is ignored: {why}", card.shown);
+                self.deck.remark(card.place, what);
+                Ok(None)
+            }
         }
     }
-    match card.key.as_str() {
-        "HEADING" => {
-            let lines: Vec<&str> = card.lines.iter().map(|line| line.text.trim()).collect();
-            deck.heading = lines.join(" ");
-        }
-        "ELEMENT" => mesh::known_type(card)?,
-        "INITIALCONDITIONS" => {
-            card.choice("TYPE", &["TEMPERATURE"])?;
-            card.required("TYPE")?;
-        }
-        _ => {}
+
+    fn heading(&mut self, card: &Card<'_>) -> Done {
+        let lines: Vec<&str> = card.lines.iter().map(|line| line.text.trim()).collect();
+        self.deck.heading = lines.join(" ");
+        Ok(())
     }
-    Ok(())
 }
 
 impl Deck {

@@ -31,17 +31,24 @@ pub(super) fn plain(word: &str) -> String {
 
 /// An error before its file name is known.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Fault {
+pub struct Fault {
+    /// Location.
     pub place: Place,
+    /// What is wrong and what is expected.
     pub message: String,
 }
 
 impl Fault {
+    /// An error from its parts.
     pub fn new(place: Place, message: impl Into<String>) -> Self {
-        Fault {
-            place,
-            message: message.into(),
-        }
+        let message = message.into();
+        Fault { place, message }
+    }
+}
+
+impl From<(Place, String)> for Fault {
+    fn from((place, message): (Place, String)) -> Self {
+        Fault { place, message }
     }
 }
 

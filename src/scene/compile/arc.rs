@@ -1,7 +1,7 @@
 //! Compiles the arc-length settings.
 
 use super::super::nodes::Names;
-use crate::format::error::{Fault, Path, at, some_of};
+use crate::format::error::{AtPath, Fault, Path, at, bail, fault, some_of};
 use crate::format::spec::Spec;
 use stickslip_core::model::{
     ArcLength, Bound, Contact, Control, InitialGaps, LinearSolver, Measured, Monitor, Watched,
@@ -25,21 +25,27 @@ pub(super) fn arc(
         if let Some(size) = size
             && !(size > 0.0 && size.is_finite())
         {
-            let message = format!("{name} is {size:?}; it must be a positive number");
-            return Err(Fault::new(here.then(name), message));
+            bail!(
+                here.then(name),
+                "{name} is {size:?}; it must be a positive number"
+            );
         }
     }
     if given.iterations == 0 {
-        let message = "iterations is 0; it must be at least 1";
-        return Err(Fault::new(here.then("iterations"), message));
+        bail!(
+            here.then("iterations"),
+            "iterations is 0; it must be at least 1"
+        );
     }
     let along = match (given.monitor.as_str(), given.slip.as_str()) {
         ("", "") => Measured::Displacements,
         (name, "") => Measured::Dof(displacement(&here.then("monitor"), name, monitors)?),
         ("", name) => Measured::Slip(slave(&here.then("slip"), name, names, slaves)?),
         _ => {
-            let message = "monitor and slip are both given; the path can follow only one of them";
-            return Err(Fault::new(here.then("slip"), message));
+            bail!(
+                here.then("slip"),
+                "monitor and slip are both given; the path can follow only one of them"
+            );
         }
     };
     let mut bounds = Vec::with_capacity(given.ends.len());
@@ -66,13 +72,16 @@ pub(super) fn arc(
 fn follows(spec: &Spec) -> Result<(), Fault> {
     let settings = at!["settings"];
     if spec.settings.solver == LinearSolver::Augmented {
-        let message = "control: arc needs the condensed interface: set solver to auto or condensed";
-        return Err(Fault::new(settings.then("solver"), message));
+        bail!(
+            settings.then("solver"),
+            "control: arc needs the condensed interface: set solver to auto or condensed"
+        );
     }
     if spec.settings.initial_gaps == InitialGaps::Ramp {
-        let message =
-            "control: arc cannot close gaps over the first leg: set initial_gaps to keep or adjust";
-        return Err(Fault::new(settings.then("initial_gaps"), message));
+        bail!(
+            settings.then("initial_gaps"),
+            "control: arc cannot close gaps over the first leg: set initial_gaps to keep or adjust"
+        );
     }
     Ok(())
 }
@@ -92,30 +101,27 @@ fn displacement(here: &Path, name: &str, monitors: &[Monitor]) -> Result<usize, 
                 Some(_) => "does not monitor a displacement",
                 None => "is not a monitor",
             };
-            let message = format!("{name:?} {what} (displacements: {all})");
-            Err(Fault::new(here.clone(), message))
+            Err(fault!(here, "{name:?} {what} (displacements: {all})"))
         }
     }
 }
 
 fn slave(here: &Path, name: &str, names: &Names, slaves: &[Contact]) -> Result<usize, Fault> {
-    let node = names
-        .node(name)
-        .map_err(|message| Fault::new(here.clone(), message))?;
+    let node = names.node(name).at(here)?;
     let found = slaves.iter().position(|slave| slave.node == node);
     let is_elastic = |slave: &Contact| slave.bond.is_tied() || slave.bond.give()[1] > 0.0;
     if found.is_some_and(|found| is_elastic(&slaves[found])) {
-        let message = format!(
+        bail!(
+            here,
             "the slip of node {name:?} cannot be followed, because the node is tied or slips elastically before it slides; use a monitor"
         );
-        return Err(Fault::new(here.clone(), message));
     }
     found.ok_or_else(|| {
         let all = slaves.iter().map(|s| names.nodes[s.node].name.as_str());
-        let message = format!(
+        fault!(
+            here,
             "node {name:?} is not a slave node (slaves: {})",
             some_of(all)
-        );
-        Fault::new(here.clone(), message)
+        )
     })
 }

@@ -6,7 +6,7 @@ use super::super::limits;
 use super::super::nodes::checks::unique;
 use super::super::nodes::{Mesh, NameEntry, Names};
 use super::linear;
-use crate::format::error::{Fault, Path, at, did_you_mean, quoted, some_of};
+use crate::format::error::{AtPath, Fault, Path, at, bail, did_you_mean, fault, quoted, some_of};
 use crate::format::spec::{BodySpec, Material, Point, Region, Spec};
 use std::collections::HashSet;
 use stickslip_core::model::{Beam, Body, BodyKind, Elastic, Node, Solid, SolidElement, boundary};
@@ -38,21 +38,25 @@ fn elastic(here: &Path, material: &Material) -> Result<(), Fault> {
     };
     limits::stiffness(&here.then("E"), made.young, "E")?;
     if !(0.0..limits::POISSON).contains(&made.poisson) {
-        let message = format!(
+        bail!(
+            here.then("nu"),
             "nu is {:?}; it must be at least 0 and below 0.5 (incompressible)",
             made.poisson
         );
-        return Err(Fault::new(here.then("nu"), message));
     }
     let thickness = made.thickness;
     limits::finite(&here.then("thickness"), thickness, "the thickness")?;
     if thickness <= 0.0 {
-        let message = format!("the thickness is {thickness:?}; it must be positive");
-        return Err(Fault::new(here.then("thickness"), message));
+        bail!(
+            here.then("thickness"),
+            "the thickness is {thickness:?}; it must be positive"
+        );
     }
     if made.plane == Plane::Axisymmetric && thickness != 1.0 {
-        let message = "a body of revolution has no thickness, because forces refer to the whole circumference; leave it out";
-        return Err(Fault::new(here.then("thickness"), message));
+        bail!(
+            here.then("thickness"),
+            "a body of revolution has no thickness, because forces refer to the whole circumference; leave it out"
+        );
     }
     let why = match made.update {
         Update::Updated => "update: updated uses the moduli of svk in every increment",
@@ -60,8 +64,7 @@ fn elastic(here: &Path, material: &Material) -> Result<(), Fault> {
         Update::Total => return Ok(()),
     };
     if made.law != Law::Svk {
-        let message = format!("{why}; take law: svk or update: total");
-        return Err(Fault::new(here.then("update"), message));
+        bail!(here.then("update"), "{why}; take law: svk or update: total");
     }
     Ok(())
 }
@@ -92,10 +95,10 @@ fn elastic_of(material: &Material) -> Option<Elastic> {
 /// The bodies. Their shear unknowns are numbered later, with all others.
 pub(super) fn bodies(spec: &Spec, names: &Names) -> Result<Vec<Body>, Fault> {
     if spec.bodies.is_empty() {
-        return Err(Fault::new(
+        bail!(
             at!["bodies"],
-            "the scene has no body, so nothing can deform",
-        ));
+            "the scene has no body, so nothing can deform"
+        );
     }
     unique("bodies", spec.bodies.iter().map(BodySpec::id))?;
     let mut total = 0;
@@ -117,9 +120,7 @@ pub(super) fn bodies(spec: &Spec, names: &Names) -> Result<Vec<Body>, Fault> {
             BodySpec::Solid { id, mesh, .. } => {
                 let here = at!["bodies", k];
                 let path = here.then("mesh");
-                let mesh = names
-                    .mesh(mesh)
-                    .map_err(|message| Fault::new(path.clone(), message))?;
+                let mesh = names.mesh(mesh).at(&path)?;
                 total += mesh
                     .elements
                     .iter()
@@ -160,11 +161,11 @@ pub(super) fn check_axis(
             }
             _ => continue,
         };
-        let message = format!(
+        bail!(
+            at!["bodies", k, field],
             "body {:?} {what}, but body {name:?} is axisymmetric; a scene is axisymmetric as a whole or not at all",
             body.name
         );
-        return Err(Fault::new(at!["bodies", k, field], message));
     }
     let over = |node: &&usize| names.nodes[**node].at[0] < -limits::SHORTEST * length;
     let nodes = bodies.iter().flat_map(|body| &body.nodes);
@@ -185,13 +186,10 @@ pub(super) fn check_axis(
                 .strip_prefix(id)
                 .is_some_and(|rest| rest.starts_with('.'))
     });
-    let message = format!(
+    Err(fault!(
+        entry.map_or_else(|| at!["nodes"], |k| at!["nodes", k]),
         "node {name:?} is at x = {:?}; in axisymmetry x is the radius and must not be negative",
         at[0]
-    );
-    Err(Fault::new(
-        entry.map_or_else(|| at!["nodes"], |k| at!["nodes", k]),
-        message,
     ))
 }
 
@@ -203,9 +201,7 @@ pub(super) fn chain<'n>(
     total: &mut usize,
     spec: &Spec,
 ) -> Result<&'n NameEntry, Fault> {
-    let chain = names
-        .chain(along)
-        .map_err(|message| Fault::new(here.clone(), message))?;
+    let chain = names.chain(along).at(here)?;
     // An element has at most twice as many nodes as it adds to its chain.
     *total += 2 * chain.nodes.len();
     limits::element_nodes(here, *total, spec.settings.memory)?;
@@ -216,13 +212,13 @@ pub(super) fn chain<'n>(
 fn material<'s>(here: &Path, spec: &'s Spec, id: &str) -> Result<&'s Material, Fault> {
     let ids = || spec.materials.iter().map(Material::id);
     spec.materials.iter().find(|m| m.id() == id).ok_or_else(|| {
-        let message = format!(
+        fault!(
+            here,
             "no material called {}{} (materials: {})",
             quoted(id),
             did_you_mean(id, ids()),
             some_of(ids())
-        );
-        Fault::new(here.clone(), message)
+        )
     })
 }
 
@@ -236,15 +232,17 @@ fn beam(
     let path = here.then("along");
     let elements = chain(&path, names, along, total, spec)?.elements();
     if elements.iter().any(|e| e.len() != elements[0].len()) {
-        let message = format!(
+        bail!(
+            path,
             "{along:?} has sides with 2 and with 3 nodes; the elements of a beam must all have the same number"
         );
-        return Err(Fault::new(path, message));
     }
     let here = here.then("material");
     let Material::Section { EA, EI, GA, .. } = material(&here, spec, of)? else {
-        let message = format!("material {of:?} is a continuum material; a beam needs a Section");
-        return Err(Fault::new(here, message));
+        bail!(
+            here,
+            "material {of:?} is a continuum material; a beam needs a Section"
+        );
     };
     let mut seen = HashSet::new();
     Ok(Body {
@@ -279,7 +277,7 @@ fn solid(
         ..
     } = body
     else {
-        return Err(Fault::new(here.clone(), "the body is not a solid"));
+        bail!(here, "the body is not a solid");
     };
     let faces = mesh
         .elements
@@ -311,8 +309,10 @@ fn solid(
 
 fn continuum(here: &Path, spec: &Spec, id: &str) -> Result<Elastic, Fault> {
     elastic_of(material(here, spec, id)?).ok_or_else(|| {
-        let message = format!("material {id:?} is a beam section; a solid needs Elastic");
-        Fault::new(here.clone(), message)
+        fault!(
+            here,
+            "material {id:?} is a beam section; a solid needs Elastic"
+        )
     })
 }
 
@@ -340,11 +340,11 @@ fn apply(
         }
     }
     if none {
-        let message = format!(
+        bail!(
+            here,
             "the region from {from:?} to {to:?} contains no element's midpoint; give its lower left \
              corner, then its upper right one"
         );
-        return Err(Fault::new(here.clone(), message));
     }
     Ok(())
 }

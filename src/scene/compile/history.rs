@@ -1,7 +1,7 @@
 //! The load-factor path and the settings.
 
 use super::super::limits;
-use crate::format::error::{Fault, at};
+use crate::format::error::{Fault, at, bail, fault};
 use crate::format::spec::History;
 use stickslip_core::model::{Body, BodyKind, Control, Settings, Touch};
 
@@ -12,42 +12,35 @@ pub(super) fn history(history: &History) -> Result<(), Fault> {
     } = history;
     let here = at!["history", "path"];
     if path.len() < 2 {
-        let message = format!(
+        bail!(
+            here,
             "the path has {} corners; it needs at least two, e.g. [0, 1]",
             path.len()
         );
-        return Err(Fault::new(here, message));
     }
     for (k, corner) in path.iter().enumerate() {
         limits::finite(&here.then(k), *corner, "the load factor")?;
         if k > 0 && path[k - 1] == *corner {
-            return Err(Fault::new(
-                here.then(k),
-                format!("the corner {corner:?} is repeated"),
-            ));
+            bail!(here.then(k), "the corner {corner:?} is repeated");
         }
     }
     let size = at!["history", "increment"];
     limits::finite(&size, *increment, "the increment")?;
     if *increment <= 0.0 {
-        return Err(Fault::new(
+        bail!(
             size,
-            format!(
-                "the increment is {increment:?}; it must be positive, even where the path falls"
-            ),
-        ));
+            "the increment is {increment:?}; it must be positive, even where the path falls"
+        );
     }
     of_legs(history)?;
     let (least, legs) = (history.least(), path.len() - 1);
     let smallest = (0..legs).map(|leg| history.on_leg(leg));
     let smallest = smallest.fold(f64::INFINITY, f64::min);
     if !(least > 0.0 && least <= smallest) {
-        return Err(Fault::new(
+        bail!(
             at!["history", "least"],
-            format!(
-                "the least increment is {least:?}; it must be positive and at most the increment, {smallest:?}"
-            ),
-        ));
+            "the least increment is {least:?}; it must be positive and at most the increment, {smallest:?}"
+        );
     }
     let count = increments(path, |leg| history.on_leg(leg));
     if count > limits::INCREMENTS {
@@ -74,23 +67,25 @@ fn of_legs(history: &History) -> Result<(), Fault> {
     }
     let here = at!["history", "increments"];
     if sizes.len() != legs {
-        let message = format!(
+        bail!(
+            here,
             "there are {} increments for {legs} legs of the path; list one per leg, or leave them out",
             sizes.len()
         );
-        return Err(Fault::new(here, message));
     }
     if history.control == Control::Arc {
-        let message = "control: arc takes its step sizes from history.arc; leave increments out";
-        return Err(Fault::new(here, message));
+        bail!(
+            here,
+            "control: arc takes its step sizes from history.arc; leave increments out"
+        );
     }
     for (k, size) in sizes.iter().enumerate() {
         limits::finite(&here.then(k), *size, "the increment")?;
         if *size <= 0.0 {
-            let message = format!(
+            bail!(
+                here.then(k),
                 "the increment is {size:?}; it must be positive, even where the path falls"
             );
-            return Err(Fault::new(here.then(k), message));
         }
     }
     Ok(())
@@ -111,9 +106,9 @@ pub fn increments(path: &[f64], size: impl Fn(usize) -> f64) -> f64 {
 /// Rejects invalid memory sizes.
 pub(super) fn memory(settings: &Settings) -> Result<(), Fault> {
     match settings.memory {
-        Some(memory) if !(memory > 0.0 && memory.is_finite()) => Err(Fault::new(
+        Some(memory) if !(memory > 0.0 && memory.is_finite()) => Err(fault!(
             at!["settings", "memory"],
-            format!("the memory is {memory:?}; it must be a positive number of gigabytes"),
+            "the memory is {memory:?}; it must be a positive number of gigabytes"
         )),
         _ => Ok(()),
     }
@@ -133,25 +128,25 @@ pub(super) fn settings(settings: &Settings) -> Result<(), Fault> {
     }
     let gap = settings.adjust_gap;
     if !(gap.is_finite() && gap >= 0.0) {
-        return Err(Fault::new(
+        bail!(
             here.then("adjust_gap"),
-            format!("the gap is {gap:?}; it must not be negative"),
-        ));
+            "the gap is {gap:?}; it must not be negative"
+        );
     }
     let limit_load = settings.limit_load;
     if !(limit_load > 0.0 && limit_load < 1.0) {
-        return Err(Fault::new(
+        bail!(
             here.then("limit_load"),
-            format!("limit_load is {limit_load:?}; it must be above 0 and below 1"),
-        ));
+            "limit_load is {limit_load:?}; it must be above 0 and below 1"
+        );
     }
     let tolerance = settings.tolerance;
     if tolerance > 0.0 && tolerance <= 1e-2 {
         return Ok(());
     }
-    Err(Fault::new(
+    Err(fault!(
         here.then("tolerance"),
-        format!("the tolerance is {tolerance:?}; it must be above 0 and at most 0.01"),
+        "the tolerance is {tolerance:?}; it must be above 0 and at most 0.01"
     ))
 }
 

@@ -8,7 +8,7 @@ use super::super::nodes::checks::unique;
 use super::bodies::{chain, check_chain};
 use super::laws;
 use crate::format::contact_law::FrictionSpec;
-use crate::format::error::{Fault, Path, at, did_you_mean, quoted, some_of};
+use crate::format::error::{Fault, Path, at, bail, did_you_mean, quoted, some_of};
 use crate::format::spec::{Nodes, Side, SlaveSpec, Spec};
 use std::collections::HashSet;
 use stickslip_core::contact::element::closed;
@@ -45,12 +45,12 @@ pub(super) fn surfaces(spec: &Spec, names: &Names, length: f64) -> Result<Surfac
         let here = at!["surfaces", k, "along"];
         let chain = chain(&here, names, &surface.along, &mut total, spec)?;
         if chain.is_inside() {
-            let message = format!(
+            bail!(
+                here,
                 "{} has sides between two elements, which have no outward side; bodies that should touch \
                  must not share nodes there",
                 quoted(&surface.along)
             );
-            return Err(Fault::new(here, message));
         }
         let mut pieces = chain.pieces();
         for elements in &mut pieces {
@@ -66,16 +66,18 @@ pub(super) fn surfaces(spec: &Spec, names: &Names, length: f64) -> Result<Surfac
         }
         let several = pieces.len() > 1;
         if several && surface.endless {
-            let message = format!(
+            bail!(
+                at!["surfaces", k, "endless"],
                 "the surface has {} pieces; an endless surface must have one",
                 pieces.len()
             );
-            return Err(Fault::new(at!["surfaces", k, "endless"], message));
         }
         for (number, elements) in (1..).zip(pieces) {
             if surface.endless && !geometry::straight(&names.nodes, &elements, length) {
-                let message = "an endless surface must be straight";
-                return Err(Fault::new(at!["surfaces", k, "endless"], message));
+                bail!(
+                    at!["surfaces", k, "endless"],
+                    "an endless surface must be straight"
+                );
             }
             let name = match several {
                 true => format!("{}.{number}", surface.id),
@@ -142,10 +144,10 @@ pub(super) fn slaves(
         initial_state(&here.then("state"), &group.state)?;
         laws::check(&here, group)?;
         if group.nodes.is_empty() {
-            return Err(Fault::new(
+            bail!(
                 here.then("nodes"),
-                "the list is empty; name at least one slave node",
-            ));
+                "the list is empty; name at least one slave node"
+            );
         }
         let mut ends = HashSet::new();
         for (j, name) in group.nodes.iter().enumerate() {
@@ -160,15 +162,9 @@ pub(super) fn slaves(
             let fresh_ones: Vec<usize> = found.into_iter().filter(|node| !met(node)).collect();
             for node in fresh_ones {
                 let slave = Contact {
-                    node,
-                    surfaces: on.clone(),
-                    friction: Friction::default(),
                     start: group.start,
                     state: group.state,
-                    overlap: 0.0,
-                    bond: Default::default(),
-                    area: None,
-                    facing: None,
+                    ..Contact::new(node, on.clone(), Friction::default())
                 };
                 let fresh = taken.insert(node);
                 check_slave(&slave, fresh, names, surfaces, &members, length).map_err(fault)?;
@@ -189,10 +185,10 @@ fn candidates(
     surfaces: &Surfaces,
 ) -> Result<Vec<usize>, Fault> {
     if group.on.is_empty() {
-        return Err(Fault::new(
+        bail!(
             here.then("on"),
-            "the list is empty; name at least one surface",
-        ));
+            "the list is empty; name at least one surface"
+        );
     }
     let ids = || spec.surfaces.iter().map(|s| s.id.as_str());
     let mut on = Vec::with_capacity(group.on.len());
@@ -296,28 +292,24 @@ pub(super) fn friction(here: &Path, friction: &FrictionSpec) -> Result<(), Fault
         adhesion,
     } = *friction;
     if !(0.0..90.0).contains(&angle) {
-        return Err(Fault::new(
+        bail!(
             here.then("angle"),
-            format!("the friction angle is {angle:?}; it must be at least 0 and below 90 degrees"),
-        ));
+            "the friction angle is {angle:?}; it must be at least 0 and below 90 degrees"
+        );
     }
     limits::finite(&here.then("cohesion"), cohesion, "the cohesion")?;
     if cohesion < 0.0 {
-        return Err(Fault::new(
+        bail!(
             here.then("cohesion"),
-            format!(
-                "the cohesion is {cohesion:?}; it is a force per slave node and must not be negative"
-            ),
-        ));
+            "the cohesion is {cohesion:?}; it is a force per slave node and must not be negative"
+        );
     }
     limits::finite(&here.then("adhesion"), adhesion, "the adhesion")?;
     if adhesion < 0.0 {
-        return Err(Fault::new(
+        bail!(
             here.then("adhesion"),
-            format!(
-                "the adhesion is {adhesion:?}; it is a force per area and must not be negative"
-            ),
-        ));
+            "the adhesion is {adhesion:?}; it is a force per area and must not be negative"
+        );
     }
     Ok(())
 }
@@ -345,11 +337,11 @@ pub(super) fn check_use(
         ) || is_side(spec, spec.nodes[entry.at].id());
         let idle = entry.nodes.iter().find(|&&n| !used[n]);
         if let (Some(&node), false) = (idle, shares) {
-            let message = format!(
+            bail!(
+                at!["nodes", entry.at, "id"],
                 "node {:?} is not used by any body, surface or slave; remove it or use it",
                 names.nodes[node].name
             );
-            return Err(Fault::new(at!["nodes", entry.at, "id"], message));
         }
     }
     Ok(())
@@ -376,8 +368,10 @@ pub(super) fn find_rigid(dofs: &Dofs, surfaces: &mut Surfaces) -> Result<(), Fau
             .flatten()
             .all(|&n| !can_move(dofs, n));
         if surface.endless && !surface.rigid {
-            let message = "endless surfaces must be rigid; this one moves with a body";
-            return Err(Fault::new(at!["surfaces", k, "endless"], message));
+            bail!(
+                at!["surfaces", k, "endless"],
+                "endless surfaces must be rigid; this one moves with a body"
+            );
         }
         let mut nodes = surface.elements.iter().flatten();
         if surface.endless
@@ -428,15 +422,13 @@ pub(super) fn check_held_slaves(
         let Some(&rigid) = slave.surfaces.iter().find(|&&s| surfaces[s].rigid) else {
             continue;
         };
-        let message = format!(
+        bail!(
+            laws::slave_path(spec, names, slave.node),
             "node {:?} and surface {:?} are both fixed, so their contact has no unknown; free one of \
              them, or remove the node from the list",
-            names.nodes[slave.node].name, surfaces[rigid].name
+            names.nodes[slave.node].name,
+            surfaces[rigid].name
         );
-        return Err(Fault::new(
-            laws::slave_path(spec, names, slave.node),
-            message,
-        ));
     }
     Ok(())
 }

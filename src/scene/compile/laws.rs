@@ -4,7 +4,7 @@ use super::super::areas::tributary;
 use super::super::limits;
 use super::super::nodes::Names;
 use crate::format::contact_law::{ContactLaw, FrictionSpec};
-use crate::format::error::{Fault, Path, at};
+use crate::format::error::{Fault, Path, at, bail, fault};
 use crate::format::spec::{SlaveSpec, Spec};
 use std::collections::HashSet;
 use stickslip_core::contact::facing::is_piece;
@@ -25,10 +25,7 @@ pub(super) fn check(here: &Path, group: &SlaveSpec) -> Result<(), Fault> {
         limits::finite(&at, value, what)?;
         match value > 0.0 {
             true => Ok(()),
-            false => Err(Fault::new(
-                at,
-                format!("{what} is {value:?}; it must be positive"),
-            )),
+            false => Err(fault!(at, "{what} is {value:?}; it must be positive")),
         }
     };
     if let ContactLaw::Penalty { stiffness } = group.law {
@@ -45,8 +42,10 @@ pub(super) fn check(here: &Path, group: &SlaveSpec) -> Result<(), Fault> {
         return Ok(());
     }
     let idle = |field: &str, why: &str| {
-        let message = format!("a tied node {why}; leave {field} out");
-        Err(Fault::new(here.then(field), message))
+        Err(fault!(
+            here.then(field),
+            "a tied node {why}; leave {field} out"
+        ))
     };
     let InitialState {
         t_max, slip, ratio, ..
@@ -84,11 +83,11 @@ pub(super) fn tie(
         }
         let at = places[slave.node];
         let refused = |why: String| {
-            let message = format!(
+            fault!(
+                slave_path(spec, names, slave.node),
                 "node {:?} cannot be tied: it {why}",
                 names.nodes[slave.node].name
-            );
-            Fault::new(slave_path(spec, names, slave.node), message)
+            )
         };
         let Some(spot) = project(at, surfaces, &slave.surfaces, &places, None) else {
             let why = "lies beyond the ends of its surface; remove it from the list, or extend the surface";
@@ -178,11 +177,13 @@ pub(super) fn check_corners(
                     continue;
                 }
                 if cross(&names.nodes, both) {
-                    let message = format!(
+                    bail!(
+                        slave_path(spec, names, slave.node),
                         "node {:?} has a penalty or a stick stiffness, but the surfaces {:?} and {:?} cross, and both laws would apply in their corner; name one of them, or use hard contact",
-                        names.nodes[slave.node].name, both[0].name, both[1].name
+                        names.nodes[slave.node].name,
+                        both[0].name,
+                        both[1].name
                     );
-                    return Err(Fault::new(slave_path(spec, names, slave.node), message));
                 }
                 apart.insert((one, other));
             }
@@ -247,11 +248,11 @@ fn check_area(
         (_, _, true) => "an adhesion is a force per area",
         _ => return Ok(()),
     };
-    let message = format!(
+    Err(fault!(
+        slave_path(spec, names, slave.node),
         "{wants}, but node {:?} has no tributary area, because it is on no side of a beam or solid; give the pair an `area` per node",
         names.nodes[slave.node].name
-    );
-    Err(Fault::new(slave_path(spec, names, slave.node), message))
+    ))
 }
 
 /// Location of the name that made a node a slave.

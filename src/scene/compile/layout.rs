@@ -3,7 +3,7 @@
 use super::super::limits;
 use super::super::nodes::Names;
 use super::{pressures, tractions, volumes};
-use crate::format::error::{Fault, Path, at};
+use crate::format::error::{AtPath, Fault, Path, at, bail, fault};
 use crate::format::spec::{LoadSpec, Point, Spec};
 use std::collections::HashMap;
 use stickslip_core::model::Component;
@@ -58,12 +58,12 @@ impl Layout {
     pub(super) fn supports(&mut self, spec: &Spec, names: &Names) -> Result<(), Fault> {
         for (k, support) in spec.supports.iter().enumerate() {
             let here = at!["supports", k];
-            let nodes = names
-                .nodes(&support.node)
-                .map_err(|m| Fault::new(here.then("node"), m))?;
+            let nodes = names.nodes(&support.node).at(here.then("node"))?;
             if support.fix.is_empty() {
-                let message = "the list is empty; it must contain some of x, y, rotation";
-                return Err(Fault::new(here.then("fix"), message));
+                bail!(
+                    here.then("fix"),
+                    "the list is empty; it must contain some of x, y, rotation"
+                );
             }
             for (j, component) in support.fix.iter().enumerate() {
                 let fault = |message| Fault::new(here.then("fix").then(j), message);
@@ -110,10 +110,7 @@ impl Layout {
             let here = at!["loads", k];
             let scale = factor(&here.then("scale"), scale)?;
             limits::finite(&here.then("value"), *value, "the prescribed value")?;
-            for node in names
-                .nodes(node)
-                .map_err(|m| Fault::new(here.then("node"), m))?
-            {
+            for node in names.nodes(node).at(here.then("node"))? {
                 let dof = self.prescribe(&here, names, node, *component)?;
                 // A prescribed zero is a support.
                 if *value != 0.0 {
@@ -197,9 +194,7 @@ impl Layout {
                 LoadSpec::Displacement { .. } => continue,
             };
             let here = at!["loads", k];
-            let node = names
-                .node(node)
-                .map_err(|m| Fault::new(here.then("node"), m))?;
+            let node = names.node(node).at(here.then("node"))?;
             let scale = factor(&here.then("scale"), scale)?;
             for (component, field, value) in parts {
                 limits::finite(&here.then(field), value, "the load")?;
@@ -226,7 +221,7 @@ impl Layout {
         forces: Vec<(usize, [f64; 2])>,
         scale: &Factor,
     ) -> Result<Vec<Load>, Fault> {
-        let fault = |message: String| Fault::new(here.clone(), message);
+        let fault = |message: String| Fault::new(here, message);
         if let Some((node, _)) = forces.iter().find(|(node, _)| !self.on_body[*node]) {
             let name = &names.nodes[*node].name;
             return Err(fault(format!(
@@ -279,20 +274,17 @@ impl Layout {
     ) -> Result<usize, Fault> {
         let name = &names.nodes[node].name;
         if !self.on_body[node] {
-            let message =
-                format!("node {name:?} belongs to no body, so a load there has no effect");
-            return Err(Fault::new(here.then("node"), message));
+            bail!(
+                here.then("node"),
+                "node {name:?} belongs to no body, so a load there has no effect"
+            );
         }
-        let dof = self
-            .dof(names, node, component)
-            .map_err(|m| Fault::new(here.then("node"), m))?;
+        let dof = self.dof(names, node, component).at(here.then("node"))?;
         match self.held.get(&dof) {
-            Some(holder) if value != 0.0 => {
-                let message = format!(
-                    "{component} of node {name:?} is restrained by {holder}, so a load there has no effect"
-                );
-                Err(Fault::new(here.then(field), message))
-            }
+            Some(holder) if value != 0.0 => Err(fault!(
+                here.then(field),
+                "{component} of node {name:?} is restrained by {holder}, so a load there has no effect"
+            )),
             _ => Ok(dof),
         }
     }
@@ -320,13 +312,11 @@ fn factor(here: &Path, scale: &[Point]) -> Result<Factor, Fault> {
         limits::finite(&point.then(0), *x, "the load factor")?;
         limits::finite(&point.then(1), *y, "the factor")?;
         if k > 0 && *x <= scale[k - 1].0 {
-            return Err(Fault::new(
+            bail!(
                 point.then(0),
-                format!(
-                    "the load factors of a scale must be ascending; {x:?} follows {:?}",
-                    scale[k - 1].0
-                ),
-            ));
+                "the load factors of a scale must be ascending; {x:?} follows {:?}",
+                scale[k - 1].0
+            );
         }
     }
     Ok(Factor(scale.to_vec()))

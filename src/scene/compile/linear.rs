@@ -2,7 +2,7 @@
 
 use super::super::limits;
 use super::super::nodes::Names;
-use crate::format::error::{Fault, Path};
+use crate::format::error::{AtPath, Fault, Path, bail, fault};
 use crate::format::spec::{Bar, BodySpec, Spec};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use stickslip_core::model::{Body, BodyKind, Dofs, Factor, Form, Linear, Load, Truss};
@@ -20,7 +20,7 @@ pub(super) fn matrix(here: &Path, body: &BodySpec, names: &Names) -> Result<Body
         free,
     } = body
     else {
-        return Err(Fault::new(here.clone(), "the body is not a Matrix"));
+        bail!(here, "the body is not a Matrix");
     };
     let nodes = distinct(&here.then("nodes"), list, names)?;
     let size = 2 * nodes.len();
@@ -29,8 +29,10 @@ pub(super) fn matrix(here: &Path, body: &BodySpec, names: &Names) -> Result<Body
     }
     if !entries.is_empty() {
         if !stiffness.is_empty() || !compliance.is_empty() {
-            let message = "the body has a matrix and entries of a compliance; give exactly one";
-            return Err(Fault::new(here.clone(), message));
+            bail!(
+                here,
+                "the body has a matrix and entries of a compliance; give exactly one"
+            );
         }
         return Ok(Body {
             name: id.clone(),
@@ -51,8 +53,7 @@ pub(super) fn matrix(here: &Path, body: &BodySpec, names: &Names) -> Result<Body
             } else {
                 "both stiffness and"
             };
-            let message = format!("the body has {what} compliance; give exactly one");
-            return Err(Fault::new(here.clone(), message));
+            bail!(here, "the body has {what} compliance; give exactly one");
         }
     };
     square(&here.then(key), rows, size)?;
@@ -77,11 +78,11 @@ pub(super) fn matrix(here: &Path, body: &BodySpec, names: &Names) -> Result<Body
 fn sparse(here: &Path, entries: &[(usize, usize, f64)], size: usize) -> Result<Linear, Fault> {
     for (k, &(i, j, value)) in entries.iter().enumerate() {
         if i >= size || j >= size {
-            let message = format!(
+            bail!(
+                here.then(k),
                 "the entry is in row {i}, column {j}; they must be 0 to {}",
                 size - 1
             );
-            return Err(Fault::new(here.then(k), message));
         }
         number_of_matrix(&here.then(k), value)?;
     }
@@ -115,8 +116,7 @@ fn distinct(here: &Path, list: &[String], names: &Names) -> Result<Vec<usize>, F
         }
     }
     if nodes.is_empty() {
-        let message = "the list is empty; name at least one node";
-        return Err(Fault::new(here.clone(), message));
+        bail!(here, "the list is empty; name at least one node");
     }
     Ok(nodes)
 }
@@ -124,12 +124,12 @@ fn distinct(here: &Path, list: &[String], names: &Names) -> Result<Vec<usize>, F
 /// Rejects anything but a square matrix of this size.
 fn square(here: &Path, rows: &[Vec<f64>], size: usize) -> Result<(), Fault> {
     if rows.len() != size {
-        let message = format!(
+        bail!(
+            here,
             "the matrix has {} rows; {} nodes have {size} degrees of freedom, x and y of each",
             rows.len(),
             size / 2
         );
-        return Err(Fault::new(here.clone(), message));
     }
     rows.iter()
         .enumerate()
@@ -138,8 +138,11 @@ fn square(here: &Path, rows: &[Vec<f64>], size: usize) -> Result<(), Fault> {
 
 fn sized(here: &Path, row: &[f64], size: usize) -> Result<(), Fault> {
     if row.len() != size {
-        let message = format!("the row has {} numbers; it must have {size}", row.len());
-        return Err(Fault::new(here.clone(), message));
+        bail!(
+            here,
+            "the row has {} numbers; it must have {size}",
+            row.len()
+        );
     }
     for (k, value) in row.iter().enumerate() {
         number_of_matrix(&here.then(k), *value)?;
@@ -151,15 +154,19 @@ fn number_of_matrix(here: &Path, value: f64) -> Result<(), Fault> {
     if value.is_finite() && value.abs() <= limits::STIFFNESS.1 {
         return Ok(());
     }
-    let message = format!("the entry is {value:?}; it must be a finite number below 1e30");
-    Err(Fault::new(here.clone(), message))
+    Err(fault!(
+        here,
+        "the entry is {value:?}; it must be a finite number below 1e30"
+    ))
 }
 
 /// Bars with fixed directions: each adds stiffness · e eᵀ to its nodes, and the negative between them.
 pub(super) fn springs(here: &Path, id: &str, bars: &[Bar], names: &Names) -> Result<Body, Fault> {
     if bars.is_empty() {
-        let message = "the list is empty; name at least one bar";
-        return Err(Fault::new(here.then("bars"), message));
+        bail!(
+            here.then("bars"),
+            "the list is empty; name at least one bar"
+        );
     }
     let (mut nodes, mut known) = (Vec::new(), HashMap::new());
     let mut sums: BTreeMap<(usize, usize), f64> = BTreeMap::new();
@@ -205,8 +212,7 @@ fn direction(here: &Path, bar: &Bar, ends: &[usize], names: &Names) -> Result<[f
         return Ok([angle.cos(), angle.sin()]);
     }
     let &[a, b] = ends else {
-        let message = "a bar from one node to the ground needs an angle";
-        return Err(Fault::new(here.clone(), message));
+        bail!(here, "a bar from one node to the ground needs an angle");
     };
     along(here, names, a, b)
 }
@@ -217,11 +223,12 @@ fn along(here: &Path, names: &Names, a: usize, b: usize) -> Result<[f64; 2], Fau
     let line = [b.at[0] - a.at[0], b.at[1] - a.at[1]];
     let length = line[0].hypot(line[1]);
     if length == 0.0 {
-        let message = format!(
+        bail!(
+            here,
             "nodes {:?} and {:?} are at the same position, so the bar has no direction",
-            a.name, b.name
+            a.name,
+            b.name
         );
-        return Err(Fault::new(here.clone(), message));
     }
     Ok(line.map(|x| x / length))
 }
@@ -235,21 +242,19 @@ pub(super) fn truss(here: &Path, body: &BodySpec, names: &Names) -> Result<Body,
         small,
     } = body
     else {
-        return Err(Fault::new(here.clone(), "the body is not a Truss"));
+        bail!(here, "the body is not a Truss");
     };
     limits::stiffness(&here.then("EA"), *EA, "EA")?;
     if bars.is_empty() {
-        let message = "the list is empty; name at least one bar";
-        return Err(Fault::new(here.then("bars"), message));
+        bail!(
+            here.then("bars"),
+            "the list is empty; name at least one bar"
+        );
     }
     let (mut nodes, mut known, mut joined) = (Vec::new(), HashMap::new(), Vec::new());
     for (k, (a, b)) in bars.iter().enumerate() {
         let here = here.then("bars").then(k);
-        let find = |k: usize, name: &str| {
-            names
-                .node(name)
-                .map_err(|message| Fault::new(here.then(k), message))
-        };
+        let find = |k: usize, name: &str| names.node(name).at(here.then(k));
         let ends = [find(0, a)?, find(1, b)?];
         along(&here, names, ends[0], ends[1])?;
         for end in ends {

@@ -22,7 +22,7 @@ use super::corners;
 use super::gaps;
 use super::limits;
 use super::nodes::Names;
-use crate::format::error::{Fault, at};
+use crate::format::error::{Fault, at, bail};
 use crate::format::spec::Spec;
 pub use history::increments;
 use layout::Layout;
@@ -57,8 +57,10 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     bodies::check_axis(spec, &names, &bodies, length)?;
     bodies::check_bodies(spec, &names, &bodies, length)?;
     if length == 0.0 {
-        let message = "all nodes are at the same position, so the scene has no length scale";
-        return Err(Fault::new(at!["nodes"], message));
+        bail!(
+            at!["nodes"],
+            "all nodes are at the same position, so the scene has no length scale"
+        );
     }
     let mut surfaces = interface::surfaces(spec, &names, length)?;
     let (mut slaves, pairs) = interface::slaves(spec, &names, &surfaces, length)?;
@@ -143,20 +145,27 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
 /// Rejects texts that would garble a terminal.
 fn check_texts(spec: &Spec) -> Result<(), Fault> {
     if spec.title.trim().is_empty() || spec.title.chars().count() > limits::TITLE {
-        let message = format!("the title must have 1 to {} characters", limits::TITLE);
-        return Err(Fault::new(at!["title"], message));
+        bail!(
+            at!["title"],
+            "the title must have 1 to {} characters",
+            limits::TITLE
+        );
     }
     if spec.title.chars().any(char::is_control) {
-        let message = "the title must be one line without control characters";
-        return Err(Fault::new(at!["title"], message));
+        bail!(
+            at!["title"],
+            "the title must be one line without control characters"
+        );
     }
     if spec
         .about
         .chars()
         .any(|c| c.is_control() && !matches!(c, '\n' | '\r' | '\t'))
     {
-        let message = "the text must have no control characters except line breaks";
-        return Err(Fault::new(at!["about"], message));
+        bail!(
+            at!["about"],
+            "the text must have no control characters except line breaks"
+        );
     }
     Ok(())
 }

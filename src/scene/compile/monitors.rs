@@ -3,7 +3,7 @@
 use super::super::limits;
 use super::super::nodes::Names;
 use super::layout::no_rotation;
-use crate::format::error::{Fault, Path, at, quoted, some_of};
+use crate::format::error::{AtPath, Fault, Path, at, bail, fault, quoted, some_of};
 use crate::format::spec::{Quantity, Spec};
 use std::collections::HashMap;
 use stickslip_core::model::{Contact, Control, Dofs, Monitor, Watched};
@@ -27,10 +27,12 @@ pub(super) fn monitors(
     for (k, monitor) in spec.monitors.iter().enumerate() {
         let here = at!["monitors", k];
         let name = &monitor.name;
-        monitor_name(name).map_err(|message| Fault::new(here.then("name"), message))?;
+        monitor_name(name).at(here.then("name"))?;
         if let Some(first) = seen.insert(name.as_str(), k) {
-            let message = format!("the name {name:?} is already used by monitors[{first}]");
-            return Err(Fault::new(here.then("name"), message));
+            bail!(
+                here.then("name"),
+                "the name {name:?} is already used by monitors[{first}]"
+            );
         }
         let of = watched(&here.then("of"), &monitor.of, names, on_body, dofs, slaves)?;
         made.push(Monitor {
@@ -40,10 +42,10 @@ pub(super) fn monitors(
     }
     if spec.history.control == Control::Arc {
         if let Some(k) = seen.get(ARC) {
-            let message = format!(
+            bail!(
+                at!["monitors", *k, "name"],
                 "the name {ARC:?} is reserved for the arc length (control: arc); use another name"
             );
-            return Err(Fault::new(at!["monitors", *k, "name"], message));
         }
         made.push(Monitor {
             name: ARC.to_owned(),
@@ -85,11 +87,7 @@ fn watched(
     dofs: &Dofs,
     slaves: &[Contact],
 ) -> Result<Watched, Fault> {
-    let node_of = |name: &str| {
-        names
-            .node(name)
-            .map_err(|message| Fault::new(here.then("node"), message))
-    };
+    let node_of = |name: &str| names.node(name).at(here.then("node"));
     let dof_of = |node, component| {
         let fault = || Fault::new(here.then("component"), no_rotation(names, node));
         dofs.dof(node, component).ok_or_else(fault)
@@ -103,16 +101,16 @@ fn watched(
             let dof = dof_of(node, *component)?;
             let name = &names.nodes[node].name;
             if !on_body[node] {
-                let message = format!(
+                bail!(
+                    here.then("node"),
                     "node {name:?} belongs to no body and has no support force; use a Contact monitor for forces on slaves"
                 );
-                return Err(Fault::new(here.then("node"), message));
             }
             if dofs.equation[dof].is_some() {
-                let message = format!(
+                bail!(
+                    here.then("component"),
                     "{component} of node {name:?} is free and has no reaction; fix it in supports, or use a Displacement monitor"
                 );
-                return Err(Fault::new(here.then("component"), message));
             }
             Ok(Watched::Reaction { dof })
         }
@@ -143,8 +141,10 @@ fn pressure(
     let mut found = slave_numbers(here, name, "contact pressure", names, slaves)?;
     found.retain(|&slave| slaves[slave].area.is_some_and(|area| area > 0.0));
     if found.is_empty() {
-        let message = "none of these slave nodes has a tributary area, which a pressure needs; give the pair an `area`";
-        return Err(Fault::new(here.then("node"), message));
+        bail!(
+            here.then("node"),
+            "none of these slave nodes has a tributary area, which a pressure needs; give the pair an `area`"
+        );
     }
     Ok(Watched::Pressure {
         slaves: found,
@@ -162,14 +162,12 @@ fn slave_numbers(
 ) -> Result<Vec<usize>, Fault> {
     match name {
         Some(name) => {
-            let node = names
-                .node(name)
-                .map_err(|message| Fault::new(here.then("node"), message))?;
+            let node = names.node(name).at(here.then("node"))?;
             Ok(vec![slave_number(here, name, node, names, slaves)?])
         }
-        None if slaves.is_empty() => Err(Fault::new(
-            here.clone(),
-            format!("the scene has no slave nodes, so there is no {what}"),
+        None if slaves.is_empty() => Err(fault!(
+            here,
+            "the scene has no slave nodes, so there is no {what}"
         )),
         None => Ok((0..slaves.len()).collect()),
     }
@@ -189,12 +187,10 @@ fn slave_number(
             let all = slaves
                 .iter()
                 .map(|slave| names.nodes[slave.node].name.as_str());
-            Fault::new(
+            fault!(
                 here.then("node"),
-                format!(
-                    "node {name:?} is not a slave node (slaves: {})",
-                    some_of(all)
-                ),
+                "node {name:?} is not a slave node (slaves: {})",
+                some_of(all)
             )
         })
 }

@@ -2,7 +2,7 @@
 
 use super::super::nodes::Names;
 use super::tractions;
-use crate::format::error::{Fault, Path};
+use crate::format::error::{AtPath, Fault, Path, bail};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use stickslip_core::model::{Body, BodyKind, Elastic, Plane, PressedFace, Update};
 
@@ -20,9 +20,7 @@ pub(super) fn faces(
     bodies: &[Body],
     along: &str,
 ) -> Result<Pressed, Fault> {
-    let chain = names
-        .chain(along)
-        .map_err(|message| Fault::new(here.clone(), message))?;
+    let chain = names.chain(along).at(here)?;
     let outer = outer_faces(bodies);
     let mut pressed = Pressed::default();
     for element in chain.elements() {
@@ -35,12 +33,12 @@ pub(super) fn faces(
         };
         let Some((nodes, elastic)) = found.filter(|(nodes, _)| inner(nodes)) else {
             let name = |node: Option<&usize>| node.map_or("", |&n| names.nodes[n].name.as_str());
-            let message = format!(
+            bail!(
+                here,
                 "the element {} to {} of {along:?} is not an outer face of a solid; pressures act only on these",
                 name(element.first()),
                 name(element.last())
             );
-            return Err(Fault::new(here.clone(), message));
         };
         let face = PressedFace {
             nodes: nodes.clone(),

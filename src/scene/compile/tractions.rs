@@ -4,7 +4,7 @@ use super::super::curves::shape;
 use super::super::geometry;
 use super::super::limits;
 use super::super::nodes::Names;
-use crate::format::error::{Fault, Path};
+use crate::format::error::{AtPath, Fault, Path};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
@@ -33,9 +33,7 @@ pub(super) fn forces(
     for (field, value) in parts {
         limits::finite(&here.then(field), value, "the load")?;
     }
-    let chain = names
-        .chain(load.along)
-        .map_err(|message| Fault::new(here.then("along"), message))?;
+    let chain = names.chain(load.along).at(here.then("along"))?;
     let mut forces = BTreeMap::new();
     for element in chain.elements() {
         for (node, force) in on_nodes(names, &element, load) {

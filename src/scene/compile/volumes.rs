@@ -2,7 +2,7 @@
 
 use super::super::limits;
 use super::super::nodes::Names;
-use crate::format::error::{Fault, Path, did_you_mean, quoted, some_of};
+use crate::format::error::{AtPath, Fault, Path, did_you_mean, quoted, some_of};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use stickslip_core::fem::continuum::{self, Sample};
 use stickslip_core::model::{Body, BodyKind, Elastic, ElementKind, Solid, SolidElement};
@@ -19,7 +19,7 @@ pub(super) fn forces(
     for (field, value) in ["x", "y"].into_iter().zip(vector) {
         limits::finite(&here.then(field), value, "the load")?;
     }
-    let parts = parts(names, bodies, on).map_err(|m| Fault::new(here.then("on"), m))?;
+    let parts = parts(names, bodies, on).at(here.then("on"))?;
     let mut rules: HashMap<ElementKind, Vec<Sample>> = HashMap::new();
     let mut sums = BTreeMap::new();
     for (element, elastic) in parts {

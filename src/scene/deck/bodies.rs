@@ -1,7 +1,8 @@
 //! Nodes, elements, materials and sections of a deck.
 
-use super::{DeckFault, MESH, Made};
+use super::{Fault, MESH, Made};
 use crate::format::error::at;
+use crate::format::error::bail;
 use crate::format::given::Cells;
 use crate::format::spec::{BodySpec, Material, Nodes};
 use std::collections::BTreeMap;
@@ -17,7 +18,7 @@ type Part = (usize, Family, usize);
 
 impl Made<'_> {
     /// Creates the mesh, its bodies and their materials.
-    pub(super) fn bodies(&mut self, nlgeom: bool) -> Result<(), DeckFault> {
+    pub(super) fn bodies(&mut self, nlgeom: bool) -> Result<(), Fault> {
         let section_of = self.sections()?;
         let material = |&section: &usize| self.deck.sections[section].material;
         self.material_of = section_of.iter().map(material).collect();
@@ -30,17 +31,17 @@ impl Made<'_> {
                 .first()
                 .map(|e| e.place)
                 .unwrap_or_default();
-            return Err(DeckFault::new(
+            bail!(
                 place,
-                "the deck has no continuum elements (CPE, CPS, CAX); at least one is needed",
-            ));
+                "the deck has no continuum elements (CPE, CPS, CAX); at least one is needed"
+            );
         }
         self.mesh(cells);
         self.beams(&section_of, nlgeom)
     }
 
     /// The section of each element.
-    fn sections(&self) -> Result<Vec<usize>, DeckFault> {
+    fn sections(&self) -> Result<Vec<usize>, Fault> {
         let mut section_of = vec![None; self.deck.elements.len()];
         for (k, section) in self.deck.sections.iter().enumerate() {
             let members = &self.deck.element_sets[section.set].members;
@@ -55,7 +56,7 @@ impl Made<'_> {
                     "element {} has no section; *SOLID SECTION or *BEAM SECTION must name its set",
                     element.label
                 );
-                DeckFault::new(element.place, message)
+                Fault::new(element.place, message)
             })
         };
         both.map(known).collect()
@@ -94,7 +95,7 @@ impl Made<'_> {
         &mut self,
         parts: &BTreeMap<Part, Vec<usize>>,
         nlgeom: bool,
-    ) -> Result<Vec<Cells>, DeckFault> {
+    ) -> Result<Vec<Cells>, Fault> {
         let deck = self.deck;
         let mut cells = Vec::new();
         for (&(section, family, _), elements) in parts {
@@ -167,7 +168,7 @@ impl Made<'_> {
         section: &Section,
         family: Family,
         nlgeom: bool,
-    ) -> Result<String, DeckFault> {
+    ) -> Result<String, Fault> {
         let (name, young, poisson) = self.elastic(section)?;
         let thickness = match (section.form, family) {
             (Form::Solid { thickness }, Family::PlaneStrain | Family::PlaneStress) => thickness,
@@ -211,11 +212,11 @@ impl Made<'_> {
     }
 
     /// Name, Young's modulus and Poisson's ratio of a section's material.
-    fn elastic(&self, section: &Section) -> Result<(String, f64, f64), DeckFault> {
+    fn elastic(&self, section: &Section) -> Result<(String, f64, f64), Fault> {
         let material = &self.deck.materials[section.material];
         match material.elastic {
             Some((young, poisson)) => Ok((material.name.clone(), young, poisson)),
-            None => Err(DeckFault::new(
+            None => Err(Fault::new(
                 material.place,
                 format!("the material {} is not *ELASTIC", material.name),
             )),
@@ -223,7 +224,7 @@ impl Made<'_> {
     }
 
     /// Beams: connected elements with the same section form one beam.
-    fn beams(&mut self, section_of: &[usize], nlgeom: bool) -> Result<(), DeckFault> {
+    fn beams(&mut self, section_of: &[usize], nlgeom: bool) -> Result<(), Fault> {
         let deck = self.deck;
         let mut chains: Vec<(usize, CellKind, Vec<usize>)> = Vec::new();
         for (element, &section) in deck.elements.iter().zip(section_of) {
@@ -253,18 +254,10 @@ impl Made<'_> {
         Ok(())
     }
 
-    fn beam(
-        &mut self,
-        section: &Section,
-        kind: CellKind,
-        nodes: &[usize],
-    ) -> Result<(), DeckFault> {
+    fn beam(&mut self, section: &Section, kind: CellKind, nodes: &[usize]) -> Result<(), Fault> {
         let (name, young, poisson) = self.elastic(section)?;
         let Form::Rectangle { width, height } = section.form else {
-            return Err(DeckFault::new(
-                section.place,
-                "a beam needs a *BEAM SECTION",
-            ));
+            bail!(section.place, "a beam needs a *BEAM SECTION");
         };
         let area = width * height;
         let wanted = |id: String| Material::Section {

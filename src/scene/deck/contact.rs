@@ -2,9 +2,10 @@
 
 use super::super::corners::{self, CORNER};
 use super::bodies::DeckGroups;
-use super::{DeckFault, MESH, Made};
+use super::{Fault, MESH, Made};
 use crate::format::contact_law::{ContactLaw, FrictionSpec};
 use crate::format::error::at;
+use crate::format::error::bail;
 use crate::format::given::SideSet;
 use crate::format::spec::{Nodes, SlaveSpec, SurfaceSpec};
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
@@ -36,7 +37,7 @@ struct DeckContact {
 }
 
 impl Made<'_> {
-    pub(super) fn contacts(&mut self) -> Result<(), DeckFault> {
+    pub(super) fn contacts(&mut self) -> Result<(), Fault> {
         let mut all = Vec::new();
         for pair in &self.deck.pairs {
             let interaction = &self.deck.interactions[pair.interaction];
@@ -255,7 +256,7 @@ impl Made<'_> {
         &mut self,
         all: &[DeckContact],
         surfaces: &BTreeMap<usize, Vec<String>>,
-    ) -> Result<(), DeckFault> {
+    ) -> Result<(), Fault> {
         let mut of_node: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (k, touching) in all.iter().enumerate() {
             let rigid = self
@@ -303,7 +304,7 @@ impl Made<'_> {
         surfaces: &BTreeMap<usize, Vec<String>>,
         touched: &[usize],
         nodes: &[usize],
-    ) -> Result<(), DeckFault> {
+    ) -> Result<(), Fault> {
         let Some(first) = touched.first().map(|&k| &all[k]) else {
             return Ok(());
         };
@@ -313,10 +314,10 @@ impl Made<'_> {
             .find(|other| other.laws != first.laws)
         {
             let label = self.deck.nodes[nodes[0]].label;
-            let message = format!(
+            bail!(
+                other.place,
                 "node {label} is a slave of another pair with a different law; a node can have only one law"
             );
-            return Err(DeckFault::new(other.place, message));
         }
         let masters: BTreeSet<usize> = touched.iter().map(|&k| all[k].master).collect();
         let on: Vec<String> = masters
@@ -353,16 +354,16 @@ impl Made<'_> {
     }
 
     /// Initial gap adjustment: one choice for the whole scene.
-    fn adjusted(&mut self) -> Result<(), DeckFault> {
+    fn adjusted(&mut self) -> Result<(), Fault> {
         let pairs = &self.deck.pairs;
         let Some(first) = pairs.first() else {
             return Ok(());
         };
         if let Some(other) = pairs.iter().find(|pair| pair.adjust != first.adjust) {
-            return Err(DeckFault::new(
+            bail!(
                 other.place,
-                "ADJUST must be the same for all pairs: initial gaps are adjusted in the whole scene or not at all",
-            ));
+                "ADJUST must be the same for all pairs: initial gaps are adjusted in the whole scene or not at all"
+            );
         }
         let gap = match &first.adjust {
             None => return Ok(()),
@@ -375,11 +376,11 @@ impl Made<'_> {
                     .flat_map(|pair| self.slaves_of(pair.slave))
                     .find(missing);
                 if let Some(node) = slaves {
-                    let message = format!(
+                    bail!(
+                        first.place,
                         "ADJUST names a set without the slave node {}; move either all slave nodes, or those within a distance",
                         self.deck.nodes[node].label
                     );
-                    return Err(DeckFault::new(first.place, message));
                 }
                 self.size()
             }
@@ -403,7 +404,7 @@ impl Made<'_> {
     }
 
     /// The nodes of a tie that are close enough to the master.
-    fn near(&mut self, tie: &Tie) -> Result<Vec<usize>, DeckFault> {
+    fn near(&mut self, tie: &Tie) -> Result<Vec<usize>, Fault> {
         let at = |node: &usize| self.deck.nodes[*node].at;
         let Faces::Elements(sides) = &self.deck.surfaces[tie.master].of else {
             return Ok(Vec::new());
@@ -431,12 +432,10 @@ impl Made<'_> {
         };
         let near: Vec<usize> = slaves.iter().copied().filter(is_near).collect();
         if near.is_empty() {
-            return Err(DeckFault::new(
+            bail!(
                 tie.place,
-                format!(
-                    "no node of the first surface is within {tolerance:.3e} of the second; see POSITION TOLERANCE"
-                ),
-            ));
+                "no node of the first surface is within {tolerance:.3e} of the second; see POSITION TOLERANCE"
+            );
         }
         if near.len() < slaves.len() {
             let text = format!(

@@ -1,8 +1,9 @@
 //! Supports, prescribed displacements, loads, increments and output requests of a deck.
 
 use super::curves::{Clock, Given, curve, scaled};
-use super::{DeckFault, MESH, Made};
+use super::{Fault, MESH, Made};
 use crate::format::error::at;
+use crate::format::error::bail;
 use crate::format::given::NodeSet;
 use crate::format::spec::{LoadSpec, MonitorSpec, Nodes, Quantity, SupportSpec};
 use std::collections::{BTreeMap, HashMap};
@@ -44,7 +45,7 @@ fn bits(points: &[(f64, f64)]) -> Vec<u64> {
 }
 
 impl Made<'_> {
-    pub(super) fn loads(&mut self, clock: &Clock) -> Result<(), DeckFault> {
+    pub(super) fn loads(&mut self, clock: &Clock) -> Result<(), Fault> {
         self.motions(clock)?;
         self.forces(clock)?;
         self.pressures(clock);
@@ -100,7 +101,7 @@ impl Made<'_> {
         on_beam
     }
 
-    fn motions(&mut self, clock: &Clock) -> Result<(), DeckFault> {
+    fn motions(&mut self, clock: &Clock) -> Result<(), Fault> {
         let mut courses =
             self.courses(|step| listed(&step.motions), |step| step.new_motions, false);
         let mut from_model: BTreeMap<(usize, Direction), Place> = BTreeMap::new();
@@ -173,7 +174,7 @@ impl Made<'_> {
         target: &(usize, Direction),
         course: Option<&Course>,
         from_model: bool,
-    ) -> Result<(), DeckFault> {
+    ) -> Result<(), Fault> {
         let label = self.deck.nodes[target.0].label;
         let direction = component(target.1);
         let given = |k: usize| course.is_some_and(|course| !course.given[k].values.is_empty());
@@ -187,17 +188,17 @@ impl Made<'_> {
                 false => step.clone(),
             };
             if step.new_motions && !given(k) && (k > 0 || from_model) {
-                let message = format!(
+                bail!(
+                    step.place,
                     "OP=NEW frees the {direction} of node {label} in this step; a prescribed direction must stay prescribed in all steps"
                 );
-                return Err(DeckFault::new(step.place, message));
             }
             if given(k) && k > 0 && !from_model && !(0..k).any(given) {
                 let place = course.map_or(step.place, |course| course.place);
-                let message = format!(
+                bail!(
+                    place,
                     "the {direction} of node {label} is free in earlier steps; a prescribed direction must be prescribed from the first step on"
                 );
-                return Err(DeckFault::new(place, message));
             }
         }
         Ok(())
@@ -254,22 +255,22 @@ impl Made<'_> {
         whole
     }
 
-    fn forces(&mut self, clock: &Clock) -> Result<(), DeckFault> {
+    fn forces(&mut self, clock: &Clock) -> Result<(), Fault> {
         let courses = self.courses(|step| listed(&step.forces), |step| step.new_forces, true);
         let on_beam = self.is_beam_node();
         for ((node, direction), course) in courses {
             let label = self.deck.nodes[node].label;
             if !self.used[node] {
-                return Err(DeckFault::new(
+                bail!(
                     course.place,
-                    format!("node {label} belongs to no element, so a force there has no effect"),
-                ));
+                    "node {label} belongs to no element, so a force there has no effect"
+                );
             }
             if direction == Direction::Rotation && !on_beam[node] {
-                return Err(DeckFault::new(
+                bail!(
                     course.place,
-                    format!("node {label} is not on a beam, so it cannot carry a moment"),
-                ));
+                    "node {label} is not on a beam, so it cannot carry a moment"
+                );
             }
             let points = curve(clock, &self.deck.amplitudes, &course.given);
             let Some((value, scale)) = scaled(&points) else {
@@ -361,7 +362,7 @@ impl Made<'_> {
     }
 
     /// Volume forces, one load per component and body.
-    fn weights(&mut self, clock: &Clock) -> Result<(), DeckFault> {
+    fn weights(&mut self, clock: &Clock) -> Result<(), Fault> {
         let deck = self.deck;
         let listed = |step: &Step| {
             let parts = step.weights.iter().flat_map(|weight| {
@@ -390,10 +391,10 @@ impl Made<'_> {
                 match self.body_of[element] {
                     Some(_) => continue,
                     None => {
-                        return Err(DeckFault::new(
+                        bail!(
                             course.place,
-                            format!("element {label} is a beam; only continua have weight here"),
-                        ));
+                            "element {label} is a beam; only continua have weight here"
+                        );
                     }
                 }
             };
@@ -406,10 +407,10 @@ impl Made<'_> {
             let members = self.body_of.iter().filter(|of| **of == Some(body)).count();
             let on = self.spec.bodies[body].id().to_owned();
             if count < members {
-                let message = format!(
+                bail!(
+                    place,
                     "the load acts on {count} of the {members} connected elements of {on}; it must act on all of them"
                 );
-                return Err(DeckFault::new(place, message));
             }
             let density = match is_weight {
                 false => 1.0,
@@ -428,12 +429,12 @@ impl Made<'_> {
     }
 
     /// Density of the material of a body.
-    fn density(&self, body: usize, place: Place) -> Result<f64, DeckFault> {
+    fn density(&self, body: usize, place: Place) -> Result<f64, Fault> {
         let element = self.body_of.iter().position(|of| *of == Some(body));
         let material = element.map(|element| &self.deck.materials[self.material_of[element]]);
         material
             .and_then(|material| material.density)
-            .ok_or_else(|| DeckFault::new(place, "the material has weight, but no *DENSITY"))
+            .ok_or_else(|| Fault::new(place, "the material has weight, but no *DENSITY"))
     }
 
     /// The increments, and the path of the load factor.

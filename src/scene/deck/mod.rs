@@ -26,7 +26,7 @@ use std::path::Path as FilePath;
 use stickslip_platform::input::{self, Unreadable};
 
 use stickslip_exchange::inp::deck::Direction;
-use stickslip_exchange::inp::{self, DECK_BYTES, Deck, Place, Wrong};
+use stickslip_exchange::inp::{self, DECK_BYTES, Deck, Fault, Place, Wrong};
 
 pub(super) use stickslip_exchange::inp::is_one;
 
@@ -91,22 +91,6 @@ impl Origin {
 
     fn note(&mut self, path: Path, place: Place) {
         self.others.push((path, place));
-    }
-}
-
-/// A semantic error in a deck.
-#[derive(Debug)]
-struct DeckFault {
-    place: Place,
-    message: String,
-}
-
-impl DeckFault {
-    fn new(place: Place, message: impl Into<String>) -> Self {
-        DeckFault {
-            place,
-            message: message.into(),
-        }
     }
 }
 
@@ -191,7 +175,7 @@ pub(super) fn is_called_so(name: &str) -> bool {
 }
 
 /// Converts a deck to a scene.
-fn scene(name: &str, deck: &Deck) -> Result<Read, DeckFault> {
+fn scene(name: &str, deck: &Deck) -> Result<Read, Fault> {
     let mut made = Made::new(name, deck);
     let nlgeom = one_geometry(deck)?;
     made.bodies(nlgeom)?;
@@ -203,11 +187,11 @@ fn scene(name: &str, deck: &Deck) -> Result<Read, DeckFault> {
 }
 
 /// Whether strains are large; must be the same in all steps.
-fn one_geometry(deck: &Deck) -> Result<bool, DeckFault> {
+fn one_geometry(deck: &Deck) -> Result<bool, Fault> {
     let first = deck.steps.first().is_some_and(|step| step.nlgeom);
     match deck.steps.iter().find(|step| step.nlgeom != first) {
         None => Ok(first),
-        Some(step) => Err(DeckFault::new(
+        Some(step) => Err(Fault::new(
             step.place,
             "NLGEOM must be set in all steps or in none: the strain measure cannot change between steps",
         )),

@@ -44,6 +44,12 @@ impl Path {
     }
 }
 
+impl From<&Path> for Path {
+    fn from(path: &Path) -> Self {
+        path.clone()
+    }
+}
+
 impl fmt::Display for Path {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (k, step) in self.0.iter().enumerate() {
@@ -65,6 +71,16 @@ macro_rules! at {
     };
 }
 pub use at;
+pub use stickslip_exchange::bail;
+
+/// A [`Fault`] from a path and a formatted message: `fault!(here, "{} is negative", x)`.
+#[macro_export]
+macro_rules! fault {
+    ($path:expr, $($message:tt)+) => {
+        $crate::format::error::Fault::new($path, format!($($message)+))
+    };
+}
+pub use fault;
 
 /// Reasons why a scalar of a scene cannot be set.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
@@ -93,11 +109,30 @@ pub struct Fault {
 
 impl Fault {
     /// Creates a fault from its path and message.
-    pub fn new(path: Path, message: impl Into<String>) -> Self {
-        Fault {
-            path,
-            message: message.into(),
-        }
+    pub fn new(path: impl Into<Path>, message: impl Into<String>) -> Self {
+        let (path, message) = (path.into(), message.into());
+        Fault { path, message }
+    }
+}
+
+/// Adds a path to an error.
+pub trait AtPath<T> {
+    /// The result, with the error as a fault of this value.
+    ///
+    /// # Errors
+    /// The same error, at the path.
+    fn at(self, path: impl Into<Path>) -> Result<T, Fault>;
+}
+
+impl<T, E: fmt::Display> AtPath<T> for Result<T, E> {
+    fn at(self, path: impl Into<Path>) -> Result<T, Fault> {
+        self.map_err(|why| Fault::new(path, why.to_string()))
+    }
+}
+
+impl<P: Into<Path>> From<(P, String)> for Fault {
+    fn from((path, message): (P, String)) -> Self {
+        Fault::new(path, message)
     }
 }
 

@@ -55,10 +55,8 @@ pub struct Moved {
     /// Node numbers in the deck.
     pub nodes: Vec<u64>,
     /// Displacement along x at load factor 1. Default: free.
-    #[serde(default)]
     pub x: Option<f64>,
     /// Displacement along y at load factor 1. Default: free.
-    #[serde(default)]
     pub y: Option<f64>,
 }
 
@@ -74,7 +72,6 @@ pub struct Stored {
     /// The stiffness file (.sti), in the folder of this file or below.
     pub stiffness: String,
     /// The file of its unknowns (.dof). Default: the name of the stiffness file with this extension.
-    #[serde(default)]
     pub unknowns: Option<String>,
     /// The nodes that may touch, in the order of the contacts.
     pub contacts: Vec<Touching>,
@@ -85,7 +82,6 @@ pub struct Stored {
     #[serde(default)]
     pub moved: Vec<Moved>,
     /// A typical length of gaps and motions, to which length tolerances are relative. Default: the largest gap or motion.
-    #[serde(default)]
     pub spacing: Option<f64>,
     /// Path of the load factor. Default: one increment from 0 to 1.
     #[serde(default)]

@@ -2,14 +2,14 @@
 
 use super::super::blocks::Grid;
 use super::super::limits;
-use crate::format::error::{Fault, at};
+use crate::format::error::{Fault, at, bail};
 use crate::format::spec::{Nodes, Spec};
 use std::collections::HashMap;
 
 /// Checks the ids of nodes: valid and unique.
 pub(super) fn check_ids(spec: &Spec) -> Result<(), Fault> {
     if spec.nodes.is_empty() {
-        return Err(Fault::new(at!["nodes"], "the scene has no nodes"));
+        bail!(at!["nodes"], "the scene has no nodes");
     }
     for (k, nodes) in spec.nodes.iter().enumerate() {
         let here = at!["nodes", k, "id"];
@@ -25,8 +25,10 @@ pub(super) fn check_ids(spec: &Spec) -> Result<(), Fault> {
             named.is_some_and(|other| !matches!(other, Nodes::Node { .. }))
         };
         if let Some(chain) = dots.find(is_chain) {
-            let message = format!("the id {id:?} would also be the name of a node of {chain:?}");
-            return Err(Fault::new(here, message));
+            bail!(
+                here,
+                "the id {id:?} would also be the name of a node of {chain:?}"
+            );
         }
     }
     once("nodes", spec.nodes.iter().map(Nodes::id))
@@ -47,10 +49,7 @@ fn once<'a>(list: &str, ids: impl Iterator<Item = &'a str>) -> Result<(), Fault>
     for (k, id) in ids.enumerate() {
         let here = at![list, k, "id"];
         if let Some(first) = seen.insert(id, k) {
-            return Err(Fault::new(
-                here,
-                format!("the id {id:?} is already used by {list}[{first}]"),
-            ));
+            bail!(here, "the id {id:?} is already used by {list}[{first}]");
         }
     }
     Ok(())
@@ -95,9 +94,10 @@ pub(super) fn check_total(spec: &Spec) -> Result<(), Fault> {
             }
         };
         let refine = spec.refine;
-        let message =
-            format!("up to here the scene has about {total} nodes (refine: {refine}); {why}");
-        return Err(Fault::new(at!["nodes", k], message));
+        bail!(
+            at!["nodes", k],
+            "up to here the scene has about {total} nodes (refine: {refine}); {why}"
+        );
     }
     Ok(())
 }

@@ -1,7 +1,7 @@
 //! Elements of a given mesh: puts them in anticlockwise order, and rejects folded, duplicate and mismatching ones.
 
 use super::super::geometry::Folds;
-use crate::format::error::{Fault, Path};
+use crate::format::error::{Fault, Path, bail, fault};
 use stickslip_core::model::{ElementKind, Node};
 
 /// An element: its kind and its node numbers, anticlockwise.
@@ -25,17 +25,20 @@ pub(super) fn sound(
     mut own: Vec<usize>,
 ) -> Result<Element, Fault> {
     if own.len() != kind.nodes() {
-        let message = format!(
+        bail!(
+            path(),
             "the element has {} nodes; a {} has {}",
             own.len(),
             kind.word(),
             kind.nodes()
         );
-        return Err(Fault::new(path(), message));
     }
     if let Some(k) = (1..own.len()).find(|&k| own[..k].contains(&own[k])) {
-        let message = format!("node {} occurs twice in the element", nodes[own[k]].name);
-        return Err(Fault::new(path().then(k), message));
+        bail!(
+            path().then(k),
+            "node {} occurs twice in the element",
+            nodes[own[k]].name
+        );
     }
     let count = corners(kind);
     if area(nodes, &own[..count]) < 0.0 {
@@ -51,11 +54,11 @@ pub(super) fn sound(
     }
     if folds.is_folded(own.iter().map(|&n| nodes[n].at)) {
         let [x, y] = nodes[own[0]].at;
-        let message = format!(
+        bail!(
+            path(),
             "the element with the corners {} at ({x:?}, {y:?}) is folded or flat: its Jacobian is not positive everywhere",
             named(nodes, &own[..count])
         );
-        return Err(Fault::new(path(), message));
     }
     Ok((kind, own))
 }
@@ -97,11 +100,11 @@ pub(super) fn check_doubled(
         return Ok(());
     };
     let shared = pair[0].iter().copied().filter(|&n| n != usize::MAX);
-    let message = format!(
+    Err(fault!(
+        here,
         "two elements have the same corners, {}",
         named(nodes, &shared.collect::<Vec<_>>())
-    );
-    Err(Fault::new(here.clone(), message))
+    ))
 }
 
 /// Rejects a side shared by an element with a midside node and one without: they would gape or overlap between the ends. `path`
@@ -133,11 +136,11 @@ pub(super) fn check_orders(
         return Ok(());
     };
     let (linear, quadratic) = (pair[0].2, pair[1].2);
-    let message = format!(
+    Err(fault!(
+        path(linear.max(quadratic)),
         "the side between {} is shared by a {} and a {}, but only one of them has a midside node there; mesh both with elements of the same order",
         named(nodes, &pair[0].0),
         elements[quadratic].0.word(),
         elements[linear].0.word()
-    );
-    Err(Fault::new(path(linear.max(quadratic)), message))
+    ))
 }

@@ -6,7 +6,7 @@ use super::super::limits;
 use super::elements::{Element, check_doubled, check_orders, sound};
 use super::sides::{Faces, line};
 use super::{EntryKind, NameEntry, Names};
-use crate::format::error::{Fault, Path, at, quoted};
+use crate::format::error::{Fault, Path, at, bail, fault, quoted};
 use crate::format::given::{Cells, NodeSet, SideSet};
 use crate::format::spec::Nodes;
 use std::collections::HashMap;
@@ -84,8 +84,10 @@ impl Names {
             let (label, x, y) = listed[k];
             let path = || here.then(k);
             if labels.last() == Some(&label) {
-                let message = format!("the label {label} is already used by another node");
-                return Err(Fault::new(path().then(0), message));
+                bail!(
+                    path().then(0),
+                    "the label {label} is already used by another node"
+                );
             }
             if !(x.is_finite() && y.is_finite()) || x.abs().max(y.abs()) > limits::MAGNITUDE {
                 point(&path(), (x, y))?;
@@ -163,10 +165,10 @@ impl Labels {
     fn numbers(&self, path: impl Fn() -> Path, labels: &[usize]) -> Result<Vec<usize>, Fault> {
         let number = |(k, label): (usize, &usize)| match self.labels.binary_search(label) {
             Ok(place) => Ok(self.first + place),
-            Err(_) => {
-                let message = format!("no node of the mesh has the label {label}");
-                Err(Fault::new(path().then(k), message))
-            }
+            Err(_) => Err(fault!(
+                path().then(k),
+                "no node of the mesh has the label {label}"
+            )),
         };
         labels.iter().enumerate().map(number).collect()
     }
@@ -175,7 +177,7 @@ impl Labels {
         let here = here.then("nodes");
         let mut nodes = self.numbers(|| here.clone(), &set.nodes)?;
         if nodes.is_empty() {
-            return Err(Fault::new(here, "the set has no nodes"));
+            bail!(here, "the set has no nodes");
         }
         nodes.sort_unstable();
         nodes.dedup();
@@ -191,10 +193,10 @@ fn check_names(
     sides: &[SideSet],
 ) -> Result<(), Fault> {
     if elements.iter().all(|cells| cells.nodes.is_empty()) && sides.is_empty() {
-        return Err(Fault::new(
+        bail!(
             here.then("elements"),
-            "the mesh has neither elements nor sides",
-        ));
+            "the mesh has neither elements nor sides"
+        );
     }
     let mut seen: HashMap<&str, &str> = HashMap::new();
     let mut check = |path: Path, name, what: &'static str| {
@@ -202,13 +204,11 @@ fn check_names(
         match seen.insert(name, what) {
             // Several lists may belong to the same part.
             Some("part") if what == "part" => Ok(()),
-            Some(other) => {
-                let message = format!(
-                    "the mesh already has a {other} called {}; names of parts, sets and sides must be unique",
-                    quoted(name)
-                );
-                Err(Fault::new(path, message))
-            }
+            Some(other) => Err(fault!(
+                path,
+                "the mesh already has a {other} called {}; names of parts, sets and sides must be unique",
+                quoted(name)
+            )),
             None => Ok(()),
         }
     };
@@ -217,8 +217,11 @@ fn check_names(
         check(here.then("part"), &cells.part, "part")?;
         for (j, part) in cells.also.iter().enumerate() {
             if cells.part == *part || cells.also[..j].contains(part) {
-                let message = format!("the part {} is named twice", quoted(part));
-                return Err(Fault::new(here.then("also").then(j), message));
+                bail!(
+                    here.then("also").then(j),
+                    "the part {} is named twice",
+                    quoted(part)
+                );
             }
             check(here.then("also").then(j), part, "part")?;
         }
@@ -234,7 +237,7 @@ fn check_names(
         )?;
     }
     limits::entries("names of the mesh", seen.len())
-        .map_err(|fault| Fault::new(here.clone(), fault.message))
+        .map_err(|fault| Fault::new(here, fault.message))
 }
 
 /// Rejects a name that looks like a label or cannot be separated from the text after it.
@@ -257,6 +260,9 @@ fn usable(path: &Path, name: &str) -> Result<(), Fault> {
     } else {
         return Ok(());
     };
-    let message = format!("the name {} {wrong}; use another name", quoted(name));
-    Err(Fault::new(path.clone(), message))
+    Err(fault!(
+        path,
+        "the name {} {wrong}; use another name",
+        quoted(name)
+    ))
 }

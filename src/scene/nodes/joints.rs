@@ -2,7 +2,7 @@
 
 use super::super::geometry::distance;
 use super::{EntryKind, NameEntry, Names};
-use crate::format::error::{Fault, Path, at};
+use crate::format::error::{Fault, Path, at, bail, fault};
 use crate::format::spec::Nodes;
 use std::collections::HashSet;
 
@@ -26,16 +26,16 @@ impl Names {
         };
         let here = at!["nodes", at];
         if !(0.0..=0.1).contains(tolerance) {
-            let message = format!(
+            bail!(
+                here.then("tolerance"),
                 "the tolerance is {tolerance:?}; it must be 0 to 0.1 (relative to the edge's length)"
             );
-            return Err(Fault::new(here.then("tolerance"), message));
         }
         if of.is_empty() {
-            return Err(Fault::new(
+            bail!(
                 here.then("of"),
-                "the list is empty; name the blocks of the mesh",
-            ));
+                "the list is empty; name the blocks of the mesh"
+            );
         }
         let mut parts = Vec::new();
         for (k, block) in of.iter().enumerate() {
@@ -65,7 +65,7 @@ impl Names {
 
     /// An edge of one of these blocks.
     fn edge(&self, here: &Path, name: &str, parts: &[usize]) -> Result<&NameEntry, Fault> {
-        let fault = |message| Fault::new(here.clone(), message);
+        let fault = |message| Fault::new(here, message);
         let edge = self.chain(name).map_err(fault)?;
         let owner = parts.iter().any(|&k| self.entries[k].at == edge.at);
         if matches!(edge.kind, EntryKind::Edge(_)) && owner {
@@ -87,25 +87,25 @@ impl Names {
     ) -> Result<Vec<(usize, usize)>, Fault> {
         let per = |edge: &NameEntry| edge.kind.per_element().unwrap_or(2);
         if per(a) != per(b) {
-            let message = format!(
+            bail!(
+                here,
                 "{:?} has {} nodes per side and {:?} has {}; joined blocks need elements with the same number",
                 a.id,
                 per(a),
                 b.id,
                 per(b)
             );
-            return Err(Fault::new(here.clone(), message));
         }
         let elements = |edge: &NameEntry| edge.nodes.len() / (per(edge) - 1);
         if a.nodes.len() != b.nodes.len() {
-            let message = format!(
+            bail!(
+                here,
                 "{:?} has {} elements and {:?} has {}; joined edges need the same number",
                 a.id,
                 elements(a),
                 b.id,
                 elements(b)
             );
-            return Err(Fault::new(here.clone(), message));
         }
         let place = |n: usize| self.nodes[n].at;
         let length: f64 = a
@@ -127,15 +127,15 @@ impl Names {
             return Ok(pairs);
         };
         let ([x, y], [v, w]) = (place(n), place(m));
-        let message = format!(
+        Err(fault!(
+            here,
             "the edges do not coincide: {} is at ({x:?}, {y:?}) and {} at ({v:?}, {w:?}), {:.3e} apart; \
              at most {:.3e} is allowed (tolerance {tolerance:?} of the length {length:.4})",
             self.nodes[n].name,
             self.nodes[m].name,
             distance(place(n), place(m)),
             tolerance * length
-        );
-        Err(Fault::new(here.clone(), message))
+        ))
     }
 
     /// Merges twin nodes into the first of them, and renumbers the others.

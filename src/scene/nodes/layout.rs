@@ -6,7 +6,7 @@ use super::super::curves::{
 };
 use super::super::limits;
 use super::{EntryKind, Names};
-use crate::format::error::{Fault, at};
+use crate::format::error::{Fault, at, bail};
 use crate::format::spec::{Nodes, Point};
 use stickslip_core::model::Node;
 
@@ -78,10 +78,10 @@ impl Names {
             ),
             Nodes::Given { .. } => return self.given(at, nodes),
             Nodes::Import { file, .. } => {
-                let message = format!(
+                bail!(
+                    here.then("file"),
                     "the file {file:?} has not been read; scenes with an Import must be opened from a file"
                 );
-                return Err(Fault::new(here.then("file"), message));
             }
             Nodes::Chain { .. } | Nodes::Mesh { .. } => return Ok(()),
         };

@@ -1,7 +1,7 @@
 //! Sides of a given mesh: sorts them into walking order with the body on the left, piece by piece.
 
 use super::elements::{Element, named};
-use crate::format::error::{Fault, Path};
+use crate::format::error::{Fault, Path, bail};
 use crate::shown::first_of;
 use std::collections::{HashMap, HashSet};
 use stickslip_core::model::Node;
@@ -104,7 +104,7 @@ pub(super) fn line(
     sides: &[Vec<usize>],
 ) -> Result<SideLine, Fault> {
     if sides.is_empty() {
-        return Err(Fault::new(here.clone(), "there are no sides"));
+        bail!(here, "there are no sides");
     }
     let mut inside = false;
     let mut free = Vec::new();
@@ -161,8 +161,11 @@ pub(super) fn line(
     align(&mut made, &free);
     let mut walked = HashSet::new();
     if let Some(k) = made.iter().position(|side| !walked.insert(ends(side))) {
-        let message = format!("the side {} is listed twice", named(nodes, &made[k]));
-        return Err(Fault::new(here.then(k), message));
+        bail!(
+            here.then(k),
+            "the side {} is listed twice",
+            named(nodes, &made[k])
+        );
     }
     Ok(SideLine {
         pieces: pieces(&made),

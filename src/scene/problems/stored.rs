@@ -12,7 +12,7 @@
 use super::condense::{NotEliminated, condensed, reduced};
 use super::fits;
 use crate::format::condensed::{Contact, Matrix, Problem};
-use crate::format::error::{Fault, Path, at, quoted};
+use crate::format::error::{AtPath, Fault, Path, at, bail, fault, quoted};
 use crate::format::stored::{Stored, Touching};
 use crate::format::{SceneError, read};
 use crate::placed;
@@ -96,12 +96,13 @@ impl<'s> Posed<'s> {
                     finite(&at!["moved", k, ["x", "y"][direction]], value)?;
                     let unknown = unknowns[direction].ok_or_else(|| {
                         let axis = ["x", "y"][direction];
-                        let why =
-                            format!("node {node} is restrained along {axis} and cannot be moved");
-                        Fault::new(here.clone(), why)
+                        fault!(
+                            &here,
+                            "node {node} is restrained along {axis} and cannot be moved"
+                        )
                     })?;
                     if known[unknown].replace(value).is_some() {
-                        return Err(Fault::new(here, format!("node {node} is moved twice")));
+                        bail!(here, "node {node} is moved twice");
                     }
                 }
             }
@@ -131,8 +132,7 @@ impl<'s> Posed<'s> {
             }
         }
         let contacts = points(spec, &numbers)?;
-        fits(contacts.len(), memory.or(spec.settings.memory))
-            .map_err(|why| Fault::new(at!["contacts"], why))?;
+        fits(contacts.len(), memory.or(spec.settings.memory)).at(at!["contacts"])?;
         Ok(Posed {
             spec,
             known,
@@ -156,7 +156,7 @@ impl<'s> Posed<'s> {
             }
         }
         if inner.entries.is_empty() {
-            return Err(Fault::new(Path::default(), "no unknown is free"));
+            bail!(Path::default(), "no unknown is free");
         }
         match condensed(&inner, &self.frames(), &self.load, f64::INFINITY) {
             Ok((w, free)) => {
@@ -165,7 +165,7 @@ impl<'s> Posed<'s> {
                 Ok(self.problem(Matrix::Compliance(w.dense()), free, &[]))
             }
             Err(NotEliminated::Singular) => self.floating(&inner),
-            Err(why) => Err(Fault::new(at!["stiffness"], format!("the stiffness {why}"))),
+            Err(why) => Err(fault!(at!["stiffness"], "the stiffness {why}")),
         }
     }
 
@@ -175,17 +175,21 @@ impl<'s> Posed<'s> {
         for point in &self.contacts {
             for unknown in point.unknowns {
                 let Some(Known::Free(place)) = unknown.map(|u| self.known[u]) else {
-                    let why = "the stiffness is singular: only the contacts support the body, but a component of this \
+                    bail!(
+                        &point.at,
+                        "the stiffness is singular: only the contacts support the body, but a component of this \
                                node is restrained or moved, so the problem cannot be written as a stiffness at the \
-                               contacts";
-                    return Err(Fault::new(point.at.clone(), why));
+                               contacts"
+                    );
                 };
                 kept.push(place);
             }
         }
         let (s, load) = reduced(inner, &self.load, &kept).map_err(|why| {
-            let why = format!("the stiffness without that of the contact nodes {why}");
-            Fault::new(at!["stiffness"], why)
+            fault!(
+                at!["stiffness"],
+                "the stiffness without that of the contact nodes {why}"
+            )
         })?;
         // Rows and columns from (x, y) to (n, t): n = (c, s), t = (−s, c).
         let onto = |pair: [f64; 2], point: &Point<'_>| {
@@ -292,18 +296,17 @@ fn points<'s>(spec: &'s Stored, numbers: &Numbers) -> Result<Vec<Point<'s>>, Fau
         let (x, y) = touching.normal;
         let length = x.hypot(y);
         if !(length > 0.0 && length.is_finite()) {
-            let why = format!("the normal is ({x:?}, {y:?}); it must be finite and not zero");
-            return Err(Fault::new(at!["contacts", k, "normal"], why));
+            bail!(
+                at!["contacts", k, "normal"],
+                "the normal is ({x:?}, {y:?}); it must be finite and not zero"
+            );
         }
         finite(&at!["contacts", k, "gap"], touching.gap)?;
         for (i, &node) in touching.nodes.iter().enumerate() {
             let here = at!["contacts", k, "nodes", i];
             let unknowns = numbers.of(node, &here)?;
             if known.insert(node, ()).is_some() {
-                return Err(Fault::new(
-                    here,
-                    format!("node {node} is already a contact"),
-                ));
+                bail!(here, "node {node} is already a contact");
             }
             points.push(Point {
                 node,
@@ -315,9 +318,9 @@ fn points<'s>(spec: &'s Stored, numbers: &Numbers) -> Result<Vec<Point<'s>>, Fau
         }
     }
     match points.is_empty() {
-        true => Err(Fault::new(
+        true => Err(fault!(
             at!["contacts"],
-            "no contacts; name at least one node that may touch",
+            "no contacts; name at least one node that may touch"
         )),
         false => Ok(points),
     }
@@ -337,8 +340,10 @@ impl Numbers {
             let of_node = numbers.entry(unknown.node).or_default();
             if of_node[unknown.direction].replace(place).is_some() {
                 let (node, direction) = (unknown.node, unknown.direction + 1);
-                let why = format!("the .dof file lists {node}.{direction} twice");
-                return Err(Fault::new(at!["unknowns"], why));
+                bail!(
+                    at!["unknowns"],
+                    "the .dof file lists {node}.{direction} twice"
+                );
             }
         }
         Ok(Numbers(numbers))
@@ -346,10 +351,7 @@ impl Numbers {
 
     fn of(&self, node: u64, here: &Path) -> Result<[Option<usize>; 2], Fault> {
         self.0.get(&node).copied().ok_or_else(|| {
-            let why = format!(
-                "node {node} is not in the .dof file: it does not exist in the deck, or both of its components are restrained"
-            );
-            Fault::new(here.clone(), why)
+            fault!(here, "node {node} is not in the .dof file: it does not exist in the deck, or both of its components are restrained")
         })
     }
 }

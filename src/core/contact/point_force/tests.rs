@@ -87,14 +87,7 @@ fn the_compliance_is_zero_at_the_ends_and_positive_between() {
 
 /// A slave node over a bent element; the contribution of the other forces is constant.
 fn over<'a>(x: &'a [[f64; 2]], force: [f64; 2], others: Others) -> Over<'a> {
-    let surface = Surface {
-        name: "s".into(),
-        elements: vec![(1..x.len()).collect()],
-        rigid: false,
-        endless: false,
-        smooth: Vec::new(),
-        gives: Vec::new(),
-    };
+    let surface = Surface::new("s", vec![(1..x.len()).collect()], false);
     let surfaces = [surface];
     let spot = project(x[0], &surfaces, &[0], x, None).unwrap();
     let found = projection_at(&surfaces, spot, x, x[0]);

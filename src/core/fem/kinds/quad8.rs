@@ -8,17 +8,11 @@ use super::{Parent, Shape, parents};
 use crate::fem::quadrature::square;
 use std::sync::LazyLock;
 
-/// Positions of the nodes in the parent square.
-pub const PLACES: [[f64; 2]; 8] = [
-    [-1.0, -1.0],
-    [1.0, -1.0],
-    [1.0, 1.0],
-    [-1.0, 1.0],
-    [0.0, -1.0],
-    [1.0, 0.0],
-    [0.0, 1.0],
-    [-1.0, 0.0],
-];
+/// Positions of the nodes in the parent square: those of the 9-node quadrilateral without its centre.
+pub const PLACES: [[f64; 2]; 8] = {
+    let [a, b, c, d, e, f, g, h, _] = super::quad9::PLACES;
+    [a, b, c, d, e, f, g, h]
+};
 
 /// Shape functions at the nodes.
 pub static NODES: LazyLock<[Parent<8>; 8]> =
