@@ -576,6 +576,9 @@ impl Debugger {
             return false;
         };
         let before = session.background().is_busy();
+        if self.app.panes.focus == Pane::Decision {
+            session.demand_pushes();
+        }
         session.look(self.app.selected);
         session.background().is_busy() != before
     }

@@ -1,6 +1,7 @@
 //! The data that the panes draw: a read-only view of a session.
 
 use stickslip_core::contact::record::{ContactRecord, Forced};
+use stickslip_core::fem::deformation::PointDeformation;
 use stickslip_core::linear::norms::Norms;
 use stickslip_core::model::{Mode, Model};
 use stickslip_core::step::event::{Event, Outcome, Position};
@@ -131,6 +132,18 @@ impl<'a> View<'a> {
     pub fn pushes(&self, slave: usize) -> Option<Option<&'a [NodePush]>> {
         self.background?
             .pushes((self.tree?.current(), self.cursor), slave)
+    }
+
+    /// Whether the pushes of the shown minor iteration are computed only on demand.
+    pub fn is_costly(&self) -> bool {
+        let place = self.tree.map(|tree| (tree.current(), self.cursor));
+        let known = place.zip(self.background);
+        known.is_some_and(|(place, background)| background.is_costly(place))
+    }
+
+    /// The solids' point that is inverted or outside the range of its law, once the background thread has found it.
+    pub fn worst_point(&self) -> Option<PointDeformation> {
+        self.background?.worst_point(&self.frame().state.u)
     }
 
     /// The shown frame.

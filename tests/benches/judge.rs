@@ -72,6 +72,7 @@ fn row(name: &str, set: &[(&str, &str)]) {
             forces: &forces,
             brought: &nothing,
             earlier: &nothing,
+            anchored: &nothing,
             scales: Scales {
                 length: model.length,
                 force: 1.0,

@@ -111,6 +111,7 @@ fn judged(
         forces: &[force],
         brought: &[brought],
         earlier: &[0.0],
+        anchored: &[0.0],
         scales: Scales {
             length: 1.0,
             force: 1.0,

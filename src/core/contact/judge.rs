@@ -57,6 +57,8 @@ pub struct Seen<'a> {
     pub brought: &'a [f64],
     /// Tangential force F_t on each slave node in the last accepted state.
     pub earlier: &'a [f64],
+    /// Elastic slip of each contact when it was last anchored, in the last accepted state (length).
+    pub anchored: &'a [f64],
     /// Units of amounts, and tolerances.
     pub scales: Scales,
 }
@@ -443,8 +445,8 @@ fn touching(
     };
     let way =
         |foot: &Foot| distance(surface, foot.spot, spot, seen.now) - seen.brought[slave] + elastic;
-    // The elastic slip of the last accepted state is a length on the surface, which has stretched since. The part from before the
-    // node's last slide has not stretched, so only slip beyond the whole stretch counts.
+    // The elastic slip since the node was anchored is a length on the surface in the last accepted state, which has stretched
+    // since.
     let beyond_stretch = |way: f64, foot: &Foot| {
         let give = seen.contacts[slave].bond.give()[1];
         if give == 0.0 {
@@ -452,7 +454,8 @@ fn touching(
         }
         let element = SurfaceElement::of(surface, foot.spot.element);
         let [now, before] = [seen.now, seen.before].map(|at| speed(element, at, foot.spot.xi));
-        let stretched = give * seen.earlier[slave].abs() * (now / before - 1.0).abs();
+        let length = give * seen.earlier[slave] - seen.anchored[slave];
+        let stretched = (length * (now / before - 1.0)).abs();
         way.signum() * (way.abs() - stretched).max(0.0)
     };
     let here = earlier.iter().find(|f| f.spot.surface == spot.surface);

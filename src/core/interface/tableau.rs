@@ -197,21 +197,70 @@ impl Tableau {
         Some(())
     }
 
-    /// Multiplies the tableau by the inverse of the basis.
+    /// Multiplies the tableau by the inverse of the basis. Rows in which a basic variable has its only entry, a one, follow from the
+    /// other rows, which alone are factored; columns of the basis become unit vectors.
     fn reduce(&mut self) -> Option<()> {
         let rows = self.rows;
-        let matrix: Vec<f64> = self
-            .basis
+        let mut single = vec![None; rows];
+        let mut own = Vec::new();
+        for (place, &variable) in self.basis.iter().enumerate() {
+            let column = &self.table[variable * rows..(variable + 1) * rows];
+            let mut entries = (0..rows).filter(|&row| column[row] != 0.0);
+            match (entries.next(), entries.next()) {
+                (Some(row), None) if column[row] == 1.0 && single[row].is_none() => {
+                    single[row] = Some(place);
+                }
+                _ => own.push(place),
+            }
+        }
+        let kept: Vec<usize> = (0..rows).filter(|&row| single[row].is_none()).collect();
+        let basic = |place: usize| &self.table[self.basis[place] * rows..][..rows];
+        let matrix = own
             .iter()
-            .flat_map(|&v| self.table[v * rows..(v + 1) * rows].iter().copied())
-            .collect();
+            .flat_map(|&place| kept.iter().map(move |&row| basic(place)[row]));
+        let matrix: Vec<f64> = matrix.collect();
+        let entries = |(row, place): (usize, &usize)| {
+            let others = own.iter().enumerate();
+            let entries = others.map(|(k, &other)| (k, basic(other)[row]));
+            (row, *place, entries.filter(|(_, x)| *x != 0.0).collect())
+        };
+        let following = single.iter().enumerate();
+        let following = following.filter_map(|(row, place)| Some((row, place.as_ref()?)));
+        let following: Vec<(usize, usize, Vec<(usize, f64)>)> = following.map(entries).collect();
         let columns = self.table.len() / rows.max(1);
-        let mut dense = DenseFactors::new(rows, columns).ok()?;
+        let others: Vec<usize> = (0..columns)
+            .filter(|&column| self.row_of.get(column).is_none_or(Option::is_none))
+            .collect();
+        let mut dense = DenseFactors::new(kept.len(), others.len()).ok()?;
         dense.factor(&matrix);
         if dense.inverse_norm() > SINGULAR {
             return None;
         }
-        dense.solve(&mut self.table).ok()
+        let table = &self.table;
+        let solved = others
+            .iter()
+            .flat_map(|&column| kept.iter().map(move |&row| table[column * rows + row]));
+        let mut solved: Vec<f64> = solved.collect();
+        dense.solve(&mut solved).ok()?;
+        let mut new = vec![0.0; rows];
+        for (k, &column) in others.iter().enumerate() {
+            let solved = &solved[k * kept.len()..(k + 1) * kept.len()];
+            let old = &mut self.table[column * rows..(column + 1) * rows];
+            for (row, place, entries) in &following {
+                let sum: f64 = entries.iter().map(|(k, x)| x * solved[*k]).sum();
+                new[*place] = old[*row] - sum;
+            }
+            own.iter()
+                .zip(solved)
+                .for_each(|(&place, &x)| new[place] = x);
+            old.copy_from_slice(&new);
+        }
+        for (place, &variable) in self.basis.iter().enumerate() {
+            let column = &mut self.table[variable * rows..(variable + 1) * rows];
+            column.fill(0.0);
+            column[place] = 1.0;
+        }
+        Some(())
     }
 
     fn is_loose(&self, row: usize) -> bool {

@@ -59,6 +59,7 @@ struct Bench {
     forces: Vec<[f64; 2]>,
     brought: Vec<f64>,
     earlier: Vec<f64>,
+    anchored: Vec<f64>,
     /// Contact force at every node.
     contact: Vec<[f64; 2]>,
     /// Load at every degree of freedom.
@@ -83,6 +84,7 @@ impl Bodies {
                 forces: Vec::with_capacity(contacts),
                 brought: Vec::with_capacity(contacts),
                 earlier: Vec::with_capacity(contacts),
+                anchored: Vec::with_capacity(contacts),
                 contact: vec![[0.0; 2]; nodes],
                 load: vec![0.0; model.dofs.len()],
             },
@@ -410,6 +412,10 @@ impl Source for Bodies {
         bench.brought.extend(accepted().map(|state| state.slip));
         bench.earlier.clear();
         bench.earlier.extend(accepted().map(|state| state.f_t));
+        bench.anchored.clear();
+        bench
+            .anchored
+            .extend(accepted().map(|state| state.stretched));
         let now = &self.system.positions;
         let overlaps = model
             .contacts
@@ -459,6 +465,7 @@ impl Source for Bodies {
             forces: &bench.forces,
             brought: &bench.brought,
             earlier: &bench.earlier,
+            anchored: &bench.anchored,
             scales,
         };
         let mut verdict = bench.judge.interface(&seen, &mut bench.contact);

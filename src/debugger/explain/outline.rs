@@ -3,7 +3,7 @@
 
 use stickslip_core::contact::element::SurfaceElement;
 use stickslip_core::fem::lagrange;
-use stickslip_core::model::Model;
+use stickslip_core::model::{Body, BodyKind, Model};
 
 /// A point in the scene or on the sheet.
 pub type Point = [f64; 2];
@@ -87,13 +87,22 @@ impl Bounds {
     }
 }
 
+/// The nodes of a body that enclose it: those of a solid's boundary, some of them repeatedly, or all nodes.
+pub fn outer_nodes(body: &Body) -> impl Iterator<Item = usize> {
+    let (edges, nodes) = match &body.kind {
+        BodyKind::Solid(solid) => (&solid.edges[..], &[][..]),
+        _ => (&[][..], &body.nodes[..]),
+    };
+    edges.iter().flatten().chain(nodes).copied()
+}
+
 /// The visible extent of a scene with nodes at `place`: the undeformed and deformed bodies, and nearby parts of
 /// surfaces. `None` if it has no size.
 pub fn extent(model: &Model, place: &dyn Fn(usize) -> Point) -> Option<Bounds> {
     let mut bodies = Bounds::NOTHING;
-    for node in model.bodies.iter().flat_map(|body| &body.nodes) {
-        bodies.add(model.nodes[*node].at);
-        bodies.add(place(*node));
+    for node in model.bodies.iter().flat_map(outer_nodes) {
+        bodies.add(model.nodes[node].at);
+        bodies.add(place(node));
     }
     if bodies.diagonal() <= 0.0 || !bodies.diagonal().is_finite() {
         model.nodes.iter().for_each(|node| bodies.add(node.at));

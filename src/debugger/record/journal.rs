@@ -8,6 +8,7 @@
 //! only passed to the system. Nothing is lost if the process is killed; a power failure can lose cursor moves.
 //! An incomplete last line was cut off by a kill; it is dropped and reported.
 
+use crate::record::bits;
 use crate::record::command::Command;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -480,8 +481,34 @@ pub fn newest() -> Result<PathBuf, JournalError> {
     newest.map(|(_, path)| path).ok_or_else(none)
 }
 
-/// Digest of a state's bits, computed from its RON text, in which floats are exact.
+/// Start of a digest of the second version, [`bits::digest`]. The first version, without a start, is the FNV-1a hash of the RON
+/// text, in which floats are exact.
+const SECOND: &str = "2-";
+
+/// Digest of a state's bits.
 pub fn digest(state: &State) -> String {
+    match bits::digest(&digested(state)) {
+        Some(digest) => format!("{SECOND}{digest:016x}"),
+        None => NONE.into(),
+    }
+}
+
+/// Digest of a state's bits in the version of a recorded digest.
+pub fn digest_like(recorded: &str, state: &State) -> String {
+    if recorded.starts_with(SECOND) {
+        return digest(state);
+    }
+    let mut text = Digest::default();
+    match notation::line_to(&mut text, &digested(state)) {
+        Ok(()) => text.to_string(),
+        Err(error) => format!("{NONE}: {error}"),
+    }
+}
+
+/// A digest that never matches. All known states have one.
+const NONE: &str = "none";
+
+fn digested(state: &State) -> State {
     let state = state.digested();
     #[cfg(mutants)]
     let state = match stickslip_core::mutants::is_active("digest-without-contacts") {
@@ -491,12 +518,7 @@ pub fn digest(state: &State) -> String {
         },
         false => state,
     };
-    let mut digest = Digest::default();
-    match notation::line_to(&mut digest, &state) {
-        Ok(()) => digest.to_string(),
-        // RON can represent all known states; otherwise return a digest that never matches.
-        Err(error) => format!("none: {error}"),
-    }
+    state
 }
 
 /// Seconds since 1970; 0 if the clock is set earlier.

@@ -2,10 +2,11 @@
 //!
 //! - [`snapshot`]: recorded states; [`differences`]: comparison of two snapshots.
 //! - [`command`]: the commands of a session, as recorded in journals; [`journal`]: the record of a session;
-//!   [`story`]: a journal as readable text.
+//!   [`story`]: a journal as readable text; [`bits`]: the digest of a state.
 //! - [`export`]: files made from a state, with the kind chosen by the extension: pictures, scenes, problems for
 //!   other programs.
 
+pub mod bits;
 pub mod command;
 pub mod differences;
 pub mod export;

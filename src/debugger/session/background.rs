@@ -6,23 +6,25 @@
 //!   the frozen problem that is solved next.
 //! - **Exports**: files made from a state ([`exports`](super::exports)).
 //! - **Remedies**: a trial of each remedy ([`remedies`]).
+//! - **Worst points** of the solids, which the shape marks.
 //!
 //! The thread has a separate solver for the session's scene. If the session's solver already has the frozen
 //! problem, the thread borrows it, so that nothing is factored twice. A large solver is dropped when the queue
-//! is empty, so that the session needs no more memory than a run.
+//! is empty, so that the session needs no more memory than a run, and computes pushes only on demand.
 //!
 //! Pushes and examinations are cached by position (branch, step on its line), because the state at a position
 //! never changes.
 
 use super::exports::{Export, is_of_problem, write, write_posed};
+use super::trials::{try_all, try_remedies};
 use super::worker::Lender;
+use super::worst_points::{WorstPoints, worst_point};
 use crate::explain::attached;
 use crate::explain::examination::{Examination, examine_nodes};
 use crate::explain::facts::Fact;
 use crate::explain::influence::{NodePush, PushPath, between, pushed, pushes};
 use crate::explain::page::{DiagnosisPage, page};
 use crate::explain::remedies::{self, Trial};
-use crate::explain::remedy::Remedy;
 use crate::explain::reported_pushes::{self, Iterations};
 use crate::explain::try_list::TryLine;
 use crate::explain::walk::ReportedIterations;
@@ -32,6 +34,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 use std::thread;
+use stickslip_core::fem::deformation::PointDeformation;
 use stickslip_core::linear::estimate::Estimate;
 use stickslip_core::model::Model;
 use stickslip_core::step::solver::{Lost, Offers, Posed};
@@ -64,8 +67,10 @@ pub struct RemedyTrials {
     pub stopped: bool,
 }
 
-enum BackgroundRequest {
-    Pushes(LinePlace, usize, BetweenRuns),
+pub(super) enum BackgroundRequest {
+    /// The last value is whether they may be costly.
+    Pushes(LinePlace, usize, BetweenRuns, bool),
+    WorstPoint(Arc<Vec<f64>>),
     Examination(LinePlace, Box<State>, Vec<usize>, Reported),
     Remedies(Box<State>),
     Export(Export),
@@ -88,8 +93,11 @@ pub(super) enum BetweenRuns {
     Reported(Iterations),
 }
 
-enum BackgroundReply {
+pub(super) enum BackgroundReply {
     Pushes(LinePlace, usize, Option<Vec<NodePush>>),
+    /// The pushes at this position need a large solver.
+    Costly(LinePlace),
+    WorstPoint(Arc<Vec<f64>>, Option<PointDeformation>),
     /// The solver was busy.
     NotNow,
     /// The examination so far (`going_on`) or complete.
@@ -138,6 +146,10 @@ pub struct Background {
     /// Requests without an answer yet.
     waiting: usize,
     pushes: HashMap<(LinePlace, usize), Option<Vec<NodePush>>>,
+    /// Position at which pushes need a large solver, and the one at which they are computed nevertheless.
+    costly: Option<LinePlace>,
+    demanded: Option<LinePlace>,
+    pub(super) worst: WorstPoints,
     /// By position: the requested nodes, and the result.
     examinations: HashMap<LinePlace, (Vec<usize>, Option<DiagnosisPage>)>,
     exported: Option<Result<String, ExportError>>,
@@ -191,6 +203,9 @@ impl Background {
             stop,
             waiting: 0,
             pushes: HashMap::new(),
+            costly: None,
+            demanded: None,
+            worst: WorstPoints::default(),
             examinations: HashMap::new(),
             exported: None,
             tried: None,
@@ -209,6 +224,16 @@ impl Background {
     pub fn pushes(&self, place: LinePlace, slave: usize) -> Option<Option<&[NodePush]>> {
         let found = self.pushes.get(&(place, slave))?;
         Some(found.as_deref())
+    }
+
+    /// Whether the pushes at a position are computed only on demand.
+    pub fn is_costly(&self, place: LinePlace) -> bool {
+        self.costly == Some(place) && self.demanded != Some(place)
+    }
+
+    /// Computes the pushes at a position whatever they cost.
+    pub(super) fn demand_pushes(&mut self, place: LinePlace) {
+        self.demanded = Some(place);
     }
 
     /// The examination at a position; the inner value is `None` while it is running.
@@ -240,9 +265,11 @@ impl Background {
     ) {
         if self.waiting == 0
             && !self.pushes.contains_key(&(place, slave))
+            && !self.is_costly(place)
             && let Some(between) = between()
         {
-            self.send(BackgroundRequest::Pushes(place, slave, between));
+            let demanded = self.demanded == Some(place);
+            self.send(BackgroundRequest::Pushes(place, slave, between, demanded));
         }
     }
 
@@ -324,7 +351,7 @@ impl Background {
         self.stop.store(true, Ordering::Relaxed);
     }
 
-    fn send(&mut self, ask: BackgroundRequest) {
+    pub(super) fn send(&mut self, ask: BackgroundRequest) {
         // If sending fails, the thread has ended and no answer will come.
         if self.asks.send(ask).is_ok() {
             self.waiting += 1;
@@ -370,6 +397,14 @@ impl Background {
                 self.waiting -= 1;
             }
             BackgroundReply::NotNow => self.waiting -= 1,
+            BackgroundReply::Costly(place) => {
+                self.costly = Some(place);
+                self.waiting -= 1;
+            }
+            BackgroundReply::WorstPoint(u, found) => {
+                self.worst.keep(&u, found);
+                self.waiting -= 1;
+            }
             BackgroundReply::Examination {
                 place,
                 nodes,
@@ -431,9 +466,16 @@ impl Helper {
         stop: &AtomicBool,
     ) -> Option<()> {
         match ask {
-            BackgroundRequest::Pushes(place, slave, between) => {
+            BackgroundRequest::WorstPoint(u) => {
+                let found = worst_point(&self.model, &u);
+                news.send(BackgroundReply::WorstPoint(u, found)).ok()
+            }
+            BackgroundRequest::Pushes(place, slave, between, demanded) => {
                 let found = match between {
-                    BetweenRuns::Path(way) => Some(self.pushes(slave, way)),
+                    BetweenRuns::Path(way) => match self.pushes(slave, way, demanded) {
+                        Some(found) => Some(found),
+                        None => return news.send(BackgroundReply::Costly(place)).ok(),
+                    },
                     BetweenRuns::Reported(iterations) => {
                         let posed = self.posed_aside(&iterations.start);
                         posed.map(|posed| {
@@ -592,8 +634,14 @@ impl Helper {
         })
     }
 
-    /// The pushes on a node: from the session's solver if it has the frozen problem, otherwise from our own.
-    fn pushes(&mut self, slave: usize, way: PushPath) -> Option<Vec<NodePush>> {
+    /// The pushes on a node: from the session's solver if it has the frozen problem, otherwise from our own. The outer `None` if
+    /// ours is large and not `demanded`.
+    fn pushes(
+        &mut self,
+        slave: usize,
+        way: PushPath,
+        demanded: bool,
+    ) -> Option<Option<Vec<NodePush>>> {
         let way = Arc::new(way);
         let theirs = way.clone();
         // The session's solver only repeats the steps; the expensive part runs on this thread.
@@ -603,8 +651,9 @@ impl Helper {
             at_hand.then(|| between(stepper, &theirs))
         });
         match between.flatten() {
-            Some(between) => pushed(&between?, slave),
-            None => pushes(self.solver().0, slave, &way),
+            Some(between) => Some(between.and_then(|between| pushed(&between, slave))),
+            None if self.large && !demanded => None,
+            None => Some(pushes(self.solver().0, slave, &way)),
         }
     }
 
@@ -665,42 +714,4 @@ fn examine(
         }
     };
     send(found, false).ok()
-}
-
-/// Tries every remedy from a state.
-fn try_remedies(
-    stepper: &mut Stepper,
-    spec: Option<&Spec>,
-    state: &State,
-    news: &Sender<BackgroundReply>,
-    stop: &AtomicBool,
-) -> Option<()> {
-    let stopped = || stop.load(Ordering::Relaxed);
-    let all = remedies::all(stepper, state, spec, &stopped);
-    try_all(&all, news, |remedy| {
-        let tried = remedies::attempt(stepper, state, spec, remedy, &stopped);
-        (tried.is_some() || !stopped()).then_some(tried)
-    })
-}
-
-/// Runs trials until `attempt` returns `None`; an inner `None` means that the remedy does not apply.
-fn try_all(
-    all: &[Remedy],
-    news: &Sender<BackgroundReply>,
-    mut attempt: impl FnMut(&Remedy) -> Option<Option<Trial>>,
-) -> Option<()> {
-    let mut stopped = false;
-    for remedy in all {
-        let (all, now) = (all.len(), remedy.label.clone());
-        news.send(BackgroundReply::Trying { all, now }).ok()?;
-        match attempt(remedy) {
-            Some(Some(trial)) => news.send(BackgroundReply::Trial(Box::new(trial))).ok()?,
-            Some(None) => {}
-            None => {
-                stopped = true;
-                break;
-            }
-        }
-    }
-    news.send(BackgroundReply::Done { stopped }).ok()
 }

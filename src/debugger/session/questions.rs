@@ -15,16 +15,37 @@ use crate::record::export::shown::ExportError;
 use crate::record::export::{self, MadeOf, Origin};
 use crate::record::snapshot::{self, Snapshot};
 use std::path::PathBuf;
+use stickslip_core::model::BodyKind;
 use stickslip_core::step::state::{State, Status};
 use stickslip_platform::files;
 
 impl Session {
-    /// Requests what is not known yet: the pushes on a slave node in the shown minor iteration and, if that
-    /// closed a cycle, the diagnosis. [`Background`](super::background::Background) collects the answers.
+    /// Requests what is not known yet: the pushes on a slave node in the shown minor iteration, the worst point of the solids and,
+    /// if the iteration closed a cycle, the diagnosis. [`Background`](super::background::Background) collects the answers.
     pub fn look(&mut self, slave: usize) {
-        if self.is_running() || slave >= self.model().contacts.len() {
+        if self.is_running() {
             return;
         }
+        if slave < self.model().contacts.len() {
+            self.look_at(slave);
+        }
+        if self
+            .model()
+            .bodies
+            .iter()
+            .any(|body| matches!(body.kind, BodyKind::Solid(_)))
+        {
+            let u = &self.timeline.frame().state.u;
+            self.background.ask_worst_point(u);
+        }
+    }
+
+    /// Has the pushes on nodes in the shown minor iteration computed even if this needs a second solver of a large scene.
+    pub fn demand_pushes(&mut self) {
+        self.background.demand_pushes(self.timeline.place());
+    }
+
+    fn look_at(&mut self, slave: usize) {
         let timeline = &self.timeline;
         let place = timeline.place();
         if timeline.strip().kind == PointKind::Cycle && self.background.examination(place).is_none()

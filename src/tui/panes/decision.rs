@@ -142,7 +142,11 @@ fn pushes(
         return Vec::new();
     };
     let Some(found) = view.pushes(slave) else {
-        return Vec::new();
+        let on_demand = "Who pushed it: focus this pane (Tab) to compute it";
+        return match view.is_costly() {
+            true => vec![heading(on_demand)],
+            false => Vec::new(),
+        };
     };
     let Some(found) = found else {
         return vec![heading(match view.attached {

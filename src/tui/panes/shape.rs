@@ -18,11 +18,11 @@ use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_4;
 use stickslip_core::contact::element::SurfaceElement;
 use stickslip_core::contact::projection::tangent;
-use stickslip_core::fem::deformation::{PointDeformation, deformation};
+use stickslip_core::fem::deformation::PointDeformation;
 use stickslip_core::fem::lagrange;
 use stickslip_core::model::{BodyKind, Contact, Model, Solid, SolidElement};
 use stickslip_debugger::explain::examination::Examination;
-use stickslip_debugger::explain::outline::{self, Bounds, Point, bounds, curve};
+use stickslip_debugger::explain::outline::{self, Bounds, Point, bounds, curve, outer_nodes};
 use stickslip_debugger::explain::strain;
 use stickslip_scene::number;
 use unicode_width::UnicodeWidthStr;
@@ -72,7 +72,9 @@ pub fn picture(buffer: &mut Buffer, inner: Rect, app: &App, view: &View) -> Opti
     heads(buffer, &canvas, &tips, app);
     names(buffer, &canvas, &window, app, view);
     slaves(buffer, &canvas, &window, app, view);
-    if let Some((x, y)) = worst(view).and_then(|point| canvas.cell(window.dot(point.at)))
+    if let Some((x, y)) = view
+        .worst_point()
+        .and_then(|point| canvas.cell(window.dot(point.at)))
         && let Some(cell) = buffer.cell_mut((x, y))
     {
         cell.set_symbol(WORST).set_style(app.theme.bad);
@@ -244,7 +246,7 @@ fn names(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view:
         let wide = name.width() as u16;
         let (at, aside) = match &body.kind {
             BodyKind::Solid(_) | BodyKind::Linear(_) | BodyKind::Truss(_) => {
-                (mean(&body.nodes, view), -i32::from(wide / 2))
+                (mean(outer_nodes(body), view), -i32::from(wide / 2))
             }
             BodyKind::Beam(_) => (view.place(body.nodes[body.nodes.len() / 2]), 2),
         };
@@ -268,12 +270,12 @@ fn names(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view:
 }
 
 /// Mean position of nodes.
-fn mean(nodes: &[usize], view: &View) -> Point {
-    let sum = nodes
-        .iter()
-        .map(|node| view.place(*node))
-        .fold([0.0; 2], |s, p| [s[0] + p[0], s[1] + p[1]]);
-    sum.map(|x| x / nodes.len() as f64)
+fn mean(nodes: impl Iterator<Item = usize>, view: &View) -> Point {
+    let places = nodes.map(|node| view.place(node));
+    let (sum, count) = places.fold(([0.0; 2], 0.0), |(s, count), p| {
+        ([s[0] + p[0], s[1] + p[1]], count + 1.0)
+    });
+    sum.map(|x| x / count)
 }
 
 /// Master surfaces, with normals on the outward side.
@@ -371,12 +373,6 @@ fn found<'a>(view: &View<'a>) -> Option<&'a Examination> {
     Some(&page.found).filter(|found| found.fails)
 }
 
-/// The worst point of the solids, if it is inverted or outside the range of its law.
-fn worst(view: &View) -> Option<PointDeformation> {
-    let found = deformation(view.model, &view.frame().state.u)?;
-    found.inverted().or(found.outside)
-}
-
 /// Rigid-body motions of bodies without support, as lines; returns the lines, which end in arrow heads.
 fn motions(canvas: &mut Canvas, window: &Window, app: &App, view: &View) -> Vec<[Dot; 2]> {
     let Some(found) = found(view) else {
@@ -454,7 +450,8 @@ fn worst_words(model: &Model, point: &PointDeformation) -> String {
 fn caption(buffer: &mut Buffer, inner: Rect, longest: f64, moves: bool, app: &App, view: &View) {
     let theme = &app.theme;
     // First, so that a narrow pane does not cut it off.
-    let mut spans: Vec<Span> = worst(view)
+    let mut spans: Vec<Span> = view
+        .worst_point()
         .map(|point| Span::styled(worst_words(view.model, &point), theme.text))
         .into_iter()
         .collect();
