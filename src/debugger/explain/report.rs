@@ -162,10 +162,15 @@ pub fn outcome(model: &Model, event: &Event) -> String {
             cycle(model, c),
             plain(*aim)
         ),
-        Outcome::Climbed { why, to } => format!(
-            "{at}: {}; continues with strategy {}",
+        Outcome::Climbed { why, to, frozen } => format!(
+            "{at}: {}; continues with strategy {}{}",
             describe_failure(model, why),
-            to.name()
+            to.name(),
+            if *frozen {
+                " and frozen contact geometry"
+            } else {
+                ""
+            }
         ),
         Outcome::Cut { why, size } => format!(
             "{at}: {}; the increment is cut to {}",
