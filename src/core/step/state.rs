@@ -6,6 +6,7 @@
 use crate::contact::laws::Verdict;
 use crate::contact::state::ContactState;
 use crate::fem::assembly::history_len;
+use crate::interface::line_search::LineSearch;
 use crate::interface::method::Searched;
 use crate::interface::minor_history::MinorHistory;
 use crate::linear::source::{Accepted, At};
@@ -47,6 +48,9 @@ pub struct State {
     /// Starts of the major iterations of the current increment, to detect a cycle.
     #[serde(rename = "rounds")]
     pub major_history: Arc<MajorHistory>,
+    /// Line search of the current major iteration. `None` with full steps.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub line: Option<Arc<LineSearch>>,
     /// Target load factor of the current major iteration: `load_factor`, unless it was damped.
     #[serde(rename = "aim")]
     pub target: f64,
@@ -279,6 +283,7 @@ impl State {
             start: Arc::new(start),
             controls: Arc::new(controls),
             minor_history: Arc::default(),
+            line: None,
             major_history: Arc::default(),
             target,
             last_target: load_factor,
