@@ -5,6 +5,7 @@
 //! cargo bench --bench random_scenes -- 10000 --list FILE           writes a line for every scene as well
 //! cargo bench --bench random_scenes -- --seed 1 --only 157         one scene, with all that is wrong in it
 //! cargo bench --bench random_scenes -- 1000 --set surfaces.*.smooth=true   each scene changed in some way
+//! cargo bench --bench random_scenes -- 200 --pages                 the diagnosis pages of those that fail, checked
 //! cargo bench --bench random_scenes -- --write 157 FILE.ron        writes one scene to a file, to be run or debugged
 //! cargo bench --bench random_scenes -- --file FILE.ron --set refine=2    the same for any scene, changed in some way
 //! ```
@@ -35,6 +36,7 @@ struct Asked {
     write: Option<(u64, String)>,
     files: Vec<String>,
     set: Vec<(String, String)>,
+    pages: bool,
 }
 
 fn asked() -> Option<Asked> {
@@ -47,6 +49,7 @@ fn asked() -> Option<Asked> {
         match arg.as_str() {
             // What cargo says to every bench.
             "--bench" => {}
+            "--pages" => asked.pages = true,
             "--seed" => asked.seed = args.next()?.parse().ok()?,
             "--from" => asked.from = args.next()?.parse().ok()?,
             "--only" => asked.only = Some(args.next()?.parse().ok()?),
@@ -100,6 +103,9 @@ fn main() -> ExitCode {
         show(&format!("scene {number}"), &scene);
         return ExitCode::SUCCESS;
     }
+    if asked.pages {
+        return pages(&asked);
+    }
     if asked.files.is_empty() {
         return many(&asked);
     }
@@ -131,6 +137,24 @@ fn show(name: &str, scene: &Scene) {
             node.unwrap_or("all")
         );
     }
+}
+
+/// Checks the diagnosis pages of the scenes that fail.
+fn pages(asked: &Asked) -> ExitCode {
+    let (mut failed, mut faulty) = (0, 0);
+    for number in asked.from..asked.from + asked.count.unwrap_or(SCENES) {
+        let Ok((_, scene)) = tally::scene(asked.seed, number, &asked.set) else {
+            continue;
+        };
+        let Some(faults) = outside::page::faults(&scene) else {
+            continue;
+        };
+        failed += 1;
+        faulty += usize::from(!faults.is_empty());
+        println!("{number}: {}", faults.join("; "));
+    }
+    println!("{failed} scenes fail, {faulty} of their pages have faults");
+    ExitCode::from(u8::from(faulty > 0))
 }
 
 fn many(asked: &Asked) -> ExitCode {

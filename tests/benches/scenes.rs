@@ -51,6 +51,14 @@ fn problem_04_in_large_increments(bencher: Bencher, refine: &str) {
     bencher.bench(|| run(&model));
 }
 
+/// The bouncing block of MOOSE's contact module, in 40 increments, without friction and with.
+#[divan::bench(args = ["smooth", "rough"], sample_count = 3)]
+fn bouncing_block(bencher: Bencher, which: &str) {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/");
+    let model = model(&format!("{folder}bouncing-block-{which}.ron"), &[]);
+    bencher.bench(|| run(&model));
+}
+
 /// Two blocks pressed and sheared, 1.4k and 11k unknowns.
 #[divan::bench(args = ["2", "6"], sample_count = 3)]
 fn two_blocks(bencher: Bencher, refine: &str) {

@@ -4,11 +4,14 @@
 use crate::common::{Run, force, go_on, run, scene};
 use std::sync::Arc;
 use stickslip::explain::advice::{Advice, advice};
+use stickslip::explain::attempt::{Attempt, Major};
 use stickslip::explain::diagnosis::{Cause, Diagnosis, words};
 use stickslip::explain::facts::Part;
 use stickslip::explain::influence::influences;
+use stickslip::explain::majors::limit_words;
 use stickslip::interface::problem::InterfaceProblem;
 use stickslip::interface::trials::Trials;
+use stickslip::linear::norms::Norms;
 use stickslip::model::Mode;
 use stickslip::scene::gaps::turned;
 use stickslip::step::event::Failure;
@@ -167,4 +170,54 @@ fn a_surface_that_most_of_its_nodes_are_behind_is_the_wrong_way_round_and_revers
     let right = scene(file, &[("surfaces.punch.reverse", "true")]);
     assert!(turned(&right.model).is_empty());
     assert!(run(&right).failure.is_none());
+}
+
+#[test]
+fn residuals_that_do_not_fall_name_the_node_and_what_changes_instead_of_a_rate() {
+    let model = scene("osc-two6", &[]).model;
+    let state = Stepper::new(Arc::new(model.clone())).state().clone();
+    let node = model.contacts[0].node;
+    let attempt = |errors: &[f64]| Attempt {
+        majors: errors
+            .iter()
+            .enumerate()
+            .map(|(k, &relative)| Major {
+                after: Norms {
+                    relative,
+                    ..Norms::default()
+                },
+                u: state.u.clone(),
+                largest: Some((node, 2.5)),
+                contacts: (0..2)
+                    .map(|s| match (s, k % 2) {
+                        (1, 1) => (Mode::Free, None),
+                        _ => (Mode::Sliding, None),
+                    })
+                    .collect(),
+            })
+            .collect(),
+        failure: Failure::DoubledBack,
+    };
+    let words = |errors: &[f64]| {
+        let facts = limit_words(&model, &model.settings, &attempt(errors));
+        let why = facts.into_iter().filter(|fact| fact.part == Part::Why);
+        why.map(|fact| fact.text).collect::<Vec<_>>()
+    };
+    let [hops, largest, change] = &words(&[1e-2, 1e-4, 1e-2, 1e-4])[..] else {
+        panic!("three causes");
+    };
+    assert!(
+        hops.contains("4 major iterations lie between 1.0e-4 and 1.0e-2"),
+        "{hops}"
+    );
+    let (node, body) = (&model.nodes[node].name, &model.bodies[0].name);
+    let named = format!("2.500e0 at node {node} of {body} ");
+    assert!(largest.contains(&named), "{largest}");
+    let other = &model.nodes[model.contacts[1].node].name;
+    let changes = format!("major 4: {other} sliding → free");
+    assert!(change.ends_with(&changes), "{change} / {changes}");
+    let [falls] = &words(&[1e-1, 1e-2, 1e-3, 1e-4])[..] else {
+        panic!("one cause");
+    };
+    assert!(falls.contains("falls by a factor of 0.1 "), "{falls}");
 }

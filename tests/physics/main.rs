@@ -55,3 +55,5 @@ mod judge;
 mod audit;
 // No accepted increment of a random scene is wrong to a judge that shares no code with the program.
 mod random_scenes;
+// The diagnosis pages of failed scenes list no untried advice that is not marked, and no contradictions.
+mod pages;

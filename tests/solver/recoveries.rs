@@ -90,6 +90,7 @@ fn run(scene: &Scene, without: Option<LeftOut>) -> (bool, BTreeSet<String>) {
                 ..
             } => "motion".to_owned(),
             Outcome::Fallback { by, .. } => format!("{by:?}").to_lowercase(),
+            Outcome::Climbed { frozen: true, .. } => "frozen".to_owned(),
             Outcome::Climbed { to, .. } => format!("{to:?}"),
             _ => continue,
         };

@@ -46,6 +46,35 @@ fn run(name: &str, set: &[(&str, &str)]) -> Run {
     }
 }
 
+/// Increments, major and minor iterations, and jumps of the bouncing block of MOOSE's contact module.
+fn bouncing_block(which: &str) -> [u32; 4] {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/benches/");
+    let file = format!("{folder}bouncing-block-{which}.ron");
+    let scene = Scene::open(&file, &[]).unwrap_or_else(|error| panic!("{error}"));
+    let mut stepper = Stepper::new(Arc::new(scene.model));
+    let [mut increments, mut majors, mut minors, mut jumps] = [0; 4];
+    while let Some(event) = stepper.step() {
+        minors += 1;
+        majors += u32::from(event.outcome.ends_major());
+        if let Outcome::Increment { jumped, .. } = event.outcome {
+            increments += 1;
+            jumps += u32::from(jumped);
+        }
+        assert!(!matches!(event.outcome, Outcome::Failed(_)), "{which}");
+    }
+    [increments, majors, minors, jumps]
+}
+
+#[test]
+fn the_bouncing_block_needs_no_cuts() {
+    let [increments, majors, minors, jumps] = bouncing_block("rough");
+    assert_eq!([increments, jumps], [40, 0]);
+    assert!(majors <= 150 && minors <= 1000, "{majors} {minors}");
+    let [increments, majors, minors, jumps] = bouncing_block("smooth");
+    assert_eq!([increments, jumps], [40, 0]);
+    assert!(majors <= 106 && minors <= 160, "{majors} {minors}");
+}
+
 const OFF: &[(&str, &str)] = &[("settings.search", "off")];
 
 #[test]

@@ -15,6 +15,8 @@ use stickslip::model::{Friction, Mode, Model, Settings};
 use stickslip::model::{InitialState, Strategy};
 use stickslip::scene::Scene;
 use stickslip::step::event::{Failure, Outcome};
+use stickslip::step::intervene::Intervention;
+use stickslip::step::state::Status;
 use stickslip::step::stepper::Stepper;
 
 /// A random interface problem with a positive definite stiffness; some have cohesion, and perhaps no answer.
@@ -353,4 +355,89 @@ fn a_mode_that_the_user_holds_is_left_to_the_user() {
         assert!(!matches!(event.outcome, Outcome::Climbed { .. }));
         assert_eq!(event.nodes[0].decision.before, Mode::Fixed);
     }
+}
+
+/// A run to its end; the displacements there.
+fn finished(name: &str, strategy: &str) -> Option<Vec<f64>> {
+    let run = run(&scene(name, &[("settings.strategy", strategy)]));
+    let ends = run.stepper.state().status == Status::Finished;
+    ends.then(|| run.stepper.state().u.to_vec())
+}
+
+#[test]
+fn newtons_line_search_finishes_scenes_in_which_full_steps_cycle() {
+    let found = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/findings/");
+    for name in [
+        "01-pinned-beam-rough-floor".to_owned(),
+        "osc-two3".to_owned(),
+        format!("{found}4-creep-after-overhang.ron"),
+        format!("{found}overlap-pushed-out.ron"),
+    ] {
+        let ladder = finished(&name, "ladder").unwrap_or_else(|| panic!("{name}: ladder"));
+        let newton = finished(&name, "newton").unwrap_or_else(|| panic!("{name}: newton"));
+        let largest = ladder.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
+        for (a, b) in ladder.iter().zip(&newton) {
+            assert!((a - b).abs() <= 1e-8 * largest, "{name}: {a} {b}");
+        }
+    }
+}
+
+#[test]
+fn the_natural_map_vanishes_where_coulombs_law_holds_and_nowhere_else() {
+    use stickslip::interface::line_search::natural_map;
+    let friction = Friction {
+        angle: 45.0,
+        ..Friction::default()
+    };
+    // F_n, F_t, gap, slip.
+    let holds = [
+        [0.0, 0.0, 0.3, 0.1],
+        [2.0, 1.5, 0.0, 0.0],
+        [2.0, 2.0, 0.0, 0.4],
+        [2.0, -2.0, 0.0, -0.4],
+    ];
+    let breaks = [
+        [0.0, 0.0, -0.3, 0.0],
+        [-1.0, 0.0, 0.0, 0.0],
+        [2.0, 2.5, 0.0, 0.0],
+        [2.0, 2.0, 0.0, -0.4],
+        [2.0, 1.0, 0.0, 0.4],
+        [1.0, 0.0, 0.2, 0.0],
+    ];
+    for spring in [0.1, 1.0, 30.0] {
+        for at in holds {
+            assert!(natural_map(at, &friction, spring) < 1e-20, "{at:?}");
+        }
+        for at in breaks {
+            assert!(natural_map(at, &friction, spring) > 1e-4, "{at:?}");
+        }
+    }
+}
+
+#[test]
+fn a_line_search_halves_a_step_until_the_error_falls() {
+    use stickslip::interface::kinematics::NodeIncrement;
+    use stickslip::interface::line_search::LineSearch;
+    use stickslip::interface::minor_history::Cycle;
+    let at = |f_n: f64| NodeIncrement {
+        force: [f_n, 0.0],
+        motion: [0.0, -f_n],
+    };
+    let error = |points: &[NodeIncrement]| {
+        points
+            .iter()
+            .map(|p| (p.force[0] - 0.2).powi(2))
+            .sum::<f64>()
+    };
+    let mut line = LineSearch::new(Cycle {
+        start: 1,
+        period: 2,
+        members: Vec::new(),
+    });
+    assert_eq!(line.step(vec![at(0.0)], error), 1.0);
+    assert_eq!(line.step(vec![at(1.0)], error), 0.25);
+    assert_eq!(line.at(0), at(0.25));
+    // No part of a step away from the solution reduces the error, so it is full.
+    assert_eq!(line.step(vec![at(3.0)], error), 1.0);
+    assert_eq!(line.at(0), at(3.0));
 }

@@ -62,7 +62,7 @@ fn is_endless(room: &[Option<f64>; 2]) -> bool {
 }
 
 /// Result of a solve at a slave node; normal and tangential components.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct NodeIncrement {
     /// Increments ΔF_n, ΔF_t of the force on the slave node.
     pub force: [f64; 2],

@@ -36,6 +36,11 @@ pub trait Method: Send + Sync {
         false
     }
 
+    /// Whether a line search follows if the minor iterations cycle ([`crate::interface::line_search`]).
+    fn searches_line(&self) -> bool {
+        false
+    }
+
     /// Whether only one node may change at a time; `stalled` means that the number of changing nodes has not fallen recently.
     fn is_single(&self, _stalled: bool) -> bool {
         false

@@ -21,6 +21,7 @@ pub mod family;
 pub mod feasible;
 pub mod kinematics;
 pub mod lemke;
+pub mod line_search;
 pub mod method;
 pub mod minor;
 pub mod minor_history;

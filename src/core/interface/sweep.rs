@@ -40,6 +40,8 @@ pub struct Sweep {
     motions: Vec<f64>,
     /// Whether the next sweep runs backwards.
     back: bool,
+    /// Whether a node of the last sweep had no force that obeys the law: its own compliance is not positive.
+    unanswered: bool,
 }
 
 /// Contacts that W couples with each other and with no others.
@@ -143,6 +145,7 @@ impl Sweep {
             motions: free.clone(),
             free,
             back: false,
+            unanswered: false,
         }
     }
 
@@ -170,6 +173,7 @@ impl Sweep {
     /// force. With a symmetric compliance given by its entries, [`Sweep::settle`] must follow before the motions are read.
     pub fn sweep(&mut self) -> f64 {
         let (mut most, mut largest) = (0.0_f64, 0.0_f64);
+        self.unanswered = false;
         for part in 0..self.parts.len() {
             let Part { nodes, settled } = self.parts[part].clone();
             if settled {
@@ -273,6 +277,7 @@ impl Sweep {
         }
         if !node.rough {
             if nn <= 0.0 {
+                self.unanswered = true;
                 return [f_n, 0.0];
             }
             node.does = Assumed::Plus;
@@ -301,7 +306,13 @@ impl Sweep {
                 return [f_n, f_t];
             }
         }
+        self.unanswered = true;
         [f_n, f_t]
+    }
+
+    /// Whether the last sweep found forces that obey the law at every node, with all others frozen.
+    pub fn is_answered(&self) -> bool {
+        !self.unanswered
     }
 
     /// Mode of a node after the last sweep.

@@ -471,7 +471,7 @@ impl System {
     }
 
     fn turn_into(&mut self, model: &Model, at: &At<'_>, turned: Turned) {
-        if at.chosen.geometry == Geometry::Frozen {
+        if at.settings.geometry == Geometry::Frozen {
             return;
         }
         turn_points(

@@ -125,6 +125,8 @@ pub enum Outcome {
         why: Failure,
         /// The next strategy.
         to: Strategy,
+        /// Whether the tangent of this major iteration omits the change of the contact geometry.
+        frozen: bool,
     },
     /// The increment failed and is restarted with this size.
     Cut {

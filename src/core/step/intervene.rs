@@ -61,6 +61,7 @@ impl State {
 
     /// Clears the record of the minor iterations.
     pub(super) fn forget_minors(&mut self) {
+        self.line = None;
         if !self.minor_history.is_empty() {
             Arc::make_mut(&mut self.minor_history).clear();
         }

@@ -46,7 +46,9 @@ impl Stepper {
         self.now.update(&self.event.nodes);
         let search = &mut self.now.state.search;
         (search.first, search.fewest, search.rounds) = (None, None, 0);
+        let frozen = std::mem::take(&mut search.frozen);
         search.searched = Searched::Not;
+        self.now.state.searched.frozen |= frozen;
         self.now.kept = None;
         let norms = self.norms();
         if let Some(again) = held.and_then(|held| self.now.hold_back(held)) {

@@ -2,6 +2,8 @@
 
 use crate::contact::record::ContactRecord;
 use crate::contact::table2::Ties;
+use crate::interface::kinematics::NodeIncrement;
+use crate::interface::line_search::{LineSearch, natural_map};
 use crate::interface::method::Method;
 use crate::interface::minor::{self, Check};
 use crate::interface::minor_history::Cycle;
@@ -47,7 +49,8 @@ impl Stepper {
                 1.0
             },
         };
-        let mut settled = true;
+        let mut settled = self.now.step_on_line(check.stiffness) == 1.0;
+        let line = self.now.state.line.clone();
         let controls = self.now.state.controls.clone();
         let singly = method.is_single(self.now.state.is_stalled());
         if singly {
@@ -55,7 +58,10 @@ impl Stepper {
         }
         for (contact, node) in self.now.state.nodes.iter_mut().enumerate() {
             let over = self.now.source.kinematics(contact);
-            let increment = self.now.source.increment(contact);
+            let increment = match &line {
+                Some(line) => line.at(contact),
+                None => self.now.source.increment(contact),
+            };
             let friction = node.friction(&controls.friction[contact]);
             let (record, still) = minor::check(node, over.as_ref(), increment, &friction, &check);
             settled &= still;
@@ -88,8 +94,12 @@ impl Stepper {
             return self.end_major(false);
         }
         let moves_on = method.counts_changes() && !self.now.state.is_stalled();
+        if at_limit && let Some(line) = self.now.state.line.take() {
+            return self.escalate(Failure::Cycle(line.cycle.clone()));
+        }
         if !accept
             && !moves_on
+            && self.now.state.line.is_none()
             && let Some(cycle) = self
                 .now
                 .find_cycle()
@@ -101,6 +111,12 @@ impl Stepper {
                     cycle,
                     target: self.now.state.target,
                 };
+            }
+            if method.searches_line() {
+                self.now.state.begin_again();
+                self.now.state.line = Some(Arc::new(LineSearch::new(cycle)));
+                self.now.state.next.minor += 1;
+                return Outcome::Minor;
             }
             return self.escalate(Failure::Cycle(cycle));
         }
@@ -117,6 +133,32 @@ impl Stepper {
 }
 
 impl Iterate {
+    /// A step of the line search towards the solution of this minor iteration, with the interface's stiffness (force per length);
+    /// returns its length, 1 without a line search.
+    fn step_on_line(&mut self, stiffness: f64) -> f64 {
+        let Some(mut line) = self.state.line.take() else {
+            return 1.0;
+        };
+        let (state, source) = (&self.state, &self.source);
+        let settings = state.settings();
+        let error = |(contact, given): (usize, &NodeIncrement)| {
+            let node = &state.nodes[contact];
+            let Some(over) = source.kinematics(contact).filter(|k| !k.bond.is_tied()) else {
+                return 0.0;
+            };
+            let [normal, tangential] = given.motion;
+            let slip = node.slipped(&settings) + tangential - over.gap * node.ratio;
+            let [f_n, f_t] = [node.f_n + given.force[0], node.f_t + given.force[1]];
+            let friction = node.friction(&state.controls.friction[contact]);
+            natural_map([f_n, f_t, over.gap - normal, slip], &friction, stiffness)
+        };
+        let to = (0..state.nodes.len()).map(|contact| source.increment(contact));
+        let part = Arc::make_mut(&mut line)
+            .step(to.collect(), |at| at.iter().enumerate().map(error).sum());
+        self.state.line = Some(line);
+        part
+    }
+
     /// Why a solve has no solution, or no meaningful one.
     pub(super) fn unsolvable(&self, solved: Solved) -> Option<Failure> {
         let singular = match solved {

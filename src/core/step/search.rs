@@ -4,13 +4,14 @@ use crate::contact::record::{ContactRecord, Forced};
 use crate::contact::state::ContactState;
 use crate::contact::table1::t_max;
 use crate::contact::table2::{Decision, Rule, Test};
-use crate::interface::method::{Asked, NoProposal, Proposal, Searched};
+use crate::interface::method::{Asked, NoProposal, NotFound, Proposal, Searched};
 use crate::interface::minor_history::Input;
 use crate::interface::problem::Assumed;
 use crate::linear::singular::Singular;
-use crate::model::{Contact, Mode};
+use crate::model::{Contact, Geometry, Mode};
 use crate::step::event::{Failure, Outcome};
 use crate::step::iterate::Iterate;
+use crate::step::recovery::FROZEN;
 use crate::step::recovery::left_out::LeftOut;
 use crate::step::state::Progress;
 use crate::step::state::State;
@@ -48,6 +49,11 @@ impl Stepper {
         {
             next = strategy::next_rung(chosen, rung, contacts);
         }
+        let first = first.clone();
+        if let Some(again) = self.freeze(&why, &first) {
+            return again;
+        }
+        let search = &mut self.now.state.search;
         // The searches do not support held-back sliding.
         let braked = self.now.state.brake.is_some();
         let next = next.filter(|(_, to)| !(braked && strategy::method(*to).search().is_some()));
@@ -57,14 +63,59 @@ impl Stepper {
             search.rung = rung;
             (search.fewest, search.rounds, search.searched) = (None, 0, Searched::Not);
             self.now.state.next.minor += 1;
-            return Outcome::Climbed { why, to };
+            return Outcome::Climbed {
+                why,
+                to,
+                frozen: search.frozen,
+            };
         }
-        let first = first.clone();
         if let Some(again) = self.now.state.hold_harder(&why) {
             return again;
         }
         self.now.state.search = Progress::default();
         self.fail(ended(*first, why))
+    }
+
+    /// Restarts this major iteration without the change of the contact geometry in the tangent, if no strategy has found consistent
+    /// modes with it. That part of the tangent is indefinite, and far from equilibrium the linearised problem may then have no
+    /// solution; without it, the response is that of the bodies. Strategies that take many minor iterations follow afterwards: all
+    /// behind the second once this has helped in a run, and those behind a census that is too large.
+    fn freeze(&mut self, why: &Failure, first: &Failure) -> Option<Outcome> {
+        let state = &self.now.state;
+        let (chosen, search) = (&state.controls.settings, &state.search);
+        let last = strategy::next_rung(chosen.strategy, search.rung, state.nodes.len()).is_none()
+            || matches!(why, Failure::NoAnswer { .. });
+        let early = search.rung > 0 && state.searched.frozen
+            || matches!(why, Failure::NotFound(NotFound::TooMany { .. }));
+        let held = matches!(
+            first,
+            Failure::Singular(Singular::Rigid { .. }) | Failure::OverConstrained { .. }
+        );
+        if held
+            || search.frozen
+            || !(last || early)
+            || chosen.geometry == Geometry::Frozen
+            || state.brake.is_some()
+            || state.way.is_some()
+            || self.left_out == Some(LeftOut::Recovery(FROZEN))
+            || self.now.stalled().is_given()
+        {
+            return None;
+        }
+        let (rung, to) = strategy::next_rung(chosen.strategy, 0, state.nodes.len())?;
+        self.now.state.search = Progress {
+            rung,
+            first: Some(Box::new(first.clone())),
+            frozen: true,
+            ..Progress::default()
+        };
+        self.now.forget_workspace();
+        self.now.state.next.minor += 1;
+        Some(Outcome::Climbed {
+            why: why.clone(),
+            to,
+            frozen: true,
+        })
     }
 
     /// Start and step of the search over all nodes to which this minor iteration belongs.

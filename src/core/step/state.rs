@@ -6,11 +6,12 @@
 use crate::contact::laws::Verdict;
 use crate::contact::state::ContactState;
 use crate::fem::assembly::history_len;
+use crate::interface::line_search::LineSearch;
 use crate::interface::method::Searched;
 use crate::interface::minor_history::MinorHistory;
 use crate::linear::source::{Accepted, At};
 use crate::model::least;
-use crate::model::{Control, Friction, Model, Settings, SlipCount};
+use crate::model::{Control, Friction, Geometry, Model, Settings, SlipCount};
 use crate::step::event::{Failure, Position};
 use crate::step::intervention::{Intervention, Value};
 use crate::step::major_history::MajorHistory;
@@ -47,6 +48,9 @@ pub struct State {
     /// Starts of the major iterations of the current increment, to detect a cycle.
     #[serde(rename = "rounds")]
     pub major_history: Arc<MajorHistory>,
+    /// Line search of the current major iteration. `None` with full steps.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub line: Option<Arc<LineSearch>>,
     /// Target load factor of the current major iteration: `load_factor`, unless it was damped.
     #[serde(rename = "aim")]
     pub target: f64,
@@ -126,6 +130,9 @@ pub struct Searches {
     /// Cost of the rest of the run.
     #[serde(default)]
     pub run: u32,
+    /// Whether a major iteration without the change of the contact geometry in its tangent has helped.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub frozen: bool,
     /// The fallback of the search that helped last; the next failed increment tries it first.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub adopted: Option<Fallback>,
@@ -203,6 +210,10 @@ pub struct Progress {
     pub searched: Searched,
     /// Number of states found by it that were not confirmed.
     pub unconfirmed: usize,
+    /// Whether the tangent of the current major iteration omits the change of the contact geometry: with it, no strategy found
+    /// consistent modes.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub frozen: bool,
 }
 
 /// Values that the user can change during a run.
@@ -271,6 +282,7 @@ impl State {
             start: Arc::new(start),
             controls: Arc::new(controls),
             minor_history: Arc::default(),
+            line: None,
             major_history: Arc::default(),
             target,
             last_target: load_factor,
@@ -304,6 +316,9 @@ impl State {
         }
         if self.brake.is_some() && !self.net {
             settings.slip = SlipCount::Major;
+        }
+        if self.search.frozen {
+            settings.geometry = Geometry::Frozen;
         }
         settings
     }
@@ -363,6 +378,7 @@ impl State {
             && (Arc::ptr_eq(&self.controls, &other.controls) || self.controls == other.controls)
             && [self.target, self.last_target, self.correction]
                 == [other.target, other.last_target, other.correction]
+            && self.search.frozen == other.search.frozen
             && (self.brake, &self.way, &self.motion) == (other.brake, &other.way, &other.motion)
             && self.nodes.len() == other.nodes.len()
             && self.nodes.iter().zip(&other.nodes).all(stands)

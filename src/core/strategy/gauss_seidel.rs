@@ -23,6 +23,8 @@ pub struct GaussSeidel;
 const SWEEPS: usize = 10;
 /// Maximum number of minor iterations with sweeps. Most problems need fewer than 100.
 const MOST: usize = 500;
+/// Minor iterations in a row without forces that obey the law at every node, after which the sweeps stop.
+const UNANSWERED: usize = 3;
 /// Natural map, relative to the forces, below which the forces of sweeps over a given compliance are accepted.
 pub const SETTLED: f64 = 1e-9;
 /// Factor by which a minor iteration over a given compliance reduces the error, the maximum number of its sweeps, and the number
@@ -51,6 +53,8 @@ struct Going {
     change: f64,
     /// Sweeps done.
     sweeps: usize,
+    /// Minor iterations in a row after which a node had no force that obeys the law.
+    unanswered: usize,
 }
 
 impl Going {
@@ -66,6 +70,7 @@ impl Going {
             found: Vec::new(),
             change: f64::INFINITY,
             sweeps: 0,
+            unanswered: 0,
         }
     }
 
@@ -79,12 +84,18 @@ impl Going {
         self.done += 1;
         self.step += 1;
         let does: Vec<Assumed> = (0..nodes).map(|k| self.sweep.assumed(k)).collect();
-        self.lasted = if does == self.does {
+        self.unanswered = match self.sweep.is_answered() {
+            true => 0,
+            false => self.unanswered + 1,
+        };
+        self.lasted = if does == self.does && self.unanswered == 0 {
             self.lasted + 1
         } else {
             0
         };
-        let lasts = (self.lasted >= self.patience || self.is_settled()) && does != self.found;
+        let lasts = self.unanswered == 0
+            && (self.lasted >= self.patience || self.is_settled())
+            && does != self.found;
         self.does = does;
         if lasts {
             self.patience *= 2;
@@ -122,7 +133,11 @@ impl Going {
     fn is_over(&self) -> bool {
         match self.sweep.is_given() {
             true => self.sweeps >= MOST_GIVEN && !self.is_settled(),
-            false => self.change == 0.0 && self.does == self.found || self.done >= MOST,
+            false => {
+                self.change == 0.0 && self.does == self.found
+                    || self.done >= MOST
+                    || self.unanswered >= UNANSWERED
+            }
         }
     }
 }
@@ -147,13 +162,10 @@ impl Search for GaussSeidel {
             _ => Box::new(going(&mut asked)?),
         };
         if going.is_over() {
-            return Err(match asked.unconfirmed {
-                0 => NotFound::Unsettled {
-                    sweeps: going.sweeps,
-                }
-                .into(),
-                states => NotFound::Unconfirmed { states }.into(),
-            });
+            return Err(NotFound::Unsettled {
+                sweeps: going.sweeps,
+            }
+            .into());
         }
         let lasts = going.go(nodes);
         let mut proposed: Vec<_> = (0..nodes)

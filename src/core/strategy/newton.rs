@@ -13,6 +13,8 @@
 //! opens    F_n − k g <= 0
 //! slides   |F_t + k slip| > tan φ (F_n − k g) + c
 //! ```
+//!
+//! If full steps cycle, a line search repeats them ([`crate::interface::line_search`]).
 
 use crate::contact::table2::{Decision, Numbers, Rule, Tested};
 use crate::interface::method::{Choice, Known, Method};
@@ -27,6 +29,10 @@ impl Method for Newton {
     }
 
     fn compares_by_springs(&self) -> bool {
+        true
+    }
+
+    fn searches_line(&self) -> bool {
         true
     }
 

@@ -173,10 +173,15 @@ fn outcome_with(model: &Model, event: &Event, failed: fn(&Model, &Failure) -> St
             failed(model, &Failure::Cycle(c.clone())),
             plain(*aim)
         ),
-        Outcome::Climbed { why, to } => format!(
-            "{at}: {}; continues with strategy {}",
+        Outcome::Climbed { why, to, frozen } => format!(
+            "{at}: {}; continues with strategy {}{}",
             failed(model, why),
-            to.name()
+            to.name(),
+            if *frozen {
+                " and frozen contact geometry"
+            } else {
+                ""
+            }
         ),
         Outcome::Cut { why, size } => format!(
             "{at}: {}; the increment is cut to {}",

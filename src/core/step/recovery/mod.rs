@@ -4,6 +4,7 @@
 //! order; the first proposal is used.
 //!
 //! ```text
+//! major iteration      frozen      the ladder again, with the contact geometry frozen in the tangent (`search`)
 //! damped motion        Slower      the step again, with more viscosity
 //! along a path         Turn        behind the corner of the path at which the increment starts
 //!                      ShorterArc  half the arc, or the arc to the next corner
@@ -49,6 +50,9 @@ use std::sync::Arc;
 /// Maximum number of cuts of a whole increment because of the same node, before the increment fails.
 const MOST_CUTS: u32 = 300;
 
+/// Name of the major iteration that the ladder repeats without the change of the contact geometry.
+pub(super) const FROZEN: &str = "frozen";
+
 const MOVING: [&dyn Recovery; 1] = [&damped::Slower];
 const ALONG: [&dyn Recovery; 3] = [
     &path_corner::Turn,
@@ -70,7 +74,8 @@ const FALLBACKS: [&dyn Recovery; 8] = [
 /// Names of all recoveries, in the order in which they are tried.
 pub fn names() -> impl Iterator<Item = &'static str> {
     let lists: [&[&dyn Recovery]; 4] = [&MOVING, &ALONG, &LOADED, &FALLBACKS];
-    lists.into_iter().flatten().map(|recovery| recovery.name())
+    let listed = lists.into_iter().flatten().map(|recovery| recovery.name());
+    [FROZEN].into_iter().chain(listed)
 }
 
 impl Stepper {

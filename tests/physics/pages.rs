@@ -1,0 +1,31 @@
+//! The diagnosis pages of failed scenes contain no untried advice that is not marked, and no contradictions:
+//! `cargo bench --bench random_scenes -- 200 --pages` checks more.
+
+use crate::outside::{families, page};
+use std::path::Path;
+use stickslip::scene::{Scene, builtin};
+
+#[test]
+fn the_pages_of_failed_scenes_do_not_contradict_themselves() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/failures");
+    let files = std::fs::read_dir(folder).unwrap();
+    let mut names: Vec<String> = files
+        .map(|file| file.unwrap().path().display().to_string())
+        .filter(|name| name.ends_with(".ron"))
+        .collect();
+    let oscillates = builtin::list().iter().map(|scene| scene.name);
+    names.extend(
+        oscillates
+            .filter(|name| name.starts_with("osc-"))
+            .map(String::from),
+    );
+    names.sort();
+    let mut failed = 0;
+    for name in &names {
+        let scene = Scene::open(name, &[]).unwrap_or_else(|error| panic!("{error}"));
+        let faults = page::faults(&scene);
+        failed += usize::from(faults.is_some());
+        assert_eq!(faults.unwrap_or_default(), [String::new(); 0], "{name}");
+    }
+    assert!(failed >= 15, "{failed} of {}", names.len());
+}
