@@ -149,6 +149,8 @@ pub struct App {
     pub log_counts: LogCounts,
     /// Pan and zoom of the shape.
     pub camera: Camera,
+    /// The first of the pictures of the contact, counted on without end.
+    pub turned: usize,
     /// Sort key of the table.
     pub sort: Sort,
     /// Whether the sort order is reversed.
@@ -212,6 +214,7 @@ impl App {
             notice: None,
             log_counts: LogCounts::default(),
             camera: Camera::ALL,
+            turned: 0,
             sort: Sort::Scene,
             backward: false,
             filter: Filter::All,
@@ -500,7 +503,14 @@ impl App {
             Ui::Apply(number) => return self.apply(number, view),
             Ui::Enlarge => self.camera = self.camera.zoomed(1.25),
             Ui::Shrink => self.camera = self.camera.zoomed(0.8),
-            Ui::Fit => self.camera = Camera::ALL,
+            Ui::Fit => {
+                self.camera = Camera {
+                    magnify: self.camera.magnify,
+                    ..Camera::ALL
+                }
+            }
+            Ui::Magnify(None) => self.camera = self.camera.magnified_next(),
+            Ui::Magnify(factor) => self.camera.magnify = factor,
             Ui::Sort(sort) => self.sort = sort.unwrap_or(next(&Sort::ALL, self.sort)),
             Ui::SortBackward => self.backward = !self.backward,
             Ui::Filter(filter) => self.filter = filter.unwrap_or(next(&Filter::ALL, self.filter)),

@@ -63,7 +63,7 @@ fn selected_text(app: &App, view: &View) -> Result<NamedText, String> {
         return Err("hidden until you predict what follows".into());
     }
     match app.panes.focus {
-        Pane::Nodes | Pane::Shape | Pane::Lesson => row(app, view),
+        Pane::Nodes | Pane::Shape | Pane::Contact | Pane::Lesson => row(app, view),
         Pane::Decision => value(WatchQuantity::Margin, app, view),
         Pane::Residual => value(WatchQuantity::Residual, app, view),
         Pane::Curve => monitored(app, view),

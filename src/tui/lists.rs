@@ -29,6 +29,7 @@ impl App {
         match page {
             Page::Timeline => self.panes.zoom(Pane::Timeline),
             Page::Branches => self.panes.zoom(Pane::Branches),
+            Page::Contact => self.panes.zoom(Pane::Contact),
             Page::Diagnosis => return self.ask_page(Pane::Diagnosis, view),
             Page::Remedies => return self.ask_page(Pane::Remedies, view),
         }
@@ -257,6 +258,8 @@ impl App {
             (Pane::Shape, Step::Right) => self.camera = self.camera.panned(1.0, 0.0),
             (Pane::Shape, Step::Up) => self.camera = self.camera.panned(0.0, 1.0),
             (Pane::Shape, Step::Down) => self.camera = self.camera.panned(0.0, -1.0),
+            (Pane::Contact, Step::Left) => self.turned = self.turned.wrapping_sub(1),
+            (Pane::Contact, Step::Right) => self.turned = self.turned.wrapping_add(1),
             (_, Step::Up) => self.selected = to(-1),
             (_, Step::Down) => self.selected = to(1),
             (_, Step::PageUp) => self.selected = to(-PAGE),

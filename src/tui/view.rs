@@ -8,6 +8,7 @@ use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::solver::Offers;
 use stickslip_debugger::action::Context;
 use stickslip_debugger::explain::influence::NodePush;
+use stickslip_debugger::explain::outline;
 use stickslip_debugger::explain::page::DiagnosisPage;
 use stickslip_debugger::explain::remedies::Trial;
 use stickslip_debugger::explain::round_off::RoundOff;
@@ -252,9 +253,9 @@ impl<'a> View<'a> {
         record.is_some_and(|record| record.differs())
     }
 
-    /// Current position of a node: reference position plus displacement.
-    pub fn place(&self, node: usize) -> [f64; 2] {
-        self.model.place(&self.frame().state.u, node)
+    /// Position of a node with its displacement magnified.
+    pub fn magnified(&self, node: usize, factor: f64) -> [f64; 2] {
+        outline::magnified(self.model, &self.frame().state.u, node, factor)
     }
 }
 

@@ -153,7 +153,7 @@ fn pushes(
             None => "Who pushed it: not available here",
         })];
     };
-    let quantity = quantity(&record.decision);
+    let quantity = tested::deciding(&record.decision);
     let of = |push: &NodePush| tested::effect(quantity, &push.influence).1;
     let (symbol, _) = tested::effect(quantity, &Influence::default());
     let mut found: Vec<&NodePush> = found.iter().filter(|push| of(push) != 0.0).collect();
@@ -193,15 +193,6 @@ fn deed(push: &NodePush, view: &View) -> String {
         [_, Mode::Sliding] => format!("letting {name} slide"),
         [_, Mode::Fixed] => format!("sticking {name}"),
     }
-}
-
-/// The quantity of the test that fired, or otherwise of the first test.
-fn quantity(decision: &Decision) -> Tested {
-    let tests = || decision.tests.iter().flatten();
-    let fired = tests().find(|test| test.margin < 0.0);
-    fired
-        .or(tests().next())
-        .map_or(Tested::Gap, |test| test.tested)
 }
 
 /// Lines of [`measured`], including pressure and shear.

@@ -263,11 +263,7 @@ fn fitted(hints: &[(bool, String, String)], room: usize, theme: &Theme) -> Line<
 /// Label of an action; for Tab, the page number if panes are shown one at a time.
 fn label(entry: &ActionEntry, app: &App, places: &Places) -> String {
     if entry.name == "pane" && places.paged {
-        let page = Pane::ALL
-            .iter()
-            .position(|pane| *pane == app.panes.focus)
-            .map_or(1, |at| at + 1);
-        return format!("page {page}/{}", Pane::ALL.len());
+        return format!("page {}/{}", app.panes.focus.page(), Pane::ALL.len());
     }
     entry.label.into()
 }

@@ -179,11 +179,11 @@ fn title(at: usize, shown: usize, count: usize, app: &App) -> String {
         Filter::All => String::new(),
         Filter::Active => format!(" active, of {count}"),
         Filter::Surface => format!(" on this surface, of {count}"),
+        filter => format!(" {}, of {count}", filter.word()),
     };
-    title += match app.sort {
-        Sort::Scene => "",
-        Sort::Margin => "  by margin",
-        Sort::Gap => "  by gap",
+    title += &match app.sort {
+        Sort::Scene => String::new(),
+        sort => format!("  by {}", sort.word()),
     };
     if app.backward {
         title += ", reversed";

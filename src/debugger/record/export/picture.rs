@@ -438,7 +438,7 @@ fn legend(
         marker(sheet, (x, y), mode, 5.0);
         x += 12.0 + entry(sheet, (x + 12.0, y), names::mode(mode))?;
     }
-    let unit = round(90.0 / window.scale);
+    let unit = outline::round_down(90.0 / window.scale);
     if unit.is_finite() && unit > 0.0 {
         let wide = unit * window.scale;
         sheet.line(&[(x, y), (x + wide, y)], 2.0, BLACK);
@@ -449,7 +449,7 @@ fn legend(
         x += entry(sheet, (x, y), &format!("length {}", plain(unit)))?;
     }
     if largest > 0.0 {
-        let unit = round(0.8 * largest);
+        let unit = outline::round_down(0.8 * largest);
         let wide = FORCE * unit / largest;
         sheet.arrow((x, y), (x + wide, y), 2.0, VERMILION);
         x += wide + 8.0;
@@ -483,21 +483,6 @@ fn moved(shown: &Shown) -> f64 {
     };
     let all = (0..model.nodes.len()).map(far).filter(|d| d.is_finite());
     all.fold(0.0, f64::max)
-}
-
-/// The largest of 1, 2 and 5 times a power of ten that does not exceed a value.
-fn round(value: f64) -> f64 {
-    if !(value > 0.0 && value.is_finite()) {
-        return 0.0;
-    }
-    let power = 10f64.powf(value.log10().floor());
-    let step = [5.0, 2.0, 1.0]
-        .into_iter()
-        .find(|step| step * power <= value);
-    // Formatted and parsed, so that the value equals its label.
-    format!("{:.0e}", step.unwrap_or(1.0) * power)
-        .parse()
-        .unwrap_or(value)
 }
 
 /// The table of some slave nodes.
@@ -568,17 +553,4 @@ fn table(sheet: &mut Sheet, shown: &Shown, rows: &[usize]) -> Result<(), PlotErr
     }
     sheet.height += 0.5 * SMALL;
     Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn scales_are_round_numbers_below_the_limit() {
-        for (value, wanted) in [(0.37, 0.2), (5.0, 5.0), (99.0, 50.0), (1.2e-4, 1e-4)] {
-            assert_eq!(round(value), wanted);
-        }
-        assert_eq!(round(0.0), 0.0);
-    }
 }
