@@ -158,7 +158,7 @@ pub struct App {
     /// Which nodes the table shows.
     pub filter: Filter,
     /// Monitor of the load-displacement curve.
-    pub monitor: usize,
+    pub monitor: Option<usize>,
     /// The selected consistent state in the diagnosis, from 0.
     pub answer: usize,
     /// The selected row of the branch tree, from 0.
@@ -218,7 +218,7 @@ impl App {
             sort: Sort::Scene,
             backward: false,
             filter: Filter::All,
-            monitor: 0,
+            monitor: None,
             answer: 0,
             branch: 0,
             remedy: 0,
@@ -264,7 +264,7 @@ impl App {
     pub fn opened(&mut self) {
         self.overlay = Overlay::None;
         self.selected = 0;
-        self.monitor = 0;
+        self.monitor = None;
         (self.answer, self.branch, self.remedy, self.scroll) = (0, 0, 0, 0);
         self.camera = Camera::ALL;
         (self.notice, self.log_counts) = (None, LogCounts::default());

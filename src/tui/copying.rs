@@ -129,11 +129,12 @@ fn value(quantity: WatchQuantity, app: &App, view: &View) -> Result<NamedText, S
 
 /// The load and the shown monitor at the last accepted increment.
 fn monitored(app: &App, view: &View) -> Result<NamedText, String> {
-    let monitor = view.model.monitors.get(app.monitor);
+    let at = app.watched(view);
+    let monitor = view.model.monitors.get(at);
     let monitor = monitor.ok_or("this scene has no monitors")?;
     let frames = &view.frames[..=view.cursor];
     let frame = frames.iter().rev().find(|frame| frame.monitors.is_some());
-    let value = frame.and_then(|frame| frame.monitors.as_ref()?.get(app.monitor).copied());
+    let value = frame.and_then(|frame| frame.monitors.as_ref()?.get(at).copied());
     let (Some(frame), Some(value)) = (frame, value) else {
         return Err("no increment accepted yet".into());
     };

@@ -40,6 +40,21 @@ pub enum Pane {
     Lesson,
 }
 
+stickslip_core::words! {
+    Pane, title:
+    Nodes "slave nodes",
+    Decision "decision",
+    Residual "residual",
+    Shape "shape",
+    Curve "load",
+    Timeline "timeline",
+    Diagnosis "diagnosis",
+    Branches "branches",
+    Remedies "remedies",
+    Contact "contact",
+    Lesson "lesson",
+}
+
 impl Pane {
     /// The panes in Tab order.
     pub const ALL: [Pane; 10] = [

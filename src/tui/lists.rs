@@ -16,9 +16,10 @@ impl App {
     /// Shows the curve of a monitor, or of the next one.
     pub(super) fn watch(&mut self, monitor: Option<usize>, view: Option<&View>) {
         let monitors = view.map_or(&[][..], |view| &view.model.monitors);
-        let next = (self.monitor + 1) % monitors.len().max(1);
-        self.monitor = monitor.unwrap_or(next);
-        match monitors.get(self.monitor) {
+        let shown = view.map_or(0, |view| self.watched(view));
+        let at = monitor.unwrap_or((shown + 1) % monitors.len().max(1));
+        self.monitor = Some(at);
+        match monitors.get(at) {
             Some(monitor) => self.say(format!("load over {}", monitor.name)),
             None => self.complain("this scene has no monitors"),
         }

@@ -6,12 +6,34 @@ use stickslip_core::contact::table2::Rule;
 use stickslip_core::model::Mode;
 use stickslip_debugger::action::{Filter, Sort};
 use stickslip_debugger::explain::tested::Dimension;
+use stickslip_debugger::history::frame;
 
 impl App {
     /// The selected slave node; 0 if there are none.
     pub fn slave(&self, view: &View) -> usize {
         self.selected
             .min(view.model.contacts.len().saturating_sub(1))
+    }
+
+    /// The monitor of the load curve: the chosen one, or the first that moves by more than round-off.
+    pub fn watched(&self, view: &View) -> usize {
+        let monitors = &view.model.monitors;
+        let moves = |at: &usize| {
+            let values = frame::curve(view.frames, *at);
+            let values = values
+                .into_iter()
+                .map(|[value, _]| value)
+                .filter(|x| x.is_finite());
+            let (low, high) = values.fold((0.0, 0.0), |(low, high): (f64, f64), x| {
+                (low.min(x), high.max(x))
+            });
+            high - low > view.noise(&monitors[*at])
+        };
+        let last = monitors.len().saturating_sub(1);
+        match self.monitor {
+            Some(monitor) => monitor.min(last),
+            None => (0..monitors.len()).find(moves).unwrap_or(0),
+        }
     }
 
     /// The mode of a slave node; the one before this iteration if the next one is hidden.

@@ -2,7 +2,7 @@
 
 use stickslip_core::contact::record::{ContactRecord, Forced};
 use stickslip_core::linear::norms::Norms;
-use stickslip_core::model::{Mode, Model};
+use stickslip_core::model::{Mode, Model, Monitor, Watched};
 use stickslip_core::step::event::{Event, Outcome, Position};
 use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::solver::Offers;
@@ -251,6 +251,16 @@ impl<'a> View<'a> {
     pub fn differs(&self, slave: usize) -> bool {
         let record = self.record(slave).filter(|_| self.attached.is_some());
         record.is_some_and(|record| record.differs())
+    }
+
+    /// The range below which a monitor's values are round-off.
+    pub fn noise(&self, monitor: &Monitor) -> f64 {
+        let round_off = self.round_off();
+        match monitor.of {
+            Watched::Displacement { .. } => round_off.length,
+            Watched::Contact { .. } | Watched::Reaction { .. } => round_off.force,
+            _ => 0.0,
+        }
     }
 
     /// Position of a node with its displacement magnified.

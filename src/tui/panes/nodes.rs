@@ -12,6 +12,7 @@ use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span};
 use stickslip_core::contact::record::{ContactRecord, Forced};
 use stickslip_core::contact::table2::Tested;
+use stickslip_core::model::Mode;
 use stickslip_debugger::action::{Filter, Sort};
 use stickslip_debugger::explain::names;
 use stickslip_debugger::explain::round_off::RoundOff;
@@ -360,6 +361,8 @@ fn numbers(
     let ratio = match decided(Tested::ShearForce) {
         _ if view.is_unreported(record.f_t / record.t_max) => number::UNREPORTED.into(),
         true => number::ratio(record.f_t, record.t_max),
+        // T_max is settled to the tolerance, and so is its ratio to the force of a sliding node.
+        false if is_at_limit(record, view) => "1".into(),
         false => round_off.ratio(record.f_t, record.t_max),
     };
     let texts = [
@@ -377,6 +380,16 @@ fn numbers(
         .enumerate()
         .map(|(index, text)| Span::styled(text, style(index)))
         .collect()
+}
+
+/// Whether a sliding node carries T_max to within the tolerance.
+fn is_at_limit(record: &ContactRecord, view: &View) -> bool {
+    let scale = view.event().map_or(0.0, |event| event.before.scale);
+    let tolerance = view.frame().state.controls.settings.tolerance * scale;
+    let sizes = [record.f_t, record.t_max].map(|force| view.round_off().force(force).abs());
+    record.decision.before == Mode::Sliding
+        && sizes[1] > 0.0
+        && (sizes[0] - sizes[1]).abs() <= tolerance
 }
 
 /// Highlights tested values that are ties.
