@@ -56,7 +56,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let decision = record.map(|record| record.decision);
     let hidden = app.learning.hides(view, slave);
     let tests = record.filter(|_| !hidden).map_or(Vec::new(), |record| {
-        tests(&record.decision, view, inner.width as usize, theme)
+        tests(record, slave, view, inner.width as usize, theme)
     });
     let tests: Vec<Line> = match record.filter(|_| !hidden) {
         Some(record) => tests
@@ -469,9 +469,19 @@ fn cell_look(
 }
 
 /// The inequalities with their values, on one line each if they fit, otherwise on two.
-fn tests(decision: &Decision, view: &View, width: usize, theme: &Theme) -> paint::Lines {
+fn tests(
+    record: &ContactRecord,
+    slave: usize,
+    view: &View,
+    width: usize,
+    theme: &Theme,
+) -> paint::Lines {
+    let friction = &view.frame().state.controls.friction[slave];
     let mut lines = Vec::new();
-    for test in decision.tests.iter().flatten() {
+    for test in record.decision.tests.iter().flatten() {
+        if test.tie && !tested::is_tie(test, friction) {
+            continue;
+        }
         let inequality = inequality(test, view);
         let (margin, style) = margin(test, view, theme);
         let style_left = if test.margin < 0.0 && !test.tie {

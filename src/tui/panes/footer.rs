@@ -250,7 +250,7 @@ fn own(pane: Pane) -> &'static [(&'static str, &'static str)] {
             ("fit", "fit"),
             ("magnify", "magnify"),
         ],
-        Pane::Contact => &[("left", "turn"), ("right", "turn")],
+        Pane::Contact => &[("right", "next picture")],
         Pane::Curve => &[("monitor", "monitor")],
         Pane::Timeline => &[("left", "back"), ("right", "forward")],
         Pane::Diagnosis => &[("repeat", "take"), ("page-down", "scroll")],

@@ -38,6 +38,8 @@ const ELEMENT: f64 = 12.0;
 const MOTION: f64 = 0.15;
 /// Length of the largest load and of the largest prescribed motion, as a fraction of the visible extent.
 const LOAD: f64 = 0.14;
+/// Dots between a load and its node.
+const CLEAR: f64 = 4.0;
 /// Cells between two slave nodes from which on their names are written.
 const APART: u16 = 8;
 /// Arrow heads by eighths of a turn, anticlockwise from the right.
@@ -425,9 +427,11 @@ fn drawn(
     app: &App,
 ) -> ([Dot; 2], Style, [&'static str; 8]) {
     let length = LOAD * window.extent;
+    // The head of a load stays clear of the letter of its node.
+    let off = CLEAR / (window.scale * arrow.along[0].hypot(arrow.along[1])).max(1e-300);
     let part = |by: f64| [0, 1].map(|axis| arrow.at[axis] + by * length * arrow.along[axis]);
     let (from, to, heads) = match arrow.given {
-        Given::Load => (part(-1.0), arrow.at, HEADS),
+        Given::Load => (part(-1.0 - off / length), part(-off / length), HEADS),
         Given::Motion => (arrow.at, part(1.0), DOUBLE_HEADS),
     };
     ([window.dot(from), window.dot(to)], app.theme.good, heads)

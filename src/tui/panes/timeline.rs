@@ -24,7 +24,7 @@ pub const FRAME: u16 = 5;
 const LETTERS: &str =
     " C closed  · open  M other face  1-9 tenths of a face  lower case: held fixed ";
 /// Minimum and maximum width of the names.
-const NAME: Range<usize> = 9..18;
+const NAME: Range<usize> = 9..14;
 
 /// Draws the timeline.
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
@@ -111,9 +111,15 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
 
 /// Screen column of the first iteration, and the visible iterations.
 fn visible(inner: Rect, view: &View) -> (u16, Vec<Column>) {
-    let names = (0..view.model.contacts.len()).map(|slave| view.slave(slave).width());
-    // Two names of a folded row.
-    let name = (2 * names.max().unwrap_or(0)).clamp(NAME.start, NAME.end) + 2;
+    let count = view.model.contacts.len();
+    let names = (0..count).map(|slave| view.slave(slave).width());
+    let name = names.max().unwrap_or(0);
+    // A folded row has two names.
+    let name = match usize::from(inner.height.saturating_sub(FRAME)) < count {
+        true => (2 * name + 3).clamp(NAME.start, 2 * NAME.end),
+        false => name.clamp(NAME.start, NAME.end),
+    };
+    let name = name + 2;
     let left = inner.x + name as u16;
     let room = usize::from(inner.right().saturating_sub(left));
     let ruled = |at: usize| rule(view, at).is_some();
