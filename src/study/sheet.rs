@@ -53,6 +53,8 @@ pub struct Axes {
     pub top: f64,
     /// Width and height.
     pub size: (f64, f64),
+    /// Left edge of the vertical axis's name.
+    pub name: f64,
 }
 
 impl Axes {
@@ -89,7 +91,7 @@ impl Axes {
         let (middle, bottom) = self.at(0.5, 0.0);
         let below = (middle, bottom + 2.4 * LABEL);
         sheet.text(below, x.0, LABEL, BLACK, Anchor::Middle);
-        sheet.upright((MARGIN, self.at(0.0, 0.5).1), y.0, LABEL);
+        sheet.upright((self.name, self.at(0.0, 0.5).1), y.0, LABEL);
     }
 }
 

@@ -62,12 +62,12 @@ impl Pane {
         Pane::Decision,
         Pane::Residual,
         Pane::Shape,
-        Pane::Contact,
         Pane::Curve,
         Pane::Timeline,
         Pane::Diagnosis,
         Pane::Branches,
         Pane::Remedies,
+        Pane::Contact,
     ];
 
     /// Its number in Tab order, from 1.

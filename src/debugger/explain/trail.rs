@@ -79,23 +79,28 @@ impl Cone {
     }
 }
 
-/// The cobweb of T_max: from the diagonal up to the value found, and across to the diagonal.
-pub fn cobweb(trail: &[TrailPoint]) -> Vec<[f64; 2]> {
+/// Part of T_max below which the differences are drawn instead.
+const CLOSE: f64 = 1e-2;
+
+/// The cobweb of T_max: from the diagonal up to the value found, and across to the diagonal. If all values are close to each other,
+/// the first result is what they are less; otherwise it is 0.
+pub fn cobweb(trail: &[TrailPoint]) -> (f64, Vec<[f64; 2]>) {
     let points = trail.iter().filter(|point| point.mode == Mode::Sliding);
-    let finite = points.filter(|point| point.t_max.is_finite() && point.t_max_used.is_finite());
-    finite
-        .flat_map(
-            |&TrailPoint {
-                 t_max, t_max_used, ..
-             }| {
-                [
-                    [t_max_used, t_max_used],
-                    [t_max_used, t_max],
-                    [t_max, t_max],
-                ]
-            },
-        )
-        .collect()
+    let steps: Vec<[f64; 2]> = points
+        .map(|point| [point.t_max_used, point.t_max])
+        .filter(|step| step.iter().all(|value| value.is_finite()))
+        .collect();
+    let last = steps.last().map_or(0.0, |step| step[1]);
+    let far = |value: &f64| (value - last).abs() > CLOSE * last.abs();
+    let origin = match steps.iter().flatten().any(far) {
+        true => 0.0,
+        false => last,
+    };
+    let path = steps.into_iter().flat_map(|step| {
+        let [used, found] = step.map(|value| value - origin);
+        [[used, used], [used, found], [found, found]]
+    });
+    (origin, path.collect())
 }
 
 /// The factor by which the change of T_max shrinks (or grows) per iteration, from the last three values; `None` if unknown.
@@ -133,7 +138,9 @@ mod tests {
             [1.0, 0.5],
             [0.5, 0.5],
         ];
-        assert_eq!(cobweb(&trail), wanted);
+        assert_eq!(cobweb(&trail), (0.0, wanted.to_vec()));
+        let close = cobweb(&[point(1.0, 1.001)]);
+        assert_eq!((close.0, close.1[2]), (1.001, [0.0, 0.0]));
         assert_eq!(factor(&trail), Some(-0.5));
         assert_eq!(factor(&trail[..1]), None);
     }

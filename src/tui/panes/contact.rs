@@ -16,7 +16,7 @@ use stickslip_core::contact::record::ContactRecord;
 use stickslip_debugger::explain::influence::NodePush;
 use stickslip_debugger::explain::tested;
 use stickslip_debugger::explain::trail::{self, Cone, TrailPoint};
-use stickslip_scene::number::{four, short};
+use stickslip_scene::number::{UNREPORTED, four, short};
 use unicode_width::UnicodeWidthStr;
 
 /// Minimum width and height of a picture.
@@ -107,7 +107,14 @@ fn trail(slave: usize, view: &View) -> Vec<TrailPoint> {
 fn words(record: &ContactRecord, slave: usize, app: &App, view: &View) -> paint::Lines {
     let theme = &app.theme;
     let round_off = view.round_off();
-    let pair = |[x, y]: [f64; 2]| format!("({}, {})", four(x), four(y));
+    let known = |value: f64, text: String| match value.is_finite() {
+        true => text,
+        false => UNREPORTED.to_owned(),
+    };
+    let pair = |v: [f64; 2]| {
+        let [x, y] = v.map(|x| known(x, four(x + 0.0)));
+        format!("({x}, {y})")
+    };
     let place = match record.spot {
         None => "past the ends of every surface".to_owned(),
         Some(spot) => {
@@ -116,15 +123,12 @@ fn words(record: &ContactRecord, slave: usize, app: &App, view: &View) -> paint:
             format!(
                 "{surface}, element {}, ξ {}",
                 spot.element + 1,
-                four(spot.xi)
+                known(spot.xi, four(spot.xi))
             )
         }
     };
-    let [n, t] = [record.normal, tangent(record.normal)].map(|v| pair(v.map(|x| x + 0.0)));
-    let number = |value: f64| match view.is_unreported(value) {
-        true => stickslip_scene::number::UNREPORTED.to_owned(),
-        false => short(value),
-    };
+    let [n, t] = [record.normal, tangent(record.normal)].map(pair);
+    let number = |value: f64| known(value, short(value));
     let [f_n, f_t, t_max] = [record.f_n, record.f_t, record.t_max].map(|f| round_off.force(f));
     let gap = round_off.length(record.gap);
     let row = |text: String| Line::styled(format!(" {text}"), theme.text);
@@ -166,7 +170,7 @@ fn draw_cone(
     app: &App,
 ) {
     let theme = &app.theme;
-    let area = headed(buffer, area, "Force in the Coulomb cone", app);
+    let area = headed(buffer, area, "Coulomb cone", app);
     let (Some(cone), Some(now)) = (cone, trail.last()) else {
         return paint::lines(buffer, area, &[Line::styled(" no force", theme.faint)]);
     };
@@ -224,6 +228,8 @@ fn below(buffer: &mut Buffer, frame: ChartFrame, [low, high]: [f64; 2], name: &s
     let (low, high) = (tick(low), tick(high));
     let width = usize::from(frame.field.width);
     let room = width.saturating_sub(low.len() + high.len());
+    // A narrow axis has only its ends.
+    let name = if name.width() + 2 > room { "" } else { name };
     let text = format!("{low}{name:^room$}{high}");
     frame.below(buffer, frame.field.x, &text, app.theme.faint);
 }
@@ -237,7 +243,7 @@ fn cobweb(buffer: &mut Buffer, area: Rect, trail: &[TrailPoint], app: &App, view
         None => "T_max by iteration".into(),
     };
     let area = headed(buffer, area, &heading, app);
-    let path = trail::cobweb(trail);
+    let (origin, path) = trail::cobweb(trail);
     let values = || path.iter().flatten().copied();
     let (low, high) = (
         values().fold(f64::INFINITY, f64::min),
@@ -268,7 +274,9 @@ fn cobweb(buffer: &mut Buffer, area: Rect, trail: &[TrailPoint], app: &App, view
     let dots: Vec<Dot> = path.iter().map(|point| dot(*point)).collect();
     canvas.polyline(&dots, theme.text);
     canvas.render(buffer);
-    let last = trail.last().map(|point| [point.t_max_used, point.t_max]);
+    let last = trail
+        .last()
+        .map(|point| [point.t_max_used - origin, point.t_max - origin]);
     let now = last.and_then(|last| canvas.cell(dot(last)));
     if let Some(cell) = now.and_then(|at| buffer.cell_mut(at)) {
         cell.set_symbol("●").set_style(theme.strong);
@@ -277,7 +285,11 @@ fn cobweb(buffer: &mut Buffer, area: Rect, trail: &[TrailPoint], app: &App, view
     frame.tick(buffer, 0, &tick(high), theme.faint);
     let bottom = frame.field.height - 1;
     frame.tick(buffer, bottom, &tick(low), theme.faint);
-    below(buffer, frame, [low, high], "used", app);
+    let name = match origin == 0.0 {
+        true => "used".to_owned(),
+        false => format!("less {}", four(origin)),
+    };
+    below(buffer, frame, [low, high], &name, app);
 }
 
 /// The nodes whose changes since the previous iteration pushed the selected one, as arrows towards it.

@@ -159,6 +159,9 @@ pub fn page(width: usize, theme: &Theme, keymap: &Keymap, context: &Context) -> 
         let entries = ACTIONS.iter().filter(|entry| entry.group == group);
         (group.title(), entries.collect::<Vec<_>>())
     });
+    let text = format!("Panes, in the order of Tab: {}.", panes.join(", "));
+    lines.extend(paint::wrapped(&text, width, theme.text));
+    lines.push(Line::default());
     for (title, entries) in [("The first ten keys", first().collect())]
         .into_iter()
         .chain(groups)
@@ -187,15 +190,6 @@ pub fn page(width: usize, theme: &Theme, keymap: &Keymap, context: &Context) -> 
                     Span::styled(help, style),
                 ]));
             }
-        }
-        if entries.len() == FIRST.len() && title.contains("first") {
-            let text = format!("Panes, in the order of Tab: {}.", panes.join(", "));
-            let wrapped = paint::wrapped(&text, width.saturating_sub(2), theme.text);
-            lines.extend(
-                wrapped
-                    .into_iter()
-                    .map(|line| Line::raw(format!("  {line}"))),
-            );
         }
         lines.push(Line::default());
     }

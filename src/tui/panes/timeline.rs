@@ -35,7 +35,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let selected = app.slave(view);
     let rows = usize::from(area.height.saturating_sub(2 + FRAME));
     if rows < count {
-        title += &format!("  node {} of {count}; equal rows are folded", selected + 1);
+        title += &format!("  node {} of {count}, folded", selected + 1);
     }
     let inner = paint::frame(
         buffer,
@@ -137,7 +137,7 @@ fn inside(area: Rect, view: &View) -> Option<Rect> {
 pub fn step_at(area: Rect, view: &View, at: Position) -> Option<usize> {
     let inner = inside(area, view).filter(|inner| inner.contains(at))?;
     let (_, columns) = visible(inner, view);
-    let column = columns.into_iter().find(|column| column.x == at.x);
+    let column = columns.into_iter().rev().find(|column| column.x <= at.x);
     column.map(|column| column.at)
 }
 

@@ -26,7 +26,11 @@ fn axes(
     let axes = Axes {
         left: left + LEFT,
         top: sheet.height + 0.6 * LABEL,
-        size: (right - left - LEFT - MARGIN, high - BELOW - 0.6 * LABEL),
+        name: left + MARGIN,
+        size: (
+            right - left - LEFT - 3.0 * MARGIN,
+            high - BELOW - 0.6 * LABEL,
+        ),
     };
     let ticks = |[low, up]: [f64; 2]| {
         (0..=TICKS).map(move |k| {
@@ -141,7 +145,7 @@ pub(super) fn cone(sheet: &mut Sheet, shown: &Shown, high: f64) -> Result<(), Pl
     );
     sheet.paragraph(&[words], LABEL, BLACK)?;
     let width = sheet.width;
-    let web = trail::cobweb(&trail);
+    let (origin, web) = trail::cobweb(&trail);
     let (low, top) = web
         .iter()
         .flatten()
@@ -163,12 +167,22 @@ pub(super) fn cone(sheet: &mut Sheet, shown: &Shown, high: f64) -> Result<(), Pl
     if has_web {
         let margin = 0.06 * (top - low);
         let span = [low - margin, top + margin];
-        let ranges = (("T_max used", span), ("T_max found", span));
+        let less = match origin == 0.0 {
+            true => String::new(),
+            false => format!(" less {}", four(origin)),
+        };
+        let (used, found) = (format!("T_max used{less}"), format!("T_max found{less}"));
+        let ranges = ((used.as_str(), span), (found.as_str(), span));
         let map = axes(sheet, (middle, width), high, ranges);
         sheet.dashed(&[map([span[0]; 2]), map([span[1]; 2])], 1.2, GREY);
         let path: Vec<(f64, f64)> = web.iter().map(|point| map(*point)).collect();
         sheet.line(&path, 2.0, COLOURS[0]);
-        sheet.marker(map([now.t_max_used, now.t_max]), 0, 4.5, COLOURS[0]);
+        sheet.marker(
+            map([now.t_max_used - origin, now.t_max - origin]),
+            0,
+            4.5,
+            COLOURS[0],
+        );
     }
     sheet.height += high;
     let key = format!(

@@ -351,16 +351,32 @@ fn gaps(sheet: &mut Sheet, window: &Window, shown: &Shown, now: &dyn Fn(usize) -
 /// Margins that the force arrows need outside the shape: left, top, right, bottom.
 fn room(shown: &Shown) -> [f64; 4] {
     let (largest, mut room) = (largest(shown), [0.0_f64; 4]);
-    let Some(event) = shown.event.filter(|_| largest > 0.0) else {
-        return room;
-    };
-    for found in event.nodes.iter().filter(|found| size(found).is_finite()) {
-        let (n, t) = (found.normal, tangent(found.normal));
-        let along = |axis: usize| FORCE / largest * (found.f_n * n[axis] + found.f_t * t[axis]);
-        let (x, y) = (along(0), along(1));
-        for (room, reach) in room.iter_mut().zip([x, -y, -x, y]) {
+    let mut reach = |x: f64, y: f64| {
+        for (room, reach) in room.iter_mut().zip([-x, y, x, -y]) {
             *room = room.max(reach);
         }
+    };
+    let model = &shown.scene.model;
+    let load_factor = shown.event.map_or(0.0, |event| event.load_factor);
+    for arrow in conditions(model, load_factor, &|node| model.nodes[node].at).arrows {
+        let length = match arrow.given {
+            Given::Load => -1.2 * LOAD,
+            Given::Motion => 1.2 * LOAD,
+        };
+        reach(length * arrow.along[0], length * arrow.along[1]);
+    }
+    let nodes = shown
+        .event
+        .filter(|_| largest > 0.0)
+        .map(|event| &event.nodes);
+    for found in nodes
+        .into_iter()
+        .flatten()
+        .filter(|found| size(found).is_finite())
+    {
+        let (n, t) = (found.normal, tangent(found.normal));
+        let along = |axis: usize| FORCE / largest * (found.f_n * n[axis] + found.f_t * t[axis]);
+        reach(along(0), along(1));
     }
     room
 }
@@ -438,7 +454,7 @@ fn given(
     }
 }
 
-/// Contact forces on the slave nodes, as arrows that end at the node; returns the largest.
+/// Contact forces on the slave nodes, as arrows from the node in the direction in which the master pushes it; returns the largest.
 fn forces(
     sheet: &mut Sheet,
     window: &Window,
@@ -454,19 +470,14 @@ fn forces(
     for (contact, found) in shown.scene.model.contacts.iter().zip(&event.nodes) {
         let (n, t) = (found.normal, tangent(found.normal));
         let scale = FORCE / largest;
-        let tip = window.at(now(contact.node));
+        let node = window.at(now(contact.node));
         let along = |axis: usize| scale * (found.f_n * n[axis] + found.f_t * t[axis]);
-        let tail = (tip.0 - along(0), tip.1 + along(1));
         let long = scale * size(found) >= 1.0;
-        if long && window.holds(tip) {
-            // The arrow head ends next to the node's marker, which is drawn on top.
-            let back = (marked + 1.5) / (scale * size(found));
-            let beside = |from: f64, to: f64| to + back * (from - to);
-            let shift = (beside(tail.0, tip.0) - tip.0, beside(tail.1, tip.1) - tip.1);
-            let (tail, tip) = (
-                (tail.0 + shift.0, tail.1 + shift.1),
-                (tip.0 + shift.0, tip.1 + shift.1),
-            );
+        if long && window.holds(node) {
+            // The arrow starts next to the node's marker.
+            let clear = (marked + 1.5) / (scale * size(found));
+            let part = |by: f64| (node.0 + by * along(0), node.1 - by * along(1));
+            let (tail, tip) = (part(clear), part(1.0 + clear));
             sheet.arrow(tail, tip, 2.0, VERMILION);
             taken.take_line(tail, tip);
         }
