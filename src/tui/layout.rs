@@ -181,6 +181,9 @@ const CHART: u16 = 7;
 /// Width of a lesson in a separate column, on a large and on a medium screen.
 const LESSON: u16 = 62;
 const NARROW_LESSON: u16 = 44;
+/// Width of a decision with explanations, and minimum width for the contact next to it.
+const EXPLAINED: u16 = 116;
+const BOTH: u16 = 160;
 /// Width at which most outcomes fit into one line.
 const WIDE: u16 = 110;
 /// Minimum height for outcomes of two lines.
@@ -317,10 +320,10 @@ fn with_lesson(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
 
 /// The focused pane alone; on a wide screen, the contact is next to the decision that it explains.
 fn zoomed(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
-    if choice.panes.focus != Pane::Decision || body.width < 110 || !choice.has_shape {
+    if choice.panes.focus != Pane::Decision || body.width < BOTH || !choice.has_shape {
         return vec![(choice.panes.focus, body)];
     }
-    let [left, right] = left(body, body.width * 3 / 5);
+    let [left, right] = left(body, EXPLAINED.max(body.width * 3 / 5));
     vec![(Pane::Decision, left), (Pane::Contact, right)]
 }
 

@@ -305,8 +305,7 @@ fn a_solver_of_our_own_has_no_log_and_no_parameters() {
 fn the_decision_shows_the_solver_s_words_and_where_table_2_differs() {
     let mut debugger = attached(&three(), Offers::default());
     debugger.type_keys("s e");
-    // Narrower than a screen with the contact next to the decision.
-    let shown = debugger.text(100, 40).replace('┃', " ");
+    let shown = debugger.text(120, 40);
     let joined: String = shown.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(
         joined.contains("The solver chooses free: “the augmented pressure is negative”."),

@@ -79,7 +79,7 @@ fn the_contact_has_its_cone_its_cobweb_and_who_pushed_it() {
     assert!(narrow(&debugger).contains(cone));
     // The decision in full has the contact next to it.
     debugger.type_keys("e");
-    assert!(debugger.text(120, 40).contains(cone));
+    assert!(debugger.text(200, 60).contains(cone));
 }
 
 #[test]

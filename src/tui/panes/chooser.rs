@@ -27,10 +27,14 @@ pub fn draw(buffer: &mut Buffer, area: Rect, chooser: &Chooser, app: &App) -> Re
         typed => format!("Choose: {typed}▏ {} of {}", left.len(), app.offers.len()),
     };
     let inner = paint::frame(buffer, area, &title, true, &app.theme);
+    let width = width(&app.offers);
+    let beside = inner.width >= width.max(BESIDE - LOOK) + LOOK;
     let (list, preview) = match () {
-        _ if inner.width >= BESIDE => {
-            let width = width(&left).clamp(inner.width / 2, inner.width - LOOK);
-            let columns = [Constraint::Length(width), Constraint::Fill(1)];
+        _ if beside => {
+            let columns = [
+                Constraint::Length(width.max(inner.width / 2)),
+                Constraint::Fill(1),
+            ];
             let [list, preview] = Layout::horizontal(columns).areas(inner);
             (list, Some(preview))
         }
@@ -64,18 +68,18 @@ pub fn draw(buffer: &mut Buffer, area: Rect, chooser: &Chooser, app: &App) -> Re
     let known = app.preview.as_ref();
     let seen = selected.and_then(|offer| known.filter(|preview| preview.name == offer.name));
     match (preview, seen) {
-        (Some(area), Some(preview)) => look(buffer, area, preview, inner.width >= BESIDE, app),
+        (Some(area), Some(preview)) => look(buffer, area, preview, beside, app),
         _ => Rect::ZERO,
     }
 }
 
 /// Columns for the whole names and titles of the list.
-fn width(left: &[&Offer]) -> u16 {
-    let names = left.iter().map(|offer| offer.name.width());
-    let texts = left
+fn width(offers: &[Offer]) -> u16 {
+    let names = offers.iter().map(|offer| offer.name.width());
+    let texts = offers
         .iter()
         .map(|offer| offer.title.width() + done(offer).width());
-    (names.max().unwrap_or(0) + texts.max().unwrap_or(0) + 6) as u16
+    (names.max().unwrap_or(0) + texts.max().unwrap_or(0) + 6).min(1000) as u16
 }
 
 /// The user's progress in a lesson.

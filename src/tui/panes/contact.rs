@@ -53,7 +53,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let Some(record) = view.record(slave).filter(|_| view.model.finished.is_none()) else {
         return say(buffer, "No iteration yet.");
     };
-    let mut lines = words(record, slave, app, view);
+    let mut lines = words(record, slave, inner.width.into(), app, view);
     let rows = inner.height.saturating_sub(HIGH);
     lines.truncate(usize::from(rows));
     paint::lines(buffer, inner, &lines);
@@ -104,7 +104,13 @@ fn trail(slave: usize, view: &View) -> Vec<TrailPoint> {
 }
 
 /// S*, its frame, the gap and the force.
-fn words(record: &ContactRecord, slave: usize, app: &App, view: &View) -> paint::Lines {
+fn words(
+    record: &ContactRecord,
+    slave: usize,
+    width: usize,
+    app: &App,
+    view: &View,
+) -> paint::Lines {
     let theme = &app.theme;
     let round_off = view.round_off();
     let known = |value: f64, text: String| match value.is_finite() {
@@ -131,7 +137,7 @@ fn words(record: &ContactRecord, slave: usize, app: &App, view: &View) -> paint:
     let number = |value: f64| known(value, short(value));
     let [f_n, f_t, t_max] = [record.f_n, record.f_t, record.t_max].map(|f| round_off.force(f));
     let gap = round_off.length(record.gap);
-    let row = |text: String| Line::styled(format!(" {text}"), theme.text);
+    let row = |text: String| paint::wrapped(&text, width, theme.text);
     let mode = view.mode_before(slave);
     let force = format!(
         "g {}  F_n {}  F_t {}  T_max {}",
@@ -140,11 +146,10 @@ fn words(record: &ContactRecord, slave: usize, app: &App, view: &View) -> paint:
         number(f_t),
         number(t_max)
     );
-    vec![
-        row(format!("S* {place}")),
-        row(format!("n {n}  t {t}")),
-        Line::styled(format!(" {force}"), theme.mode(mode)),
-    ]
+    let mut lines = row(format!("S* {place}"));
+    lines.extend(row(format!("n {n}  t {t}")));
+    lines.extend(paint::wrapped(&force, width, theme.mode(mode)));
+    lines
 }
 
 /// A picture's heading; returns the area below it.

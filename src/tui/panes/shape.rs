@@ -38,6 +38,8 @@ const ELEMENT: f64 = 12.0;
 const MOTION: f64 = 0.15;
 /// Length of the largest load and of the largest prescribed motion, as a fraction of the visible extent.
 const LOAD: f64 = 0.14;
+/// Caption of the reference configuration.
+const UNLOADED: &str = " faint: unloaded";
 /// Dots between a load and its node.
 const CLEAR: f64 = 4.0;
 /// Cells between two slave nodes from which on their names are written.
@@ -588,7 +590,7 @@ fn caption(buffer: &mut Buffer, inner: Rect, shown: Scales, moves: bool, app: &A
         let text = format!(" displacements ×{} (*)  ", number::plain(magnified));
         spans.push(Span::styled(text, theme.strong));
     }
-    spans.push(Span::styled(" faint: unloaded", theme.faint));
+    spans.push(Span::styled(UNLOADED, theme.faint));
     if longest > 0.0 {
         spans.push(Span::styled(
             format!("   longest force {}", number::short(longest)),
@@ -607,7 +609,12 @@ fn caption(buffer: &mut Buffer, inner: Rect, shown: Scales, moves: bool, app: &A
             theme.faint,
         ));
     }
-    Line::from(spans).render(
+    // Nothing else says less.
+    let mut line = Line::from(spans);
+    if line.width() > usize::from(inner.width) {
+        line.spans.retain(|span| span.content != UNLOADED);
+    }
+    line.render(
         Rect {
             y: inner.bottom() - 1,
             height: 1,
