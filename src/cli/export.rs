@@ -9,13 +9,14 @@ use super::place::{At, notify_missed, seek};
 use super::solver::{SolverArgs, session_of};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use stickslip_core::model::Model;
 use stickslip_core::step::drive::RunEnd;
-use stickslip_core::step::event::{Failure, Position};
+use stickslip_core::step::event::{Event, Failure, Outcome, Position};
 use stickslip_core::step::state::{State, Status};
 use stickslip_core::step::stepper::Stepper;
-use stickslip_debugger::explain::{names, report};
+use stickslip_debugger::explain::{names, report, trail};
 use stickslip_debugger::history::strip::Strip;
-use stickslip_debugger::record::export::shown::{COLUMNS, Shown};
+use stickslip_debugger::record::export::shown::{COLUMNS, PicturePart, PictureRequest, Shown};
 use stickslip_debugger::record::export::skeleton::skeleton;
 use stickslip_debugger::record::export::{self, ExportKind, MadeOf, Origin};
 use stickslip_debugger::record::journal::Record;
@@ -24,12 +25,13 @@ use stickslip_exchange::fclib;
 use stickslip_platform::files::{self, Output};
 use stickslip_scene::format::kind::FileKind;
 use stickslip_scene::solver::solver;
-use stickslip_scene::{Scene, import};
+use stickslip_scene::{Scene, import, shown};
 use stickslip_study::pen;
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
-.svg, .png: the deformed shape of a scene or a snapshot with modes, forces and gaps, and the timeline.
+.svg, .png: the deformed shape of a scene or a snapshot with modes, forces and gaps, and the timeline; with --only, the
+shape, the timeline, the load over a monitor (chart), or the force of a contact in its friction cone (cone).
 .ron: the scene as opened; for a Gmsh mesh, a scene that imports it, to be edited; with --frozen, the interface
 problem that is solved next, as a separate scene.
 .dat, .mtx, .h5: the same interface problem for other solvers: for Siconos, as Matrix Market files
@@ -55,6 +57,21 @@ pub struct Args {
     /// Exports the frozen interface problem as a separate scene
     #[arg(long)]
     frozen: bool,
+    /// Draws only this part of a picture
+    #[arg(long, value_name = "PART", value_parser = clap::builder::PossibleValuesParser::new(PicturePart::NAMES))]
+    only: Option<String>,
+    /// Size of a picture in pixels
+    #[arg(long, value_name = "WxH", value_parser = size)]
+    size: Option<(u32, u32)>,
+    /// Height of the small text of a picture, in pixels [default: in proportion to the size]
+    #[arg(long, value_name = "PIXELS", value_parser = font)]
+    font: Option<f64>,
+    /// The slave node of the cone [default: the one with the largest force]
+    #[arg(long, value_name = "NODE")]
+    node: Option<String>,
+    /// The monitor of the chart [default: the first that moves]
+    #[arg(long, value_name = "MONITOR")]
+    monitor: Option<String>,
     /// Overwrites an existing file
     #[arg(long)]
     force: bool,
@@ -73,6 +90,19 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
             kind.extension
         );
         return Err(usage(message));
+    }
+    let of_pictures = [
+        ("--only", args.only.is_some()),
+        ("--size", args.size.is_some()),
+        ("--font", args.font.is_some()),
+        ("--node", args.node.is_some()),
+        ("--monitor", args.monitor.is_some()),
+    ];
+    let given = of_pictures.into_iter().find(|(_, given)| *given);
+    if let (Some((option, _)), false) = (given, ["svg", "png"].contains(&kind.extension)) {
+        return Err(usage(format!(
+            "{option} is for pictures only: -o FILE.svg or FILE.png"
+        )));
     }
     match kind.extension {
         "svg" | "png" => pen::ready().map_err(|e| usage(e.to_string()))?,
@@ -99,6 +129,48 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         notify(&format!("wrote {}", name.display()));
     }
     Ok(Exit::Good)
+}
+
+/// Reads `1920x1080`.
+fn size(text: &str) -> Result<(u32, u32), String> {
+    let side = |text: &str| text.parse().ok().filter(|side| (100..=8000).contains(side));
+    let sides = text.split_once('x').map(|(w, h)| (side(w), side(h)));
+    match sides {
+        Some((Some(width), Some(height))) => Ok((width, height)),
+        _ => Err("a size has the form 1920x1080, with 100 to 8000 pixels per side".into()),
+    }
+}
+
+/// Reads the height of a text.
+fn font(text: &str) -> Result<f64, String> {
+    let size = text
+        .parse()
+        .ok()
+        .filter(|size: &f64| (4.0..=200.0).contains(size));
+    size.ok_or_else(|| "a font has 4 to 200 pixels".into())
+}
+
+/// What a picture of a model contains.
+fn picture(args: &Args, model: &Model) -> Result<PictureRequest, Error> {
+    let find = |what: &str, name: &Option<String>, names: Vec<&str>| match name {
+        None => Ok(None),
+        Some(name) => match names.iter().position(|known| known == name) {
+            None => Err(Error::Usage(format!(
+                "unknown {what} '{name}'; known: {}",
+                shown::cut(&names.join(", "), 200)
+            ))),
+            found => Ok(found),
+        },
+    };
+    let slaves = (0..model.contacts.len()).map(|slave| names::slave(model, slave));
+    let monitors = model.monitors.iter().map(|monitor| monitor.name.as_str());
+    Ok(PictureRequest {
+        only: args.only.as_deref().and_then(PicturePart::of_word),
+        size: args.size,
+        font: args.font,
+        node: find("slave node", &args.node, slaves.collect())?,
+        monitor: find("monitor", &args.monitor, monitors.collect())?,
+    })
 }
 
 /// The kind of the input: journal, snapshot, or otherwise a scene.
@@ -183,18 +255,37 @@ fn open(args: &Args) -> Result<Course, Error> {
 struct RunHistory {
     strips: Vec<Strip>,
     last_major: State,
+    /// The last minor iterations, oldest first, if a picture shows them.
+    events: Vec<Arc<Event>>,
+    /// Load factor and monitors at the accepted increments, if a picture shows them.
+    accepted: Vec<(f64, Vec<f64>)>,
+    only: Option<PicturePart>,
 }
 
 impl RunHistory {
-    fn at_start(stepper: &Stepper) -> RunHistory {
+    fn at_start(stepper: &Stepper, only: Option<PicturePart>) -> RunHistory {
         let state = stepper.state();
         RunHistory {
             strips: vec![Strip::new(stepper.model(), state, None, None, 0.0)],
             last_major: state.clone(),
+            events: Vec::new(),
+            accepted: Vec::new(),
+            only,
         }
     }
 
-    fn see(&mut self, stepper: &Stepper) {
+    fn see(&mut self, stepper: &mut Stepper) {
+        if self.only == Some(PicturePart::Cone) {
+            self.events.push(Arc::new(stepper.event().clone()));
+            let more = self.events.len().saturating_sub(trail::LONGEST);
+            self.events.drain(..more);
+        }
+        let accepts = matches!(stepper.event().outcome, Outcome::Increment { .. });
+        if self.only == Some(PicturePart::Chart) && accepts {
+            let mut monitors = Vec::new();
+            stepper.monitors(&mut monitors);
+            self.accepted.push((stepper.event().load_factor, monitors));
+        }
         let (state, event) = (stepper.state(), stepper.event());
         let strip = Strip::new(stepper.model(), state, Some(event), self.strips.last(), 0.0);
         self.strips.push(strip);
@@ -223,7 +314,8 @@ fn state(
     let course = open(args)?;
     let scene = &course.scene;
     let mut stepper = solver(Arc::new(scene.model.clone()));
-    let mut seen = RunHistory::at_start(&stepper);
+    let picture = picture(args, &scene.model)?;
+    let mut seen = RunHistory::at_start(&stepper, picture.only);
     // The scene file itself needs no solve.
     let solves = kind.extension != "ron" || args.frozen;
     let ended = match solves {
@@ -248,6 +340,9 @@ fn state(
         last_major: Some(&seen.last_major),
         ended,
         frozen: args.frozen,
+        picture: &picture,
+        events: &seen.events,
+        accepted: &seen.accepted,
     };
     match kind.made(&shown, &mut stepper) {
         None => Ok(Err(Exit::Bad)),

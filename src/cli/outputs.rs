@@ -118,7 +118,7 @@ impl Outputs {
                 files.push(written(output, svg.as_bytes())?);
             }
             if let Some(output) = self.png {
-                files.push(written(output, &sheet.png().map_err(Error::usage)?)?);
+                files.push(written(output, &sheet.png(2.0).map_err(Error::usage)?)?);
             }
         }
         if let Some(mut sink) = self.csv {

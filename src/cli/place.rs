@@ -98,7 +98,7 @@ pub fn seek<T: Solver + ?Sized>(
     solver: &mut T,
     at: At,
     interrupt: &Interrupt,
-    see: &mut dyn FnMut(&T),
+    see: &mut dyn FnMut(&mut T),
 ) -> Result<u64, SeekFailure> {
     let mut steps = 0;
     let end = drive(solver, Until::end(), |solver| {

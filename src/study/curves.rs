@@ -110,6 +110,7 @@ impl CurveChart {
         let y = bounds(&self.y, all().map(|p| p.1));
         let part = |v: f64, (low, high): (f64, f64)| (v - low) / (high - low);
         let axes = Axes {
+            name: MARGIN,
             left: LEFT,
             top,
             size: PLOT,

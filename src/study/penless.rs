@@ -29,6 +29,6 @@ pub fn svg(_: &[Shape], _: (f64, f64)) -> Result<String, PlotError> {
 ///
 /// # Errors
 /// Always.
-pub fn png(_: &[Shape], _: (f64, f64)) -> Result<Vec<u8>, PlotError> {
+pub fn png(_: &[Shape], _: (f64, f64), _: f64) -> Result<Vec<u8>, PlotError> {
     Err(PlotError::NotBuilt)
 }

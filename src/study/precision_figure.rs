@@ -71,6 +71,7 @@ fn draw(sheet: &mut Sheet, chart: &Precision) -> Result<(), PlotError> {
         x: LogAxis::new(chart.points.iter().map(|p| chart.cost.of(p))),
         y: LogAxis::new(errors.map(|e| e.max(ROUND_OFF)).chain(chart.target)),
         axes: Axes {
+            name: MARGIN,
             left: LEFT,
             top,
             size: PLOT,

@@ -53,6 +53,8 @@ pub struct Axes {
     pub top: f64,
     /// Width and height.
     pub size: (f64, f64),
+    /// Left edge of the vertical axis's name.
+    pub name: f64,
 }
 
 impl Axes {
@@ -89,7 +91,7 @@ impl Axes {
         let (middle, bottom) = self.at(0.5, 0.0);
         let below = (middle, bottom + 2.4 * LABEL);
         sheet.text(below, x.0, LABEL, BLACK, Anchor::Middle);
-        sheet.upright((MARGIN, self.at(0.0, 0.5).1), y.0, LABEL);
+        sheet.upright((self.name, self.at(0.0, 0.5).1), y.0, LABEL);
     }
 }
 
@@ -309,12 +311,37 @@ impl Sheet {
         pen::svg(&self.shapes, self.size())
     }
 
-    /// The drawing as PNG, with two pixels per unit of length.
+    /// The drawing as PNG, with this many pixels per unit of length.
     ///
     /// # Errors
     /// If it cannot be drawn.
-    pub fn png(&self) -> Result<Vec<u8>, PlotError> {
-        pen::png(&self.shapes, self.size())
+    pub fn png(&self, pixels: f64) -> Result<Vec<u8>, PlotError> {
+        pen::png(&self.shapes, self.size(), pixels)
+    }
+
+    /// The drawing with all lengths multiplied by a factor.
+    pub fn scaled(mut self, factor: f64) -> Sheet {
+        let point = |at: &mut (f64, f64)| *at = (factor * at.0, factor * at.1);
+        for shape in &mut self.shapes {
+            match shape {
+                Shape::Text { at, size, .. } => {
+                    point(at);
+                    *size *= factor;
+                }
+                Shape::Line { points, width, .. } => {
+                    points.iter_mut().for_each(point);
+                    *width *= factor;
+                }
+                Shape::Fill { corners, .. } => corners.iter_mut().for_each(point),
+            }
+        }
+        let height = factor * (self.height + MARGIN) - MARGIN;
+        let width = factor * self.width;
+        Sheet {
+            width,
+            height,
+            ..self
+        }
     }
 
     fn size(&self) -> (f64, f64) {

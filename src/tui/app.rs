@@ -152,6 +152,8 @@ pub struct App {
     pub log_counts: LogCounts,
     /// Pan and zoom of the shape.
     pub camera: Camera,
+    /// The first of the pictures of the contact, counted on without end.
+    pub turned: usize,
     /// Sort key of the table.
     pub sort: Sort,
     /// Whether the sort order is reversed.
@@ -159,7 +161,7 @@ pub struct App {
     /// Which nodes the table shows.
     pub filter: Filter,
     /// Monitor of the load-displacement curve.
-    pub monitor: usize,
+    pub monitor: Option<usize>,
     /// The selected consistent state in the diagnosis, from 0.
     pub answer: usize,
     /// The selected row of the branch tree, from 0.
@@ -218,10 +220,11 @@ impl App {
             notice: None,
             log_counts: LogCounts::default(),
             camera: Camera::ALL,
+            turned: 0,
             sort: Sort::Scene,
             backward: false,
             filter: Filter::All,
-            monitor: 0,
+            monitor: None,
             answer: 0,
             branch: 0,
             remedy: 0,
@@ -267,7 +270,7 @@ impl App {
     pub fn opened(&mut self) {
         self.overlay = Overlay::None;
         self.selected = 0;
-        self.monitor = 0;
+        self.monitor = None;
         (self.answer, self.branch, self.remedy, self.scroll) = (0, 0, 0, 0);
         self.camera = Camera::ALL;
         (self.notice, self.log_counts) = (None, LogCounts::default());
@@ -514,7 +517,14 @@ impl App {
             Ui::Apply(number) => return self.apply(number, view),
             Ui::Enlarge => self.camera = self.camera.zoomed(1.25),
             Ui::Shrink => self.camera = self.camera.zoomed(0.8),
-            Ui::Fit => self.camera = Camera::ALL,
+            Ui::Fit => {
+                self.camera = Camera {
+                    magnify: self.camera.magnify,
+                    ..Camera::ALL
+                }
+            }
+            Ui::Magnify(None) => self.camera = self.camera.magnified_next(),
+            Ui::Magnify(factor) => self.camera.magnify = factor,
             Ui::Sort(sort) => self.sort = sort.unwrap_or(next(&Sort::ALL, self.sort)),
             Ui::SortBackward => self.backward = !self.backward,
             Ui::Filter(filter) => self.filter = filter.unwrap_or(next(&Filter::ALL, self.filter)),

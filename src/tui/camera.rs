@@ -1,4 +1,7 @@
-//! Pan and zoom of the shape.
+//! Pan and zoom of the shape, and the magnification of its displacements.
+
+use crate::view::View;
+use stickslip_debugger::explain::outline;
 
 /// Pan and zoom.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -7,6 +10,8 @@ pub struct Camera {
     pub zoom: f64,
     /// Offset of the centre, as a fraction of the extent at zoom 1.
     pub pan: [f64; 2],
+    /// Magnification of displacements; `None` chooses it.
+    pub magnify: Option<f64>,
 }
 
 impl Camera {
@@ -14,7 +19,29 @@ impl Camera {
     pub const ALL: Camera = Camera {
         zoom: 1.0,
         pan: [0.0; 2],
+        magnify: None,
     };
+
+    /// The magnification of displacements: the chosen one, or a round number that makes the largest displacement of the shown and
+    /// of the last state visible.
+    pub fn magnified(&self, view: &View) -> f64 {
+        self.magnify.unwrap_or_else(|| {
+            let last = view.frames.last().unwrap_or(view.frame());
+            let shown = [&view.frame().state, &last.state];
+            outline::magnification(view.model, shown.into_iter().map(|state| &state.u[..]))
+        })
+    }
+
+    /// The next magnification: automatic, to scale, ×10, ×100.
+    pub fn magnified_next(self) -> Camera {
+        let magnify = match self.magnify {
+            None => Some(1.0),
+            Some(1.0) => Some(10.0),
+            Some(10.0) => Some(100.0),
+            Some(_) => None,
+        };
+        Camera { magnify, ..self }
+    }
 
     /// Zooms by a factor.
     pub fn zoomed(self, factor: f64) -> Camera {

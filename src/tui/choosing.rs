@@ -21,12 +21,12 @@ const LOOKED_AT: usize = 5000;
 /// Groups in display order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Group {
+    /// Guided lessons.
+    Lessons,
     /// The paper's problems and closed-form solutions that verify its theory.
     Paper,
     /// Scenes whose iterations cycle, jump, or have no solution.
     Oscillations,
-    /// Guided lessons.
-    Lessons,
     /// Scenes with published reference solutions.
     Benchmarks,
     /// Scenes in the working directory.
@@ -35,9 +35,9 @@ pub enum Group {
 
 stickslip_core::words! {
     Group, title:
+    Lessons "Lessons",
     Paper "The paper",
     Oscillations "Oscillations",
-    Lessons "Lessons",
     Benchmarks "Benchmarks",
     Files "Your files in this folder",
 }

@@ -14,8 +14,11 @@ pub struct Column {
     pub x: u16,
 }
 
+/// Maximum width of an iteration.
+const WIDEST: usize = 4;
+
 /// The iterations around the cursor that fit between `left` and the right edge, with the cursor in the middle if there are enough
-/// on both sides. A rule before an iteration takes one more column.
+/// on both sides. A rule before an iteration takes one more column. Iterations that leave room are set apart.
 pub fn around(
     count: usize,
     cursor: usize,
@@ -23,7 +26,12 @@ pub fn around(
     room: usize,
     ruled: impl Fn(usize) -> bool,
 ) -> Vec<Column> {
-    let width = |at: usize| 1 + usize::from(ruled(at));
+    let (few, rules) = match count <= room {
+        true => (count.max(1), (0..count).filter(|at| ruled(*at)).count()),
+        false => (room.max(1), 0),
+    };
+    let pitch = (room.saturating_sub(rules) / few).clamp(1, WIDEST);
+    let width = |at: usize| pitch + usize::from(ruled(at));
     let (mut first, mut after) = (cursor, cursor + 1);
     let mut used = width(cursor);
     let back = |first: &mut usize, used: &mut usize, most: usize| {
@@ -41,9 +49,9 @@ pub fn around(
     let mut x = left;
     let mut columns = Vec::with_capacity(after - first);
     for at in first..after {
-        x += width(at) as u16 - 1;
+        x += u16::from(ruled(at));
         columns.push(Column { at, x });
-        x += 1;
+        x += pitch as u16;
     }
     columns
 }

@@ -8,9 +8,6 @@ use ratatui::layout::Rect;
 
 /// Width of the axis with its labels.
 pub const LABELS: u16 = 7;
-/// Maximum number of columns between two iterations.
-const SPREAD: usize = 14;
-
 /// An iteration.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point {
@@ -93,7 +90,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, points: &[Point], theme: &Theme) {
     let room = (field.width as usize / 2).max(1);
     let shown = &points[points.len().saturating_sub(room)..];
     let scale = Scale::new(shown, field.height);
-    let spread = (field.width as usize / shown.len().max(6)).clamp(2, SPREAD);
+    let spread = (field.width as usize / shown.len().max(1)).max(2);
     let column = |index: usize| index * spread + spread / 2;
 
     // Lines and marks are drawn over the dim background.

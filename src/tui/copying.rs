@@ -63,7 +63,7 @@ fn selected_text(app: &App, view: &View) -> Result<NamedText, String> {
         return Err("hidden until you predict what follows".into());
     }
     match app.panes.focus {
-        Pane::Nodes | Pane::Shape | Pane::Lesson => row(app, view),
+        Pane::Nodes | Pane::Shape | Pane::Contact | Pane::Lesson => row(app, view),
         Pane::Decision => value(WatchQuantity::Margin, app, view),
         Pane::Residual => value(WatchQuantity::Residual, app, view),
         Pane::Curve => monitored(app, view),
@@ -129,11 +129,12 @@ fn value(quantity: WatchQuantity, app: &App, view: &View) -> Result<NamedText, S
 
 /// The load and the shown monitor at the last accepted increment.
 fn monitored(app: &App, view: &View) -> Result<NamedText, String> {
-    let monitor = view.model.monitors.get(app.monitor);
+    let at = app.watched(view);
+    let monitor = view.model.monitors.get(at);
     let monitor = monitor.ok_or("this scene has no monitors")?;
     let frames = &view.frames[..=view.cursor];
     let frame = frames.iter().rev().find(|frame| frame.monitors.is_some());
-    let value = frame.and_then(|frame| frame.monitors.as_ref()?.get(app.monitor).copied());
+    let value = frame.and_then(|frame| frame.monitors.as_ref()?.get(at).copied());
     let (Some(frame), Some(value)) = (frame, value) else {
         return Err("no increment accepted yet".into());
     };

@@ -5,10 +5,11 @@
 //!   right the shape.
 //! - Large (200x60): two columns above the timeline.
 //!
+//! The table gets the rows that it needs first; where there are few, the decision shrinks to the row of Table 2 that applies.
+//!
 //! The status is always at the top, the message and the footer at the bottom; below 80x24 there is one pane at a time. The length
 //! of a message does not change the layout, so that rows stay in place while stepping: a long outcome or message is drawn over the
 //! panes' edges.
-//! steps: a long outcome or message is written over the panes' edges.
 
 use ratatui::layout::{Constraint, Layout, Rect};
 
@@ -33,13 +34,30 @@ pub enum Pane {
     Branches,
     /// The remedies that were tried, with their cost.
     Remedies,
+    /// The contact of the selected node: its force in the friction cone, T_max by iteration, and who pushed it.
+    Contact,
     /// The current lesson; never has the focus.
     Lesson,
 }
 
+stickslip_core::words! {
+    Pane, title:
+    Nodes "slave nodes",
+    Decision "decision",
+    Residual "residual",
+    Shape "shape",
+    Curve "load",
+    Timeline "timeline",
+    Diagnosis "diagnosis",
+    Branches "branches",
+    Remedies "remedies",
+    Contact "contact",
+    Lesson "lesson",
+}
+
 impl Pane {
     /// The panes in Tab order.
-    pub const ALL: [Pane; 9] = [
+    pub const ALL: [Pane; 10] = [
         Pane::Nodes,
         Pane::Decision,
         Pane::Residual,
@@ -49,7 +67,24 @@ impl Pane {
         Pane::Diagnosis,
         Pane::Branches,
         Pane::Remedies,
+        Pane::Contact,
     ];
+
+    /// Its number in Tab order, from 1.
+    pub fn page(self) -> usize {
+        Pane::ALL
+            .iter()
+            .position(|pane| *pane == self)
+            .map_or(1, |at| at + 1)
+    }
+
+    /// Minimum height of the pane below a table that needs rows.
+    fn least(self) -> u16 {
+        match self {
+            Pane::Decision | Pane::Nodes => SHORT_DECISION,
+            _ => PAGE_BELOW,
+        }
+    }
 
     /// Whether the pane shares one place with others on medium screens.
     pub fn takes_turns(self) -> bool {
@@ -84,7 +119,7 @@ impl Default for ShownPanes {
 impl ShownPanes {
     /// Focuses the pane that is `places` steps further in Tab order.
     pub(super) fn turn(&mut self, places: usize) {
-        self.look_at(Pane::ALL[(self.focus as usize + places) % Pane::ALL.len()]);
+        self.look_at(Pane::ALL[(self.focus.page() - 1 + places) % Pane::ALL.len()]);
     }
 
     /// Focuses a pane and makes it visible.
@@ -135,11 +170,20 @@ pub struct Places {
 
 /// Rows of the table besides nodes: two for the border, one for the headings.
 const TABLE_FRAME: u16 = 3;
-/// Minimum height of the complete decision, with border and one line per inequality.
+/// Height of a decision that shows only the row of Table 2 that applies, of a complete one with a line per inequality, and of one
+/// with rules between the rows.
+const SHORT_DECISION: u16 = 8;
 const DECISION: u16 = 12;
 const TALL_DECISION: u16 = 17;
-/// Width of a lesson in a separate column.
+/// Minimum height of another pane below the table on a small screen, and of a chart below the decision.
+const PAGE_BELOW: u16 = 11;
+const CHART: u16 = 7;
+/// Width of a lesson in a separate column, on a large and on a medium screen.
 const LESSON: u16 = 62;
+const NARROW_LESSON: u16 = 44;
+/// Width of a decision with explanations, and minimum width for the contact next to it.
+const EXPLAINED: u16 = 116;
+const BOTH: u16 = 160;
 /// Width at which most outcomes fit into one line.
 const WIDE: u16 = 110;
 /// Minimum height for outcomes of two lines.
@@ -175,7 +219,7 @@ pub fn places(area: Rect, choice: &Choice) -> Places {
     .map(Constraint::Length);
     let [status, body, message, footer] = Layout::vertical(rows).areas(area);
     let panes = match () {
-        _ if choice.panes.zoomed && choice.lesson == 0 => vec![(choice.panes.focus, body)],
+        _ if choice.panes.zoomed && choice.lesson == 0 => zoomed(body, choice),
         _ if choice.panes.zoomed => zoomed_with_lesson(body, choice),
         _ if choice.lesson > 0 => with_lesson(body, choice),
         _ if !choice.has_shape && area.width >= 110 && body.height >= 30 => shapeless(body, choice),
@@ -219,7 +263,8 @@ fn small(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
     if body.height < DECISION + TABLE_FRAME + 1 || body.width < 40 {
         return vec![(choice.panes.focus, body)];
     }
-    let [upper, lower] = top(body, table(choice, body.height - DECISION));
+    let least = choice.panes.page.least();
+    let [upper, lower] = top(body, table(choice, body.height - least));
     vec![(Pane::Nodes, upper), (choice.panes.page, lower)]
 }
 
@@ -233,14 +278,22 @@ fn with_lesson(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
         return panes;
     }
     if body.width >= 110 && body.height >= 30 {
-        let mut panes = medium(body, choice);
-        let chart = panes.remove(2);
-        panes.push((Pane::Lesson, chart.1));
+        let [left, right] = left(body, body.width - NARROW_LESSON);
+        let most = left.height - SHORT_DECISION - PAGE_BELOW;
+        let [nodes, below] = top(left, table(choice, most));
+        let decision = (below.height / 2).clamp(SHORT_DECISION, DECISION + 1);
+        let [decision, shape] = top(below, decision);
         // A chart with the focus replaces the shape.
-        if choice.panes.focus == choice.panes.chart {
-            panes[2].0 = choice.panes.chart;
-        }
-        return panes;
+        let other = match choice.panes.focus == choice.panes.chart {
+            true => choice.panes.chart,
+            false => Pane::Shape,
+        };
+        return vec![
+            (Pane::Nodes, nodes),
+            (Pane::Decision, decision),
+            (other, shape),
+            (Pane::Lesson, right),
+        ];
     }
     let least = table(choice, TABLE_FRAME + 1);
     if body.height < least + PAGE {
@@ -265,10 +318,24 @@ fn with_lesson(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
     panes
 }
 
+/// The focused pane alone; on a wide screen, the contact is next to the decision that it explains.
+fn zoomed(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
+    if choice.panes.focus != Pane::Decision || body.width < BOTH || !choice.has_shape {
+        return vec![(choice.panes.focus, body)];
+    }
+    let [left, right] = left(body, EXPLAINED.max(body.width * 3 / 5));
+    vec![(Pane::Decision, left), (Pane::Contact, right)]
+}
+
 /// The focused pane with the lesson next to it or below it, since the lesson says what to do there.
 fn zoomed_with_lesson(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
-    if body.width >= 110 + LESSON {
-        let [left, right] = left(body, body.width - LESSON);
+    if body.width >= 110 {
+        let lesson = if body.width >= 110 + LESSON {
+            LESSON
+        } else {
+            NARROW_LESSON
+        };
+        let [left, right] = left(body, body.width - lesson);
         return vec![(choice.panes.focus, left), (Pane::Lesson, right)];
     }
     if body.height < LEAST_LESSON + PAGE {
@@ -304,16 +371,21 @@ fn shapeless(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
 }
 
 fn medium(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
-    let most = body.height - TALL_DECISION - 7;
+    let most = body.height - SHORT_DECISION - CHART;
     let [upper, lower] = top(body, table(choice, most));
     let [left, right] = left(lower, (body.width / 2).clamp(66, 76));
-    let [decision, residual] = top(left, TALL_DECISION);
+    let [decision, residual] = top(left, decision_rows(lower.height));
     vec![
         (Pane::Nodes, upper),
         (Pane::Decision, decision),
         (choice.panes.chart, residual),
         (Pane::Shape, right),
     ]
+}
+
+/// Rows of the decision above a chart.
+fn decision_rows(both: u16) -> u16 {
+    both.saturating_sub(CHART).min(TALL_DECISION)
 }
 
 fn large(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
@@ -323,10 +395,10 @@ fn large(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
     };
     let [body, timeline] = top(body, body.height - timeline);
     let [left, right] = left(body, (body.width * 11 / 20).clamp(104, 130));
-    let most = left.height - TALL_DECISION - 7;
+    let table = table(choice, left.height - SHORT_DECISION - CHART);
     let rows = [
-        Constraint::Length(table(choice, most)),
-        Constraint::Length(TALL_DECISION),
+        Constraint::Length(table),
+        Constraint::Length(decision_rows(left.height - table)),
         Constraint::Min(0),
     ];
     let [nodes, decision, residual] = Layout::vertical(rows).areas(left);
@@ -393,8 +465,21 @@ mod tests {
             places.panes.iter().map(|p| p.0).collect::<Vec<_>>(),
             [Pane::Nodes, Pane::Decision]
         );
-        assert_eq!(places.panes[1].1.height, DECISION);
+        assert_eq!(places.panes[1].1.height, SHORT_DECISION);
         assert!(places.paged);
+    }
+
+    #[test]
+    fn the_table_gets_the_rows_that_it_needs_first() {
+        for (width, height, slaves, rows) in [
+            (120, 36, 20, 12),
+            (120, 36, 8, 8),
+            (80, 24, 73, 7),
+            (200, 60, 20, 20),
+        ] {
+            let table = at(width, height, slaves).panes[0].1.height - TABLE_FRAME;
+            assert_eq!(table, rows, "{width}x{height}, {slaves} nodes");
+        }
     }
 
     #[test]

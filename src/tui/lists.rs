@@ -16,9 +16,10 @@ impl App {
     /// Shows the curve of a monitor, or of the next one.
     pub(super) fn watch(&mut self, monitor: Option<usize>, view: Option<&View>) {
         let monitors = view.map_or(&[][..], |view| &view.model.monitors);
-        let next = (self.monitor + 1) % monitors.len().max(1);
-        self.monitor = monitor.unwrap_or(next);
-        match monitors.get(self.monitor) {
+        let shown = view.map_or(0, |view| self.watched(view));
+        let at = monitor.unwrap_or((shown + 1) % monitors.len().max(1));
+        self.monitor = Some(at);
+        match monitors.get(at) {
             Some(monitor) => self.say(format!("load over {}", monitor.name)),
             None => self.complain("this scene has no monitors"),
         }
@@ -29,6 +30,7 @@ impl App {
         match page {
             Page::Timeline => self.panes.zoom(Pane::Timeline),
             Page::Branches => self.panes.zoom(Pane::Branches),
+            Page::Contact => self.panes.zoom(Pane::Contact),
             Page::Diagnosis => return self.ask_page(Pane::Diagnosis, view),
             Page::Remedies => return self.ask_page(Pane::Remedies, view),
         }
@@ -257,6 +259,8 @@ impl App {
             (Pane::Shape, Step::Right) => self.camera = self.camera.panned(1.0, 0.0),
             (Pane::Shape, Step::Up) => self.camera = self.camera.panned(0.0, 1.0),
             (Pane::Shape, Step::Down) => self.camera = self.camera.panned(0.0, -1.0),
+            (Pane::Contact, Step::Left) => self.turned = self.turned.wrapping_sub(1),
+            (Pane::Contact, Step::Right) => self.turned = self.turned.wrapping_add(1),
             (_, Step::Up) => self.selected = to(-1),
             (_, Step::Down) => self.selected = to(1),
             (_, Step::PageUp) => self.selected = to(-PAGE),

@@ -123,7 +123,7 @@ impl App {
             (Pane::Timeline, _) if view.running || self.ahead.is_any() => return None,
             (Pane::Timeline, true) => Step::Left,
             (Pane::Timeline, false) => Step::Right,
-            (Pane::Residual | Pane::Curve | Pane::Lesson, _) => return None,
+            (Pane::Residual | Pane::Curve | Pane::Lesson | Pane::Contact, _) => return None,
             (_, true) => Step::Up,
             (_, false) => Step::Down,
         };

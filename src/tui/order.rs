@@ -6,12 +6,34 @@ use stickslip_core::contact::table2::Rule;
 use stickslip_core::model::Mode;
 use stickslip_debugger::action::{Filter, Sort};
 use stickslip_debugger::explain::tested::Dimension;
+use stickslip_debugger::history::frame;
 
 impl App {
     /// The selected slave node; 0 if there are none.
     pub fn slave(&self, view: &View) -> usize {
         self.selected
             .min(view.model.contacts.len().saturating_sub(1))
+    }
+
+    /// The monitor of the load curve: the chosen one, or the first that moves by more than round-off.
+    pub fn watched(&self, view: &View) -> usize {
+        let monitors = &view.model.monitors;
+        let moves = |at: &usize| {
+            let values = frame::curve(view.frames, *at);
+            let values = values
+                .into_iter()
+                .map(|[value, _]| value)
+                .filter(|x| x.is_finite());
+            let (low, high) = values.fold((0.0, 0.0), |(low, high): (f64, f64), x| {
+                (low.min(x), high.max(x))
+            });
+            high - low > view.noise(&monitors[*at])
+        };
+        let last = monitors.len().saturating_sub(1);
+        match self.monitor {
+            Some(monitor) => monitor.min(last),
+            None => (0..monitors.len()).find(moves).unwrap_or(0),
+        }
     }
 
     /// The mode of a slave node; the one before this iteration if the next one is hidden.
@@ -31,6 +53,10 @@ impl App {
             Filter::All => true,
             Filter::Active => next(slave) != Mode::Free || view.mode_before(slave) != next(slave),
             Filter::Surface => surface(slave, view) == surface(selected, view),
+            Filter::Changing => view.mode_before(slave) != next(slave),
+            Filter::Free => next(slave) == Mode::Free,
+            Filter::Sliding => next(slave) == Mode::Sliding,
+            Filter::Fixed => next(slave) == Mode::Fixed,
         };
         let mut order: Vec<usize> = (0..count)
             .filter(|&slave| slave == selected || wanted(slave))
@@ -39,6 +65,13 @@ impl App {
             Sort::Scene => Some(slave as f64),
             Sort::Margin => margin(slave, view),
             Sort::Gap => gap(slave, view),
+            Sort::Change => Some(match view.mode_before(slave) != next(slave) {
+                true => 0.0,
+                false if view.t_max_moves(slave) => 1.0,
+                false => 2.0,
+            }),
+            Sort::Ratio => distance_to_limit(slave, view),
+            Sort::Force => force(slave, view).map(|force| -force),
         };
         // Nodes without a value come last in either direction.
         let mut keyed: Vec<(Option<f64>, usize)> =
@@ -76,4 +109,19 @@ fn gap(slave: usize, view: &View) -> Option<f64> {
     let record = view.record(slave)?;
     let known = record.decision.rule != Rule::OffSurface && !record.gap.is_nan();
     known.then_some(record.gap)
+}
+
+fn force(slave: usize, view: &View) -> Option<f64> {
+    let record = view.record(slave)?;
+    let force = view.round_off().force(record.f_n.hypot(record.f_t));
+    (force > 0.0).then_some(force)
+}
+
+/// How far |F_t|/T_max is from 1; `None` without a contact force.
+fn distance_to_limit(slave: usize, view: &View) -> Option<f64> {
+    let record = view
+        .record(slave)
+        .filter(|_| force(slave, view).is_some())?;
+    let ratio = (record.f_t / record.t_max).abs();
+    (!ratio.is_nan()).then_some((1.0 - ratio).abs())
 }

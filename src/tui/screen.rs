@@ -6,6 +6,7 @@ use crate::layout::{self, Choice, Pane, Places};
 use crate::paint;
 use crate::panes::branches;
 use crate::panes::chooser;
+use crate::panes::contact;
 use crate::panes::curve;
 use crate::panes::decision;
 use crate::panes::diagnosis;
@@ -129,6 +130,7 @@ fn draw_pane(pane: Pane, buffer: &mut Buffer, area: Rect, app: &App, view: &View
         Pane::Decision => decision::draw(buffer, area, app, view),
         Pane::Residual => residual::draw(buffer, area, app, view),
         Pane::Shape => shape::draw(buffer, area, app, view),
+        Pane::Contact => contact::draw(buffer, area, app, view),
         Pane::Curve => curve::draw(buffer, area, app, view),
         Pane::Lesson => lesson::draw(buffer, area, app),
         Pane::Timeline => timeline::draw(buffer, area, app, view),

@@ -1,8 +1,9 @@
 //! Colours and text styles. Letters, words and glyphs carry the meaning; colour only repeats it.
 //!
 //! Only a few of the terminal's own colours are used, so that text stays legible on light and dark terminals and projectors.
-//! Secondary text is dim, not grey, since some palettes hide grey in the background. Cyan, yellow and magenta, which colour-blind
-//! people can distinguish, mark the modes; red and green mean failure and success.
+//! Secondary text is dim, not grey, since some palettes hide grey in the background. Modes have the same hues in all themes and in
+//! pictures, which colour-blind people can distinguish: none for free, orange for sliding, blue for fixed. Red and green mean failure
+//! and success.
 
 use ratatui::style::{Color, Modifier, Style};
 use stickslip_core::model::Mode;
@@ -54,9 +55,6 @@ impl Theme {
         let colour = |colour| Style::new().fg(colour);
         Theme {
             warning: colour(Color::Magenta).add_modifier(Modifier::BOLD),
-            free: colour(Color::Blue),
-            sliding: colour(Color::Magenta),
-            fixed: Style::new().add_modifier(Modifier::BOLD),
             ..Theme::colour()
         }
     }
@@ -70,9 +68,9 @@ impl Theme {
             good: colour(Color::LightGreen),
             bad: colour(Color::LightRed).add_modifier(Modifier::REVERSED),
             warning: colour(Color::LightYellow).add_modifier(Modifier::UNDERLINED),
-            free: colour(Color::LightCyan),
-            sliding: colour(Color::LightYellow),
-            fixed: colour(Color::LightMagenta),
+            free: Style::new(),
+            sliding: colour(Color::Indexed(214)),
+            fixed: colour(Color::Indexed(39)),
             ..Theme::mono()
         }
     }
@@ -85,9 +83,8 @@ impl Theme {
             good: colour(Color::Green),
             bad: colour(Color::Red).add_modifier(Modifier::BOLD),
             warning: colour(Color::Yellow).add_modifier(Modifier::BOLD),
-            free: colour(Color::Cyan),
-            sliding: colour(Color::Yellow),
-            fixed: colour(Color::Magenta),
+            sliding: colour(Color::Indexed(172)),
+            fixed: colour(Color::Indexed(32)),
             ..mono
         }
     }

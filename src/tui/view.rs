@@ -3,12 +3,13 @@
 use stickslip_core::contact::record::{ContactRecord, Forced};
 use stickslip_core::fem::deformation::PointDeformation;
 use stickslip_core::linear::norms::Norms;
-use stickslip_core::model::{Mode, Model};
+use stickslip_core::model::{Mode, Model, Monitor, Watched};
 use stickslip_core::step::event::{Event, Outcome, Position};
 use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::solver::Offers;
 use stickslip_debugger::action::Context;
 use stickslip_debugger::explain::influence::NodePush;
+use stickslip_debugger::explain::outline;
 use stickslip_debugger::explain::page::DiagnosisPage;
 use stickslip_debugger::explain::remedies::Trial;
 use stickslip_debugger::explain::round_off::RoundOff;
@@ -265,9 +266,19 @@ impl<'a> View<'a> {
         record.is_some_and(|record| record.differs())
     }
 
-    /// Current position of a node: reference position plus displacement.
-    pub fn place(&self, node: usize) -> [f64; 2] {
-        self.model.place(&self.frame().state.u, node)
+    /// The range below which a monitor's values are round-off.
+    pub fn noise(&self, monitor: &Monitor) -> f64 {
+        let round_off = self.round_off();
+        match monitor.of {
+            Watched::Displacement { .. } => round_off.length,
+            Watched::Contact { .. } | Watched::Reaction { .. } => round_off.force,
+            _ => 0.0,
+        }
+    }
+
+    /// Position of a node with its displacement magnified.
+    pub fn magnified(&self, node: usize, factor: f64) -> [f64; 2] {
+        outline::magnified(self.model, &self.frame().state.u, node, factor)
     }
 }
 

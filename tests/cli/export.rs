@@ -309,3 +309,69 @@ fn a_film_is_an_asciicast_whose_times_rise_and_which_names_what_was_done() {
     assert_eq!(marks, entries);
     assert!(cast.contains("Forced beam.5 to sliding"), "{cast}");
 }
+
+#[test]
+fn a_part_of_a_picture_has_the_requested_size_and_options_of_pictures_are_refused_elsewhere() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    for (part, wanted) in [
+        ("shape", "Displacements magnified ×"),
+        ("timeline", "Modes by minor iteration"),
+        ("chart", "load factor"),
+        ("cone", "T_max found"),
+    ] {
+        let file = format!("{part}.svg");
+        let size = ["--only", part, "--size", "1280x720", "--font", "20"];
+        let scene = ["01-pinned-beam-rough-floor", "--at", "3", "-o", &file];
+        let output = exported(here, &[&scene[..], &size].concat());
+        assert_eq!(code(&output), 0, "{}", err(&output));
+        let svg = read(here, &file);
+        assert!(svg.contains("1280") && svg.contains("720"), "{svg}");
+        assert!(texts(&svg).contains(wanted), "{part}: {}", texts(&svg));
+        let table = texts(&svg).contains("slave node");
+        assert!(!table, "{part} is the only part");
+    }
+    let png = [
+        "01-pinned-beam-rough-floor",
+        "--at",
+        "1",
+        "--size",
+        "1280x720",
+        "-o",
+        "a.png",
+    ];
+    assert_eq!(code(&exported(here, &png)), 0);
+    let bytes = std::fs::read(here.join("a.png")).unwrap();
+    let side = |at: usize| u32::from_be_bytes(bytes[at..at + 4].try_into().unwrap());
+    assert_eq!((side(16), side(20)), (1280, 720));
+    for (arguments, wanted) in [
+        (
+            &[OSC, "-o", "a.ron", "--only", "cone"][..],
+            "--only is for pictures only",
+        ),
+        (
+            &[OSC, "-o", "a.svg", "--only", "moon"],
+            "possible values: shape, timeline, chart, cone",
+        ),
+        (
+            &[OSC, "-o", "a.svg", "--size", "9x9"],
+            "a size has the form 1920x1080",
+        ),
+        (
+            &[OSC, "-o", "a.svg", "--node", "tip"],
+            "unknown slave node 'tip'; known: beam.5",
+        ),
+        (
+            &[OSC, "-o", "a.svg", "--size", "400x300", "--font", "60"],
+            "use a smaller --font",
+        ),
+    ] {
+        let output = exported(here, arguments);
+        assert!(
+            err(&output).contains(wanted),
+            "{arguments:?}: {}",
+            err(&output)
+        );
+        assert_ne!(code(&output), 0);
+    }
+}

@@ -291,10 +291,10 @@ fn charts_with_little_or_nothing_or_much_in_them_are_drawn() {
         curves: Vec::new(),
         footer: vec![String::new()],
     };
-    chart.sheet().unwrap().png().unwrap();
+    chart.sheet().unwrap().png(2.0).unwrap();
     chart.curves.push(curve(String::new(), &[]));
     chart.curves.push(curve("one".into(), &[(3.0, -1e300)]));
-    chart.sheet().unwrap().png().unwrap();
+    chart.sheet().unwrap().png(2.0).unwrap();
     for k in 0..60 {
         chart
             .curves
@@ -302,7 +302,7 @@ fn charts_with_little_or_nothing_or_much_in_them_are_drawn() {
     }
     let svg = chart.sheet().unwrap().svg().unwrap();
     assert!(svg.contains("and 14 more") && !svg.contains("a & <b>"));
-    chart.sheet().unwrap().png().unwrap();
+    chart.sheet().unwrap().png(2.0).unwrap();
 }
 
 #[test]

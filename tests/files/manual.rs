@@ -459,7 +459,7 @@ fn a_page_in_the_debugger_scrolls_searches_turns_and_is_left() {
     assert!(
         page(&["help"], "")
             .text(80, 24)
-            .contains("Move through the iterations")
+            .contains("The first ten keys")
     );
 }
 

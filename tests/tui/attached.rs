@@ -240,7 +240,7 @@ fn what_is_not_offered_is_grey_everywhere_and_its_key_gives_the_reason_and_does_
     }
     assert_eq!(debugger.session.as_ref().unwrap().frames().len(), before);
     debugger.app.area = Rect::new(0, 0, 120, 40);
-    debugger.type_keys("?");
+    debugger.type_keys("? PageDown PageDown");
     // The table of the help breaks its lines.
     let help = debugger.text(120, 40).replace('┃', " ");
     let help: String = help.split_whitespace().collect::<Vec<_>>().join(" ");

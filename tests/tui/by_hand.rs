@@ -49,7 +49,7 @@ pub fn model(slaves: usize) -> Model {
         dofs: Dofs {
             first: (0..nodes.len()).map(|node| 3 * node).collect(),
             count: vec![3; nodes.len()],
-            equation: vec![None; 3 * nodes.len()],
+            equation: (0..3 * nodes.len()).map(Some).collect(),
             equations: 0,
             inner: 0,
         },

@@ -38,7 +38,10 @@ fn without_a_scene_there_is_the_chooser() {
     debugger.type_keys("Down Down");
     debugger.settle();
     let at = debugger.text(80, 24);
-    assert!(at.contains("▸ 02-two-cantilevers-rough"), "{at}");
+    assert!(at.contains("▸ 3-by-hand"), "{at}");
+    assert!(at.contains("New here? Start with the first lesson"), "{at}");
+    debugger.type_text("cantilevers-rough");
+    debugger.settle();
     debugger.type_keys("Enter");
     assert_eq!(scene_of(&debugger), Some("02-two-cantilevers-rough"));
 }

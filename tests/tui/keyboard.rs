@@ -98,7 +98,9 @@ fn help_lists_every_action_and_scrolls() {
     press(&mut app, &view, "G");
     let end = screen::text(&app, Some(&view), 80, 24);
     assert!(
-        top.contains("Move through the iterations") && end.contains("closer to switching"),
+        top.contains("The first ten keys")
+            && top.contains("slave nodes, decision, residual")
+            && end.contains("closer to switching"),
         "{end}"
     );
     assert_eq!(

@@ -31,6 +31,7 @@ mod sessions;
 mod session_files;
 // A finished CalculiX run, looked at.
 mod past;
+mod pictures;
 // A journal as a film shows the session's screens.
 mod film;
 // A solver of another's, attached; and an exchange with one that was kept.

@@ -24,7 +24,7 @@ fn the_fired_cell_is_lit_and_nothing_else_is() {
     let screen = render(&app, &view, 120, 40);
     let lit = find(&screen, "|F_t| > |T_max|");
     assert!(lit.modifier.contains(Modifier::REVERSED));
-    assert_eq!(lit.fg, Color::Yellow, "the colour of sliding");
+    assert_eq!(lit.fg, Color::Indexed(172), "the colour of sliding");
     let dark = find(&screen, "|F_t| < |T_max|");
     assert!(!dark.modifier.contains(Modifier::REVERSED));
     // A row that the node is not in stands back.
@@ -250,18 +250,25 @@ fn the_table_sorts_and_filters_and_the_selection_stays_on_its_node() {
     assert_eq!(listed(&app, &view), ["5", "1", "2", "4", "3"]);
     press(&mut app, &view, "< >");
     assert_eq!(listed(&app, &view), ["4", "1", "2", "3", "5"]);
-    press(&mut app, &view, "> A");
+    press(&mut app, &view, ":");
+    type_text(&mut app, &view, "sort scene");
+    press(&mut app, &view, "Enter A");
     assert_eq!(listed(&app, &view), ["1", "2", "3", "4"]);
     assert!(screen::text(&app, Some(&view), 80, 24).contains(" 2/4 active, of 5 "));
     press(&mut app, &view, "A");
     assert_eq!(listed(&app, &view), ["1", "2", "3", "4"], "one surface");
-    press(&mut app, &view, "A End A");
-    assert_eq!(
-        listed(&app, &view),
-        ["1", "2", "3", "4", "5"],
-        "the selected one is kept"
-    );
-    press(&mut app, &view, "A");
+    for (filter, nodes) in [
+        ("all", &["1", "2", "3", "4", "5"][..]),
+        ("surface", &["1", "2", "3", "4"]),
+    ] {
+        press(&mut app, &view, ":");
+        type_text(&mut app, &view, &format!("filter {filter}"));
+        press(&mut app, &view, "Enter");
+        assert_eq!(listed(&app, &view), nodes, "{filter}");
+    }
+    press(&mut app, &view, ":");
+    type_text(&mut app, &view, "filter all");
+    press(&mut app, &view, "Enter End A A");
     assert_eq!(listed(&app, &view), ["5"], "the other surface");
     press(&mut app, &view, ":");
     type_text(&mut app, &view, "filter all");

@@ -30,7 +30,7 @@ fn the_small_screen_turns_its_page() {
     let view = view(&model, &frames);
     let mut app = app();
     let mut seen = Vec::new();
-    for _ in 0..9 {
+    for _ in 0..10 {
         seen.push(screen::text(&app, Some(&view), 80, 24));
         press(&mut app, &view, "Tab");
     }
@@ -44,6 +44,7 @@ fn the_small_screen_turns_its_page() {
         " Diagnosis ",
         " Branches ",
         " Remedies ",
+        " Contact ",
     ];
     for (screen, title) in seen.iter().zip(titles) {
         assert!(
@@ -51,10 +52,10 @@ fn the_small_screen_turns_its_page() {
             "{screen}"
         );
     }
-    assert!(seen[3].contains("Tab page 4/9"));
+    assert!(seen[3].contains("Tab page 4/10"));
     assert_eq!(
         screen::text(&app, Some(&view), 80, 24)
-            .matches(" Remedies ")
+            .matches(" Contact ")
             .count(),
         1,
         "the page stays when the table has the focus"

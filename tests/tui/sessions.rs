@@ -13,6 +13,7 @@ use std::process::Stdio;
 use std::sync::Arc;
 use std::thread;
 use stickslip::scene::{Scene, builtin};
+use stickslip::teach;
 use stickslip::tui;
 use tempfile::TempDir;
 use vt100::Screen;
@@ -87,13 +88,14 @@ fn the_cycle_that_the_paper_s_rule_runs_into_is_left_by_forcing_the_tip_to_slide
 fn without_a_scene_the_built_in_ones_are_offered_and_enter_opens_one() {
     let mut session = Start::debugger(&[]).size(80, 36).go();
     session.see("Choose a scene");
-    session.type_and_see(DOWN, &format!("▸ {}", builtin::list()[1].name));
-    session.type_and_see(UP, &format!("▸ {FLOOR}"));
+    session.type_and_see(DOWN, &format!("▸ {}", teach::list()[1].name));
+    session.type_and_see(UP, &format!("▸ {}", teach::list()[0].name));
     for scene in builtin::list() {
         session.type_and_see(scene.name, &format!("Choose: {}▏", scene.name));
         session.see(&format!("▸ {}", scene.name));
         session.type_and_see(ESC, "type to find one");
     }
+    session.type_and_see(FLOOR, &format!("▸ {FLOOR}"));
     session.keys("\r");
     session.see_picture(FLOOR, "", 80, 36);
     session.quit();

@@ -144,6 +144,22 @@ impl ActionEntry {
                 let on = one_of(&words, [true, false], word)?;
                 return ui(Ui::Mouse(on));
             }
+            Verb::Magnify => {
+                let number =
+                    |word: &str| word.parse().ok().filter(|x: &f64| (1.0..=1e9).contains(x));
+                return match words[..] {
+                    [] => ui(Ui::Magnify(None)),
+                    [word] => match number(word) {
+                        None => Err(Misread::no_value(
+                            word,
+                            "factor from 1 to 1e9",
+                            self.usage(),
+                        )),
+                        factor => ui(Ui::Magnify(factor)),
+                    },
+                    _ => Err(self.misused()),
+                };
+            }
             Verb::Chart => return ui(Ui::Chart(chart_of(rest, &words)?)),
             Verb::Lesson if rest.is_empty() => return ask(Question::Lesson),
             Verb::Lesson => return ui(Ui::Lesson(rest.into())),

@@ -58,6 +58,8 @@ pub enum Ui {
     Shrink,
     /// Show the whole shape.
     Fit,
+    /// Magnify the displacements by a factor, or choose the next magnification.
+    Magnify(Option<f64>),
     /// Sort the slave nodes in this order, or in the next one.
     Sort(Option<Sort>),
     /// Reverse the sort order.
@@ -140,6 +142,8 @@ pub enum Page {
     Branches,
     /// Ways to get past a failure.
     Remedies,
+    /// The contact of the selected node.
+    Contact,
 }
 
 /// Sort order of the slave nodes.
@@ -151,6 +155,12 @@ pub enum Sort {
     Margin,
     /// Deepest penetration first.
     Gap,
+    /// Nodes that change first: their mode, then T_max.
+    Change,
+    /// Closest to the friction limit first.
+    Ratio,
+    /// Largest contact force first.
+    Force,
 }
 
 stickslip_core::words! {
@@ -158,6 +168,9 @@ stickslip_core::words! {
     Scene "scene",
     Margin "margin",
     Gap "gap",
+    Change "change",
+    Ratio "ratio",
+    Force "force",
 }
 
 /// Which slave nodes the table shows, in addition to the selected one.
@@ -169,6 +182,14 @@ pub enum Filter {
     Active,
     /// Those on the same surface as the selected one.
     Surface,
+    /// Those whose mode changes.
+    Changing,
+    /// The free ones.
+    Free,
+    /// The sliding ones.
+    Sliding,
+    /// The fixed ones.
+    Fixed,
 }
 
 stickslip_core::words! {
@@ -176,6 +197,10 @@ stickslip_core::words! {
     All "all",
     Active "active",
     Surface "surface",
+    Changing "changing",
+    Free "free",
+    Sliding "sliding",
+    Fixed "fixed",
 }
 
 /// Whose decisions are hidden, in free mode, until they are predicted.

@@ -35,9 +35,10 @@ impl Action {
                     | Ui::PreviousPane
                     | Ui::Zoom
                     | Ui::Explain
-                    | Ui::Page(Page::Timeline)
+                    | Ui::Page(Page::Timeline | Page::Contact)
                     | Ui::Sort(_)
                     | Ui::SortBackward
+                    | Ui::Magnify(_)
                     | Ui::Filter(_)
                     | Ui::Ask(Question::Node | Question::Break | Question::Lesson)
                     | Ui::CommandLine

@@ -17,7 +17,8 @@
 //!   happened in one line; [`facts`]: the parts of the page; [`try_list`]: what can be done, with the outcome of each trial.
 //! - [`attached`]: the diagnosis for an attached solver, from the problem that it reports; [`walk`]: which
 //!   iteration that solver performs; [`reported_pushes`]: the pushes there.
-//! - [`audit`]: the judge's findings over a history; [`outline`]: the shape of a state as lines.
+//! - [`audit`]: the judge's findings over a history; [`outline`]: the shape of a state as lines; [`conditions`]: its supports and
+//!   loads as marks; [`trail`]: the last iterations of one contact.
 
 pub mod accuracy;
 pub mod advice;
@@ -25,6 +26,7 @@ pub mod attached;
 pub mod attempt;
 pub mod audit;
 pub mod bond;
+pub mod conditions;
 pub mod core;
 pub mod diagnosis;
 pub mod examination;
@@ -53,5 +55,6 @@ pub mod smaller;
 pub mod strain;
 pub mod tested;
 pub mod touch;
+pub mod trail;
 pub mod try_list;
 pub mod walk;

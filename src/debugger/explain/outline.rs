@@ -169,3 +169,62 @@ pub fn clip(from: Point, to: Point, low: Point, high: Point) -> Option<(Point, P
 pub fn mix(from: Point, to: Point, part: f64) -> Point {
     [0, 1].map(|axis| from[axis] + (to[axis] - from[axis]) * part)
 }
+
+/// The largest of 1, 2 and 5 times a power of ten that does not exceed a value.
+pub fn round_down(value: f64) -> f64 {
+    if !(value > 0.0 && value.is_finite()) {
+        return 0.0;
+    }
+    let power = 10f64.powf(value.log10().floor());
+    let step = [5.0, 2.0, 1.0]
+        .into_iter()
+        .find(|step| step * power <= value);
+    // Formatted and parsed, so that the value equals its label.
+    format!("{:.0e}", step.unwrap_or(1.0) * power)
+        .parse()
+        .unwrap_or(value)
+}
+
+/// Part of the scene's size that the largest displacement is magnified to, and above which it is drawn to scale.
+const SEEN: f64 = 0.06;
+const TO_SCALE: f64 = 0.015;
+/// Largest automatic magnification.
+const MOST: f64 = 1e6;
+
+/// A round magnification that makes the largest of some displacements visible; 1 if it is visible to scale.
+pub fn magnification<'a>(model: &Model, displacements: impl Iterator<Item = &'a [f64]>) -> f64 {
+    let moved = displacements.flat_map(|u| {
+        (0..model.nodes.len()).map(move |node| {
+            let (at, now) = (model.nodes[node].at, model.place(u, node));
+            (now[0] - at[0]).hypot(now[1] - at[1])
+        })
+    });
+    let largest = moved.filter(|size| size.is_finite()).fold(0.0, f64::max);
+    let part = largest / model.length;
+    match part > 0.0 && part < TO_SCALE {
+        true => round_down((SEEN / part).min(MOST)).max(1.0),
+        false => 1.0,
+    }
+}
+
+/// Position of a node with its displacement magnified.
+pub fn magnified(model: &Model, u: &[f64], node: usize, factor: f64) -> Point {
+    let (at, now) = (model.nodes[node].at, model.place(u, node));
+    match factor == 1.0 {
+        true => now,
+        false => [0, 1].map(|axis| at[axis] + factor * (now[axis] - at[axis])),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn scales_are_round_numbers_below_the_limit() {
+        for (value, wanted) in [(0.37, 0.2), (5.0, 5.0), (99.0, 50.0), (1.2e-4, 1e-4)] {
+            assert_eq!(round_down(value), wanted);
+        }
+        assert_eq!(round_down(0.0), 0.0);
+    }
+}

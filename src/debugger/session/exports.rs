@@ -7,7 +7,7 @@ use crate::explain::examination::{NotExamined, going_round};
 use crate::explain::report;
 use crate::history::strip::Strip;
 use crate::record::command::ExportScope;
-use crate::record::export::shown::{ExportError, Shown};
+use crate::record::export::shown::{ExportError, PictureRequest, Shown};
 use crate::record::export::{self, ExportKind, Origin};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -106,6 +106,9 @@ fn shown(
         last_major: seen.last_major.as_ref(),
         ended,
         frozen: ask.what == ExportScope::Whole,
+        picture: &PictureRequest::default(),
+        events: &[],
+        accepted: &[],
     };
     kind.made(&shown, stepper).ok_or(ExportError::OfJournal)?
 }

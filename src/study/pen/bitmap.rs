@@ -5,23 +5,23 @@ use crate::drawn::{Anchor, Colour, PlotError, Shape};
 use ab_glyph::{Font, point};
 use ab_glyph_rasterizer::Rasterizer;
 
-/// Pixels per unit of length.
-const SCALE: f64 = 2.0;
 /// Maximum number of pixels of a bitmap, at three bytes each.
 const MAX_PIXELS: f64 = 64e6;
 
 /// Red, green and blue of each pixel, row by row.
 struct Bitmap {
     pixels: Vec<u8>,
+    /// Pixels per unit of length.
+    scale: f64,
     size: (u32, u32),
 }
 
-/// Draws shapes on a white sheet.
+/// Draws shapes on a white sheet, with `scale` pixels per unit of length.
 ///
 /// # Errors
 /// If the sheet is too large, or the font cannot be read.
-pub fn png(shapes: &[Shape], size: (f64, f64)) -> Result<Vec<u8>, PlotError> {
-    let (width, height) = ((size.0 * SCALE).ceil(), (size.1 * SCALE).ceil());
+pub fn png(shapes: &[Shape], size: (f64, f64), scale: f64) -> Result<Vec<u8>, PlotError> {
+    let (width, height) = ((size.0 * scale).ceil(), (size.1 * scale).ceil());
     if width * height > MAX_PIXELS {
         return Err(PlotError::new(format!(
             "the picture would have {width} by {height} pixels; the limit is {} million. Draw less, or use SVG",
@@ -32,6 +32,7 @@ pub fn png(shapes: &[Shape], size: (f64, f64)) -> Result<Vec<u8>, PlotError> {
     let mut bitmap = Bitmap {
         pixels: vec![255; 3 * size.0 as usize * size.1 as usize],
         size,
+        scale,
     };
     for shape in shapes.iter().filter(|shape| shape.is_finite()) {
         bitmap.draw(shape)?;
@@ -52,7 +53,8 @@ fn encode(bitmap: &Bitmap) -> Result<Vec<u8>, png::EncodingError> {
 
 impl Bitmap {
     fn draw(&mut self, shape: &Shape) -> Result<(), PlotError> {
-        let scaled = |(x, y): &(f64, f64)| (x * SCALE, y * SCALE);
+        let pixels = self.scale;
+        let scaled = |(x, y): &(f64, f64)| (x * pixels, y * pixels);
         match shape {
             Shape::Fill { corners, colour } => {
                 let corners = corners.iter().map(scaled).collect();
@@ -64,7 +66,7 @@ impl Bitmap {
                 colour,
             } => {
                 let points: Vec<_> = points.iter().map(scaled).collect();
-                self.cover(&stroke(&points, width * SCALE), *colour);
+                self.cover(&stroke(&points, width * pixels), *colour);
             }
             Shape::Text {
                 at,
@@ -75,7 +77,7 @@ impl Bitmap {
                 upright,
             } => {
                 let font = font::font()?;
-                let scale = font::scale(font, size * SCALE);
+                let scale = font::scale(font, size * pixels);
                 let (glyphs, width) = font::glyphs(font, scale, text);
                 let left = match anchor {
                     Anchor::Left => 0.0,
@@ -83,7 +85,7 @@ impl Bitmap {
                     Anchor::Right => -width,
                 };
                 // Text is centred on its letters without descenders.
-                let base = (0.36 * EM * size * SCALE) as f32;
+                let base = (0.36 * EM * size * pixels) as f32;
                 let (x, y) = scaled(at);
                 let (column, row) = (x.round() as i64, y.round() as i64);
                 for (glyph, x) in glyphs {

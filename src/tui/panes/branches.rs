@@ -191,8 +191,13 @@ fn comparison(
     lines.push(row(
         "residual",
         theme.faint,
-        of(&|side| format!("{:.1e}", side.residual)),
+        of(&|side| match side.residual {
+            0.0 => "0".into(),
+            residual => format!("{residual:.1e}"),
+        }),
     ));
+    let heads = format!("{:<8} {:<11} F_t", "mode", "F_n");
+    lines.push(row("node", theme.faint, [heads.clone(), heads]));
     let round_off = view.round_off();
     for slave in 0..view.model.contacts.len() {
         let [a, b] = [&sides[0].nodes[slave], &sides[1].nodes[slave]];

@@ -1,7 +1,7 @@
 //! The chooser: scenes, lessons and files, with a preview of the selection if there is room.
 
 use crate::app::App;
-use crate::choosing::{Chooser, Glance, Offer, Preview};
+use crate::choosing::{Chooser, Glance, Group, Offer, Preview};
 use crate::paint;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Constraint, Layout, Rect};
@@ -14,6 +14,8 @@ const BELOW: u16 = 16;
 /// Rows of a preview below the list, and columns of its picture.
 const ROWS: u16 = 7;
 const PICTURE: u16 = 30;
+/// Minimum width of a preview next to the list.
+const LOOK: u16 = 36;
 /// Maximum rows of text above the picture of a preview next to the list.
 const WORDS: u16 = 12;
 
@@ -25,9 +27,14 @@ pub fn draw(buffer: &mut Buffer, area: Rect, chooser: &Chooser, app: &App) -> Re
         typed => format!("Choose: {typed}▏ {} of {}", left.len(), app.offers.len()),
     };
     let inner = paint::frame(buffer, area, &title, true, &app.theme);
+    let width = width(&app.offers);
+    let beside = inner.width >= width.max(BESIDE - LOOK) + LOOK;
     let (list, preview) = match () {
-        _ if inner.width >= BESIDE => {
-            let columns = [Constraint::Fill(1), Constraint::Fill(1)];
+        _ if beside => {
+            let columns = [
+                Constraint::Length(width.max(inner.width / 2)),
+                Constraint::Fill(1),
+            ];
             let [list, preview] = Layout::horizontal(columns).areas(inner);
             (list, Some(preview))
         }
@@ -61,8 +68,26 @@ pub fn draw(buffer: &mut Buffer, area: Rect, chooser: &Chooser, app: &App) -> Re
     let known = app.preview.as_ref();
     let seen = selected.and_then(|offer| known.filter(|preview| preview.name == offer.name));
     match (preview, seen) {
-        (Some(area), Some(preview)) => look(buffer, area, preview, inner.width >= BESIDE, app),
+        (Some(area), Some(preview)) => look(buffer, area, preview, beside, app),
         _ => Rect::ZERO,
+    }
+}
+
+/// Columns for the whole names and titles of the list.
+fn width(offers: &[Offer]) -> u16 {
+    let names = offers.iter().map(|offer| offer.name.width());
+    let texts = offers
+        .iter()
+        .map(|offer| offer.title.width() + done(offer).width());
+    (names.max().unwrap_or(0) + texts.max().unwrap_or(0) + 6).min(1000) as u16
+}
+
+/// The user's progress in a lesson.
+fn done(offer: &Offer) -> String {
+    match offer.reached {
+        None => String::new(),
+        Some(reached) if reached.is_done() => format!("✓ {}  ", reached.words()),
+        Some(reached) => format!("{}  ", reached.words()),
     }
 }
 
@@ -71,13 +96,15 @@ fn lines<'a>(left: &[&'a Offer], at: usize, width: usize, app: &App) -> (Vec<Lin
     let theme = &app.theme;
     let widths = left.iter().map(|offer| offer.name.width());
     let names = widths.max().unwrap_or(0).min(width / 2);
+    let is_new = app.offers.iter().all(|offer| offer.reached.is_none());
     let (mut lines, mut here, mut group) = (Vec::new(), 0, None);
     for (index, offer) in left.iter().enumerate() {
         if group.replace(offer.group) != Some(offer.group) {
-            lines.push(Line::styled(
-                format!(" {}", offer.group.title()),
-                theme.heading,
-            ));
+            let title = match offer.group {
+                Group::Lessons if is_new => "New here? Start with the first lesson",
+                group => group.title(),
+            };
+            lines.push(Line::styled(format!(" {title}"), theme.heading));
         }
         let (mark, style) = match index == at {
             true => ("▸", theme.selected),
@@ -88,11 +115,7 @@ fn lines<'a>(left: &[&'a Offer], at: usize, width: usize, app: &App) -> (Vec<Lin
         }
         let name = paint::cut(&offer.name, names);
         let blank = " ".repeat(names.saturating_sub(name.width()));
-        let done = match offer.reached {
-            None => String::new(),
-            Some(reached) if reached.is_done() => format!("✓ {}  ", reached.words()),
-            Some(reached) => format!("{}  ", reached.words()),
-        };
+        let done = done(offer);
         let room = width.saturating_sub(names + 6 + done.width());
         lines.push(Line::from(vec![
             Span::styled(format!(" {mark} "), theme.focus),

@@ -20,7 +20,7 @@ const LABELS: u16 = 9;
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let theme = &app.theme;
     let monitors = &view.model.monitors;
-    let at = app.monitor.min(monitors.len().saturating_sub(1));
+    let at = app.watched(view);
     let title = match monitors.get(at) {
         Some(monitor) if monitors.len() > 1 => {
             format!("Load over {}  {}/{}", monitor.name, at + 1, monitors.len())
@@ -56,12 +56,13 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         };
         // The scales use the whole history, so that they do not change when going back.
         let known = frame::curve(view.frames, at);
-        chart(buffer, plot, &points, &known, theme);
+        let noise = monitors.get(at).map_or(0.0, |monitor| view.noise(monitor));
+        chart(buffer, plot, &points, &known, noise, theme);
     }
 }
 
-/// The range of one coordinate, which includes zero, is never empty and never overflows when subtracted.
-fn span(points: &[[f64; 2]], axis: usize) -> [f64; 2] {
+/// The range of one coordinate, which includes zero, is wider than the noise and never overflows when subtracted.
+fn span(points: &[[f64; 2]], axis: usize, noise: f64) -> [f64; 2] {
     const MOST: f64 = 1e300;
     let values = || {
         let values = points.iter().map(|point| point[axis]);
@@ -69,15 +70,22 @@ fn span(points: &[[f64; 2]], axis: usize) -> [f64; 2] {
     };
     let (low, high) = (values().fold(0.0, f64::min), values().fold(0.0, f64::max));
     match high - low {
-        size if size > 1e-300 => [low, high],
+        size if size > noise.max(1e-300) => [low, high],
         _ => [0.0, 1.0],
     }
 }
 
-fn chart(buffer: &mut Buffer, area: Rect, points: &[[f64; 2]], known: &[[f64; 2]], theme: &Theme) {
+fn chart(
+    buffer: &mut Buffer,
+    area: Rect,
+    points: &[[f64; 2]],
+    known: &[[f64; 2]],
+    noise: f64,
+    theme: &Theme,
+) {
     let frame = ChartFrame::within(area, LABELS);
     let field = frame.field;
-    let (x, y) = (span(known, 0), span(known, 1));
+    let (x, y) = (span(known, 0, noise), span(known, 1, 0.0));
     let mut canvas = Canvas::new(field);
     let [width, height] = canvas.size();
     let part = |value: f64, [low, high]: [f64; 2]| (value - low) / (high - low);
@@ -132,11 +140,12 @@ mod tests {
 
     #[test]
     fn the_span_includes_zero_and_is_never_empty() {
-        assert_eq!(span(&[[2.0, -1.0], [3.0, 0.5]], 0), [0.0, 3.0]);
-        assert_eq!(span(&[[2.0, -1.0], [3.0, 0.5]], 1), [-1.0, 0.5]);
+        assert_eq!(span(&[[2.0, -1.0], [3.0, 0.5]], 0, 0.0), [0.0, 3.0]);
+        assert_eq!(span(&[[2.0, -1.0], [3.0, 0.5]], 1, 0.0), [-1.0, 0.5]);
         for odd in [0.0, f64::NAN, f64::INFINITY, -1e308, 1e-320] {
-            assert_eq!(span(&[[odd, 0.0]], 0), [0.0, 1.0], "{odd}");
+            assert_eq!(span(&[[odd, 0.0]], 0, 0.0), [0.0, 1.0], "{odd}");
         }
-        assert_eq!(span(&[], 0), [0.0, 1.0]);
+        assert_eq!(span(&[], 0, 0.0), [0.0, 1.0]);
+        assert_eq!(span(&[[-5e-15, 1.0], [3e-15, 2.0]], 0, 1e-12), [0.0, 1.0]);
     }
 }

@@ -29,6 +29,8 @@ const LABEL: usize = 9;
 const CELL: usize = 15;
 /// Lines of the table without rules: the headings, and two lines per row except for the last, which has one.
 const GRID: usize = 6;
+/// Lines of the headings and one row.
+const ROW: usize = 3;
 
 /// Draws the decision.
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
@@ -84,18 +86,34 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         theme.text
     };
     let words = paint::wrapped(&words, inner.width.into(), style);
+    let wide = inner.width as usize >= LABEL + 6 + 3 * CELL;
+    let height = inner.height as usize;
+    let row_fits = wide && height >= ROW + tests.len() + words.len();
     let needed = GRID + tests.len() + words.len();
     let spare = (inner.height as usize).saturating_sub(needed);
     let air = |enough: bool| enough.then(Line::default);
-    let crowded = (inner.width as usize) < LABEL + 6 + 3 * CELL || inner.height < 9;
+    let crowded = !wide || inner.height < 9;
     let mut all = match decision {
         Some(decision) if decision.rule == Rule::Tied => Vec::new(),
+        // Where there is no room for the table, its row that applies is shown.
+        Some(decision) if crowded && row_fits && !hidden && table(&decision).is_some() => {
+            let rows = Some(decision.before);
+            grid(
+                Some(&decision),
+                rows,
+                false,
+                inner.width as usize,
+                false,
+                theme,
+            )
+        }
         Some(decision) if (crowded || table(&decision).is_none()) && !hidden => {
             vec![fired(&decision, view.differs(slave), theme)]
         }
         Some(decision) if (inner.height as usize) < GRID => choices(decision.before, theme),
         _ => grid(
             decision.as_ref(),
+            None,
             hidden,
             inner.width as usize,
             spare >= 4,
@@ -157,7 +175,7 @@ fn pushes(
             None => "Who pushed it: not available here",
         })];
     };
-    let quantity = quantity(&record.decision);
+    let quantity = tested::deciding(&record.decision);
     let of = |push: &NodePush| tested::effect(quantity, &push.influence).1;
     let (symbol, _) = tested::effect(quantity, &Influence::default());
     let mut found: Vec<&NodePush> = found.iter().filter(|push| of(push) != 0.0).collect();
@@ -197,15 +215,6 @@ fn deed(push: &NodePush, view: &View) -> String {
         [_, Mode::Sliding] => format!("letting {name} slide"),
         [_, Mode::Fixed] => format!("sticking {name}"),
     }
-}
-
-/// The quantity of the test that fired, or otherwise of the first test.
-fn quantity(decision: &Decision) -> Tested {
-    let tests = || decision.tests.iter().flatten();
-    let fired = tests().find(|test| test.margin < 0.0);
-    fired
-        .or(tests().next())
-        .map_or(Tested::Gap, |test| test.tested)
 }
 
 /// Lines of [`measured`], including pressure and shear.
@@ -318,9 +327,10 @@ fn measured(record: &ContactRecord, slave: usize, view: &View, theme: &Theme) ->
         .collect()
 }
 
-/// Table 2 as lines, with the row of the previous mode highlighted and, unless hidden, the cell that fired.
+/// Table 2, or only one row of it, as lines, with the row of the previous mode highlighted and, unless hidden, the cell that fired.
 fn grid(
     decision: Option<&Decision>,
+    only: Option<Mode>,
     hidden: bool,
     width: usize,
     ruled: bool,
@@ -338,7 +348,8 @@ fn grid(
         ]);
     }
     let mut lines = vec![Line::from(head)];
-    for (row, mode) in MODES.iter().enumerate() {
+    let rows = MODES.iter().enumerate();
+    for (row, mode) in rows.filter(|(_, mode)| only.is_none_or(|only| only == **mode)) {
         if ruled {
             let stroke = format!("┼{}", "─".repeat(cell + 1)).repeat(3);
             let rule: String = ("─".repeat(LABEL) + &stroke)

@@ -9,7 +9,7 @@ use crate::view::View;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
-use stickslip_debugger::action::{ACTIONS, ActionEntry, Group};
+use stickslip_debugger::action::{ACTIONS, ActionEntry, Group, by_name};
 use stickslip_debugger::teach::Tutor;
 use stickslip_debugger::teach::tutor::AnswerKind;
 use stickslip_scene::number;
@@ -225,22 +225,48 @@ fn table_keys(app: &App, view: Option<&View>, places: &Places, room: usize) -> L
     // An action without a key is left out; it can still be typed by name.
     let key = |entry: &'static ActionEntry| app.keymap.keys(entry).next().map(str::to_owned);
     let context = app.context(view, &[]);
-    let labelled: Vec<(&ActionEntry, String, String)> = ACTIONS
+    // A count is a prefix: only the actions that it applies to follow it.
+    let follows = |entry: &&ActionEntry| app.count.is_none() || entry.takes_count();
+    let own = own(app.panes.focus).iter().filter_map(|(name, label)| {
+        let entry = by_name(name).ok().filter(|_| app.count.is_none())?;
+        Some((entry, key(entry)?, (*label).to_owned()))
+    });
+    let general = ACTIONS
         .iter()
         .filter(|entry| !entry.label.is_empty() && (teaches || entry.group != Group::Learn))
+        .filter(|entry| follows(entry) || is_always(entry))
         .filter_map(|entry| {
             let label = match entry.offered(&context) {
                 Ok(()) => label(entry, app, places),
                 Err(_) => format!("({})", entry.label),
             };
             Some((entry, key(entry)?, label))
-        })
-        .collect();
+        });
+    let labelled: Vec<(&ActionEntry, String, String)> = own.chain(general).collect();
     let needed = |entry: &ActionEntry| is_always(entry) || entry.group == Group::Learn;
     let hints = labelled
         .into_iter()
         .map(|(entry, key, label)| (needed(entry), key, label));
     fitted(&hints.collect::<Vec<_>>(), room, &app.theme)
+}
+
+/// The actions that belong to a pane, with their labels.
+fn own(pane: Pane) -> &'static [(&'static str, &'static str)] {
+    match pane {
+        Pane::Shape => &[
+            ("enlarge", "enlarge"),
+            ("shrink", "shrink"),
+            ("fit", "fit"),
+            ("magnify", "magnify"),
+        ],
+        Pane::Contact => &[("right", "next picture")],
+        Pane::Curve => &[("monitor", "monitor")],
+        Pane::Timeline => &[("left", "back"), ("right", "forward")],
+        Pane::Diagnosis => &[("repeat", "take"), ("page-down", "scroll")],
+        Pane::Branches => &[("repeat", "go there"), ("compare", "compare")],
+        Pane::Remedies => &[("repeat", "apply")],
+        Pane::Nodes | Pane::Decision | Pane::Residual | Pane::Lesson => &[],
+    }
 }
 
 /// Whether the footer always shows an action.
@@ -272,11 +298,7 @@ fn fitted(hints: &[(bool, String, String)], room: usize, theme: &Theme) -> Line<
 /// Label of an action; for Tab, the page number if panes are shown one at a time.
 fn label(entry: &ActionEntry, app: &App, places: &Places) -> String {
     if entry.name == "pane" && places.paged {
-        let page = Pane::ALL
-            .iter()
-            .position(|pane| *pane == app.panes.focus)
-            .map_or(1, |at| at + 1);
-        return format!("page {page}/{}", Pane::ALL.len());
+        return format!("page {}/{}", app.panes.focus.page(), Pane::ALL.len());
     }
     entry.label.into()
 }

@@ -1,6 +1,7 @@
 //! The help page (`?`): all actions with their keys, and the marks on the screen; and the list of current key bindings, in the
 //! format of the file that changes them.
 
+use crate::layout::Pane;
 use crate::paint;
 use crate::scroll::scrolled;
 use crate::theme::Theme;
@@ -33,6 +34,20 @@ const MARKS: &[(&str, &str)] = &[
         "an attached solver's decision differs from Table 2 (or Newton) for the same values",
     ),
     ("tie", "closer to switching than the tolerance"),
+];
+
+/// The first keys to learn.
+const FIRST: [&str; 10] = [
+    "step",
+    "next",
+    "finish",
+    "continue",
+    "reverse-step",
+    "pane",
+    "zoom",
+    "explain",
+    "diagnosis",
+    "command",
 ];
 
 /// Lines per page key.
@@ -138,9 +153,21 @@ pub fn page(width: usize, theme: &Theme, keymap: &Keymap, context: &Context) -> 
         Some(model) => paint::wrapped(&model.about, width, theme.warning),
         None => Vec::new(),
     };
-    for group in Group::ALL {
-        lines.push(Line::styled(format!(" {}", group.title()), theme.heading));
-        for entry in ACTIONS.iter().filter(|entry| entry.group == group) {
+    let first = || ACTIONS.iter().filter(|entry| FIRST.contains(&entry.name));
+    let panes: Vec<&str> = Pane::ALL.into_iter().map(Pane::title).collect();
+    let groups = Group::ALL.into_iter().map(|group| {
+        let entries = ACTIONS.iter().filter(|entry| entry.group == group);
+        (group.title(), entries.collect::<Vec<_>>())
+    });
+    let text = format!("Panes, in the order of Tab: {}.", panes.join(", "));
+    lines.extend(paint::wrapped(&text, width, theme.text));
+    lines.push(Line::default());
+    for (title, entries) in [("The first ten keys", first().collect())]
+        .into_iter()
+        .chain(groups)
+    {
+        lines.push(Line::styled(format!(" {title}"), theme.heading));
+        for entry in &entries {
             let name = format!("{} {}", entry.name, entry.arguments);
             let room = width.saturating_sub(3 + KEYS + NAMES + 1).max(20);
             let (help, [key_style, style]) = match entry.offered(context) {

@@ -29,7 +29,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App) {
     let Some(tutor) = &app.learning.lesson else {
         return;
     };
-    let inner = paint::frame(buffer, area, &title(tutor), false, &app.theme);
+    let inner = paint::frame(buffer, area, &title(tutor, area.width), false, &app.theme);
     let (width, room) = room(area, tutor, &app.theme);
     let mut lines = said(tutor, width, &app.theme);
     let (top, all) = (top(app, tutor, width, room), lines.len());
@@ -77,7 +77,8 @@ pub fn top(app: &App, tutor: &Tutor, width: usize, room: usize) -> usize {
     wanted.min(all.saturating_sub(room))
 }
 
-fn title(tutor: &Tutor) -> String {
+/// The lesson's name, cut in favour of the place and the score.
+fn title(tutor: &Tutor, width: u16) -> String {
     let lesson = tutor.lesson();
     let (right, asked) = tutor.score();
     let place = match tutor.step() {
@@ -88,7 +89,10 @@ fn title(tutor: &Tutor) -> String {
         0 => String::new(),
         _ => format!("  score {right}/{asked}"),
     };
-    format!("Lesson  {}  {place}{score}", lesson.title)
+    let fixed = "Lesson    ".width() + place.width() + score.width();
+    let room = usize::from(width).saturating_sub(4 + fixed);
+    let name = paint::cut(&lesson.title, room);
+    format!("Lesson  {name}  {place}{score}")
 }
 
 /// The next task, wrapped.

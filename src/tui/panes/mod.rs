@@ -3,6 +3,7 @@
 
 pub mod branches;
 pub mod chooser;
+pub mod contact;
 pub mod curve;
 pub mod decision;
 pub mod diagnosis;

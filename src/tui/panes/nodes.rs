@@ -12,10 +12,11 @@ use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span};
 use stickslip_core::contact::record::{ContactRecord, Forced};
 use stickslip_core::contact::table2::Tested;
+use stickslip_core::model::{Friction, Mode};
 use stickslip_debugger::action::{Filter, Sort};
 use stickslip_debugger::explain::names;
 use stickslip_debugger::explain::round_off::RoundOff;
-use stickslip_debugger::explain::tested::Dimension;
+use stickslip_debugger::explain::tested::{self, Dimension};
 use stickslip_scene::number;
 use stickslip_scene::shown;
 use unicode_width::UnicodeWidthStr;
@@ -179,11 +180,11 @@ fn title(at: usize, shown: usize, count: usize, app: &App) -> String {
         Filter::All => String::new(),
         Filter::Active => format!(" active, of {count}"),
         Filter::Surface => format!(" on this surface, of {count}"),
+        filter => format!(" {}, of {count}", filter.word()),
     };
-    title += match app.sort {
-        Sort::Scene => "",
-        Sort::Margin => "  by margin",
-        Sort::Gap => "  by gap",
+    title += &match app.sort {
+        Sort::Scene => String::new(),
+        sort => format!("  by {}", sort.word()),
     };
     if app.backward {
         title += ", reversed";
@@ -261,7 +262,7 @@ fn row<'a>(
     spans.extend(modes(slave, changed, columns, app, view));
     spans.push(Span::raw(" "));
     if let Some(record) = record {
-        spans.extend(numbers(record, round_off, columns, app, view));
+        spans.extend(numbers((slave, record), round_off, columns, app, view));
         if columns.pressures {
             let forces = [record.f_n, record.f_t].map(|force| round_off.force(force));
             let found = view.model.contacts[slave].pressure(forces[0], forces[1]);
@@ -340,12 +341,13 @@ fn modes(
 }
 
 fn numbers(
-    record: &ContactRecord,
+    (slave, record): (usize, &ContactRecord),
     round_off: &RoundOff,
     columns: &Columns,
     app: &App,
     view: &View,
 ) -> Vec<Span<'static>> {
+    let friction = view.frame().state.controls.friction[slave];
     // The value that changed the mode is shown exactly, even within round-off.
     let decided = |tested: Tested| {
         let mut tests = record.decision.tests.iter().flatten();
@@ -360,6 +362,8 @@ fn numbers(
     let ratio = match decided(Tested::ShearForce) {
         _ if view.is_unreported(record.f_t / record.t_max) => number::UNREPORTED.into(),
         true => number::ratio(record.f_t, record.t_max),
+        // T_max is settled to the tolerance, and so is its ratio to the force of a sliding node.
+        false if is_at_limit(record, view) => "1".into(),
         false => round_off.ratio(record.f_t, record.t_max),
     };
     let texts = [
@@ -370,7 +374,7 @@ fn numbers(
         format!("{ratio:<width$}", width = columns.ratio),
         number(record.slip, Tested::Slip),
     ];
-    let style = |index: usize| number_style(index, record, app);
+    let style = |index: usize| number_style(index, record, &friction, app);
     texts
         .into_iter()
         .take(columns.shown)
@@ -379,8 +383,18 @@ fn numbers(
         .collect()
 }
 
+/// Whether a sliding node carries T_max to within the tolerance.
+fn is_at_limit(record: &ContactRecord, view: &View) -> bool {
+    let scale = view.event().map_or(0.0, |event| event.before.scale);
+    let tolerance = view.frame().state.controls.settings.tolerance * scale;
+    let sizes = [record.f_t, record.t_max].map(|force| view.round_off().force(force).abs());
+    record.decision.before == Mode::Sliding
+        && sizes[1] > 0.0
+        && (sizes[0] - sizes[1]).abs() <= tolerance
+}
+
 /// Highlights tested values that are ties.
-fn number_style(column: usize, record: &ContactRecord, app: &App) -> Style {
+fn number_style(column: usize, record: &ContactRecord, friction: &Friction, app: &App) -> Style {
     let tested = match column {
         0 => Tested::Gap,
         1 => Tested::NormalForce,

@@ -13,6 +13,9 @@ use stickslip_core::linear::norms::Norms;
 use stickslip_debugger::explain::names;
 use stickslip_scene::number;
 
+/// Minimum height of a chart; where there is less, there are numbers of this width.
+const CHART: u16 = 5;
+const NUMBER: usize = 13;
 /// Minimum height for a line about the judge.
 const ROOM_FOR_JUDGE: u16 = 7;
 
@@ -74,7 +77,23 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         height: inner.height.saturating_sub(above),
         ..inner
     };
-    if convergence::fits(plot) {
+    if plot.height < CHART {
+        let room = usize::from(plot.width) / NUMBER;
+        let first = view.residuals.len().saturating_sub(room);
+        let row = |of: &dyn Fn(&(u32, Norms)) -> String| {
+            let cells = view.residuals[first..].iter();
+            let text: String = cells
+                .map(|one| format!("{:>1$}", of(one), NUMBER))
+                .collect();
+            Line::styled(text, theme.faint)
+        };
+        let rows = [
+            row(&|(number, _)| number.to_string()),
+            row(&|(_, norms)| format!("● {}", words(norms.relative))).style(theme.text),
+            row(&|one| format!("○ {}", words(point(one, view).other))),
+        ];
+        paint::lines(buffer, plot, &rows);
+    } else if convergence::fits(plot) {
         // Values that an attached solver does not report are left out.
         let text = view
             .residuals

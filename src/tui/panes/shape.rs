@@ -1,6 +1,7 @@
 //! The shape at the start of the shown major iteration: bodies in the reference (dim) and current configuration with their names if
-//! there are several, master surfaces with their outward side, contact forces, and slave nodes by the letters of their modes.
-//! Solids show the boundaries between materials, and their elements if these are large enough.
+//! there are several, master surfaces with their outward side, supports, loads and prescribed motions, contact forces on the slave
+//! nodes, and slave nodes by the letters of their modes. Solids show the boundaries between materials, and their elements if these
+//! are large enough. Small displacements are magnified.
 
 use crate::app::App;
 use crate::camera::Camera;
@@ -11,7 +12,7 @@ use crate::theme;
 use crate::view::View;
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::{Margin, Position, Rect};
-use ratatui::style::Modifier;
+use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span};
 use ratatui::widgets::Widget;
 use std::collections::HashMap;
@@ -21,6 +22,7 @@ use stickslip_core::contact::projection::tangent;
 use stickslip_core::fem::deformation::PointDeformation;
 use stickslip_core::fem::lagrange;
 use stickslip_core::model::{BodyKind, Contact, Model, Solid, SolidElement};
+use stickslip_debugger::explain::conditions::{ConditionArrow, Given, conditions};
 use stickslip_debugger::explain::examination::Examination;
 use stickslip_debugger::explain::outline::{self, Bounds, Point, bounds, curve, outer_nodes};
 use stickslip_debugger::explain::strain;
@@ -34,8 +36,17 @@ const NORMAL: f64 = 0.04;
 const ELEMENT: f64 = 12.0;
 /// Length of the largest rigid-body motion, as a fraction of the visible extent.
 const MOTION: f64 = 0.15;
+/// Length of the largest load and of the largest prescribed motion, as a fraction of the visible extent.
+const LOAD: f64 = 0.14;
+/// Caption of the reference configuration.
+const UNLOADED: &str = " faint: unloaded";
+/// Dots between a load and its node.
+const CLEAR: f64 = 4.0;
+/// Cells between two slave nodes from which on their names are written.
+const APART: u16 = 8;
 /// Arrow heads by eighths of a turn, anticlockwise from the right.
 const HEADS: [&str; 8] = ["→", "↗", "↑", "↖", "←", "↙", "↓", "↘"];
+const DOUBLE_HEADS: [&str; 8] = ["⇒", "⇗", "⇑", "⇖", "⇐", "⇙", "⇓", "⇘"];
 /// Mark of a diagnosed node, right of its letter.
 const MARK: &str = "!";
 /// Mark of a solid's worst point, which is inverted or outside the range of its law.
@@ -52,24 +63,50 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         let lines = paint::wrapped(none, inner.width.into(), theme.faint);
         return paint::lines(buffer, inner, &lines);
     }
-    if let (Some(longest), 2..) = (picture(buffer, inner, app, view), inner.height) {
+    if let (Some(shown), 2..) = (picture(buffer, inner, app, view), inner.height) {
         let moves = found(view).is_some_and(|found| !found.arrows.is_empty());
-        caption(buffer, inner, longest, moves, app, view);
+        caption(buffer, inner, shown, moves, app, view);
     }
 }
 
-/// Draws the shape in all rows but the last; returns the largest force, `None` if there is no room.
-pub fn picture(buffer: &mut Buffer, inner: Rect, app: &App, view: &View) -> Option<f64> {
+/// The scales of a drawn picture.
+#[derive(Debug, Clone, Copy)]
+pub struct Scales {
+    /// The largest contact force; 0 without one.
+    longest: f64,
+    /// The magnification of displacements.
+    magnified: f64,
+}
+
+/// Draws the shape in all rows but the last; `None` if there is no room.
+pub fn picture(buffer: &mut Buffer, inner: Rect, app: &App, view: &View) -> Option<Scales> {
     if inner.is_empty() {
         return None;
     }
     let (mut canvas, window) = field(inner, app, view);
     bodies(&mut canvas, &window, app, view);
     surfaces(&mut canvas, &window, app, view);
-    let longest = forces(&mut canvas, &window, app, view);
-    let tips = motions(&mut canvas, &window, app, view);
+    let given = given(view, &window);
+    for (line, style, _) in given.iter().map(|one| drawn(one, &window, app)) {
+        canvas.line(line[0], line[1], style);
+    }
+    let (forces, longest) = forces(&window, view);
+    let style = app.theme.bad.remove_modifier(Modifier::REVERSED);
+    forces
+        .iter()
+        .for_each(|[from, to]| canvas.line(*from, *to, style));
+    let motions = motions(&mut canvas, &window, app, view);
     canvas.render(buffer);
-    heads(buffer, &canvas, &tips, app);
+    for (line, style, glyphs) in given.iter().map(|one| drawn(one, &window, app)) {
+        head(buffer, &canvas, &line, (glyphs, style));
+    }
+    supports(buffer, &canvas, &window, app, view);
+    forces
+        .iter()
+        .for_each(|line| head(buffer, &canvas, line, (HEADS, style)));
+    for line in &motions {
+        head(buffer, &canvas, line, (HEADS, app.theme.strong));
+    }
     names(buffer, &canvas, &window, app, view);
     slaves(buffer, &canvas, &window, app, view);
     if let Some((x, y)) = view
@@ -79,7 +116,8 @@ pub fn picture(buffer: &mut Buffer, inner: Rect, app: &App, view: &View) -> Opti
     {
         cell.set_symbol(WORST).set_style(app.theme.bad);
     }
-    Some(longest)
+    let magnified = window.magnified;
+    Some(Scales { longest, magnified })
 }
 
 /// The canvas, and the part of the scene that it shows.
@@ -89,14 +127,20 @@ fn field(inner: Rect, app: &App, view: &View) -> (Canvas, Window) {
         ..inner
     };
     let canvas = Canvas::new(field);
-    let towards = selected_place(app, view);
-    let window = Window::new(
-        &canvas,
-        &bounds(view.model, &|node| view.place(node)),
-        &app.camera,
-        towards,
-    );
-    (canvas, window)
+    let magnified = app.camera.magnified(view);
+    let place = |node: usize| view.magnified(node, magnified);
+    let selected = view.model.contacts.get(app.slave(view));
+    let towards = selected.map(|slave| place(slave.node));
+    let towards = towards.filter(|place| place.iter().all(|x| x.is_finite()));
+    let bounds = bounds(view.model, &place);
+    let window = Window::new(&canvas, &bounds, &app.camera, towards);
+    (
+        canvas,
+        Window {
+            magnified,
+            ..window
+        },
+    )
 }
 
 /// The slave node closest to a screen position, if it is near enough.
@@ -109,7 +153,7 @@ pub fn slave_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usiz
     }
     let (canvas, window) = field(inner, app, view);
     let far = |(slave, contact): (usize, &Contact)| {
-        let (x, y) = canvas.cell(window.dot(view.place(contact.node)))?;
+        let (x, y) = canvas.cell(window.dot(window.place(view, contact.node)))?;
         let far = u32::from(x.abs_diff(at.x)) + 2 * u32::from(y.abs_diff(at.y));
         (far <= NEAR).then_some((far, slave))
     };
@@ -125,6 +169,8 @@ struct Window {
     size: [f64; 2],
     /// Length shown by the shorter side of the canvas.
     extent: f64,
+    /// Magnification of displacements.
+    magnified: f64,
 }
 
 impl Window {
@@ -145,7 +191,13 @@ impl Window {
             scale,
             size,
             extent: size[0].min(size[1]) / scale,
+            magnified: 1.0,
         }
+    }
+
+    /// Position of a node in the picture.
+    fn place(&self, view: &View, node: usize) -> Point {
+        view.magnified(node, self.magnified)
     }
 
     /// Whether something at `place`, `size` dots large, can be visible.
@@ -161,13 +213,7 @@ impl Window {
     }
 }
 
-/// Position of the selected node, if there is one and its position is known.
-fn selected_place(app: &App, view: &View) -> Option<Point> {
-    let slave = view.model.contacts.get(app.slave(view))?;
-    Some(view.place(slave.node)).filter(|place| place.iter().all(|x| x.is_finite()))
-}
-
-fn draw_curve(canvas: &mut Canvas, window: &Window, nodes: &[Point], style: ratatui::style::Style) {
+fn draw_curve(canvas: &mut Canvas, window: &Window, nodes: &[Point], style: Style) {
     let dots: Vec<Dot> = curve(nodes)
         .into_iter()
         .map(|point| window.dot(point))
@@ -190,7 +236,10 @@ fn bodies(canvas: &mut Canvas, window: &Window, app: &App, view: &View) {
         }
     }
     for element in elements() {
-        let now: Vec<Point> = element.iter().map(|node| view.place(*node)).collect();
+        let now: Vec<Point> = element
+            .iter()
+            .map(|node| window.place(view, *node))
+            .collect();
         draw_curve(canvas, window, &now, app.theme.strong);
     }
 }
@@ -198,12 +247,15 @@ fn bodies(canvas: &mut Canvas, window: &Window, app: &App, view: &View) {
 /// Lines between the elements of a solid if there is room, and between its materials.
 fn inside(canvas: &mut Canvas, window: &Window, solid: &Solid, app: &App, view: &View) {
     let draw = |canvas: &mut Canvas, face: &[usize], style| {
-        let now: Vec<Point> = face.iter().map(|&node| view.place(node)).collect();
+        let now: Vec<Point> = face.iter().map(|&node| window.place(view, node)).collect();
         draw_curve(canvas, window, &now, style);
     };
     for SolidElement { kind, nodes, .. } in &solid.elements {
         let across = kind.faces().len() / 2;
-        let (a, b) = (view.place(nodes[0]), view.place(nodes[across]));
+        let (a, b) = (
+            window.place(view, nodes[0]),
+            window.place(view, nodes[across]),
+        );
         let size = (a[0] - b[0]).hypot(a[1] - b[1]) * window.scale;
         if size >= ELEMENT && window.sees(a, size) {
             for face in kind.faces_of(nodes) {
@@ -246,9 +298,9 @@ fn names(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view:
         let wide = name.width() as u16;
         let (at, aside) = match &body.kind {
             BodyKind::Solid(_) | BodyKind::Linear(_) | BodyKind::Truss(_) => {
-                (mean(outer_nodes(body), view), -i32::from(wide / 2))
+                (mean(outer_nodes(body), window, view), -i32::from(wide / 2))
             }
-            BodyKind::Beam(_) => (view.place(body.nodes[body.nodes.len() / 2]), 2),
+            BodyKind::Beam(_) => (window.place(view, body.nodes[body.nodes.len() / 2]), 2),
         };
         let Some((x, y)) = canvas.cell(window.dot(at)) else {
             continue;
@@ -270,8 +322,8 @@ fn names(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view:
 }
 
 /// Mean position of nodes.
-fn mean(nodes: impl Iterator<Item = usize>, view: &View) -> Point {
-    let places = nodes.map(|node| view.place(node));
+fn mean(nodes: impl Iterator<Item = usize>, window: &Window, view: &View) -> Point {
+    let places = nodes.map(|node| window.place(view, node));
     let (sum, count) = places.fold(([0.0; 2], 0.0), |(s, count), p| {
         ([s[0] + p[0], s[1] + p[1]], count + 1.0)
     });
@@ -283,7 +335,7 @@ fn surfaces(canvas: &mut Canvas, window: &Window, app: &App, view: &View) {
     let style = app.theme.text;
     let mut walked = SPACING;
     for element in view.model.surfaces.iter().flat_map(SurfaceElement::all) {
-        let nodes = outline::element(element, |node| view.place(node));
+        let nodes = outline::element(element, |node| window.place(view, node));
         draw_curve(canvas, window, &nodes, style);
         // Short elements share one normal.
         let (Some(first), Some(last)) = (nodes.first(), nodes.last()) else {
@@ -336,10 +388,10 @@ fn normals(nodes: &[Point], window: &Window) -> Vec<(Point, Point)> {
     }
 }
 
-/// Contact forces as lines that end at the slave nodes; returns the largest.
-fn forces(canvas: &mut Canvas, window: &Window, app: &App, view: &View) -> f64 {
+/// Contact forces on the slave nodes as lines from the node in the direction in which the master pushes it, and the largest.
+fn forces(window: &Window, view: &View) -> (Vec<[Dot; 2]>, f64) {
     let Some(event) = view.event() else {
-        return 0.0;
+        return (Vec::new(), 0.0);
     };
     let round_off = view.round_off();
     let size = |f_n: f64, f_t: f64| round_off.force(f_n.hypot(f_t));
@@ -349,22 +401,71 @@ fn forces(canvas: &mut Canvas, window: &Window, app: &App, view: &View) -> f64 {
         .map(|node| size(node.f_n, node.f_t))
         .filter(|f| f.is_finite())
         .fold(0.0, f64::max);
-    if largest == 0.0 {
-        return 0.0;
-    }
+    let scale = FORCE * window.extent / largest;
     let nodes = view.model.contacts.iter().zip(&event.nodes);
-    for (slave, node) in nodes.filter(|(_, node)| size(node.f_n, node.f_t) > 0.0) {
-        let (n, t) = (node.normal, tangent(node.normal));
-        let scale = FORCE * window.extent / largest;
-        let tip = view.place(slave.node);
-        let tail = [0, 1].map(|axis| tip[axis] - scale * (node.f_n * n[axis] + node.f_t * t[axis]));
-        canvas.line(
-            window.dot(tail),
-            window.dot(tip),
-            app.theme.bad.remove_modifier(Modifier::REVERSED),
-        );
+    let lines = nodes
+        .filter(|(_, node)| size(node.f_n, node.f_t) > 0.0)
+        .map(|(slave, node)| {
+            let (n, t) = (node.normal, tangent(node.normal));
+            let tail = window.place(view, slave.node);
+            let along = |axis: usize| node.f_n * n[axis] + node.f_t * t[axis];
+            let tip = [0, 1].map(|axis| tail[axis] + scale * along(axis));
+            [window.dot(tail), window.dot(tip)]
+        });
+    (lines.collect(), largest)
+}
+
+/// Loads and prescribed motions.
+fn given(view: &View, window: &Window) -> Vec<ConditionArrow> {
+    let load_factor = match view.event() {
+        Some(event) => event.load_factor,
+        None => view.frame().state.load_factor,
+    };
+    conditions(view.model, load_factor, &|node| window.place(view, node)).arrows
+}
+
+/// The line of a load, which ends at its node, or of a prescribed motion, which starts there; its style and its heads.
+fn drawn(
+    arrow: &ConditionArrow,
+    window: &Window,
+    app: &App,
+) -> ([Dot; 2], Style, [&'static str; 8]) {
+    let length = LOAD * window.extent;
+    // The head of a load stays clear of the letter of its node.
+    let off = CLEAR / (window.scale * arrow.along[0].hypot(arrow.along[1])).max(1e-300);
+    let part = |by: f64| [0, 1].map(|axis| arrow.at[axis] + by * length * arrow.along[axis]);
+    let (from, to, heads) = match arrow.given {
+        Given::Load => (part(-1.0 - off / length), part(-off / length), HEADS),
+        Given::Motion => (arrow.at, part(1.0), DOUBLE_HEADS),
+    };
+    ([window.dot(from), window.dot(to)], app.theme.good, heads)
+}
+
+/// Supports: a triangle for a restrained component, a filled one for both, a square if the rotation is restrained as well; moments
+/// and prescribed rotations as turns.
+fn supports(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view: &View) {
+    let found = conditions(view.model, 1.0, &|node| view.model.nodes[node].at);
+    let supports = found.supports.into_iter().map(|(node, held)| {
+        let glyph = match held {
+            [true, true, true] => "■",
+            [true, true, false] => "▲",
+            [true, false, _] => "▷",
+            [false, true, _] => "△",
+            [false, false, _] => "◇",
+        };
+        (node, glyph)
+    });
+    let turns = found.turns.into_iter().map(|(node, _, left)| match left {
+        true => (node, "↺"),
+        false => (node, "↻"),
+    });
+    for (node, glyph) in supports.chain(turns) {
+        if let Some(at) = canvas.cell(window.dot(window.place(view, node)))
+            && let Some(cell) = buffer.cell_mut(at)
+        {
+            cell.set_symbol(glyph).set_style(app.theme.good);
+        }
     }
-    largest
 }
 
 /// The diagnosis, if the solve fails in the shown state.
@@ -390,30 +491,38 @@ fn motions(canvas: &mut Canvas, window: &Window, app: &App, view: &View) -> Vec<
     lines
 }
 
-/// Arrow heads at the ends of lines.
-fn heads(buffer: &mut Buffer, canvas: &Canvas, lines: &[[Dot; 2]], app: &App) {
-    for [from, to] in lines {
-        let (x, y) = (to[0] - from[0], from[1] - to[1]);
-        let eighth = (y.atan2(x) / FRAC_PI_4).round().rem_euclid(8.0) as usize;
-        if let Some((x, y)) = canvas.cell(*to)
-            && let Some(cell) = buffer.cell_mut((x, y))
-        {
-            cell.set_symbol(HEADS[eighth % HEADS.len()])
-                .set_style(app.theme.strong);
-        }
+/// The arrow head at the end of a line.
+fn head(
+    buffer: &mut Buffer,
+    canvas: &Canvas,
+    [from, to]: &[Dot; 2],
+    (heads, style): ([&'static str; 8], Style),
+) {
+    let (x, y) = (to[0] - from[0], from[1] - to[1]);
+    let eighth = (y.atan2(x) / FRAC_PI_4).round().rem_euclid(8.0) as usize;
+    if let Some((x, y)) = canvas.cell(*to)
+        && let Some(cell) = buffer.cell_mut((x, y))
+    {
+        cell.set_symbol(heads[eighth % heads.len()])
+            .set_style(style);
     }
 }
 
-/// Letters of the modes at the slave nodes; the selected node is reversed and named.
+/// Letters of the modes at the slave nodes; the selected node is reversed. A node that is far enough from the others is named.
 fn slaves(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view: &View) {
     let theme = &app.theme;
     let selected = app.slave(view);
     let others = (0..view.model.contacts.len()).filter(|slave| *slave != selected);
+    let cell = |slave: usize| {
+        let node = view.model.contacts.get(slave)?.node;
+        canvas.cell(window.dot(window.place(view, node)))
+    };
+    let seen: Vec<(u16, u16)> = (0..view.model.contacts.len()).filter_map(cell).collect();
     for slave in others.chain([selected]) {
         let Some(node) = view.model.contacts.get(slave).map(|slave| slave.node) else {
             return;
         };
-        let Some((x, y)) = canvas.cell(window.dot(view.place(node))) else {
+        let Some((x, y)) = canvas.cell(window.dot(window.place(view, node))) else {
             continue;
         };
         // The shape must not reveal a mode that is still to be predicted.
@@ -426,12 +535,30 @@ fn slaves(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view
             }
         }
         let beside = (x + 1, y);
+        let crowded = |&(a, b): &&(u16, u16)| a.abs_diff(x) < APART && b.abs_diff(y) < 2;
+        if app.camera.zoom > 1.0 && seen.iter().filter(crowded).count() == 1 {
+            name(buffer, canvas, (x + 2, y), view.slave(slave), theme.faint);
+        }
         if found(view).is_some_and(|found| found.nodes.contains(&slave))
             && canvas.area().contains(beside.into())
             && let Some(cell) = buffer.cell_mut(beside)
         {
             cell.set_symbol(MARK).set_style(theme.strong);
         }
+    }
+}
+
+/// Writes a name where no letter is in its way.
+fn name(buffer: &mut Buffer, canvas: &Canvas, (x, y): (u16, u16), name: &str, style: Style) {
+    let area = canvas.area();
+    let name = paint::cut(name, 12);
+    let fits = x + name.width() as u16 <= area.right();
+    let rows = [y.saturating_sub(1), y + 1, y];
+    let row = rows
+        .into_iter()
+        .find(|row| (area.top()..area.bottom()).contains(row));
+    if let (true, Some(row)) = (fits, row) {
+        buffer.set_string(x, row, &name, style);
     }
 }
 
@@ -447,15 +574,20 @@ fn worst_words(model: &Model, point: &PointDeformation) -> String {
     }
 }
 
-fn caption(buffer: &mut Buffer, inner: Rect, longest: f64, moves: bool, app: &App, view: &View) {
+fn caption(buffer: &mut Buffer, inner: Rect, shown: Scales, moves: bool, app: &App, view: &View) {
     let theme = &app.theme;
+    let Scales { longest, magnified } = shown;
     // First, so that a narrow pane does not cut it off.
     let mut spans: Vec<Span> = view
         .worst_point()
         .map(|point| Span::styled(worst_words(view.model, &point), theme.text))
         .into_iter()
         .collect();
-    spans.push(Span::styled(" faint: unloaded", theme.faint));
+    if magnified != 1.0 {
+        let text = format!(" displacements ×{} (*)  ", number::plain(magnified));
+        spans.push(Span::styled(text, theme.strong));
+    }
+    spans.push(Span::styled(UNLOADED, theme.faint));
     if longest > 0.0 {
         spans.push(Span::styled(
             format!("   longest force {}", number::short(longest)),
@@ -468,13 +600,18 @@ fn caption(buffer: &mut Buffer, inner: Rect, longest: f64, moves: bool, app: &Ap
     if found(view).is_some_and(|found| !found.nodes.is_empty()) {
         spans.push(Span::styled(format!("   {MARK} diagnosed"), theme.faint));
     }
-    if app.camera != Camera::ALL {
+    if (app.camera.zoom, app.camera.pan) != (Camera::ALL.zoom, Camera::ALL.pan) {
         spans.push(Span::styled(
             format!("   ×{:.2}  0: fit", app.camera.zoom),
             theme.faint,
         ));
     }
-    Line::from(spans).render(
+    // Nothing else says less.
+    let mut line = Line::from(spans);
+    if line.width() > usize::from(inner.width) {
+        line.spans.retain(|span| span.content != UNLOADED);
+    }
+    line.render(
         Rect {
             y: inner.bottom() - 1,
             height: 1,
@@ -508,6 +645,7 @@ mod tests {
             scale: 1.0,
             size: [1.0; 2],
             extent: 0.5 / NORMAL,
+            magnified: 1.0,
         };
         assert_eq!(
             normals(&[[0.0, 0.0], [-2.0, 0.0]], &window),

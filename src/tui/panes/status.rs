@@ -105,7 +105,10 @@ fn scene<'a>(app: &App, view: &View<'a>, width: usize) -> Line<'a> {
         return solver_line(app, view, attached, width);
     }
     const PROGRAM: &str = " stickslip ";
-    let name = paint::cut(view.name, width.saturating_sub(PROGRAM.width()));
+    // A path would displace the title.
+    let file = std::path::Path::new(view.name).file_name();
+    let name = file.map_or(view.name.into(), |file| file.to_string_lossy());
+    let name = paint::cut(&name, width.saturating_sub(PROGRAM.width()));
     let room = width.saturating_sub(PROGRAM.width() + name.width());
     Line::from(vec![
         Span::styled(PROGRAM, app.theme.faint),

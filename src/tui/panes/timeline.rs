@@ -35,7 +35,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let selected = app.slave(view);
     let rows = usize::from(area.height.saturating_sub(2 + FRAME));
     if rows < count {
-        title += &format!("  node {} of {count}", selected + 1);
+        title += &format!("  node {} of {count}, folded", selected + 1);
     }
     let inner = paint::frame(
         buffer,
@@ -53,7 +53,9 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     }
     let (left, columns) = visible(inner, view);
     let name = usize::from(left - inner.x);
-    let shown = rows_shown(rows, selected, count);
+    let folded = folded(rows, &columns, app, view);
+    let shown = rows_shown(rows, row_of(selected, &folded), folded.len());
+    let shown = &folded[shown];
     let nodes = inner.y + 3;
     let below = nodes + shown.len() as u16;
 
@@ -63,14 +65,14 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         buffer.set_string(inner.x + 1, inner.y + y, text, theme.faint);
     }
     headings(buffer, inner, &columns, view, theme.heading);
-    for (row, slave) in shown.clone().enumerate() {
-        let (mark, style) = match slave == selected {
+    for (row, slaves) in shown.iter().enumerate() {
+        let (mark, style) = match slaves.contains(&selected) {
             true => ("▸", theme.selected),
             false => (" ", theme.text),
         };
         let y = nodes + row as u16;
         buffer.set_string(inner.x, y, mark, theme.focus);
-        let text = paint::cut(view.slave(slave), name - 2);
+        let text = paint::cut(&row_name(slaves, view), name - 2);
         buffer.set_string(inner.x + 1, y, text, style);
     }
     for column in &columns {
@@ -90,8 +92,8 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
                 buffer.set_string(column.x - 1, y, rule, theme.faint);
             }
         }
-        for (row, slave) in shown.clone().enumerate() {
-            let (letter, style) = cell(strip, slave, finished, app);
+        for (row, slaves) in shown.iter().enumerate() {
+            let (letter, style) = cell(strip, slaves.start, finished, app);
             buffer.set_string(column.x, nodes + row as u16, letter, reversed(style));
         }
         // Only attached solvers differ from their rules, and they have no cycle brackets in this row.
@@ -109,8 +111,15 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
 
 /// Screen column of the first iteration, and the visible iterations.
 fn visible(inner: Rect, view: &View) -> (u16, Vec<Column>) {
-    let names = (0..view.model.contacts.len()).map(|slave| view.slave(slave).width());
-    let name = names.max().unwrap_or(0).clamp(NAME.start, NAME.end) + 2;
+    let count = view.model.contacts.len();
+    let names = (0..count).map(|slave| view.slave(slave).width());
+    let name = names.max().unwrap_or(0);
+    // A folded row has two names.
+    let name = match usize::from(inner.height.saturating_sub(FRAME)) < count {
+        true => (2 * name + 3).clamp(NAME.start, 2 * NAME.end),
+        false => name.clamp(NAME.start, NAME.end),
+    };
+    let name = name + 2;
     let left = inner.x + name as u16;
     let room = usize::from(inner.right().saturating_sub(left));
     let ruled = |at: usize| rule(view, at).is_some();
@@ -128,18 +137,52 @@ fn inside(area: Rect, view: &View) -> Option<Rect> {
 pub fn step_at(area: Rect, view: &View, at: Position) -> Option<usize> {
     let inner = inside(area, view).filter(|inner| inner.contains(at))?;
     let (_, columns) = visible(inner, view);
-    let column = columns.into_iter().find(|column| column.x == at.x);
+    let column = columns.into_iter().rev().find(|column| column.x <= at.x);
     column.map(|column| column.at)
 }
 
 /// The slave node in the row at a screen position.
 pub fn slave_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usize> {
     let inner = inside(area, view).filter(|inner| inner.contains(at))?;
-    let count = view.model.contacts.len();
     let rows = usize::from(inner.height - FRAME);
-    let selected = app.slave(view);
     let row = usize::from(at.y).checked_sub(usize::from(inner.y) + 3)?;
-    rows_shown(rows, selected, count).nth(row)
+    let folded = folded(rows, &visible(inner, view).1, app, view);
+    let shown = rows_shown(rows, row_of(app.slave(view), &folded), folded.len());
+    folded[shown].get(row).map(|slaves| slaves.start)
+}
+
+/// The slave nodes in rows: one each if all fit, or neighbours with the same cells in all visible columns together.
+fn folded(rows: usize, columns: &[Column], app: &App, view: &View) -> Vec<Range<usize>> {
+    let count = view.model.contacts.len();
+    let finished = view.model.finished.is_some();
+    let alike = |one: usize, other: usize| {
+        columns.iter().all(|column| {
+            let strip = &view.strips[column.at];
+            cell(strip, one, finished, app) == cell(strip, other, finished, app)
+        })
+    };
+    let mut all: Vec<Range<usize>> = Vec::new();
+    for slave in 0..count {
+        match all.last_mut() {
+            Some(last) if rows < count && alike(last.start, slave) => last.end = slave + 1,
+            _ => all.push(slave..slave + 1),
+        }
+    }
+    all
+}
+
+/// The row of a slave node.
+fn row_of(slave: usize, folded: &[Range<usize>]) -> usize {
+    folded.partition_point(|slaves| slaves.end <= slave)
+}
+
+/// The names in a row: one, or the first and the last.
+fn row_name(slaves: &Range<usize>, view: &View) -> String {
+    let (first, last) = (view.slave(slaves.start), view.slave(slaves.end - 1));
+    match slaves.len() {
+        1 => first.to_owned(),
+        _ => format!("{first} … {last}"),
+    }
 }
 
 fn title(view: &View) -> String {

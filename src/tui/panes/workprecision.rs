@@ -4,6 +4,7 @@
 //! Each run is drawn as its series' letter, a capital if it is on the Pareto front; failed runs are ✗ in a row at the top. Details
 //! of the selected run are shown below the plot.
 
+use crate::canvas::Canvas;
 use crate::chartframe::ChartFrame;
 use crate::chartpage::ChartPage;
 use crate::paint;
@@ -108,6 +109,27 @@ fn plot_runs(buffer: &mut Buffer, plot: Rect, page: &ChartPage, theme: &Theme) {
             free = left + words.len() as u16 + 1;
         }
     }
+    // Series are connected, and the front is drawn in bold.
+    let dot = |x: u16, y: u16| {
+        [
+            2.0 * f64::from(x - plot.x) + 0.5,
+            4.0 * f64::from(y - plot.y) + 2.0,
+        ]
+    };
+    let mut canvas = Canvas::new(plot);
+    let solved = |wanted: &dyn Fn(&Point) -> bool| {
+        let points = chart.points.iter().filter(|point| wanted(point));
+        let mut at: Vec<(f64, [f64; 2])> = points
+            .filter_map(|point| Some((cost(point), dot(column(cost(point)), row(point.error?)))))
+            .collect();
+        at.sort_by(|a, b| a.0.total_cmp(&b.0));
+        at.into_iter().map(|(_, dot)| dot).collect::<Vec<_>>()
+    };
+    for k in 0..chart.series.len() {
+        canvas.polyline(&solved(&|point| point.series == k), theme.faint);
+    }
+    canvas.polyline(&solved(&|point| point.front), theme.good);
+    canvas.render(buffer);
     let mut put = |x: u16, y: u16, text: &str, style: Style| {
         buffer.set_string(x, y, text, style);
     };
@@ -151,6 +173,7 @@ fn series(chart: &Precision, theme: &Theme, width: usize) -> paint::Lines {
     lines.push(Line::default());
     for (mark, words) in [
         ("A", "capital: on the Pareto front"),
+        ("⠒", "line: a series; bright: the front"),
         ("✗", "failed"),
         ("▾", "reference"),
     ] {
@@ -180,7 +203,7 @@ fn details(page: &ChartPage, theme: &Theme, width: usize) -> paint::Lines {
     };
     let cost = format!(
         "   {error}   {} s, {} factorizations, {} minor iterations",
-        number::six(point.seconds),
+        number::four(point.seconds),
         point.factorizations,
         point.minors
     );

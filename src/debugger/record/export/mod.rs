@@ -18,6 +18,7 @@ pub mod shown;
 pub mod skeleton;
 pub mod written;
 
+mod chart;
 mod pressures;
 mod timeline;
 mod window;

@@ -1,13 +1,15 @@
 //! A state as a picture for print: the deformed shape with modes, surface normals, contact forces and gaps, a
 //! table of slave nodes, and the timeline at the bottom.
 //!
-//! Displacements are drawn to scale. Forces have a separate scale, shown below the shape. Modes differ in the
+//! Small displacements are magnified. Forces have a separate scale, shown below the shape. Modes differ in the
 //! shape of their markers, and in colours that also differ in greyscale.
 
+use super::chart;
 use super::pressures::pressures;
-use super::shown::{ExportError, Shown};
+use super::shown::{ExportError, PicturePart, Shown};
 use super::timeline::{self, chosen, colour};
 use super::window::{FORCE, Window};
+use crate::explain::conditions::{Given, conditions};
 use crate::explain::names;
 use crate::explain::outline::{self, Bounds, Point, curve, extent};
 use crate::explain::round_off::RoundOff;
@@ -26,9 +28,16 @@ use stickslip_study::sheet::{
     Anchor, BLACK, Colour, GREY, LABEL, MARGIN, PALE, SMALL, Sheet, widest,
 };
 
-/// Width of the picture, and height of the shape.
+/// Width of the picture, and height of the shape or the chart.
 const WIDTH: f64 = 980.0;
 const HIGH: f64 = 400.0;
+/// Minimum height of the shape or the chart, and minimum width of a picture, in units of the small text.
+const LOW: f64 = 120.0;
+const NARROW: f64 = 480.0;
+/// Length of the largest load and prescribed motion, in pixels.
+const LOAD: f64 = 52.0;
+/// Colour of supports, loads and prescribed motions.
+const GREEN: Colour = (0, 120, 86);
 /// Length of a normal, in pixels.
 const NORMAL: f64 = 13.0;
 /// Pixels between two normals.
@@ -47,7 +56,12 @@ pub(super) fn svg(shown: &Shown, _: &mut Stepper) -> Result<Vec<u8>, ExportError
 }
 
 pub(super) fn png(shown: &Shown, _: &mut Stepper) -> Result<Vec<u8>, ExportError> {
-    Ok(sheet(shown)?.png()?)
+    let pixels = if shown.picture.size.is_some() {
+        1.0
+    } else {
+        2.0
+    };
+    Ok(sheet(shown)?.png(pixels)?)
 }
 
 /// The marker of a mode: a circle for free, a triangle for sliding, a square for fixed.
@@ -63,15 +77,52 @@ fn marker(sheet: &mut Sheet, at: (f64, f64), mode: Mode, r: f64) {
 /// The picture as plain data.
 ///
 /// # Errors
-/// If the font cannot be read.
+/// If the font cannot be read, or the text leaves no room in the requested size.
 pub fn sheet(shown: &Shown) -> Result<Sheet, PlotError> {
+    let request = shown.picture;
+    let factor = match (request.font, request.size) {
+        (Some(font), _) => font / SMALL,
+        (None, Some((width, _))) => f64::from(width) / WIDTH,
+        (None, None) => 1.0,
+    };
+    let Some((width, height)) = request.size.map(|(w, h)| (f64::from(w), f64::from(h))) else {
+        return Ok(parts(shown, WIDTH, HIGH)?.scaled(factor));
+    };
+    let (width, height) = (width / factor, height / factor);
+    // What the shape or the chart does not need is known only after it was drawn once.
+    let first = parts(shown, width, HIGH)?;
+    let high = HIGH + height - first.height - MARGIN;
+    if high < LOW || width < NARROW {
+        let message =
+            "the text leaves no room for the picture; use a smaller --font or a larger --size";
+        return Err(PlotError::new(message));
+    }
+    let mut sheet = parts(shown, width, high)?;
+    sheet.height = height - MARGIN;
+    Ok(sheet.scaled(factor))
+}
+
+/// The requested parts, with a shape, chart or timeline of a height.
+fn parts(shown: &Shown, width: f64, high: f64) -> Result<Sheet, PlotError> {
     let model = &shown.scene.model;
-    let mut sheet = Sheet::new(WIDTH, &title(shown))?;
+    let mut sheet = Sheet::new(width, &title(shown))?;
     sheet.paragraph(&[caption(shown)], LABEL, BLACK)?;
     let rows = chosen(model, shown.strips, ROWS);
-    shape(&mut sheet, shown, &rows)?;
-    table(&mut sheet, shown, &rows)?;
-    timeline::draw(&mut sheet, model, shown.strips)?;
+    match shown.picture.only {
+        None => {
+            shape(&mut sheet, shown, &rows, high)?;
+            table(&mut sheet, shown, &rows)?;
+            timeline::draw(&mut sheet, model, shown.strips, timeline::ROWS)?;
+        }
+        Some(PicturePart::Shape) => shape(&mut sheet, shown, &rows, high)?,
+        Some(PicturePart::Timeline) => {
+            let top = sheet.height;
+            timeline::draw(&mut sheet, model, shown.strips, timeline::rows(high))?;
+            sheet.height = sheet.height.max(top + high);
+        }
+        Some(PicturePart::Chart) => chart::load(&mut sheet, shown, high)?,
+        Some(PicturePart::Cone) => chart::cone(&mut sheet, shown, high)?,
+    }
     sheet.paragraph(&footer(shown), SMALL, GREY)?;
     Ok(sheet)
 }
@@ -157,13 +208,14 @@ fn stroke(sheet: &mut Sheet, window: &Window, points: &[Point], pen: &Pen) {
     }
 }
 
-fn shape(sheet: &mut Sheet, shown: &Shown, rows: &[usize]) -> Result<(), PlotError> {
+fn shape(sheet: &mut Sheet, shown: &Shown, rows: &[usize], high: f64) -> Result<(), PlotError> {
     let model = &shown.scene.model;
-    let now = |node: usize| model.place(&shown.state.u, node);
+    let magnified = outline::magnification(model, std::iter::once(&shown.state.u[..]));
+    let now = |node: usize| outline::magnified(model, &shown.state.u, node, magnified);
     let top = sheet.height;
     let patch = Patch {
         from: (MARGIN, top),
-        to: (WIDTH - MARGIN, top + HIGH),
+        to: (sheet.width - MARGIN, top + high),
     };
     let seen = extent(model, &now).unwrap_or(Bounds::UNIT);
     let window = Window::new(&seen, patch, room(shown));
@@ -173,10 +225,11 @@ fn shape(sheet: &mut Sheet, shown: &Shown, rows: &[usize]) -> Result<(), PlotErr
     gaps(sheet, &window, shown, &now);
     let pressure = pressures(sheet, &window, shown, &now);
     let marked = radius(&window, model, &now);
+    given(sheet, &window, shown, &now, marked, &mut taken);
     let largest = forces(sheet, &window, shown, &now, marked, &mut taken);
     slaves(sheet, &window, shown, &now, rows, marked, &mut taken)?;
-    sheet.height = top + HIGH + 0.5 * MARGIN;
-    legend(sheet, &window, shown, largest)?;
+    sheet.height = top + high + 0.5 * MARGIN;
+    legend(sheet, &window, shown, largest, magnified)?;
     if pressure > 0.0 {
         let text = format!(
             "blue: contact pressure F_n / A on undeformed areas, maximum {}",
@@ -298,16 +351,32 @@ fn gaps(sheet: &mut Sheet, window: &Window, shown: &Shown, now: &dyn Fn(usize) -
 /// Margins that the force arrows need outside the shape: left, top, right, bottom.
 fn room(shown: &Shown) -> [f64; 4] {
     let (largest, mut room) = (largest(shown), [0.0_f64; 4]);
-    let Some(event) = shown.event.filter(|_| largest > 0.0) else {
-        return room;
-    };
-    for found in event.nodes.iter().filter(|found| size(found).is_finite()) {
-        let (n, t) = (found.normal, tangent(found.normal));
-        let along = |axis: usize| FORCE / largest * (found.f_n * n[axis] + found.f_t * t[axis]);
-        let (x, y) = (along(0), along(1));
-        for (room, reach) in room.iter_mut().zip([x, -y, -x, y]) {
+    let mut reach = |x: f64, y: f64| {
+        for (room, reach) in room.iter_mut().zip([-x, y, x, -y]) {
             *room = room.max(reach);
         }
+    };
+    let model = &shown.scene.model;
+    let load_factor = shown.event.map_or(0.0, |event| event.load_factor);
+    for arrow in conditions(model, load_factor, &|node| model.nodes[node].at).arrows {
+        let length = match arrow.given {
+            Given::Load => -1.2 * LOAD,
+            Given::Motion => 1.2 * LOAD,
+        };
+        reach(length * arrow.along[0], length * arrow.along[1]);
+    }
+    let nodes = shown
+        .event
+        .filter(|_| largest > 0.0)
+        .map(|event| &event.nodes);
+    for found in nodes
+        .into_iter()
+        .flatten()
+        .filter(|found| size(found).is_finite())
+    {
+        let (n, t) = (found.normal, tangent(found.normal));
+        let along = |axis: usize| FORCE / largest * (found.f_n * n[axis] + found.f_t * t[axis]);
+        reach(along(0), along(1));
     }
     room
 }
@@ -324,7 +393,68 @@ fn largest(shown: &Shown) -> f64 {
     sizes.filter(|f| f.is_finite()).fold(0.0, f64::max)
 }
 
-/// Contact forces on the slave nodes, as arrows that end at the node; returns the largest.
+/// Supports, loads and prescribed motions.
+fn given(
+    sheet: &mut Sheet,
+    window: &Window,
+    shown: &Shown,
+    now: &dyn Fn(usize) -> Point,
+    marked: f64,
+    taken: &mut Placing,
+) {
+    let load_factor = shown.event.map_or(0.0, |event| event.load_factor);
+    let found = conditions(&shown.scene.model, load_factor, now);
+    for (node, held) in found.supports {
+        let at = window.at(now(node));
+        let kind = match held {
+            [true, true, true] => 1,
+            [true, true, false] | [false, true, _] => 2,
+            [true, false, _] | [false, false, _] => 3,
+        };
+        if window.holds(at) {
+            sheet.marker(at, kind, 3.5, GREEN);
+        }
+    }
+    for arrow in &found.arrows {
+        let at = window.at(arrow.at);
+        let [x, y] = arrow.along.map(|x| LOAD * x);
+        let clear = (marked + 3.0) / x.hypot(y).max(1e-300);
+        let part = |by: f64| (at.0 + by * x, at.1 - by * y);
+        let (from, to) = match arrow.given {
+            Given::Load => (part(-1.0 - clear), part(-clear)),
+            Given::Motion => (part(clear), part(1.0 + clear)),
+        };
+        if !window.holds(at) {
+            continue;
+        }
+        sheet.arrow(from, to, 1.6, GREEN);
+        if arrow.given == Given::Motion {
+            let (side, length) = ([-y, x], x.hypot(y).max(1e-300));
+            let beside =
+                |p: (f64, f64)| (p.0 + 3.0 * side[0] / length, p.1 - 3.0 * side[1] / length);
+            sheet.line(&[beside(from), beside(to)], 1.2, GREEN);
+        }
+        taken.take_line(from, to);
+    }
+    for (node, _, left) in found.turns {
+        let at = window.at(now(node));
+        if window.holds(at) {
+            let sign = if left { 1.0 } else { -1.0 };
+            let arc: Vec<(f64, f64)> = (0..=12)
+                .map(|k| sign * (0.35 + 0.4 * f64::from(k)))
+                .map(|a| (at.0 + 12.0 * a.cos(), at.1 - 12.0 * a.sin()))
+                .collect();
+            sheet.line(&arc, 1.6, GREEN);
+            if let [.., before, end] = arc[..] {
+                let far = |a: f64, b: f64| b + 3.0 * (b - a);
+                let tip = (far(before.0, end.0), far(before.1, end.1));
+                sheet.arrow(before, tip, 1.6, GREEN);
+            }
+        }
+    }
+}
+
+/// Contact forces on the slave nodes, as arrows from the node in the direction in which the master pushes it; returns the largest.
 fn forces(
     sheet: &mut Sheet,
     window: &Window,
@@ -340,19 +470,14 @@ fn forces(
     for (contact, found) in shown.scene.model.contacts.iter().zip(&event.nodes) {
         let (n, t) = (found.normal, tangent(found.normal));
         let scale = FORCE / largest;
-        let tip = window.at(now(contact.node));
+        let node = window.at(now(contact.node));
         let along = |axis: usize| scale * (found.f_n * n[axis] + found.f_t * t[axis]);
-        let tail = (tip.0 - along(0), tip.1 + along(1));
         let long = scale * size(found) >= 1.0;
-        if long && window.holds(tip) {
-            // The arrow head ends next to the node's marker, which is drawn on top.
-            let back = (marked + 1.5) / (scale * size(found));
-            let beside = |from: f64, to: f64| to + back * (from - to);
-            let shift = (beside(tail.0, tip.0) - tip.0, beside(tail.1, tip.1) - tip.1);
-            let (tail, tip) = (
-                (tail.0 + shift.0, tail.1 + shift.1),
-                (tip.0 + shift.0, tip.1 + shift.1),
-            );
+        if long && window.holds(node) {
+            // The arrow starts next to the node's marker.
+            let clear = (marked + 1.5) / (scale * size(found));
+            let part = |by: f64| (node.0 + by * along(0), node.1 - by * along(1));
+            let (tail, tip) = (part(clear), part(1.0 + clear));
             sheet.arrow(tail, tip, 2.0, VERMILION);
             taken.take_line(tail, tip);
         }
@@ -431,6 +556,7 @@ fn legend(
     window: &Window,
     shown: &Shown,
     largest: f64,
+    magnified: f64,
 ) -> Result<(), PlotError> {
     let y = sheet.height + 0.7 * LABEL;
     let mut x = MARGIN + 6.0;
@@ -438,7 +564,7 @@ fn legend(
         marker(sheet, (x, y), mode, 5.0);
         x += 12.0 + entry(sheet, (x + 12.0, y), names::mode(mode))?;
     }
-    let unit = round(90.0 / window.scale);
+    let unit = outline::round_down(90.0 / window.scale);
     if unit.is_finite() && unit > 0.0 {
         let wide = unit * window.scale;
         sheet.line(&[(x, y), (x + wide, y)], 2.0, BLACK);
@@ -449,7 +575,7 @@ fn legend(
         x += entry(sheet, (x, y), &format!("length {}", plain(unit)))?;
     }
     if largest > 0.0 {
-        let unit = round(0.8 * largest);
+        let unit = outline::round_down(0.8 * largest);
         let wide = FORCE * unit / largest;
         sheet.arrow((x, y), (x + wide, y), 2.0, VERMILION);
         x += wide + 8.0;
@@ -458,8 +584,12 @@ fn legend(
     sheet.arrow((x, y + 6.0), (x, y - 7.0), 1.0, GREY);
     sheet.text((x + 10.0, y), "outward side", SMALL, BLACK, Anchor::Left);
     let moved = moved(shown);
+    let scale = match magnified == 1.0 {
+        true => "to scale".to_owned(),
+        false => format!("magnified ×{}", plain(magnified)),
+    };
     let words = format!(
-        "Displacements to scale, maximum {}; dashed: undeformed.",
+        "Displacements {scale}, maximum {}; dashed: undeformed; green: supports, loads, and prescribed motions (double line).",
         plain_four(moved)
     );
     sheet.height = y + 1.2 * LABEL;
@@ -485,21 +615,6 @@ fn moved(shown: &Shown) -> f64 {
     all.fold(0.0, f64::max)
 }
 
-/// The largest of 1, 2 and 5 times a power of ten that does not exceed a value.
-fn round(value: f64) -> f64 {
-    if !(value > 0.0 && value.is_finite()) {
-        return 0.0;
-    }
-    let power = 10f64.powf(value.log10().floor());
-    let step = [5.0, 2.0, 1.0]
-        .into_iter()
-        .find(|step| step * power <= value);
-    // Formatted and parsed, so that the value equals its label.
-    format!("{:.0e}", step.unwrap_or(1.0) * power)
-        .parse()
-        .unwrap_or(value)
-}
-
 /// The table of some slave nodes.
 fn table(sheet: &mut Sheet, shown: &Shown, rows: &[usize]) -> Result<(), PlotError> {
     let Some(event) = shown.event.filter(|event| !event.nodes.is_empty()) else {
@@ -514,13 +629,15 @@ fn table(sheet: &mut Sheet, shown: &Shown, rows: &[usize]) -> Result<(), PlotErr
         ("T_max", 820.0),
         ("F_n / A", 950.0),
     ];
+    let part = sheet.width / WIDTH;
+    let wide = |x: f64| x * part;
     let mut y = sheet.height + 0.6 * SMALL;
     sheet.text((MARGIN + 40.0, y), "slave node", SMALL, GREY, Anchor::Left);
     sheet.text((MARGIN + 214.0, y), "mode", SMALL, GREY, Anchor::Left);
     let areas = model.contacts.iter().any(|contact| contact.area.is_some());
     let heads = if areas { &COLUMNS[..] } else { &COLUMNS[..4] };
     for &(head, x) in heads {
-        sheet.text((x, y), head, SMALL, GREY, Anchor::Right);
+        sheet.text((wide(x), y), head, SMALL, GREY, Anchor::Right);
     }
     for (row, &slave) in rows.iter().enumerate() {
         let Some(found) = event.nodes.get(slave) else {
@@ -557,7 +674,7 @@ fn table(sheet: &mut Sheet, shown: &Shown, rows: &[usize]) -> Result<(), PlotErr
         let by_area = model.contacts[slave].pressure(round_off.force(found.f_n), 0.0);
         values.extend(by_area.map(|[pressure, _]| short(pressure)));
         for ((_, x), value) in COLUMNS.iter().zip(values) {
-            sheet.text((*x, y), &value, SMALL, BLACK, Anchor::Right);
+            sheet.text((wide(*x), y), &value, SMALL, BLACK, Anchor::Right);
         }
     }
     sheet.height = y + SMALL;
@@ -568,17 +685,4 @@ fn table(sheet: &mut Sheet, shown: &Shown, rows: &[usize]) -> Result<(), PlotErr
     }
     sheet.height += 0.5 * SMALL;
     Ok(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn scales_are_round_numbers_below_the_limit() {
-        for (value, wanted) in [(0.37, 0.2), (5.0, 5.0), (99.0, 50.0), (1.2e-4, 1e-4)] {
-            assert_eq!(round(value), wanted);
-        }
-        assert_eq!(round(0.0), 0.0);
-    }
 }

@@ -3,6 +3,7 @@
 use super::frozen::{NoExport, Origin};
 use crate::explain::examination::NotExamined;
 use crate::history::strip::Strip;
+use std::sync::Arc;
 use stickslip_core::interface::problem::InterfaceProblem;
 use stickslip_core::step::event::Event;
 use stickslip_core::step::solver::Lost;
@@ -34,6 +35,48 @@ pub struct Shown<'a> {
     pub ended: String,
     /// Whether the frozen problem is requested, for kinds that offer a choice.
     pub frozen: bool,
+    /// What a picture contains, and its size.
+    pub picture: &'a PictureRequest,
+    /// The last minor iterations, oldest first, for the cone.
+    pub events: &'a [Arc<Event>],
+    /// Load factor and monitors at the accepted increments, for the chart.
+    pub accepted: &'a [(f64, Vec<f64>)],
+}
+
+/// A part of a picture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PicturePart {
+    /// The deformed shape.
+    Shape,
+    /// The modes by minor iteration.
+    Timeline,
+    /// The load over a monitor.
+    Chart,
+    /// The force of a contact in its friction cone, and T_max by iteration.
+    Cone,
+}
+
+stickslip_core::words! {
+    PicturePart, ALL, word:
+    Shape "shape",
+    Timeline "timeline",
+    Chart "chart",
+    Cone "cone",
+}
+
+/// What a picture contains, and its size.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct PictureRequest {
+    /// The only part; `None` for shape, table and timeline.
+    pub only: Option<PicturePart>,
+    /// Width and height in pixels; `None` for the natural size.
+    pub size: Option<(u32, u32)>,
+    /// Height of the small text, in pixels.
+    pub font: Option<f64>,
+    /// The slave node of the cone; `None` for the one with the largest force.
+    pub node: Option<usize>,
+    /// The monitor of the chart; `None` for the first that moves.
+    pub monitor: Option<usize>,
 }
 
 /// Why a file cannot be exported.

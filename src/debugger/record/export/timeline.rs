@@ -10,8 +10,14 @@ use stickslip_study::sheet::{Anchor, BLACK, Colour, GREY, LABEL, MARGIN, SMALL, 
 
 /// Size of a cell.
 const CELL: (f64, f64) = (14.0, 16.0);
-/// Maximum number of slave nodes in the timeline.
-const ROWS: usize = 14;
+/// Maximum number of slave nodes in the timeline of a whole picture, and height of everything but its rows.
+pub(super) const ROWS: usize = 14;
+const FRAME: f64 = 110.0;
+
+/// Number of rows in a timeline of this height.
+pub(super) fn rows(height: f64) -> usize {
+    ((height - FRAME) / CELL.1).max(1.0) as usize
+}
 
 /// Fill colour of a mode's marker.
 pub(super) fn colour(mode: Mode) -> Colour {
@@ -66,9 +72,14 @@ fn sign(kind: PointKind) -> &'static str {
 }
 
 /// Draws the timeline at the bottom of the sheet.
-pub(super) fn draw(sheet: &mut Sheet, model: &Model, strips: &[Strip]) -> Result<(), PlotError> {
+pub(super) fn draw(
+    sheet: &mut Sheet,
+    model: &Model,
+    strips: &[Strip],
+    most: usize,
+) -> Result<(), PlotError> {
     let columns = last(strips);
-    let rows = chosen(model, strips, ROWS);
+    let rows = chosen(model, strips, most);
     let (Some(first), Some(end)) = (columns.first(), columns.last()) else {
         return Ok(());
     };

@@ -149,7 +149,7 @@ pub fn iteration(run: &CalculixRun, iteration: usize) -> String {
     if let Some(norms) = this.norms {
         let _ = write!(
             text,
-            ", residual {} % (limit {}), correction {} % (limit {CORRECTION_LIMIT})",
+            ", residual {} % (limit {} %), correction {} % (limit {CORRECTION_LIMIT} %)",
             plain(norms.residual),
             residual_limit(this.number),
             plain(norms.correction)

@@ -1,0 +1,161 @@
+//! Supports, loads and prescribed motions of a state, as marks for a picture.
+
+use super::outline::Point;
+use stickslip_core::model::{BodyKind, Component, Model};
+
+/// What an arrow or a turn stands for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Given {
+    /// A force, a moment or a pressure.
+    Load,
+    /// A prescribed displacement or rotation.
+    Motion,
+}
+
+/// An arrow that ends where it acts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ConditionArrow {
+    /// What it stands for.
+    pub given: Given,
+    /// Where it acts, in the configuration of the picture.
+    pub at: Point,
+    /// Its direction; the largest of its kind has length 1.
+    pub along: Point,
+}
+
+/// The marks of a state.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Conditions {
+    /// Supported nodes, with the restrained components x, y and rotation.
+    pub supports: Vec<(usize, [bool; 3])>,
+    /// Forces, pressures and prescribed displacements.
+    pub arrows: Vec<ConditionArrow>,
+    /// Moments and prescribed rotations: node, kind, and whether it turns anticlockwise.
+    pub turns: Vec<(usize, Given, bool)>,
+}
+
+/// The marks at a load factor, with nodes at `place`. A load that is still 0 is shown as at the end of the path.
+pub fn conditions(model: &Model, load_factor: f64, place: &dyn Fn(usize) -> Point) -> Conditions {
+    let end = model.path.last().copied().unwrap_or(1.0);
+    let amplitude = |value: f64, at: &dyn Fn(f64) -> f64| match value * at(load_factor) {
+        0.0 => value * at(end),
+        now => now,
+    };
+    let loads = model.loads.iter().map(|load| {
+        let value = amplitude(load.value, &|factor| load.scale.at(factor));
+        (Given::Load, load.dof, value)
+    });
+    let motions = model.prescribed.iter().map(|one| {
+        let value = amplitude(one.value, &|factor| one.scale.at(factor));
+        (Given::Motion, one.dof, value)
+    });
+    let mut found = Conditions::default();
+    let mut vectors: Vec<(Given, usize, Point)> = Vec::new();
+    for (given, dof, value) in loads.chain(motions).filter(|(.., value)| *value != 0.0) {
+        // The degrees of freedom of the nodes ascend; those inside bodies come last.
+        let node = model.dofs.first.partition_point(|first| *first <= dof);
+        let Some(node) = node.checked_sub(1) else {
+            continue;
+        };
+        match dof - model.dofs.first[node] {
+            axis @ (0 | 1) => {
+                let same = |one: &&mut (Given, usize, Point)| (one.0, one.1) == (given, node);
+                match vectors.iter_mut().rev().find(same) {
+                    Some((.., along)) => along[axis] += value,
+                    None => {
+                        let mut along = [0.0; 2];
+                        along[axis] = value;
+                        vectors.push((given, node, along));
+                    }
+                }
+            }
+            2 if model.dofs.count[node] == 3 => found.turns.push((node, given, value > 0.0)),
+            _ => {}
+        }
+    }
+    let arrows = vectors
+        .into_iter()
+        .map(|(given, node, along)| ConditionArrow {
+            given,
+            at: place(node),
+            along,
+        });
+    found.arrows = scaled(arrows.collect());
+    found
+        .arrows
+        .extend(scaled(pressures(model, load_factor, end, place)));
+    found.supports = supports(model);
+    found
+}
+
+/// Following pressures, one arrow per face.
+fn pressures(
+    model: &Model,
+    load_factor: f64,
+    end: f64,
+    place: &dyn Fn(usize) -> Point,
+) -> Vec<ConditionArrow> {
+    let mut found = Vec::new();
+    for pressure in &model.pressures {
+        let value = match pressure.value * pressure.scale.at(load_factor) {
+            0.0 => pressure.value * pressure.scale.at(end),
+            now => now,
+        };
+        for face in &pressure.faces {
+            let (Some(&first), Some(&last)) = (face.nodes.first(), face.nodes.last()) else {
+                continue;
+            };
+            let (from, to) = (place(first), place(last));
+            let [x, y] = [to[0] - from[0], to[1] - from[1]];
+            let length = x.hypot(y);
+            if length > 0.0 {
+                found.push(ConditionArrow {
+                    given: Given::Load,
+                    at: [0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1])],
+                    // The body is on the left.
+                    along: [-y * value / length, x * value / length],
+                });
+            }
+        }
+    }
+    found
+}
+
+/// Arrows with the largest of each kind at length 1.
+fn scaled(mut arrows: Vec<ConditionArrow>) -> Vec<ConditionArrow> {
+    for given in [Given::Load, Given::Motion] {
+        let of = |arrow: &&mut ConditionArrow| arrow.given == given;
+        let sizes = arrows.iter_mut().filter(of);
+        let sizes = sizes.map(|arrow| arrow.along[0].hypot(arrow.along[1]));
+        let largest = sizes.filter(|size| size.is_finite()).fold(0.0, f64::max);
+        for arrow in arrows.iter_mut().filter(of) {
+            arrow.along = arrow.along.map(|x| x / largest);
+        }
+    }
+    arrows.retain(|arrow| arrow.along.iter().all(|x| x.is_finite()));
+    arrows
+}
+
+/// Nodes of bodies with restrained components.
+fn supports(model: &Model) -> Vec<(usize, [bool; 3])> {
+    let mut nodes: Vec<usize> = model
+        .bodies
+        .iter()
+        .filter(|body| !matches!(body.kind, BodyKind::Linear(_)))
+        .flat_map(|body| body.nodes.iter().copied())
+        .collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    let held = |node: usize, component| {
+        let dof = model.dofs.dof(node, component);
+        dof.is_some_and(|dof| {
+            let moves = |one: &stickslip_core::model::Prescribed| one.dof == dof;
+            model.dofs.equation[dof].is_none() && !model.prescribed.iter().any(moves)
+        })
+    };
+    let all = nodes.into_iter().map(|node| {
+        let components = [Component::X, Component::Y, Component::Rotation];
+        (node, components.map(|component| held(node, component)))
+    });
+    all.filter(|(_, held)| held.contains(&true)).collect()
+}

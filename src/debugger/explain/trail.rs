@@ -1,0 +1,165 @@
+//! The last iterations of one contact: its force in the Coulomb cone, and T_max as a map from the value used to the value found.
+
+use stickslip_core::model::{Friction, Mode};
+use stickslip_core::step::event::Event;
+
+/// Maximum number of iterations in a trail.
+pub const LONGEST: usize = 12;
+
+/// A contact in one minor iteration.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TrailPoint {
+    /// Mode of the solve.
+    pub mode: Mode,
+    /// Normal force; compression positive.
+    pub f_n: f64,
+    /// Tangential force.
+    pub f_t: f64,
+    /// T_max after the solve, and the value used in it.
+    pub t_max: f64,
+    /// See `t_max`.
+    pub t_max_used: f64,
+}
+
+/// The iterations of a slave node in the attempt of the last event, oldest first, at most [`LONGEST`]; `events` runs backwards.
+pub fn trail<'a>(events: impl Iterator<Item = &'a Event>, slave: usize) -> Vec<TrailPoint> {
+    let mut attempt = None;
+    let mut points: Vec<TrailPoint> = events
+        .take_while(|event| {
+            let at = (event.position.increment, event.position.attempt);
+            *attempt.get_or_insert(at) == at
+        })
+        .map_while(|event| event.nodes.get(slave))
+        .take(LONGEST)
+        .map(|record| TrailPoint {
+            mode: record.decision.before,
+            f_n: record.f_n,
+            f_t: record.f_t,
+            t_max: record.t_max,
+            t_max_used: record.t_max_used,
+        })
+        .collect();
+    points.retain(|point| point.f_n.is_finite() && point.f_t.is_finite());
+    points.reverse();
+    points
+}
+
+/// The friction cone with the forces of a trail: F_t to the right, F_n upwards.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Cone {
+    /// Largest |F_t| and F_n of the drawing, and the smallest F_n (at most 0).
+    pub f_t: f64,
+    /// See `f_t`.
+    pub f_n: f64,
+    /// See `f_t`.
+    pub least: f64,
+    /// The left edge of the cone from its tip outwards, as pairs (F_t, F_n); the right edge is its mirror image.
+    pub edge: [[f64; 2]; 2],
+}
+
+impl Cone {
+    /// A cone around these forces; `None` if all are 0.
+    pub fn new(trail: &[TrailPoint], friction: &Friction) -> Option<Cone> {
+        let largest = |of: &dyn Fn(&TrailPoint) -> f64| trail.iter().map(of).fold(0.0, f64::max);
+        let mu = friction.coefficient();
+        let (f_n, f_t) = (largest(&|p| p.f_n), largest(&|p| p.f_t.abs()));
+        let least = trail.iter().map(|p| p.f_n).fold(0.0, f64::min);
+        if f_n.max(f_t).max(-least) <= 0.0 {
+            return None;
+        }
+        // Without compression the cone is as high as the shear that it is compared with.
+        let high = 1.15 * if f_n > 0.0 { f_n } else { f_t.max(-least) };
+        let bound = mu * high + friction.cohesion;
+        Some(Cone {
+            f_t: 1.15 * f_t.max(bound).max(0.2 * high),
+            f_n: high,
+            least: 1.15 * least,
+            edge: [[-friction.cohesion, 0.0], [-bound, high]],
+        })
+    }
+}
+
+/// Part of T_max below which the differences are drawn instead.
+const CLOSE: f64 = 1e-2;
+
+/// The cobweb of T_max: from the diagonal up to the value found, and across to the diagonal. If all values are close to each other,
+/// the first result is what they are less; otherwise it is 0.
+pub fn cobweb(trail: &[TrailPoint]) -> (f64, Vec<[f64; 2]>) {
+    let points = trail.iter().filter(|point| point.mode == Mode::Sliding);
+    let steps: Vec<[f64; 2]> = points
+        .map(|point| [point.t_max_used, point.t_max])
+        .filter(|step| step.iter().all(|value| value.is_finite()))
+        .collect();
+    let last = steps.last().map_or(0.0, |step| step[1]);
+    let far = |value: &f64| (value - last).abs() > CLOSE * last.abs();
+    let origin = match steps.iter().flatten().any(far) {
+        true => 0.0,
+        false => last,
+    };
+    let path = steps.into_iter().flat_map(|step| {
+        let [used, found] = step.map(|value| value - origin);
+        [[used, used], [used, found], [found, found]]
+    });
+    (origin, path.collect())
+}
+
+/// The factor by which the change of T_max shrinks (or grows) per iteration, from the last three values; `None` if unknown.
+pub fn factor(trail: &[TrailPoint]) -> Option<f64> {
+    let [.., one, two] = trail else { return None };
+    let (before, now) = (one.t_max - one.t_max_used, two.t_max - two.t_max_used);
+    let slide = one.mode == Mode::Sliding && two.mode == Mode::Sliding;
+    (slide && before.abs() > 0.0)
+        .then_some(now / before)
+        .filter(|factor| factor.is_finite())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn point(t_max_used: f64, t_max: f64) -> TrailPoint {
+        TrailPoint {
+            mode: Mode::Sliding,
+            f_n: 1.0,
+            f_t: 0.2,
+            t_max,
+            t_max_used,
+        }
+    }
+
+    #[test]
+    fn the_cobweb_goes_from_the_diagonal_to_the_map_and_back() {
+        let trail = [point(0.0, 1.0), point(1.0, 0.5)];
+        let wanted = [
+            [0.0, 0.0],
+            [0.0, 1.0],
+            [1.0, 1.0],
+            [1.0, 1.0],
+            [1.0, 0.5],
+            [0.5, 0.5],
+        ];
+        assert_eq!(cobweb(&trail), (0.0, wanted.to_vec()));
+        let close = cobweb(&[point(1.0, 1.001)]);
+        assert_eq!((close.0, close.1[2]), (1.001, [0.0, 0.0]));
+        assert_eq!(factor(&trail), Some(-0.5));
+        assert_eq!(factor(&trail[..1]), None);
+    }
+
+    #[test]
+    fn the_cone_contains_its_forces() {
+        let friction = Friction {
+            angle: 45.0,
+            cohesion: 0.5,
+        };
+        let cone = Cone::new(&[point(0.0, 0.0)], &friction).unwrap();
+        assert!(cone.f_n > 1.0 && cone.f_t > 0.2 && cone.least == 0.0);
+        assert_eq!(cone.edge[0], [-0.5, 0.0]);
+        assert!((cone.edge[1][0] + cone.f_n + 0.5).abs() < 1e-9);
+        let none = TrailPoint {
+            f_n: 0.0,
+            f_t: 0.0,
+            ..point(0.0, 0.0)
+        };
+        assert_eq!(Cone::new(&[none], &friction), None);
+    }
+}

@@ -1,0 +1,216 @@
+//! Charts in a picture: the load over a monitor, and the force of a contact in its friction cone with T_max by iteration.
+
+use super::shown::Shown;
+use super::timeline::colour;
+use crate::explain::names;
+use crate::explain::round_off::RoundOff;
+use crate::explain::trail::{self, Cone, TrailPoint};
+use stickslip_core::model::Watched;
+use stickslip_scene::number::{four, short};
+use stickslip_study::drawn::PlotError;
+use stickslip_study::sheet::{Axes, BLACK, COLOURS, GREY, LABEL, MARGIN, SMALL, Sheet};
+
+/// Columns left of an axis, and rows below it.
+const LEFT: f64 = 96.0;
+const BELOW: f64 = 44.0;
+/// Number of intervals of an axis.
+const TICKS: u32 = 4;
+
+/// Axes over a range, drawn in columns `left` to `right` of the sheet; returns the map to the sheet.
+fn axes(
+    sheet: &mut Sheet,
+    (left, right): (f64, f64),
+    high: f64,
+    (x, y): ((&str, [f64; 2]), (&str, [f64; 2])),
+) -> impl Fn([f64; 2]) -> (f64, f64) + use<> {
+    let axes = Axes {
+        left: left + LEFT,
+        top: sheet.height + 0.6 * LABEL,
+        name: left + MARGIN,
+        size: (
+            right - left - LEFT - 3.0 * MARGIN,
+            high - BELOW - 0.6 * LABEL,
+        ),
+    };
+    let ticks = |[low, up]: [f64; 2]| {
+        (0..=TICKS).map(move |k| {
+            let part = f64::from(k) / f64::from(TICKS);
+            let value = low + part * (up - low);
+            // Round-off at 0 is not written.
+            let value = if value.abs() < 1e-9 * (up - low) {
+                0.0
+            } else {
+                value
+            };
+            (part, four(value))
+        })
+    };
+    axes.draw(sheet, (x.0, ticks(x.1)), (y.0, ticks(y.1)));
+    let ([x0, x1], [y0, y1]) = (x.1, y.1);
+    move |[a, b]: [f64; 2]| axes.at((a - x0) / (x1 - x0), (b - y0) / (y1 - y0))
+}
+
+/// The range of some values with 0.
+fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    let finite = values.filter(|value| value.is_finite());
+    let (low, high) = finite.fold((0.0_f64, 0.0_f64), |(low, high), x| {
+        (low.min(x), high.max(x))
+    });
+    match high > low {
+        true => [low, high],
+        false => [0.0, 1.0],
+    }
+}
+
+/// The load over the requested monitor, or over the first that moves.
+pub(super) fn load(sheet: &mut Sheet, shown: &Shown, high: f64) -> Result<(), PlotError> {
+    let monitors = &shown.scene.model.monitors;
+    let round_off = shown
+        .event
+        .map(|event| RoundOff::new(&shown.scene.model, &event.before));
+    let moves = |at: &usize| {
+        let [low, high] = range(
+            shown
+                .accepted
+                .iter()
+                .filter_map(|(_, values)| values.get(*at).copied()),
+        );
+        let noise = round_off.map_or(0.0, |round_off| match monitors[*at].of {
+            Watched::Displacement { .. } => round_off.length,
+            _ => round_off.force,
+        });
+        high - low > noise && (low, high) != (0.0, 1.0)
+    };
+    let at = shown
+        .picture
+        .monitor
+        .or((0..monitors.len()).find(moves))
+        .unwrap_or(0);
+    let points: Vec<[f64; 2]> = shown
+        .accepted
+        .iter()
+        .filter_map(|(load, values)| Some([*values.get(at)?, *load]))
+        .collect();
+    let (Some(monitor), false) = (monitors.get(at), points.is_empty()) else {
+        return sheet.paragraph(
+            &["no accepted increment with a monitor".to_owned()],
+            LABEL,
+            GREY,
+        );
+    };
+    let (x, y) = (
+        range(points.iter().map(|p| p[0])),
+        range(points.iter().map(|p| p[1])),
+    );
+    let width = sheet.width;
+    let map = axes(
+        sheet,
+        (0.0, width),
+        high,
+        ((&monitor.name, x), ("load factor", y)),
+    );
+    let line: Vec<(f64, f64)> = points.iter().map(|point| map(*point)).collect();
+    sheet.line(&line, 2.0, COLOURS[0]);
+    if let Some(end) = line.last() {
+        sheet.marker(*end, 0, 4.0, COLOURS[0]);
+    }
+    sheet.height += high;
+    Ok(())
+}
+
+/// The force of a contact in its cone, and the cobweb of T_max.
+pub(super) fn cone(sheet: &mut Sheet, shown: &Shown, high: f64) -> Result<(), PlotError> {
+    let model = &shown.scene.model;
+    let size = |slave: usize| {
+        let record = shown.event.and_then(|event| event.nodes.get(slave));
+        record.map_or(0.0, |record| record.f_n.hypot(record.f_t))
+    };
+    let slaves = 0..model.contacts.len();
+    let largest = slaves.rev().max_by(|a, b| size(*a).total_cmp(&size(*b)));
+    let Some(slave) = shown.picture.node.or(largest) else {
+        return sheet.paragraph(&["the scene has no slave nodes".to_owned()], LABEL, GREY);
+    };
+    let friction = shown.state.controls.friction[slave];
+    let trail = trail::trail(shown.events.iter().rev().map(|event| &**event), slave);
+    let name = names::slave(model, slave);
+    let (Some(cone), Some(now)) = (Cone::new(&trail, &friction), trail.last()) else {
+        return sheet.paragraph(&[format!("no force at {name}")], LABEL, GREY);
+    };
+    let words = format!(
+        "{name}: F_n {}, F_t {}, T_max {}; friction angle {}°",
+        short(now.f_n),
+        short(now.f_t),
+        short(now.t_max),
+        four(friction.angle)
+    );
+    sheet.paragraph(&[words], LABEL, BLACK)?;
+    let width = sheet.width;
+    let (origin, web) = trail::cobweb(&trail);
+    let (low, top) = web
+        .iter()
+        .flatten()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
+            (a.min(*x), b.max(*x))
+        });
+    let has_web = top - low > shown.event.map_or(0.0, |event| 1e-12 * event.before.scale);
+    let middle = if has_web { 0.5 * width } else { width };
+    let ranges = (
+        ("F_t", [-cone.f_t, cone.f_t]),
+        ("F_n", [cone.least, cone.f_n]),
+    );
+    let map = axes(sheet, (0.0, middle), high, ranges);
+    for sign in [1.0, -1.0] {
+        let edge = cone.edge.map(|[f_t, f_n]| map([sign * f_t, f_n]));
+        sheet.line(&edge, 2.0, BLACK);
+    }
+    points(sheet, &trail, &map);
+    if has_web {
+        let margin = 0.06 * (top - low);
+        let span = [low - margin, top + margin];
+        let less = match origin == 0.0 {
+            true => String::new(),
+            false => format!(" less {}", four(origin)),
+        };
+        let (used, found) = (format!("T_max used{less}"), format!("T_max found{less}"));
+        let ranges = ((used.as_str(), span), (found.as_str(), span));
+        let map = axes(sheet, (middle, width), high, ranges);
+        sheet.dashed(&[map([span[0]; 2]), map([span[1]; 2])], 1.2, GREY);
+        let path: Vec<(f64, f64)> = web.iter().map(|point| map(*point)).collect();
+        sheet.line(&path, 2.0, COLOURS[0]);
+        sheet.marker(
+            map([now.t_max_used - origin, now.t_max - origin]),
+            0,
+            4.5,
+            COLOURS[0],
+        );
+    }
+    sheet.height += high;
+    let key = format!(
+        "The last {} minor iterations; large: the last one. Circle free, triangle sliding, square fixed.",
+        trail.len()
+    );
+    sheet.paragraph(&[key], SMALL, GREY)
+}
+
+/// The trail of forces.
+fn points(sheet: &mut Sheet, trail: &[TrailPoint], map: &impl Fn([f64; 2]) -> (f64, f64)) {
+    let dots: Vec<(f64, f64)> = trail
+        .iter()
+        .map(|point| map([point.f_t, point.f_n]))
+        .collect();
+    sheet.line(&dots, 1.2, GREY);
+    let last = trail.len().saturating_sub(1);
+    for (k, (point, at)) in trail.iter().zip(&dots).enumerate() {
+        let kind = match point.mode {
+            stickslip_core::model::Mode::Free => 0,
+            stickslip_core::model::Mode::Fixed => 1,
+            stickslip_core::model::Mode::Sliding => 2,
+        };
+        sheet.ringed(
+            *at,
+            kind,
+            if k == last { 6.0 } else { 3.5 },
+            colour(point.mode),
+        );
+    }
+}

@@ -1,0 +1,361 @@
+//! The contact of the selected node: its geometry and force in numbers, and below them as many of three pictures as fit: the force
+//! in the Coulomb cone with the trail of the last iterations, T_max over the minor iterations as a cobweb, and who pushed the node.
+
+use crate::app::App;
+use crate::canvas::{Canvas, Dot};
+use crate::chartframe::ChartFrame;
+use crate::layout::Pane;
+use crate::paint;
+use crate::view::View;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::Modifier;
+use ratatui::text::Line;
+use stickslip_core::contact::projection::tangent;
+use stickslip_core::contact::record::ContactRecord;
+use stickslip_debugger::explain::influence::NodePush;
+use stickslip_debugger::explain::tested;
+use stickslip_debugger::explain::trail::{self, Cone, TrailPoint};
+use stickslip_scene::number::{UNREPORTED, four, short};
+use unicode_width::UnicodeWidthStr;
+
+/// Minimum width and height of a picture.
+const WIDE: u16 = 25;
+const HIGH: u16 = 5;
+/// Width of the axis with its labels.
+const LABELS: u16 = 9;
+/// Maximum number of nodes around the selected one.
+const PUSHERS: usize = 6;
+
+/// A picture of the contact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Picture {
+    Cone,
+    Cobweb,
+    Pushes,
+}
+
+/// Draws the contact.
+pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
+    let theme = &app.theme;
+    let slave = app.slave(view);
+    let name = view.slave(slave);
+    let focused = app.panes.focus == Pane::Contact;
+    let inner = paint::frame(buffer, area, &format!("Contact  {name}"), focused, theme);
+    let say = |buffer: &mut Buffer, text: &str| {
+        paint::lines(
+            buffer,
+            inner,
+            &paint::wrapped(text, inner.width.into(), theme.faint),
+        );
+    };
+    let hidden = app.learning.hides(view, slave);
+    let Some(record) = view.record(slave).filter(|_| view.model.finished.is_none()) else {
+        return say(buffer, "No iteration yet.");
+    };
+    let mut lines = words(record, slave, inner.width.into(), app, view);
+    let rows = inner.height.saturating_sub(HIGH);
+    lines.truncate(usize::from(rows));
+    paint::lines(buffer, inner, &lines);
+    let above = lines.len() as u16;
+    let field = Rect {
+        y: inner.y + above,
+        height: inner.height - above,
+        ..inner
+    };
+    let friction = view.frame().state.controls.friction.get(slave).copied();
+    let trail = trail(slave, view);
+    let mut pictures = vec![Picture::Cone];
+    if friction.is_some_and(|friction| !friction.is_smooth()) {
+        pictures.push(Picture::Cobweb);
+    }
+    if view.model.contacts.len() > 1 && !hidden {
+        pictures.push(Picture::Pushes);
+    }
+    let first = app.turned % pictures.len();
+    pictures.rotate_left(first);
+    pictures.truncate(usize::from(field.width / WIDE).max(1));
+    let width = field.width / pictures.len() as u16;
+    if field.height < HIGH || width < LABELS + 6 {
+        return;
+    }
+    for (place, picture) in (0..).zip(pictures) {
+        let area = Rect {
+            x: field.x + place * width,
+            width,
+            ..field
+        };
+        match picture {
+            Picture::Cone => {
+                let cone = friction.and_then(|friction| Cone::new(&trail, &friction));
+                draw_cone(buffer, area, cone.as_ref(), &trail, app);
+            }
+            Picture::Cobweb => cobweb(buffer, area, &trail, app, view),
+            Picture::Pushes => pushes(buffer, area, (slave, record), app, view),
+        }
+    }
+}
+
+/// The iterations of a slave node up to the shown one.
+fn trail(slave: usize, view: &View) -> Vec<TrailPoint> {
+    let frames = view.frames[..=view.cursor].iter().rev();
+    let solved = frames.filter(|frame| frame.intervention.is_none());
+    trail::trail(solved.map_while(|frame| frame.event.as_deref()), slave)
+}
+
+/// S*, its frame, the gap and the force.
+fn words(
+    record: &ContactRecord,
+    slave: usize,
+    width: usize,
+    app: &App,
+    view: &View,
+) -> paint::Lines {
+    let theme = &app.theme;
+    let round_off = view.round_off();
+    let known = |value: f64, text: String| match value.is_finite() {
+        true => text,
+        false => UNREPORTED.to_owned(),
+    };
+    let pair = |v: [f64; 2]| {
+        let [x, y] = v.map(|x| known(x, four(x + 0.0)));
+        format!("({x}, {y})")
+    };
+    let place = match record.spot {
+        None => "past the ends of every surface".to_owned(),
+        Some(spot) => {
+            let surface = view.model.surfaces.get(spot.surface);
+            let surface = surface.map_or("?", |surface| &surface.name);
+            format!(
+                "{surface}, element {}, ξ {}",
+                spot.element + 1,
+                known(spot.xi, four(spot.xi))
+            )
+        }
+    };
+    let [n, t] = [record.normal, tangent(record.normal)].map(pair);
+    let number = |value: f64| known(value, short(value));
+    let [f_n, f_t, t_max] = [record.f_n, record.f_t, record.t_max].map(|f| round_off.force(f));
+    let gap = round_off.length(record.gap);
+    let row = |text: String| paint::wrapped(&text, width, theme.text);
+    let mode = view.mode_before(slave);
+    let force = format!(
+        "g {}  F_n {}  F_t {}  T_max {}",
+        number(gap),
+        number(f_n),
+        number(f_t),
+        number(t_max)
+    );
+    let mut lines = row(format!("S* {place}"));
+    lines.extend(row(format!("n {n}  t {t}")));
+    lines.extend(paint::wrapped(&force, width, theme.mode(mode)));
+    lines
+}
+
+/// A picture's heading; returns the area below it.
+fn headed(buffer: &mut Buffer, area: Rect, heading: &str, app: &App) -> Rect {
+    let heading = paint::cut(heading, area.width.saturating_sub(2).into());
+    paint::lines(
+        buffer,
+        area,
+        &[Line::styled(format!(" {heading}"), app.theme.heading)],
+    );
+    Rect {
+        y: area.y + 1,
+        height: area.height - 1,
+        ..area
+    }
+}
+
+fn draw_cone(
+    buffer: &mut Buffer,
+    area: Rect,
+    cone: Option<&Cone>,
+    trail: &[TrailPoint],
+    app: &App,
+) {
+    let theme = &app.theme;
+    let area = headed(buffer, area, "Coulomb cone", app);
+    let (Some(cone), Some(now)) = (cone, trail.last()) else {
+        return paint::lines(buffer, area, &[Line::styled(" no force", theme.faint)]);
+    };
+    let frame = ChartFrame::within(area, LABELS);
+    let mut canvas = Canvas::new(frame.field);
+    let [width, height] = canvas.size();
+    let dot = |[f_t, f_n]: [f64; 2]| -> Dot {
+        let (x, y) = (
+            0.5 + 0.5 * f_t / cone.f_t,
+            (f_n - cone.least) / (cone.f_n - cone.least),
+        );
+        [0.5 + x * (width - 1.0), height - 0.5 - y * (height - 1.0)]
+    };
+    canvas.line(dot([0.0, cone.least]), dot([0.0, cone.f_n]), theme.faint);
+    canvas.line(dot([-cone.f_t, 0.0]), dot([cone.f_t, 0.0]), theme.faint);
+    let [tip, end] = cone.edge;
+    for sign in [1.0, -1.0] {
+        let side = |[f_t, f_n]: [f64; 2]| dot([sign * f_t, f_n]);
+        canvas.line(side(tip), side(end), theme.strong);
+    }
+    let dots: Vec<Dot> = trail
+        .iter()
+        .map(|point| dot([point.f_t, point.f_n]))
+        .collect();
+    canvas.polyline(&dots, theme.faint);
+    canvas.render(buffer);
+    for (point, at) in trail.iter().zip(&dots) {
+        let (glyph, style) = match point == now {
+            true => ("●", theme.mode(point.mode).add_modifier(Modifier::BOLD)),
+            false => ("○", theme.mode(point.mode)),
+        };
+        if let Some(cell) = canvas.cell(*at).and_then(|at| buffer.cell_mut(at)) {
+            cell.set_symbol(glyph).set_style(style);
+        }
+    }
+    frame.axis(buffer, theme.faint);
+    frame.tick(buffer, 0, &tick(cone.f_n), theme.faint);
+    let zero = canvas
+        .cell(dot([0.0, 0.0]))
+        .map_or(0, |(_, y)| y - frame.field.y);
+    frame.tick(buffer, zero, "F_n 0", theme.faint);
+    below(buffer, frame, [-cone.f_t, cone.f_t], "F_t", app);
+}
+
+/// A number at an axis.
+fn tick(value: f64) -> String {
+    match value {
+        0.0 => "0".into(),
+        _ => format!("{value:.1e}"),
+    }
+}
+
+/// The ends of a horizontal axis, with its name between them.
+fn below(buffer: &mut Buffer, frame: ChartFrame, [low, high]: [f64; 2], name: &str, app: &App) {
+    let (low, high) = (tick(low), tick(high));
+    let width = usize::from(frame.field.width);
+    let room = width.saturating_sub(low.len() + high.len());
+    // A narrow axis has only its ends.
+    let name = if name.width() + 2 > room { "" } else { name };
+    let text = format!("{low}{name:^room$}{high}");
+    frame.below(buffer, frame.field.x, &text, app.theme.faint);
+}
+
+/// T_max found over T_max used: where the path meets the diagonal, T_max has settled.
+fn cobweb(buffer: &mut Buffer, area: Rect, trail: &[TrailPoint], app: &App, view: &View) {
+    let theme = &app.theme;
+    let factor = trail::factor(trail);
+    let heading = match factor {
+        Some(factor) => format!("T_max: change ×{} per iteration", four(factor)),
+        None => "T_max by iteration".into(),
+    };
+    let area = headed(buffer, area, &heading, app);
+    let (origin, path) = trail::cobweb(trail);
+    let values = || path.iter().flatten().copied();
+    let (low, high) = (
+        values().fold(f64::INFINITY, f64::min),
+        values().fold(f64::NEG_INFINITY, f64::max),
+    );
+    let least = view.event().map_or(0.0, |event| 1e-12 * event.before.scale);
+    if !(high - low > least) {
+        let text = match trail.last() {
+            Some(point) if high >= low => format!(" T_max has settled at {}", short(point.t_max)),
+            _ => " used only while the node slides".into(),
+        };
+        let lines = paint::wrapped(&text, area.width.into(), theme.faint);
+        return paint::lines(buffer, area, &lines);
+    }
+    let margin = 0.06 * (high - low);
+    let (low, high) = (low - margin, high + margin);
+    let frame = ChartFrame::within(area, LABELS);
+    let mut canvas = Canvas::new(frame.field);
+    let [width, height] = canvas.size();
+    let part = |value: f64| (value - low) / (high - low);
+    let dot = |[used, found]: [f64; 2]| -> Dot {
+        [
+            0.5 + part(used) * (width - 1.0),
+            height - 0.5 - part(found) * (height - 1.0),
+        ]
+    };
+    canvas.line(dot([low, low]), dot([high, high]), theme.faint);
+    let dots: Vec<Dot> = path.iter().map(|point| dot(*point)).collect();
+    canvas.polyline(&dots, theme.text);
+    canvas.render(buffer);
+    let last = trail
+        .last()
+        .map(|point| [point.t_max_used - origin, point.t_max - origin]);
+    let now = last.and_then(|last| canvas.cell(dot(last)));
+    if let Some(cell) = now.and_then(|at| buffer.cell_mut(at)) {
+        cell.set_symbol("●").set_style(theme.strong);
+    }
+    frame.axis(buffer, theme.faint);
+    frame.tick(buffer, 0, &tick(high), theme.faint);
+    let bottom = frame.field.height - 1;
+    frame.tick(buffer, bottom, &tick(low), theme.faint);
+    let name = match origin == 0.0 {
+        true => "used".to_owned(),
+        false => format!("less {}", four(origin)),
+    };
+    below(buffer, frame, [low, high], &name, app);
+}
+
+/// The nodes whose changes since the previous iteration pushed the selected one, as arrows towards it.
+fn pushes(
+    buffer: &mut Buffer,
+    area: Rect,
+    (slave, record): (usize, &ContactRecord),
+    app: &App,
+    view: &View,
+) {
+    let theme = &app.theme;
+    let quantity = tested::deciding(&record.decision);
+    let (symbol, _) = tested::effect(quantity, &Default::default());
+    let area = headed(buffer, area, &format!("Who pushed it: {symbol}"), app);
+    let none = |buffer: &mut Buffer, text: &str| {
+        paint::lines(
+            buffer,
+            area,
+            &paint::wrapped(text, area.width.into(), theme.faint),
+        );
+    };
+    let Some(Some(found)) = view.pushes(slave) else {
+        return none(buffer, "not known here");
+    };
+    let of = |push: &NodePush| tested::effect(quantity, &push.influence).1;
+    let mut found: Vec<_> = found.iter().filter(|push| of(push) != 0.0).collect();
+    found.sort_by(|a, b| of(b).abs().total_cmp(&of(a).abs()));
+    found.truncate(PUSHERS.min(usize::from(area.height)));
+    let Some(largest) = found.first().map(|push| of(push).abs()) else {
+        return none(buffer, "no change at any node moved it");
+    };
+    let names = found.iter().map(|push| view.slave(push.slave).width());
+    let name = names.max().unwrap_or(0).min(12);
+    let number = 11;
+    let target = view.slave(slave);
+    let room = usize::from(area.width).saturating_sub(name + number + 6);
+    let middle = found.len() / 2;
+    let lines = found.iter().enumerate().map(|(row, push)| {
+        let part = of(push).abs() / largest;
+        let from = paint::cut(view.slave(push.slave), name);
+        let stroke = match part {
+            0.5.. => "━",
+            0.1.. => "─",
+            _ => "╌",
+        };
+        let sign = if of(push) > 0.0 { "+" } else { "" };
+        let end = match row == middle {
+            true => format!("▶ {}", paint::cut(target, room)),
+            false if row < middle => "╮".into(),
+            false => "╯".into(),
+        };
+        let text = format!(
+            " {from:>name$} {stroke}{:─^number$}{stroke}{end}",
+            format!("{sign}{}", short(of(push)))
+        );
+        let style = if part >= 0.5 {
+            theme.strong
+        } else {
+            theme.text
+        };
+        Line::styled(text, style)
+    });
+    paint::lines(buffer, area, &lines.collect::<Vec<_>>());
+}
