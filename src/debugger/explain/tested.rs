@@ -1,8 +1,7 @@
 //! The quantities that Table 2 tests: their names and dimensions, and how a change of another node affects them.
 
 use super::influence::Influence;
-use stickslip_core::contact::table2::{Decision, Test, Tested};
-use stickslip_core::model::Friction;
+use stickslip_core::contact::table2::{Decision, Tested};
 
 /// Dimension of a tested quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -59,12 +58,6 @@ pub fn sides(tested: Tested) -> (&'static str, Option<&'static str>) {
         Tested::Error => ("error", None),
         Tested::Own => ("its own", None),
     }
-}
-
-/// Whether a test is a tie between two modes that differ: without friction, sliding and fixed do not depend on T_max and slip.
-pub fn is_tie(test: &Test, friction: &Friction) -> bool {
-    let of_friction = matches!(test.tested, Tested::Slip | Tested::ShearForce);
-    test.tie && !(of_friction && friction.is_smooth())
 }
 
 /// The quantity of the test that fired, or otherwise of the first test.

@@ -12,11 +12,11 @@ use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span};
 use stickslip_core::contact::record::{ContactRecord, Forced};
 use stickslip_core::contact::table2::Tested;
-use stickslip_core::model::{Friction, Mode};
+use stickslip_core::model::Mode;
 use stickslip_debugger::action::{Filter, Sort};
 use stickslip_debugger::explain::names;
 use stickslip_debugger::explain::round_off::RoundOff;
-use stickslip_debugger::explain::tested::{self, Dimension};
+use stickslip_debugger::explain::tested::Dimension;
 use stickslip_scene::number;
 use stickslip_scene::shown;
 use unicode_width::UnicodeWidthStr;
@@ -262,7 +262,7 @@ fn row<'a>(
     spans.extend(modes(slave, changed, columns, app, view));
     spans.push(Span::raw(" "));
     if let Some(record) = record {
-        spans.extend(numbers((slave, record), round_off, columns, app, view));
+        spans.extend(numbers(record, round_off, columns, app, view));
         if columns.pressures {
             let forces = [record.f_n, record.f_t].map(|force| round_off.force(force));
             let found = view.model.contacts[slave].pressure(forces[0], forces[1]);
@@ -341,13 +341,12 @@ fn modes(
 }
 
 fn numbers(
-    (slave, record): (usize, &ContactRecord),
+    record: &ContactRecord,
     round_off: &RoundOff,
     columns: &Columns,
     app: &App,
     view: &View,
 ) -> Vec<Span<'static>> {
-    let friction = view.frame().state.controls.friction[slave];
     // The value that changed the mode is shown exactly, even within round-off.
     let decided = |tested: Tested| {
         let mut tests = record.decision.tests.iter().flatten();
@@ -374,7 +373,7 @@ fn numbers(
         format!("{ratio:<width$}", width = columns.ratio),
         number(record.slip, Tested::Slip),
     ];
-    let style = |index: usize| number_style(index, record, &friction, app);
+    let style = |index: usize| number_style(index, record, app);
     texts
         .into_iter()
         .take(columns.shown)
@@ -394,7 +393,7 @@ fn is_at_limit(record: &ContactRecord, view: &View) -> bool {
 }
 
 /// Highlights tested values that are ties.
-fn number_style(column: usize, record: &ContactRecord, friction: &Friction, app: &App) -> Style {
+fn number_style(column: usize, record: &ContactRecord, app: &App) -> Style {
     let tested = match column {
         0 => Tested::Gap,
         1 => Tested::NormalForce,

@@ -217,9 +217,8 @@ fn outcome(app: &App, view: &View, width: u16) -> paint::Lines {
         let progress = view.attached.and_then(|attached| attached.log.progress());
         let progress = progress.map_or(String::new(), |text| format!("; {text}"));
         let steps = view.frames.len() - 1;
-        let text = format!(
-            " {turn} solving: {far}; {steps} steps so far{took}{progress}; Ctrl-C stops"
-        );
+        let text =
+            format!(" {turn} solving: {far}; {steps} steps so far{took}{progress}; Ctrl-C stops");
         let again = view.attached.map_or("", |attached| attached.again);
         let first = (!again.is_empty()).then(|| format!("   {again} first"));
         return [Some(text), first]
