@@ -17,9 +17,9 @@
 //! L_ii y_i = b_i,    r̃ = b_c − L_ci y_i;      L_iiᵀ u_i = D_i⁻¹ y_i − L_ciᵀ u_c.
 //! ```
 //!
-//! Only the upper half of the matrix is used. There is no pivoting, which is stable without negative pivots, because the terms of
-//! the factorization are then no larger than the matrix. With negative pivots the size of the terms is checked
-//! ([`SymmetricFactors::factor`]); if it is too large, the caller uses [`super::Factors`].
+//! Only the upper half of the matrix is used. It is factored without pivoting. This is stable if no pivot is negative, because
+//! the terms of the factorization are then no larger than the matrix. With negative pivots the size of the terms is
+//! checked ([`SymmetricFactors::factor`]); if it is too large, the caller uses [`super::Factors`].
 
 use super::check::{SolveError, largest};
 use super::order::order;

@@ -4,6 +4,7 @@ use super::Scene;
 use super::compile::increments;
 use super::{gaps, limits};
 use crate::format::error::some_of;
+use crate::number::six;
 use std::fmt;
 use stickslip_core::linear::estimate::Estimate;
 use stickslip_core::model::{
@@ -124,7 +125,7 @@ fn body_line(body: &Body) -> String {
             } else {
                 ""
             };
-            format!("{}: truss, {bars}, EA {}{small}", body.name, truss.ea)
+            format!("{}: truss, {bars}, EA {}{small}", body.name, six(truss.ea))
         }
         BodyKind::Linear(linear) => linear_line(body, linear),
     }
@@ -155,13 +156,14 @@ fn linear_line(body: &Body, linear: &Linear) -> String {
 fn beam_line(name: &str, beam: &Beam) -> String {
     let per = beam.elements.first().map_or(0, Vec::len);
     let shear = match beam.ga {
-        Some(ga) => format!("GA {ga}"),
+        Some(ga) => format!("GA {}", six(ga)),
         None => "shear-rigid".to_owned(),
     };
     let elements = plural(beam.elements.len(), "element");
     format!(
         "{name}: beam, {elements} of {per} nodes, EA {}, EI {}, {shear}",
-        beam.ea, beam.ei
+        six(beam.ea),
+        six(beam.ei)
     )
 }
 
@@ -179,7 +181,7 @@ fn solid_line(name: &str, solid: &Solid) -> String {
             Plane::Stress => format!("plane stress, thickness {}", m.thickness),
             Plane::Axisymmetric => "axisymmetric, forces of the whole circumference".to_owned(),
         };
-        format!("E {}, nu {}, {law}, {plane}", m.young, m.poisson)
+        format!("E {}, nu {}, {law}, {plane}", six(m.young), six(m.poisson))
     };
     let materials: Vec<String> = solid.materials.iter().map(made_of).collect();
     format!(

@@ -47,7 +47,8 @@ pub fn plain(value: f64) -> String {
         return "0".into();
     }
     if !value.is_finite() || !(1e-4..1e7).contains(&value.abs()) {
-        return format!("{value:e}");
+        let rounded: f64 = format!("{value:.9e}").parse().unwrap_or(value);
+        return format!("{rounded:e}");
     }
     let before = value.abs().log10().floor() as i32 + 1;
     let digits = (10 - before.max(0)).max(0) as usize;
@@ -140,6 +141,7 @@ mod tests {
         assert_eq!(plain(-0.005), "-0.005");
         assert_eq!(plain(0.0), "0");
         assert_eq!(plain(1e-7), "1e-7");
+        assert_eq!(plain(1.5258789062499997e-6), "1.525878906e-6");
     }
 
     #[test]

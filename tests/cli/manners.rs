@@ -218,3 +218,45 @@ fn a_built_in_scene_where_a_snapshot_is_read_is_told_to_be_one() {
         assert!(told.contains("`stickslip run osc-snap`"), "{told}");
     }
 }
+
+#[test]
+fn a_missing_file_gets_a_suggestion_from_its_folder() {
+    let directory = tempfile::tempdir().unwrap();
+    let here = directory.path();
+    std::fs::copy(top("problems/osc-two6.ron"), here.join("clip.ron")).unwrap();
+    for arguments in [
+        ["run", "cilp.ron"],
+        ["replay", "cilp.ron"],
+        ["cilp.ron", "--no-journal"],
+    ] {
+        let wrong = ran(here, &arguments);
+        let told = err(&wrong);
+        assert!(told.contains("; did you mean \"clip.ron\"?"), "{told}");
+        assert_eq!(code(&wrong), 2);
+    }
+    let wrong = err(&ran(here, &["run", "wall.ron"]));
+    assert!(!wrong.contains("did you mean"), "{wrong}");
+}
+
+#[test]
+fn notes_of_a_run_take_one_line_each_and_are_summed_up() {
+    let told = err(&ran(Path::new("."), &["run", "01-pinned-beam-rough-floor"]));
+    let notes: Vec<&str> = told.lines().filter(|l| l.starts_with("note: ")).collect();
+    assert_eq!(notes.len(), 11, "{told}");
+    assert!(
+        notes.iter().all(|note| note.chars().count() <= 140),
+        "{told}"
+    );
+    assert_eq!(
+        notes.last(),
+        Some(&"note: in total: increment damped 11 × (increment 50)")
+    );
+}
+
+#[test]
+fn a_body_that_is_loose_until_first_contact_is_named_once() {
+    let deck = top("tests/decks/pressed-plates.inp");
+    let told = err(&ran(Path::new("."), &["run", &deck]));
+    let line = "note: loose until first contact: PLATES-2, increment 1";
+    assert_eq!(told.lines().filter(|l| *l == line).count(), 1, "{told}");
+}

@@ -199,7 +199,7 @@ pub fn parameters(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> 
                 let found = format!("{name} accepts the invalid value {wrong}");
                 return Ok(fails(
                     found,
-                    "answer values out of range or of the wrong kind with refused, and change nothing",
+                    "refuse values out of range or of the wrong kind, and change nothing",
                 ));
             }
         }

@@ -102,7 +102,7 @@ fn walk(surface: &Surface, from: SurfacePoint, to: SurfacePoint, positions: &[[f
         + part(to.element, -1.0, to.xi)
 }
 
-/// Length of an element's curve between two ξ; negative backwards.
+/// Length of an element's curve from one ξ to another; negative if ξ decreases.
 fn length(element: SurfaceElement<'_>, from: f64, to: f64, positions: &[[f64; 2]]) -> f64 {
     if from == to {
         return 0.0;

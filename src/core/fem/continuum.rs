@@ -22,7 +22,7 @@ macro_rules! with_rule {
     };
 }
 
-/// An element of a kind at these undeformed positions. With the wrong number of positions it never has a response, so no state of
+/// Creates an element of a kind at these undeformed positions. With the wrong number of positions it never has a response, so no state of
 /// it can be accepted.
 pub fn element(
     kind: ElementKind,

@@ -92,7 +92,7 @@ impl Constant {
             name: format!("contact.{}", k + 1),
             at: [0.0; 2],
         };
-        // As for all interface problems: one step of Coulomb's law.
+        // Interface problems use one step of Coulomb's law.
         let touch = match settings.touch {
             Touch::Auto => Touch::Start,
             touch => touch,

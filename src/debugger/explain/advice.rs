@@ -171,7 +171,7 @@ fn kinds(state: &State, failure: &Failure) -> Vec<RemedyKind> {
 fn by_hand(model: &Model, state: &State, failure: &Failure) -> &'static [&'static str] {
     match failure {
         Failure::Cycle(_) => &["forcing a node into its third mode (m)"],
-        Failure::MajorCycle(_) => &["an arc where the kink is a corner of the body"],
+        Failure::MajorCycle(_) => &["replacing the kink by an arc, if it is a corner of the body"],
         Failure::NoAnswer { .. } => &[
             "other loads or friction",
             "a prescribed displacement instead of a load",

@@ -57,7 +57,7 @@ pub fn uniqueness_words<'a>(found: Uniqueness, name: &impl Fn(usize) -> &'a str)
         }
         Inapplicable::Indefinite => "it is not positive definite".into(),
     };
-    format!("the matrix proves nothing about the number of states: {why}")
+    format!("the number of states does not follow from the matrix: {why}")
 }
 
 /// Families of states that differ only in their forces, one line each.

@@ -6,6 +6,7 @@ use stickslip_core::interface::census::census;
 use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::state::State;
 use stickslip_core::step::stepper::Stepper;
+use stickslip_scene::number::plain;
 
 /// Maximum number of halvings of the increment.
 const HALVINGS: i32 = 6;
@@ -24,9 +25,11 @@ impl Smaller {
     pub fn words(&self) -> String {
         match self {
             Smaller::Found(size) => {
+                let size = plain(*size);
                 format!("a smaller increment of {size} has a consistent state")
             }
             Smaller::None(size) => {
+                let size = plain(*size);
                 format!(
                     "smaller increments have no consistent state either (halved down to {size})"
                 )

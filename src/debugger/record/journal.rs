@@ -6,7 +6,7 @@
 //! digest of the resulting state; a motion that solves is announced by a line before it starts. Entries that
 //! changed something are synced to disk (fdatasync), and so is the folder of a new journal; cursor moves are
 //! only passed to the system. Nothing is lost if the process is killed; a power failure can lose cursor moves.
-//! An incomplete last line was cut off by a kill; it is dropped and reported.
+//! A killed process leaves an incomplete last line, which is dropped and reported.
 
 use crate::record::bits;
 use crate::record::command::Command;

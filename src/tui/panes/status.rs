@@ -227,6 +227,7 @@ fn outcome(app: &App, view: &View, width: u16) -> paint::Lines {
             .map(|text| Line::styled(text, theme.warning))
             .collect();
     }
+    let mut tried = None;
     let (text, style) = match (view.intervention(), view.event()) {
         (Some(intervention), _) => (
             format!("◇ {}", report::intervention(view.model, intervention)),
@@ -242,6 +243,7 @@ fn outcome(app: &App, view: &View, width: u16) -> paint::Lines {
         }
         (None, Some(event)) => match view.examination().flatten() {
             Some(page) if page.found.fails && matches!(event.outcome, Outcome::Failed(_)) => {
+                tried = page.works().map(|line| format!("Try {}", line.command()));
                 (diagnosed(page), theme.bad)
             }
             _ => sentence(event, view.model, app),
@@ -250,37 +252,40 @@ fn outcome(app: &App, view: &View, width: u16) -> paint::Lines {
     // Further lines are indented to the words after the glyph.
     let room = (width as usize).saturating_sub(4);
     let mut words = paint::wrap(&text, room);
-    let aside = interventions(view).map(|text| paint::cut(&text, room));
-    if words.len() > OUTCOME {
-        words.truncate(OUTCOME);
+    let asides: Vec<String> = tried.into_iter().chain(interventions(view)).collect();
+    let aside = paint::cut(&asides.join("   "), room);
+    // A long aside needs a line; a short one needs the end of the last line.
+    let (most, end) = match aside.width() {
+        0 => (OUTCOME, 0),
+        wide if wide > room / 2 => (OUTCOME - 1, 0),
+        wide => (OUTCOME, wide + 3),
+    };
+    let is_long = |last: &String| last.width() + end > room;
+    if words.len() > most || words.len() == most && words.last().is_some_and(is_long) {
+        words.truncate(most);
         if let Some(last) = words.last_mut() {
-            let aside = aside.as_ref().map_or(0, |text| text.width() + 3);
-            *last = paint::cut(&format!("{last} …"), room.saturating_sub(aside).max(1));
+            *last = paint::cut(&format!("{last} …"), room.saturating_sub(end).max(1));
         }
     }
     let indent = |index: usize| if index == 0 { " " } else { "   " };
     let line =
         |(index, words): (usize, String)| Line::styled(format!("{}{words}", indent(index)), style);
     let mut lines: Vec<Line> = words.into_iter().enumerate().map(line).collect();
-    if let Some(text) = aside {
+    if !aside.is_empty() {
         match lines.last_mut() {
-            Some(last) if last.width() + 3 + text.width() <= width as usize => {
-                last.push_span(Span::styled(format!("   {text}"), theme.warning));
+            Some(last) if last.width() + 3 + aside.width() <= width as usize => {
+                last.push_span(Span::styled(format!("   {aside}"), theme.warning));
             }
-            _ => lines.push(Line::styled(format!("   {text}"), theme.warning)),
+            _ => lines.push(Line::styled(format!("   {aside}"), theme.warning)),
         }
     }
     lines
 }
 
-/// What failed, and the first line of Try that works.
+/// What failed; the line above shows the position.
 fn diagnosed(page: &DiagnosisPage) -> String {
-    // The line above shows the position.
     let what = page.what.split_once(": ").map_or("", |(_, what)| what);
-    match page.works() {
-        None => format!("✗ {what}"),
-        Some(line) => format!("✗ {what}. Try {}", line.command()),
-    }
+    format!("✗ {what}")
 }
 
 /// The outcome of a minor iteration as a sentence with a glyph.
