@@ -8,8 +8,7 @@
 //!
 //! Case and spaces within words do not matter, as in CalculiX. Parameters continue on the next line after a trailing comma.
 
-use super::Done;
-use super::source::{Fault, Place, SourceLine, plain};
+use super::source::{Done, Fault, Place, SourceLine, plain};
 use crate::bail;
 
 /// A keyword with its parameters and data.

@@ -1,7 +1,8 @@
 //! Keywords: supported ones with their parameters and readers, ignored ones, and unsupported ones with alternatives.
 
 use super::cards::{ANY, Card};
-use super::{Done, Reader};
+use super::reader::Reader;
+use super::source::Done;
 use Pass::{Laws, Mesh, Model, Step};
 
 /// Treatment of a keyword.

@@ -2,26 +2,14 @@
 
 use super::cards::{Card, CardCell, cells, short};
 use super::deck::{Element, ElementType, Faces, Family, Node, Set, Surface};
-use super::source::{Fault, Place, plain};
-use super::{Done, Reader};
+use super::reader::{Names, Reader};
+use super::source::{Done, Fault, Place, plain};
 use crate::bail;
 use crate::mesh::CellKind;
-use std::collections::{BTreeMap, HashMap};
 
 /// Maximum number of members of all sets and surfaces together, and of loads on members of sets: more than a plane mesh needs,
 /// and few enough to fit in memory.
 const MEMBERS: usize = 20_000_000;
-
-/// Lookup tables for labels and names of a deck.
-#[derive(Debug, Default)]
-pub(super) struct Names {
-    nodes: BTreeMap<u64, usize>,
-    elements: BTreeMap<u64, usize>,
-    node_sets: HashMap<String, usize>,
-    element_sets: HashMap<String, usize>,
-    surfaces: HashMap<String, usize>,
-    members: usize,
-}
 
 impl Names {
     /// Counts members of sets against the limit.

@@ -2,7 +2,7 @@
 //!
 //! - `source`: lines, including those of included files, and locations; `cards`: keywords with their parameters and data.
 //! - [`keywords`]: treatment of each keyword.
-//! - [`deck`]: the contents of a deck, read keyword by keyword in `mesh`, `property` and `step`.
+//! - [`deck`]: the contents of a deck, read keyword by keyword into the state of `reader` in `mesh`, `property` and `step`.
 //!
 //! Keywords have the meaning of CalculiX ("CalculiX CrunchiX user's manual", G. Dhondt), which follows Abaqus. Nodes, elements,
 //! sets and surfaces are read first, then materials and laws, then the cards that use them; the order of cards only matters
@@ -14,6 +14,7 @@ pub mod keywords;
 mod cards;
 mod mesh;
 mod property;
+mod reader;
 mod source;
 mod step;
 #[cfg(test)]
@@ -24,9 +25,9 @@ use cards::Card;
 pub use deck::Deck;
 use deck::{Remark, Value};
 use keywords::{Pass, Reading, Treatment, nearest, treatment};
-use mesh::Names;
-use source::Sources;
+use reader::Reader;
 pub use source::{DECK_BYTES, Fault, Include, Place, Wrong};
+use source::{Done, Sources};
 
 /// Whether a text could be a deck: its first line that is neither blank nor a comment begins with a star.
 pub fn is_one(text: &str) -> bool {
@@ -60,21 +61,6 @@ pub fn read(name: &str, text: &str, include: &mut Include<'_>) -> Result<Deck, W
         message: fault.message,
     })
 }
-
-/// State of reading a deck.
-#[derive(Debug, Default)]
-pub struct Reader {
-    deck: Deck,
-    names: Names,
-    /// The step that has begun.
-    step: Option<deck::Step>,
-    has_time: bool,
-    /// NLGEOM stays on in later steps until it is switched off.
-    nlgeom: bool,
-}
-
-/// The result of reading a part of a deck.
-type Done<T = ()> = Result<T, Fault>;
 
 fn whole(sources: &Sources) -> Done<Deck> {
     let cards = cards::cards(sources.lines())?;

@@ -5,8 +5,8 @@ use super::deck::{
     Adjust, Amplitude, Faces, Family, Form, Interaction, Material, Normal, Pair, Section, Tie,
 };
 use super::mesh::MeshKind;
-use super::source::SourceLine;
-use super::{Done, Reader};
+use super::reader::Reader;
+use super::source::{Done, SourceLine};
 use crate::bail;
 
 /// Rejects a name that is already in use.

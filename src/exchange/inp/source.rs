@@ -38,6 +38,9 @@ pub struct Fault {
     pub message: String,
 }
 
+/// The result of reading a part of a deck.
+pub(super) type Done<T = ()> = Result<T, Fault>;
+
 impl Fault {
     /// An error from its parts.
     pub fn new(place: Place, message: impl Into<String>) -> Self {

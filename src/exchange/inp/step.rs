@@ -3,8 +3,8 @@
 use super::cards::{Card, CardCell, cells, number_or_zero, short};
 use super::deck::{Direction, Element, Faces, Family, Pressure, Step, Time, Value, Volume, Weight};
 use super::mesh::{MeshKind, side_of};
-use super::source::{Place, plain};
-use super::{Done, Reader};
+use super::reader::Reader;
+use super::source::{Done, Place, plain};
 use crate::bail;
 
 impl Reader {

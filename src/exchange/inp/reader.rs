@@ -1,0 +1,27 @@
+//! The state of reading a deck.
+
+use super::deck::{Deck, Step};
+use std::collections::{BTreeMap, HashMap};
+
+/// Lookup tables for labels and names of a deck.
+#[derive(Debug, Default)]
+pub(super) struct Names {
+    pub nodes: BTreeMap<u64, usize>,
+    pub elements: BTreeMap<u64, usize>,
+    pub node_sets: HashMap<String, usize>,
+    pub element_sets: HashMap<String, usize>,
+    pub surfaces: HashMap<String, usize>,
+    pub members: usize,
+}
+
+/// State of reading a deck.
+#[derive(Debug, Default)]
+pub struct Reader {
+    pub(super) deck: Deck,
+    pub(super) names: Names,
+    /// The step that has begun.
+    pub(super) step: Option<Step>,
+    pub(super) has_time: bool,
+    /// NLGEOM stays on in later steps until it is switched off.
+    pub(super) nlgeom: bool,
+}
