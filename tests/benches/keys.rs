@@ -2,15 +2,22 @@
 //!
 //! The scene is `two-blocks-pressed-sheared`, in a session as the debugger has it, without a screen. After an increment and some
 //! minor iterations of the next: a step on; a step back and on again; a node forced and a step; what pushed a node; the
-//! diagnosis. Of steps the median of some. All of a row are measured in one process. A table, not a statistic: hence no harness.
+//! diagnosis. Then `S` and `j` with a screen of 200 by 60 and a journal: processor time of all threads until all are idle, and a
+//! frame. Of steps the median of some. All of a row are measured in one process. A table, not a statistic: hence no harness.
 
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use rustix::time::{ClockId, clock_gettime};
 use std::fs;
 use std::time::Instant;
 use stickslip::model::Mode;
 use stickslip::record::command::{Command, Unit};
+use stickslip::record::journal::Keep;
 use stickslip::scene::Scene;
 use stickslip::session::Session;
 use stickslip::step::event::Outcome;
+use stickslip::tui::theme::Theme;
+use stickslip::tui::{Debugger, screen};
 
 const BLOCKS: &str = concat!(
     env!("CARGO_MANIFEST_DIR"),
@@ -23,9 +30,9 @@ const MILLION: &str = "58";
 
 fn main() {
     println!(
-        "| unknowns | slaves | open s | n s | first minor s | s ms | back and s ms | force and s ms | pushes ms | d ms | peak MB |"
+        "| unknowns | slaves | open s | n s | first minor s | s ms | back and s ms | force and s ms | pushes ms | d ms | `S` ms | `j` ms | peak MB |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|");
     let million = std::env::args().any(|argument| argument == "1000000");
     let sizes = ["2", "6", "8", "18"].into_iter();
     for refine in sizes.chain(million.then_some(MILLION)) {
@@ -77,15 +84,39 @@ fn row(refine: &str) {
     does(&mut session, &[Command::Census(Vec::new())]);
     session.background_mut().wait();
     let diagnosis = began.elapsed().as_secs_f64();
+    let folder = tempfile::tempdir().unwrap_or_else(|e| panic!("{e}"));
+    let journal = Keep::File(folder.path().join("keys.journal"));
+    journal
+        .begin(&mut session)
+        .unwrap_or_else(|e| panic!("{e}"));
+    let mut debugger = Debugger::new(Theme::mono(), Vec::new(), Some(session));
+    let mut key = |name| median((0..SOME).map(|_| processor_time_of_key(&mut debugger, name)));
+    let (back, down) = (key("S"), key("j"));
     println!(
-        "| {unknowns} | {slaves} | {opened:.2} | {increment:.2} | {first:.2} | {:.1} | {:.1} | {:.1} | {:.1} | {:.1} | {} |",
+        "| {unknowns} | {slaves} | {opened:.2} | {increment:.2} | {first:.2} | {:.1} | {:.1} | {:.1} | {:.1} | {:.1} | {:.1} | {:.1} | {} |",
         1e3 * on,
         1e3 * again,
         1e3 * forced,
         1e3 * pushes,
         1e3 * diagnosis,
+        1e3 * back,
+        1e3 * down,
         peak()
     );
+}
+
+/// Seconds of processor time that a key takes in all threads, with all that it causes and a frame.
+fn processor_time_of_key(debugger: &mut Debugger, name: &str) -> f64 {
+    let now = || {
+        let time = clock_gettime(ClockId::ProcessCPUTime);
+        time.tv_sec as f64 + 1e-9 * time.tv_nsec as f64
+    };
+    let area = Rect::new(0, 0, 200, 60);
+    let mut buffer = Buffer::empty(area);
+    let began = now();
+    debugger.type_keys(name);
+    screen::draw(&mut buffer, area, &debugger.app, debugger.view().as_ref());
+    now() - began
 }
 
 fn forward(unit: Unit) -> Command {

@@ -99,7 +99,21 @@ fn judged(
     force: [f64; 2],
     brought: f64,
 ) -> (Verdict, Vec<[f64; 2]>) {
-    let [before, now] = way.map(|at| [&[at], chain].concat());
+    judged_over(surfaces, slave, [chain; 2], way, force, brought, [0.0; 2])
+}
+
+/// The same over a chain that moves. `elastic` are the tangential force in the first place, and the elastic slip when the node was
+/// anchored.
+fn judged_over(
+    surfaces: &[Surface],
+    slave: Contact,
+    chains: [&[[f64; 2]]; 2],
+    way: [[f64; 2]; 2],
+    force: [f64; 2],
+    brought: f64,
+    elastic: [f64; 2],
+) -> (Verdict, Vec<[f64; 2]>) {
+    let [before, now] = [0, 1].map(|k| [&[way[k]], chains[k]].concat());
     let friction = slave.friction;
     let seen = Seen {
         surfaces,
@@ -110,8 +124,8 @@ fn judged(
         out: [&[], &[]],
         forces: &[force],
         brought: &[brought],
-        earlier: &[0.0],
-        anchored: &[0.0],
+        earlier: &elastic[..1],
+        anchored: &elastic[1..],
         scales: Scales {
             length: 1.0,
             force: 1.0,
@@ -660,6 +674,26 @@ fn elastic_slip_is_in_proportion_to_the_tangential_force() {
     assert_eq!(gone(-0.5, 2.0), []);
     // Beyond the limit it slides.
     assert_eq!(gone(0.9, -4.0 * MU), []);
+}
+
+/// Anchored 0.25 (0.2 + 0.4) = 0.15 ahead, at x = 0.85, which the stretch moves to 0.8585.
+#[test]
+fn the_surface_between_a_node_and_its_anchor_may_stretch() {
+    let surfaces = [surface(vec![vec![1, 2]])];
+    let friction = Friction {
+        angle: 30.0,
+        cohesion: 0.0,
+    };
+    let gone = |x: f64| {
+        let slave = slave(&surfaces, friction, Bond::Giving([0.0, 0.25]));
+        let chains: [&[[f64; 2]]; 2] = [&[[2.0, 0.0], [0.0, 0.0]], &[[2.02, 0.0], [0.0, 0.0]]];
+        let (way, force) = ([[1.0, 0.0], [x, 0.0]], [-0.2, 1.0]);
+        let (verdict, _) = judged_over(&surfaces, slave, chains, way, force, 0.0, [0.2, -0.1]);
+        let laws: Vec<JudgedLaw> = verdict.broken().map(|finding| finding.law).collect();
+        laws
+    };
+    assert_eq!(gone(1.0085), []);
+    assert_eq!(gone(1.008), [JudgedLaw::Stick]);
 }
 
 #[test]
