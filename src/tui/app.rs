@@ -152,7 +152,7 @@ pub struct App {
     pub log_counts: LogCounts,
     /// Pan and zoom of the shape.
     pub camera: Camera,
-    /// The first of the pictures of the contact, counted on without end.
+    /// Index of the first picture of the contact; it wraps around.
     pub turned: usize,
     /// Sort key of the table.
     pub sort: Sort,

@@ -1,10 +1,11 @@
 //! Supports, loads and prescribed motions of a state, as marks for a picture.
 
 use super::outline::Point;
+use std::collections::{BTreeMap, BTreeSet};
 use stickslip_core::model::{BodyKind, Component, Model};
 
 /// What an arrow or a turn stands for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Given {
     /// A force, a moment or a pressure.
     Load,
@@ -50,7 +51,7 @@ pub fn conditions(model: &Model, load_factor: f64, place: &dyn Fn(usize) -> Poin
         (Given::Motion, one.dof, value)
     });
     let mut found = Conditions::default();
-    let mut vectors: Vec<(Given, usize, Point)> = Vec::new();
+    let mut vectors: BTreeMap<(usize, Given), Point> = BTreeMap::new();
     for (given, dof, value) in loads.chain(motions).filter(|(.., value)| *value != 0.0) {
         // The degrees of freedom of the nodes ascend; those inside bodies come last.
         let node = model.dofs.first.partition_point(|first| *first <= dof);
@@ -58,28 +59,15 @@ pub fn conditions(model: &Model, load_factor: f64, place: &dyn Fn(usize) -> Poin
             continue;
         };
         match dof - model.dofs.first[node] {
-            axis @ (0 | 1) => {
-                let same = |one: &&mut (Given, usize, Point)| (one.0, one.1) == (given, node);
-                match vectors.iter_mut().rev().find(same) {
-                    Some((.., along)) => along[axis] += value,
-                    None => {
-                        let mut along = [0.0; 2];
-                        along[axis] = value;
-                        vectors.push((given, node, along));
-                    }
-                }
-            }
+            axis @ (0 | 1) => vectors.entry((node, given)).or_default()[axis] += value,
             2 if model.dofs.count[node] == 3 => found.turns.push((node, given, value > 0.0)),
             _ => {}
         }
     }
-    let arrows = vectors
-        .into_iter()
-        .map(|(given, node, along)| ConditionArrow {
-            given,
-            at: place(node),
-            along,
-        });
+    let arrows = vectors.into_iter().map(|((node, given), along)| {
+        let at = place(node);
+        ConditionArrow { given, at, along }
+    });
     found.arrows = scaled(arrows.collect());
     found
         .arrows
@@ -146,12 +134,10 @@ fn supports(model: &Model) -> Vec<(usize, [bool; 3])> {
         .collect();
     nodes.sort_unstable();
     nodes.dedup();
+    let moved: BTreeSet<usize> = model.prescribed.iter().map(|one| one.dof).collect();
     let held = |node: usize, component| {
         let dof = model.dofs.dof(node, component);
-        dof.is_some_and(|dof| {
-            let moves = |one: &stickslip_core::model::Prescribed| one.dof == dof;
-            model.dofs.equation[dof].is_none() && !model.prescribed.iter().any(moves)
-        })
+        dof.is_some_and(|dof| model.dofs.equation[dof].is_none() && !moved.contains(&dof))
     };
     let all = nodes.into_iter().map(|node| {
         let components = [Component::X, Component::Y, Component::Rotation];

@@ -15,9 +15,9 @@ pub struct TrailPoint {
     pub f_n: f64,
     /// Tangential force.
     pub f_t: f64,
-    /// T_max after the solve, and the value used in it.
+    /// T_max after the solve.
     pub t_max: f64,
-    /// See `t_max`.
+    /// T_max used in the solve.
     pub t_max_used: f64,
 }
 
@@ -47,11 +47,11 @@ pub fn trail<'a>(events: impl Iterator<Item = &'a Event>, slave: usize) -> Vec<T
 /// The friction cone with the forces of a trail: F_t to the right, F_n upwards.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Cone {
-    /// Largest |F_t| and F_n of the drawing, and the smallest F_n (at most 0).
+    /// Largest |F_t| of the drawing.
     pub f_t: f64,
-    /// See `f_t`.
+    /// Largest F_n of the drawing.
     pub f_n: f64,
-    /// See `f_t`.
+    /// Smallest F_n of the drawing, at most 0.
     pub least: f64,
     /// The left edge of the cone from its tip outwards, as pairs (F_t, F_n); the right edge is its mirror image.
     pub edge: [[f64; 2]; 2],

@@ -232,7 +232,11 @@ mod tests {
 
     fn drawn(size: (u32, u32), shape: &Shape) -> Bitmap {
         let pixels = vec![255; 3 * (size.0 * size.1) as usize];
-        let mut bitmap = Bitmap { pixels, size, scale: 1.0 };
+        let mut bitmap = Bitmap {
+            pixels,
+            size,
+            scale: 2.0,
+        };
         bitmap.draw(shape).unwrap();
         bitmap
     }

@@ -255,7 +255,8 @@ fn cobweb(buffer: &mut Buffer, area: Rect, trail: &[TrailPoint], app: &App, view
         values().fold(f64::NEG_INFINITY, f64::max),
     );
     let least = view.event().map_or(0.0, |event| 1e-12 * event.before.scale);
-    if !(high - low > least) {
+    // An empty path has no width.
+    if path.is_empty() || high - low <= least {
         let text = match trail.last() {
             Some(point) if high >= low => format!(" T_max has settled at {}", short(point.t_max)),
             _ => " used only while the node slides".into(),

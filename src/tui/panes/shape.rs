@@ -22,7 +22,7 @@ use stickslip_core::contact::projection::tangent;
 use stickslip_core::fem::deformation::PointDeformation;
 use stickslip_core::fem::lagrange;
 use stickslip_core::model::{BodyKind, Contact, Model, Solid, SolidElement};
-use stickslip_debugger::explain::conditions::{ConditionArrow, Given, conditions};
+use stickslip_debugger::explain::conditions::{ConditionArrow, Conditions, Given, conditions};
 use stickslip_debugger::explain::examination::Examination;
 use stickslip_debugger::explain::outline::{self, Bounds, Point, bounds, curve, outer_nodes};
 use stickslip_debugger::explain::strain;
@@ -87,7 +87,7 @@ pub fn picture(buffer: &mut Buffer, inner: Rect, app: &App, view: &View) -> Opti
     bodies(&mut canvas, &window, app, view);
     surfaces(&mut canvas, &window, app, view);
     let given = given(view, &window);
-    for (line, style, _) in given.iter().map(|one| drawn(one, &window, app)) {
+    for (line, style, _) in given.arrows.iter().map(|one| drawn(one, &window, app)) {
         canvas.line(line[0], line[1], style);
     }
     let (forces, longest) = forces(&window, view);
@@ -97,10 +97,10 @@ pub fn picture(buffer: &mut Buffer, inner: Rect, app: &App, view: &View) -> Opti
         .for_each(|[from, to]| canvas.line(*from, *to, style));
     let motions = motions(&mut canvas, &window, app, view);
     canvas.render(buffer);
-    for (line, style, glyphs) in given.iter().map(|one| drawn(one, &window, app)) {
+    for (line, style, glyphs) in given.arrows.iter().map(|one| drawn(one, &window, app)) {
         head(buffer, &canvas, &line, (glyphs, style));
     }
-    supports(buffer, &canvas, &window, app, view);
+    supports(buffer, &canvas, &window, given, app, view);
     forces
         .iter()
         .for_each(|line| head(buffer, &canvas, line, (HEADS, style)));
@@ -415,13 +415,13 @@ fn forces(window: &Window, view: &View) -> (Vec<[Dot; 2]>, f64) {
     (lines.collect(), largest)
 }
 
-/// Loads and prescribed motions.
-fn given(view: &View, window: &Window) -> Vec<ConditionArrow> {
+/// Supports, loads and prescribed motions.
+fn given(view: &View, window: &Window) -> Conditions {
     let load_factor = match view.event() {
         Some(event) => event.load_factor,
         None => view.frame().state.load_factor,
     };
-    conditions(view.model, load_factor, &|node| window.place(view, node)).arrows
+    conditions(view.model, load_factor, &|node| window.place(view, node))
 }
 
 /// The line of a load, which ends at its node, or of a prescribed motion, which starts there; its style and its heads.
@@ -443,8 +443,14 @@ fn drawn(
 
 /// Supports: a triangle for a restrained component, a filled one for both, a square if the rotation is restrained as well; moments
 /// and prescribed rotations as turns.
-fn supports(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view: &View) {
-    let found = conditions(view.model, 1.0, &|node| view.model.nodes[node].at);
+fn supports(
+    buffer: &mut Buffer,
+    canvas: &Canvas,
+    window: &Window,
+    found: Conditions,
+    app: &App,
+    view: &View,
+) {
     let supports = found.supports.into_iter().map(|(node, held)| {
         let glyph = match held {
             [true, true, true] => "■",
@@ -606,7 +612,7 @@ fn caption(buffer: &mut Buffer, inner: Rect, shown: Scales, moves: bool, app: &A
             theme.faint,
         ));
     }
-    // Nothing else says less.
+    // A narrow pane leaves out the least important part.
     let mut line = Line::from(spans);
     if line.width() > usize::from(inner.width) {
         line.spans.retain(|span| span.content != UNLOADED);

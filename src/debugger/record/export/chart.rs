@@ -16,12 +16,15 @@ const BELOW: f64 = 44.0;
 /// Number of intervals of an axis.
 const TICKS: u32 = 4;
 
+/// The name of an axis, and its ends.
+type AxisRange<'a> = (&'a str, [f64; 2]);
+
 /// Axes over a range, drawn in columns `left` to `right` of the sheet; returns the map to the sheet.
 fn axes(
     sheet: &mut Sheet,
     (left, right): (f64, f64),
     high: f64,
-    (x, y): ((&str, [f64; 2]), (&str, [f64; 2])),
+    (x, y): (AxisRange<'_>, AxisRange<'_>),
 ) -> impl Fn([f64; 2]) -> (f64, f64) + use<> {
     let axes = Axes {
         left: left + LEFT,
