@@ -91,7 +91,7 @@ impl App {
         let label = &line.label;
         match &line.trial {
             Some(trial) if !matches!(trial.how, How::Restart(_)) => {
-                return self.follow(trial, view);
+                return follow(self, trial, view);
             }
             _ if line.typed.starts_with("--set") && line.outcome != TryOutcome::Untried => {
                 self.complain(format!(
@@ -108,13 +108,6 @@ impl App {
             _ => self.say(format!("{label}: the trials are running")),
         }
         None
-    }
-
-    /// Repeats a trial in a branch.
-    fn follow(&mut self, trial: &Trial, view: Option<&View>) -> Option<Effect> {
-        self.panes.zoomed = false;
-        let (label, steps) = (trial.label.clone(), trial.steps.clone());
-        self.submit(Command::Follow { label, steps }, view)
     }
 
     /// Enter in the remedies: applies the selected one, or tries all if there is no result yet.
@@ -176,7 +169,7 @@ impl App {
             ));
             return None;
         }
-        self.follow(trial, view)
+        follow(self, trial, view)
     }
 
     /// Finds a text in the focused list: a branch, a remedy, or otherwise a slave node. An empty text repeats the last search.
@@ -271,6 +264,13 @@ impl App {
         }
         None
     }
+}
+
+/// Repeats a trial in a branch.
+fn follow(app: &mut App, trial: &Trial, view: Option<&View>) -> Option<Effect> {
+    app.panes.zoomed = false;
+    let (label, steps) = (trial.label.clone(), trial.steps.clone());
+    app.submit(Command::Follow { label, steps }, view)
 }
 
 /// The index after a step in a list with indices up to `last`; steps other than `back` and `forth` by one stay.

@@ -26,18 +26,9 @@ impl App {
         }
     }
 
-    /// The pane at a position, unless an overlay is open.
-    fn pane_at(&self, at: Position, view: &View) -> Option<(Pane, Rect)> {
-        if !matches!(self.overlay, Overlay::None) {
-            return None;
-        }
-        let places = screen::places(self, Some(view), self.area);
-        places.panes.into_iter().find(|(_, area)| area.contains(at))
-    }
-
     fn click(&mut self, at: Position, view: Option<&View>) -> Option<Effect> {
         let view = view?;
-        let (pane, area) = self.pane_at(at, view)?;
+        let (pane, area) = pane_at(self, at, view)?;
         self.say("");
         let hidden = screen::is_hidden(pane, self, view);
         // The layout before the focus changes, which can change the layout.
@@ -100,7 +91,7 @@ impl App {
             _ => return None,
         }
         let view = view?;
-        let (pane, _) = self.pane_at(at, view)?;
+        let (pane, _) = pane_at(self, at, view)?;
         let step = match (pane, up) {
             (Pane::Shape, true) => {
                 self.camera = self.camera.zoomed(1.25);
@@ -133,4 +124,13 @@ impl App {
         self.panes.focus = focus;
         effect
     }
+}
+
+/// The pane at a position, unless an overlay is open.
+fn pane_at(app: &App, at: Position, view: &View) -> Option<(Pane, Rect)> {
+    if !matches!(app.overlay, Overlay::None) {
+        return None;
+    }
+    let places = screen::places(app, Some(view), app.area);
+    places.panes.into_iter().find(|(_, area)| area.contains(at))
 }

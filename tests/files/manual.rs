@@ -72,7 +72,7 @@ fn every_block_of_code_names_its_language() {
         let fences = text.lines().filter(|line| line.starts_with("```"));
         for fence in fences.step_by(2) {
             assert!(
-                ["```text", "```sh", "```ron", "```json", "```python"].contains(&fence),
+                ["```text", "```sh", "```ron", "```json", "```python", "```c"].contains(&fence),
                 "{}: {fence}",
                 page.topic
             );

@@ -1,7 +1,7 @@
 //! The diagnosis pages of failed scenes contain no untried advice that is not marked, and no contradictions:
 //! `cargo bench --bench random_scenes -- 200 --pages` checks more.
 
-use crate::outside::{families, page};
+use crate::outside::page;
 use std::path::Path;
 use stickslip::scene::{Scene, builtin};
 

@@ -15,7 +15,6 @@ use stickslip::model::{Friction, Mode, Model, Settings};
 use stickslip::model::{InitialState, Strategy};
 use stickslip::scene::Scene;
 use stickslip::step::event::{Failure, Outcome};
-use stickslip::step::intervene::Intervention;
 use stickslip::step::state::Status;
 use stickslip::step::stepper::Stepper;
 

@@ -2,9 +2,9 @@
 //! the geometry of the next iteration rejects, or slow convergence.
 
 use super::attempt::{Attempt, Major};
+use super::cycles::place;
 use super::facts::{Fact, Part};
 use super::names::{mode, slave};
-use super::report::place;
 use stickslip_core::contact::element::SurfaceElement;
 use stickslip_core::contact::projection::SurfacePoint;
 use stickslip_core::model::{Geometry, Mode, Model, ResidualMethod, Settings};

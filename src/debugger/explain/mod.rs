@@ -2,7 +2,7 @@
 //! the debugger.
 //!
 //! - [`names`]: words for nodes, modes and positions; [`round_off`]: which numbers are round-off; [`report`]:
-//!   what happened, in sentences; [`judged`]: the judge's findings.
+//!   what happened, in sentences; [`cycles`]: cycles of modes; [`judged`]: the judge's findings.
 //! - [`influence`]: which node pushed which; [`tested`]: the quantities that Table 2 tests; [`core`]: the smallest set of nodes that still cycles;
 //!   [`diagnosis`]: the cause of a cycle; [`smaller`]: whether a smaller increment has a consistent state.
 //! - [`proven`]: what a matrix proves: uniqueness, and the limit of T_max while the modes repeat;
@@ -15,8 +15,8 @@
 //! - [`touch`]: how far the forces depend on where nodes in new contact are held.
 //! - [`examination`]: the frozen problem of a state; [`page`]: the whole diagnosis, as the debugger shows it; [`headline`]: what
 //!   happened in one line; [`facts`]: the parts of the page; [`try_list`]: what can be done, with the outcome of each trial.
-//! - [`attached`]: the diagnosis for an attached solver, from the problem that it reports; [`walk`]: which
-//!   iteration that solver performs; [`reported_pushes`]: the pushes there.
+//! - [`attached`]: the diagnosis for an attached solver, from the problem that it reports; [`interface_scene`]: that problem
+//!   as a scene; [`walk`]: which iteration that solver performs; [`reported_pushes`]: the pushes there.
 //! - [`audit`]: the judge's findings over a history; [`outline`]: the shape of a state as lines; [`conditions`]: its supports and
 //!   loads as marks; [`trail`]: the last iterations of one contact.
 
@@ -28,6 +28,7 @@ pub mod audit;
 pub mod bond;
 pub mod conditions;
 pub mod core;
+pub mod cycles;
 pub mod diagnosis;
 pub mod examination;
 pub mod facts;
@@ -35,6 +36,7 @@ pub mod finer;
 pub mod headline;
 pub mod indefinite;
 pub mod influence;
+pub mod interface_scene;
 pub mod judged;
 pub mod jumped;
 pub mod limit_load;

@@ -1,6 +1,7 @@
 //! Sentences about what happened, shared by the command line and the debugger.
 
 use crate::explain::accuracy;
+use crate::explain::cycles::{cycle, major_cycle};
 use crate::explain::headline::first_part;
 use crate::explain::judged;
 use crate::explain::jumped;
@@ -10,17 +11,18 @@ use stickslip_core::contact::record::ContactRecord;
 use stickslip_core::contact::table2::{Decision, Rule, Tested};
 use stickslip_core::interface::census;
 use stickslip_core::interface::method::NotFound;
-use stickslip_core::interface::minor_history::Cycle;
 use stickslip_core::linear::norms::Norms;
 use stickslip_core::linear::singular::{LooseMotion, RigidMotion, Singular};
-use stickslip_core::model::{Mode, Model};
+use stickslip_core::model::Model;
 use stickslip_core::step::event::{Event, Failure, Moves, Outcome, Position, Slow};
 use stickslip_core::step::intervene::Intervention;
-use stickslip_core::step::major_history::{MajorCycle, Stop};
 use stickslip_core::step::state::State;
 use stickslip_core::step::way::Change;
 use stickslip_scene::number::{four, plain, six};
 use stickslip_scene::shown::first_of;
+
+/// Maximum number of nodes or motions named.
+const MOST_NODES: usize = 6;
 
 /// Why Table 2 decided as it did; `friction` is whether there is any.
 pub fn reason(decision: &Decision, friction: bool) -> String {
@@ -497,7 +499,7 @@ pub fn describe_failure(model: &Model, failure: &Failure) -> String {
             let nodes = changing.iter().map(|&s| slave(model, s).to_owned());
             format!(
                 "the minor iterations did not settle within {limit}; still changing: {}",
-                some(nodes.collect(), ", ")
+                first_of(nodes, MOST_NODES, ", ")
             )
         }
         Failure::MajorLimit {
@@ -531,8 +533,8 @@ pub fn describe_failure(model: &Model, failure: &Failure) -> String {
         ),
         Failure::NotFound(why) => not_found(*why),
         Failure::Singular(Singular::Rigid { motions }) => {
-            let motions = motions.iter().map(motion).collect();
-            format!("unrestrained rigid motion: {}", some(motions, "; "))
+            let motions = motions.iter().map(motion);
+            format!("unrestrained rigid motion: {}", first_of(motions, MOST_NODES, "; "))
         }
         Failure::Singular(Singular::Unexplained) => {
             "the equations are singular although every body is held: a limit point, or redundant constraints".into()
@@ -638,108 +640,4 @@ fn rounded(x: f64) -> f64 {
         true => rounded + 0.0,
         false => x,
     }
-}
-
-/// The first few of a list.
-fn some(mut all: Vec<String>, between: &str) -> String {
-    const MOST: usize = 6;
-    let more = all.len().saturating_sub(MOST);
-    all.truncate(MOST);
-    let shown = all.join(between);
-    match more {
-        0 => shown,
-        n => format!("{shown} and {n} more"),
-    }
-}
-
-/// A sequence of modes; long runs are counted.
-fn pattern(modes: &[Mode]) -> String {
-    let stays = modes.chunk_by(|a, b| a == b).map(|stay| {
-        let word = mode(stay[0]);
-        match stay.len() {
-            1 => word.to_string(),
-            2 => format!("{word} → {word}"),
-            n => format!("{word} ({n} times)"),
-        }
-    });
-    stays.collect::<Vec<_>>().join(" → ")
-}
-
-/// Maximum number of stops named per node in a cycle of major iterations.
-const MOST_STOPS: usize = 4;
-
-/// Describes a cycle of major iterations.
-pub fn major_cycle(model: &Model, round: &MajorCycle) -> String {
-    let member = |(s, stops): &(usize, Vec<Stop>)| {
-        let elements: Vec<_> = stops.iter().map(|stop| stop.element).collect();
-        let modes: Vec<_> = stops.iter().map(|stop| stop.mode).collect();
-        let moves = elements.iter().any(|e| *e != elements[0]);
-        let switches = modes.iter().any(|m| *m != modes[0]);
-        let stop = |stop: &Stop| match (moves, switches) {
-            (true, false) => place(model, stop.element),
-            (false, true) => mode(stop.mode).to_string(),
-            _ => format!("{} on {}", mode(stop.mode), place(model, stop.element)),
-        };
-        let words: Vec<String> = stops.iter().take(MOST_STOPS).map(stop).collect();
-        match (moves, switches) {
-            (false, false) => format!("{} stays {}", slave(model, *s), words[0]),
-            _ => format!("{} {} → …", slave(model, *s), words.join(" → ")),
-        }
-    };
-    format!(
-        "major iterations cycle with period {} from major {}: {}",
-        round.period,
-        round.start,
-        some(round.members.iter().map(member).collect(), "; ")
-    )
-}
-
-/// Name of a master element: its surface, and its number from 1.
-pub fn place(model: &Model, element: Option<(usize, usize)>) -> String {
-    match element {
-        Some((surface, element)) => {
-            let name = model.surfaces.get(surface).map_or("?", |s| s.name.as_str());
-            format!("{name} element {}", element + 1)
-        }
-        None => "no surface".into(),
-    }
-}
-
-/// Maximum number of cycle members with constant modes that are named.
-const MOST_FOLLOWING: usize = 3;
-
-/// Describes a cycle of modes.
-pub fn cycle(model: &Model, cycle: &Cycle) -> String {
-    let member = |(s, modes): &(usize, Vec<Mode>)| {
-        let name = slave(model, *s);
-        match modes.as_slice() {
-            [first, rest @ ..] if rest.iter().all(|m| m == first) => {
-                format!("{name} stays {} while its T_max repeats", mode(*first))
-            }
-            modes => format!("{name} {} → …", pattern(modes)),
-        }
-    };
-    // Members whose modes change come first: the T_max of many others may follow them.
-    let changes = |modes: &[Mode]| modes.windows(2).any(|pair| pair[0] != pair[1]);
-    let (changing, following): (Vec<_>, Vec<_>) =
-        cycle.members.iter().partition(|(_, modes)| changes(modes));
-    let mut text = Vec::new();
-    if !changing.is_empty() {
-        text.push(some(changing.into_iter().map(member).collect(), "; "));
-    }
-    match following.len() {
-        0 => {}
-        n if n > MOST_FOLLOWING => {
-            text.push(format!(
-                "{n} nodes keep their modes while their T_max repeats"
-            ));
-        }
-        _ => text.extend(following.into_iter().map(member)),
-    }
-    format!(
-        "cycle of period {} from minor {}: {}",
-        cycle.period,
-        cycle.start,
-        text.join("; ")
-    )
 }

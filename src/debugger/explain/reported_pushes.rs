@@ -9,8 +9,8 @@
 //! The pushes are available only if W f + q matches the gaps of both iterations, and only modes and friction
 //! bounds have changed between them.
 
-use super::attached;
 use super::influence::{NodePush, left_side, spread};
+use super::interface_scene;
 use nalgebra::DVector;
 use std::sync::Arc;
 use stickslip_core::contact::record::ContactRecord;
@@ -59,7 +59,7 @@ pub fn pushes(
     let earlier = ReportedPushes::new(posed, &before.nodes)?;
     let later = ReportedPushes::new(posed, &after.nodes)?;
     let (_, mut stepper) =
-        attached::stepper(attached::problem(model, &iterations.start, posed)).ok()?;
+        interface_scene::stepper(interface_scene::problem(model, &iterations.start, posed)).ok()?;
     let mut problem = stepper.interface_problem()?;
     if earlier.follows_law(posed) && later.follows_law(posed) {
         problem.settings.t_max = BoundUpdate::Consistent;

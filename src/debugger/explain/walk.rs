@@ -4,7 +4,7 @@
 //! The walk starts with the modes and friction bounds of the first reported iteration of the frozen problem. An
 //! iteration is reproduced if all contacts take the same next modes, with the same forces.
 
-use super::attached;
+use super::interface_scene;
 use std::sync::Arc;
 use stickslip_core::interface::problem::InterfaceProblem;
 use stickslip_core::interface::trials::Trials;
@@ -42,7 +42,7 @@ impl ReportedIterations {
 
     /// The interface problem as a scene that begins where the reported iterations begin.
     pub fn problem(&self, model: &Model, state: &State, posed: &Posed) -> Problem {
-        let mut problem = attached::problem(model, state, posed);
+        let mut problem = interface_scene::problem(model, state, posed);
         for (place, &slave) in posed.contacts.iter().enumerate() {
             if let Some(gap) = self.start_gap(model, slave) {
                 problem.contacts[place].gap = gap;
@@ -106,7 +106,7 @@ pub fn walk(
     if posed.contacts.len() > MOST || !posed.contacts.iter().all(|&s| s < first.nodes.len()) {
         return None;
     }
-    let (_, mut stepper) = attached::stepper(reported.problem(model, state, posed)).ok()?;
+    let (_, mut stepper) = interface_scene::stepper(reported.problem(model, state, posed)).ok()?;
     let mut problem = stepper.interface_problem()?;
     for (node, &slave) in problem.nodes.iter_mut().zip(&posed.contacts) {
         let record = &first.nodes[slave];

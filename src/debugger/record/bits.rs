@@ -223,6 +223,7 @@ impl ser::SerializeMap for &mut Bits {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use serde::Serialize;
     use std::collections::BTreeMap;
 
     #[derive(Serialize)]

@@ -1,9 +1,9 @@
 //! Files made from a state in the background: pictures, the frozen problem, the core of its cycle ([`export`]).
 
-use crate::explain::attached;
 use crate::explain::core::core;
 use crate::explain::diagnosis::too_many;
 use crate::explain::examination::{NotExamined, going_round};
+use crate::explain::interface_scene;
 use crate::explain::report;
 use crate::history::strip::Strip;
 use crate::record::command::ExportScope;
@@ -117,8 +117,8 @@ fn shown(
 /// format.
 pub(super) fn write_posed(model: &Model, posed: &Posed, ask: &Export) -> Result<(), ExportError> {
     let solver = || {
-        let problem = attached::problem(model, &ask.state, posed);
-        attached::stepper(problem).map_err(Box::new)
+        let problem = interface_scene::problem(model, &ask.state, posed);
+        interface_scene::stepper(problem).map_err(Box::new)
     };
     let text = match (ask.what, export::kind(&ask.file)) {
         (ExportScope::Core, _) => {
@@ -143,7 +143,7 @@ pub(super) fn write_posed(model: &Model, posed: &Posed, ask: &Export) -> Result<
             };
             return write(&mut stepper, &of_problem);
         }
-        _ => attached::problem(model, &ask.state, posed).text(&[ask.origin.words()]),
+        _ => interface_scene::problem(model, &ask.state, posed).text(&[ask.origin.words()]),
     };
     Ok(files::write(&ask.file, text, ask.overwrite)?)
 }

@@ -224,7 +224,7 @@ impl Iterate {
     ) -> Outcome {
         motion.steps += 1;
         motion.travelled += moved;
-        motion.dissipated += motion.drag * self.square_of_motion();
+        motion.dissipated += motion.drag * square_of_motion(self);
         if moved < SHORT * stride {
             let room = SHORT * stride / moved.max(f64::MIN_POSITIVE);
             motion.drag /= room.clamp(1.0, FASTER);
@@ -244,14 +244,14 @@ impl Iterate {
             number: motion.steps,
         })
     }
+}
 
-    /// Sum of the squares of all displacements since the start of the step.
-    fn square_of_motion(&self) -> f64 {
-        let (now, before) = (&self.state.u, &self.state.start.u);
-        let of = |first: &usize| -> f64 {
-            let square = |d: usize| (now[d] - before[d]).powi(2);
-            square(*first) + square(first + 1)
-        };
-        self.model.dofs.first.iter().map(of).sum()
-    }
+/// Sum of the squares of all displacements since the start of the step.
+fn square_of_motion(iterate: &Iterate) -> f64 {
+    let (now, before) = (&iterate.state.u, &iterate.state.start.u);
+    let of = |first: &usize| -> f64 {
+        let square = |d: usize| (now[d] - before[d]).powi(2);
+        square(*first) + square(first + 1)
+    };
+    iterate.model.dofs.first.iter().map(of).sum()
 }

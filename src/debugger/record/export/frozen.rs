@@ -15,8 +15,8 @@
 //! returned ([`compared`]).
 
 use crate::explain::core::Core;
+use crate::explain::cycles;
 use crate::explain::names;
-use crate::explain::report;
 use crate::history::verdicts;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -185,8 +185,8 @@ pub fn core(
     let head = [
         "The core of a cycle: the smallest set of nodes that still cycles with all other modes frozen.".to_owned(),
         origin.words(),
-        format!("In the scene: {}.", report::cycle(model, cycle)),
-        format!("In this file: {}.", report::cycle(model, &of_core)),
+        format!("In the scene: {}.", cycles::cycle(model, cycle)),
+        format!("In this file: {}.", cycles::cycle(model, &of_core)),
     ];
     let title = format!(
         "Core of {}: {}, period {}",

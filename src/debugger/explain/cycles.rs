@@ -1,0 +1,102 @@
+//! Describes cycles of minor and major iterations.
+
+use crate::explain::names::{mode, slave};
+use stickslip_core::interface::minor_history::Cycle;
+use stickslip_core::model::{Mode, Model};
+use stickslip_core::step::major_history::{MajorCycle, Stop};
+use stickslip_scene::shown::first_of;
+
+/// Maximum number of nodes named in a cycle.
+const MOST_NODES: usize = 6;
+
+/// A sequence of modes; long runs are counted.
+fn pattern(modes: &[Mode]) -> String {
+    let stays = modes.chunk_by(|a, b| a == b).map(|stay| {
+        let word = mode(stay[0]);
+        match stay.len() {
+            1 => word.to_string(),
+            2 => format!("{word} → {word}"),
+            n => format!("{word} ({n} times)"),
+        }
+    });
+    stays.collect::<Vec<_>>().join(" → ")
+}
+
+/// Maximum number of stops named per node in a cycle of major iterations.
+const MOST_STOPS: usize = 4;
+
+/// Describes a cycle of major iterations.
+pub fn major_cycle(model: &Model, round: &MajorCycle) -> String {
+    let member = |(s, stops): &(usize, Vec<Stop>)| {
+        let elements: Vec<_> = stops.iter().map(|stop| stop.element).collect();
+        let modes: Vec<_> = stops.iter().map(|stop| stop.mode).collect();
+        let moves = elements.iter().any(|e| *e != elements[0]);
+        let switches = modes.iter().any(|m| *m != modes[0]);
+        let stop = |stop: &Stop| match (moves, switches) {
+            (true, false) => place(model, stop.element),
+            (false, true) => mode(stop.mode).to_string(),
+            _ => format!("{} on {}", mode(stop.mode), place(model, stop.element)),
+        };
+        let words: Vec<String> = stops.iter().take(MOST_STOPS).map(stop).collect();
+        match (moves, switches) {
+            (false, false) => format!("{} stays {}", slave(model, *s), words[0]),
+            _ => format!("{} {} → …", slave(model, *s), words.join(" → ")),
+        }
+    };
+    format!(
+        "major iterations cycle with period {} from major {}: {}",
+        round.period,
+        round.start,
+        first_of(round.members.iter().map(member), MOST_NODES, "; ")
+    )
+}
+
+/// Name of a master element: its surface, and its number from 1.
+pub fn place(model: &Model, element: Option<(usize, usize)>) -> String {
+    match element {
+        Some((surface, element)) => {
+            let name = model.surfaces.get(surface).map_or("?", |s| s.name.as_str());
+            format!("{name} element {}", element + 1)
+        }
+        None => "no surface".into(),
+    }
+}
+
+/// Maximum number of cycle members with constant modes that are named.
+const MOST_FOLLOWING: usize = 3;
+
+/// Describes a cycle of modes.
+pub fn cycle(model: &Model, cycle: &Cycle) -> String {
+    let member = |(s, modes): &(usize, Vec<Mode>)| {
+        let name = slave(model, *s);
+        match modes.as_slice() {
+            [first, rest @ ..] if rest.iter().all(|m| m == first) => {
+                format!("{name} stays {} while its T_max repeats", mode(*first))
+            }
+            modes => format!("{name} {} → …", pattern(modes)),
+        }
+    };
+    // Members whose modes change come first: the T_max of many others may follow them.
+    let changes = |modes: &[Mode]| modes.windows(2).any(|pair| pair[0] != pair[1]);
+    let (changing, following): (Vec<_>, Vec<_>) =
+        cycle.members.iter().partition(|(_, modes)| changes(modes));
+    let mut text = Vec::new();
+    if !changing.is_empty() {
+        text.push(first_of(changing.into_iter().map(member), MOST_NODES, "; "));
+    }
+    match following.len() {
+        0 => {}
+        n if n > MOST_FOLLOWING => {
+            text.push(format!(
+                "{n} nodes keep their modes while their T_max repeats"
+            ));
+        }
+        _ => text.extend(following.into_iter().map(member)),
+    }
+    format!(
+        "cycle of period {} from minor {}: {}",
+        cycle.period,
+        cycle.start,
+        text.join("; ")
+    )
+}

@@ -1,0 +1,117 @@
+//! Analyses of an attached solver: from the interface problem that it reports, and by trials on the solver itself.
+
+use super::{BackgroundReply, Helper, Reported};
+use crate::explain::attached;
+use crate::explain::examination::Examination;
+use crate::explain::facts::Fact;
+use crate::explain::page::DiagnosisPage;
+use crate::explain::remedies;
+use crate::explain::try_list::TryLine;
+use crate::explain::walk::ReportedIterations;
+use crate::session::trials::try_all;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::Sender;
+use stickslip_core::step::solver::{Lost, Posed};
+use stickslip_core::step::state::{State, Status};
+
+impl Helper {
+    /// The interface problem that an attached solver reports for a state.
+    pub(super) fn posed(&self, state: &State) -> Result<Posed, Lost> {
+        if !self.offers.problem {
+            return Err(Lost::new(self.offers.lacks("its interface problem")));
+        }
+        let wanted = state.clone();
+        let asked = self.lender.look(move |solver| solver.posed(&wanted));
+        asked.unwrap_or_else(|| Err(Lost::new("the solver is busy; :census asks again")))
+    }
+
+    /// As [`Self::posed`], and returns the solver to its previous state. `None` if the solver is busy.
+    pub(super) fn posed_aside(&mut self, state: &State) -> Option<Result<Posed, Lost>> {
+        if let Some((known, posed)) = &self.posed
+            && known == state
+        {
+            return Some(Ok(posed.clone()));
+        }
+        let wanted = state.clone();
+        let posed = self.lender.look(move |solver| {
+            let stood = solver.state().clone();
+            let posed = solver.posed(&wanted);
+            // If the solver cannot return to its state, its next step reports that.
+            let _ = solver.restore(&stood);
+            posed
+        })?;
+        if let Ok(posed) = &posed {
+            self.posed = Some((state.clone(), posed.clone()));
+        }
+        Some(posed)
+    }
+
+    /// The examination of an attached solver's state: what it reported, then the analysis of its interface
+    /// problem.
+    pub(super) fn examine_attached(
+        &self,
+        state: &State,
+        nodes: &[usize],
+        reported: Reported,
+        stop: &AtomicBool,
+    ) -> DiagnosisPage {
+        let mut found = self.examine_problem(state, nodes, &reported.iterations, stop);
+        let known = reported.findings;
+        found.fails |= matches!(state.status, Status::Failed(_));
+        let count = found.census.as_ref().map_or(0, |c| c.answers.len());
+        let answers = (1..=count.min(2)).map(|n| {
+            format!("start from the consistent state {n} (:start-from {n} forces its modes)")
+        });
+        let mut tries: Vec<String> = answers.collect();
+        if tries.is_empty() && !known.is_empty() {
+            tries.push("force one of the changing nodes into another mode (m)".into());
+        }
+        let tries = tries.iter().filter(|_| self.offers.force);
+        let tries = tries.map(|text| TryLine::by_hand(text)).collect();
+        // An attached solver does not offer the settings of our own method.
+        let offered = |fact: &Fact| !fact.text.starts_with("tried: settings.");
+        found.facts.retain(offered);
+        DiagnosisPage::attached(known, found, tries)
+    }
+
+    /// The examination of the interface problem that an attached solver reports.
+    pub(super) fn examine_problem(
+        &self,
+        state: &State,
+        nodes: &[usize],
+        iterations: &ReportedIterations,
+        stop: &AtomicBool,
+    ) -> Examination {
+        let stopped = || stop.load(Ordering::Relaxed);
+        match self.posed(state) {
+            Ok(posed) => attached::examine(&self.model, state, &posed, iterations, nodes, &stopped),
+            Err(lost) => Examination {
+                head: format!("The frozen problem is not available: {lost}."),
+                ..Examination::default()
+            },
+        }
+    }
+
+    /// Tries the remedies that an attached solver offers, on that solver.
+    pub(super) fn try_attached(
+        &self,
+        state: &State,
+        news: &Sender<BackgroundReply>,
+        stop: &AtomicBool,
+    ) -> Option<()> {
+        let found = self.examine_problem(state, &[], &ReportedIterations::default(), stop);
+        let all = remedies::offered(&self.model, state, &self.offers, &found);
+        try_all(&all, news, |remedy| {
+            let (remedy, state) = (remedy.clone(), state.clone());
+            let stopping = self.stopping.clone();
+            let tried = self.lender.look(move |solver| {
+                let stopped = || stopping.load(Ordering::Relaxed);
+                let tried = remedies::attempt(solver, &state, None, &remedy, &stopped);
+                // Back to the session's state. If the solver cannot return to it, its next step reports that.
+                let _ = solver.restore(&state);
+                tried
+            });
+            tried.flatten().map(Some)
+        })
+    }
+}
