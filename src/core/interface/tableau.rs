@@ -222,11 +222,12 @@ impl Tableau {
         let entries = |(row, place): (usize, &usize)| {
             let others = own.iter().enumerate();
             let entries = others.map(|(k, &other)| (k, basic(other)[row]));
-            (row, *place, entries.filter(|(_, x)| *x != 0.0).collect())
+            let entries: Vec<(usize, f64)> = entries.filter(|(_, x)| *x != 0.0).collect();
+            (row, *place, entries)
         };
         let following = single.iter().enumerate();
         let following = following.filter_map(|(row, place)| Some((row, place.as_ref()?)));
-        let following: Vec<(usize, usize, Vec<(usize, f64)>)> = following.map(entries).collect();
+        let following: Vec<_> = following.map(entries).collect();
         let columns = self.table.len() / rows.max(1);
         let others: Vec<usize> = (0..columns)
             .filter(|&column| self.row_of.get(column).is_none_or(Option::is_none))

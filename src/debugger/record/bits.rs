@@ -1,8 +1,8 @@
 //! A digest of the bits of a value: 64 bits over all its numbers, texts, field names and lengths.
 //!
 //! Words go to four sums in turn, so that consecutive multiplications do not wait for one another. A word enters its sum by steps
-//! that can be undone, so that any single changed word changes the digest. All
-//! NaN are equal. The digest detects accidental changes; it is not a signature.
+//! that can be undone, so that any single changed word changes the digest. All NaN are equal. The digest detects accidental changes;
+//! it is not a signature.
 
 use serde::ser::{self, Serialize, Serializer};
 use std::fmt::{self, Display};
