@@ -12,7 +12,7 @@ use crate::interface::spiral::{Fate, spiral};
 use crate::linear::singular::Singular;
 use crate::linear::sizes::ROUND_OFF;
 use crate::linear::source::Solved;
-use crate::model::{self, AtCycle, AtLimit, Mode};
+use crate::model::{self, AtCycle, AtLimit, Mode, SlipCount};
 use crate::step::event::{Failure, Outcome};
 use crate::step::iterate::Iterate;
 use crate::step::state::State;
@@ -112,7 +112,8 @@ impl Stepper {
                     target: self.now.state.target,
                 };
             }
-            if method.searches_line() {
+            // With the literal reading of Table 2's slip, the judge forgives states that a step may lead to.
+            if method.searches_line() && settings.slip == SlipCount::Increment {
                 self.now.state.begin_again();
                 self.now.state.line = Some(Arc::new(LineSearch::new(cycle)));
                 self.now.state.next.minor += 1;
