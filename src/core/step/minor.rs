@@ -12,7 +12,7 @@ use crate::interface::spiral::{Fate, spiral};
 use crate::linear::singular::Singular;
 use crate::linear::sizes::ROUND_OFF;
 use crate::linear::source::Solved;
-use crate::model::{self, AtCycle, AtLimit, Mode};
+use crate::model::{self, AtCycle, AtLimit, Mode, SlipCount};
 use crate::step::event::{Failure, Outcome};
 use crate::step::iterate::Iterate;
 use crate::step::state::State;
@@ -49,7 +49,7 @@ impl Stepper {
                 1.0
             },
         };
-        let mut settled = self.now.step_on_line(check.stiffness) == 1.0;
+        let mut settled = step_on_line(&mut self.now, check.stiffness) == 1.0;
         let line = self.now.state.line.clone();
         let controls = self.now.state.controls.clone();
         let singly = method.is_single(self.now.state.is_stalled());
@@ -112,7 +112,8 @@ impl Stepper {
                     target: self.now.state.target,
                 };
             }
-            if method.searches_line() {
+            // With the literal reading of Table 2's slip, the judge forgives states that a step may lead to.
+            if method.searches_line() && settings.slip == SlipCount::Increment {
                 self.now.state.begin_again();
                 self.now.state.line = Some(Arc::new(LineSearch::new(cycle)));
                 self.now.state.next.minor += 1;
@@ -133,32 +134,6 @@ impl Stepper {
 }
 
 impl Iterate {
-    /// A step of the line search towards the solution of this minor iteration, with the interface's stiffness (force per length);
-    /// returns its length, 1 without a line search.
-    fn step_on_line(&mut self, stiffness: f64) -> f64 {
-        let Some(mut line) = self.state.line.take() else {
-            return 1.0;
-        };
-        let (state, source) = (&self.state, &self.source);
-        let settings = state.settings();
-        let error = |(contact, given): (usize, &NodeIncrement)| {
-            let node = &state.nodes[contact];
-            let Some(over) = source.kinematics(contact).filter(|k| !k.bond.is_tied()) else {
-                return 0.0;
-            };
-            let [normal, tangential] = given.motion;
-            let slip = node.slipped(&settings) + tangential - over.gap * node.ratio;
-            let [f_n, f_t] = [node.f_n + given.force[0], node.f_t + given.force[1]];
-            let friction = node.friction(&state.controls.friction[contact]);
-            natural_map([f_n, f_t, over.gap - normal, slip], &friction, stiffness)
-        };
-        let to = (0..state.nodes.len()).map(|contact| source.increment(contact));
-        let part = Arc::make_mut(&mut line)
-            .step(to.collect(), |at| at.iter().enumerate().map(error).sum());
-        self.state.line = Some(line);
-        part
-    }
-
     /// Why a solve has no solution, or no meaningful one.
     pub(super) fn unsolvable(&self, solved: Solved) -> Option<Failure> {
         let singular = match solved {
@@ -292,6 +267,32 @@ impl Iterate {
                 .collect(),
         })
     }
+}
+
+/// A step of the line search towards the solution of this minor iteration, with the interface's stiffness (force per length);
+/// returns its length, 1 without a line search.
+fn step_on_line(now: &mut Iterate, stiffness: f64) -> f64 {
+    let Some(mut line) = now.state.line.take() else {
+        return 1.0;
+    };
+    let (state, source) = (&now.state, &now.source);
+    let settings = state.settings();
+    let error = |(contact, given): (usize, &NodeIncrement)| {
+        let node = &state.nodes[contact];
+        let Some(over) = source.kinematics(contact).filter(|k| !k.bond.is_tied()) else {
+            return 0.0;
+        };
+        let [normal, tangential] = given.motion;
+        let slip = node.slipped(&settings) + tangential - over.gap * node.ratio;
+        let [f_n, f_t] = [node.f_n + given.force[0], node.f_t + given.force[1]];
+        let friction = node.friction(&state.controls.friction[contact]);
+        natural_map([f_n, f_t, over.gap - normal, slip], &friction, stiffness)
+    };
+    let to = (0..state.nodes.len()).map(|contact| source.increment(contact));
+    let part =
+        Arc::make_mut(&mut line).step(to.collect(), |at| at.iter().enumerate().map(error).sum());
+    now.state.line = Some(line);
+    part
 }
 
 impl State {
