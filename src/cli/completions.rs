@@ -155,12 +155,14 @@ const FREE: &[&str] = &[
     "MONITOR",
     "N",
     "PART",
+    "PIXELS",
     "QUANTITY",
     "SECONDS",
     "SEED",
     "SHELL",
     "WHAT",
     "WORD",
+    "WxH",
 ];
 
 /// A name, and its description.

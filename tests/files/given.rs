@@ -487,8 +487,8 @@ fn a_scene_that_is_kept_has_its_mesh_inside() {
 fn only_files_beside_the_scene_are_read_and_broken_ones_are_told_by_their_own_lines() {
     let directory = folder("text41");
     for (file, told) in [
-        ("../mesh.msh", "beside this one or in a folder below"),
-        ("/etc/passwd", "beside this one or in a folder below"),
+        ("../mesh.msh", "in the same folder as this one or below it"),
+        ("/etc/passwd", "in the same folder as this one or below it"),
         ("none.msh", "cannot be read"),
     ] {
         let error = imported(&directory, &format!("file: {file:?}"), &[]).unwrap_err();
