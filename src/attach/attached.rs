@@ -6,23 +6,23 @@
 //! give the same modes.
 
 use super::link::{Link, Start, name};
-use super::meeting::{self, Met, meet};
+use super::started_solver::{self, StartedSolver, meet};
 use std::sync::Arc;
 use std::sync::atomic::AtomicUsize;
 use stickslip_core::model::{Mode, Model};
 use stickslip_core::step::Status;
 use stickslip_core::step::event::{Event, Position};
 use stickslip_core::step::intervene::{Intervention, Refusal};
-use stickslip_core::step::places::Places;
-use stickslip_core::step::solver::{Lost, Offers, Posed, Solver};
+use stickslip_core::step::solver::{Capabilities, ReportedProblem, Solver, SolverLost};
 use stickslip_core::step::state::State;
+use stickslip_core::step::stored_states::StoredStates;
 use stickslip_debugger::explain::names;
 use stickslip_debugger::recorded::decode::{self, RecordedStep, WireFrame};
 use stickslip_debugger::recorded::fault::Fault;
+use stickslip_debugger::recorded::interface_problem::read_problem;
 use stickslip_debugger::recorded::log::Log;
 use stickslip_debugger::recorded::orders::requests;
-use stickslip_debugger::recorded::posed::posed;
-use stickslip_exchange::attach::message::{self, Ended, Hello, Id, Restore};
+use stickslip_exchange::attach::message::{self, EndedLevel, Hello, Id, Restore};
 use stickslip_exchange::attach::{Answer, Request};
 use stickslip_scene::Scene;
 
@@ -33,11 +33,11 @@ pub struct Attached {
     told: message::Scene,
     ids: Vec<Id>,
     hello: Hello,
-    offers: Offers,
+    offers: Capabilities,
     link: Option<Link>,
     log: Log,
     asks: Arc<AtomicUsize>,
-    places: Places<Kept>,
+    places: StoredStates<StoredState>,
     /// The tree node that the running solver is at, without interventions since; `None` if it is not known.
     at: Option<u64>,
     /// The current state, and the iteration that produced it.
@@ -50,17 +50,17 @@ pub struct Attached {
 
 /// A state that the solver has reached: how to restore it, and how to verify a repeated iteration.
 #[derive(Default)]
-struct Kept {
+struct StoredState {
     /// Token to restore it.
     token: Option<serde_json::Value>,
     /// Position, outcome and modes of the iteration that produced it; `None` at the start.
-    led: Option<(Position, Ended, Vec<Mode>)>,
+    led: Option<(Position, EndedLevel, Vec<Mode>)>,
 }
 
-impl Kept {
-    fn of(told: &message::State, position: Position) -> Kept {
+impl StoredState {
+    fn from_message(told: &message::State, position: Position) -> StoredState {
         let next = told.contacts.iter().map(|found| found.next);
-        Kept {
+        StoredState {
             token: None,
             led: Some((position, told.ended, next.collect())),
         }
@@ -70,7 +70,7 @@ impl Kept {
     fn begins(&self) -> bool {
         self.led
             .as_ref()
-            .is_none_or(|(_, ended, _)| matches!(ended, Ended::Increment | Ended::Done))
+            .is_none_or(|(_, ended, _)| matches!(ended, EndedLevel::Increment | EndedLevel::Done))
     }
 }
 
@@ -81,7 +81,7 @@ impl Attached {
     /// The [`Fault`] that ended it.
     pub fn attach(start: Start, log: Log) -> Result<(Scene, Attached), Fault> {
         let asks = Arc::new(AtomicUsize::new(0));
-        let Met {
+        let StartedSolver {
             link,
             hello,
             scene: told,
@@ -99,7 +99,7 @@ impl Attached {
             link: Some(link),
             log,
             asks,
-            places: Places::new(Kept::default()),
+            places: StoredStates::new(StoredState::default()),
             at: Some(0),
             again: 0,
             anew: false,
@@ -160,7 +160,7 @@ impl Attached {
             Answer::Refused { .. } => {}
             _ => self.end(),
         }
-        meeting::other(request, answer, expected)
+        started_solver::other(request, answer, expected)
     }
 
     /// Ends the child process.
@@ -253,13 +253,13 @@ impl Attached {
         self.change(&asked)?;
         let told = self.step_there()?;
         let position = self.frame().check(&told)?;
-        self.same(place, &Kept::of(&told, position))?;
+        self.same(place, &StoredState::from_message(&told, position))?;
         self.at = Some(place);
         self.save(place)
     }
 
     /// Checks that a repeated iteration gives the same result.
-    fn same(&self, place: u64, now: &Kept) -> Result<(), Fault> {
+    fn same(&self, place: u64, now: &StoredState) -> Result<(), Fault> {
         let then = self.places.get(place).ok_or(Fault::Unknown)?;
         match differs(then, now, &self.model) {
             None => Ok(()),
@@ -339,7 +339,7 @@ impl Attached {
         self.change(&asked)?;
         let told = self.step_there()?;
         let mut led = self.frame().recorded_step(&self.now.state, &told)?;
-        let kept = Kept::of(&told, led.event.position);
+        let kept = StoredState::from_message(&told, led.event.position);
         let place = match self.places.follows(from, &asked) {
             Some(place) => {
                 self.same(place, &kept)?;
@@ -358,7 +358,7 @@ impl Attached {
     }
 
     /// Requests the frozen interface problem of the current state.
-    fn ask_problem(&mut self) -> Result<Posed, Fault> {
+    fn ask_problem(&mut self) -> Result<ReportedProblem, Fault> {
         self.go()?;
         let asked = self.now.state.asked().to_vec();
         if !asked.is_empty() {
@@ -367,7 +367,7 @@ impl Attached {
             self.at = None;
         }
         match self.ask(&Request::Problem)? {
-            Answer::Problem(problem) => posed(&problem, &self.ids),
+            Answer::Problem(problem) => read_problem(&problem, &self.ids),
             other => Err(self.other(&Request::Problem, other, "problem")),
         }
     }
@@ -386,22 +386,22 @@ impl Solver for Attached {
         &self.now.event
     }
 
-    fn step(&mut self) -> Result<bool, Lost> {
+    fn step(&mut self) -> Result<bool, SolverLost> {
         if self.now.state.status == Status::Finished {
             return Ok(false);
         }
         self.iterate().map(|()| true).map_err(|fault| {
             let lost = fault.to_string();
             self.log.noted(&lost);
-            Lost::new(lost)
+            SolverLost::new(lost)
         })
     }
 
-    fn restore(&mut self, state: &State) -> Result<(), Lost> {
+    fn restore(&mut self, state: &State) -> Result<(), SolverLost> {
         self.now.state.clone_from(state);
         match self.place() {
             Ok(_) => Ok(()),
-            Err(fault) => Err(Lost::new(fault.to_string())),
+            Err(fault) => Err(SolverLost::new(fault.to_string())),
         }
     }
 
@@ -414,27 +414,27 @@ impl Solver for Attached {
         out.extend_from_slice(&self.now.monitors);
     }
 
-    fn offers(&self) -> Offers {
+    fn capabilities(&self) -> Capabilities {
         self.offers.clone()
     }
 
-    fn posed(&mut self, state: &State) -> Result<Posed, Lost> {
+    fn interface_problem(&mut self, state: &State) -> Result<ReportedProblem, SolverLost> {
         if !self.hello.abilities.problem {
-            return Err(Lost::new(self.offers.lacks("its interface problem")));
+            return Err(SolverLost::new(self.offers.lacks("its interface problem")));
         }
         self.restore(state)?;
         self.ask_problem()
-            .map_err(|fault| Lost::new(fault.to_string()))
+            .map_err(|fault| SolverLost::new(fault.to_string()))
     }
 
-    fn heed(&mut self, asks: Arc<AtomicUsize>) {
+    fn set_cancel(&mut self, asks: Arc<AtomicUsize>) {
         if let Some(link) = &mut self.link {
-            link.heed(asks.clone());
+            link.set_cancel(asks.clone());
         }
         self.asks = asks;
     }
 
-    fn remark(&mut self) -> Option<String> {
+    fn take_notice(&mut self) -> Option<String> {
         let again = std::mem::take(&mut self.again);
         let lost = self.log.lost();
         let anew = std::mem::take(&mut self.anew);
@@ -453,7 +453,7 @@ impl Solver for Attached {
 }
 
 /// The first difference to the greeting and scene of the first start.
-fn another(told: &message::Scene, hello: &Hello, met: &Met) -> Option<&'static str> {
+fn another(told: &message::Scene, hello: &Hello, met: &StartedSolver) -> Option<&'static str> {
     let scene = &met.scene;
     let parts = [
         (hello.abilities == met.hello.abilities, "list of abilities"),
@@ -470,7 +470,7 @@ fn another(told: &message::Scene, hello: &Hello, met: &Met) -> Option<&'static s
 }
 
 /// The difference between a repeated iteration and the original; `None` if position, modes and outcome are the same.
-fn differs(then: &Kept, now: &Kept, model: &Model) -> Option<String> {
+fn differs(then: &StoredState, now: &StoredState, model: &Model) -> Option<String> {
     let ((was, ended, modes), (is, ends, now)) = then.led.as_ref().zip(now.led.as_ref())?;
     if was != is {
         let (is, was) = (names::position(*is), names::position(*was));

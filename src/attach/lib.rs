@@ -11,8 +11,8 @@
 pub mod attached;
 pub mod check;
 pub mod link;
-pub mod meeting;
 pub mod serve;
+pub mod started_solver;
 mod wire;
 
 pub use attached::Attached;

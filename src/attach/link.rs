@@ -18,7 +18,7 @@ use stickslip_debugger::recorded::fault::Fault;
 use stickslip_debugger::recorded::log::Log;
 use stickslip_exchange::attach::conversation::STARTED;
 use stickslip_exchange::attach::message::{Level, Progress};
-use stickslip_exchange::attach::{Answer, Line, Lines, MOST_BYTES, Request, Side};
+use stickslip_exchange::attach::{Answer, Line, LineReader, MOST_BYTES, Request, Side};
 use stickslip_scene::{number, shown};
 
 /// Polling interval for interrupts.
@@ -128,7 +128,7 @@ impl Link {
     }
 
     /// Installs the counter of the user's requests to stop.
-    pub fn heed(&mut self, asks: Arc<AtomicUsize>) {
+    pub fn set_cancel(&mut self, asks: Arc<AtomicUsize>) {
         self.stop = asks;
     }
 
@@ -153,7 +153,7 @@ impl Link {
     }
 
     fn exchange(&mut self, request: &Request, within: Duration) -> Result<Answer, Fault> {
-        let mut waiting = Waiting::new(request, within);
+        let mut waiting = Wait::new(request, within);
         // Lines that arrived since the last answer.
         while let Ok(line) = self.output.try_recv() {
             self.besides(line, &waiting)?;
@@ -176,11 +176,7 @@ impl Link {
     }
 
     /// The answer in a line; `None` for a message.
-    fn heard(
-        &mut self,
-        line: io::Result<Line>,
-        waiting: &Waiting,
-    ) -> Result<Option<Answer>, Fault> {
+    fn heard(&mut self, line: io::Result<Line>, waiting: &Wait) -> Result<Option<Answer>, Fault> {
         let line = line.map_err(|error| self.died(&error.to_string(), waiting))?;
         let answer = match self.read(line, waiting) {
             Err(stray @ Fault::Junk { .. }) => {
@@ -210,7 +206,7 @@ impl Link {
     }
 
     /// Handles a line outside a request.
-    fn besides(&mut self, line: io::Result<Line>, waiting: &Waiting) -> Result<(), Fault> {
+    fn besides(&mut self, line: io::Result<Line>, waiting: &Wait) -> Result<(), Fault> {
         match self.heard(line, waiting)? {
             None => Ok(()),
             Some(answer) => Err(Fault::Unasked {
@@ -221,7 +217,7 @@ impl Link {
     }
 
     /// Decodes a line.
-    fn read(&mut self, line: Line, waiting: &Waiting) -> Result<Answer, Fault> {
+    fn read(&mut self, line: Line, waiting: &Wait) -> Result<Answer, Fault> {
         let text = match line {
             Line::Text(text) => text,
             Line::End => return Err(self.died("", waiting)),
@@ -277,7 +273,7 @@ impl Link {
 
     /// Sends a request in as many parts as the pipe accepts. Output of the solver is read meanwhile, since otherwise both sides
     /// could block.
-    fn send(&mut self, request: &Request, waiting: &mut Waiting) -> Result<(), Fault> {
+    fn send(&mut self, request: &Request, waiting: &mut Wait) -> Result<(), Fault> {
         let line = request.line();
         self.log.exchanged(Side::Asked, &line);
         let mut rest = line.as_bytes();
@@ -305,7 +301,7 @@ impl Link {
     }
 
     /// The fault for a closed standard input; the solver may have sent the reason.
-    fn gone(&mut self, waiting: &Waiting) -> Fault {
+    fn gone(&mut self, waiting: &Wait) -> Fault {
         let until = Instant::now() + FAREWELL;
         while Instant::now() < until {
             match self.output.recv_timeout(LOOK) {
@@ -322,7 +318,7 @@ impl Link {
     }
 
     /// Checks interrupts, time limit and process state while waiting for an answer.
-    fn wait_on(&mut self, waiting: &mut Waiting) -> Result<(), Fault> {
+    fn wait_on(&mut self, waiting: &mut Wait) -> Result<(), Fault> {
         let asked = || waiting.asked.clone();
         let asks = self.stop.load(Ordering::Relaxed);
         if asks > waiting.heeded {
@@ -403,7 +399,7 @@ impl Link {
     }
 
     /// The fault for a process that ended or closed its output.
-    fn died(&mut self, why: &str, waiting: &Waiting) -> Fault {
+    fn died(&mut self, why: &str, waiting: &Wait) -> Fault {
         self.ends_within(FAREWELL);
         // Standard error is a separate pipe; its last lines may arrive later.
         thread::sleep(2 * LOOK);
@@ -455,8 +451,8 @@ impl Drop for Link {
 /// Progress in words, safe to print to a terminal.
 fn words(progress: &Progress) -> String {
     let amount = match (progress.done, progress.of) {
-        (Some(done), Some(of)) => format!("{} of {}", number::plain(done), number::plain(of)),
-        (Some(done), None) => number::plain(done),
+        (Some(done), Some(of)) => format!("{} of {}", number::shortest(done), number::shortest(of)),
+        (Some(done), None) => number::shortest(done),
         (None, _) => String::new(),
     };
     let text = shown::cut(progress.text.trim(), NAME);
@@ -464,7 +460,7 @@ fn words(progress: &Progress) -> String {
 }
 
 /// State of a wait for an answer.
-struct Waiting {
+struct Wait {
     /// The request, in words.
     asked: String,
     within: Duration,
@@ -480,10 +476,10 @@ struct Waiting {
     gone: bool,
 }
 
-impl Waiting {
+impl Wait {
     fn new(request: &Request, within: Duration) -> Self {
         let now = Instant::now();
-        Waiting {
+        Wait {
             asked: name(request),
             within,
             longer: match request {
@@ -524,7 +520,7 @@ pub(super) fn name(request: &Request) -> String {
 
 /// Reads its standard output to the end.
 fn read(stream: impl Read, lines: &SyncSender<io::Result<Line>>) {
-    let mut stream = Lines::new(BufReader::with_capacity(1 << 16, stream), MOST_BYTES);
+    let mut stream = LineReader::new(BufReader::with_capacity(1 << 16, stream), MOST_BYTES);
     loop {
         let line = stream.next_line();
         let last = !matches!(line, Ok(Line::Text(_) | Line::NoText(_)));

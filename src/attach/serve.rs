@@ -7,15 +7,15 @@ use serde_json::Value;
 use std::io::{self, BufRead, Write};
 use std::sync::Arc;
 use stickslip_core::step::intervene::Intervention;
-use stickslip_core::step::solver::PosedForm;
+use stickslip_core::step::solver::ReportedForm;
 use stickslip_core::step::state::State;
 use stickslip_core::step::stepper::Stepper;
 use stickslip_debugger::record::export::frozen;
 use stickslip_debugger::recorded::orders::{self, COHESION, FRICTION, INCREMENT};
 use stickslip_exchange::attach::message::{
-    Abilities, Hello, Id, Matrix, Parameter, ParameterKind, Problem, Restore,
+    Abilities, Hello, Id, MatrixMessage, ParameterKind, ParameterMessage, ProblemMessage, Restore,
 };
-use stickslip_exchange::attach::{Answer, Line, Lines, MOST_BYTES, PROTOCOL, Request};
+use stickslip_exchange::attach::{Answer, Line, LineReader, MOST_BYTES, PROTOCOL, Request};
 use stickslip_scene::Scene;
 use stickslip_scene::format::paths;
 use stickslip_scene::solver::solver;
@@ -26,7 +26,7 @@ use stickslip_scene::solver::solver;
 /// If the streams cannot be read or written.
 pub fn serve(scene: &Scene, from: impl BufRead, mut to: impl Write) -> io::Result<()> {
     let mut server = Server::new(scene);
-    let mut lines = Lines::new(from, MOST_BYTES);
+    let mut lines = LineReader::new(from, MOST_BYTES);
     loop {
         let request = match lines.next_line()? {
             Line::Text(text) => Request::read(&text).map_err(|broken| broken.to_string()),
@@ -188,10 +188,10 @@ impl<'a> Server<'a> {
             Ok(total) => {
                 let friction = &self.stepper.state().controls.friction;
                 let of = |&slave: &usize| friction[slave];
-                Answer::Problem(Box::new(Problem {
+                Answer::Problem(Box::new(ProblemMessage {
                     contacts: total.slaves.iter().map(|&slave| wire::id(slave)).collect(),
-                    kind: PosedForm::Compliance,
-                    matrix: Matrix::Rows(total.w),
+                    kind: ReportedForm::Compliance,
+                    matrix: MatrixMessage::Rows(total.w),
                     q: total.q,
                     load: Vec::new(),
                     mu: total
@@ -212,9 +212,9 @@ impl<'a> Server<'a> {
 }
 
 /// The parameters that can be changed during a run.
-fn parameters(scene: &Scene) -> Vec<Parameter> {
+fn parameters(scene: &Scene) -> Vec<ParameterMessage> {
     let friction = scene.spec.friction.of_node(None);
-    let number = |name: &str, value: f64, about: &str| Parameter {
+    let number = |name: &str, value: f64, about: &str| ParameterMessage {
         name: name.into(),
         kind: ParameterKind::Number,
         value: Value::from(value),
@@ -256,7 +256,7 @@ fn parameters(scene: &Scene) -> Vec<Parameter> {
                 Err(_) => (ParameterKind::Text, Value::from(listed.value)),
             },
         };
-        Parameter {
+        ParameterMessage {
             name: listed.path,
             kind,
             value,

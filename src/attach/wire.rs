@@ -4,13 +4,14 @@
 
 use stickslip_core::contact::record::{self, ContactRecord};
 use stickslip_core::linear::norms::Norms;
-use stickslip_core::model::{Axis, Bond, Control, Jumps, Model, Watched};
+use stickslip_core::model::{Axis, Bond, Control, Jumps, Model, MonitorQuantity};
 use stickslip_core::step::event::{Event, Failure, Outcome};
 use stickslip_core::step::state::State;
 use stickslip_debugger::explain::names;
 use stickslip_debugger::explain::report;
 use stickslip_exchange::attach::message::{
-    self, Contact, Ended, Forced, Found, Friction, Id, Monitor, Scene, Surface, ToldKind, number,
+    self, Contact, ContactResult, EndedLevel, Forced, Friction, Id, Monitor, Scene, SurfaceMessage,
+    ToldKind, number,
 };
 
 /// The number of a contact in messages, from 1.
@@ -50,7 +51,7 @@ pub fn scene(model: &Model) -> Scene {
     }
 }
 
-fn surface(surface: &stickslip_core::model::Surface) -> Surface {
+fn surface(surface: &stickslip_core::model::Surface) -> SurfaceMessage {
     let mut nodes: Vec<usize> = Vec::new();
     for element in &surface.elements {
         match nodes.last() {
@@ -59,7 +60,7 @@ fn surface(surface: &stickslip_core::model::Surface) -> Surface {
             None => nodes.extend(element),
         }
     }
-    Surface {
+    SurfaceMessage {
         name: surface.name.clone(),
         nodes,
         rigid: surface.rigid,
@@ -94,15 +95,15 @@ fn of_contact(model: &Model, k: usize) -> Contact {
 
 fn monitor(monitor: &stickslip_core::model::Monitor) -> Monitor {
     let kind = match &monitor.of {
-        Watched::Contact {
+        MonitorQuantity::Contact {
             axis: Axis::X | Axis::Y,
             ..
         }
-        | Watched::Reaction { .. } => ToldKind::Force,
-        Watched::Pressure { .. } => ToldKind::Pressure,
-        Watched::Modes { .. } => ToldKind::Count,
-        Watched::Displacement { .. } | Watched::Drift { .. } => ToldKind::Length,
-        Watched::Arc | Watched::Told { .. } => ToldKind::Other,
+        | MonitorQuantity::Reaction { .. } => ToldKind::Force,
+        MonitorQuantity::Pressure { .. } => ToldKind::Pressure,
+        MonitorQuantity::Modes { .. } => ToldKind::Count,
+        MonitorQuantity::Displacement { .. } | MonitorQuantity::Drift { .. } => ToldKind::Length,
+        MonitorQuantity::Arc | MonitorQuantity::Told { .. } => ToldKind::Other,
     };
     Monitor::Kind {
         name: monitor.name.clone(),
@@ -143,21 +144,25 @@ fn displacements(model: &Model, state: &State) -> Vec<[f64; 2]> {
     (0..model.nodes.len()).map(moved).collect()
 }
 
-fn ended(event: &Event) -> (Ended, Option<message::Norms>, Option<f64>) {
+fn ended(event: &Event) -> (EndedLevel, Option<message::NormsMessage>, Option<f64>) {
     match &event.outcome {
         Outcome::Minor
         | Outcome::Damped { .. }
-        | Outcome::Climbed { .. }
-        | Outcome::HeldBack { .. } => (Ended::Iteration, None, None),
+        | Outcome::StrategyChange { .. }
+        | Outcome::HeldBack { .. } => (EndedLevel::Iteration, None, None),
         Outcome::Cut { size, .. }
-        | Outcome::Leaps { size, .. }
-        | Outcome::Fallback { size, .. } => (Ended::Cut, None, number(*size)),
-        Outcome::Turns { .. } | Outcome::Moves(_) => (Ended::Cut, None, None),
+        | Outcome::WholeIncrement { size, .. }
+        | Outcome::Fallback { size, .. } => (EndedLevel::Cut, None, number(*size)),
+        Outcome::PathCorner { .. } | Outcome::Motion(_) => (EndedLevel::Cut, None, None),
         Outcome::Major { after, .. } | Outcome::Refused { after, .. } => {
-            (Ended::Equilibrium, Some(norms(after)), None)
+            (EndedLevel::Equilibrium, Some(norms(after)), None)
         }
         Outcome::Increment { after, last, .. } => {
-            let ended = if *last { Ended::Done } else { Ended::Increment };
+            let ended = if *last {
+                EndedLevel::Done
+            } else {
+                EndedLevel::Increment
+            };
             (ended, Some(norms(after)), None)
         }
         Outcome::Failed(failure) => {
@@ -167,11 +172,11 @@ fn ended(event: &Event) -> (Ended, Option<message::Norms>, Option<f64>) {
                 }
                 _ => None,
             };
-            let after = relative.map(|relative| message::Norms {
+            let after = relative.map(|relative| message::NormsMessage {
                 relative: number(relative),
-                ..message::Norms::default()
+                ..message::NormsMessage::default()
             });
-            (Ended::Failure, after, None)
+            (EndedLevel::Failure, after, None)
         }
     }
 }
@@ -180,16 +185,16 @@ fn reason(model: &Model, event: &Event) -> String {
     match &event.outcome {
         Outcome::Failed(why)
         | Outcome::Cut { why, .. }
-        | Outcome::Leaps { why, .. }
+        | Outcome::WholeIncrement { why, .. }
         | Outcome::Fallback { why, .. }
-        | Outcome::Turns { why, .. } => report::describe_failure(model, why),
+        | Outcome::PathCorner { why, .. } => report::describe_failure(model, why),
         _ => String::new(),
     }
 }
 
-fn of_record(k: usize, record: &ContactRecord) -> Found {
+fn of_record(k: usize, record: &ContactRecord) -> ContactResult {
     let decision = &record.decision;
-    Found {
+    ContactResult {
         id: id(k),
         mode: decision.before,
         next: decision.next,
@@ -222,8 +227,8 @@ fn place(at: [f64; 2]) -> Option<[f64; 2]> {
     at.iter().all(|x| x.is_finite()).then_some(at)
 }
 
-fn norms(norms: &Norms) -> message::Norms {
-    message::Norms {
+fn norms(norms: &Norms) -> message::NormsMessage {
+    message::NormsMessage {
         relative: number(norms.relative),
         force: number(norms.force),
         interface: number(norms.interface),

@@ -6,7 +6,7 @@ use super::front;
 use super::solver::SolverArgs;
 use std::path::PathBuf;
 use stickslip_attach::{C, FORTRAN, PYTHON, check};
-use stickslip_debugger::record::journal::Keep;
+use stickslip_debugger::record::journal::JournalTarget;
 use stickslip_debugger::session::Session;
 
 #[derive(Debug, clap::Args)]
@@ -56,9 +56,9 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         "run --trace - -- COMMAND` steps a solver without one",
     )?;
     let keep = match args.journal {
-        _ if args.no_journal => Keep::Nowhere,
-        Some(ref file) => Keep::File(file.clone()),
-        None => Keep::Default,
+        _ if args.no_journal => JournalTarget::Nowhere,
+        Some(ref file) => JournalTarget::File(file.clone()),
+        None => JournalTarget::Default,
     };
     let (scene, attached, log) = args.solver.attach(args.force)?;
     let text = format!(

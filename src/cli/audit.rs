@@ -13,7 +13,7 @@ use stickslip_core::contact::laws::JudgedLaw;
 use stickslip_core::model::Model;
 use stickslip_core::step::drive::RunEnd;
 use stickslip_core::step::event::Outcome;
-use stickslip_debugger::explain::audit::{Audit, Inside, Stretched, WorstFinding};
+use stickslip_debugger::explain::audit::{Audit, PenetratingMaster, StretchFinding, WorstFinding};
 use stickslip_debugger::explain::judged;
 use stickslip_debugger::explain::names;
 use stickslip_debugger::explain::report;
@@ -21,7 +21,7 @@ use stickslip_debugger::explain::strain;
 use stickslip_debugger::record::snapshot::Snapshot;
 use stickslip_scene::Scene;
 use stickslip_scene::format::kind::FileKind;
-use stickslip_scene::number::{four, plain};
+use stickslip_scene::number::{shortest, sig4};
 use stickslip_scene::solver::solver;
 
 #[derive(Debug, clap::Args)]
@@ -68,16 +68,16 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
 /// Opens a snapshot, or otherwise a scene; a snapshot file names its format.
 fn open(input: &str, args: &Args) -> Result<Course, Error> {
     let path = Path::new(input);
-    let kind = FileKind::of_file(path);
+    let kind = FileKind::from_file(path);
     if !matches!(kind, Some(FileKind::Journal | FileKind::Snapshot)) {
-        return Ok(Course::of_scene(Scene::open(input, &args.set.set)?));
+        return Ok(Course::from_scene(Scene::open(input, &args.set.set)?));
     }
     if !args.set.set.is_empty() {
         return Err(usage!(
             "{input}: snapshots are audited as recorded; --set is for scenes only"
         ));
     }
-    Course::of_snapshot(input, Snapshot::read(path)?)
+    Course::from_snapshot(input, Snapshot::read(path)?)
 }
 
 const INTERRUPTED: &str = "interrupted";
@@ -123,7 +123,7 @@ fn one(course: &Course, says: bool, interrupt: &Interrupt) -> Result<HistoryReco
 /// The report as data.
 fn record(name: &str, model: &Model, audit: &Audit) -> HistoryRecord {
     let finding = |found: &WorstFinding| finding_record(model, found);
-    let stretch = |found: &Stretched| stretch_record(model, found);
+    let stretch = |found: &StretchFinding| stretch_record(model, found);
     HistoryRecord {
         name: name.to_owned(),
         outcome: "finished",
@@ -158,7 +158,7 @@ fn finding_record(model: &Model, found: &WorstFinding) -> FindingRecord {
     }
 }
 
-fn stretch_record(model: &Model, found: &Stretched) -> StretchRecord {
+fn stretch_record(model: &Model, found: &StretchFinding) -> StretchRecord {
     let body = model.bodies.get(found.point.body);
     StretchRecord {
         increment: found.increment,
@@ -170,7 +170,7 @@ fn stretch_record(model: &Model, found: &Stretched) -> StretchRecord {
     }
 }
 
-fn inside_record(model: &Model, found: &Inside) -> InsideRecord {
+fn inside_record(model: &Model, found: &PenetratingMaster) -> InsideRecord {
     InsideRecord {
         increment: found.increment,
         load: found.load_factor,
@@ -203,9 +203,9 @@ fn table(name: &str, model: &Model, audit: &Audit) -> String {
         text += &format!(
             "  {:<11}  {:<8}            increment {} (load {}), {}\n",
             "stretch",
-            four(found.point.stretch),
+            sig4(found.point.stretch),
             found.increment,
-            plain(found.load_factor),
+            shortest(found.load_factor),
             strain::element(model, &found.point)
         );
     }
@@ -237,7 +237,7 @@ fn table(name: &str, model: &Model, audit: &Audit) -> String {
         text += &format!(
             "  also: from increment {} (load {}) on: {}\n",
             found.increment,
-            plain(found.load_factor),
+            shortest(found.load_factor),
             strain::left(model, &found.point)
         );
     }
@@ -245,7 +245,7 @@ fn table(name: &str, model: &Model, audit: &Audit) -> String {
         text += &format!(
             "  also: increment {} (load {}): master node {} penetrates {} by {:.3e}; contact tests only slave nodes\n",
             inside.increment,
-            plain(inside.load_factor),
+            shortest(inside.load_factor),
             model.nodes[inside.node].name,
             model.bodies[inside.body].name,
             inside.depth
@@ -255,7 +255,7 @@ fn table(name: &str, model: &Model, audit: &Audit) -> String {
 }
 
 fn place(found: &WorstFinding) -> String {
-    let load = plain(found.load_factor);
+    let load = shortest(found.load_factor);
     format!("increment {} (load {load})", found.increment)
 }
 

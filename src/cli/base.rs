@@ -152,23 +152,23 @@ pub fn run_to_end(stepper: &mut Stepper) -> Option<Failure> {
 
 /// Result of writing to standard output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Sent {
+pub enum OutputState {
     Well,
     /// The reader has closed the pipe, which is no error.
     Closed,
 }
 
 /// Writes data to standard output, with control characters replaced.
-pub fn say(text: &str) -> Result<Sent, Error> {
+pub fn say(text: &str) -> Result<OutputState, Error> {
     print(&shown::text(text))
 }
 
 /// Writes data to standard output unchanged.
-pub fn print(text: &str) -> Result<Sent, Error> {
+pub fn print(text: &str) -> Result<OutputState, Error> {
     let mut out = io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Ok(()) => Ok(Sent::Well),
-        Err(e) if e.kind() == io::ErrorKind::BrokenPipe => Ok(Sent::Closed),
+        Ok(()) => Ok(OutputState::Well),
+        Err(e) if e.kind() == io::ErrorKind::BrokenPipe => Ok(OutputState::Closed),
         Err(e) => Err(Error::Output(e)),
     }
 }

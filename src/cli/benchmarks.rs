@@ -3,10 +3,10 @@
 use super::base::{Error, Exit, notify};
 use super::interrupt::Interrupt;
 use super::outputs::{OutputArgs, Outputs};
-use stickslip_scene::number::six;
+use stickslip_scene::number::sig6;
 use stickslip_scene::shown::aligned;
 use stickslip_study::Watch;
-use stickslip_study::benchmarks::{Benchmark, Benchmarks, ComparedBenchmark, Standing, table};
+use stickslip_study::benchmarks::{Assessment, Benchmark, Benchmarks, ComparedBenchmark, table};
 
 /// Runs a list of benchmarks, and reports the deviation of each value.
 pub fn main(list: &Benchmarks, out: &OutputArgs) -> Result<Exit, Error> {
@@ -28,10 +28,10 @@ pub fn main(list: &Benchmarks, out: &OutputArgs) -> Result<Exit, Error> {
         report_table(list, &compared);
     }
     let all = compared.len();
-    let count = |is: fn(&Standing) -> bool| compared.iter().filter(|c| is(&c.standing)).count();
-    let good = count(|standing| *standing == Standing::Good);
+    let count = |is: fn(&Assessment) -> bool| compared.iter().filter(|c| is(&c.standing)).count();
+    let good = count(|standing| *standing == Assessment::Good);
     notify(&format!("{}: {good} of {all} pass", list.name));
-    Ok(match count(|standing| *standing == Standing::NotRun) {
+    Ok(match count(|standing| *standing == Assessment::NotRun) {
         0 if good == all => Exit::Good,
         0 => Exit::Differ,
         _ => Exit::Interrupted,
@@ -67,8 +67,8 @@ fn row(benchmark: &Benchmark, compared: &ComparedBenchmark) -> Vec<String> {
     vec![
         benchmark.case(),
         benchmark.what.clone(),
-        six(benchmark.value),
-        some(compared.ours, six),
+        sig6(benchmark.value),
+        some(compared.ours, sig6),
         some(compared.error, small),
         small(benchmark.within),
         some(compared.drift, small),

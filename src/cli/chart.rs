@@ -6,7 +6,7 @@ use super::outputs::Outputs;
 use super::sweep::{Report, SweepArgs, failed};
 use std::path::{Path, PathBuf};
 use stickslip_scene::format::kind::{FileKind, mistaken};
-use stickslip_scene::number::six;
+use stickslip_scene::number::sig6;
 use stickslip_scene::shown::aligned;
 use stickslip_study::chart_file::{Chart, Truth};
 use stickslip_study::chart_runs::{PlannedChart, sweep};
@@ -69,7 +69,7 @@ fn target(text: &str) -> Result<f64, NoValue> {
 
 fn cost(text: &str) -> Result<Cost, NoValue> {
     let all = Cost::NAMES.join(", ");
-    Cost::of_word(text).ok_or_else(|| NoValue::new(format!("expected one of {all}")))
+    Cost::from_word(text).ok_or_else(|| NoValue::new(format!("expected one of {all}")))
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
@@ -168,7 +168,7 @@ fn lines(chart: &Precision) -> Vec<String> {
             point
                 .error
                 .map_or_else(String::new, |error| format!("{error:.2e}{round_off}")),
-            six((point.seconds * 1e5).round() / 1e5),
+            sig6((point.seconds * 1e5).round() / 1e5),
             point.factorizations.to_string(),
             point.majors.to_string(),
             point.minors.to_string(),

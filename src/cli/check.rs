@@ -30,7 +30,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         return Ok(Exit::Good);
     }
     let json = args.json.open(args.force)?;
-    let cost = Cost::of(&scene);
+    let cost = Cost::from_scene(&scene);
     if !args.json.is_on_standard_output() {
         say(&format!("{}: sound\n{cost}", scene.name))?;
     }

@@ -16,7 +16,7 @@ use stickslip_core::model::Strategy;
 use stickslip_debugger::teach;
 use stickslip_manual as manual;
 use stickslip_scene::builtin;
-use stickslip_scene::format::paths::{self, Listed};
+use stickslip_scene::format::paths::{self, ListedScalar};
 use stickslip_scene::format::read;
 use stickslip_study::precision::Cost;
 use stickslip_study::{benchmarks, builtin as studies};
@@ -248,13 +248,13 @@ fn settings(begun: &OsStr) -> Vec<CompletionCandidate> {
 }
 
 /// A path that can be set, and its possible values if they are words.
-struct Settable {
+struct SettablePath {
     path: String,
     words: &'static [&'static str],
 }
 
 /// The paths of the scene among these words; `None` if there is no scene, or it is not readable.
-fn of_scene(words: &[OsString]) -> Option<Vec<Settable>> {
+fn of_scene(words: &[OsString]) -> Option<Vec<SettablePath>> {
     let listed = words.iter().skip(1).find_map(|word| {
         let name = word.to_str()?;
         let text = match builtin::find(name) {
@@ -264,7 +264,7 @@ fn of_scene(words: &[OsString]) -> Option<Vec<Settable>> {
         };
         Some(paths::list(&read::spec(name, &text).ok()?))
     })?;
-    let settable = |own: Listed| Settable {
+    let settable = |own: ListedScalar| SettablePath {
         path: own.path,
         words: own.words,
     };
@@ -272,10 +272,10 @@ fn of_scene(words: &[OsString]) -> Option<Vec<Settable>> {
 }
 
 /// The paths that all scenes have.
-fn of_any() -> Vec<Settable> {
+fn of_any() -> Vec<SettablePath> {
     let listed = paths::of_settings().into_iter();
     listed
-        .map(|(path, words)| Settable { path, words })
+        .map(|(path, words)| SettablePath { path, words })
         .collect()
 }
 

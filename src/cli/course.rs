@@ -23,7 +23,7 @@ pub type CourseEnd = RunEnd<Error>;
 
 impl Course {
     /// The whole history of a scene.
-    pub fn of_scene(scene: Scene) -> Course {
+    pub fn from_scene(scene: Scene) -> Course {
         Course {
             scene,
             applied: Vec::new(),
@@ -35,7 +35,7 @@ impl Course {
     ///
     /// # Errors
     /// If the scene is invalid, or belongs to an attached solver.
-    pub fn of_snapshot(name: &str, snapshot: Snapshot) -> Result<Course, Error> {
+    pub fn from_snapshot(name: &str, snapshot: Snapshot) -> Result<Course, Error> {
         if snapshot.scene.attached.is_some() {
             let name = snapshot.name;
             return Err(SnapshotError::Attached { name }.into());

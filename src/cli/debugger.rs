@@ -5,7 +5,7 @@ use super::front;
 use super::groups;
 use std::io::IsTerminal;
 use std::path::PathBuf;
-use stickslip_debugger::record::journal::Keep;
+use stickslip_debugger::record::journal::JournalTarget;
 use stickslip_debugger::recorded::recording::Recording;
 use stickslip_debugger::session::Session;
 
@@ -59,9 +59,9 @@ pub fn main(args: Args) -> Result<Exit, Error> {
         &format!("run {scene} --csv -` solves without one"),
     )?;
     let keep = match args.journal {
-        _ if args.no_journal => Keep::Nowhere,
-        Some(file) => Keep::File(file),
-        None => Keep::Default,
+        _ if args.no_journal => JournalTarget::Nowhere,
+        Some(file) => JournalTarget::File(file),
+        None => JournalTarget::Default,
     };
     front::debug(args.scene, &args.set.set, &keep)?;
     Ok(Exit::Good)

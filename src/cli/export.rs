@@ -5,7 +5,7 @@ use super::base::{Error, Exit, SetArgs, notify, usage};
 use super::course::Course;
 use super::front;
 use super::interrupt::Interrupt;
-use super::place::{At, notify_missed, seek};
+use super::place::{RunPosition, notify_missed, seek};
 use super::solver::{SolverArgs, session_of};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -16,9 +16,11 @@ use stickslip_core::step::state::{State, Status};
 use stickslip_core::step::stepper::Stepper;
 use stickslip_debugger::explain::{names, report, trail};
 use stickslip_debugger::history::strip::Strip;
-use stickslip_debugger::record::export::shown::{COLUMNS, PicturePart, PictureRequest, Shown};
+use stickslip_debugger::record::export::export_state::{
+    COLUMNS, ExportState, PicturePart, PictureRequest,
+};
 use stickslip_debugger::record::export::skeleton::skeleton;
-use stickslip_debugger::record::export::{self, ExportKind, MadeOf, Origin};
+use stickslip_debugger::record::export::{self, ExportKind, ExportSource, Origin};
 use stickslip_debugger::record::journal::Record;
 use stickslip_debugger::record::snapshot::Snapshot;
 use stickslip_exchange::fclib;
@@ -53,7 +55,7 @@ pub struct Args {
     /// The minor iteration after which to export; without MINOR the end of the major, without MAJOR the end of the increment
     /// [default: the end of the history, or the failure]
     #[arg(long, value_name = "INC[.MAJOR[.MINOR]]")]
-    at: Option<At>,
+    at: Option<RunPosition>,
     /// Exports the frozen interface problem as a separate scene
     #[arg(long)]
     frozen: bool,
@@ -117,8 +119,8 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     }
     let contents = match kind.made_of {
         _ if import::is_mesh(&args.input) => vec![around_mesh(args, kind)?],
-        MadeOf::Journal => vec![film(args)?],
-        MadeOf::State(_) | MadeOf::Parts(_) => match state(args, kind, &interrupt)? {
+        ExportSource::Journal => vec![film(args)?],
+        ExportSource::State(_) | ExportSource::Parts(_) => match state(args, kind, &interrupt)? {
             Ok(contents) => contents,
             Err(exit) => return Ok(exit),
         },
@@ -165,7 +167,7 @@ fn picture(args: &Args, model: &Model) -> Result<PictureRequest, Error> {
     let slaves = (0..model.contacts.len()).map(|slave| names::slave(model, slave));
     let monitors = model.monitors.iter().map(|monitor| monitor.name.as_str());
     Ok(PictureRequest {
-        only: args.only.as_deref().and_then(PicturePart::of_word),
+        only: args.only.as_deref().and_then(PicturePart::from_word),
         size: args.size,
         font: args.font,
         node: find("slave node", &args.node, slaves.collect())?,
@@ -175,7 +177,7 @@ fn picture(args: &Args, model: &Model) -> Result<PictureRequest, Error> {
 
 /// The kind of the input: journal, snapshot, or otherwise a scene.
 fn input_kind(input: &str) -> FileKind {
-    let found = FileKind::of_file(Path::new(input));
+    let found = FileKind::from_file(Path::new(input));
     let ours = found.filter(|kind| matches!(kind, FileKind::Journal | FileKind::Snapshot));
     ours.unwrap_or(FileKind::Scene)
 }
@@ -238,7 +240,7 @@ fn open(args: &Args) -> Result<Course, Error> {
             scene_only(args, "a snapshot is exported as recorded")?;
             let snapshot = Snapshot::read(Path::new(&args.input))?;
             let name = snapshot.name.clone();
-            Course::of_snapshot(&name, snapshot)
+            Course::from_snapshot(&name, snapshot)
         }
         FileKind::Journal => {
             let name = &args.input;
@@ -247,7 +249,7 @@ fn open(args: &Args) -> Result<Course, Error> {
                  writes a snapshot of the shown state"
             ))
         }
-        _ => Ok(Course::of_scene(Scene::open(&args.input, &args.set.set)?)),
+        _ => Ok(Course::from_scene(Scene::open(&args.input, &args.set.set)?)),
     }
 }
 
@@ -331,7 +333,7 @@ fn state(
     let state = stepper.state().clone();
     let at = event.as_ref().map_or(state.next, |event| event.position);
     let origin = origin(&course, at, &state);
-    let shown = Shown {
+    let shown = ExportState {
         scene,
         origin: &origin,
         state: &state,
@@ -366,7 +368,7 @@ fn origin(course: &Course, at: Position, state: &State) -> Origin {
 /// Runs to the requested state.
 fn drive(
     course: &Course,
-    at: Option<At>,
+    at: Option<RunPosition>,
     stepper: &mut Stepper,
     seen: &mut RunHistory,
     interrupt: &Interrupt,

@@ -1,7 +1,7 @@
-//! Entry points of the terminal debugger for the subcommands. A build without the feature `tui` uses `frontless.rs` instead.
+//! Entry points of the terminal debugger for the subcommands. A build without the feature `tui` uses `front/disabled.rs` instead.
 
 use super::base::Error;
-use stickslip_debugger::record::journal::{Keep, Record};
+use stickslip_debugger::record::journal::{JournalTarget, Record};
 use stickslip_debugger::session::Session;
 use stickslip_debugger::teach::Lesson;
 use stickslip_tui as tui;
@@ -12,7 +12,11 @@ pub fn ready() -> Result<(), Error> {
 }
 
 /// Opens the debugger on a scene, or on the chooser.
-pub fn debug(scene: Option<String>, set: &[(String, String)], keep: &Keep) -> Result<(), Error> {
+pub fn debug(
+    scene: Option<String>,
+    set: &[(String, String)],
+    keep: &JournalTarget,
+) -> Result<(), Error> {
     tui::run(scene, set, keep).map_err(Error::usage)
 }
 

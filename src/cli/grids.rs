@@ -11,7 +11,7 @@ use stickslip_platform::files::{self, FileError, Output};
 
 /// When a file is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub enum Each {
+pub enum GridInterval {
     /// After each accepted increment
     Increment,
     /// After each major iteration and increment
@@ -20,12 +20,12 @@ pub enum Each {
     Minor,
 }
 
-impl Each {
+impl GridInterval {
     fn wants(self, event: &Event) -> bool {
         match self {
-            Each::Minor => true,
-            Each::Increment => matches!(event.outcome, Outcome::Increment { .. }),
-            Each::Major => matches!(
+            GridInterval::Minor => true,
+            GridInterval::Increment => matches!(event.outcome, Outcome::Increment { .. }),
+            GridInterval::Major => matches!(
                 event.outcome,
                 Outcome::Increment { .. } | Outcome::Major { .. } | Outcome::Refused { .. }
             ),
@@ -38,7 +38,7 @@ pub struct Grids {
     folder: PathBuf,
     /// Prefix of all file names.
     stem: String,
-    each: Each,
+    each: GridInterval,
     overwrite: bool,
     collection: Output,
     /// Load factor and name of each file.
@@ -50,7 +50,12 @@ impl Grids {
     ///
     /// # Errors
     /// If the folder cannot be created, or the collection exists and must not be overwritten.
-    pub fn open(folder: &Path, scene: &str, each: Each, overwrite: bool) -> Result<Grids, Error> {
+    pub fn open(
+        folder: &Path,
+        scene: &str,
+        each: GridInterval,
+        overwrite: bool,
+    ) -> Result<Grids, Error> {
         std::fs::create_dir_all(folder).map_err(|source| FileError::Failed {
             path: folder.to_owned(),
             source,

@@ -19,7 +19,7 @@ mod export;
 #[cfg(feature = "tui")]
 mod front;
 #[cfg(not(feature = "tui"))]
-#[path = "frontless.rs"]
+#[path = "front/disabled.rs"]
 mod front;
 mod grids;
 mod groups;

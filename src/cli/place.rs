@@ -7,25 +7,25 @@ use std::ops::ControlFlow;
 use std::str::FromStr;
 use stickslip_core::step::drive::{RunEnd, Until, drive};
 use stickslip_core::step::event::{Event, Failure, Outcome};
-use stickslip_core::step::solver::{Lost, Solver};
+use stickslip_core::step::solver::{Solver, SolverLost};
 use stickslip_debugger::explain::{names, report};
 use stickslip_debugger::history::breakpoints::parts;
 use stickslip_scene::Scene;
 
 /// A position in a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct At {
+pub struct RunPosition {
     increment: u32,
     major: Option<u32>,
     minor: Option<u32>,
 }
 
-impl FromStr for At {
+impl FromStr for RunPosition {
     type Err = NoValue;
 
-    fn from_str(text: &str) -> Result<At, NoValue> {
+    fn from_str(text: &str) -> Result<RunPosition, NoValue> {
         match parts(text) {
-            Some([Some(increment), major, minor]) => Ok(At {
+            Some([Some(increment), major, minor]) => Ok(RunPosition {
                 increment,
                 major,
                 minor,
@@ -37,7 +37,7 @@ impl FromStr for At {
     }
 }
 
-impl fmt::Display for At {
+impl fmt::Display for RunPosition {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}", self.increment)?;
         for part in [self.major, self.minor].into_iter().flatten() {
@@ -47,7 +47,7 @@ impl fmt::Display for At {
     }
 }
 
-impl At {
+impl RunPosition {
     /// Whether this minor iteration ends at the position.
     fn is(&self, event: &Event) -> bool {
         let at = event.position;
@@ -88,7 +88,7 @@ pub enum SeekFailure {
     Failed(Failure),
     Interrupted,
     /// The solver was lost.
-    Lost(Lost),
+    Lost(SolverLost),
     /// The run has no such position.
     Absent,
 }
@@ -96,7 +96,7 @@ pub enum SeekFailure {
 /// Steps to a position, and calls `see` after each minor iteration; returns their number.
 pub fn seek<T: Solver + ?Sized>(
     solver: &mut T,
-    at: At,
+    at: RunPosition,
     interrupt: &Interrupt,
     see: &mut dyn FnMut(&mut T),
 ) -> Result<u64, SeekFailure> {
@@ -124,7 +124,12 @@ pub fn seek<T: Solver + ?Sized>(
     }
 }
 
-pub fn notify_missed(scene: &Scene, solver: &dyn Solver, at: At, missed: SeekFailure) -> Exit {
+pub fn notify_missed(
+    scene: &Scene,
+    solver: &dyn Solver,
+    at: RunPosition,
+    missed: SeekFailure,
+) -> Exit {
     let (event, name) = (solver.event(), &scene.name);
     match missed {
         SeekFailure::Failed(failure) => {
@@ -162,10 +167,10 @@ mod tests {
     #[test]
     fn positions_parse_as_they_print() {
         for text in ["7", "12.2", "12.2.3"] {
-            assert_eq!(text.parse::<At>().unwrap().to_string(), text);
+            assert_eq!(text.parse::<RunPosition>().unwrap().to_string(), text);
         }
         for text in ["", "0", "1.0", "1.2.3.4", "1.", "-1", "a", "99999999999"] {
-            assert!(text.parse::<At>().is_err(), "{text}");
+            assert!(text.parse::<RunPosition>().is_err(), "{text}");
         }
     }
 }

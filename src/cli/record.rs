@@ -2,7 +2,7 @@
 
 use super::base::{Error, Exit, notify, say};
 use super::interrupt::Interrupt;
-use super::place::{At, notify_missed, seek};
+use super::place::{RunPosition, notify_missed, seek};
 use super::solver::{Subject, SubjectArgs};
 use std::path::PathBuf;
 use stickslip_debugger::record::snapshot::Snapshot;
@@ -15,7 +15,7 @@ pub struct Args {
     subject: SubjectArgs,
     /// The minor iteration to record; without MINOR the end of the major, without MAJOR the end of the increment
     #[arg(long, value_name = "INC[.MAJOR[.MINOR]]")]
-    at: At,
+    at: RunPosition,
     /// Output file; - is standard output [default: the scene's name and the position, in the working directory]
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -51,6 +51,6 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     Ok(Exit::Good)
 }
 
-fn default_name(scene: &Scene, at: At) -> PathBuf {
+fn default_name(scene: &Scene, at: RunPosition) -> PathBuf {
     PathBuf::from(format!("{}-{at}.ron", files::stem(&scene.name)))
 }

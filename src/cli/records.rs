@@ -429,7 +429,7 @@ impl FailureRecord {
     /// A failure at a position; `load` is the target of its increment.
     pub fn new(model: &Model, at: Position, load: f64, failure: &Failure) -> FailureRecord {
         let words = report::describe_failure(model, failure);
-        FailureRecord::reported(FailureKind::of(failure), words, at, load)
+        FailureRecord::reported(FailureKind::from_failure(failure), words, at, load)
     }
 
     /// A failure that only its words describe.
@@ -499,7 +499,7 @@ stickslip_core::words! {
 
 impl FailureKind {
     /// The kind of a failure.
-    pub fn of(failure: &Failure) -> FailureKind {
+    pub fn from_failure(failure: &Failure) -> FailureKind {
         match failure {
             Failure::Cycle(_) => FailureKind::Cycle,
             Failure::MinorLimit { .. } => FailureKind::MinorLimit,
@@ -507,10 +507,10 @@ impl FailureKind {
             Failure::MajorCycle(_) => FailureKind::MajorCycle,
             Failure::Singular(_) => FailureKind::Singular,
             Failure::RoundOff { .. } => FailureKind::RoundOff,
-            Failure::DoubledBack => FailureKind::PathReversal,
-            Failure::Unmoved => FailureKind::ZeroMeasure,
-            Failure::Leapt { .. } => FailureKind::BranchJump,
-            Failure::Restless { .. } => FailureKind::NoRest,
+            Failure::PathReversal => FailureKind::PathReversal,
+            Failure::ZeroMeasure => FailureKind::ZeroMeasure,
+            Failure::BranchJump { .. } => FailureKind::BranchJump,
+            Failure::NoRest { .. } => FailureKind::NoRest,
             Failure::Diverged { .. } => FailureKind::Diverged,
             Failure::NoAnswer { .. } => FailureKind::NoConsistentState,
             Failure::LadderEnded { .. } => FailureKind::LadderEnded,

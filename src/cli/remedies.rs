@@ -6,7 +6,9 @@ use super::json::{self, JsonArgs};
 use super::records::{FailureKind, FailureRecord, RemediesRecord, RemedyRecord};
 use std::sync::Arc;
 use stickslip_debugger::explain::page;
-use stickslip_debugger::explain::remedies::{self, COLUMNS, Left, Trial, TrialEnd};
+use stickslip_debugger::explain::remedies::{
+    self, COLUMNS, RemainingViolations, RemedyTrial, TrialEnd,
+};
 use stickslip_debugger::explain::remedy::Remedy;
 use stickslip_debugger::explain::report;
 use stickslip_scene::Scene;
@@ -85,7 +87,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
 }
 
 /// The trials as text.
-fn table(trials: &[Trial]) -> String {
+fn table(trials: &[RemedyTrial]) -> String {
     let mut headings = vec!["remedy".to_owned()];
     headings.extend(COLUMNS.map(String::from));
     headings.push("how".to_owned());
@@ -119,14 +121,18 @@ fn not_tried(remedy: &Remedy) -> RemedyRecord {
     }
 }
 
-fn tried(trial: &Trial) -> RemedyRecord {
+fn tried(trial: &RemedyTrial) -> RemedyRecord {
     let (outcome, failure, law) = match &trial.end {
         TrialEnd::Converged => ("converged", None, None),
         TrialEnd::Against(law) => ("law-violated", None, Some(law.name())),
-        TrialEnd::Failed(failure) => ("failed", Some(FailureKind::of(failure).word()), None),
+        TrialEnd::Failed(failure) => (
+            "failed",
+            Some(FailureKind::from_failure(failure).word()),
+            None,
+        ),
         TrialEnd::Budget => ("limit", None, None),
     };
-    let left = |of: fn(&Left) -> f64| trial.left.as_ref().map(of);
+    let left = |of: fn(&RemainingViolations) -> f64| trial.left.as_ref().map(of);
     RemedyRecord {
         remedy: trial.label.clone(),
         command: trial.how.typed(),

@@ -33,7 +33,7 @@ pub struct Args {
 }
 
 /// What recomputing a snapshot found.
-enum Replayed {
+enum ReplayResult {
     /// The snapshot is equal, or differs.
     Compared {
         recorded: Box<Snapshot>,
@@ -46,12 +46,12 @@ enum Replayed {
     Unreadable(String),
 }
 
-impl Replayed {
+impl ReplayResult {
     fn exit(&self) -> Exit {
         match self {
-            Replayed::Compared { differences, .. } if differences.is_empty() => Exit::Good,
-            Replayed::Compared { .. } | Replayed::NotRepeatable(..) => Exit::Differ,
-            Replayed::Unreadable(_) => Exit::Bad,
+            ReplayResult::Compared { differences, .. } if differences.is_empty() => Exit::Good,
+            ReplayResult::Compared { .. } | ReplayResult::NotRepeatable(..) => Exit::Differ,
+            ReplayResult::Unreadable(_) => Exit::Bad,
         }
     }
 }
@@ -112,12 +112,12 @@ fn write(
     Ok(finish_all(files)?)
 }
 
-fn one(file: &Path, solver: &SolverArgs) -> Result<Replayed, Error> {
+fn one(file: &Path, solver: &SolverArgs) -> Result<ReplayResult, Error> {
     let recorded = match Snapshot::read(file) {
         Ok(recorded) => Box::new(recorded),
         Err(error) => {
             let why = scene_instead(file).unwrap_or_else(|| error.to_string());
-            return Ok(Replayed::Unreadable(why));
+            return Ok(ReplayResult::Unreadable(why));
         }
     };
     let replayed = match solver.is_named() {
@@ -128,35 +128,35 @@ fn one(file: &Path, solver: &SolverArgs) -> Result<Replayed, Error> {
         false => recorded.replay(),
     };
     Ok(match replayed {
-        Ok(found) => Replayed::Compared {
+        Ok(found) => ReplayResult::Compared {
             minors: found.steps,
             differences: compare(&recorded, &found),
             recorded,
         },
         Err(error @ SnapshotError::Replay(_)) => {
-            Replayed::NotRepeatable(recorded, error.to_string())
+            ReplayResult::NotRepeatable(recorded, error.to_string())
         }
-        Err(error) => Replayed::Unreadable(format!("{}: {error}", file.display())),
+        Err(error) => ReplayResult::Unreadable(format!("{}: {error}", file.display())),
     })
 }
 
 /// Prints the result; `says` is whether standard output carries text.
-fn print(file: &Path, replayed: &Replayed, says: bool) -> Result<(), Error> {
+fn print(file: &Path, replayed: &ReplayResult, says: bool) -> Result<(), Error> {
     let file = file.display();
     let text = match replayed {
-        Replayed::Unreadable(why) => {
+        ReplayResult::Unreadable(why) => {
             notify(why);
             return Ok(());
         }
-        Replayed::NotRepeatable(_, why) => format!("{file}: {why}\n"),
-        Replayed::Compared {
+        ReplayResult::NotRepeatable(_, why) => format!("{file}: {why}\n"),
+        ReplayResult::Compared {
             minors,
             differences,
             ..
         } if differences.is_empty() => {
             format!("{file}: equal, after {minors} minor iterations\n")
         }
-        Replayed::Compared { differences, .. } => {
+        ReplayResult::Compared { differences, .. } => {
             format!("{file}: differs (left: recorded, right: recomputed)\n{differences}")
         }
     };
@@ -167,9 +167,9 @@ fn print(file: &Path, replayed: &Replayed, says: bool) -> Result<(), Error> {
 }
 
 /// The result as data.
-fn record(file: &Path, replayed: &Replayed, seconds: f64) -> ReplayedRecord {
+fn record(file: &Path, replayed: &ReplayResult, seconds: f64) -> ReplayedRecord {
     let (outcome, message, snapshot) = match replayed {
-        Replayed::Compared {
+        ReplayResult::Compared {
             recorded,
             differences,
             ..
@@ -177,11 +177,11 @@ fn record(file: &Path, replayed: &Replayed, seconds: f64) -> ReplayedRecord {
             true => ("equal", None, Some(recorded)),
             false => ("differs", None, Some(recorded)),
         },
-        Replayed::NotRepeatable(recorded, why) => ("not-repeatable", Some(why), Some(recorded)),
-        Replayed::Unreadable(why) => ("unreadable", Some(why), None),
+        ReplayResult::NotRepeatable(recorded, why) => ("not-repeatable", Some(why), Some(recorded)),
+        ReplayResult::Unreadable(why) => ("unreadable", Some(why), None),
     };
     let (minors, rows) = match replayed {
-        Replayed::Compared {
+        ReplayResult::Compared {
             minors,
             differences,
             ..
@@ -217,11 +217,11 @@ fn difference(row: &Difference) -> DifferenceRecord {
 }
 
 /// The result as that of a test.
-fn result(replayed: &Replayed) -> TestResult {
+fn result(replayed: &ReplayResult) -> TestResult {
     match replayed {
-        Replayed::Unreadable(why) => TestResult::Error(why.clone()),
-        Replayed::NotRepeatable(_, why) => TestResult::Failed(why.clone(), String::new()),
-        Replayed::Compared { differences, .. } => match differences.rows.len() {
+        ReplayResult::Unreadable(why) => TestResult::Error(why.clone()),
+        ReplayResult::NotRepeatable(_, why) => TestResult::Failed(why.clone(), String::new()),
+        ReplayResult::Compared { differences, .. } => match differences.rows.len() {
             0 => TestResult::Passed,
             1 => TestResult::Failed("1 difference".into(), differences.to_string()),
             n => TestResult::Failed(format!("{n} differences"), differences.to_string()),

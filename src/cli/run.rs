@@ -1,6 +1,6 @@
 //! `stickslip run`: solves a scene from start to end.
 
-use super::base::{Error, Exit, Sent, notify, usage};
+use super::base::{Error, Exit, OutputState, notify, usage};
 use super::interrupt::Interrupt;
 use super::json;
 use super::records::{FailureKind, FailureRecord, RunRecord};
@@ -14,7 +14,7 @@ use std::sync::atomic::AtomicUsize;
 use stickslip_core::model::{Control, Jumps, Touch};
 use stickslip_core::step::drive::{RunEnd, Until, drive};
 use stickslip_core::step::event::Failure;
-use stickslip_core::step::solver::{Lost, Solver};
+use stickslip_core::step::solver::{Solver, SolverLost};
 use stickslip_debugger::explain::names;
 use stickslip_debugger::explain::page;
 use stickslip_debugger::explain::report;
@@ -23,7 +23,7 @@ use stickslip_debugger::record::snapshot::Snapshot;
 use stickslip_platform::files::Output;
 use stickslip_scene::Scene;
 use stickslip_scene::gaps;
-use stickslip_scene::number::{four, plain, six};
+use stickslip_scene::number::{shortest, sig4, sig6};
 use stickslip_scene::shown;
 use stickslip_scene::shown::first_of;
 use stickslip_scene::solver::solver;
@@ -58,7 +58,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     }
     let asks = Arc::new(AtomicUsize::new(0));
     interrupt.count(&asks);
-    solver.heed(asks);
+    solver.set_cancel(asks);
     // Opened before the solve, so that its results can be written.
     let mut outputs = RunOutputs::open(&args.outputs, &scene, args.force)?;
     let mut run = Run::new(&scene, solver, args);
@@ -125,11 +125,11 @@ impl RunResult {
     }
 }
 
-/// How a run ended: stopped by `Closed`, or lost if an attached solver fails.
-type Ending = Result<RunEnd<Closed>, Lost>;
+/// How a run ended: stopped by `StopReason`, or lost if an attached solver fails.
+type Ending = Result<RunEnd<StopReason>, SolverLost>;
 
 /// Why the run was stopped here.
-enum Closed {
+enum StopReason {
     /// All readers have closed their pipes.
     Pipe,
     /// An attached solver exceeded its maximum iterations; describes its last modes.
@@ -157,8 +157,8 @@ impl<'a> Run<'a> {
         let Run { solver, tally, .. } = self;
         let solver = &mut **solver;
         let stability = tally.stability.is_some();
-        if outputs.headers(&tally.scene.model, stability)? == Sent::Closed {
-            return Ok(Ok(RunEnd::Stopped(Closed::Pipe)));
+        if outputs.headers(&tally.scene.model, stability)? == OutputState::Closed {
+            return Ok(Ok(RunEnd::Stopped(StopReason::Pipe)));
         }
         if let Some((grids, stepper)) = outputs.grids.as_mut().zip(solver.stepper()) {
             grids.start(stepper)?;
@@ -166,11 +166,11 @@ impl<'a> Run<'a> {
         let came = || interrupt.came();
         let until = Until::end().interrupted_by(&came);
         let end = drive(solver, until, |solver| match tally.see(solver, outputs) {
-            Ok(Sent::Well) => match tally.endless(solver) {
+            Ok(OutputState::Well) => match tally.endless(solver) {
                 None => ControlFlow::Continue(()),
-                Some(text) => ControlFlow::Break(Ok(Closed::Endless(text))),
+                Some(text) => ControlFlow::Break(Ok(StopReason::Endless(text))),
             },
-            Ok(Sent::Closed) => ControlFlow::Break(Ok(Closed::Pipe)),
+            Ok(OutputState::Closed) => ControlFlow::Break(Ok(StopReason::Pipe)),
             Err(error) => ControlFlow::Break(Err(error)),
         });
         let end = match end {
@@ -211,8 +211,8 @@ impl<'a> Run<'a> {
         match end {
             RunEnd::Finished | RunEnd::Spent => self.report_branches(),
             // A reader that closes the pipe has all the data it wants.
-            RunEnd::Stopped(Closed::Pipe) => RunResult::new(Exit::Good, "finished"),
-            RunEnd::Stopped(Closed::Endless(words)) => {
+            RunEnd::Stopped(StopReason::Pipe) => RunResult::new(Exit::Good, "finished"),
+            RunEnd::Stopped(StopReason::Endless(words)) => {
                 let (event, kind) = (self.solver.event(), FailureKind::IterationLimit);
                 let (at, load) = (event.position, event.load_factor);
                 self.report_lost(FailureRecord::reported(kind, words, at, load))
@@ -313,7 +313,7 @@ impl<'a> Run<'a> {
         } = &self.tally;
         let name = &scene.name;
         let loads = |all: &[f64]| {
-            let mut texts: Vec<String> = all.iter().map(|&x| four(x)).collect();
+            let mut texts: Vec<String> = all.iter().map(|&x| sig4(x)).collect();
             texts.dedup();
             first_of(texts, MOST_STRETCHES, ", ")
         };
@@ -341,11 +341,11 @@ impl<'a> Run<'a> {
         self.report_marks();
         let event = self.solver.event();
         if event.is_cut_short(model) {
-            let (arc, load) = (four(event.arc.unwrap_or(f64::NAN)), event.load_factor);
+            let (arc, load) = (sig4(event.arc.unwrap_or(f64::NAN)), event.load_factor);
             let text = format!(
                 "path incomplete: its maximum length {arc} was reached at load {} instead of load {}; page limit-points",
-                four(load),
-                plain(model.path.last().copied().unwrap_or(f64::NAN))
+                sig4(load),
+                shortest(model.path.last().copied().unwrap_or(f64::NAN))
             );
             return self.with_message(RunResult::new(Exit::Unconverged, "incomplete"), text);
         }
@@ -363,7 +363,7 @@ impl<'a> Run<'a> {
             "{}: {} increments accepted, up to load {}; {} major and {} minor iterations",
             self.tally.scene.name,
             self.tally.accepted,
-            plain(self.solver.state().start.load_factor),
+            shortest(self.solver.state().start.load_factor),
             self.tally.majors,
             self.tally.steps,
         ));
@@ -383,7 +383,7 @@ impl<'a> Run<'a> {
             .zip(&self.tally.monitors)
         {
             let name = shown::padded(&monitor.name, 12);
-            notify(&format!("  {name} {}", six(*value)));
+            notify(&format!("  {name} {}", sig6(*value)));
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Output files of `stickslip run`.
 
-use super::base::{Error, Sent, distinct};
-use super::grids::{Each, Grids};
+use super::base::{Error, OutputState, distinct};
+use super::grids::{GridInterval, Grids};
 use super::json::JsonArgs;
 use super::sink::Sink;
 use super::table;
@@ -34,7 +34,7 @@ pub struct RunOutputArgs {
         default_value = "increment",
         requires = "vtu"
     )]
-    each: Each,
+    each: GridInterval,
 }
 
 /// The output files of a run.
@@ -82,20 +82,20 @@ impl RunOutputs {
         })
     }
 
-    pub fn headers(&mut self, model: &Model, stability: bool) -> Result<Sent, Error> {
+    pub fn headers(&mut self, model: &Model, stability: bool) -> Result<OutputState, Error> {
         let csv = send(&mut self.csv, || table::csv_header(model, stability))?;
         let trace = send(&mut self.trace, || table::trace_header(model))?;
         Ok(self.after(first_closed(csv, trace)))
     }
 
     /// `Closed` only if all readers are gone and no other output is requested, so that the solve can stop.
-    pub fn after(&self, sent: Sent) -> Sent {
+    pub fn after(&self, sent: OutputState) -> OutputState {
         let wanted = self.csv.is_some()
             || self.trace.is_some()
             || self.json.is_some()
             || self.snapshot.is_some()
             || self.grids.is_some();
-        if wanted { Sent::Well } else { sent }
+        if wanted { OutputState::Well } else { sent }
     }
 
     /// Finishes the tables and ParaView files.
@@ -114,14 +114,16 @@ impl RunOutputs {
 }
 
 /// Sends lines to a requested table; a table whose reader has closed the pipe is dropped.
-pub fn send(sink: &mut Option<Sink>, lines: impl FnOnce() -> String) -> Result<Sent, Error> {
-    let sent = sink.as_mut().map_or(Ok(Sent::Well), |s| s.send(&lines()))?;
-    if sent == Sent::Closed {
+pub fn send(sink: &mut Option<Sink>, lines: impl FnOnce() -> String) -> Result<OutputState, Error> {
+    let sent = sink
+        .as_mut()
+        .map_or(Ok(OutputState::Well), |s| s.send(&lines()))?;
+    if sent == OutputState::Closed {
         *sink = None;
     }
     Ok(sent)
 }
 
-pub fn first_closed(a: Sent, b: Sent) -> Sent {
-    if a == Sent::Closed { a } else { b }
+pub fn first_closed(a: OutputState, b: OutputState) -> OutputState {
+    if a == OutputState::Closed { a } else { b }
 }

@@ -1,6 +1,6 @@
 //! Destination of a table: a file or standard output.
 
-use super::base::{Error, Sent, say};
+use super::base::{Error, OutputState, say};
 use std::io::{self, Write};
 use std::path::Path;
 use stickslip_platform::files::Output;
@@ -24,13 +24,13 @@ impl Sink {
     }
 
     /// Writes whole lines.
-    pub fn send(&mut self, lines: &str) -> Result<Sent, Error> {
+    pub fn send(&mut self, lines: &str) -> Result<OutputState, Error> {
         match self {
             Sink::Standard => say(lines),
             Sink::File(output) => match output.write_all(shown::text(lines).as_bytes()) {
-                Err(e) if e.kind() == io::ErrorKind::BrokenPipe => Ok(Sent::Closed),
+                Err(e) if e.kind() == io::ErrorKind::BrokenPipe => Ok(OutputState::Closed),
                 Err(e) => Err(output.failed(e).into()),
-                Ok(()) => Ok(Sent::Well),
+                Ok(()) => Ok(OutputState::Well),
             },
         }
     }

@@ -4,7 +4,7 @@ use super::base::{Error, Exit, SetArgs, usage};
 use super::benchmarks;
 use super::interrupt::Interrupt;
 use super::sweep::{Report, SweepArgs};
-use stickslip_scene::number::six;
+use stickslip_scene::number::sig6;
 use stickslip_scene::shown::aligned;
 use stickslip_study::benchmarks::Benchmarks;
 use stickslip_study::figure;
@@ -125,10 +125,10 @@ fn lines(plan: &Plan, runs: &[Run]) -> Vec<String> {
         row.push(format!("{}/{}", run.rows.len(), case.increments));
         row.push(run.majors().to_string());
         row.push(run.minors().to_string());
-        row.push(six(run.last().load));
+        row.push(sig6(run.last().load));
         for name in monitors() {
             let value = run.value(run.last(), &AxisQuantity::Monitor(name.clone()));
-            row.push(value.map_or_else(String::new, six));
+            row.push(value.map_or_else(String::new, sig6));
         }
         row.push(run.unsettled().to_string());
         row.push(end(run));
@@ -146,7 +146,7 @@ fn end(run: &Run) -> String {
             failed.reason,
             failed.increment,
             failed.major,
-            six(failed.load)
+            sig6(failed.load)
         ),
         CaseEnd::Interrupted => "interrupted".to_owned(),
         CaseEnd::NotRun => "not run".to_owned(),

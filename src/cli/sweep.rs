@@ -10,7 +10,7 @@ use stickslip_study::log::{LogError, Outcome};
 use stickslip_study::origin;
 use stickslip_study::shard::{NoShard, Shard, ranges};
 use stickslip_study::sheet::Sheet;
-use stickslip_study::sweep::{Keeping, Missing, RunError, Store, Sweep};
+use stickslip_study::sweep::{MissingCells, ResultStorage, RunError, Store, Sweep};
 
 /// Which part of a sweep is run, and where its results are stored and written.
 #[derive(Debug, clap::Args)]
@@ -63,7 +63,7 @@ impl SweepArgs {
         self.shard.filter(|shard| shard.of().get() > 1)
     }
 
-    fn keeping(&self) -> Result<Keeping, Error> {
+    fn keeping(&self) -> Result<ResultStorage, Error> {
         let shard = self.shard.unwrap_or(Shard::WHOLE);
         let wrong = |why: &str| Err(usage!("--shard {shard} {why}"));
         if self.part().is_some() && self.out.draws() {
@@ -75,8 +75,8 @@ impl SweepArgs {
             return wrong("needs an output file: --csv FILE for rows, --log FILE for --merge");
         }
         Ok(match self.merge.is_empty() {
-            true => Keeping::Log(self.log.clone(), shard),
-            false => Keeping::Merge(self.merge.clone()),
+            true => ResultStorage::Log(self.log.clone(), shard),
+            false => ResultStorage::Merge(self.merge.clone()),
         })
     }
 
@@ -175,7 +175,7 @@ pub fn failed(error: RunError) -> Error {
 /// Maximum number of ranges and commands in a message.
 const MOST: usize = 8;
 
-fn report_missing(missing: &Missing, all: usize, unit: &str) {
+fn report_missing(missing: &MissingCells, all: usize, unit: &str) {
     let count = missing.cells.len();
     notify(&format!(
         "{count} of {all} {unit} are missing (numbers from 0, in the order of the table): {}",

@@ -32,7 +32,7 @@ use std::fmt::Write;
 use stickslip_core::contact::record::ContactRecord;
 use stickslip_core::fem::deformation::deformation;
 use stickslip_core::linear::stability::Stability;
-use stickslip_core::model::{Control, Friction, Jumps, Model, Monitor, ToldKind, Watched};
+use stickslip_core::model::{Control, Friction, Jumps, Model, Monitor, MonitorQuantity, ToldKind};
 use stickslip_core::step::event::{Event, Failure, Outcome};
 use stickslip_core::step::recovery::motion::Motion;
 use stickslip_debugger::explain::names;
@@ -140,8 +140,8 @@ fn has_pressures(model: &Model) -> bool {
     let watched = |monitor: &Monitor| {
         matches!(
             monitor.of,
-            Watched::Pressure { .. }
-                | Watched::Told {
+            MonitorQuantity::Pressure { .. }
+                | MonitorQuantity::Told {
                     kind: ToldKind::Pressure,
                     ..
                 }

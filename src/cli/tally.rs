@@ -1,6 +1,6 @@
 //! Counters, warnings and notes of `stickslip run`.
 
-use super::base::{Error, Sent, notify};
+use super::base::{Error, OutputState, notify};
 use super::progress::Progress;
 use super::records::{FallbackRecord, MonitorRecord, SlaveRecord, StabilityRecord};
 use super::run_outputs::{RunOutputs, first_closed, send};
@@ -10,7 +10,7 @@ use std::ops::RangeInclusive;
 use stickslip_core::contact::record::ContactRecord;
 use stickslip_core::linear::norms::Norms;
 use stickslip_core::linear::stability::Stability;
-use stickslip_core::step::event::{Event, Moves, Outcome};
+use stickslip_core::step::event::{Event, MotionEvent, Outcome};
 use stickslip_core::step::recovery::fallback::Fallback;
 use stickslip_core::step::solver::Solver;
 use stickslip_debugger::explain::accuracy;
@@ -21,7 +21,7 @@ use stickslip_debugger::explain::touch::TouchWatch;
 use stickslip_debugger::history::rounds::{self, CycleWatch};
 use stickslip_debugger::history::strip::Strip;
 use stickslip_scene::Scene;
-use stickslip_scene::number::{plain, six};
+use stickslip_scene::number::{shortest, sig6};
 use stickslip_scene::shown::aligned;
 
 /// Warnings that are printed individually; others are only counted.
@@ -145,7 +145,7 @@ impl<'a> Tally<'a> {
         &mut self,
         solver: &mut dyn Solver,
         outputs: &mut RunOutputs,
-    ) -> Result<Sent, Error> {
+    ) -> Result<OutputState, Error> {
         if let Some((grids, stepper)) = outputs.grids.as_mut().zip(solver.stepper()) {
             grids.see(stepper)?;
         }
@@ -163,11 +163,11 @@ impl<'a> Tally<'a> {
         })?;
         match event.outcome {
             // The failure is reported even if no reader is left.
-            Outcome::Failed(_) => return Ok(Sent::Well),
-            Outcome::Climbed { .. }
+            Outcome::Failed(_) => return Ok(OutputState::Well),
+            Outcome::StrategyChange { .. }
             | Outcome::Cut { .. }
-            | Outcome::Leaps { .. }
-            | Outcome::Turns { .. }
+            | Outcome::WholeIncrement { .. }
+            | Outcome::PathCorner { .. }
             | Outcome::Fallback { .. }
             | Outcome::Damped { .. }
             | Outcome::Refused { .. } => self.note(event),
@@ -175,11 +175,11 @@ impl<'a> Tally<'a> {
                 let sent = first_closed(sent, self.accept(solver, outputs)?);
                 return Ok(outputs.after(sent));
             }
-            Outcome::Moves(Moves::LetsGo { .. }) => self.note(event),
+            Outcome::Motion(MotionEvent::DynamicStart { .. }) => self.note(event),
             Outcome::Minor
             | Outcome::Major { .. }
             | Outcome::HeldBack { .. }
-            | Outcome::Moves(_) => {}
+            | Outcome::Motion(_) => {}
         }
         Ok(outputs.after(sent))
     }
@@ -201,7 +201,11 @@ impl<'a> Tally<'a> {
         ))
     }
 
-    fn accept(&mut self, solver: &mut dyn Solver, outputs: &mut RunOutputs) -> Result<Sent, Error> {
+    fn accept(
+        &mut self,
+        solver: &mut dyn Solver,
+        outputs: &mut RunOutputs,
+    ) -> Result<OutputState, Error> {
         self.monitors.clear();
         solver.monitors(&mut self.monitors);
         let stability = self.stability.is_some().then(|| match solver.stepper() {
@@ -242,14 +246,14 @@ impl<'a> Tally<'a> {
                 String::new(),
                 names::slave(&self.scene.model, slave).to_owned(),
                 names::mode(found.decision.before).to_owned(),
-                six(found.gap),
-                six(found.f_n),
-                six(found.f_t),
+                sig6(found.gap),
+                sig6(found.f_n),
+                sig6(found.f_t),
             ]);
             if let (true, Some(row)) = (bonds, table.last_mut()) {
                 let contact = &contacts[slave];
                 let by_area = contact.pressure(found.f_n, found.f_t);
-                let text = by_area.map_or(["-".into(), "-".into()], |both| both.map(six));
+                let text = by_area.map_or(["-".into(), "-".into()], |both| both.map(sig6));
                 row.extend(text);
                 row.push(bond::name(contact).to_owned());
             }
@@ -323,7 +327,7 @@ impl<'a> Tally<'a> {
         }
         self.doubtful += 1;
         if self.doubtful <= MOST_WARNINGS {
-            let (increment, load) = (event.position.increment, plain(event.load_factor));
+            let (increment, load) = (event.position.increment, shortest(event.load_factor));
             self.progress.clear();
             self.messages.warn(format!(
                 "increment {increment} (load {load}) was accepted{although}"
@@ -429,7 +433,7 @@ impl Stretches {
             return None;
         }
         let stretch = |(load, stability): &(f64, Stability)| {
-            format!("{stability} from load {}", plain(*load))
+            format!("{stability} from load {}", shortest(*load))
         };
         let first: Vec<String> = self.0.iter().take(MOST_STRETCHES).map(stretch).collect();
         let more = match self.0.len().saturating_sub(MOST_STRETCHES) {

@@ -67,7 +67,7 @@ impl Model {
     /// Starts a model with a title.
     pub fn builder(title: &str) -> ModelBuilder {
         ModelBuilder {
-            model: Model::of_contacts(title, Vec::new(), Vec::new(), Vec::new()),
+            model: Model::from_contacts(title, Vec::new(), Vec::new(), Vec::new()),
             fixed: BTreeSet::new(),
             loads: Vec::new(),
             motions: Vec::new(),

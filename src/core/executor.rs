@@ -11,9 +11,9 @@ pub trait Executor: Send + Sync {
 
 /// Runs tasks in sequence on the caller's thread.
 #[derive(Debug, Clone, Copy)]
-pub struct InTurn;
+pub struct SequentialExecutor;
 
-impl Executor for InTurn {
+impl Executor for SequentialExecutor {
     fn join(&self, first: &mut (dyn FnMut() + Send), second: &mut (dyn FnMut() + Send)) {
         first();
         second();

@@ -12,7 +12,7 @@ macro_rules! words {
             pub const $all: [$type; $type::NAMES.len()] = [$($type::$variant),*];
 
             /// The one with this word.
-            pub fn of_word(word: &str) -> Option<$type> {
+            pub fn from_word(word: &str) -> Option<$type> {
                 let place = $type::NAMES.iter().position(|name| *name == word)?;
                 Some($type::$all[place])
             }

@@ -24,9 +24,9 @@
 #![forbid(unsafe_code)]
 
 pub mod attach;
-pub mod broken;
 pub mod calculix;
 pub mod fclib;
+pub mod format_error;
 pub mod gmsh;
 pub mod inp;
 pub mod matrix_market;

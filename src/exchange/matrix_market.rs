@@ -11,7 +11,7 @@
 //! in the first line do not matter. Patterns, which have no values, and complex matrices are rejected.
 
 use crate::bail;
-use crate::broken::Broken;
+use crate::format_error::FormatError;
 use crate::problem::{Matrix, is_there};
 use crate::words::{Words, quoted};
 use std::fmt::Write;
@@ -30,7 +30,7 @@ enum Symmetry {
 ///
 /// # Errors
 /// The error with its position.
-pub fn read(text: &str) -> Result<Matrix, Broken> {
+pub fn read(text: &str) -> Result<Matrix, FormatError> {
     let head = text.lines().next().unwrap_or_default();
     let (coordinate, symmetry) = header(head)?;
     let body = without_comments(text);
@@ -59,12 +59,12 @@ pub fn read(text: &str) -> Result<Matrix, Broken> {
 }
 
 /// Whether entries have coordinates, and which of them are stored.
-fn header(line: &str) -> Result<(bool, Symmetry), Broken> {
+fn header(line: &str) -> Result<(bool, Symmetry), FormatError> {
     let mut words = line.split_whitespace().map(str::to_lowercase);
     let mut next = || words.next().unwrap_or_default();
     let begins = [next(), next()];
     if begins != [MARK.to_lowercase(), "matrix".to_owned()] {
-        return Err(Broken::at(
+        return Err(FormatError::at(
             1,
             1,
             format!(
@@ -77,7 +77,7 @@ fn header(line: &str) -> Result<(bool, Symmetry), Broken> {
             .to_lowercase()
             .find(word)
             .map_or(1, |byte| 1 + line[..byte.min(line.len())].chars().count());
-        Broken::at(
+        FormatError::at(
             1,
             column,
             format!("the matrix is {}; it must be {wanted}", quoted(word)),
@@ -127,7 +127,7 @@ fn coordinates(
     rows: usize,
     columns: usize,
     symmetry: Symmetry,
-) -> Result<Entries, Broken> {
+) -> Result<Entries, FormatError> {
     let count = words.count("the number of entries")?;
     let mut entries = Vec::new();
     for _ in 0..count {
@@ -156,7 +156,7 @@ fn array(
     rows: usize,
     columns: usize,
     symmetry: Symmetry,
-) -> Result<Entries, Broken> {
+) -> Result<Entries, FormatError> {
     let mut entries = Vec::new();
     for column in 0..columns {
         let first = match symmetry {

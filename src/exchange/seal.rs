@@ -17,7 +17,7 @@ impl Default for Digest {
 
 impl Digest {
     /// The digest of a text.
-    pub fn of(text: &str) -> Digest {
+    pub fn from_text(text: &str) -> Digest {
         let mut digest = Digest::default();
         digest.add(text);
         digest
@@ -57,7 +57,7 @@ pub enum Seal<'a> {
 
 /// Appends the digest to a single-line text, without a line end.
 pub fn sealed(text: &str) -> String {
-    format!("{text}\t{}", Digest::of(text))
+    format!("{text}\t{}", Digest::from_text(text))
 }
 
 /// Checks the digest of a line without its line end.
@@ -69,10 +69,12 @@ pub fn opened(line: &str) -> Seal<'_> {
                 .all(|b| b.is_ascii_digit() || (b'a'..=b'f').contains(&b))
     };
     match line.rsplit_once('\t') {
-        Some((text, word)) if is_digest(word) => match Digest::of(text).to_string() == word {
-            true => Seal::Whole(text),
-            false => Seal::Broken,
-        },
+        Some((text, word)) if is_digest(word) => {
+            match Digest::from_text(text).to_string() == word {
+                true => Seal::Whole(text),
+                false => Seal::Broken,
+            }
+        }
         _ => Seal::Missing,
     }
 }
@@ -103,9 +105,9 @@ mod tests {
 
     #[test]
     fn the_digest_is_that_of_fnv_1a() {
-        assert_eq!(Digest::of("").to_string(), "cbf29ce484222325");
-        assert_eq!(Digest::of("a").to_string(), "af63dc4c8601ec8c");
-        assert_eq!(Digest::of("foobar").to_string(), "85944171f73967e8");
+        assert_eq!(Digest::from_text("").to_string(), "cbf29ce484222325");
+        assert_eq!(Digest::from_text("a").to_string(), "af63dc4c8601ec8c");
+        assert_eq!(Digest::from_text("foobar").to_string(), "85944171f73967e8");
     }
 
     #[test]

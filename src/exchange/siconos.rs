@@ -18,7 +18,7 @@
 //! at the start of H and by more words than a local problem would have left. Trailing text in the file is ignored.
 
 use crate::bail;
-use crate::broken::Broken;
+use crate::format_error::FormatError;
 use crate::problem::{Global, Local, Matrix, Problem, is_there};
 use crate::words::Words;
 use std::fmt::{Debug, Write};
@@ -36,7 +36,7 @@ pub enum Storage {
 ///
 /// # Errors
 /// The error with its position.
-pub fn read(text: &str) -> Result<Problem, Broken> {
+pub fn read(text: &str) -> Result<Problem, FormatError> {
     let mut words = Words::new(text);
     let contacts = head(&mut words)?;
     let Some(size) = contacts.checked_mul(2) else {
@@ -52,13 +52,13 @@ pub fn read(text: &str) -> Result<Problem, Broken> {
 ///
 /// # Errors
 /// An error before that number, with its position.
-pub fn contacts(text: &str) -> Result<(usize, (usize, usize)), Broken> {
+pub fn contacts(text: &str) -> Result<(usize, (usize, usize)), FormatError> {
     let mut words = Words::new(text);
     let contacts = head(&mut words)?;
     Ok((contacts, words.place()))
 }
 
-fn head(words: &mut Words<'_>) -> Result<usize, Broken> {
+fn head(words: &mut Words<'_>) -> Result<usize, FormatError> {
     match words.count("the dimension")? {
         2 => {}
         3 => {
@@ -85,7 +85,7 @@ fn head(words: &mut Words<'_>) -> Result<usize, Broken> {
     Ok(contacts)
 }
 
-fn body(words: &mut Words<'_>, contacts: usize, size: usize) -> Result<Problem, Broken> {
+fn body(words: &mut Words<'_>, contacts: usize, size: usize) -> Result<Problem, FormatError> {
     let first = matrix(words, "W", None, size)?;
     if first.rows == size && !begins_matrix(words, size, contacts) {
         return Ok(Problem::Local(Local {
@@ -116,7 +116,7 @@ fn begins_matrix(words: &Words<'_>, size: usize, contacts: usize) -> bool {
 }
 
 /// Rejects a wrong number of rows if the number of columns, which follows, is that of a local problem.
-fn squared(words: &Words<'_>, rows: usize, local: usize, of_rows: &str) -> Result<(), Broken> {
+fn squared(words: &Words<'_>, rows: usize, local: usize, of_rows: &str) -> Result<(), FormatError> {
     let columns = words.peek().and_then(|word| word.parse::<usize>().ok());
     match rows != local && columns == Some(local) {
         true => Err(words.broken(format!("{of_rows} is {rows}; it must be {local}"))),
@@ -130,7 +130,7 @@ fn matrix(
     name: &str,
     size: Option<(usize, usize)>,
     local: usize,
-) -> Result<Matrix, Broken> {
+) -> Result<Matrix, FormatError> {
     let entries = match words.count(&format!("the storage of {name}"))? {
         0 => dense,
         1 => blocks,
@@ -172,7 +172,7 @@ fn dense(
     rows: usize,
     columns: usize,
     name: &str,
-) -> Result<Entries, Broken> {
+) -> Result<Entries, FormatError> {
     words.exactly(rows, &format!("the number of rows of {name}"))?;
     words.exactly(columns, &format!("the number of columns of {name}"))?;
     let what = format!("an entry of {name}");
@@ -193,7 +193,7 @@ fn blocks(
     rows: usize,
     columns: usize,
     name: &str,
-) -> Result<Entries, Broken> {
+) -> Result<Entries, FormatError> {
     let what = format!("an entry of {name}");
     let mut entries = Vec::new();
     let count = words.count("the number of blocks")?;
@@ -249,7 +249,7 @@ fn ends(
     size: usize,
     what: &str,
     name: &str,
-) -> Result<Vec<usize>, Broken> {
+) -> Result<Vec<usize>, FormatError> {
     let mut ends: Vec<usize> = Vec::new();
     for k in 0..count {
         let end = words.count_up_to(size, &format!("the end of a {what}"))?;
@@ -282,7 +282,7 @@ fn sparse(
     rows: usize,
     columns: usize,
     name: &str,
-) -> Result<Entries, Broken> {
+) -> Result<Entries, FormatError> {
     let origin = words.next("the origin of a sparse matrix")?;
     let (mut triplets, mut by_rows) = (false, false);
     loop {

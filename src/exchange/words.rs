@@ -1,7 +1,7 @@
 //! Splits a text into words and tracks their positions.
 
 use crate::bail;
-use crate::broken::Broken;
+use crate::format_error::FormatError;
 
 /// Maximum number of characters of a word in a message.
 const SHOWN: usize = 40;
@@ -25,9 +25,9 @@ impl<'t> Words<'t> {
     }
 
     /// An error at the last word.
-    pub fn broken(&self, message: impl Into<String>) -> Broken {
+    pub fn broken(&self, message: impl Into<String>) -> FormatError {
         let (line, column) = self.place();
-        Broken::at(line, column, message)
+        FormatError::at(line, column, message)
     }
 
     /// Line and column of the last word, both from 1.
@@ -36,7 +36,7 @@ impl<'t> Words<'t> {
     }
 
     /// Error: the last word is not what was expected.
-    pub fn unlike(&self, word: &str, wanted: &str) -> Broken {
+    pub fn unlike(&self, word: &str, wanted: &str) -> FormatError {
         self.broken(format!(
             "found {} where {wanted} was expected",
             quoted(word)
@@ -57,7 +57,7 @@ impl<'t> Words<'t> {
     ///
     /// # Errors
     /// At the end of the text; `what` names the missing item.
-    pub fn next(&mut self, what: &str) -> Result<&'t str, Broken> {
+    pub fn next(&mut self, what: &str) -> Result<&'t str, FormatError> {
         let trimmed = self.rest.trim_start();
         let end = trimmed.find(char::is_whitespace).unwrap_or(trimmed.len());
         if end == 0 {
@@ -80,7 +80,7 @@ impl<'t> Words<'t> {
     ///
     /// # Errors
     /// If it is not a whole number.
-    pub fn count(&mut self, what: &str) -> Result<usize, Broken> {
+    pub fn count(&mut self, what: &str) -> Result<usize, FormatError> {
         let word = self.next(what)?;
         word.parse()
             .map_err(|_| self.unlike(word, &format!("{what}, a whole number,")))
@@ -90,7 +90,7 @@ impl<'t> Words<'t> {
     ///
     /// # Errors
     /// If it is not a whole number, or larger.
-    pub fn count_up_to(&mut self, most: usize, what: &str) -> Result<usize, Broken> {
+    pub fn count_up_to(&mut self, most: usize, what: &str) -> Result<usize, FormatError> {
         match self.count(what)? {
             count if count <= most => Ok(count),
             count => Err(self.broken(format!("{what} is {count}; it must be at most {most}"))),
@@ -101,7 +101,7 @@ impl<'t> Words<'t> {
     ///
     /// # Errors
     /// If it has another value.
-    pub fn exactly(&mut self, wanted: usize, what: &str) -> Result<(), Broken> {
+    pub fn exactly(&mut self, wanted: usize, what: &str) -> Result<(), FormatError> {
         match self.count(what)? {
             count if count == wanted => Ok(()),
             count => Err(self.broken(format!("{what} is {count}; it must be {wanted}"))),
@@ -112,7 +112,7 @@ impl<'t> Words<'t> {
     ///
     /// # Errors
     /// If it is not a finite number.
-    pub fn number(&mut self, what: &str) -> Result<f64, Broken> {
+    pub fn number(&mut self, what: &str) -> Result<f64, FormatError> {
         let word = self.next(what)?;
         number(word).ok_or_else(|| self.unlike(word, &format!("{what}, a finite number,")))
     }
@@ -121,7 +121,7 @@ impl<'t> Words<'t> {
     ///
     /// # Errors
     /// If one of them is not a finite number.
-    pub fn numbers(&mut self, count: usize, what: &str) -> Result<Vec<f64>, Broken> {
+    pub fn numbers(&mut self, count: usize, what: &str) -> Result<Vec<f64>, FormatError> {
         (0..count).map(|_| self.number(what)).collect()
     }
 
@@ -129,7 +129,7 @@ impl<'t> Words<'t> {
     ///
     /// # Errors
     /// If one of them is not a number, or negative.
-    pub fn coefficients(&mut self, count: usize) -> Result<Vec<f64>, Broken> {
+    pub fn coefficients(&mut self, count: usize) -> Result<Vec<f64>, FormatError> {
         let coefficient = |_| {
             let value = self.number("a friction coefficient")?;
             match value < 0.0 {

@@ -22,7 +22,7 @@ use super::pattern::Pattern;
 use super::tree::{Node, Tree};
 
 /// A node of the tree, with its factors.
-struct Factored {
+struct FactoredNode {
     node: Node,
     /// Its range of [`Fronts::entries`].
     entries: std::ops::Range<usize>,
@@ -45,7 +45,7 @@ struct Factored {
 /// The fronts of a pattern, with their factors.
 pub struct Fronts {
     /// Children before parents.
-    fronts: Vec<Factored>,
+    fronts: Vec<FactoredNode>,
     /// Entries of the matrix by front: index of the value, and index in the front without delayed unknowns.
     entries: Vec<(u32, u32)>,
     /// The front in which each value is assembled.
@@ -80,7 +80,7 @@ impl Fronts {
         let is_kept = |node: &Node| node.parent.is_some_and(|parent| changing[parent]);
         let assigned = assign(pattern, &tree)?;
         let fronts = tree.nodes.into_iter().zip(children).zip(assigned.ranges);
-        let fronts = fronts.map(|((node, children), entries)| Factored {
+        let fronts = fronts.map(|((node, children), entries)| FactoredNode {
             kept: is_kept(&node),
             node,
             entries,
@@ -188,7 +188,7 @@ impl Fronts {
     }
 }
 
-impl Factored {
+impl FactoredNode {
     /// Number of rows, and of columns, passed to its parent.
     fn left(&self) -> usize {
         self.rows.len() - self.done
@@ -204,7 +204,7 @@ impl Factored {
     }
 
     /// Assembles its children's remainders; returns the number of their delayed unknowns, which come first.
-    fn assemble(&self, done: &[Factored], stack: &[f64], front: &mut Front) -> usize {
+    fn assemble(&self, done: &[FactoredNode], stack: &[f64], front: &mut Front) -> usize {
         front.rows.clear();
         front.columns.clear();
         for child in self.children.iter().map(|&c| &done[c]) {
@@ -339,14 +339,14 @@ impl Factored {
 }
 
 /// Assignment of the matrix's entries to fronts.
-struct Assigned {
+struct EntryMap {
     entries: Vec<(u32, u32)>,
     ranges: Vec<std::ops::Range<usize>>,
     owners: Vec<u32>,
 }
 
 /// Assigns every entry of the matrix to the front that eliminates the first of its two unknowns.
-fn assign(pattern: &Pattern, tree: &Tree) -> Result<Assigned, SolveError> {
+fn assign(pattern: &Pattern, tree: &Tree) -> Result<EntryMap, SolveError> {
     let narrow = |number: usize| u32::try_from(number).map_err(|_| SolveError::OutOfMemory);
     let mut eliminated = vec![0; pattern.size()];
     for (k, node) in tree.nodes.iter().enumerate() {
@@ -388,7 +388,7 @@ fn assign(pattern: &Pattern, tree: &Tree) -> Result<Assigned, SolveError> {
         }
         ranges.push(range);
     }
-    Ok(Assigned {
+    Ok(EntryMap {
         entries: placed,
         ranges,
         owners,
@@ -492,7 +492,7 @@ mod tests {
 
         /// Number of delayed unknowns.
         fn delayed(fronts: &Fronts) -> usize {
-            fronts.fronts.iter().map(Factored::delayed).sum()
+            fronts.fronts.iter().map(FactoredNode::delayed).sum()
         }
     }
 

@@ -37,7 +37,7 @@ pub struct Factors {
     fronts: Option<Fronts>,
     general: Option<General>,
     /// Which of the two contains the factors.
-    used: Used,
+    used: LuKind,
     row_scale: Vec<f64>,
     col_scale: Vec<f64>,
     /// Exponents of the values, of the scale, and of the largest value of each column.
@@ -57,7 +57,7 @@ pub struct Factors {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Used {
+enum LuKind {
     Neither,
     Fronts,
     General,
@@ -103,7 +103,7 @@ impl Factors {
             pattern,
             fronts,
             general,
-            used: Used::Neither,
+            used: LuKind::Neither,
             row_scale: vec![1.0; n],
             col_scale: vec![1.0; n],
             exponents: vec![0; entries],
@@ -131,7 +131,7 @@ impl Factors {
     /// `units` are the magnitudes of the unknowns (powers of two), from which the sweeps start. The start matters: in a saddle
     /// point with constraints of size one and a tiny stiffness, rows of equal size may still be nearly singular.
     pub fn scale(&mut self, values: &[f64], first: usize, units: &[f64]) {
-        self.used = Used::Neither;
+        self.used = LuKind::Neither;
         self.applied = false;
         self.equilibrate(values, units);
         if self.first_own != first {
@@ -150,25 +150,25 @@ impl Factors {
     /// [`SolveError::Singular`] if a pivot column is empty; near-singularity shows in [`Factors::solve`] and
     /// [`Factors::inverse_norm`].
     pub fn factor(&mut self, values: &[f64]) -> Result<(), SolveError> {
-        self.used = Used::Neither;
+        self.used = LuKind::Neither;
         self.take(values);
         if let Some(fronts) = &mut self.fronts
             && fronts.factor(&self.scaled).is_ok()
         {
-            self.used = Used::Fronts;
+            self.used = LuKind::Fronts;
             return Ok(());
         }
         self.factor_generally()
     }
 
     fn factor_generally(&mut self) -> Result<(), SolveError> {
-        self.used = Used::Neither;
+        self.used = LuKind::Neither;
         let general = match &mut self.general {
             Some(general) => general,
             none => none.insert(General::new(&self.pattern)?),
         };
         general.factor(&self.pattern, &self.scaled)?;
-        self.used = Used::General;
+        self.used = LuKind::General;
         Ok(())
     }
 
@@ -178,7 +178,7 @@ impl Factors {
     /// [`SolveError::Singular`] if x is not finite or its residual exceeds round-off.
     pub fn solve(&mut self, b: &[f64], x: &mut [f64]) -> Result<(), SolveError> {
         let solved = self.solve_as_factored(b, x);
-        if solved.is_err() && self.used == Used::Fronts {
+        if solved.is_err() && self.used == LuKind::Fronts {
             self.factor_generally()?;
             return self.solve_as_factored(b, x);
         }
@@ -186,7 +186,7 @@ impl Factors {
     }
 
     fn solve_as_factored(&mut self, b: &[f64], x: &mut [f64]) -> Result<(), SolveError> {
-        if self.used == Used::Neither {
+        if self.used == LuKind::Neither {
             return Err(SolveError::Singular);
         }
         x.copy_from_slice(b);
@@ -217,7 +217,7 @@ impl Factors {
     /// # Errors
     /// [`SolveError::Singular`] if X is not finite.
     pub fn solve_block(&mut self, x: &mut [f64]) -> Result<(), SolveError> {
-        if self.used == Used::Neither {
+        if self.used == LuKind::Neither {
             return Err(SolveError::Singular);
         }
         self.apply_inverse(x);
@@ -232,10 +232,10 @@ impl Factors {
     /// vector of all frequencies, or from the pivots if none is small. Near 1e16 for a singular matrix, and infinite without
     /// factors.
     pub fn inverse_norm(&mut self) -> f64 {
-        if self.used == Used::Neither {
+        if self.used == LuKind::Neither {
             return f64::INFINITY;
         }
-        if let (Used::Fronts, Some(fronts)) = (self.used, &self.fronts) {
+        if let (LuKind::Fronts, Some(fronts)) = (self.used, &self.fronts) {
             let smallest = fronts.smallest_pivot();
             if smallest > REGULAR {
                 return 1.0 / smallest;
@@ -284,7 +284,7 @@ impl Factors {
     fn apply_scaled_inverse(&mut self, x: &mut [f64]) {
         let n = self.pattern.n;
         match (self.used, &mut self.fronts, &mut self.general) {
-            (Used::Fronts, Some(fronts), _) => {
+            (LuKind::Fronts, Some(fronts), _) => {
                 x.chunks_exact_mut(n.max(1)).for_each(|x| fronts.solve(x));
             }
             (_, _, Some(general)) => general.solve(n, x),

@@ -151,7 +151,7 @@ impl SymmetricFactors {
         )
         .map_err(|_| SolveError::Singular)?;
         for s in 0..symbolic.n_supernodes() {
-            let node = EliminationNode::of(symbolic, &self.factors, s);
+            let node = EliminationNode::from_symbolic(symbolic, &self.factors, s);
             let own = &mut self.pivots[node.start..node.start + node.width];
             for (k, pivot) in own.iter_mut().enumerate() {
                 *pivot = node.column(k)[k];
@@ -237,7 +237,7 @@ impl SymmetricFactors {
     fn forward(&mut self, count: usize) {
         let symbolic = supernodal(&self.symbolic);
         for s in 0..symbolic.n_supernodes() {
-            let node = EliminationNode::of(symbolic, &self.factors, s);
+            let node = EliminationNode::from_symbolic(symbolic, &self.factors, s);
             let columns = count.saturating_sub(node.start).min(node.width);
             if columns == 0 {
                 break;
@@ -266,7 +266,7 @@ impl SymmetricFactors {
     fn backward(&mut self, count: usize) {
         let symbolic = supernodal(&self.symbolic);
         for s in (0..symbolic.n_supernodes()).rev() {
-            let node = EliminationNode::of(symbolic, &self.factors, s);
+            let node = EliminationNode::from_symbolic(symbolic, &self.factors, s);
             let columns = count.saturating_sub(node.start).min(node.width);
             if columns == 0 {
                 continue;
@@ -364,7 +364,11 @@ struct EliminationNode<'a> {
 }
 
 impl<'a> EliminationNode<'a> {
-    fn of(symbolic: &'a SymbolicSupernodalCholesky<usize>, factors: &'a [f64], s: usize) -> Self {
+    fn from_symbolic(
+        symbolic: &'a SymbolicSupernodalCholesky<usize>,
+        factors: &'a [f64],
+        s: usize,
+    ) -> Self {
         let node = symbolic.supernode(s);
         let values = symbolic.col_ptr_for_val();
         EliminationNode {
@@ -402,7 +406,7 @@ fn columns<'a>(
         .supernode_end()
         .partition_point(|&end| end <= first);
     (nodes..symbolic.n_supernodes()).flat_map(move |s| {
-        let node = EliminationNode::of(symbolic, factors, s);
+        let node = EliminationNode::from_symbolic(symbolic, factors, s);
         let (start, width, rows) = (node.start, node.width, node.rows);
         (first.saturating_sub(start)..width).map(move |k| {
             let (own, below) = node.column(k).split_at(width);

@@ -63,7 +63,13 @@ impl Tree {
     }
 
     /// Numbers a node and its descendants.
-    fn lay_out(&mut self, graph: &Graph, order: &Order, joined: &mut [Joined], root: usize) {
+    fn lay_out(
+        &mut self,
+        graph: &Graph,
+        order: &Order,
+        joined: &mut [EliminationGroup],
+        root: usize,
+    ) {
         let mut path = vec![root];
         while let Some(&node) = path.last() {
             if let Some(child) = joined[node].children.pop() {
@@ -113,7 +119,7 @@ impl Tree {
 }
 
 /// The fronts that an order leads to; the order is converted to postorder.
-fn tried(graph: &Graph, groups: Vec<usize>) -> (Order, Vec<Joined>) {
+fn tried(graph: &Graph, groups: Vec<usize>) -> (Order, Vec<EliminationGroup>) {
     let order = Order::new(groups);
     let parents = parents(graph, &order);
     let order = order.in_postorder(&parents);
@@ -186,7 +192,7 @@ impl Order {
 
 /// Groups eliminated in one front, by position in the order.
 #[derive(Default)]
-struct Joined {
+struct EliminationGroup {
     pivots: Vec<usize>,
     /// Coupled later groups, ascending.
     later: Vec<usize>,
@@ -204,20 +210,20 @@ struct Joined {
 }
 
 /// Merges each group with its children where that pays off, in order.
-fn join(graph: &Graph, order: &Order) -> Vec<Joined> {
+fn join(graph: &Graph, order: &Order) -> Vec<EliminationGroup> {
     let count = graph.count();
     let weight = |k: usize| graph.members(order.groups[k]).len();
-    let mut all: Vec<Joined> = Vec::with_capacity(count);
+    let mut all: Vec<EliminationGroup> = Vec::with_capacity(count);
     // The children of each position, and a mark for those already listed.
     let mut children: Vec<Vec<usize>> = vec![Vec::new(); count];
     let mut mark = vec![NONE; count];
     for k in 0..count {
         let group = order.groups[k];
-        let mut own = Joined {
+        let mut own = EliminationGroup {
             changing: graph.changing[group],
             weight: weight(k),
             children: std::mem::take(&mut children[k]),
-            ..Joined::default()
+            ..EliminationGroup::default()
         };
         let mut take = |later: &mut Vec<usize>, places: &mut dyn Iterator<Item = usize>| {
             for place in places.filter(|&place| place > k) {
@@ -245,7 +251,7 @@ fn join(graph: &Graph, order: &Order) -> Vec<Joined> {
 }
 
 /// Merges a group with its children where that pays off; those that eliminate most come first.
-fn absorb(own: &mut Joined, all: &mut [Joined]) {
+fn absorb(own: &mut EliminationGroup, all: &mut [EliminationGroup]) {
     let mut children = std::mem::take(&mut own.children);
     children.sort_by_key(|&child| std::cmp::Reverse(all[child].seen));
     let mut kept = Vec::new();
@@ -274,7 +280,7 @@ fn absorb(own: &mut Joined, all: &mut [Joined]) {
 }
 
 /// Operations of a major iteration: all fronts once, and in each further minor iteration those affected by the changes.
-fn operations(all: &[Joined]) -> f64 {
+fn operations(all: &[EliminationGroup]) -> f64 {
     let cube = |size: usize| (size as f64).powi(3);
     // A front with all its ancestors.
     let mut path = vec![0.0; all.len()];
@@ -291,7 +297,7 @@ fn operations(all: &[Joined]) -> f64 {
     whole + MINORS * f64::min(whole, CHANGES * reached / f64::max(count, 1.0))
 }
 
-fn roots(all: &[Joined]) -> Vec<usize> {
+fn roots(all: &[EliminationGroup]) -> Vec<usize> {
     let roots = all.iter().enumerate();
     let roots = roots.filter(|(_, joined)| !joined.gone && joined.later.is_empty());
     roots.map(|(k, _)| k).collect()

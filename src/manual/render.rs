@@ -29,7 +29,7 @@ pub struct Line {
 }
 
 impl Line {
-    fn of(style: Style, text: impl Into<String>) -> Line {
+    fn new(style: Style, text: impl Into<String>) -> Line {
         Line {
             pieces: vec![(style, text.into())],
         }
@@ -131,7 +131,7 @@ fn heading(line: &str) -> Option<Line> {
             .into_iter()
             .map(|(_, text)| text)
             .collect();
-        Line::of(Style::Heading, words)
+        Line::new(Style::Heading, words)
     })
 }
 
@@ -141,7 +141,7 @@ fn block(code: &[&str], width: usize) -> Vec<Line> {
     let indent = INDENT.min(width.saturating_sub(widest));
     let line = |line: &&str| match line.is_empty() {
         true => Line::default(),
-        false => Line::of(Style::Plain, format!("{:indent$}{line}", "")),
+        false => Line::new(Style::Plain, format!("{:indent$}{line}", "")),
     };
     code.iter().map(line).collect()
 }
@@ -342,7 +342,7 @@ fn table(rows: &[&str], width: usize) -> Vec<Line> {
         }
         if k == 0 && header {
             let rules: Vec<String> = widths.iter().map(|wide| "─".repeat(*wide)).collect();
-            lines.push(Line::of(Style::Plain, rules.join(&" ".repeat(APART))));
+            lines.push(Line::new(Style::Plain, rules.join(&" ".repeat(APART))));
         }
     }
     lines

@@ -13,7 +13,7 @@ pub struct Search {
 
 /// Where to move after a key of the search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Go {
+pub enum SearchMove {
     /// Stays: the text is still being typed, or the search was cancelled.
     Nowhere,
     /// To the first match from the current line on.
@@ -46,16 +46,16 @@ impl Search {
     }
 
     /// Handles a key; `None` if the search does not use it.
-    pub fn key(&mut self, name: &str) -> Option<Go> {
+    pub fn key(&mut self, name: &str) -> Option<SearchMove> {
         self.missed = false;
         let Some(typed) = &mut self.typed else {
             return match name {
                 "/" => {
                     self.typed = Some(String::new());
-                    Some(Go::Nowhere)
+                    Some(SearchMove::Nowhere)
                 }
-                "n" if !self.sought.is_empty() => Some(Go::Next),
-                "N" if !self.sought.is_empty() => Some(Go::Back),
+                "n" if !self.sought.is_empty() => Some(SearchMove::Next),
+                "N" if !self.sought.is_empty() => Some(SearchMove::Back),
                 _ => None,
             };
         };
@@ -64,12 +64,12 @@ impl Search {
             // Enter alone repeats the last search.
             "Enter" if typed.is_empty() => {
                 self.typed = None;
-                return Some(Go::Next);
+                return Some(SearchMove::Next);
             }
             "Enter" => {
                 self.sought = typed.to_lowercase();
                 self.typed = None;
-                return Some(Go::Here);
+                return Some(SearchMove::Here);
             }
             "Backspace" if typed.is_empty() => self.typed = None,
             "Backspace" => {
@@ -79,7 +79,7 @@ impl Search {
             _ if name.chars().count() == 1 => typed.push_str(name),
             _ => {}
         }
-        Some(Go::Nowhere)
+        Some(SearchMove::Nowhere)
     }
 
     /// Whether a line contains the search text.
@@ -88,14 +88,14 @@ impl Search {
     }
 
     /// The matching line to go to from line `from`, wrapping around at the end of the page.
-    pub fn find(&mut self, go: Go, from: usize, lines: &[String]) -> Option<usize> {
+    pub fn find(&mut self, go: SearchMove, from: usize, lines: &[String]) -> Option<usize> {
         let count = lines.len();
-        if count == 0 || go == Go::Nowhere || self.sought.is_empty() {
+        if count == 0 || go == SearchMove::Nowhere || self.sought.is_empty() {
             return None;
         }
         let at = |k: usize| match go {
-            Go::Back => (from + 2 * count - 1 - k) % count,
-            Go::Next => (from + 1 + k) % count,
+            SearchMove::Back => (from + 2 * count - 1 - k) % count,
+            SearchMove::Next => (from + 1 + k) % count,
             _ => (from + k) % count,
         };
         let found = (0..count).map(at).find(|&line| self.holds(&lines[line]));

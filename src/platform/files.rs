@@ -28,10 +28,10 @@ pub enum FileError {
 pub struct Output {
     target: PathBuf,
     overwrite: bool,
-    to: To,
+    to: OutputTarget,
 }
 
-enum To {
+enum OutputTarget {
     /// A temporary file in the target's folder, renamed at the end.
     Beside(BufWriter<NamedTempFile>),
     /// A device or a pipe, written directly.
@@ -57,7 +57,7 @@ impl Output {
             return Ok(Output {
                 target: path.to_owned(),
                 overwrite,
-                to: To::Straight(BufWriter::new(open)),
+                to: OutputTarget::Straight(BufWriter::new(open)),
             });
         }
         if found.as_ref().is_some_and(|found| found.is_dir()) {
@@ -73,7 +73,7 @@ impl Output {
         Ok(Output {
             target,
             overwrite,
-            to: To::Beside(BufWriter::new(to)),
+            to: OutputTarget::Beside(BufWriter::new(to)),
         })
     }
 
@@ -86,7 +86,7 @@ impl Output {
     }
 
     /// Syncs the file to disk, so that only its name is missing; a device or a pipe is complete then.
-    fn ready(self) -> Result<Ready, FileError> {
+    fn ready(self) -> Result<ReadyFile, FileError> {
         let Output {
             target,
             overwrite,
@@ -97,17 +97,17 @@ impl Output {
             source,
         };
         let file = match to {
-            To::Straight(mut file) => {
+            OutputTarget::Straight(mut file) => {
                 file.flush().map_err(failed)?;
                 None
             }
-            To::Beside(file) => {
+            OutputTarget::Beside(file) => {
                 let file = file.into_inner().map_err(|e| failed(e.into_error()))?;
                 file.as_file().sync_all().map_err(failed)?;
                 Some(file)
             }
         };
-        Ok(Ready {
+        Ok(ReadyFile {
             target,
             overwrite,
             file,
@@ -144,14 +144,14 @@ fn straight(path: &Path) -> io::Result<File> {
 }
 
 /// A complete file without its name.
-struct Ready {
+struct ReadyFile {
     target: PathBuf,
     overwrite: bool,
     /// `None` for a device or a pipe.
     file: Option<NamedTempFile>,
 }
 
-impl Ready {
+impl ReadyFile {
     fn failed(&self, source: io::Error) -> FileError {
         FileError::Failed {
             path: self.target.clone(),
@@ -202,9 +202,9 @@ impl Ready {
 /// # Errors
 /// As [`Output::finish`].
 pub fn finish_all(outputs: Vec<Output>) -> Result<(), FileError> {
-    let ready: Result<Vec<Ready>, FileError> = outputs.into_iter().map(Output::ready).collect();
+    let ready: Result<Vec<ReadyFile>, FileError> = outputs.into_iter().map(Output::ready).collect();
     let ready = ready?;
-    let formers: Result<Vec<_>, FileError> = ready.iter().map(Ready::former).collect();
+    let formers: Result<Vec<_>, FileError> = ready.iter().map(ReadyFile::former).collect();
     let mut placed: Vec<(PathBuf, Option<NamedTempFile>)> = Vec::new();
     for (file, former) in ready.into_iter().zip(formers?) {
         let target = file.file.is_some().then(|| file.target.clone());
@@ -341,15 +341,15 @@ fn is_gone(process: i32) -> bool {
 impl Write for Output {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match &mut self.to {
-            To::Beside(file) => file.write(bytes),
-            To::Straight(file) => file.write(bytes),
+            OutputTarget::Beside(file) => file.write(bytes),
+            OutputTarget::Straight(file) => file.write(bytes),
         }
     }
 
     fn flush(&mut self) -> io::Result<()> {
         match &mut self.to {
-            To::Beside(file) => file.flush(),
-            To::Straight(file) => file.flush(),
+            OutputTarget::Beside(file) => file.flush(),
+            OutputTarget::Straight(file) => file.flush(),
         }
     }
 }

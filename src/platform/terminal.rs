@@ -93,7 +93,7 @@ pub fn ask() -> io::Result<Option<Answers>> {
     if !stdin().is_terminal() || !stdout().is_terminal() {
         return Ok(None);
     }
-    let _raw = Raw::enter()?;
+    let _raw = RawMode::enter()?;
     let mut out = stdout().lock();
     out.write_all(questions().as_bytes())?;
     out.flush()?;
@@ -158,23 +158,23 @@ impl Answers {
 }
 
 /// The terminal in raw mode, until this is dropped.
-struct Raw {
+struct RawMode {
     of: Stdin,
     before: Termios,
 }
 
-impl Raw {
-    fn enter() -> io::Result<Raw> {
+impl RawMode {
+    fn enter() -> io::Result<RawMode> {
         let of = stdin();
         let before = termios::tcgetattr(&of)?;
         let mut raw = before.clone();
         raw.make_raw();
         termios::tcsetattr(&of, OptionalActions::Now, &raw)?;
-        Ok(Raw { of, before })
+        Ok(RawMode { of, before })
     }
 }
 
-impl Drop for Raw {
+impl Drop for RawMode {
     fn drop(&mut self) {
         // A late answer must not reach the shell.
         let _ = termios::tcsetattr(&self.of, OptionalActions::Flush, &self.before);

@@ -12,8 +12,8 @@ use crate::format::spec::{History, Spec};
 use crate::shown;
 use std::collections::{HashMap, HashSet};
 use stickslip_core::model::{
-    Body, BodyKind, Bond, Contact, Control, Form, Friction, Jumps, Linear, Model, Monitor, Node,
-    Surface, ToldKind, Watched,
+    Body, BodyKind, Bond, Contact, Control, Form, Friction, Jumps, Linear, Model, Monitor,
+    MonitorQuantity, Node, Surface, ToldKind,
 };
 use stickslip_exchange::attach::Answer;
 use stickslip_exchange::attach::message::{self, Scene};
@@ -96,7 +96,7 @@ pub(super) fn compile(spec: &Spec, text: &str) -> Result<(Model, Names), Fault> 
         };
         Monitor {
             name: shown::line(name).into_owned(),
-            of: Watched::Told { number, kind },
+            of: MonitorQuantity::Told { number, kind },
         }
     };
     let model = Model {
@@ -124,7 +124,7 @@ pub(super) fn compile(spec: &Spec, text: &str) -> Result<(Model, Names), Fault> 
         },
         settings: spec.settings,
         monitors: scene.monitors.iter().enumerate().map(monitor).collect(),
-        ..Model::of_contacts(&shown::line(&scene.title), nodes, surfaces, contacts)
+        ..Model::from_contacts(&shown::line(&scene.title), nodes, surfaces, contacts)
     };
     if !model.length.is_finite() {
         return refused("nodes: they are too far apart");

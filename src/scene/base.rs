@@ -21,18 +21,18 @@ pub struct Base {
 
 /// Location of a scalar of a base.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Place {
-    in_scene: paths::Found,
+pub struct ScalarLocation {
+    in_scene: paths::ScalarPath,
     /// Location among the choices, if it is one.
-    in_choices: Option<paths::Found>,
+    in_choices: Option<paths::ScalarPath>,
 }
 
 impl Base {
     /// Creates a base from a scene.
     pub fn new(scene: Scene) -> Base {
         Base {
-            choices: Choices::of(&scene.spec),
-            groups: Groups::of(&compiled(&scene)),
+            choices: Choices::from_spec(&scene.spec),
+            groups: Groups::from_scene(&compiled(&scene)),
             scene,
         }
     }
@@ -43,21 +43,21 @@ impl Base {
     }
 
     /// Finds a scalar; `None` if the path does not exist or its text has a different format.
-    pub fn find(&self, path: &str) -> Option<Place> {
+    pub fn find(&self, path: &str) -> Option<ScalarLocation> {
         let in_scene = paths::find(&self.scene.spec, path)?;
         if in_scene.at == at!["settings", "memory"] {
             return None;
         }
         let is_choice = Choices::has(&in_scene.at);
         let in_choices = is_choice.then(|| paths::find(self.choices.spec(), path));
-        Some(Place {
+        Some(ScalarLocation {
             in_scene,
             in_choices: in_choices.flatten(),
         })
     }
 
     /// The model with new values; `None` if they are invalid.
-    pub fn model(&self, settings: &[(&Place, &str)]) -> Option<Model> {
+    pub fn model(&self, settings: &[(&ScalarLocation, &str)]) -> Option<Model> {
         if let (Some(groups), Some((choices, loads))) = (&self.groups, self.chosen(settings)) {
             return Some(renewed(&self.scene.model, groups, &choices, loads));
         }
@@ -77,14 +77,14 @@ impl Base {
     }
 
     /// Number of increments with new values, if they are all choices and valid.
-    pub fn increments(&self, settings: &[(&Place, &str)]) -> Option<f64> {
+    pub fn increments(&self, settings: &[(&ScalarLocation, &str)]) -> Option<f64> {
         self.groups.as_ref()?;
         let (choices, _) = self.chosen(settings)?;
         Some(choices.increments())
     }
 
     /// The choices with new values, and the resulting loads; `None` if some value is not a choice or is invalid.
-    fn chosen(&self, settings: &[(&Place, &str)]) -> Option<(Choices, Loads)> {
+    fn chosen(&self, settings: &[(&ScalarLocation, &str)]) -> Option<(Choices, Loads)> {
         let mut choices = self.choices.clone();
         for (place, value) in settings {
             choices.set(place.in_choices.as_ref()?, value)?;
@@ -109,8 +109,8 @@ pub struct Method(Choices);
 impl Method {
     /// The method of a scene with new values; the first or last step of a path may be omitted. `None` if a path is not part of
     /// the method.
-    pub fn of(spec: &Spec, settings: &[(String, String)]) -> Option<Method> {
-        let mut choices = Choices::of(spec);
+    pub fn from_spec(spec: &Spec, settings: &[(String, String)]) -> Option<Method> {
+        let mut choices = Choices::from_spec(spec);
         for (path, value) in settings {
             let own = choices.spec();
             let found = paths::find(own, &paths::whole(own, path))?;

@@ -9,7 +9,7 @@ use super::curves::{lagrange, point, sin_cos_degrees};
 use super::geometry;
 use super::limits;
 use crate::format::error::{AtPath, Fault, Path, bail, fault};
-use crate::format::spec::{Place, Point, Side, Sides};
+use crate::format::spec::{BlockPosition, Point, Side, Sides};
 use stickslip_core::model::ElementKind;
 
 /// Edges of a block in walking order.
@@ -197,18 +197,18 @@ pub(crate) struct Shape<'a> {
     pub kind: ElementKind,
     pub grading: (f64, f64),
     pub sides: &'a Sides,
-    pub place: &'a Place,
+    pub place: &'a BlockPosition,
 }
 
 /// The points of a chain, and its number of nodes per element.
-pub(crate) type Spaced = (Vec<Point>, usize);
+pub(crate) type ChainPoints = (Vec<Point>, usize);
 
 /// The grid of a block and the positions of its nodes; `chain` looks up the points and the nodes per element of a chain.
 pub(crate) fn block(
     here: &Path,
     shape: &Shape<'_>,
     refine: usize,
-    chain: &dyn Fn(&str) -> Result<Spaced, String>,
+    chain: &dyn Fn(&str) -> Result<ChainPoints, String>,
 ) -> Result<(Grid, Vec<Point>), Fault> {
     let (columns, rows) = shape.elements;
     for (k, count) in [columns, rows].into_iter().enumerate() {
@@ -419,7 +419,7 @@ fn deviations(ends: (Point, Point), stations: &[f64], at: impl Fn(f64) -> Point)
 
 /// Rejects a mesh with a folded or nearly folded element.
 fn check_elements(here: &Path, grid: Grid, at: &[Point]) -> Result<(), Fault> {
-    let folds = geometry::Folds::of(grid.kind);
+    let folds = geometry::Folds::from_kind(grid.kind);
     let folded = |nodes: Vec<usize>| folds.is_folded(nodes.iter().map(|&n| [at[n].0, at[n].1]));
     let Some(place) = grid.elements().position(folded) else {
         return Ok(());
@@ -435,12 +435,12 @@ fn check_elements(here: &Path, grid: Grid, at: &[Point]) -> Result<(), Fault> {
 }
 
 /// Rotates and moves points.
-fn put(here: &Path, place: &Place, points: &mut [Point]) -> Result<(), Fault> {
+fn put(here: &Path, place: &BlockPosition, points: &mut [Point]) -> Result<(), Fault> {
     let here = here.then("place");
     limits::finite(&here.then("turn"), place.turn, "the angle")?;
     point(&here.then("about"), place.about)?;
     point(&here.then("shift"), place.shift)?;
-    if *place == Place::default() {
+    if *place == BlockPosition::default() {
         return Ok(());
     }
     let (sin, cos) = sin_cos_degrees(place.turn);
@@ -516,7 +516,7 @@ mod tests {
             used.dedup();
             assert_eq!(used, (0..at.len()).collect::<Vec<_>>(), "{kind:?}");
             // Elements have the same orientation as their parent element.
-            let folds = geometry::Folds::of(kind);
+            let folds = geometry::Folds::from_kind(kind);
             for nodes in &elements {
                 assert_eq!(nodes.len(), kind.nodes());
                 assert!(!folds.is_folded(nodes.iter().map(|&n| [at[n].0, at[n].1])));
@@ -557,7 +557,7 @@ mod tests {
             kind: ElementKind::Quad8,
             grading,
             sides,
-            place: &Place::default(),
+            place: &BlockPosition::default(),
         };
         block(&Path::default(), &shape, refine, &|id| Err(id.into()))
     }

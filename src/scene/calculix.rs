@@ -3,9 +3,9 @@
 use std::fs::OpenOptions;
 use std::io::{self, BufReader};
 use std::path::{Path, PathBuf};
-use stickslip_exchange::broken::Broken;
-use stickslip_exchange::calculix::past::PastRun;
+use stickslip_exchange::calculix::files::CalculixFiles;
 use stickslip_exchange::calculix::{cel, cvg, sta};
+use stickslip_exchange::format_error::FormatError;
 use stickslip_platform::input::{self, Unreadable};
 
 /// Extensions of a run's files: contact elements, attempts, residuals.
@@ -31,7 +31,7 @@ fn ends(name: &str, end: &str) -> bool {
 ///
 /// # Errors
 /// If a file cannot be read or has errors, or if the .cel contains no contact element.
-pub fn read(path: &Path) -> Result<PastRun, String> {
+pub fn read(path: &Path) -> Result<CalculixFiles, String> {
     let cel = open(path).map_err(|why| why.of(&path.display().to_string()))?;
     let cel = cel::read(cel).map_err(|why| broken(path, &why))?;
     if cel.slaves.is_empty() {
@@ -42,7 +42,7 @@ pub fn read(path: &Path) -> Result<PastRun, String> {
     }
     let sta = beside(path, ENDS[1], sta::read)?;
     let cvg = beside(path, ENDS[2], cvg::read)?;
-    Ok(PastRun::new(cel, sta, cvg))
+    Ok(CalculixFiles::new(cel, sta, cvg))
 }
 
 type Reader = BufReader<std::fs::File>;
@@ -51,7 +51,7 @@ type Reader = BufReader<std::fs::File>;
 fn beside<T>(
     cel: &Path,
     end: &str,
-    read: impl Fn(Reader) -> Result<T, Broken>,
+    read: impl Fn(Reader) -> Result<T, FormatError>,
 ) -> Result<Option<T>, String> {
     let path = cel.with_extension(end);
     match open(&path) {
@@ -66,7 +66,7 @@ fn open(path: &Path) -> Result<Reader, Unreadable> {
     Ok(BufReader::with_capacity(1 << 16, file))
 }
 
-fn broken(path: &Path, why: &Broken) -> String {
+fn broken(path: &Path, why: &FormatError) -> String {
     let path = path.display();
     match why.at {
         Some((line, column)) => format!("{path}:{line}:{column}: {why}"),

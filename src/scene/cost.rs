@@ -4,7 +4,7 @@ use super::Scene;
 use super::compile::increments;
 use super::{gaps, limits};
 use crate::format::error::some_of;
-use crate::number::six;
+use crate::number::sig6;
 use std::fmt;
 use stickslip_core::linear::estimate::Estimate;
 use stickslip_core::model::{
@@ -51,7 +51,7 @@ pub struct Cost {
 
 impl Cost {
     /// Computes the cost of a scene.
-    pub fn of(scene: &Scene) -> Cost {
+    pub fn from_scene(scene: &Scene) -> Cost {
         let model = &scene.model;
         let counted = |component: usize| {
             let dofs = &model.dofs;
@@ -125,7 +125,7 @@ fn body_line(body: &Body) -> String {
             } else {
                 ""
             };
-            format!("{}: truss, {bars}, EA {}{small}", body.name, six(truss.ea))
+            format!("{}: truss, {bars}, EA {}{small}", body.name, sig6(truss.ea))
         }
         BodyKind::Linear(linear) => linear_line(body, linear),
     }
@@ -156,14 +156,14 @@ fn linear_line(body: &Body, linear: &Linear) -> String {
 fn beam_line(name: &str, beam: &Beam) -> String {
     let per = beam.elements.first().map_or(0, Vec::len);
     let shear = match beam.ga {
-        Some(ga) => format!("GA {}", six(ga)),
+        Some(ga) => format!("GA {}", sig6(ga)),
         None => "shear-rigid".to_owned(),
     };
     let elements = plural(beam.elements.len(), "element");
     format!(
         "{name}: beam, {elements} of {per} nodes, EA {}, EI {}, {shear}",
-        six(beam.ea),
-        six(beam.ei)
+        sig6(beam.ea),
+        sig6(beam.ei)
     )
 }
 
@@ -181,7 +181,11 @@ fn solid_line(name: &str, solid: &Solid) -> String {
             Plane::Stress => format!("plane stress, thickness {}", m.thickness),
             Plane::Axisymmetric => "axisymmetric, forces of the whole circumference".to_owned(),
         };
-        format!("E {}, nu {}, {law}, {plane}", six(m.young), six(m.poisson))
+        format!(
+            "E {}, nu {}, {law}, {plane}",
+            sig6(m.young),
+            sig6(m.poisson)
+        )
     };
     let materials: Vec<String> = solid.materials.iter().map(made_of).collect();
     format!(
@@ -300,7 +304,7 @@ fn history_line(model: &Model) -> String {
 
 /// Estimated cost of each solver, the selected one first.
 fn solver_lines(model: &Model) -> Vec<String> {
-    let estimate = Estimate::of(model);
+    let estimate = Estimate::from_model(model);
     let chosen = estimate.with(model.settings.solver);
     if estimate.sparse.is_some() {
         return vec![format!("sparse, estimated: {}", chosen.0)];

@@ -166,7 +166,8 @@ pub fn turned(model: &Model) -> Vec<TurnedSurface> {
                 let (spot, _) = (*stand)?;
                 let own = outward[contact.node]?;
                 (spot.surface == surface).then(|| {
-                    let element = SurfaceElement::of(&model.surfaces[surface], spot.element);
+                    let element =
+                        SurfaceElement::from_surface(&model.surfaces[surface], spot.element);
                     let slopes = element.shape(spot.xi).d;
                     let n = normal(element.nodes, &model.nodes, &slopes);
                     own[0] * n[0] + own[1] * n[1]

@@ -102,7 +102,7 @@ pub(crate) struct Folds(Vec<Vec<[f64; 2]>>);
 
 impl Folds {
     /// The table for a kind, at 5 by 5 points.
-    pub fn of(kind: ElementKind) -> Self {
+    pub fn from_kind(kind: ElementKind) -> Self {
         let part = |k: usize| k as f64 / 4.0;
         let places = (0..25).map(|k| (part(k % 5), part(k / 5)));
         let places = places.filter(|(r, s)| !kind.is_triangle() || r + s <= 1.0);
@@ -245,7 +245,7 @@ mod tests {
                 [0.0, 1.0],
             ]
         };
-        let folds = Folds::of(ElementKind::Quad8);
+        let folds = Folds::from_kind(ElementKind::Quad8);
         let is_folded = |nodes: &[[f64; 2]; 8]| folds.is_folded(nodes.iter().copied());
         assert!(!is_folded(&with(2.0)) && !is_folded(&with(1.2)));
         assert!(is_folded(&with(1.0)) && is_folded(&with(3.1)));

@@ -22,7 +22,7 @@ pub const MESH_BYTES: u64 = 512 << 20;
 const REST: &str = "rest";
 
 /// Reasons why a mesh cannot be imported.
-pub(super) enum Refused {
+pub(super) enum ImportError {
     /// An error in the scene's import entry.
     Here(Fault),
     /// An error in the mesh file.
@@ -30,7 +30,7 @@ pub(super) enum Refused {
 }
 
 /// Reads every mesh that a scene imports and adds it to the scene, whose file is `scene`; returns whether there are any.
-pub(super) fn resolve(spec: &mut Spec, scene: &str) -> Result<bool, Refused> {
+pub(super) fn resolve(spec: &mut Spec, scene: &str) -> Result<bool, ImportError> {
     let mut any = false;
     for (k, nodes) in spec.nodes.iter_mut().enumerate() {
         if let Nodes::Import {
@@ -43,24 +43,25 @@ pub(super) fn resolve(spec: &mut Spec, scene: &str) -> Result<bool, Refused> {
             let here = at!["nodes", k];
             if !(scale.is_finite() && *scale > 0.0) {
                 let message = format!("the scale is {scale:?}; it must be positive");
-                return Err(Refused::Here(Fault::new(here.then("scale"), message)));
+                return Err(ImportError::Here(Fault::new(here.then("scale"), message)));
             }
             let mesh = read(&here.then("file"), scene, file)?;
             let given = given(id, &mesh, *reduced, *scale);
-            *nodes = given
-                .map_err(|(field, message)| Refused::Here(Fault::new(here.then(field), message)))?;
+            *nodes = given.map_err(|(field, message)| {
+                ImportError::Here(Fault::new(here.then(field), message))
+            })?;
             any = true;
         }
     }
     Ok(any)
 }
 
-fn read(here: &Path, scene: &str, file: &str) -> Result<Mesh, Refused> {
-    let unread = |message: String| Refused::Here(fault!(here, "{}: {message}", quoted(file)));
+fn read(here: &Path, scene: &str, file: &str) -> Result<Mesh, ImportError> {
+    let unread = |message: String| ImportError::Here(fault!(here, "{}: {message}", quoted(file)));
     let path = input::beside(std::path::Path::new(scene), file).map_err(unread)?;
     mesh(&path.to_string_lossy()).map_err(|error| match error {
         NoMesh::Unread(message) => unread(message),
-        NoMesh::Broken(error) => Refused::There(error),
+        NoMesh::Broken(error) => ImportError::There(error),
     })
 }
 

@@ -378,8 +378,8 @@ fn imported(
     place: impl Fn(Fault) -> SceneError,
 ) -> Result<bool, SceneError> {
     import::resolve(spec, name).map_err(|refused| match refused {
-        import::Refused::Here(fault) => place(fault),
-        import::Refused::There(error) => error,
+        import::ImportError::Here(fault) => place(fault),
+        import::ImportError::There(error) => error,
     })
 }
 

@@ -5,7 +5,7 @@ pub const UNREPORTED: &str = "-";
 
 /// A number in a table cell: sign slot first, then up to six significant digits such that the last column stays empty, padded to
 /// the width. Decimal points are aligned. Only an exact zero is shown as `0`.
-pub fn cell(value: f64, width: usize) -> String {
+pub fn fixed_width(value: f64, width: usize) -> String {
     let sign = if value.is_sign_negative() && value != 0.0 {
         ""
     } else {
@@ -42,7 +42,7 @@ pub fn short(value: f64) -> String {
 }
 
 /// A load factor or size as people write it: up to ten significant digits, without trailing zeros.
-pub fn plain(value: f64) -> String {
+pub fn shortest(value: f64) -> String {
     if value == 0.0 {
         return "0".into();
     }
@@ -81,7 +81,7 @@ pub fn ratio(f_t: f64, t_max: f64) -> String {
 }
 
 /// A number with four significant digits, for people.
-pub fn four(value: f64) -> String {
+pub fn sig4(value: f64) -> String {
     let size = value.abs();
     let text = match () {
         _ if value == 0.0 => return "0".into(),
@@ -97,7 +97,7 @@ pub fn four(value: f64) -> String {
 }
 
 /// A number with at most six significant digits, for people.
-pub fn six(value: f64) -> String {
+pub fn sig6(value: f64) -> String {
     // Rounded in decimal, then printed in the shortest form that reads back equal.
     let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
     match rounded {
@@ -113,13 +113,13 @@ mod tests {
 
     #[test]
     fn cells_align_and_leave_a_gap() {
-        assert_eq!(cell(-1.23456789e-3, 13), "-1.23457e-3  ");
-        assert_eq!(cell(1.23456789e-3, 11), " 1.2346e-3 ");
-        assert_eq!(cell(-1.23456789e-10, 11), "-1.235e-10 ");
-        assert_eq!(cell(0.0, 6), " 0    ");
-        assert_eq!(cell(-0.0, 6), " 0    ");
-        assert_eq!(cell(f64::NAN, 6).trim(), "NaN");
-        assert_eq!(cell(1e-300, 4), " 1e-300");
+        assert_eq!(fixed_width(-1.23456789e-3, 13), "-1.23457e-3  ");
+        assert_eq!(fixed_width(1.23456789e-3, 11), " 1.2346e-3 ");
+        assert_eq!(fixed_width(-1.23456789e-10, 11), "-1.235e-10 ");
+        assert_eq!(fixed_width(0.0, 6), " 0    ");
+        assert_eq!(fixed_width(-0.0, 6), " 0    ");
+        assert_eq!(fixed_width(f64::NAN, 6).trim(), "NaN");
+        assert_eq!(fixed_width(1e-300, 4), " 1e-300");
     }
 
     #[test]
@@ -136,12 +136,12 @@ mod tests {
 
     #[test]
     fn load_factors_read_as_written() {
-        assert_eq!(plain(0.1 + 0.2), "0.3");
-        assert_eq!(plain(1200.0), "1200");
-        assert_eq!(plain(-0.005), "-0.005");
-        assert_eq!(plain(0.0), "0");
-        assert_eq!(plain(1e-7), "1e-7");
-        assert_eq!(plain(1.5258789062499997e-6), "1.525878906e-6");
+        assert_eq!(shortest(0.1 + 0.2), "0.3");
+        assert_eq!(shortest(1200.0), "1200");
+        assert_eq!(shortest(-0.005), "-0.005");
+        assert_eq!(shortest(0.0), "0");
+        assert_eq!(shortest(1e-7), "1e-7");
+        assert_eq!(shortest(1.5258789062499997e-6), "1.525878906e-6");
     }
 
     #[test]
@@ -155,7 +155,7 @@ mod tests {
             (0.57735026919, "0.5774"),
             (12345.6, "12346"),
         ] {
-            assert_eq!(four(value), text);
+            assert_eq!(sig4(value), text);
         }
     }
 }

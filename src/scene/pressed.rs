@@ -37,10 +37,10 @@ pub fn warnings(model: &Model) -> Vec<String> {
 fn told(model: &Model, body: &Body, solid: &Solid) -> Option<String> {
     let softens = |number: &usize| {
         let elastic = &solid.materials[*number];
-        StretchRange::of(elastic) == StretchRange::Stretch(SOFTENING)
+        StretchRange::from_elastic(elastic) == StretchRange::Stretch(SOFTENING)
     };
     let number = (0..solid.materials.len()).find(softens)?;
-    let motions = Motions::of(model);
+    let motions = Motions::from_model(model);
     let mut worst: Option<(f64, f64, [usize; 2])> = None;
     for load in loads(model) {
         for axis in 0..2 {
@@ -86,7 +86,7 @@ struct Motions<'a> {
 }
 
 impl<'a> Motions<'a> {
-    fn of(model: &'a Model) -> Self {
+    fn from_model(model: &'a Model) -> Self {
         let mut prescribed = vec![None; model.dofs.len()];
         for (number, one) in model.prescribed.iter().enumerate() {
             prescribed[one.dof] = Some(number);

@@ -22,9 +22,9 @@
 //! `scale`.
 
 use super::figure::assigned;
-use super::one::{SolverPool, Watch, one};
 use super::read::pairs;
 use super::result::{CaseEnd, Row, Run};
+use super::solver_pool::{SolverPool, Watch, one};
 use super::sweep::{RunError, side_by_side};
 use serde::Deserialize;
 use std::fmt;
@@ -110,12 +110,12 @@ pub struct ComparedBenchmark {
     /// (ours − own) / scale.
     pub drift: Option<f64>,
     /// Assessment of the result.
-    pub standing: Standing,
+    pub standing: Assessment,
 }
 
 /// Assessment of a comparison.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Standing {
+pub enum Assessment {
     /// Close to the source and to our own value.
     Good,
     /// Close to the source, but not to our own value.
@@ -128,14 +128,14 @@ pub enum Standing {
     NotRun,
 }
 
-impl fmt::Display for Standing {
+impl fmt::Display for Assessment {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Standing::Good => f.write_str("good"),
-            Standing::Drifted => f.write_str("drifted"),
-            Standing::Off => f.write_str("off"),
-            Standing::Failed(why) => write!(f, "failed: {why}"),
-            Standing::NotRun => f.write_str("not run"),
+            Assessment::Good => f.write_str("good"),
+            Assessment::Drifted => f.write_str("drifted"),
+            Assessment::Off => f.write_str("off"),
+            Assessment::Failed(why) => write!(f, "failed: {why}"),
+            Assessment::NotRun => f.write_str("not run"),
         }
     }
 }
@@ -272,18 +272,18 @@ impl Benchmark {
         };
         let Some(ours) = self.row(run).and_then(|row| self.taken(run, row)) else {
             return none(match &run.end {
-                CaseEnd::Failed(failed) => Standing::Failed(failed.reason.to_string()),
-                CaseEnd::Interrupted | CaseEnd::NotRun => Standing::NotRun,
-                CaseEnd::Finished => Standing::Failed("no increment ends at that load".into()),
+                CaseEnd::Failed(failed) => Assessment::Failed(failed.reason.to_string()),
+                CaseEnd::Interrupted | CaseEnd::NotRun => Assessment::NotRun,
+                CaseEnd::Finished => Assessment::Failed("no increment ends at that load".into()),
             });
         };
         let from = |value: f64| (ours - value) / self.unit();
         let (error, drift) = (from(self.value), self.own.map(from));
         let within = |off: f64, most: f64| off.abs() <= most;
         let standing = match (within(error, self.within), drift) {
-            (false, _) => Standing::Off,
-            (true, Some(drift)) if !within(drift, self.drift) => Standing::Drifted,
-            (true, _) => Standing::Good,
+            (false, _) => Assessment::Off,
+            (true, Some(drift)) if !within(drift, self.drift) => Assessment::Drifted,
+            (true, _) => Assessment::Good,
         };
         ComparedBenchmark {
             ours: Some(ours),
@@ -388,10 +388,10 @@ mod tests {
     #[test]
     fn a_value_is_good_drifted_or_off() {
         let standing = |value| benchmark().compare(&run(value)).standing;
-        assert_eq!(standing(2.1), Standing::Good);
-        assert_eq!(standing(2.15), Standing::Drifted);
-        assert_eq!(standing(2.3), Standing::Off);
-        assert_eq!(standing(f64::NAN), Standing::Off);
+        assert_eq!(standing(2.1), Assessment::Good);
+        assert_eq!(standing(2.15), Assessment::Drifted);
+        assert_eq!(standing(2.3), Assessment::Off);
+        assert_eq!(standing(f64::NAN), Assessment::Off);
     }
 
     #[test]
@@ -401,7 +401,7 @@ mod tests {
         assert_eq!(at.compare(&run(2.0)).ours, Some(7.0));
         at.at = Some(0.6);
         let missing = at.compare(&run(2.0)).standing;
-        assert!(matches!(missing, Standing::Failed(_)), "{missing}");
+        assert!(matches!(missing, Assessment::Failed(_)), "{missing}");
     }
 
     #[test]

@@ -3,10 +3,10 @@
 use super::chart_file::{Chart, Truth};
 use super::figure::name;
 use super::log::{Outcome, same};
-use super::one::{SolverPool, Watch, one};
 use super::plan::{Case, Plan};
 use super::read::{Study, Vary};
 use super::result::Run;
+use super::solver_pool::{SolverPool, Watch, one};
 use super::sweep::{RunError, Sweep};
 use super::sweep_input::Input;
 use serde::{Deserialize, Serialize};
@@ -64,7 +64,7 @@ impl PlannedChart {
             Plan::new(Study {
                 vary: vary.to_vec(),
                 set: [&chart.set, set].concat(),
-                ..Study::of_scene(&chart.scene)
+                ..Study::from_scene(&chart.scene)
             })
         };
         let plans = chart.series.iter();

@@ -6,7 +6,7 @@
 use super::drawn::PlotError;
 use super::log_axis::range;
 use super::sheet::{Anchor, Axes, BLACK, CROSS, ENTRY, GREY, LABEL, MARGIN, SMALL, Sheet, widest};
-use stickslip_scene::number::six;
+use stickslip_scene::number::sig6;
 
 /// Size of the plot without axis labels, and its left edge.
 const PLOT: (f64, f64) = (620.0, 440.0);
@@ -119,11 +119,11 @@ impl CurveChart {
             sheet,
             (
                 &self.x.name,
-                ticks(&self.x, x).map(|v| (part(v, x), six(v))),
+                ticks(&self.x, x).map(|v| (part(v, x), sig6(v))),
             ),
             (
                 &self.y.name,
-                ticks(&self.y, y).map(|v| (part(v, y), six(v))),
+                ticks(&self.y, y).map(|v| (part(v, y), sig6(v))),
             ),
         );
         let place = move |p: &(f64, f64)| axes.at(part(p.0, x), part(p.1, y));

@@ -6,7 +6,7 @@ use super::origin;
 use super::plan::{Case, Plan};
 use super::read::{AxisQuantity, Study};
 use super::result::{CaseEnd, Run};
-use stickslip_scene::number::six;
+use stickslip_scene::number::sig6;
 
 /// The chart of a study: a curve per run, over the plan's axes.
 pub fn chart(plan: &Plan, runs: &[Run]) -> CurveChart {
@@ -25,7 +25,7 @@ pub fn chart(plan: &Plan, runs: &[Run]) -> CurveChart {
                     "{} in increment {}, load {}",
                     failed.reason,
                     failed.increment,
-                    six(failed.load)
+                    sig6(failed.load)
                 )),
                 CaseEnd::Interrupted => CurveEnd::Stopped("interrupted".to_owned()),
             },
@@ -157,9 +157,9 @@ mod tests {
 
     #[test]
     fn numbers_have_six_digits() {
-        assert_eq!(six(0.1 + 0.2), "0.3");
-        assert_eq!(six(-0.0), "0");
-        assert_eq!(six(1.0 / 3.0), "0.333333");
-        assert_eq!(six(1.2e-9), "1.2e-9");
+        assert_eq!(sig6(0.1 + 0.2), "0.3");
+        assert_eq!(sig6(-0.0), "0");
+        assert_eq!(sig6(1.0 / 3.0), "0.333333");
+        assert_eq!(sig6(1.2e-9), "1.2e-9");
     }
 }

@@ -47,12 +47,11 @@ pub mod map;
 pub mod measuring;
 pub mod memory_pool;
 pub mod monitor_kind;
-pub mod one;
 pub mod origin;
 #[cfg(feature = "plot")]
 pub mod pen;
 #[cfg(not(feature = "plot"))]
-#[path = "penless.rs"]
+#[path = "pen/disabled.rs"]
 pub mod pen;
 pub mod placing;
 pub mod plan;
@@ -67,6 +66,7 @@ pub mod result;
 pub mod run;
 pub mod shard;
 pub mod sheet;
+pub mod solver_pool;
 pub mod survey;
 pub mod sweep;
 pub mod sweep_input;
@@ -74,9 +74,9 @@ pub mod trial;
 pub mod verdict;
 pub mod verdict_figure;
 
-pub use one::Watch;
 pub use plan::{Case, Plan};
 pub use read::{AxisQuantity, Study, Vary};
 pub use reason::Reason;
 pub use result::{CaseEnd, Row, Run};
 pub use run::run;
+pub use solver_pool::Watch;

@@ -233,7 +233,8 @@ impl Lines<'_> {
             }
             None if head().as_bytes().starts_with(text) => Ok(false),
             Some(line)
-                if FileKind::of(&String::from_utf8_lossy(line)) == Some(FileKind::Results) =>
+                if FileKind::from_text(&String::from_utf8_lossy(line))
+                    == Some(FileKind::Results) =>
             {
                 Err(LogError::Revision {
                     path: path.to_owned(),
@@ -493,7 +494,7 @@ mod tests {
         let path = directory.path().join("a.log");
         let (log, _) = open(&path).unwrap();
         for key in ["a", "b", "c"] {
-            log.keep(Key::of([key]), &vec![0.125, 7.0]).unwrap();
+            log.keep(Key::from_parts([key]), &vec![0.125, 7.0]).unwrap();
         }
         drop(log);
         let whole = std::fs::read_to_string(&path).unwrap();
@@ -517,12 +518,12 @@ mod tests {
     fn results_without_digests_are_read_only_before_those_with_one() {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("a.log");
-        let of = |key: &str| format!("{}\t[1.0]", Key::of([key]));
+        let of = |key: &str| format!("{}\t[1.0]", Key::from_parts([key]));
         let old = format!("{}\n{}\n{}\n", head(), of("a"), of("b"));
         std::fs::write(&path, &old).unwrap();
         let (log, found) = open(&path).unwrap();
         assert_eq!(found.results.len(), 2);
-        log.keep(Key::of(["c"]), &vec![2.0]).unwrap();
+        log.keep(Key::from_parts(["c"]), &vec![2.0]).unwrap();
         drop(log);
         let (_, found) = open(&path).unwrap();
         assert_eq!(found.results.len(), 3);
@@ -536,7 +537,7 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("a.log");
         for number in ["NaN", "-NaN"] {
-            let line = format!("{}\t[1.0,{number}]", Key::of(["a"]));
+            let line = format!("{}\t[1.0,{number}]", Key::from_parts(["a"]));
             std::fs::write(&path, format!("{}\n{line}\n", head())).unwrap();
             assert_eq!(refused(&path), (2, UNSOUND.to_owned()));
         }
@@ -548,8 +549,9 @@ mod tests {
         let path = directory.path().join("a.log");
         let (log, found) = open(&path).unwrap();
         assert!(found.results.is_empty());
-        log.keep(Key::of(["a"]), &vec![0.1, f64::INFINITY]).unwrap();
-        log.keep(Key::of(["b"]), &vec![1e-300]).unwrap();
+        log.keep(Key::from_parts(["a"]), &vec![0.1, f64::INFINITY])
+            .unwrap();
+        log.keep(Key::from_parts(["b"]), &vec![1e-300]).unwrap();
         assert!(matches!(open(&path), Err(LogError::Busy(_))));
         drop(log);
         let whole = std::fs::read(&path).unwrap();
@@ -558,11 +560,14 @@ mod tests {
             let (log, found) = open(&path).unwrap();
             let lines = whole[..cut].iter().filter(|&&b| b == b'\n').count();
             assert_eq!(found.results.len(), lines.saturating_sub(1), "cut at {cut}");
-            log.keep(Key::of(["c"]), &vec![2.0]).unwrap();
+            log.keep(Key::from_parts(["c"]), &vec![2.0]).unwrap();
             drop(log);
             let (_, found) = open(&path).unwrap();
             let last = found.results.last().unwrap();
-            assert_eq!((last.0, &last.1.value[..]), (Key::of(["c"]), &[2.0][..]));
+            assert_eq!(
+                (last.0, &last.1.value[..]),
+                (Key::from_parts(["c"]), &[2.0][..])
+            );
         }
     }
 

@@ -9,10 +9,10 @@
 use super::figure::{changes, label, name, short_names};
 use super::log::Outcome;
 use super::monitor_kind::{MonitorKind, kind};
-use super::one::{SolverPool, Watch, one};
 use super::origin;
 use super::plan::{Plan, poses};
 use super::result::{CaseEnd, Run};
+use super::solver_pool::{SolverPool, Watch, one};
 use super::sweep::Sweep;
 use super::sweep_input::Input;
 use super::verdict::RunVerdict;

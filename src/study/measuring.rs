@@ -23,17 +23,17 @@ pub enum NotMeasured {
 }
 
 /// A chart being measured; dropping it interrupts the measurement.
-pub struct Measuring {
+pub struct ChartMeasurement {
     stop: Arc<AtomicBool>,
     done: Arc<AtomicU64>,
     all: Arc<AtomicU64>,
     result: Receiver<Result<Precision, NotMeasured>>,
 }
 
-impl Measuring {
+impl ChartMeasurement {
     /// Starts to measure a scene, including its overrides: its own chart, or with `over` all combinations of
     /// those settings. Each case runs once. An invalid path or value is reported as the result.
-    pub fn start(scene: &Scene, over: Vec<Vary>) -> Measuring {
+    pub fn start(scene: &Scene, over: Vec<Vary>) -> ChartMeasurement {
         let name = scene.name.clone();
         let set: Vec<(String, String)> = scene
             .overrides()
@@ -41,7 +41,7 @@ impl Measuring {
             .collect();
         let (stop, done, all) = (Arc::default(), Arc::default(), Arc::default());
         let (sender, result) = channel();
-        let measuring = Measuring {
+        let measuring = ChartMeasurement {
             stop: Arc::clone(&stop),
             done: Arc::clone(&done),
             all: Arc::clone(&all),
@@ -96,7 +96,7 @@ impl Measuring {
     }
 }
 
-impl Drop for Measuring {
+impl Drop for ChartMeasurement {
     fn drop(&mut self) {
         self.interrupt();
     }

@@ -12,7 +12,7 @@ use stickslip_scene::memory;
 
 /// Memory in use, and the number of runs.
 #[derive(Debug, Default)]
-struct Taken {
+struct MemoryUse {
     bytes: f64,
     runs: usize,
     /// Estimates by number of unknowns, contacts and bodies.
@@ -23,7 +23,7 @@ struct Taken {
 #[derive(Debug)]
 pub struct MemoryPool {
     free: f64,
-    taken: Mutex<Taken>,
+    taken: Mutex<MemoryUse>,
     given: Condvar,
 }
 
@@ -55,7 +55,10 @@ impl MemoryPool {
         let layout = [model.dofs.len(), model.contacts.len(), model.bodies.len()];
         let known = self.taken().known.get(&layout).copied();
         let bytes = known.unwrap_or_else(|| {
-            let bytes = Estimate::of(model).with(model.settings.solver).0.bytes;
+            let bytes = Estimate::from_model(model)
+                .with(model.settings.solver)
+                .0
+                .bytes;
             self.taken().known.insert(layout, bytes);
             bytes
         });
@@ -63,7 +66,7 @@ impl MemoryPool {
     }
 
     fn wait(&self, bytes: f64) -> MemoryShare<'_> {
-        let full = |taken: &mut Taken| taken.runs > 0 && taken.bytes + bytes > self.free;
+        let full = |taken: &mut MemoryUse| taken.runs > 0 && taken.bytes + bytes > self.free;
         let taken = self.given.wait_while(self.taken(), full);
         let mut taken = taken.unwrap_or_else(|e| e.into_inner());
         taken.bytes += bytes;
@@ -71,7 +74,7 @@ impl MemoryPool {
         MemoryShare { pool: self, bytes }
     }
 
-    fn taken(&self) -> MutexGuard<'_, Taken> {
+    fn taken(&self) -> MutexGuard<'_, MemoryUse> {
         self.taken.lock().unwrap_or_else(|e| e.into_inner())
     }
 }

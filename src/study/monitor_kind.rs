@@ -1,7 +1,7 @@
 //! Kinds of monitors: those of one kind share a unit and a scale, and can be compared.
 
 use serde::{Deserialize, Serialize};
-use stickslip_core::model::{Model, ToldKind, Watched};
+use stickslip_core::model::{Model, MonitorQuantity, ToldKind};
 
 /// Kind of a monitor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -29,9 +29,9 @@ impl MonitorKind {
 }
 
 /// The kind of a monitor.
-pub fn kind(model: &Model, watched: &Watched) -> MonitorKind {
+pub fn kind(model: &Model, watched: &MonitorQuantity) -> MonitorKind {
     match watched {
-        Watched::Displacement { dof } => {
+        MonitorQuantity::Displacement { dof } => {
             // The rotation is the third unknown of a node.
             let turns = |n: usize| model.dofs.count[n] == 3 && model.dofs.first[n] + 2 == *dof;
             match (0..model.nodes.len()).any(turns) {
@@ -39,12 +39,12 @@ pub fn kind(model: &Model, watched: &Watched) -> MonitorKind {
                 false => MonitorKind::Length,
             }
         }
-        Watched::Contact { .. } | Watched::Reaction { .. } => MonitorKind::Force,
-        Watched::Modes { .. } => MonitorKind::Count,
-        Watched::Drift { .. } => MonitorKind::Drift,
-        Watched::Pressure { .. } => MonitorKind::Pressure,
-        Watched::Arc => MonitorKind::Length,
-        Watched::Told { kind, .. } => match kind {
+        MonitorQuantity::Contact { .. } | MonitorQuantity::Reaction { .. } => MonitorKind::Force,
+        MonitorQuantity::Modes { .. } => MonitorKind::Count,
+        MonitorQuantity::Drift { .. } => MonitorKind::Drift,
+        MonitorQuantity::Pressure { .. } => MonitorKind::Pressure,
+        MonitorQuantity::Arc => MonitorKind::Length,
+        MonitorQuantity::Told { kind, .. } => match kind {
             ToldKind::Length | ToldKind::Other => MonitorKind::Length,
             ToldKind::Force => MonitorKind::Force,
             ToldKind::Pressure => MonitorKind::Pressure,

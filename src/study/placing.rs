@@ -44,7 +44,7 @@ impl Patch {
 
 /// The occupied parts of a window.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Placing {
+pub struct OccupiedArea {
     window: Patch,
     taken: Vec<Patch>,
 }
@@ -61,10 +61,10 @@ const DIRECTIONS: [(f64, f64); 8] = [
     (0.0, 1.0),
 ];
 
-impl Placing {
+impl OccupiedArea {
     /// An empty window.
-    pub fn within(window: Patch) -> Placing {
-        Placing {
+    pub fn within(window: Patch) -> OccupiedArea {
+        OccupiedArea {
             window,
             taken: Vec::new(),
         }
@@ -128,7 +128,7 @@ mod tests {
             from: (0.0, 0.0),
             to: (300.0, 200.0),
         };
-        let mut placing = Placing::within(window);
+        let mut placing = OccupiedArea::within(window);
         let points: Vec<(f64, f64)> = (0..12)
             .map(|k| (20.0 + 3.0 * f64::from(k), 100.0))
             .collect();

@@ -6,9 +6,9 @@ use super::sweep::Cell;
 use super::sweep_input::digest;
 use std::sync::Arc;
 use stickslip_core::model::Model;
-use stickslip_scene::base::{Base, Place};
+use stickslip_scene::base::{Base, ScalarLocation};
 use stickslip_scene::format::error::{SceneError, did_you_mean, some_of};
-use stickslip_scene::format::paths::{self, Listed};
+use stickslip_scene::format::paths::{self, ListedScalar};
 use stickslip_scene::{Scene, increments};
 
 /// Maximum number of cells of a sweep.
@@ -39,7 +39,7 @@ pub struct Case {
     /// One value per column of the plan.
     pub values: Vec<String>,
     /// Its scene, shared with other cases.
-    of: Arc<Posed>,
+    of: Arc<SceneData>,
     /// One value per path that is set.
     set: Vec<String>,
     /// Number of increments of the history.
@@ -48,7 +48,7 @@ pub struct Case {
 
 /// Data shared by all cases of a scene.
 #[derive(Debug)]
-struct Posed {
+struct SceneData {
     /// The scene's text.
     text: Arc<str>,
     /// Key of the imported meshes, if there are any.
@@ -59,7 +59,7 @@ struct Posed {
     /// The paths that are set, in order.
     paths: Vec<String>,
     /// Location of each path in the scene; `None` if one does not exist or cannot be set in the base scene.
-    places: Option<Vec<Place>>,
+    places: Option<Vec<ScalarLocation>>,
 }
 
 impl Case {
@@ -99,7 +99,7 @@ impl Case {
     }
 
     /// The settings, by location in the scene.
-    fn placed(&self) -> Option<Vec<(&Place, &str)>> {
+    fn placed(&self) -> Option<Vec<(&ScalarLocation, &str)>> {
         let places = self.of.places.as_ref()?;
         let values = self.set.iter().map(String::as_str);
         Some(places.iter().zip(values).collect())
@@ -171,7 +171,7 @@ impl Plan {
     /// Everything that the results depend on, by name.
     pub fn input(&self) -> Vec<(String, String)> {
         let mut parts: Vec<(String, String)> = Vec::new();
-        let mut posed: Option<&Arc<Posed>> = None;
+        let mut posed: Option<&Arc<SceneData>> = None;
         for case in &self.cases {
             if posed.is_some_and(|posed| Arc::ptr_eq(posed, &case.of)) {
                 continue;
@@ -208,9 +208,9 @@ impl Plan {
             .imports()
             .then(|| digest(&format!("{:?}", scene.spec.nodes)));
         let parts = std::iter::once(scene.text.as_str()).chain(meshes.as_deref());
-        let posed = Arc::new(Posed {
+        let posed = Arc::new(SceneData {
             text: scene.text.as_str().into(),
-            key: Key::of(parts),
+            key: Key::from_parts(parts),
             meshes,
             places: set.iter().map(|(path, _)| base.find(path)).collect(),
             paths: set.iter().map(|(path, _)| path.clone()).collect(),
@@ -264,7 +264,7 @@ impl Plan {
     }
 }
 
-impl Posed {
+impl SceneData {
     fn input(&self) -> (String, String) {
         let meshes = self.meshes.as_deref().unwrap_or_default();
         let (text, name) = (digest(&self.text), &self.base.scene().name);
@@ -329,7 +329,7 @@ pub fn product(vary: &[Vary]) -> Vec<Vec<(String, String)>> {
 
 /// The value of `2x`: twice the scene's value; `None` if it is not a multiple, or the scene's value is not a
 /// number.
-fn multiple(known: &[Listed], path: &str, value: &str) -> Option<String> {
+fn multiple(known: &[ListedScalar], path: &str, value: &str) -> Option<String> {
     let factor: f64 = value.strip_suffix('x')?.parse().ok()?;
     let own = known.iter().find(|listed| listed.path == path)?;
     let product = factor * own.value.parse::<f64>().ok()?;
@@ -340,7 +340,7 @@ fn multiple(known: &[Listed], path: &str, value: &str) -> Option<String> {
 
 /// The paths of a scene that match a pattern, with `*` for any step. A pattern without a match is
 /// returned unchanged, and the scene rejects it.
-fn expanded(known: &[Listed], pattern: &str) -> Vec<String> {
+fn expanded(known: &[ListedScalar], pattern: &str) -> Vec<String> {
     let mut all: Vec<String> = Vec::new();
     if pattern.contains('*') {
         let paths = known.iter().map(|listed| &listed.path);

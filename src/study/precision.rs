@@ -13,10 +13,10 @@ use super::chart_runs::{PlannedChart, TimedRun, sweep};
 use super::csv::TableError;
 use super::figure::{assigned, name};
 use super::monitor_kind::{MonitorKind, kind};
-use super::one::Watch;
 use super::origin;
 use super::reference::{self, Reference};
 use super::result::Run;
+use super::solver_pool::Watch;
 use super::sweep::RunError;
 use std::collections::HashMap;
 use std::num::NonZeroUsize;
@@ -157,7 +157,7 @@ impl From<RunError> for PrecisionError {
 }
 
 /// A run with the data for comparison.
-struct Measured {
+struct MeasuredRun {
     point: Point,
     run: Run,
     kinds: Vec<MonitorKind>,
@@ -184,14 +184,14 @@ fn measured(
     series: usize,
     name: String,
     settings: Vec<(String, String)>,
-) -> Measured {
+) -> MeasuredRun {
     let TimedRun {
         seconds,
         repeats,
         run,
     } = timed;
     let failed = run.failed().map(|failed| {
-        let load = stickslip_scene::number::six(failed.load);
+        let load = stickslip_scene::number::sig6(failed.load);
         format!("{} at load {load}", failed.verdict)
     });
     let point = Point {
@@ -211,7 +211,7 @@ fn measured(
         reference: false,
         front: false,
     };
-    Measured {
+    MeasuredRun {
         point,
         kinds: kinds(model),
         path: model.path.clone(),
@@ -226,7 +226,7 @@ fn kinds(model: &Model) -> Vec<MonitorKind> {
 /// The reference of a chart, and the number of its run if it is one of the runs.
 fn truth(
     chart: &Chart,
-    all: &[Measured],
+    all: &[MeasuredRun],
     run: Option<TimedRun>,
 ) -> Result<(Reference, Option<usize>), PrecisionError> {
     let path = all.first().map(|m| m.path.clone()).unwrap_or_default();
@@ -257,8 +257,8 @@ fn truth(
         }
         Truth::Finest => {
             let whole =
-                |m: &&(usize, &Measured)| m.1.point.failed.is_none() && m.1.point.unsettled == 0;
-            let rank = |m: &(usize, &Measured)| {
+                |m: &&(usize, &MeasuredRun)| m.1.point.failed.is_none() && m.1.point.unsettled == 0;
+            let rank = |m: &(usize, &MeasuredRun)| {
                 (m.1.point.unknowns, m.1.point.increments, usize::MAX - m.0)
             };
             let finest = all
@@ -278,7 +278,7 @@ fn truth(
 /// Measures all errors; returns the number of loads compared.
 fn compare(
     precision: &mut Precision,
-    all: &mut [Measured],
+    all: &mut [MeasuredRun],
     reference: &Reference,
     wanted: &[String],
 ) -> Result<usize, PrecisionError> {
@@ -299,7 +299,7 @@ fn compare(
             "the reference has none of the scene's monitors ({names})"
         )));
     }
-    let curve = |m: &Measured| Reference::from_run(&m.run, String::new(), &m.path);
+    let curve = |m: &MeasuredRun| Reference::from_run(&m.run, String::new(), &m.path);
     let curves: Vec<Option<Reference>> = all
         .iter()
         .map(|m| m.point.failed.is_none().then(|| curve(m)))
@@ -397,7 +397,7 @@ impl Precision {
     ) -> Result<Precision, PrecisionError> {
         let (chart, plans) = (&planned.chart, &planned.plans);
         let mut results = results.into_iter();
-        let mut all: Vec<Measured> = Vec::new();
+        let mut all: Vec<MeasuredRun> = Vec::new();
         for (s, plan) in plans.iter().enumerate() {
             for (k, case) in plan.cases.iter().enumerate() {
                 let Some(timed) = results.next().flatten() else {
@@ -452,10 +452,10 @@ impl Precision {
         let target = self.target?;
         let meets = |point: &Point| {
             let series = &self.series[point.series];
-            let cost = stickslip_scene::number::six(self.cost.of(point));
+            let cost = stickslip_scene::number::sig6(self.cost.of(point));
             let error = point
                 .error
-                .map(stickslip_scene::number::six)
+                .map(stickslip_scene::number::sig6)
                 .unwrap_or_default();
             format!(
                 "The cheapest run with an error of at most {target:?}: {series}, {}: error {error}, {} {cost}.",

@@ -6,7 +6,7 @@
 
 use super::drawn::PlotError;
 use super::log_axis::{LogAxis, written};
-use super::placing::{Patch, Placing};
+use super::placing::{OccupiedArea, Patch};
 use super::precision::{Point, Precision, ROUND_OFF};
 use super::sheet::{Anchor, Axes, BLACK, CROSS, ENTRY, GREY, LABEL, MARGIN, SMALL, Sheet, widest};
 
@@ -79,7 +79,7 @@ fn draw(sheet: &mut Sheet, chart: &Precision) -> Result<(), PlotError> {
     };
     rail(sheet);
     axes(sheet, chart, &frame);
-    let mut taken = Placing::within(Patch {
+    let mut taken = OccupiedArea::within(Patch {
         from: (LEFT + 2.0, top - RAIL),
         to: (LEFT + PLOT.0 - 2.0, top + PLOT.1 - 2.0),
     });
@@ -127,7 +127,7 @@ fn level(
     frame: &Frame,
     error: f64,
     words: &str,
-    taken: &mut Placing,
+    taken: &mut OccupiedArea,
 ) -> Result<(), PlotError> {
     let (_, height) = frame.at(1.0, error);
     sheet.dashed(&[(LEFT, height), (LEFT + PLOT.0, height)], 1.2, GREY);
@@ -189,7 +189,7 @@ fn front(sheet: &mut Sheet, chart: &Precision, at: &dyn Fn(f64, f64) -> (f64, f6
     }
 }
 
-fn series(sheet: &mut Sheet, chart: &Precision, k: usize, frame: &Frame, taken: &mut Placing) {
+fn series(sheet: &mut Sheet, chart: &Precision, k: usize, frame: &Frame, taken: &mut OccupiedArea) {
     let own: Vec<&Point> = chart.points.iter().filter(|p| p.series == k).collect();
     let whole: Vec<(f64, f64)> = own
         .iter()
@@ -214,7 +214,7 @@ fn labels(
     sheet: &mut Sheet,
     chart: &Precision,
     frame: &Frame,
-    taken: &mut Placing,
+    taken: &mut OccupiedArea,
 ) -> Result<Vec<String>, PlotError> {
     /// Maximum distance of a label from its run, and of a number.
     const REACH: (f64, f64) = (30.0, 160.0);

@@ -66,9 +66,9 @@ stickslip_core::words! {
 }
 
 /// The random numbers of one stream.
-struct Draw(Pcg64);
+struct RandomStream(Pcg64);
 
-impl Draw {
+impl RandomStream {
     /// A number uniform in low to high, with 53 random bits.
     fn uniform(&mut self, low: f64, high: f64) -> f64 {
         let part = (self.0.next_u64() >> 11) as f64 / (1u64 << 53) as f64;
@@ -90,7 +90,7 @@ impl Draw {
 impl Population {
     /// Problem k.
     pub fn draw(&self, k: usize) -> RandomProblem {
-        let mut draw = Draw(Pcg64::new(u128::from(self.seed), k as u128));
+        let mut draw = RandomStream(Pcg64::new(u128::from(self.seed), k as u128));
         let nodes = draw.whole(&self.nodes);
         let size = 2 * nodes;
         let form = match (draw.chance(0.5), draw.chance(0.4)) {
@@ -153,7 +153,7 @@ impl Population {
 }
 
 /// A Aᵀ/n, row by row.
-fn matrix(draw: &mut Draw, size: usize, form: Form) -> Vec<Vec<f64>> {
+fn matrix(draw: &mut RandomStream, size: usize, form: Form) -> Vec<Vec<f64>> {
     let columns = match form {
         Form::Singular => size - draw.whole(&(1..=2.min(size - 1))),
         _ => size,

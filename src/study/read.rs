@@ -163,7 +163,7 @@ impl AxisQuantity {
 
 impl Study {
     /// A study of one unchanged scene, with nothing varied yet.
-    pub fn of_scene(name: &str) -> Study {
+    pub fn from_scene(name: &str) -> Study {
         Study {
             name: name.to_owned(),
             scenes: vec![name.to_owned()],
@@ -180,14 +180,14 @@ impl Study {
             return if is_study(&text) {
                 Study::from_text(name, &text)?.beside(name)
             } else {
-                Ok(Study::of_scene(name))
+                Ok(Study::from_scene(name))
             };
         }
         if let Some(builtin) = builtin::find(name) {
             return Study::from_text(builtin.name, builtin.text);
         }
         if stickslip_scene::builtin::find(name).is_some() {
-            return Ok(Study::of_scene(name));
+            return Ok(Study::from_scene(name));
         }
         Err(SceneError::whole(name, nothing_there(name)))
     }

@@ -30,7 +30,8 @@ pub enum Reason {
     /// Round-off leaves no accuracy.
     RoundOff,
     /// A damped motion did not settle.
-    Restless,
+    #[serde(rename = "Restless")]
+    NoRest,
     /// The increment jumped to a state far from the predicted one.
     Jump,
     /// The path control turned back, or its measure did not change.
@@ -52,7 +53,7 @@ stickslip_core::words! {
     NoAnswer "no-answer",
     NotFound "not-found",
     RoundOff "round-off",
-    Restless "restless",
+    NoRest "restless",
     Jump "jump",
     OffPath "off-path",
     Inverted "inverted",
@@ -71,7 +72,7 @@ impl Reason {
             Reason::Refused => 'r',
             Reason::NoAnswer | Reason::NotFound => 'n',
             Reason::RoundOff => 'r',
-            Reason::Restless => 'w',
+            Reason::NoRest => 'w',
             Reason::Jump => 'b',
             Reason::OffPath => 'p',
             Reason::Inverted => 'i',
@@ -92,9 +93,9 @@ impl From<&Failure> for Reason {
             Failure::Refused(_) => Reason::Refused,
             Failure::CutTooOften { last, .. } => Reason::from(last.as_ref()),
             Failure::NoAnswer { .. } => Reason::NoAnswer,
-            Failure::Restless { .. } => Reason::Restless,
-            Failure::Leapt { .. } => Reason::Jump,
-            Failure::DoubledBack | Failure::Unmoved => Reason::OffPath,
+            Failure::NoRest { .. } => Reason::NoRest,
+            Failure::BranchJump { .. } => Reason::Jump,
+            Failure::PathReversal | Failure::ZeroMeasure => Reason::OffPath,
             Failure::RoundOff { .. } => Reason::RoundOff,
             Failure::Inverted(_) => Reason::Inverted,
             Failure::LadderEnded { .. } | Failure::NotFound(_) | Failure::Reported { .. } => {

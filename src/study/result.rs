@@ -48,7 +48,7 @@ pub enum CaseEnd {
     /// At the end of the history.
     Finished,
     /// An increment failed.
-    Failed(Failed),
+    Failed(RunFailure),
     /// Interrupted.
     Interrupted,
     /// Interrupted before the run started.
@@ -57,7 +57,7 @@ pub enum CaseEnd {
 
 /// Where and why a run failed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Failed {
+pub struct RunFailure {
     /// Reason.
     pub reason: Reason,
     /// Verdict on the run.
@@ -110,7 +110,7 @@ impl Run {
     }
 
     /// The failure, if there is one.
-    pub fn failed(&self) -> Option<&Failed> {
+    pub fn failed(&self) -> Option<&RunFailure> {
         match &self.end {
             CaseEnd::Failed(failed) => Some(failed),
             _ => None,

@@ -1,9 +1,9 @@
 //! The cases of a plan as a sweep.
 
 use super::figure::name;
-use super::one::{SolverPool, Watch, one};
 use super::plan::Plan;
 use super::result::Run;
+use super::solver_pool::{SolverPool, Watch, one};
 use super::sweep::{RunError, Sweep};
 use super::sweep_input::Input;
 use std::num::NonZeroUsize;

@@ -25,7 +25,7 @@ impl Key {
     pub const EMPTY: Key = Key(0x6c62_272e_07bb_0142_62b8_2175_6295_c58d);
 
     /// The key of some texts, the same on every machine.
-    pub fn of<'a>(parts: impl IntoIterator<Item = &'a str>) -> Key {
+    pub fn from_parts<'a>(parts: impl IntoIterator<Item = &'a str>) -> Key {
         parts.into_iter().fold(Key::EMPTY, Key::and)
     }
 
@@ -148,7 +148,9 @@ mod tests {
     /// Fixed values: a change of these numbers makes all logs of shards invalid.
     #[test]
     fn the_hash_never_changes() {
-        let keys: Vec<Key> = (0..6).map(|k| Key::of(["cell", &k.to_string()])).collect();
+        let keys: Vec<Key> = (0..6)
+            .map(|k| Key::from_parts(["cell", &k.to_string()]))
+            .collect();
         assert_eq!(keys[0].to_string(), PLANTED_KEY);
         let of = |n: u64| keys.iter().map(move |k| 1 + k.mixed() % n);
         assert_eq!(of(40).collect::<Vec<_>>(), PLANTED_40);
@@ -162,7 +164,7 @@ mod tests {
     fn every_cell_belongs_to_one_shard_and_shards_are_of_similar_size() {
         let mut counts = [0; 40];
         for k in 0..40_000 {
-            let key = Key::of(["seed 1", &k.to_string()]);
+            let key = Key::from_parts(["seed 1", &k.to_string()]);
             let shards: Vec<u64> = (1..=40)
                 .filter(|&n| Shard::new(n, 40).unwrap().has(key.mixed()))
                 .collect();
@@ -175,8 +177,8 @@ mod tests {
 
     #[test]
     fn a_key_separates_parts_and_reads_back() {
-        assert_ne!(Key::of(["ab", "c"]), Key::of(["a", "bc"]));
-        let key = Key::of(["ab", "c"]);
+        assert_ne!(Key::from_parts(["ab", "c"]), Key::from_parts(["a", "bc"]));
+        let key = Key::from_parts(["ab", "c"]);
         assert_eq!(Key::read(&key.to_string()), Some(key));
         assert_eq!(Key::read("12"), None);
     }
@@ -187,7 +189,7 @@ mod tests {
         for wrong in ["", "3", "0/4", "5/4", "1/0", "a/4", "1/2/3", "-1/4"] {
             assert_eq!(wrong.parse::<Shard>(), Err(NoShard), "{wrong}");
         }
-        assert!(Shard::WHOLE.has(Key::of(["a"]).mixed()));
+        assert!(Shard::WHOLE.has(Key::from_parts(["a"]).mixed()));
     }
 
     #[test]

@@ -1,10 +1,10 @@
 //! Surveys: runs all random problems of a population with all variants, and counts the verdicts.
 
 use super::figure::assigned;
-use super::one::{SolverPool, Watch};
 use super::origin;
 use super::random::Population;
 use super::shard::Key;
+use super::solver_pool::{SolverPool, Watch};
 use super::sweep::{Cell, Sweep};
 use super::sweep_input::Input;
 use super::trial::{JudgedProblem, Trial, Variant, prepared, try_variants};
@@ -54,7 +54,7 @@ pub fn sweep<'a>(population: &'a Population, variants: &'a [Variant]) -> Sweep<'
     let settings: Vec<&str> = settings.collect();
     let cell = |k: usize| {
         let parts = [name.as_str(), &k.to_string()];
-        let key = Key::of(parts.into_iter().chain(settings.iter().copied()));
+        let key = Key::from_parts(parts.into_iter().chain(settings.iter().copied()));
         Cell {
             key,
             shard: key.mixed(),
@@ -136,7 +136,7 @@ impl Survey {
     /// maximum of minor iterations, and the largest violation. It has a few hundred rows, however many problems
     /// there are.
     pub fn totals(&self) -> String {
-        let mut sums: BTreeMap<Kind<'_>, Sums> = BTreeMap::new();
+        let mut sums: BTreeMap<Kind<'_>, Aggregate> = BTreeMap::new();
         for (_, judged) in self.done() {
             for (v, trial) in judged.trials.iter().enumerate() {
                 let kind = Kind {
@@ -199,14 +199,14 @@ struct Kind<'a> {
 
 /// Totals of a kind.
 #[derive(Default)]
-struct Sums {
+struct Aggregate {
     problems: usize,
     minors: u64,
     most_minors: u64,
     violation: f64,
 }
 
-impl Sums {
+impl Aggregate {
     fn add(&mut self, trial: &Trial) {
         self.problems += 1;
         self.minors += trial.minors;

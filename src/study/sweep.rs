@@ -5,8 +5,8 @@
 //! often a cell occurs in them.
 
 use super::log::{self, Disagreement, Log, LogError, Outcome, StoredResult};
-use super::one::{SolverPool, Watch};
 use super::shard::{Key, Shard};
+use super::solver_pool::{SolverPool, Watch};
 use super::sweep_input::Input;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -65,7 +65,7 @@ pub struct Sweep<'a, T> {
 
 /// Where results are stored.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Keeping {
+pub enum ResultStorage {
     /// In a file, if one is given; one shard of the cells is computed.
     Log(Option<PathBuf>, Shard),
     /// In existing files; nothing is computed.
@@ -86,7 +86,7 @@ pub struct Store<T> {
 
 /// Cells without a result.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Missing {
+pub struct MissingCells {
     /// Their numbers, from 0.
     pub cells: Vec<usize>,
     /// Their shards, each with the file that contains a part of it, if there is one.
@@ -115,7 +115,7 @@ impl<T: Outcome> Sweep<'_, T> {
     ///
     /// # Errors If the threads cannot be started, or a scene is invalid. The failure of a run is a result.
     pub fn run(&self, jobs: NonZeroUsize, watch: &Watch) -> Result<Vec<Option<T>>, RunError> {
-        let store = Store::open(&Keeping::Log(None, Shard::WHOLE), self)?;
+        let store = Store::open(&ResultStorage::Log(None, Shard::WHOLE), self)?;
         self.run_with(&store, jobs, watch)
     }
 
@@ -178,7 +178,7 @@ impl<T: Outcome> Store<T> {
     /// Opens the existing results.
     ///
     /// # Errors If a file cannot be read or written, belongs to another sweep, or contradicts another one.
-    pub fn open(keeping: &Keeping, sweep: &Sweep<'_, T>) -> Result<Store<T>, LogError> {
+    pub fn open(keeping: &ResultStorage, sweep: &Sweep<'_, T>) -> Result<Store<T>, LogError> {
         let mut store = Store {
             found: HashMap::new(),
             log: None,
@@ -187,7 +187,7 @@ impl<T: Outcome> Store<T> {
             machines: BTreeSet::new(),
         };
         match keeping {
-            Keeping::Log(path, shard) => {
+            ResultStorage::Log(path, shard) => {
                 store.shard = Some(*shard);
                 if let Some(path) = path {
                     let input = sweep.input.clone().with(*shard);
@@ -201,7 +201,7 @@ impl<T: Outcome> Store<T> {
                     store.log = Some(log);
                 }
             }
-            Keeping::Merge(paths) => store.merge(paths, sweep)?,
+            ResultStorage::Merge(paths) => store.merge(paths, sweep)?,
         }
         Ok(store)
     }
@@ -262,7 +262,7 @@ impl<T: Outcome> Store<T> {
     }
 
     /// The cells missing from merged files; `None` if complete.
-    pub fn missing(&self, cells: &[Cell]) -> Option<Missing> {
+    pub fn missing(&self, cells: &[Cell]) -> Option<MissingCells> {
         let absent: Vec<usize> = (0..cells.len()).filter(|&k| !self.has(&cells[k])).collect();
         if self.shard.is_some() || absent.is_empty() {
             return None;
@@ -274,7 +274,7 @@ impl<T: Outcome> Store<T> {
             let file = self.files.iter().find(|(_, own)| own.contains(&shard));
             Some((shard, file.map(|(path, _)| path.clone())))
         });
-        Some(Missing {
+        Some(MissingCells {
             shards: shards.collect(),
             cells: absent,
         })

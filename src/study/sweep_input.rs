@@ -80,7 +80,7 @@ impl Input {
 
 /// Digest of a text in a part, of which only equality matters.
 pub fn digest(text: &str) -> String {
-    Key::of([text]).to_string()
+    Key::from_parts([text]).to_string()
 }
 
 #[cfg(test)]

@@ -100,14 +100,14 @@ impl JudgedProblem {
 
 /// A variant, with the solution method that its settings give for all problems of a population.
 #[derive(Debug, Clone)]
-pub struct Prepared<'a> {
+pub struct PreparedVariant<'a> {
     variant: &'a Variant,
     /// `None` if the settings are not only about the method, or are invalid.
     method: Option<Method>,
 }
 
 /// Prepares variants to be tried on many problems.
-pub fn prepared(variants: &[Variant]) -> Vec<Prepared<'_>> {
+pub fn prepared(variants: &[Variant]) -> Vec<PreparedVariant<'_>> {
     // All problems share this history and these settings, and nothing else matters here.
     let common = Problem {
         title: String::new(),
@@ -122,9 +122,9 @@ pub fn prepared(variants: &[Variant]) -> Vec<Prepared<'_>> {
     let spec = common.spec();
     let prepared = |variant| {
         let settings = settings(variant);
-        Prepared {
+        PreparedVariant {
             variant,
-            method: Method::of(&spec, &settings).filter(|method| method.increments() == 1.0),
+            method: Method::from_spec(&spec, &settings).filter(|method| method.increments() == 1.0),
         }
     };
     variants.iter().map(prepared).collect()
@@ -144,7 +144,7 @@ fn settings(variant: &Variant) -> Vec<(String, String)> {
 pub fn try_variants(
     population: &Population,
     k: usize,
-    variants: &[Prepared<'_>],
+    variants: &[PreparedVariant<'_>],
     stop: &(dyn Fn() -> bool + Sync),
 ) -> Result<Option<JudgedProblem>, SceneError> {
     let RandomProblem {
@@ -161,7 +161,7 @@ pub fn try_variants(
         answers: answers(&mut stepper),
         trials: Vec::with_capacity(variants.len()),
     };
-    for Prepared { variant, method } in variants {
+    for PreparedVariant { variant, method } in variants {
         if stop() {
             return Ok(None);
         }
@@ -377,7 +377,7 @@ mod tests {
         for k in 0..population.count {
             let problem = population.draw(k).problem;
             let base = Base::new(Scene::from_spec("x", problem.spec()).unwrap());
-            for Prepared { variant, method } in &ours {
+            for PreparedVariant { variant, method } in &ours {
                 let quick = base.solved_by(method.as_ref().unwrap()).unwrap();
                 let slow = changed(base.scene(), variant);
                 assert_eq!(format!("{quick:?}"), format!("{:?}", slow.unwrap()), "{k}");
@@ -407,7 +407,7 @@ mod tests {
         });
         let problem = slider();
         let scene = Scene::from_spec("x", problem.spec()).unwrap();
-        for Prepared { variant, method } in prepared(&all) {
+        for PreparedVariant { variant, method } in prepared(&all) {
             assert!(method.is_none(), "{}", variant.name);
             assert!(changed(&scene, variant).is_err(), "{}", variant.name);
         }

@@ -1,11 +1,11 @@
 //! The state of the terminal front end and how keys change it, without drawing and without the session: a key changes the [`App`]
 //! and returns at most one [`Effect`] for the event loop to carry out.
 
-use crate::ahead::{Ahead, Typed};
 use crate::camera::Camera;
 use crate::chartpage::ChartPage;
-use crate::choosing::{Chooser, Offer, Preview};
+use crate::chooser_state::{Chooser, Offer, Preview};
 use crate::commandline::{CommandLine, Purpose};
+use crate::input_queue::{Ahead, QueuedInput};
 use crate::keys;
 use crate::layout::{Pane, ShownPanes};
 use crate::learning::Learning;
@@ -20,7 +20,7 @@ use ratatui::layout::Rect;
 use std::fmt;
 use std::time::Duration;
 use stickslip_debugger::action::{
-    Action, ChartOf, Colours, Context, Filter, Keymap, Misread, Sort, Ui,
+    Action, ChartOf, Colours, Context, Filter, Keymap, ParseError, Sort, Ui,
 };
 use stickslip_debugger::record::command::Command;
 use stickslip_debugger::teach::Tutor;
@@ -114,7 +114,7 @@ pub struct Message {
 
 /// What a file that is being loaded will show.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Opens {
+pub enum LoadTarget {
     /// Another scene, with or without a lesson.
     Scene,
     /// A page over the panes.
@@ -179,7 +179,7 @@ pub struct App {
     /// Increments done and in total of the chart that is being measured.
     pub measuring: Option<(u64, u64)>,
     /// What the file that is being loaded will show.
-    pub loading: Option<Opens>,
+    pub loading: Option<LoadTarget>,
     /// The type-ahead queue.
     pub ahead: Ahead,
     /// Whether the journal was lost.
@@ -292,7 +292,7 @@ impl App {
             "Ctrl-l" => Some(Effect::Redraw),
             "Ctrl-c" => self.interrupt(view),
             _ if awaited.is_some() || self.ahead.is_any() => {
-                self.ahead.push(Typed::Key(*key), awaited);
+                self.ahead.push(QueuedInput::Key(*key), awaited);
                 None
             }
             _ => self.take_key(key, view),
@@ -322,7 +322,7 @@ impl App {
     /// Text pasted from the terminal goes only into an open input line, since elsewhere keys are commands.
     pub fn paste(&mut self, text: &str) {
         match self.ahead.is_any() {
-            true => self.ahead.push(Typed::Paste(text.into()), None),
+            true => self.ahead.push(QueuedInput::Paste(text.into()), None),
             false => self.take_paste(text),
         }
     }
@@ -436,7 +436,7 @@ impl App {
     /// Carries out an action, or shows why it is not possible.
     pub(super) fn attempt(
         &mut self,
-        action: Result<Action, Misread>,
+        action: Result<Action, ParseError>,
         count: Option<u32>,
         view: Option<&View>,
     ) -> Option<Effect> {

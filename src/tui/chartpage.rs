@@ -41,21 +41,21 @@ impl ChartPage {
     /// If the file cannot be read.
     pub fn open(file: &str) -> Result<ChartPage, NoPage> {
         let text = precision_table::open(Path::new(file))?;
-        ChartPage::of_table(file, text)
+        ChartPage::from_table(file, text)
     }
 
     /// A page with a chart that was just measured.
     ///
     /// # Errors
     /// If the chart has no runs.
-    pub fn of_chart(chart: Precision) -> Result<ChartPage, NoPage> {
+    pub fn from_chart(chart: Precision) -> Result<ChartPage, NoPage> {
         if chart.points.is_empty() {
             return Err(NoPage::Empty);
         }
-        ChartPage::of_table("chart", precision_table::csv(&[chart]))
+        ChartPage::from_table("chart", precision_table::csv(&[chart]))
     }
 
-    fn of_table(name: &str, text: String) -> Result<ChartPage, NoPage> {
+    fn from_table(name: &str, text: String) -> Result<ChartPage, NoPage> {
         let cost = Cost::default();
         Ok(ChartPage {
             charts: precision_table::read(name, &text, cost, None)?,

@@ -1,8 +1,8 @@
 //! The debugger without its terminal: an [`App`], a session, and the queue of keys that wait for the solver. Keys in, screens out.
 
-use crate::app::{App, Effect, Opens, Overlay, TURN};
+use crate::app::{App, Effect, LoadTarget, Overlay, TURN};
 use crate::chartpage::{ChartPage, NoPage};
-use crate::choosing::{self, Looking, Offer};
+use crate::chooser_state::{self, Offer, PreviewLoader};
 use crate::keys;
 use crate::layout::Pane;
 use crate::learning::Learning;
@@ -22,10 +22,10 @@ use stickslip_debugger::explain::report;
 use stickslip_debugger::record::command::Command;
 use stickslip_debugger::recorded::calculix::words::GREETING;
 use stickslip_debugger::session::{Reply, Session};
-use stickslip_debugger::teach::progress::{self, Keeper, Progress};
+use stickslip_debugger::teach::progress::{self, Progress, ProgressStore};
 use stickslip_debugger::teach::{Lesson, Tutor};
 use stickslip_scene::{gaps, shown};
-use stickslip_study::measuring::Measuring;
+use stickslip_study::measuring::ChartMeasurement;
 
 /// Steps shorter than this delay the next key instead of queueing it, so that the screen does not flicker.
 const QUICK: Duration = Duration::from_millis(30);
@@ -33,7 +33,7 @@ const QUICK: Duration = Duration::from_millis(30);
 /// The entries of the chooser, with the progress in the lessons.
 pub fn offers() -> Vec<Offer> {
     let progress = progress::place().and_then(|file| Progress::read(&file).ok());
-    choosing::offers(&progress.unwrap_or_default())
+    chooser_state::offers(&progress.unwrap_or_default())
 }
 
 /// A request that only the event loop can carry out.
@@ -66,13 +66,13 @@ pub struct Debugger {
     /// Whether scenes opened here get a journal.
     pub(super) keeps: bool,
     /// The chart that is being measured.
-    measuring: Option<Measuring>,
+    measuring: Option<ChartMeasurement>,
     /// The file that is being loaded.
     pub(super) loading: Option<Loading>,
     /// The preview that is being loaded.
-    pub(super) looking: Looking,
+    pub(super) looking: PreviewLoader,
     /// Stores the progress in lessons.
-    progress: Keeper,
+    progress: ProgressStore,
     /// Whether the chooser's entries are listed again, with the files of the folder, each time it opens.
     lists: bool,
 }
@@ -94,21 +94,21 @@ impl Debugger {
             keeps: false,
             measuring: None,
             loading: None,
-            looking: Looking::default(),
-            progress: Keeper::default(),
+            looking: PreviewLoader::default(),
+            progress: ProgressStore::default(),
             lists: false,
         }
     }
 
     /// From now on stores the progress in lessons, and lists the files of the folder in the chooser.
     pub(super) fn use_user_files(&mut self) {
-        self.progress = Keeper::new(progress::place());
+        self.progress = ProgressStore::new(progress::place());
         self.lists = true;
     }
 
     /// Stores the progress in lessons in this file.
     pub fn keep_progress_in(&mut self, file: PathBuf) {
-        self.progress = Keeper::new(Some(file));
+        self.progress = ProgressStore::new(Some(file));
     }
 
     fn keep_progress(&mut self) {
@@ -206,9 +206,9 @@ impl Debugger {
             Effect::Mouse(on) => return Some(TerminalRequest::Mouse(on)),
             Effect::Submit(command) => self.submit(command),
             Effect::Interrupt => self.interrupt(),
-            Effect::Open(scene) => self.load(Loading::scene(&scene), Opens::Scene, &scene),
+            Effect::Open(scene) => self.load(Loading::scene(&scene), LoadTarget::Scene, &scene),
             Effect::Chart(of) => self.chart(of),
-            Effect::Lesson(name) => self.load(Loading::lesson(&name), Opens::Scene, &name),
+            Effect::Lesson(name) => self.load(Loading::lesson(&name), LoadTarget::Scene, &name),
         }
         None
     }
@@ -231,7 +231,7 @@ impl Debugger {
         any
     }
 
-    fn load(&mut self, loading: Loading, opens: Opens, name: &str) {
+    fn load(&mut self, loading: Loading, opens: LoadTarget, name: &str) {
         self.loading = Some(loading);
         self.app.loading = Some(opens);
         self.app.say(format!("loading {name}; Ctrl-C cancels"));
@@ -420,7 +420,9 @@ impl Debugger {
 
     fn chart(&mut self, of: ChartOf) {
         let over = match of {
-            ChartOf::File(file) => return self.load(Loading::chart(&file), Opens::Page, &file),
+            ChartOf::File(file) => {
+                return self.load(Loading::chart(&file), LoadTarget::Page, &file);
+            }
             ChartOf::Scene => Vec::new(),
             ChartOf::Settings(over) => over,
         };
@@ -429,7 +431,7 @@ impl Debugger {
                 .app
                 .complain("no scene to measure; open one with :open");
         };
-        let measuring = Measuring::start(session.scene(), over);
+        let measuring = ChartMeasurement::start(session.scene(), over);
         self.app.measuring = Some(measuring.progress());
         self.measuring = Some(measuring);
         self.app
@@ -459,7 +461,7 @@ impl Debugger {
         (self.measuring, self.app.measuring) = (None, None);
         self.app.say("");
         let page = result.map_err(|why| NoPage::from(Box::new(why)));
-        self.show_chart(page.and_then(ChartPage::of_chart));
+        self.show_chart(page.and_then(ChartPage::from_chart));
         true
     }
 
@@ -485,7 +487,7 @@ impl Debugger {
     fn open(&mut self, mut session: Session) {
         let resumed = session.journal().path().is_some();
         // A resumed journal continues on its own.
-        if self.keeps && !resumed && session.connection().offers().past.is_none() {
+        if self.keeps && !resumed && session.connection().capabilities().past.is_none() {
             session.journal_mut().write_to_default_path();
         }
         self.app.opened();

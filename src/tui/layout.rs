@@ -155,7 +155,7 @@ pub struct Choice {
 
 /// The areas of a screen.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Places {
+pub struct ScreenAreas {
     /// The lines at the top.
     pub status: Rect,
     /// The visible panes and their areas.
@@ -199,7 +199,7 @@ const LONGEST_TIMELINE: usize = 6;
 const ROOM_FOR_TIMELINE: u16 = 50;
 
 /// Computes the layout.
-pub fn places(area: Rect, choice: &Choice) -> Places {
+pub fn places(area: Rect, choice: &Choice) -> ScreenAreas {
     let status = match area.height {
         0..=5 => 1.min(area.height),
         6..=15 => 2,
@@ -232,7 +232,7 @@ pub fn places(area: Rect, choice: &Choice) -> Places {
         .filter(|(pane, _)| *pane != Pane::Lesson)
         .count();
     let paged = listed < 4 && !choice.panes.zoomed;
-    Places {
+    ScreenAreas {
         status,
         panes,
         message,
@@ -426,7 +426,7 @@ fn large(body: Rect, choice: &Choice) -> Vec<(Pane, Rect)> {
 mod tests {
     use super::*;
 
-    fn at(width: u16, height: u16, slaves: usize) -> Places {
+    fn at(width: u16, height: u16, slaves: usize) -> ScreenAreas {
         let choice = Choice {
             panes: ShownPanes::default(),
             slaves,

@@ -2,9 +2,9 @@
 //! continues only after all of its text has been shown.
 
 use crate::view::View;
-use stickslip_debugger::action::{Action, Whose};
+use stickslip_debugger::action::{Action, HiddenDecisions};
 use stickslip_debugger::recorded::calculix::words::{NO_MODES, READ_ONLY};
-use stickslip_debugger::teach::refusal::NotNow;
+use stickslip_debugger::teach::refusal::LessonRefusal;
 use stickslip_debugger::teach::{Guess, Tutor};
 
 /// How far the current lesson page has been read.
@@ -79,7 +79,11 @@ impl Learning {
     }
 
     /// Switches prediction mode.
-    pub(super) fn predict(&mut self, whose: Option<Whose>, view: &View) -> Result<String, String> {
+    pub(super) fn predict(
+        &mut self,
+        whose: Option<HiddenDecisions>,
+        view: &View,
+    ) -> Result<String, String> {
         if view.model.finished.is_some() {
             return Err(format!("{READ_ONLY}: {NO_MODES}"));
         }
@@ -91,15 +95,15 @@ impl Learning {
             return Err("prediction mode is off in lessons, which ask their own questions".into());
         }
         let toggled = match self.guess {
-            Some(_) => Whose::Off,
-            None => Whose::Selected,
+            Some(_) => HiddenDecisions::Off,
+            None => HiddenDecisions::Selected,
         };
         match (whose.unwrap_or(toggled), self.guess.take()) {
-            (Whose::Off, Some(guess)) => Ok(format!(
+            (HiddenDecisions::Off, Some(guess)) => Ok(format!(
                 "predicted: {} right, {} wrong",
                 guess.right, guess.wrong
             )),
-            (Whose::Off, None) => Err("prediction mode is off".into()),
+            (HiddenDecisions::Off, None) => Err("prediction mode is off".into()),
             (whose, _) => {
                 self.guess = Some(Guess::new(whose, view.cursor));
                 Ok(
@@ -116,7 +120,7 @@ impl Learning {
         action: &Action,
         view: &View,
         visible: Option<VisibleLines>,
-    ) -> Result<bool, NotNow> {
+    ) -> Result<bool, LessonRefusal> {
         let continues = |tutor: &Tutor| tutor.wants(action);
         if self.guess.is_none() && self.lesson.as_ref().is_some_and(continues) {
             self.check_read(visible)?;
@@ -191,9 +195,9 @@ impl Learning {
     }
 
     /// Rejects actions that continue the lesson until its text has been shown.
-    pub(super) fn check_read(&self, visible: Option<VisibleLines>) -> Result<(), NotNow> {
+    pub(super) fn check_read(&self, visible: Option<VisibleLines>) -> Result<(), LessonRefusal> {
         match self.is_unread(visible) {
-            true => Err(NotNow::Unread),
+            true => Err(LessonRefusal::Unread),
             false => Ok(()),
         }
     }

@@ -6,7 +6,7 @@ use crate::learning::VisibleLines;
 use crate::panes::lesson;
 use crate::screen;
 use crate::view::View;
-use stickslip_debugger::action::Whose;
+use stickslip_debugger::action::HiddenDecisions;
 
 const NO_LESSON: &str = "no lesson is open; press L to start one";
 
@@ -56,7 +56,7 @@ impl App {
     }
 
     /// Switches prediction mode.
-    pub(super) fn predict(&mut self, whose: Option<Whose>, view: Option<&View>) {
+    pub(super) fn predict(&mut self, whose: Option<HiddenDecisions>, view: Option<&View>) {
         let switched = match view {
             Some(view) => self.learning.predict(whose, view),
             None => Err("open a scene first".into()),

@@ -7,7 +7,6 @@
 
 #![forbid(unsafe_code)]
 
-pub mod ahead;
 pub mod app;
 mod background;
 pub mod camera;
@@ -15,12 +14,13 @@ pub mod canvas;
 pub mod cast;
 pub mod chartframe;
 pub mod chartpage;
-pub mod choosing;
+pub mod chooser_state;
 pub mod columns;
 pub mod commandline;
 pub mod convergence;
 mod copying;
 pub mod debugger;
+pub mod input_queue;
 pub mod keys;
 pub mod layout;
 pub mod learning;

@@ -6,11 +6,11 @@ use crate::screen;
 use crate::view::View;
 use stickslip_debugger::action::{Page, Step};
 use stickslip_debugger::explain::page::DiagnosisPage;
-use stickslip_debugger::explain::remedies::Trial;
-use stickslip_debugger::explain::remedy::How;
+use stickslip_debugger::explain::remedies::RemedyTrial;
+use stickslip_debugger::explain::remedy::RemedyInput;
 use stickslip_debugger::explain::try_list::TryOutcome;
 use stickslip_debugger::history::verdicts::{self, summaries};
-use stickslip_debugger::record::command::{Command, To};
+use stickslip_debugger::record::command::{BranchTarget, Command};
 
 impl App {
     /// Shows the curve of a monitor, or of the next one.
@@ -90,7 +90,7 @@ impl App {
         let line = page.tries.get(self.answer.min(page.tries.len() - 1))?;
         let label = &line.label;
         match &line.trial {
-            Some(trial) if !matches!(trial.how, How::Restart(_)) => {
+            Some(trial) if !matches!(trial.how, RemedyInput::Restart(_)) => {
                 return follow(self, trial, view);
             }
             _ if line.typed.starts_with("--set") && line.outcome != TryOutcome::Untried => {
@@ -122,7 +122,7 @@ impl App {
     pub(super) fn go_to_branch(&mut self, view: Option<&View>) -> Option<Effect> {
         let all = summaries(view?.tree?);
         let (branch, _) = *verdicts::order(&all).get(self.branch)?;
-        let to = To::Named(format!("b{}", branch + 1));
+        let to = BranchTarget::Named(format!("b{}", branch + 1));
         self.submit(Command::Branch(to), view)
     }
 
@@ -161,7 +161,7 @@ impl App {
             });
             return None;
         }
-        if let How::Restart(_) = &trial.how {
+        if let RemedyInput::Restart(_) = &trial.how {
             let option = trial.how.typed();
             self.complain(format!(
                 "{} changes the scene: restart with {option}",
@@ -267,7 +267,7 @@ impl App {
 }
 
 /// Repeats a trial in a branch.
-fn follow(app: &mut App, trial: &Trial, view: Option<&View>) -> Option<Effect> {
+fn follow(app: &mut App, trial: &RemedyTrial, view: Option<&View>) -> Option<Effect> {
     app.panes.zoomed = false;
     let (label, steps) = (trial.label.clone(), trial.steps.clone());
     app.submit(Command::Follow { label, steps }, view)

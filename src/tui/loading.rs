@@ -30,7 +30,7 @@ impl Loading {
         let name = name.to_owned();
         Loading::start(move || {
             let path = Path::new(&name);
-            let session = match FileKind::of_file(path) {
+            let session = match FileKind::from_file(path) {
                 Some(FileKind::Journal) => resumed(path).map_err(|why| why.to_string()),
                 _ => Session::open(&name),
             };

@@ -1,7 +1,7 @@
 //! Mouse input: a click selects, the wheel scrolls. Every mouse action has a key.
 
-use crate::ahead::Typed;
 use crate::app::{App, Effect, Overlay};
+use crate::input_queue::QueuedInput;
 use crate::layout::Pane;
 use crate::panes::{branches, nodes, remedies, shape, timeline};
 use crate::screen;
@@ -63,7 +63,7 @@ impl App {
         match self.awaits(&action, Some(view)) {
             _ if self.ahead.is_any() => None,
             Some(awaited) => {
-                let line = Typed::Line(format!("goto {step}"));
+                let line = QueuedInput::Line(format!("goto {step}"));
                 self.ahead.push(line, Some(awaited));
                 None
             }

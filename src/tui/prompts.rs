@@ -1,9 +1,9 @@
 //! Prompts and pages that receive keys before the panes: questions, lists and the input line.
 
-use crate::ahead::Typed;
 use crate::app::{App, Effect, Overlay, PAGE};
-use crate::choosing::{Chooser, Group};
+use crate::chooser_state::{Chooser, Group};
 use crate::commandline::Purpose;
+use crate::input_queue::QueuedInput;
 use crate::screen;
 use crate::scroll::scrolled;
 use crate::theme;
@@ -196,7 +196,8 @@ impl App {
         let scenes = self.scenes();
         let action = action::parse(line, &self.context(view, &scenes));
         if let Some(awaited) = action.as_ref().ok().and_then(|a| self.awaits(a, view)) {
-            self.ahead.push(Typed::Line(line.into()), Some(awaited));
+            self.ahead
+                .push(QueuedInput::Line(line.into()), Some(awaited));
             return None;
         }
         self.attempt(action, None, view)

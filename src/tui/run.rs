@@ -12,7 +12,7 @@ use std::io::{self, IsTerminal};
 use std::time::{Duration, Instant};
 use stickslip_debugger::action::Colours;
 use stickslip_debugger::action::config::Config;
-use stickslip_debugger::record::journal::{JournalError, Keep};
+use stickslip_debugger::record::journal::{JournalError, JournalTarget};
 use stickslip_debugger::session::Session;
 use stickslip_debugger::teach::Lesson;
 use stickslip_scene::Scene;
@@ -46,7 +46,7 @@ pub enum Error {
 pub fn run(
     scene: Option<String>,
     overrides: &[(String, String)],
-    journal: &Keep,
+    journal: &JournalTarget,
 ) -> Result<(), Error> {
     let session = match scene {
         Some(scene) => {
@@ -56,7 +56,7 @@ pub fn run(
         }
         None => None,
     };
-    go(session, *journal != Keep::Nowhere, None)
+    go(session, *journal != JournalTarget::Nowhere, None)
 }
 
 /// Continues a session, and shows a message first.
@@ -117,7 +117,7 @@ fn configured(config: Config, session: Option<Session>) -> Debugger {
 fn run_on(mut debugger: Debugger) -> Result<(), Error> {
     let signals = Signals::listen()?;
     let ended = Terminal::enter().and_then(|mut terminal| {
-        terminal.heed_mouse(debugger.app.mouse)?;
+        terminal.set_mouse(debugger.app.mouse)?;
         if debugger.app.finds_colours {
             terminal.ask_background()?;
         }
@@ -252,7 +252,7 @@ fn obey(
         }
         TerminalRequest::Redraw => terminal.forget()?,
         TerminalRequest::Copy(text) => terminal.copy(&text)?,
-        TerminalRequest::Mouse(on) => terminal.heed_mouse(on)?,
+        TerminalRequest::Mouse(on) => terminal.set_mouse(on)?,
     }
     Ok(false)
 }

@@ -1,8 +1,8 @@
 //! Draws the whole screen.
 
 use crate::app::{App, Overlay};
-use crate::choosing::Preview;
-use crate::layout::{self, Choice, Pane, Places};
+use crate::chooser_state::Preview;
+use crate::layout::{self, Choice, Pane, ScreenAreas};
 use crate::paint;
 use crate::panes::branches;
 use crate::panes::chooser;
@@ -32,7 +32,7 @@ use stickslip_debugger::session::Session;
 use stickslip_scene::shown;
 
 /// The area that a page over the panes covers.
-pub fn body(places: &Places, view: Option<&View>) -> Rect {
+pub fn body(places: &ScreenAreas, view: Option<&View>) -> Rect {
     let areas = places.panes.iter().map(|pane| pane.1);
     let body = areas.reduce(Rect::union).unwrap_or_default();
     match view {
@@ -80,7 +80,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: Option<&View>) {
 }
 
 /// The layout for a screen of this size.
-pub fn places(app: &App, view: Option<&View>, area: Rect) -> Places {
+pub fn places(app: &App, view: Option<&View>, area: Rect) -> ScreenAreas {
     let rows = view.map_or(0, |_| lesson::rows(app, area.width));
     let model = view.map(|view| view.model);
     let choice = Choice {

@@ -40,18 +40,18 @@ static MOUSE: AtomicBool = AtomicBool::new(false);
 static PANIC: Mutex<Option<String>> = Mutex::new(None);
 
 /// Enables reports of clicks and the wheel, with positions of any size. Crossterm's own command also enables motion reports.
-struct HeedMouse;
+struct EnableMouse;
 
-impl crossterm::Command for HeedMouse {
+impl crossterm::Command for EnableMouse {
     fn write_ansi(&self, f: &mut impl fmt::Write) -> fmt::Result {
         f.write_str("\x1b[?1000h\x1b[?1006h")
     }
 }
 
 /// Disables mouse reports.
-struct LeaveMouse;
+struct DisableMouse;
 
-impl crossterm::Command for LeaveMouse {
+impl crossterm::Command for DisableMouse {
     fn write_ansi(&self, f: &mut impl fmt::Write) -> fmt::Result {
         f.write_str("\x1b[?1006l\x1b[?1000l")
     }
@@ -98,11 +98,11 @@ impl Terminal {
     }
 
     /// Turns mouse reports on or off.
-    pub fn heed_mouse(&mut self, on: bool) -> io::Result<()> {
+    pub fn set_mouse(&mut self, on: bool) -> io::Result<()> {
         MOUSE.store(on, Ordering::SeqCst);
         match on {
-            true => execute!(stdout(), HeedMouse),
-            false => execute!(stdout(), LeaveMouse),
+            true => execute!(stdout(), EnableMouse),
+            false => execute!(stdout(), DisableMouse),
         }
     }
 
@@ -214,7 +214,7 @@ fn enter() -> io::Result<()> {
     read_without_waiting()?;
     execute!(stdout(), EnterAlternateScreen, EnableBracketedPaste, Hide)?;
     match MOUSE.load(Ordering::SeqCst) {
-        true => execute!(stdout(), HeedMouse),
+        true => execute!(stdout(), EnableMouse),
         false => Ok(()),
     }
 }
@@ -233,7 +233,7 @@ fn leave() {
     let _ = execute!(
         stdout(),
         EndSynchronizedUpdate,
-        LeaveMouse,
+        DisableMouse,
         DisableBracketedPaste,
         LeaveAlternateScreen,
         Show

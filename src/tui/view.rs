@@ -3,15 +3,15 @@
 use stickslip_core::contact::record::{ContactRecord, Forced};
 use stickslip_core::fem::deformation::PointDeformation;
 use stickslip_core::linear::norms::Norms;
-use stickslip_core::model::{Mode, Model, Monitor, Watched};
+use stickslip_core::model::{Mode, Model, Monitor, MonitorQuantity};
 use stickslip_core::step::event::{Event, Outcome, Position};
 use stickslip_core::step::intervene::Intervention;
-use stickslip_core::step::solver::Offers;
+use stickslip_core::step::solver::Capabilities;
 use stickslip_debugger::action::Context;
 use stickslip_debugger::explain::influence::NodePush;
 use stickslip_debugger::explain::outline;
 use stickslip_debugger::explain::page::DiagnosisPage;
-use stickslip_debugger::explain::remedies::Trial;
+use stickslip_debugger::explain::remedies::RemedyTrial;
 use stickslip_debugger::explain::round_off::RoundOff;
 use stickslip_debugger::history::frame::Frame;
 use stickslip_debugger::history::strip::Strip;
@@ -58,7 +58,7 @@ pub struct View<'a> {
 #[derive(Debug, Clone, Copy)]
 pub struct AttachedSolver<'a> {
     /// Its capabilities.
-    pub offers: &'a Offers,
+    pub offers: &'a Capabilities,
     /// Its log.
     pub log: &'a Log,
     /// Whether it was lost; the next step restarts it.
@@ -80,7 +80,7 @@ impl<'a> View<'a> {
             background: Some(session.background()),
             start_gaps: session.start_gaps(),
             attached: session.connection().log().map(|log| AttachedSolver {
-                offers: session.connection().offers(),
+                offers: session.connection().capabilities(),
                 log,
                 lost: session.connection().lost().is_some(),
                 again: session.connection().repeats(),
@@ -111,7 +111,7 @@ impl<'a> View<'a> {
     }
 
     /// The remedies tried so far.
-    pub fn trials(&self) -> &'a [Trial] {
+    pub fn trials(&self) -> &'a [RemedyTrial] {
         let tried = self.background.and_then(Background::tried);
         tried.map_or(&[][..], |tried| &tried.trials)
     }
@@ -244,11 +244,11 @@ impl<'a> View<'a> {
         self.attached.is_some() && (value.is_nan() || value == f64::INFINITY)
     }
 
-    /// A value as a table cell ([`number::cell`]); a dash if an attached solver does not report it.
+    /// A value as a table cell ([`number::fixed_width`]); a dash if an attached solver does not report it.
     pub fn cell(&self, value: f64, width: usize) -> String {
         match self.is_absent(value) {
             true => shown::padded(&format!(" {}", number::UNREPORTED), width),
-            false => number::cell(value, width),
+            false => number::fixed_width(value, width),
         }
     }
 
@@ -270,8 +270,8 @@ impl<'a> View<'a> {
     pub fn noise(&self, monitor: &Monitor) -> f64 {
         let round_off = self.round_off();
         match monitor.of {
-            Watched::Displacement { .. } => round_off.length,
-            Watched::Contact { .. } | Watched::Reaction { .. } => round_off.force,
+            MonitorQuantity::Displacement { .. } => round_off.length,
+            MonitorQuantity::Contact { .. } | MonitorQuantity::Reaction { .. } => round_off.force,
             _ => 0.0,
         }
     }

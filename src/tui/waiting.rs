@@ -1,7 +1,7 @@
 //! Decides which keys and lines are queued while the session is busy, and handles the queue.
 
-use crate::ahead::{Awaited, Typed};
-use crate::app::{App, Effect, Opens, Overlay};
+use crate::app::{App, Effect, LoadTarget, Overlay};
+use crate::input_queue::{QueuedInput, WaitReason};
 use crate::keys;
 use crate::layout::Pane;
 use crate::view::View;
@@ -9,23 +9,23 @@ use stickslip_debugger::action::{Action, Page, Step, Ui};
 
 impl App {
     /// What every key waits for, whatever its action: a page that is about to open is meant to receive it.
-    pub(super) fn awaits_all(&self) -> Option<Awaited> {
+    pub(super) fn awaits_all(&self) -> Option<WaitReason> {
         let replaced = match (self.loading, &self.overlay) {
-            (Some(Opens::Page), _) => true,
-            (Some(Opens::Scene), overlay) => matches!(overlay, Overlay::Chooser(_)),
+            (Some(LoadTarget::Page), _) => true,
+            (Some(LoadTarget::Scene), overlay) => matches!(overlay, Overlay::Chooser(_)),
             (None, _) => false,
         };
-        replaced.then_some(Awaited::Reading)
+        replaced.then_some(WaitReason::Reading)
     }
 
     /// What an action waits for now; `None` if it can be carried out at once.
-    pub(super) fn awaits(&self, action: &Action, view: Option<&View>) -> Option<Awaited> {
+    pub(super) fn awaits(&self, action: &Action, view: Option<&View>) -> Option<WaitReason> {
         if self.loading.is_some() && !action.outlives_the_scene() {
-            return Some(Awaited::Reading);
+            return Some(WaitReason::Reading);
         }
         let view = view?;
         if view.running && (action.asks() || self.goes_along(action)) {
-            return Some(Awaited::Run);
+            return Some(WaitReason::Run);
         }
         let chooses = matches!(action, Action::Ui(Ui::Move(_) | Ui::Repeat));
         let remedies = match action {
@@ -35,12 +35,12 @@ impl App {
             _ => chooses && self.panes.focus == Pane::Remedies,
         };
         if view.is_trying() && remedies {
-            return Some(Awaited::Trying);
+            return Some(WaitReason::Trying);
         }
         let finding = matches!(view.examination(), Some(None));
         let diagnosis = matches!(action, Action::Ui(Ui::StartFrom(_)))
             || (chooses && self.panes.focus == Pane::Diagnosis);
-        (finding && diagnosis).then_some(Awaited::Finding)
+        (finding && diagnosis).then_some(WaitReason::Finding)
     }
 
     /// Whether an action moves along the timeline, which the session does.
@@ -50,11 +50,11 @@ impl App {
     }
 
     /// Queues a bound key after its count.
-    pub(super) fn put_off_key(&mut self, name: &str, count: Option<u32>, awaited: Awaited) {
+    pub(super) fn put_off_key(&mut self, name: &str, count: Option<u32>, awaited: WaitReason) {
         let digits = count.map_or(String::new(), |count| count.to_string());
         let names = digits.chars().map(String::from).chain([name.to_owned()]);
         for key in names.filter_map(|name| keys::press(&name)) {
-            self.ahead.push(Typed::Key(key), Some(awaited));
+            self.ahead.push(QueuedInput::Key(key), Some(awaited));
         }
     }
 
@@ -66,9 +66,9 @@ impl App {
         let (first, rest) = self.ahead.take_first()?;
         let said = self.message.clone();
         let effect = match first {
-            Typed::Key(key) => self.take_key(&key, view),
-            Typed::Line(line) => self.take_line(&line, view),
-            Typed::Paste(text) => {
+            QueuedInput::Key(key) => self.take_key(&key, view),
+            QueuedInput::Line(line) => self.take_line(&line, view),
+            QueuedInput::Paste(text) => {
                 self.take_paste(&text);
                 None
             }

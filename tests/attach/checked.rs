@@ -215,7 +215,7 @@ fn a_check_keeps_the_exchange_of_every_start_in_the_file_that_is_named() {
     // On a busy machine answers are slow, which is a finding.
     assert!(code(&output) < 2, "{}", err(&output));
     let text = std::fs::read_to_string(folder.path().join("kept.exchange")).unwrap();
-    let lines = stickslip_exchange::attach::Kept::read(&text).unwrap();
+    let lines = stickslip_exchange::attach::TranscriptLine::read(&text).unwrap();
     let started = lines
         .iter()
         .filter(|kept| kept.text.starts_with("started: "));

@@ -6,7 +6,7 @@ use libtest_mimic::Trial;
 use std::path::Path;
 use stickslip::attach::Attached;
 use stickslip::history::verdicts::summaries;
-use stickslip::record::command::{Command, To};
+use stickslip::record::command::{BranchTarget, Command};
 use stickslip::recorded::{exchange, log::Log};
 use stickslip::session::Session;
 
@@ -54,7 +54,7 @@ fn a_kept_exchange_has_every_branch_with_the_same_states() {
             ways.push(read.frames().iter().map(seen).collect::<Vec<_>>());
         }
         for branch in 1..=summaries(session.timeline().tree()).len() {
-            does(&mut session, Command::Branch(To::Next));
+            does(&mut session, Command::Branch(BranchTarget::Next));
             let frames = session.frames();
             let own: Vec<String> = frames.iter().map(seen).collect();
             // Changes at its end were not told to the solver.

@@ -9,7 +9,7 @@ use stickslip::attach::{Attached, Start};
 use stickslip::history::frame::Frame;
 use stickslip::history::verdicts::summaries;
 use stickslip::model::Mode;
-use stickslip::record::command::{Command, To, Unit};
+use stickslip::record::command::{BranchTarget, Command, Unit};
 use stickslip::recorded::log::Log;
 use stickslip::scene::builtin;
 use stickslip::session::Session;
@@ -172,7 +172,7 @@ pub fn script() -> Vec<Command> {
         Command::Goto { step: 2 },
         force(Mode::Fixed, false),
         forward(Unit::Minor, 4),
-        Command::Branch(To::Next),
+        Command::Branch(BranchTarget::Next),
         back(Unit::Increment, 1),
         set("settings.majors", "7"),
         forward(Unit::Increment, 1),

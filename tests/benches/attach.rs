@@ -15,8 +15,8 @@ use stickslip::recorded::log::Log;
 use stickslip::session::Session;
 use stickslip::step::Solver;
 use stickslip_exchange::attach::message::{
-    Abilities, Contact, Ended, Found, Friction, Hello, Id, Node, Norms, Position, Restore, Scene,
-    State, Surface,
+    Abilities, Contact, ContactResult, EndedLevel, Friction, Hello, Id, Node, NormsMessage,
+    Position, Restore, Scene, State, SurfaceMessage,
 };
 use stickslip_exchange::attach::{Answer, PROTOCOL, Request};
 
@@ -232,7 +232,7 @@ fn scene(contacts: usize) -> Scene {
         about: String::new(),
         nodes,
         lines: vec![(0..contacts).collect()],
-        surfaces: vec![Surface {
+        surfaces: vec![SurfaceMessage {
             name: "floor".into(),
             nodes: vec![contacts, contacts + 1],
             rigid: true,
@@ -255,7 +255,7 @@ fn states(contacts: usize) -> Vec<Answer> {
 fn state(contacts: usize, n: usize) -> State {
     let mode = |k: usize, n: usize| [Mode::Free, Mode::Fixed, Mode::Sliding][(k + n) % 3];
     let number = |k: usize, of: f64| ((k * STATES + n) as f64 + of).sin() / 3.0;
-    let found = |k: usize| Found {
+    let found = |k: usize| ContactResult {
         id: Id::Number(k as i64),
         mode: mode(k, n),
         next: mode(k, n + 1),
@@ -285,13 +285,13 @@ fn state(contacts: usize, n: usize) -> State {
             minor: u32::try_from(n + 1).expect("few"),
         },
         load: Some(1.0),
-        ended: Ended::Iteration,
+        ended: EndedLevel::Iteration,
         reason: String::new(),
         size: None,
         contacts: (0..contacts).map(found).collect(),
-        residual: Norms {
+        residual: NormsMessage {
             relative: Some(0.1),
-            ..Norms::default()
+            ..NormsMessage::default()
         },
         after: None,
         displacements: Some(

@@ -83,7 +83,7 @@ fn bench(strategy: &str, which: &[usize], limit: f64) {
                     break;
                 }
                 Outcome::Increment { last, .. } => end = last,
-                Outcome::Climbed { to, .. } => climbed.push(format!(
+                Outcome::StrategyChange { to, .. } => climbed.push(format!(
                     "{} at {:.1} s",
                     to.name(),
                     from.elapsed().as_secs_f64()

@@ -8,7 +8,7 @@
 
 use std::sync::Arc;
 use std::time::Instant;
-use stickslip::contact::judge::{Judge, Seen};
+use stickslip::contact::judge::{Judge, JudgedState};
 use stickslip::contact::laws::Scales;
 use stickslip::fem::deformation::deformation;
 use stickslip::linear::estimate::Estimate;
@@ -62,7 +62,7 @@ fn row(name: &str, set: &[(&str, &str)]) {
         let nodes = &state.start.nodes;
         let forces: Vec<_> = nodes.iter().map(|node| node.force()).collect();
         let nothing = vec![0.0; forces.len()];
-        let seen = Seen {
+        let seen = JudgedState {
             surfaces: &model.surfaces,
             contacts: &model.contacts,
             friction: &state.controls.friction,
@@ -106,7 +106,7 @@ fn row(name: &str, set: &[(&str, &str)]) {
         100.0 * judged / run,
         100.0 * strained / run,
         look * majors / run,
-        Estimate::of(&model).stability,
+        Estimate::from_model(&model).stability,
         100.0 * f64::from(looks) * look / run
     );
 }

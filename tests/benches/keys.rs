@@ -12,7 +12,7 @@ use std::fs;
 use std::time::Instant;
 use stickslip::model::Mode;
 use stickslip::record::command::{Command, Unit};
-use stickslip::record::journal::Keep;
+use stickslip::record::journal::JournalTarget;
 use stickslip::scene::Scene;
 use stickslip::session::Session;
 use stickslip::step::event::Outcome;
@@ -85,7 +85,7 @@ fn row(refine: &str) {
     session.background_mut().wait();
     let diagnosis = began.elapsed().as_secs_f64();
     let folder = tempfile::tempdir().unwrap_or_else(|e| panic!("{e}"));
-    let journal = Keep::File(folder.path().join("keys.journal"));
+    let journal = JournalTarget::File(folder.path().join("keys.journal"));
     journal
         .begin(&mut session)
         .unwrap_or_else(|e| panic!("{e}"));

@@ -54,7 +54,7 @@ fn plain(scene: &str, vary: &[&str]) {
             .iter()
             .map(|text| Vary::parse(text).unwrap_or_else(|e| panic!("{e}")))
             .collect(),
-        ..Study::of_scene(scene)
+        ..Study::from_scene(scene)
     };
     let plan = || Plan::new(study.clone()).unwrap_or_else(|e| panic!("{e}"));
     let cases = plan().cases;
@@ -92,7 +92,7 @@ fn random(count: usize) {
         let base = Base::new(Scene::from_spec("drawn", spec).unwrap_or_else(|e| panic!("{e}")));
         for Variant { settings, .. } in &variants {
             let least = ("history.least".to_owned(), "1".to_owned());
-            let method = Method::of(&base.scene().spec, &[&[least], &settings[..]].concat());
+            let method = Method::from_spec(&base.scene().spec, &[&[least], &settings[..]].concat());
             let model = method.and_then(|method| base.solved_by(&method));
             models.extend(model.map(Arc::new));
         }

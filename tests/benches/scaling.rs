@@ -8,8 +8,8 @@
 use std::fs;
 use std::sync::Arc;
 use std::time::Instant;
-use stickslip::fem::assembly::{Assembly, Moved};
-use stickslip::fem::element::Assembled;
+use stickslip::fem::assembly::{Assembly, AssemblyMotion};
+use stickslip::fem::element::ElementOutput;
 use stickslip::linalg::{Pattern, SymmetricFactors};
 use stickslip::model::Model;
 use stickslip::scene::Scene;
@@ -115,13 +115,13 @@ fn parts(model: &Model) -> (f64, f64) {
     let (mut assembled, mut factored) = (f64::INFINITY, f64::INFINITY);
     for _ in 0..5 {
         let began = Instant::now();
-        let moved = Moved {
+        let moved = AssemblyMotion {
             u: &zeros,
             step: &zeros,
             before: &zeros,
             history: &[],
         };
-        let out = Assembled {
+        let out = ElementOutput {
             force: &mut force,
             size: &mut size,
             values: &mut values,

@@ -255,7 +255,7 @@ fn judged(ended: Vec<Option<MapRun>>) -> Map {
             vary("increment", &["0.5", "0.1", "0.25"]),
             vary("friction", &["10", "20"]),
         ],
-        ..Study::of_scene(SLOW)
+        ..Study::from_scene(SLOW)
     };
     Map::judged(Plan::new(study).unwrap(), TOLERANCE, ended)
 }
@@ -331,7 +331,7 @@ fn ends_are_compared_with_the_finest_run_of_the_same_problem() {
 fn a_run_that_nothing_can_be_compared_with_says_so() {
     let study = Study {
         vary: vec![Vary::parse("friction=10,20").unwrap()],
-        ..Study::of_scene(SLOW)
+        ..Study::from_scene(SLOW)
     };
     let map = Map::judged(
         Plan::new(study).unwrap(),
@@ -380,7 +380,7 @@ fn multiples_are_of_each_scenes_own_value() {
     let study = Study {
         scenes: vec![SLOW.to_owned(), "01-pinned-beam-rough-floor".to_owned()],
         vary: vec![vary],
-        ..Study::of_scene(SLOW)
+        ..Study::from_scene(SLOW)
     };
     let plan = Plan::new(study).unwrap();
     let increments: Vec<u64> = plan.cases.iter().map(|case| case.increments).collect();

@@ -39,7 +39,7 @@ fn rows(table: &str) -> Vec<Vec<String>> {
 }
 
 fn study(scene: &str, vary: &[(&str, &[&str])]) -> Study {
-    let mut study = Study::of_scene(scene);
+    let mut study = Study::from_scene(scene);
     for (path, values) in vary {
         study.vary(Vary {
             path: path.to_string(),
@@ -264,7 +264,7 @@ fn a_figure_names_its_runs_marks_failures_and_says_what_it_was_made_from() {
     // Two strokes for each cross: one at the end of the curve, one in the legend.
     assert_eq!(svg.matches("#C00000").count(), 2 * 2 * 2);
     assert_eq!(chart.sheet().unwrap().svg().unwrap(), svg);
-    let whole = Plan::new(Study::of_scene(ROUGH)).unwrap();
+    let whole = Plan::new(Study::from_scene(ROUGH)).unwrap();
     let svg = figure::chart(&whole, &all_of(&whole, 1))
         .sheet()
         .unwrap()

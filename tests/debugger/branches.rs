@@ -8,7 +8,7 @@ use stickslip::history::tree::Budget;
 use stickslip::history::verdicts::BranchEnd;
 use stickslip::history::verdicts::summaries;
 use stickslip::model::Mode;
-use stickslip::record::command::{Command, To, Unit};
+use stickslip::record::command::{BranchTarget, Command, Unit};
 use stickslip::scene::Scene;
 use stickslip::session::Session;
 use stickslip::step::state::State;
@@ -48,7 +48,7 @@ fn force(session: &mut Session, mode: Mode) -> String {
 }
 
 fn branch(session: &mut Session, name: &str) -> String {
-    submit(session, Command::Branch(To::Named(name.into())))
+    submit(session, Command::Branch(BranchTarget::Named(name.into())))
 }
 
 fn set(session: &mut Session, path: &str, value: &str) -> String {
@@ -169,9 +169,9 @@ fn branches_of_branches_keep_their_lines_and_motions_stay_on_the_present_one() {
             },
         );
     }
-    submit(&mut session, Command::Branch(To::Previous));
+    submit(&mut session, Command::Branch(BranchTarget::Previous));
     assert_eq!(states(&session), all[4]);
-    submit(&mut session, Command::Branch(To::Next));
+    submit(&mut session, Command::Branch(BranchTarget::Next));
     assert_eq!(states(&session), all[0]);
 }
 
@@ -180,7 +180,7 @@ fn branches_are_renamed_and_wrong_names_are_told() {
     let mut session = session(OSCILLATES);
     let refused =
         |session: &mut Session, command| session.submit(command).expect_err("refused").to_string();
-    let only = refused(&mut session, Command::Branch(To::Next));
+    let only = refused(&mut session, Command::Branch(BranchTarget::Next));
     assert!(
         only.contains("an intervention before the tip starts another"),
         "{only}"
@@ -200,7 +200,10 @@ fn branches_are_renamed_and_wrong_names_are_told() {
         let said = refused(&mut session, Command::Rename(name.into()));
         assert!(said.contains(told), "{said}");
     }
-    let said = refused(&mut session, Command::Branch(To::Named("nowhere".into())));
+    let said = refused(
+        &mut session,
+        Command::Branch(BranchTarget::Named("nowhere".into())),
+    );
     assert!(said.contains("branches: b1: start, b2: way out"), "{said}");
     branch(&mut session, "sta");
     branch(&mut session, "b2: way out");

@@ -162,7 +162,7 @@ fn a_surface_that_most_of_its_nodes_are_behind_is_the_wrong_way_round_and_revers
     let state = Stepper::new(Arc::new(reversed.model.clone()))
         .state()
         .clone();
-    let advised = advice(&reversed.model, &state, &Failure::DoubledBack);
+    let advised = advice(&reversed.model, &state, &Failure::PathReversal);
     let [Advice::Remedy(remedy)] = advised.as_slice() else {
         panic!("{advised:?}");
     };
@@ -196,7 +196,7 @@ fn residuals_that_do_not_fall_name_the_node_and_what_changes_instead_of_a_rate()
                     .collect(),
             })
             .collect(),
-        failure: Failure::DoubledBack,
+        failure: Failure::PathReversal,
     };
     let words = |errors: &[f64]| {
         let facts = limit_words(&model, &model.settings, &attempt(errors));

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command as Process, Output, Stdio};
 use stickslip::action::{Action, Context, parse};
 use stickslip::record::command::{Command, Unit};
-use stickslip::record::journal::{Journal, JournalError, Keep, Record};
+use stickslip::record::journal::{Journal, JournalError, JournalTarget, Record};
 use stickslip::record::story::story;
 use stickslip::scene::Scene;
 use stickslip::session::Session;
@@ -24,7 +24,7 @@ fn kept(scene: &str) -> Kept {
     let directory = tempfile::tempdir().expect("a directory");
     let path = directory.path().join("a.journal");
     let mut session = Session::new(Scene::open(scene, &[]).expect("a built-in scene"));
-    Keep::File(path.clone())
+    JournalTarget::File(path.clone())
         .begin(&mut session)
         .expect("a journal");
     Kept {

@@ -5,7 +5,7 @@ use crate::common;
 use ratatui::layout::Rect;
 use std::process::Command;
 use std::sync::Arc;
-use stickslip::action::{self, Action, Context, Whose};
+use stickslip::action::{self, Action, Context, HiddenDecisions};
 use stickslip::model::Mode;
 use stickslip::session::Session;
 use stickslip::teach::play::play;
@@ -539,7 +539,7 @@ fn in_free_mode_a_decision_hides_until_it_is_predicted() {
 #[test]
 fn every_changed_node_can_be_asked_for() {
     let mut session = Session::new(common::two_blocks(1));
-    let mut guess = Guess::new(Whose::Changed, session.cursor());
+    let mut guess = Guess::new(HiddenDecisions::Changed, session.cursor());
     let step = action::parse("step", &Context::default()).unwrap();
     guess
         .permits(&step, session.cursor(), session.frame())

@@ -13,7 +13,7 @@ use stickslip::teach::lesson::LessonStep;
 use stickslip::teach::progress::Progress;
 use stickslip::teach::{self, Lesson, Tutor};
 use stickslip::tui::Debugger;
-use stickslip::tui::choosing;
+use stickslip::tui::chooser_state;
 use stickslip::tui::theme::Theme;
 
 /// The debugger at the beginning of a built-in lesson, on a screen of this size.
@@ -186,7 +186,7 @@ fn what_was_done_of_the_lessons_is_kept_and_listed() {
     assert_eq!(done("4-oscillation").as_deref(), Some("done, 4/5 right"));
     assert_eq!(done("1-modes").as_deref(), Some("step 3 of 14"));
     let progress = Progress::read(&file).unwrap();
-    let offers = choosing::offers(&progress);
+    let offers = chooser_state::offers(&progress);
     let offer = offers.iter().find(|offer| offer.name == "4-oscillation");
     let reached = offer.unwrap().reached.unwrap();
     assert_eq!(reached.words(), "done, 4/5 right");

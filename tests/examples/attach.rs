@@ -15,14 +15,14 @@ use stickslip::contact::record::{ContactRecord, Forced};
 use stickslip::history::branches;
 use stickslip::linear::norms::Norms;
 use stickslip::model::{Mode, Model};
-use stickslip::record::command::{Command, To, Unit};
+use stickslip::record::command::{BranchTarget, Command, Unit};
 use stickslip::recorded::log::Log;
 use stickslip::session::Session;
 use stickslip::step::event::{Event, Failure, Outcome};
 use stickslip::step::intervene::{Intervention, Refusal};
-use stickslip::step::solver::{GoesBack, Lost, Offers};
+use stickslip::step::solver::{Capabilities, RewindSupport, SolverLost};
 use stickslip::step::{Solver, State, Status};
-use stickslip_exchange::attach::message::{Contact, Friction, Id, Node, Scene, Surface};
+use stickslip_exchange::attach::message::{Contact, Friction, Id, Node, Scene, SurfaceMessage};
 
 /// Nodes, their distances from the floor, the stiffness of every spring, and the loads on a node at the load factor 1.
 const GAPS: [f64; 4] = [0.0, 0.01, 0.03, 0.08];
@@ -64,7 +64,7 @@ impl Springs {
         load: f64,
         held: &[Option<f64>],
         pull: &[f64],
-    ) -> Result<[DVector<f64>; 2], Lost> {
+    ) -> Result<[DVector<f64>; 2], SolverLost> {
         let loads = DVector::from_element(held.len(), load);
         let (mut matrix, mut right) = (self.k.clone(), &loads + DVector::from_row_slice(pull));
         for (i, held) in held.iter().enumerate() {
@@ -76,7 +76,7 @@ impl Springs {
         let moved = matrix
             .lu()
             .solve(&right)
-            .ok_or_else(|| Lost::new("nothing holds the nodes"))?;
+            .ok_or_else(|| SolverLost::new("nothing holds the nodes"))?;
         let forces = &self.k * &moved - loads;
         Ok([moved, forces])
     }
@@ -95,7 +95,7 @@ impl Solver for Springs {
         &self.event
     }
 
-    fn step(&mut self) -> Result<bool, Lost> {
+    fn step(&mut self) -> Result<bool, SolverLost> {
         if self.state.status == Status::Finished {
             return Ok(false);
         }
@@ -138,7 +138,7 @@ impl Solver for Springs {
                 f_t: f_t[k],
                 t_max,
                 slip,
-                ..ContactRecord::of_modes(node.mode, next, node)
+                ..ContactRecord::from_modes(node.mode, next, node)
             }
         };
         let records: Vec<ContactRecord> = (0..GAPS.len()).map(found).collect();
@@ -168,24 +168,24 @@ impl Solver for Springs {
         Ok(true)
     }
 
-    fn restore(&mut self, state: &State) -> Result<(), Lost> {
+    fn restore(&mut self, state: &State) -> Result<(), SolverLost> {
         self.state.clone_from(state);
         Ok(())
     }
 
     fn intervene(&mut self, intervention: &Intervention) -> Result<(), Refusal> {
-        self.offers().check(intervention)?;
+        self.capabilities().check(intervention)?;
         self.state.intervene(&self.model, intervention)
     }
 
-    fn offers(&self) -> Offers {
-        Offers {
+    fn capabilities(&self) -> Capabilities {
+        Capabilities {
             name: "springs".into(),
             force: true,
             hold: true,
             increment: true,
-            goes_back: GoesBack::ToAny,
-            ..Offers::default()
+            goes_back: RewindSupport::ToAny,
+            ..Capabilities::default()
         }
     }
 }
@@ -219,7 +219,7 @@ fn told() -> Scene {
         about: String::new(),
         nodes,
         lines: vec![(0..GAPS.len()).collect()],
-        surfaces: vec![Surface {
+        surfaces: vec![SurfaceMessage {
             name: "floor".into(),
             nodes: vec![GAPS.len(), GAPS.len() + 1],
             rigid: true,
@@ -284,7 +284,7 @@ pub fn run(out: &mut impl Write) -> Result<(), Box<dyn Error>> {
         back,
         force,
         increment(),
-        Command::Branch(To::Next),
+        Command::Branch(BranchTarget::Next),
         increment(),
     ] {
         for line in goes(command)? {

@@ -11,7 +11,7 @@ use std::io::Write;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use stickslip::interface::census::census;
-use stickslip::interface::problem::Assumed;
+use stickslip::interface::problem::AssumedMode;
 use stickslip::interface::trials::Trials;
 use stickslip::linear::constant::Constant;
 use stickslip::model::{Friction, Settings};
@@ -53,7 +53,7 @@ pub fn run(out: &mut impl Write) -> Result<(), Box<dyn Error>> {
     // The problem of the first major iteration, which aims at the whole load.
     let problem = stepper.interface_problem().ok_or("not condensed")?;
     let mut trials = Trials::new(&problem).ok_or("no memory")?;
-    let stuck = trials.answer(&[Assumed::Fixed; 2]).ok_or("singular")?;
+    let stuck = trials.answer(&[AssumedMode::Fixed; 2]).ok_or("singular")?;
     let (node, margin) = stuck.worst().ok_or("no nodes")?;
     writeln!(
         out,

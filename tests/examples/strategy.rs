@@ -11,7 +11,7 @@ use std::io::Write;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use stickslip::contact::table2::{Numbers, Reason, Rule, decide};
-use stickslip::interface::method::{Choice, Known, Method};
+use stickslip::interface::method::{Choice, Method, NodeContext};
 use stickslip::model::Mode;
 use stickslip::scene::Scene;
 use stickslip::step::Stepper;
@@ -21,7 +21,7 @@ use stickslip::step::drive::{RunEnd, Until};
 struct SlidesFirst;
 
 impl Method for SlidesFirst {
-    fn choose(&self, numbers: &Numbers, known: &Known<'_>) -> Choice {
+    fn choose(&self, numbers: &Numbers, known: &NodeContext<'_>) -> Choice {
         let mut decision = decide(numbers, known.ties);
         if (decision.before, decision.next) == (Mode::Fixed, Mode::Free) {
             (decision.next, decision.wanted) = (Mode::Sliding, Mode::Sliding);

@@ -15,7 +15,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 /// Writes how far the beam's end has slid at the largest load, by friction angle.
 pub fn run(out: &mut impl Write) -> Result<(), Box<dyn Error>> {
-    let mut study = Study::of_scene("01-pinned-beam-rough-floor");
+    let mut study = Study::from_scene("01-pinned-beam-rough-floor");
     study.vary(Vary::parse("friction.angle=20,30,40")?);
     study.vary(Vary::parse("history.increment=0.125")?);
     // The plan finds every case sound before anything runs.

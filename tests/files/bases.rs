@@ -14,7 +14,7 @@ fn bits(what: &impl Debug) -> String {
 }
 
 /// Values to try for one that is listed: all words, its own one otherwise, and what will not do.
-fn values(listed: &paths::Listed) -> Vec<String> {
+fn values(listed: &paths::ListedScalar) -> Vec<String> {
     if let Some(words) = listed.kind.strip_prefix("one of ") {
         return words.split(", ").map(str::to_owned).collect();
     }
@@ -122,7 +122,7 @@ fn a_case_has_the_model_of_its_scene_however_its_settings_are_written() {
         ],
         vary: vary.map(|text| Vary::parse(text).unwrap()).to_vec(),
         set: vec![("settings.t_max".to_owned(), "consistent".to_owned())],
-        ..Study::of_scene("02-two-cantilevers-rough")
+        ..Study::from_scene("02-two-cantilevers-rough")
     };
     for vary in [2, 3].map(|count| study.vary[..count].to_vec()) {
         let plan = Plan::new(Study {

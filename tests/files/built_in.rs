@@ -148,12 +148,12 @@ fn shear_stiffness_replaces_the_shear_unknowns() {
 fn cost_counts_what_the_model_has() {
     for builtin in builtin::list() {
         let scene = Scene::open(builtin.name, &[("refine".into(), "2".into())]).unwrap();
-        let cost = Cost::of(&scene);
+        let cost = Cost::from_scene(&scene);
         let bodies = cost.translations + cost.rotations + cost.shears + cost.forces;
         assert_eq!(bodies, scene.model.dofs.equations, "{}", builtin.name);
         assert_eq!(cost.unknowns(), bodies + 2 * scene.model.contacts.len());
     }
-    let text = Cost::of(&Scene::open(PINNED, &[]).unwrap()).to_string();
+    let text = Cost::from_scene(&Scene::open(PINNED, &[]).unwrap()).to_string();
     for line in [
         "shear forces            4",
         "no unknowns on surface floor: rigid",

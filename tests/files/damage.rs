@@ -10,7 +10,7 @@ fn try_text(text: &str) {
     match Scene::from_text("x", text, &[]) {
         Ok(scene) => {
             assert_usable(&scene.model);
-            let _ = Cost::of(&scene).to_string();
+            let _ = Cost::from_scene(&scene).to_string();
             let _ = paths::list(&scene.spec);
         }
         Err(error) => {

@@ -4,7 +4,7 @@ use crate::scenes::{BLOCK, ELASTIC, EVERYTHING, LINE, SOLID, assert_usable, smal
 use stickslip::format::{Spec, notation, paths};
 use stickslip::model::BoundUpdate;
 use stickslip::model::Model;
-use stickslip::model::{BodyKind, Watched};
+use stickslip::model::{BodyKind, MonitorQuantity};
 use stickslip::scene::cost::Cost;
 use stickslip::scene::{Scene, builtin};
 
@@ -41,7 +41,7 @@ fn a_region_gives_its_elements_another_material() {
     };
     let materials: Vec<usize> = made.elements.iter().map(|e| e.material).collect();
     assert_eq!(materials, [0, 0, 1, 1, 0, 0, 1, 1]);
-    let text = Cost::of(&scene).to_string();
+    let text = Cost::from_scene(&scene).to_string();
     for line in [
         "k: solid, 8 elements of 8 nodes, E 100, nu 0.3, St Venant-Kirchhoff, plane strain, thickness 1",
         "no memory of earlier increments in k: update is total",
@@ -82,8 +82,11 @@ fn monitors_watch_what_they_say() {
                 (name: \"r\", of: Reaction(node: \"b.start\", component: rotation)), \
                 (name: \"u\", of: Displacement(node: \"b@0.5\", component: y))]";
     let model = small(LINE, rest).unwrap().model;
-    assert_eq!(model.monitors[0].of, Watched::Reaction { dof: 2 });
-    assert_eq!(model.monitors[1].of, Watched::Displacement { dof: 7 });
+    assert_eq!(model.monitors[0].of, MonitorQuantity::Reaction { dof: 2 });
+    assert_eq!(
+        model.monitors[1].of,
+        MonitorQuantity::Displacement { dof: 7 }
+    );
 }
 
 #[test]

@@ -5,7 +5,7 @@
 use crate::hostile::{CHART, CYCLES, LESSON, REFERENCE, STUDY, put, run, scene};
 use crate::program::{code, err, names, out, rows, well};
 use std::fs;
-use stickslip::record::journal::Keep;
+use stickslip::record::journal::JournalTarget;
 use stickslip::scene::Scene;
 use stickslip::scene::shown;
 use stickslip::session::Session;
@@ -34,7 +34,9 @@ fn harmful() -> TempDir {
     );
     let path = directory.path().join("j");
     let mut session = Session::new(Scene::open(CYCLES, &[]).unwrap());
-    Keep::File(path.clone()).begin(&mut session).unwrap();
+    JournalTarget::File(path.clone())
+        .begin(&mut session)
+        .unwrap();
     for line in ["step", "rename x", "watch gap a"] {
         use stickslip::action::{Action, Context, parse};
         let context = Context {

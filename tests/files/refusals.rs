@@ -9,7 +9,7 @@ use crate::hostile::{
 use crate::program::{code, err, well};
 use std::fs;
 use std::os::unix::fs::symlink;
-use stickslip::record::journal::Keep;
+use stickslip::record::journal::JournalTarget;
 use stickslip::scene::Scene;
 use stickslip::session::Session;
 use stickslip_exchange::seal::sealed;
@@ -272,7 +272,9 @@ fn an_editor_s_mark_at_the_beginning_is_no_fault_of_any_file() {
     marked("snapshot.ron", &snapshot);
     let path = directory.path().join("journal");
     let mut session = Session::new(Scene::open(CYCLES, &[]).unwrap());
-    Keep::File(path.clone()).begin(&mut session).unwrap();
+    JournalTarget::File(path.clone())
+        .begin(&mut session)
+        .unwrap();
     drop(session);
     marked("journal", &fs::read_to_string(&path).unwrap());
     for line in [

@@ -26,7 +26,7 @@ use std::time::{Duration, Instant};
 use stickslip::action::{self, Action, Context};
 use stickslip::record::command::Command;
 use stickslip::record::differences::compare;
-use stickslip::record::journal::{Keep, Record};
+use stickslip::record::journal::{JournalTarget, Record};
 use stickslip::record::snapshot::Snapshot;
 use stickslip::record::story::story;
 use stickslip::scene::Scene;
@@ -41,7 +41,7 @@ use stickslip::study::random::Population;
 use stickslip::study::reference::Reference;
 use stickslip::study::shard::Shard;
 use stickslip::study::survey::{self, Survey};
-use stickslip::study::sweep::{Keeping, RunError, Store};
+use stickslip::study::sweep::{ResultStorage, RunError, Store};
 use stickslip::study::trial::Variant;
 use stickslip::study::{Plan, Study, Watch, precision_figure};
 use stickslip::teach::Lesson;
@@ -196,7 +196,7 @@ fn scene(text: &str) -> Took {
         Ok(scene) => scene,
         Err(error) => return Took::Refused(error.to_string()),
     };
-    let _ = Cost::of(&scene).to_string();
+    let _ = Cost::from_scene(&scene).to_string();
     if is_small(&scene) {
         let mut stepper = Stepper::new(Arc::new(scene.model));
         for _ in 0..4 {
@@ -282,7 +282,9 @@ fn journal() -> String {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("j");
     let mut session = Session::new(Scene::open("osc-two6", &[]).unwrap());
-    Keep::File(path.clone()).begin(&mut session).unwrap();
+    JournalTarget::File(path.clone())
+        .begin(&mut session)
+        .unwrap();
     for line in [
         "step 2",
         "force a sliding",
@@ -402,7 +404,7 @@ fn map_logs() {
         };
         let one = std::num::NonZeroUsize::MIN;
         let variants = vec![variant.clone(), variant];
-        let keeping = Keeping::Log(Some(file.clone()), Shard::WHOLE);
+        let keeping = ResultStorage::Log(Some(file.clone()), Shard::WHOLE);
         let sweep = survey::sweep(&population, &variants);
         let judged = sweep.run_with(&Store::open(&keeping, &sweep)?, one, &watch)?;
         Ok::<_, RunError>(Survey {

@@ -6,7 +6,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use stickslip::model::Model;
 use stickslip::model::{AtLimit, Component, SlipCount, Sticking, TieRule};
-use stickslip::model::{BodyKind, Form, Monitor, Watched};
+use stickslip::model::{BodyKind, Form, Monitor, MonitorQuantity};
 use stickslip::scene::Scene;
 use stickslip::step::event::{Failure, Outcome};
 use stickslip::step::recovery::fallback::Fallback;
@@ -184,7 +184,7 @@ fn with_reactions(scene: &Scene) -> Model {
         .filter(held)
         .map(|dof| Monitor {
             name: format!("r{dof}"),
-            of: Watched::Reaction { dof },
+            of: MonitorQuantity::Reaction { dof },
         })
         .collect();
     model
@@ -209,7 +209,7 @@ fn seen(model: &Model, state: &IncrementStart, reactions: &[f64]) -> Seen {
     let positions = positions(model, &state.u);
     let mut of_dof = vec![0.0; model.dofs.len()];
     for (monitor, value) in model.monitors.iter().zip(reactions) {
-        if let Watched::Reaction { dof } = monitor.of {
+        if let MonitorQuantity::Reaction { dof } = monitor.of {
             of_dof[dof] += value;
         }
     }

@@ -43,7 +43,7 @@ fn a_corner_on_the_axis_has_no_area_and_is_left_out_of_the_penalty_and_named() {
             .all(|slave| !on_axis(slave.node))
     );
     assert_eq!(scene.model.contacts.len(), 8, "of 9 nodes of the bottom");
-    let told = Cost::of(&scene).to_string();
+    let told = Cost::from_scene(&scene).to_string();
     assert!(told.contains("A = 0") && told.contains("k.1"), "{told}");
     let run = run(&scene);
     assert!(run.failure.is_none(), "{:?}", run.failure);

@@ -154,7 +154,7 @@ fn blocks_on_springs_are_sheared_as_calculix_does_it() {
     let kinked = stickslip::record::export::written::scene(&deck).unwrap();
     let kinked = kinked.replace("smooth: true", "smooth: false");
     let kinked = Scene::from_text("kinked.ron", &kinked, &[]).unwrap();
-    let told = stickslip::scene::cost::Cost::of(&kinked).to_string();
+    let told = stickslip::scene::cost::Cost::from_scene(&kinked).to_string();
     assert!(
         told.contains("M: may have kinks when they deform"),
         "{told}"

@@ -452,7 +452,7 @@ fn check_lists_nodes_on_the_axis_that_may_leave_it() {
               materials: [Elastic(id: \"m\", E: 1, nu: 0, plane: {plane})], bodies: [Solid(id: \"k\", mesh: \"k\", material: \"m\")],
               supports: [{supports}], history: (path: [0, 1], increment: 1))"
         );
-        let cost = stickslip::scene::cost::Cost::of(&scene(&text));
+        let cost = stickslip::scene::cost::Cost::from_scene(&scene(&text));
         cost.to_string()
             .lines()
             .filter(|line| line.starts_with("axis"))

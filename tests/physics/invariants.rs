@@ -69,14 +69,14 @@ fn accepted_increments_are_in_equilibrium_with_their_supports() {
 
 /// The model with the reaction of every restrained x (or y) as its monitors.
 fn with_reactions(model: &Model, axis: usize) -> Model {
-    use stickslip::model::{Monitor, Watched};
+    use stickslip::model::{Monitor, MonitorQuantity};
     let mut model = model.clone();
     let dofs = model.dofs.first.iter().map(|first| first + axis);
     let held = dofs.filter(|&dof| model.dofs.equation[dof].is_none());
     model.monitors = held
         .map(|dof| Monitor {
             name: String::new(),
-            of: Watched::Reaction { dof },
+            of: MonitorQuantity::Reaction { dof },
         })
         .collect();
     model

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 use stickslip::contact::balance::{self, Forces};
-use stickslip::contact::judge::{Judge, Seen};
+use stickslip::contact::judge::{Judge, JudgedState};
 use stickslip::contact::laws::{JudgedLaw, Scales, Verdict};
 use stickslip::model::Friction;
 use stickslip::model::{Bond, Contact, Surface};
@@ -115,7 +115,7 @@ fn judged_over(
 ) -> (Verdict, Vec<[f64; 2]>) {
     let [before, now] = [0, 1].map(|k| [&[way[k]], chains[k]].concat());
     let friction = slave.friction;
-    let seen = Seen {
+    let seen = JudgedState {
         surfaces,
         contacts: &[slave],
         friction: &[friction],

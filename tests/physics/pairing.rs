@@ -484,7 +484,7 @@ fn a_shoe_goes_over_the_ridge_of_an_elastic_surface_with_a_corner() {
 fn the_large_scene_is_large_and_its_small_form_balances() {
     let large = two_blocks(8);
     assert_eq!(large.model.contacts.len(), 193);
-    assert!((9_900..10_200).contains(&stickslip::scene::cost::Cost::of(&large).unknowns()));
+    assert!((9_900..10_200).contains(&stickslip::scene::cost::Cost::from_scene(&large).unknowns()));
     let done = run(&two_blocks(1));
     assert!(done.failure.is_none());
     assert_sound(&done);

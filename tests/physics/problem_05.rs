@@ -78,7 +78,7 @@ fn the_tip_of_problem_05_is_an_independent_programs_within_the_error_of_the_mesh
 
 /// The column's supports and the block's carry the load together.
 fn balanced(run: &Run) {
-    use stickslip::model::{Monitor, Watched};
+    use stickslip::model::{Monitor, MonitorQuantity};
     let mut model = (**run.stepper.model()).clone();
     let held: Vec<usize> = (0..model.nodes.len())
         .map(|n| model.dofs.first[n])
@@ -88,7 +88,7 @@ fn balanced(run: &Run) {
         .into_iter()
         .map(|dof| Monitor {
             name: String::new(),
-            of: Watched::Reaction { dof },
+            of: MonitorQuantity::Reaction { dof },
         })
         .collect();
     let mut stepper = stickslip::step::stepper::Stepper::new(std::sync::Arc::new(model));
@@ -177,8 +177,8 @@ fn problem_05_converges_with_its_mesh() {
 /// Strain energy of all bodies at displacements u: the internal forces have a potential, so it is their work on any way
 /// to u, here the straight one, by a Gauss rule.
 fn strain_energy(run: &Run, u: &[f64]) -> f64 {
-    use stickslip::fem::assembly::{Assembly, Moved};
-    use stickslip::fem::element::Assembled;
+    use stickslip::fem::assembly::{Assembly, AssemblyMotion};
+    use stickslip::fem::element::ElementOutput;
     use stickslip::linalg::Pattern;
     let model = run.stepper.model();
     let dofs = &model.dofs;
@@ -191,13 +191,13 @@ fn strain_energy(run: &Run, u: &[f64]) -> f64 {
     let mut energy = 0.0;
     for (xi, weight) in stickslip::fem::lagrange::gauss(12) {
         let part: Vec<f64> = u.iter().map(|u| 0.5 * (1.0 + xi) * u).collect();
-        let moved = Moved {
+        let moved = AssemblyMotion {
             u: &part,
             step: &zero,
             before: &zero,
             history: &[],
         };
-        let out = Assembled {
+        let out = ElementOutput {
             force: &mut force,
             size: &mut size,
             values: &mut values,

@@ -297,8 +297,8 @@ fn a_block_that_is_pressed_through_itself_diverges_and_does_not_pretend() {
 #[ignore = "a measurement: cargo test --release --test physics solids -- --ignored --nocapture"]
 fn time_of_an_assembly_of_50000_unknowns() {
     use std::time::Instant;
-    use stickslip::fem::assembly::{Assembly, Moved};
-    use stickslip::fem::element::Assembled;
+    use stickslip::fem::assembly::{Assembly, AssemblyMotion};
+    use stickslip::fem::element::ElementOutput;
     use stickslip::linalg::Pattern;
     let started = Instant::now();
     let scene = block(
@@ -331,13 +331,13 @@ fn time_of_an_assembly_of_50000_unknowns() {
     let mut coupling = vec![0.0; dofs.equations];
     for _ in 0..5 {
         let started = Instant::now();
-        let moved = Moved {
+        let moved = AssemblyMotion {
             u: &u,
             step: &u,
             before: &u,
             history: &[],
         };
-        let out = Assembled {
+        let out = ElementOutput {
             force: &mut force,
             size: &mut size,
             values: &mut values,

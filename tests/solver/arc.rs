@@ -404,7 +404,7 @@ fn what_does_not_move_cannot_measure_a_path() {
     let scene =
         truss(r#"(path: [0.0, 1.0], increment: 0.02, control: arc, arc: (monitor: "held"))"#);
     let failure = run(&scene).failure.map(|(_, failure)| failure);
-    assert_eq!(failure, Some(Failure::Unmoved));
+    assert_eq!(failure, Some(Failure::ZeroMeasure));
 }
 
 #[test]

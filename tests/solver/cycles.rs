@@ -10,7 +10,7 @@ use stickslip::format::condensed::{Contact, Matrix, Problem};
 use stickslip::format::spec::History;
 use stickslip::interface::census::census;
 use stickslip::interface::minor_history::Cycle;
-use stickslip::interface::problem::{Answer, Assumed, InterfaceProblem};
+use stickslip::interface::problem::{Answer, AssumedMode, InterfaceProblem};
 use stickslip::interface::trials::Trials;
 use stickslip::model::Mode;
 use stickslip::model::{Friction, InitialState, Settings, Strategy, Touch};
@@ -352,12 +352,17 @@ fn random(n: usize, random: &mut Random) -> InterfaceProblem {
 
 /// The consistent assumptions one by one, each solved by itself.
 fn one_by_one(problem: &InterfaceProblem) -> (usize, Vec<Answer>) {
-    const ALL: [Assumed; 4] = [Assumed::Free, Assumed::Fixed, Assumed::Plus, Assumed::Minus];
+    const ALL: [AssumedMode; 4] = [
+        AssumedMode::Free,
+        AssumedMode::Fixed,
+        AssumedMode::Plus,
+        AssumedMode::Minus,
+    ];
     let n = problem.nodes.len();
     let mut trials = Trials::new(problem).unwrap();
     let (mut singular, mut found) = (0, Vec::new());
     for number in 0..4_usize.pow(n as u32) {
-        let assumed: Vec<Assumed> = (0..n)
+        let assumed: Vec<AssumedMode> = (0..n)
             .map(|k| ALL[number / 4_usize.pow(k as u32) % 4])
             .collect();
         match trials.answer(&assumed) {

@@ -4,7 +4,7 @@
 use crate::common::{Accepted, Run, run, scene};
 use std::sync::Arc;
 use stickslip::scene::Scene;
-use stickslip::step::event::{Moves, Outcome};
+use stickslip::step::event::{MotionEvent, Outcome};
 use stickslip::step::recovery::motion::Motion;
 use stickslip::step::stepper::Stepper;
 
@@ -171,7 +171,7 @@ fn a_motion_is_stepped_through_left_and_taken_up_again_with_the_same_bits() {
     while let Some(event) = stepper.step() {
         if matches!(
             &event.outcome,
-            Outcome::Moves(Moves::Step { number: 20, .. })
+            Outcome::Motion(MotionEvent::Step { number: 20, .. })
         ) {
             kept = Some(stepper.state().clone());
         }
@@ -214,7 +214,7 @@ fn what_nothing_stops_comes_to_no_rest_and_says_so() {
     let run = run(&scene("osc-block-slide", &set));
     let (event, failure) = run.failure.expect("nothing holds it");
     assert!(
-        matches!(failure, stickslip::step::event::Failure::Restless { .. }),
+        matches!(failure, stickslip::step::event::Failure::NoRest { .. }),
         "{failure:?} at load {}",
         event.load_factor
     );

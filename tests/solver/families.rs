@@ -148,7 +148,7 @@ fn a_matrix_that_is_indefinite_by_rounding_is_solved_once_it_is_made_semidefinit
     for by in [1e-3, 1e-6] {
         let problem = frozen(rounded(by, &[]));
         assert_eq!(census(&problem).unwrap().answers, []);
-        let ends = Compliance::of(&problem).unwrap().ends();
+        let ends = Compliance::from_problem(&problem).unwrap().ends();
         assert!((ends[0] + by).abs() < 1e-9 && (ends[1] - 2.0 - by).abs() < 1e-9);
         let found = indefinite(&problem, &|| false).unwrap();
         let IndefiniteOutcome::Tried {

@@ -61,7 +61,7 @@ fn the_scene_decides_what_becomes_of_a_jump() {
     let stopped = run(&scene(EDGE, &[("history.jumps", "stop")]));
     let failed = stopped.failure.as_ref().map(|(_, failure)| failure);
     assert!(
-        matches!(failed, Some(Failure::Leapt { motion, .. }) if *motion > 0.5),
+        matches!(failed, Some(Failure::BranchJump { motion, .. }) if *motion > 0.5),
         "{failed:?}"
     );
     assert!(!stopped.accepted.iter().any(jumped));

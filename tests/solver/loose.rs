@@ -2,7 +2,7 @@
 
 use crate::common::{Run, run, scene};
 use crate::program::{code, err, program};
-use stickslip::explain::smaller::{Smaller, smaller};
+use stickslip::explain::step_size_probe::{StepSizeProbe, smaller};
 use stickslip::linear::singular::Singular;
 use stickslip::scene::Scene;
 use stickslip::step::event::Failure;
@@ -102,8 +102,10 @@ fn a_smaller_increment_is_advised_only_where_one_has_a_consistent_state() {
         );
         let mut scratch = Stepper::new(run.stepper.model().clone());
         match smaller(&mut scratch, run.stepper.state()) {
-            Some(Smaller::Found(size)) => assert!(found && size == 0.25, "{above}: {size}"),
-            Some(Smaller::None(size)) => assert!(!found && size == 1.0 / 64.0, "{above}: {size}"),
+            Some(StepSizeProbe::Found(size)) => assert!(found && size == 0.25, "{above}: {size}"),
+            Some(StepSizeProbe::None(size)) => {
+                assert!(!found && size == 1.0 / 64.0, "{above}: {size}")
+            }
             None => panic!("{above}: it can be told"),
         }
     }

@@ -5,8 +5,8 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 use stickslip::model::Strategy;
 use stickslip::scene::Scene;
-use stickslip::step::event::{Moves, Outcome};
-use stickslip::step::recovery::{self, fallback::Fallback, left_out::LeftOut};
+use stickslip::step::event::{MotionEvent, Outcome};
+use stickslip::step::recovery::{self, fallback::Fallback, left_out::OmittedStep};
 use stickslip::step::stepper::Stepper;
 
 /// Minor iterations after which a run counts as not finished.
@@ -67,7 +67,7 @@ const SEARCHED: [&str; 4] = [
 const LADDER: &[(&str, &str)] = &[("settings.strategy", "ladder")];
 
 /// What a run used, and whether it reached its end.
-fn run(scene: &Scene, without: Option<LeftOut>) -> (bool, BTreeSet<String>) {
+fn run(scene: &Scene, without: Option<OmittedStep>) -> (bool, BTreeSet<String>) {
     let mut stepper = Stepper::new(Arc::new(scene.model.clone()));
     if let Some(without) = without {
         stepper.leave_out(without);
@@ -81,17 +81,17 @@ fn run(scene: &Scene, without: Option<LeftOut>) -> (bool, BTreeSet<String>) {
             Outcome::Failed(_) => return (false, used),
             Outcome::Cut { .. } if event.arc.is_some() => "shorter-arc".to_owned(),
             Outcome::Cut { .. } => "halve".to_owned(),
-            Outcome::Leaps { .. } => "whole".to_owned(),
-            Outcome::Turns { .. } => "turn".to_owned(),
-            Outcome::Moves(Moves::LetsGo { .. }) => "release".to_owned(),
-            Outcome::Moves(Moves::Slower(_)) => "slower".to_owned(),
+            Outcome::WholeIncrement { .. } => "whole".to_owned(),
+            Outcome::PathCorner { .. } => "turn".to_owned(),
+            Outcome::Motion(MotionEvent::DynamicStart { .. }) => "release".to_owned(),
+            Outcome::Motion(MotionEvent::Slower(_)) => "slower".to_owned(),
             Outcome::Fallback {
                 by: Fallback::Release,
                 ..
             } => "motion".to_owned(),
             Outcome::Fallback { by, .. } => format!("{by:?}").to_lowercase(),
-            Outcome::Climbed { frozen: true, .. } => "frozen".to_owned(),
-            Outcome::Climbed { to, .. } => format!("{to:?}"),
+            Outcome::StrategyChange { frozen: true, .. } => "frozen".to_owned(),
+            Outcome::StrategyChange { to, .. } => format!("{to:?}"),
             _ => continue,
         };
         used.insert(name);
@@ -101,9 +101,9 @@ fn run(scene: &Scene, without: Option<LeftOut>) -> (bool, BTreeSet<String>) {
 
 /// Recoveries and strategies without which a scene does not reach its end.
 fn needs(scene: &Scene, used: &BTreeSet<String>) -> Vec<String> {
-    let recoveries = recovery::names().map(|name| (name.to_owned(), LeftOut::Recovery(name)));
+    let recoveries = recovery::names().map(|name| (name.to_owned(), OmittedStep::Recovery(name)));
     let rungs = stickslip::strategy::rungs(Strategy::Ladder).iter();
-    let strategies = rungs.map(|rung| (format!("{rung:?}"), LeftOut::Strategy(*rung)));
+    let strategies = rungs.map(|rung| (format!("{rung:?}"), OmittedStep::Strategy(*rung)));
     let asked = recoveries.chain(strategies).filter(|(name, _)| {
         let turns = name == "turn-at-last" && used.contains("turn");
         used.contains(name) || turns

@@ -295,7 +295,7 @@ fn a_long_master_is_not_condensed_to_a_dense_matrix() {
     let scene = file("mem-1000-elements.ron")
         .with("settings.point_force", "plain")
         .unwrap();
-    let estimate = Estimate::of(&scene.model);
+    let estimate = Estimate::from_model(&scene.model);
     assert!(!estimate.condenses);
     assert!(estimate.condensed.seconds > 100.0 * estimate.augmented.seconds);
     assert!(estimate.condensed.bytes > 3e9 && estimate.augmented.bytes < 1e8);
@@ -333,7 +333,7 @@ fn scenes_whose_interface_is_small_are_condensed_and_the_others_are_not() {
         ),
     ] {
         let set: Vec<_> = set.into_iter().collect();
-        let estimate = Estimate::of(&scene(name, &set).model);
+        let estimate = Estimate::from_model(&scene(name, &set).model);
         assert_eq!(estimate.condenses, condensed, "{name} {estimate:?}");
     }
 }
@@ -378,7 +378,7 @@ fn where_only_the_other_solver_fits_auto_takes_that_one() {
     let blocks = "tests/benches/two-blocks-pressed-sheared.ron";
     let with = |memory: &str| {
         let scene = scene(blocks, &[("refine", "6"), ("settings.memory", memory)]);
-        Estimate::of(&scene.model)
+        Estimate::from_model(&scene.model)
     };
     let roomy = with("1");
     assert!(roomy.condenses && roomy.condensed.bytes < roomy.augmented.bytes);

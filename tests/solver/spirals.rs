@@ -8,7 +8,7 @@ use stickslip::explain::page;
 use stickslip::explain::proven::factor;
 use stickslip::interface::census::census;
 use stickslip::interface::problem::InterfaceProblem;
-use stickslip::interface::spiral::{Fate, Spiral, spiral};
+use stickslip::interface::t_max_iteration::{TMaxIteration, TMaxLimit, spiral};
 use stickslip::interface::trials::Trials;
 use stickslip::interface::uniqueness::{Uniqueness, plain, uniqueness};
 use stickslip::model::Strategy;
@@ -23,7 +23,7 @@ fn first(name: &str, set: &[(&str, &str)]) -> InterfaceProblem {
     stepper.interface_problem().unwrap()
 }
 
-fn found(problem: &InterfaceProblem, most: usize) -> Option<Spiral> {
+fn found(problem: &InterfaceProblem, most: usize) -> Option<TMaxIteration> {
     spiral(problem, method(Strategy::Table2), most)
 }
 
@@ -32,7 +32,7 @@ fn at_one_node_t_max_converges_by_tan_phi_w_nt_over_w_nn_to_the_consistent_limit
     // Its head says that m = 0.948 there.
     let problem = first("osc-slowlag", &[("friction.angle", "35.75")]);
     let spiral = found(&problem, 100).unwrap();
-    assert_eq!((spiral.period, spiral.fate), (1, Fate::Settles));
+    assert_eq!((spiral.period, spiral.fate), (1, TMaxLimit::Settles));
     assert!(spiral.start < 20, "{spiral:?}");
     let factor = factor(&problem, 0).unwrap();
     assert!((factor - 0.948).abs() < 5e-4, "{factor}");
@@ -58,7 +58,7 @@ fn where_the_factor_is_above_one_t_max_swings_apart() {
     let mut problem = first("osc-slowlag", &[]);
     problem.settings.minors = 30;
     let spiral = found(&problem, 30).unwrap();
-    assert_eq!((spiral.period, spiral.fate), (1, Fate::SwingsApart));
+    assert_eq!((spiral.period, spiral.fate), (1, TMaxLimit::Diverges));
     assert!((spiral.radius - 1.054).abs() < 5e-4, "{}", spiral.radius);
     assert_eq!(spiral.iterations(problem.force), None);
 }
@@ -92,13 +92,13 @@ fn what_is_called_a_cycle_early_comes_round_and_what_settles_is_not() {
         };
         let round = comes_round(&problem);
         match spiral.fate {
-            Fate::Cycles => {
+            TMaxLimit::Cycles => {
                 let (minor, period) = round.unwrap();
                 assert_eq!(period, spiral.period, "{k}");
                 early += usize::from(minor > spiral.start);
                 slowest = slowest.max(minor);
             }
-            Fate::Settles => assert_eq!(round, None, "{k}"),
+            TMaxLimit::Settles => assert_eq!(round, None, "{k}"),
             _ => {}
         }
     }
@@ -170,7 +170,7 @@ fn slow_cycles() -> Vec<(usize, u32)> {
         let problem = drawn(1, k, 1..=4);
         let spiral = found(&problem, 100)?;
         let (minor, _) = comes_round(&problem)?;
-        (spiral.fate == Fate::Cycles && minor > 150).then_some((k, minor))
+        (spiral.fate == TMaxLimit::Cycles && minor > 150).then_some((k, minor))
     };
     (0..1500).filter_map(slow).collect()
 }

@@ -5,8 +5,8 @@ use crate::common::{run, scene};
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
 use std::sync::Arc;
-use stickslip::fem::assembly::{Assembly, Moved};
-use stickslip::fem::element::Assembled;
+use stickslip::fem::assembly::{Assembly, AssemblyMotion};
+use stickslip::fem::element::ElementOutput;
 use stickslip::fem::lagrange::shape;
 use stickslip::linalg::Pattern;
 use stickslip::linear::stability::Stability::{self, Divergence, NotKnown, Stable, Unstable};
@@ -193,13 +193,13 @@ impl<'a> Balance<'a> {
         let (mut force, mut size, step) = (vec![0.0; dofs], vec![0.0; dofs], vec![0.0; dofs]);
         let mut values = vec![0.0; self.pattern.entries()];
         let mut coupling = vec![0.0; model.dofs.equations];
-        let out = Assembled {
+        let out = ElementOutput {
             force: &mut force,
             size: &mut size,
             values: &mut values,
             coupling: &mut coupling,
         };
-        let moved = Moved {
+        let moved = AssemblyMotion {
             u: &u,
             step: &step,
             before: &self.state.start.u,

@@ -351,7 +351,7 @@ fn a_mode_that_the_user_holds_is_left_to_the_user() {
     let mut stepper = Stepper::new(Arc::new(scene("osc-touch2", &set).model));
     force_in(&mut stepper, 0, Mode::Fixed, true);
     while let Some(event) = stepper.step() {
-        assert!(!matches!(event.outcome, Outcome::Climbed { .. }));
+        assert!(!matches!(event.outcome, Outcome::StrategyChange { .. }));
         assert_eq!(event.nodes[0].decision.before, Mode::Fixed);
     }
 }

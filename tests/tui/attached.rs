@@ -13,7 +13,7 @@ use stickslip::recorded::story::story;
 use stickslip::session::Session as Debugged;
 use stickslip::step::event::Event;
 use stickslip::step::intervene::{Intervention, Refusal, Value};
-use stickslip::step::solver::{GoesBack, Lost, Offers, Parameter, Range, Solver};
+use stickslip::step::solver::{Capabilities, Parameter, Range, RewindSupport, Solver, SolverLost};
 use stickslip::step::state::State;
 use stickslip::tui::Debugger;
 use stickslip::tui::theme::Theme;
@@ -23,7 +23,7 @@ const SIZES: [(u16, u16); 3] = [(80, 24), (120, 40), (200, 60)];
 /// A solver in process: what it does is written in an exchange, and what it offers is the test's to say.
 struct Toy {
     past: RecordedSolver,
-    offers: Offers,
+    offers: Capabilities,
 }
 
 impl Solver for Toy {
@@ -39,13 +39,13 @@ impl Solver for Toy {
         self.past.event()
     }
 
-    fn step(&mut self) -> Result<bool, Lost> {
+    fn step(&mut self) -> Result<bool, SolverLost> {
         self.past
             .step()
-            .map_err(|_| Lost::new("the solver ended: it fell off its chair"))
+            .map_err(|_| SolverLost::new("the solver ended: it fell off its chair"))
     }
 
-    fn restore(&mut self, state: &State) -> Result<(), Lost> {
+    fn restore(&mut self, state: &State) -> Result<(), SolverLost> {
         self.past.restore(state)
     }
 
@@ -57,7 +57,7 @@ impl Solver for Toy {
         self.past.monitors(out);
     }
 
-    fn offers(&self) -> Offers {
+    fn capabilities(&self) -> Capabilities {
         self.offers.clone()
     }
 }
@@ -107,9 +107,9 @@ fn steps(states: impl IntoIterator<Item = Json>) -> Vec<(char, Json)> {
 }
 
 /// A debugger on a solver in process.
-fn attached(text: &str, offers: Offers) -> Debugger {
+fn attached(text: &str, offers: Capabilities) -> Debugger {
     let opened = exchange::open("toy", text).unwrap();
-    let offers = Offers {
+    let offers = Capabilities {
         name: "Toy".into(),
         version: "0.7".into(),
         ..offers
@@ -144,7 +144,7 @@ fn holds(debugger: &Debugger, text: &str) {
 
 #[test]
 fn whole_screens_of_an_attached_solver() {
-    let mut debugger = attached(&three(), Offers::default());
+    let mut debugger = attached(&three(), Capabilities::default());
     debugger.type_keys("s");
     for (width, height) in SIZES {
         insta::assert_snapshot!(
@@ -165,7 +165,10 @@ fn pulls() -> Json {
 
 #[test]
 fn an_end_that_is_judged_wrong_is_no_other_valid_state() {
-    let mut debugger = attached(&exchange(&scene(), &steps([pulls()])), Offers::default());
+    let mut debugger = attached(
+        &exchange(&scene(), &steps([pulls()])),
+        Capabilities::default(),
+    );
     debugger.type_keys("s");
     debugger.type_keys(": b r a n c h e s Enter");
     holds(&debugger, "accepted, but fails the check");
@@ -174,18 +177,18 @@ fn an_end_that_is_judged_wrong_is_no_other_valid_state() {
 #[test]
 fn who_is_attached_and_how_it_goes_back_stand_at_the_top() {
     for (goes_back, words) in [
-        (GoesBack::Again, "attached, goes back by restart"),
+        (RewindSupport::Again, "attached, goes back by restart"),
         (
-            GoesBack::ToIncrements,
+            RewindSupport::ToIncrements,
             "attached, goes back to increments, then replays",
         ),
-        (GoesBack::ToAny, "attached, can go back to any state"),
+        (RewindSupport::ToAny, "attached, can go back to any state"),
     ] {
         let debugger = attached(
             &three(),
-            Offers {
+            Capabilities {
                 goes_back,
-                ..Offers::default()
+                ..Capabilities::default()
             },
         );
         holds(&debugger, &format!(" stickslip Toy 0.7   {words}"));
@@ -194,7 +197,7 @@ fn who_is_attached_and_how_it_goes_back_stand_at_the_top() {
 
 #[test]
 fn what_is_not_offered_is_grey_everywhere_and_its_key_gives_the_reason_and_does_nothing() {
-    let mut debugger = attached(&three(), Offers::default());
+    let mut debugger = attached(&three(), Capabilities::default());
     debugger.type_keys("s");
     for label in ["m (mode)", "i (increment)"] {
         holds(&debugger, label);
@@ -264,9 +267,9 @@ fn what_is_not_offered_is_grey_everywhere_and_its_key_gives_the_reason_and_does_
 fn what_is_offered_in_part_says_which_part() {
     let mut debugger = attached(
         &three(),
-        Offers {
+        Capabilities {
             force: true,
-            ..Offers::default()
+            ..Capabilities::default()
         },
     );
     debugger.type_keys("m");
@@ -303,7 +306,7 @@ fn a_solver_of_our_own_has_no_log_and_no_parameters() {
 
 #[test]
 fn the_decision_shows_the_solver_s_words_and_where_table_2_differs() {
-    let mut debugger = attached(&three(), Offers::default());
+    let mut debugger = attached(&three(), Capabilities::default());
     debugger.type_keys("s e");
     let shown = debugger.text(120, 40);
     let joined: String = shown.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -342,7 +345,7 @@ fn the_decision_shows_the_solver_s_words_and_where_table_2_differs() {
 
 #[test]
 fn what_is_not_told_is_a_dash_and_never_nan() {
-    let mut debugger = attached(&three(), Offers::default());
+    let mut debugger = attached(&three(), Capabilities::default());
     debugger.type_keys("s j");
     for keys in ["", "e", "e Tab Tab", "Tab Tab Tab z"] {
         debugger.type_keys(keys);
@@ -357,9 +360,9 @@ fn what_is_not_told_is_a_dash_and_never_nan() {
 fn going_back_says_what_has_to_be_done_again() {
     let mut debugger = attached(
         &three(),
-        Offers {
+        Capabilities {
             force: true,
-            ..Offers::default()
+            ..Capabilities::default()
         },
     );
     debugger.type_keys("s s S");
@@ -375,9 +378,9 @@ fn going_back_says_what_has_to_be_done_again() {
         "{}",
         debugger.app.message.text
     );
-    let any = Offers {
-        goes_back: GoesBack::ToAny,
-        ..Offers::default()
+    let any = Capabilities {
+        goes_back: RewindSupport::ToAny,
+        ..Capabilities::default()
     };
     let mut debugger = attached(&three(), any);
     debugger.type_keys("s s S");
@@ -390,7 +393,7 @@ fn going_back_says_what_has_to_be_done_again() {
 
 #[test]
 fn a_lost_solver_is_told_until_a_key_and_the_header_says_so_until_it_steps() {
-    let mut debugger = attached(&three(), Offers::default());
+    let mut debugger = attached(&three(), Capabilities::default());
     debugger.type_keys("s s s");
     assert!(!debugger.text(120, 40).contains("lost"));
     debugger.type_keys("s");
@@ -427,7 +430,7 @@ fn what_a_solver_says_has_a_page_that_follows_its_end() {
         '<',
         json!({"type": "message", "level": "error", "text": "no convergence"}),
     ));
-    let mut debugger = attached(&exchange(&scene(), &lines), Offers::default());
+    let mut debugger = attached(&exchange(&scene(), &lines), Capabilities::default());
     debugger.advance();
     holds(&debugger, "solver error: no convergence");
     holds(&debugger, "1 error, 1 warning (O)");
@@ -453,7 +456,7 @@ fn what_a_solver_says_has_a_page_that_follows_its_end() {
     assert!(!debugger.text(80, 24).contains("What Toy says"));
 }
 
-fn parameters() -> Offers {
+fn parameters() -> Capabilities {
     let one = |name: &str, value: Value, range: Range, about: &str| Parameter {
         name: name.into(),
         value,
@@ -466,7 +469,7 @@ fn parameters() -> Offers {
         whole: false,
     };
     let laws = Range::Choice(vec!["alm".into(), "penalty".into()]);
-    Offers {
+    Capabilities {
         parameters: vec![
             one(
                 "penalty factor",
@@ -482,7 +485,7 @@ fn parameters() -> Offers {
             ),
             one("damped", Value::Flag(false), Range::Flag, ""),
         ],
-        ..Offers::default()
+        ..Capabilities::default()
     }
 }
 
@@ -578,7 +581,7 @@ fn nothing_that_a_solver_tells_breaks_a_screen() {
         "d",
     ];
     for text in odd() {
-        for offers in [Offers::default(), parameters()] {
+        for offers in [Capabilities::default(), parameters()] {
             let mut debugger = attached(&text, offers);
             debugger.type_keys("s");
             for keys in pages {

@@ -54,7 +54,7 @@ pub fn model(slaves: usize) -> Model {
             inner: 0,
         },
         length: 4.0,
-        ..Model::of_contacts(
+        ..Model::from_contacts(
             "A beam over a floor",
             nodes,
             vec![Surface::new(

@@ -5,15 +5,15 @@ use stickslip::record::journal::digest;
 use stickslip::scene::Scene;
 use stickslip::teach::progress::Progress;
 use stickslip::tui::Debugger;
-use stickslip::tui::choosing;
+use stickslip::tui::chooser_state;
 use stickslip::tui::debugger::TerminalRequest;
 use stickslip::tui::keys;
 use stickslip::tui::theme::Theme;
 
 /// The debugger without a scene, with what the program itself offers.
 fn choosing() -> Debugger {
-    let mut offers = choosing::offers(&Progress::default());
-    offers.retain(|offer| offer.group != choosing::Group::Files);
+    let mut offers = chooser_state::offers(&Progress::default());
+    offers.retain(|offer| offer.group != chooser_state::Group::Files);
     let mut debugger = Debugger::new(Theme::mono(), offers, None);
     debugger.settle();
     debugger
@@ -117,7 +117,7 @@ fn files_of_a_folder_are_offered_and_those_that_cannot_be_opened_say_why() {
     std::fs::write(at("接触の例.ron"), text).unwrap();
     std::fs::write(at("broken.ron"), "(title: \"x\"").unwrap();
     std::fs::write(at("notes.txt"), "").unwrap();
-    let mut offers = choosing::files(folder.path());
+    let mut offers = chooser_state::files(folder.path());
     let names: Vec<String> = offers.iter().map(|offer| offer.name.clone()).collect();
     assert_eq!(names, ["broken.ron", "接触の例.ron"]);
     // Opened from where the program runs, which the test does not.

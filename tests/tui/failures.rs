@@ -90,7 +90,7 @@ const CASES: [Case; 14] = [
         name: "leapt",
         scene: "block-over-its-edge",
         set: &[("history.jumps", "stop")],
-        is_meant: |failure| matches!(failure, Failure::Leapt { .. }),
+        is_meant: |failure| matches!(failure, Failure::BranchJump { .. }),
     },
     Case {
         name: "round-off",

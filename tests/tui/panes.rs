@@ -9,7 +9,7 @@ use stickslip::history::verdicts::BranchEnd;
 use stickslip::history::verdicts::summaries;
 use stickslip::model::Mode;
 use stickslip::record::command::{Command, Unit};
-use stickslip::record::journal::{Keep, Record};
+use stickslip::record::journal::{JournalTarget, Record};
 use stickslip::record::story::story;
 use stickslip::scene::Scene;
 use stickslip::session::Session;
@@ -396,7 +396,9 @@ fn a_branch_that_was_left_at_its_tip_keeps_it_when_memory_is_short() {
     solve(&mut session, RUN);
     assert!(finished(&session));
     session
-        .submit(Command::Branch(stickslip::record::command::To::Previous))
+        .submit(Command::Branch(
+            stickslip::record::command::BranchTarget::Previous,
+        ))
         .unwrap();
     assert!(session.frame().is_whole());
     assert_eq!(session.cursor(), 2);
@@ -407,7 +409,9 @@ fn answers_and_remedies_are_in_the_journal_and_replay_to_the_same_bits() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("a.journal");
     let mut session = session("osc-two6");
-    Keep::File(path.clone()).begin(&mut session).unwrap();
+    JournalTarget::File(path.clone())
+        .begin(&mut session)
+        .unwrap();
     solve(&mut session, RUN);
     solve(&mut session, Command::Remedies);
     session.background_mut().wait();

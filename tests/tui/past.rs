@@ -17,7 +17,7 @@ use stickslip::tui::debugger::{Debugger, TerminalRequest};
 use stickslip::tui::layout::Pane;
 use stickslip::tui::theme::Theme;
 use stickslip::tui::{keys, screen};
-use stickslip_exchange::calculix::past::PastRun;
+use stickslip_exchange::calculix::files::CalculixFiles;
 use stickslip_exchange::calculix::{cel, cvg};
 use vt100::Screen;
 
@@ -235,7 +235,7 @@ fn faces_show_how_much_of_them_touches() {
     let cel = first + &second + &third;
     let rows = "1 1 1 1 3 1. 1. 0. 0.\n1 1 1 2 2 1. 1. 0. 0.\n1 1 1 3 3 1. 1. 0. 0.\n1 1 1 4 7 1. 1. 0. 0.\n";
     let cvg = format!("SUMMARY OF C0NVERGENCE INFORMATION\n{rows}");
-    let files = PastRun::new(
+    let files = CalculixFiles::new(
         cel::read(cel.as_bytes()).unwrap(),
         None,
         Some(cvg::read(cvg.as_bytes()).unwrap()),

@@ -3,12 +3,12 @@
 
 use crate::by_hand::{app, frames, minor, model, press, type_text, view};
 use std::sync::Arc;
-use stickslip::model::{Load, Monitor, Watched};
+use stickslip::model::{Load, Monitor, MonitorQuantity};
 use stickslip::scene::Scene;
 use stickslip::session::Session;
 use stickslip::teach::progress::Progress;
 use stickslip::tui::app::App;
-use stickslip::tui::choosing;
+use stickslip::tui::chooser_state;
 use stickslip::tui::theme::Theme;
 use stickslip::tui::{Debugger, View, screen};
 
@@ -151,7 +151,7 @@ fn nodes_sort_by_change_ratio_and_force_and_filter_by_mode() {
 fn the_curve_chooses_a_monitor_that_moves() {
     let mut model = model(5);
     for (name, dof) in [("round-off", 12), ("tip", 13)] {
-        let of = Watched::Displacement { dof };
+        let of = MonitorQuantity::Displacement { dof };
         model.monitors.push(Monitor {
             name: name.into(),
             of,
@@ -195,7 +195,7 @@ fn the_header_has_the_file_s_name_and_the_footer_follows_the_pane() {
 
 #[test]
 fn a_lesson_is_a_column_on_the_right_and_covers_no_picture() {
-    let offers = choosing::offers(&Progress::default());
+    let offers = chooser_state::offers(&Progress::default());
     let mut debugger = Debugger::new(Theme::mono(), offers, None);
     debugger.settle();
     debugger.type_keys("Enter");

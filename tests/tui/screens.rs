@@ -6,7 +6,7 @@ use crate::by_hand::{app, event, frames, minor, model, press, records, render, v
 use std::sync::Arc;
 use stickslip::interface::minor_history::Cycle;
 use stickslip::model::Mode;
-use stickslip::model::{Monitor, Watched};
+use stickslip::model::{Monitor, MonitorQuantity};
 use stickslip::step::event::{Failure, Outcome};
 use stickslip::tui::screen;
 
@@ -70,7 +70,7 @@ fn the_load_is_drawn_over_a_monitor() {
     for (name, dof) in [("tip y", 13), ("tip x", 12)] {
         model.monitors.push(Monitor {
             name: name.into(),
-            of: Watched::Displacement { dof },
+            of: MonitorQuantity::Displacement { dof },
         });
     }
     let mut frames = frames(&model, minor());

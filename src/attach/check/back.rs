@@ -6,7 +6,7 @@ use super::trial::{Trial, at, is_last};
 use serde_json::Value;
 use stickslip_core::model::Mode;
 use stickslip_debugger::recorded::fault::Fault;
-use stickslip_exchange::attach::message::{Ended, Restore, State};
+use stickslip_exchange::attach::message::{EndedLevel, Restore, State};
 
 /// Iterations compared after each restored state.
 const AFTER: usize = 2;
@@ -24,7 +24,7 @@ pub fn restore(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
     }
     let mut kept: Vec<(usize, Value)> = Vec::new();
     for place in 0..states.len() {
-        let begins = place == 0 || matches!(states[place - 1].ended, Ended::Increment);
+        let begins = place == 0 || matches!(states[place - 1].ended, EndedLevel::Increment);
         if offered == Restore::Any || begins {
             match trial.save()? {
                 Ok(token) => kept.push((place, token)),

@@ -7,7 +7,7 @@ use stickslip_core::model::Mode;
 use stickslip_debugger::explain::names::{self, MODES};
 use stickslip_debugger::recorded::fault::Fault;
 use stickslip_debugger::recorded::orders::{FRICTION, INCREMENT};
-use stickslip_exchange::attach::message::{Ended, Id, Parameter, ParameterKind, State};
+use stickslip_exchange::attach::message::{EndedLevel, Id, ParameterKind, ParameterMessage, State};
 use stickslip_scene::shown;
 
 /// Maximum number of contacts forced, each in every mode.
@@ -140,9 +140,9 @@ pub fn hold(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
         if let Some((state, number)) = left {
             let before = usize::checked_sub(number, 2).and_then(|place| states.get(place));
             let then = match before.map(|state| state.ended) {
-                Some(Ended::Equilibrium) => ", after equilibrium",
-                Some(Ended::Increment) => ", in a new increment",
-                Some(Ended::Cut) => ", after the increment was cut",
+                Some(EndedLevel::Equilibrium) => ", after equilibrium",
+                Some(EndedLevel::Increment) => ", in a new increment",
+                Some(EndedLevel::Cut) => ", after the increment was cut",
                 _ => "",
             };
             let is = at(state, &contact).map_or("", |found| names::mode(found.mode));
@@ -235,7 +235,7 @@ pub fn parameters(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> 
 }
 
 /// Values that a parameter cannot have.
-fn wrong_values(known: &Parameter) -> Vec<Value> {
+fn wrong_values(known: &ParameterMessage) -> Vec<Value> {
     let mut wrong = Vec::new();
     match known.kind {
         ParameterKind::Number | ParameterKind::Integer => {
@@ -252,7 +252,7 @@ fn wrong_values(known: &Parameter) -> Vec<Value> {
 }
 
 /// A valid value other than the current one.
-fn another_value(known: &Parameter) -> Option<Value> {
+fn another_value(known: &ParameterMessage) -> Option<Value> {
     let in_range = |x: &f64| {
         known.least.is_none_or(|least| *x >= least) && known.most.is_none_or(|most| *x <= most)
     };
@@ -304,7 +304,7 @@ pub fn increment(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
     // In the middle of an increment, if possible.
     let done = states
         .iter()
-        .position(|state| state.ended == Ended::Iteration)
+        .position(|state| state.ended == EndedLevel::Iteration)
         .map_or(0, |place| place + 1);
     let before = trial.steps(done)?;
     if let Err(reason) = trial.set(INCREMENT, 0.5 * size)? {

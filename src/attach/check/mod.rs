@@ -14,7 +14,7 @@ mod steps;
 mod trial;
 
 use super::link::Start;
-pub use report::{Checked, Outcome, Report, Verdict};
+pub use report::{CheckResult, Outcome, Report, Verdict};
 use stickslip_debugger::recorded::fault::Fault;
 use stickslip_debugger::recorded::log::Log;
 use stickslip_exchange::attach::message::State;

@@ -6,16 +6,16 @@
 //! with settled modes and balanced forces. Its other iterations may miss the problem by at most [`UPDATED`]. Sticking nodes do not move: u = (W f + q)_t = 0 at contacts that were fixed through the
 //! whole increment.
 
-use super::super::meeting::other;
+use super::super::started_solver::other;
 use super::report::{Outcome, fails, good, not_offered, not_tried};
 use super::steps::is_settled;
 use super::trial::{Trial, is_last};
 use nalgebra::DVector;
 use stickslip_core::model::Mode;
-use stickslip_core::step::solver::Posed;
+use stickslip_core::step::solver::ReportedProblem;
 use stickslip_debugger::recorded::fault::Fault;
-use stickslip_debugger::recorded::posed::posed;
-use stickslip_exchange::attach::message::{Ended, Id, State};
+use stickslip_debugger::recorded::interface_problem::read_problem;
+use stickslip_exchange::attach::message::{EndedLevel, Id, State};
 use stickslip_exchange::attach::{Answer, Request};
 use stickslip_scene::shown;
 
@@ -58,7 +58,7 @@ pub fn problem(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
             }
             answer => return Err(other(&Request::Problem, answer, "problem")),
         };
-        let posed = told.map(|told| posed(&told, &ids)).transpose()?;
+        let posed = told.map(|told| read_problem(&told, &ids)).transpose()?;
         asked += usize::from(posed.is_some());
         let Some(state) = trial.step()? else { break };
         for (stuck, found) in stuck.iter_mut().zip(&state.contacts) {
@@ -86,13 +86,13 @@ pub fn problem(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
             }
         }
         match state.ended {
-            Ended::Increment => {
+            EndedLevel::Increment => {
                 let next = state.contacts.iter().map(|found| found.next == Mode::Fixed);
                 stuck_at_start = next.collect();
                 stuck.clone_from(&stuck_at_start);
             }
-            Ended::Cut | Ended::Failure => stuck.clone_from(&stuck_at_start),
-            Ended::Iteration | Ended::Equilibrium | Ended::Done => {}
+            EndedLevel::Cut | EndedLevel::Failure => stuck.clone_from(&stuck_at_start),
+            EndedLevel::Iteration | EndedLevel::Equilibrium | EndedLevel::Done => {}
         }
         if is_last(&state) || trial.is_late() {
             break;
@@ -138,7 +138,7 @@ pub fn problem(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
 }
 
 /// Why a matrix is not the compliance of deforming bodies.
-fn unsound(posed: &Posed, ids: &[Id]) -> Option<String> {
+fn unsound(posed: &ReportedProblem, ids: &[Id]) -> Option<String> {
     let of = |k: usize| {
         let contact = &ids[posed.contacts[k / 2]];
         (
@@ -156,7 +156,7 @@ fn unsound(posed: &Posed, ids: &[Id]) -> Option<String> {
 
 /// The largest deviation of a state's gaps from W f + q, relative to the lengths in it; `None` if the state does not report forces
 /// or gaps, or K has no inverse.
-fn apart(posed: &Posed, state: &State, stuck: &[bool]) -> Option<f64> {
+fn apart(posed: &ReportedProblem, state: &State, stuck: &[bool]) -> Option<f64> {
     let size = posed.q.len();
     let mut f = DVector::zeros(size);
     for (place, &contact) in posed.contacts.iter().enumerate() {

@@ -18,7 +18,7 @@ pub enum Verdict {
 
 /// A check.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Checked {
+pub struct CheckResult {
     /// The ability that was tested.
     pub what: &'static str,
     /// The finding.
@@ -33,13 +33,13 @@ pub struct Report {
     /// Name and version of the solver.
     pub name: String,
     /// The checks, in order.
-    pub checks: Vec<Checked>,
+    pub checks: Vec<CheckResult>,
 }
 
 impl Report {
     /// Number of failed checks.
     pub fn failed(&self) -> usize {
-        let fails = |check: &&Checked| matches!(check.verdict, Verdict::Fails(_));
+        let fails = |check: &&CheckResult| matches!(check.verdict, Verdict::Fails(_));
         self.checks.iter().filter(fails).count()
     }
 
@@ -67,7 +67,7 @@ impl Report {
     pub fn add(&mut self, what: &'static str, outcome: Result<Outcome, Fault>) {
         let (found, verdict) =
             outcome.unwrap_or_else(|fault| fails(fault.to_string(), mend(&fault)));
-        self.checks.push(Checked {
+        self.checks.push(CheckResult {
             what,
             found,
             verdict,

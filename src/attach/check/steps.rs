@@ -13,7 +13,7 @@ use stickslip_scene::shown;
 use std::time::Instant;
 use stickslip_core::step::event::Position;
 use stickslip_core::step::state::State as OurState;
-use stickslip_exchange::attach::message::{Ended, Found, Scene, State};
+use stickslip_exchange::attach::message::{ContactResult, EndedLevel, Scene, State};
 use stickslip_exchange::attach::{Answer, Request};
 
 /// Iterations per check, and the maximum if no increment has been accepted by then.
@@ -186,7 +186,7 @@ fn taken_in(model: &Model, scene: &Scene, states: &[State]) -> Result<(), String
 /// Which values the states report.
 fn told(states: &[State]) -> String {
     let all = || states.iter().flat_map(|state| &state.contacts);
-    type Number = fn(&Found) -> Option<f64>;
+    type Number = fn(&ContactResult) -> Option<f64>;
     let names: [(&str, Number); 5] = [
         ("gap", |found| found.gap),
         ("f_n", |found| found.f_n),
@@ -209,14 +209,14 @@ fn told(states: &[State]) -> String {
 fn unfollowed(before: &State, state: &State) -> Option<(String, &'static str)> {
     let (then, now) = (before.at, state.at);
     let goes_on = match before.ended {
-        Ended::Iteration => {
+        EndedLevel::Iteration => {
             same_attempt(then, now) && (now.major, now.minor) > (then.major, then.minor)
         }
-        Ended::Equilibrium => same_attempt(then, now) && now.major > then.major,
-        Ended::Cut => now.increment == then.increment && now.attempt > then.attempt,
-        Ended::Increment => now.increment > then.increment,
+        EndedLevel::Equilibrium => same_attempt(then, now) && now.major > then.major,
+        EndedLevel::Cut => now.increment == then.increment && now.attempt > then.attempt,
+        EndedLevel::Increment => now.increment > then.increment,
         // After a failure the solver may continue anywhere.
-        Ended::Failure | Ended::Done => true,
+        EndedLevel::Failure | EndedLevel::Done => true,
     };
     if !goes_on {
         let place =
@@ -242,7 +242,7 @@ fn unfollowed(before: &State, state: &State) -> Option<(String, &'static str)> {
         ));
     }
     // In a new major iteration the geometry may change modes: a node reaches a corner, or the end of a surface.
-    if before.ended != Ended::Iteration {
+    if before.ended != EndedLevel::Iteration {
         return None;
     }
     let mut pairs = before.contacts.iter().zip(&state.contacts);
@@ -303,12 +303,12 @@ fn laws(states: &[State]) -> Outcome {
 
 /// Whether a state was accepted with unchanged modes.
 pub fn is_settled(state: &State) -> bool {
-    matches!(state.ended, Ended::Increment | Ended::Done)
+    matches!(state.ended, EndedLevel::Increment | EndedLevel::Done)
         && state.contacts.iter().all(|found| found.mode == found.next)
 }
 
 /// How a settled contact violates the laws; forces below `small` count as zero.
-fn unlawful(found: &Found, small: f64) -> Option<(String, &'static str)> {
+fn unlawful(found: &ContactResult, small: f64) -> Option<(String, &'static str)> {
     let (f_n, f_t) = (found.f_n.unwrap_or(0.0), found.f_t.unwrap_or(0.0));
     let limit = found.limit;
     match found.mode {
@@ -401,7 +401,7 @@ fn otherwise(then: &State, now: &State) -> Option<String> {
     if then.ended != now.ended {
         return Some("another outcome (`ended`)".into());
     }
-    let modes = |found: &Found| (found.mode, found.next);
+    let modes = |found: &ContactResult| (found.mode, found.next);
     let mut pairs = then.contacts.iter().zip(&now.contacts);
     let other = pairs.find(|(then, now)| modes(then) != modes(now))?.1;
     let id = other.id.to_string();

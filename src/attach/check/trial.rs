@@ -1,7 +1,7 @@
 //! A solver under test.
 
 use super::super::link::{Link, Start};
-use super::super::meeting::{Met, meet, other};
+use super::super::started_solver::{StartedSolver, meet, other};
 use serde_json::Value;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use stickslip_core::model::Mode;
 use stickslip_debugger::recorded::fault::Fault;
 use stickslip_debugger::recorded::log::Log;
-use stickslip_exchange::attach::message::{Ended, Found, Hello, Id, Scene, State};
+use stickslip_exchange::attach::message::{ContactResult, EndedLevel, Hello, Id, Scene, State};
 use stickslip_exchange::attach::{Answer, Request};
 
 /// Time limit for optional repetitions within one check.
@@ -36,7 +36,7 @@ impl Trial {
     pub fn begin(start: &Start, log: &Log) -> Result<Trial, Fault> {
         let began = Instant::now();
         let asks = Arc::new(AtomicUsize::new(0));
-        let Met {
+        let StartedSolver {
             link, hello, scene, ..
         } = meet(start, log, &asks)?;
         Ok(Trial {
@@ -193,11 +193,11 @@ impl Trial {
 
 /// Whether no regular state follows this one.
 pub fn is_last(state: &State) -> bool {
-    matches!(state.ended, Ended::Done | Ended::Failure)
+    matches!(state.ended, EndedLevel::Done | EndedLevel::Failure)
 }
 
 /// The values of a contact in a state.
-pub fn at<'a>(state: &'a State, contact: &Id) -> Option<&'a Found> {
+pub fn at<'a>(state: &'a State, contact: &Id) -> Option<&'a ContactResult> {
     state.contacts.iter().find(|found| found.id == *contact)
 }
 

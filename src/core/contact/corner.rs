@@ -211,8 +211,8 @@ impl Side {
 
 /// How much a force exceeds the limits for staying on a convex vertex: it must press on both sides (`tension`), and the friction
 /// of each side must prevent sliding down (`cone`). `before` is the first side in walking order.
-pub fn beyond_vertex(force: [f64; 2], before: &Side, behind: &Side) -> Beyond {
-    let mut beyond = Beyond::default();
+pub fn beyond_vertex(force: [f64; 2], before: &Side, behind: &Side) -> CornerViolation {
+    let mut beyond = CornerViolation::default();
     for (side, away) in [(before, -1.0), (behind, 1.0)] {
         let (f_n, f_t) = (
             dot(force, side.normal),
@@ -228,7 +228,7 @@ pub fn beyond_vertex(force: [f64; 2], before: &Side, behind: &Side) -> Beyond {
 
 /// Violations of two laws (force; 0 if satisfied).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Beyond {
+pub struct CornerViolation {
     /// Tension on one of the sides.
     pub tension: f64,
     /// Excess over the friction bound of one of the sides.

@@ -44,7 +44,8 @@ pub fn find(
     spots: [SurfacePoint; 2],
     positions: &[[f64; 2]],
 ) -> Option<Crossing> {
-    let elements = spots.map(|spot| SurfaceElement::of(&surfaces[spot.surface], spot.element));
+    let elements =
+        spots.map(|spot| SurfaceElement::from_surface(&surfaces[spot.surface], spot.element));
     let endless = spots.map(|spot| surfaces[spot.surface].endless);
     let mut xi = spots.map(|spot| spot.xi);
     let mut at = [[0.0; 2]; 2];

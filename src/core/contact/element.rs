@@ -20,7 +20,7 @@ pub struct SurfaceElement<'a> {
 
 impl<'a> SurfaceElement<'a> {
     /// Element `number` of a surface.
-    pub fn of(surface: &'a Surface, number: usize) -> Self {
+    pub fn from_surface(surface: &'a Surface, number: usize) -> Self {
         SurfaceElement {
             nodes: &surface.elements[number],
             piece: surface.smooth.get(number),
@@ -34,7 +34,7 @@ impl<'a> SurfaceElement<'a> {
 
     /// All elements of a surface.
     pub fn all(surface: &'a Surface) -> impl Iterator<Item = SurfaceElement<'a>> {
-        (0..surface.elements.len()).map(|number| SurfaceElement::of(surface, number))
+        (0..surface.elements.len()).map(|number| SurfaceElement::from_surface(surface, number))
     }
 
     /// The functions N_i at ξ, with two derivatives.
@@ -119,7 +119,7 @@ pub struct ElementPositions([[f64; 2]; MAX_NODES]);
 
 impl ElementPositions {
     /// Looks up the positions of these nodes.
-    pub fn of(nodes: &[usize], positions: &[[f64; 2]]) -> Self {
+    pub fn from_nodes(nodes: &[usize], positions: &[[f64; 2]]) -> Self {
         let mut places = [[0.0; 2]; MAX_NODES];
         for (place, &n) in places.iter_mut().zip(nodes) {
             *place = positions[n];
@@ -145,7 +145,8 @@ impl ElementPositions {
 pub fn closed(surface: &Surface) -> bool {
     let count = surface.elements.len();
     count > 1
-        && SurfaceElement::of(surface, 0).first() == SurfaceElement::of(surface, count - 1).last()
+        && SurfaceElement::from_surface(surface, 0).first()
+            == SurfaceElement::from_surface(surface, count - 1).last()
 }
 
 #[cfg(test)]
@@ -175,6 +176,9 @@ mod tests {
         let (nodes, positions) = ([2, 0], [[1.0, 2.0], [9.0, 9.0], [3.0, -4.0]]);
         let n = SurfaceElement::lagrange(&nodes).shape(0.5).n;
         let exact = [0.25 * 3.0 + 0.75 * 1.0, 0.25 * -4.0 + 0.75 * 2.0];
-        assert_eq!(ElementPositions::of(&nodes, &positions).sum(&n), exact);
+        assert_eq!(
+            ElementPositions::from_nodes(&nodes, &positions).sum(&n),
+            exact
+        );
     }
 }

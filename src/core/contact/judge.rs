@@ -21,23 +21,23 @@
 //! All amounts are relative to the scene's length or force. Lengths and forces have separate tolerances, because very stiff
 //! bodies reduce the accuracy of forces but not of positions.
 
+use crate::contact::closest_history::{ClosestPoints, FEW};
+use crate::contact::closest_points::{self, ClosestPoint, direction, place, speed};
 use crate::contact::corner::{Side, dot};
 use crate::contact::element::{SurfaceElement, closed};
 use crate::contact::facing::{MOST, faced};
-use crate::contact::feet::{self, Foot, direction, place, speed};
 use crate::contact::laws::{Finding, JudgedLaw, JudgedNumbers, Scales, Verdict};
-use crate::contact::point_force::judged::{JudgedGives, Loaded, hand_on};
+use crate::contact::point_force::judged::{JudgedGives, LoadedInterface, hand_on};
 use crate::contact::projection::SurfacePoint;
-use crate::contact::side_laws::{Amounts, SideHistory, Touching};
+use crate::contact::side_laws::{Amounts, SideHistory, TouchedSide};
 use crate::contact::side_laws::{beyond_border, in_corner, on_side, slip_into};
 use crate::contact::stick_point::distance;
-use crate::contact::stood::{FEW, Stood};
 use crate::model::Friction;
 use crate::model::{Contact, Surface};
 
 /// Input of the judge: an interface, now and in the last accepted state.
 #[derive(Debug, Clone, Copy)]
-pub struct Seen<'a> {
+pub struct JudgedState<'a> {
     /// Master surfaces of the scene.
     pub surfaces: &'a [Surface],
     /// Slave nodes of the scene.
@@ -63,15 +63,15 @@ pub struct Seen<'a> {
     pub scales: Scales,
 }
 
-impl Seen<'_> {
+impl JudgedState<'_> {
     /// Position at which a slave node is judged now.
     fn point(&self, slave: usize) -> [f64; 2] {
         self.loaded().point(slave)
     }
 
     /// The interface in its current state.
-    fn loaded(&self) -> Loaded<'_> {
-        Loaded {
+    fn loaded(&self) -> LoadedInterface<'_> {
+        LoadedInterface {
             surfaces: self.surfaces,
             contacts: self.contacts,
             now: self.now,
@@ -97,34 +97,34 @@ fn further(at: [f64; 2], way: Option<&[f64; 2]>) -> [f64; 2] {
 /// The judge and its workspace.
 #[derive(Debug)]
 pub struct Judge {
-    feet: Vec<Foot>,
-    earlier: Vec<Foot>,
-    others: Vec<Foot>,
-    sides: Vec<Touching>,
+    feet: Vec<ClosestPoint>,
+    earlier: Vec<ClosestPoint>,
+    others: Vec<ClosestPoint>,
+    sides: Vec<TouchedSide>,
     gives: JudgedGives,
     /// Cached data of the state judged last, which is usually the one accepted before the next.
-    last: Stood,
-    next: Stood,
+    last: ClosestPoints,
+    next: ClosestPoints,
 }
 
 impl Judge {
     /// A judge with workspace for a scene of this size.
     pub fn with_capacity(nodes: usize, slaves: usize) -> Self {
-        feet::prepare();
+        closest_points::prepare();
         Judge {
             feet: Vec::with_capacity(FEW),
             earlier: Vec::with_capacity(FEW),
             others: Vec::with_capacity(FEW),
             sides: Vec::with_capacity(FEW),
             gives: JudgedGives::with_capacity(slaves),
-            last: Stood::with_capacity(nodes, slaves),
-            next: Stood::with_capacity(nodes, slaves),
+            last: ClosestPoints::with_capacity(nodes, slaves),
+            next: ClosestPoints::with_capacity(nodes, slaves),
         }
     }
 
     /// Judges contact and friction. `contact` (one entry per node of the scene) receives the interaction force on every node, x
     /// and y; the closest points found here distribute a slave's force over the nodes of its master element.
-    pub fn interface(&mut self, seen: &Seen, contact: &mut [[f64; 2]]) -> Verdict {
+    pub fn interface(&mut self, seen: &JudgedState, contact: &mut [[f64; 2]]) -> Verdict {
         let mut verdict = Verdict::default();
         contact.fill([0.0; 2]);
         let near = seen.scales.near();
@@ -155,12 +155,18 @@ impl Judge {
     ) -> Option<SurfacePoint> {
         let (mut feet, mut room) = (Vec::new(), [0; MOST]);
         let on = faced(slave, surfaces, positions, &mut room);
-        feet::find(at, surfaces, on, positions, 0.0, &mut feet);
+        closest_points::find(at, surfaces, on, positions, 0.0, &mut feet);
         let foot = feet.first().filter(|foot| foot.distance <= near)?;
         (!is_past_end_at(foot, at, surfaces, positions, near)).then_some(foot.spot)
     }
 
-    fn node(&mut self, seen: &Seen, slave: usize, contact: &mut [[f64; 2]], verdict: &mut Verdict) {
+    fn node(
+        &mut self,
+        seen: &JudgedState,
+        slave: usize,
+        contact: &mut [[f64; 2]],
+        verdict: &mut Verdict,
+    ) {
         let contact_of = &seen.contacts[slave];
         let Contact { bond, .. } = contact_of;
         let mut room = [0; MOST];
@@ -169,7 +175,7 @@ impl Judge {
         let Scales { length, forces, .. } = seen.scales;
         let near = seen.scales.near();
         let pressed = size(force) > forces * seen.scales.force;
-        feet::find(
+        closest_points::find(
             point,
             seen.surfaces,
             surfaces,
@@ -186,7 +192,7 @@ impl Judge {
                 numbers,
             });
         };
-        let over = |feet: &[Foot], point: [f64; 2]| {
+        let over = |feet: &[ClosestPoint], point: [f64; 2]| {
             let mut feet = feet.iter();
             feet.find(|foot| !is_past_end(foot, point, seen)).copied()
         };
@@ -205,7 +211,7 @@ impl Judge {
                 point = [0, 1].map(|k| point[k] + given * n[k]);
             }
             let feet = &mut self.feet;
-            feet::find(point, seen.surfaces, surfaces, seen.now, 2.0 * near, feet);
+            closest_points::find(point, seen.surfaces, surfaces, seen.now, 2.0 * near, feet);
             foot = over(feet, point);
         }
         self.next.add(&self.feet);
@@ -289,7 +295,7 @@ impl Judge {
     }
 
     /// Closest points of a node in the last accepted state.
-    fn find_earlier(&mut self, seen: &Seen, slave: usize, near: f64) {
+    fn find_earlier(&mut self, seen: &JudgedState, slave: usize, near: f64) {
         // The results from judging that state are still valid.
         if !self.last.ends.is_empty() {
             self.earlier.clear();
@@ -299,7 +305,7 @@ impl Judge {
         let (was, mut room) = (seen.was(slave), [0; MOST]);
         let surfaces = faced(&seen.contacts[slave], seen.surfaces, seen.before, &mut room);
         let earlier = &mut self.earlier;
-        feet::find(
+        closest_points::find(
             was,
             seen.surfaces,
             surfaces,
@@ -310,9 +316,9 @@ impl Judge {
     }
 
     /// Motion of a tied node along its surface since the last accepted state; infinite if it is on another surface.
-    fn strayed(&mut self, seen: &Seen, slave: usize, foot: &Foot) -> f64 {
+    fn strayed(&mut self, seen: &JudgedState, slave: usize, foot: &ClosestPoint) -> f64 {
         self.find_earlier(seen, slave, seen.scales.near());
-        let here = |earlier: &&Foot| earlier.spot.surface == foot.spot.surface;
+        let here = |earlier: &&ClosestPoint| earlier.spot.surface == foot.spot.surface;
         let surface = &seen.surfaces[foot.spot.surface];
         let earlier = self.earlier.iter().find(here);
         earlier.map_or(f64::INFINITY, |earlier| {
@@ -321,7 +327,7 @@ impl Judge {
     }
 
     /// The sides that a node touches: those of its closest points, and both sides at a border between elements.
-    fn find_sides(&mut self, seen: &Seen, slave: usize, point: [f64; 2], near: f64) {
+    fn find_sides(&mut self, seen: &JudgedState, slave: usize, point: [f64; 2], near: f64) {
         self.find_earlier(seen, slave, near);
         self.sides.clear();
         for foot in self.feet.iter().filter(|foot| foot.distance <= near) {
@@ -330,7 +336,8 @@ impl Judge {
                     xi: end,
                     ..foot.spot
                 };
-                let element = SurfaceElement::of(&seen.surfaces[border.surface], border.element);
+                let element =
+                    SurfaceElement::from_surface(&seen.surfaces[border.surface], border.element);
                 let at = place(element, seen.now, end);
                 let there = size([point[0] - at[0], point[1] - at[1]]) <= near;
                 there
@@ -341,7 +348,7 @@ impl Judge {
                 .into_iter()
                 .flatten()
             {
-                let known = |side: &Touching| {
+                let known = |side: &TouchedSide| {
                     (side.spot.surface, side.spot.element) == (spot.surface, spot.element)
                 };
                 if !self.sides.iter().any(known)
@@ -363,7 +370,7 @@ impl Judge {
     }
 
     /// The smallest violation: with the force on one of the sides, or on two sides together.
-    fn least(&self, seen: &Seen, slave: usize) -> Amounts {
+    fn least(&self, seen: &JudgedState, slave: usize) -> Amounts {
         let force = seen.forces[slave];
         let single = self
             .sides
@@ -388,14 +395,14 @@ impl Judge {
 /// it has not. Only a node that was above the surface and is now below it counts, not one that went round an end. `others` are
 /// the surfaces that the node may touch, except the nearest.
 fn through(
-    seen: &Seen,
+    seen: &JudgedState,
     slave: usize,
     others: impl Iterator<Item = usize>,
     near: f64,
-    feet: &mut Vec<Foot>,
+    feet: &mut Vec<ClosestPoint>,
 ) -> f64 {
     let mut over = |other: usize, point: [f64; 2], positions: &[[f64; 2]]| {
-        feet::find(point, seen.surfaces, &[other], positions, 0.0, feet);
+        closest_points::find(point, seen.surfaces, &[other], positions, 0.0, feet);
         let foot = feet.first()?;
         let ends = foot.spot.xi.abs() == 1.0 && !seen.surfaces[other].endless;
         let at_end = ends && beyond_border(seen.surfaces, foot.spot).is_none();
@@ -416,11 +423,15 @@ fn through(
 }
 
 /// ξ (±1) of the end of the spot's chain that is within `near` (length) of a point. `None` away from the ends.
-fn end_at(seen: &Seen, point: [f64; 2], spot: SurfacePoint, near: f64) -> Option<f64> {
+fn end_at(seen: &JudgedState, point: [f64; 2], spot: SurfacePoint, near: f64) -> Option<f64> {
     let surface = &seen.surfaces[spot.surface];
     let ends = [-1.0, 1.0].into_iter().filter(|_| !surface.endless);
     ends.filter(|&xi| {
-        let at = place(SurfaceElement::of(surface, spot.element), seen.now, xi);
+        let at = place(
+            SurfaceElement::from_surface(surface, spot.element),
+            seen.now,
+            xi,
+        );
         size([point[0] - at[0], point[1] - at[1]]) <= near
     })
     .find(|&xi| beyond_border(seen.surfaces, SurfacePoint { xi, ..spot }).is_none())
@@ -428,31 +439,36 @@ fn end_at(seen: &Seen, point: [f64; 2], spot: SurfacePoint, near: f64) -> Option
 
 /// A side at a surface point. `None` if dx/dξ = 0.
 fn touching(
-    seen: &Seen,
+    seen: &JudgedState,
     slave: usize,
     point: [f64; 2],
     spot: SurfacePoint,
-    (earlier, gives): (&[Foot], &JudgedGives),
+    (earlier, gives): (&[ClosestPoint], &JudgedGives),
     near: f64,
-) -> Option<Touching> {
+) -> Option<TouchedSide> {
     let surface = &seen.surfaces[spot.surface];
-    let tangent = direction(SurfaceElement::of(surface, spot.element), seen.now, spot.xi)?;
+    let tangent = direction(
+        SurfaceElement::from_surface(surface, spot.element),
+        seen.now,
+        spot.xi,
+    )?;
     let tangent = gives.turned(&seen.loaded(), slave, spot, tangent);
     let friction = &seen.friction[slave];
     let elastic = match seen.contacts[slave].bond.give()[1] {
         0.0 => 0.0,
         give => give * (dot(seen.forces[slave], tangent) - seen.earlier[slave]),
     };
-    let way =
-        |foot: &Foot| distance(surface, foot.spot, spot, seen.now) - seen.brought[slave] + elastic;
+    let way = |foot: &ClosestPoint| {
+        distance(surface, foot.spot, spot, seen.now) - seen.brought[slave] + elastic
+    };
     // The elastic slip since the node was anchored is a length on the surface in the last accepted state, which has stretched
     // since.
-    let beyond_stretch = |way: f64, foot: &Foot| {
+    let beyond_stretch = |way: f64, foot: &ClosestPoint| {
         let give = seen.contacts[slave].bond.give()[1];
         if give == 0.0 {
             return way;
         }
-        let element = SurfaceElement::of(surface, foot.spot.element);
+        let element = SurfaceElement::from_surface(surface, foot.spot.element);
         let [now, before] = [seen.now, seen.before].map(|at| speed(element, at, foot.spot.xi));
         let length = give * seen.earlier[slave] - seen.anchored[slave];
         let stretched = (length * (now / before - 1.0)).abs();
@@ -470,7 +486,7 @@ fn touching(
         Some(foot) => SideHistory::Open(way(foot)),
         None => SideHistory::Elsewhere,
     };
-    Some(Touching {
+    Some(TouchedSide {
         spot,
         side: Side {
             normal: [tangent[1], -tangent[0]],
@@ -484,7 +500,7 @@ fn touching(
 }
 
 /// Outward unit direction at a closest point; `None` if undefined.
-fn outward(foot: &Foot, surfaces: &[Surface], positions: &[[f64; 2]]) -> [f64; 2] {
+fn outward(foot: &ClosestPoint, surfaces: &[Surface], positions: &[[f64; 2]]) -> [f64; 2] {
     let n = outward_at(foot, surfaces, positions);
     match size(n) {
         0.0 => n,
@@ -493,9 +509,9 @@ fn outward(foot: &Foot, surfaces: &[Surface], positions: &[[f64; 2]]) -> [f64; 2
 }
 
 /// Sum of the outward normals of the sides at a closest point.
-fn outward_at(foot: &Foot, surfaces: &[Surface], positions: &[[f64; 2]]) -> [f64; 2] {
+fn outward_at(foot: &ClosestPoint, surfaces: &[Surface], positions: &[[f64; 2]]) -> [f64; 2] {
     let normal = |spot: SurfacePoint| {
-        let element = SurfaceElement::of(&surfaces[spot.surface], spot.element);
+        let element = SurfaceElement::from_surface(&surfaces[spot.surface], spot.element);
         let t = direction(element, positions, spot.xi);
         t.map_or([0.0; 2], |t| [t[1], -t[0]])
     };
@@ -508,7 +524,12 @@ fn outward_at(foot: &Foot, surfaces: &[Surface], positions: &[[f64; 2]]) -> [f64
 }
 
 /// Signed distance: negative if the point lies inside.
-fn signed_gap(foot: &Foot, point: [f64; 2], surfaces: &[Surface], positions: &[[f64; 2]]) -> f64 {
+fn signed_gap(
+    foot: &ClosestPoint,
+    point: [f64; 2],
+    surfaces: &[Surface],
+    positions: &[[f64; 2]],
+) -> f64 {
     let n = outward_at(foot, surfaces, positions);
     let to = [point[0] - foot.at[0], point[1] - foot.at[1]];
     if dot(to, n) < 0.0 {
@@ -518,13 +539,13 @@ fn signed_gap(foot: &Foot, point: [f64; 2], surfaces: &[Surface], positions: &[[
     }
 }
 
-fn is_past_end(foot: &Foot, point: [f64; 2], seen: &Seen) -> bool {
+fn is_past_end(foot: &ClosestPoint, point: [f64; 2], seen: &JudgedState) -> bool {
     is_past_end_at(foot, point, seen.surfaces, seen.now, seen.scales.near())
 }
 
 /// Whether a point lies beyond the end of the chain at its closest point by more than `near`.
 fn is_past_end_at(
-    foot: &Foot,
+    foot: &ClosestPoint,
     point: [f64; 2],
     surfaces: &[Surface],
     positions: &[[f64; 2]],
@@ -548,7 +569,8 @@ fn is_past_end_at(
         return false;
     }
     let to = [point[0] - foot.at[0], point[1] - foot.at[1]];
-    let t = direction(SurfaceElement::of(chain, element), positions, xi).unwrap_or([0.0; 2]);
+    let t =
+        direction(SurfaceElement::from_surface(chain, element), positions, xi).unwrap_or([0.0; 2]);
     xi * dot(to, t) > near
 }
 

@@ -1,11 +1,12 @@
 //! The interface between slave nodes and master surfaces.
 
 pub mod balance;
+mod closest_history;
+pub mod closest_points;
 pub mod corner;
 pub mod crossing;
 pub mod element;
 pub mod facing;
-pub mod feet;
 pub mod geometric_tangent;
 pub mod judge;
 pub mod laws;
@@ -16,7 +17,6 @@ mod side_laws;
 pub mod smooth;
 pub mod state;
 pub mod stick_point;
-mod stood;
 pub mod table1;
 pub mod table2;
 pub mod tracking;

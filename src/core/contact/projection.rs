@@ -106,7 +106,7 @@ pub fn closest_point(
     positions: &[[f64; 2]],
     previous: Option<SurfacePoint>,
 ) -> Option<SurfacePoint> {
-    let mut best: Option<Best> = None;
+    let mut best: Option<ClosestCandidate> = None;
     if let Some(spot) = previous {
         consider(slave, surfaces, positions, spot, true, &mut best);
     }
@@ -155,8 +155,8 @@ pub fn sharpen(
     if surface.endless || spot.xi.abs() == 1.0 {
         return spot;
     }
-    let element = SurfaceElement::of(surface, spot.element);
-    let places = ElementPositions::of(element.nodes, positions);
+    let element = SurfaceElement::from_surface(surface, spot.element);
+    let places = ElementPositions::from_nodes(element.nodes, positions);
     let xi = descend(element, &places, slave, spot.xi);
     match (xi - spot.xi).abs() <= NEXT_TO {
         true => SurfacePoint { xi, ..spot },
@@ -183,7 +183,7 @@ fn nearest_node(
 }
 
 /// The closest point so far.
-struct Best {
+struct ClosestCandidate {
     spot: SurfacePoint,
     distance: f64,
 }
@@ -196,10 +196,10 @@ fn consider(
     positions: &[[f64; 2]],
     spot: SurfacePoint,
     warm: bool,
-    best: &mut Option<Best>,
+    best: &mut Option<ClosestCandidate>,
 ) {
     let surface = &surfaces[spot.surface];
-    let element = SurfaceElement::of(surface, spot.element);
+    let element = SurfaceElement::from_surface(surface, spot.element);
     let own = Bounds::new(element.nodes, positions);
     if let Some(best) = best
         && !surface.endless
@@ -217,7 +217,7 @@ fn consider(
         .as_ref()
         .is_none_or(|best| distance < best.distance - slack)
     {
-        *best = Some(Best {
+        *best = Some(ClosestCandidate {
             spot: SurfacePoint { xi, ..spot },
             distance,
         });
@@ -302,9 +302,9 @@ pub fn projection_at(
     slave: [f64; 2],
 ) -> Projection {
     let surface = &surfaces[spot.surface];
-    let element = SurfaceElement::of(surface, spot.element);
+    let element = SurfaceElement::from_surface(surface, spot.element);
     let (places, s) = (
-        ElementPositions::of(element.nodes, positions),
+        ElementPositions::from_nodes(element.nodes, positions),
         element.shape(spot.xi),
     );
     let (foot, slope) = (places.sum(&s.n), places.sum(&s.d));
@@ -367,15 +367,15 @@ pub fn beside(surface: &Surface, border: SurfacePoint, ahead: bool) -> SurfacePo
 
 /// dx/dξ at ξ of an element.
 fn slope_at(surface: &Surface, element: usize, xi: f64, positions: &[[f64; 2]]) -> [f64; 2] {
-    let element = SurfaceElement::of(surface, element);
+    let element = SurfaceElement::from_surface(surface, element);
     blend(element.nodes, positions, &element.slopes(xi))
 }
 
 /// The element that meets that of the surface point there, and ξ on it. `None` inside an element, and at an end of the chain.
 pub(super) fn neighbour(surface: &Surface, spot: SurfacePoint) -> Option<(usize, f64)> {
     let count = surface.elements.len();
-    let own = SurfaceElement::of(surface, spot.element);
-    let at = |other: usize| SurfaceElement::of(surface, other);
+    let own = SurfaceElement::from_surface(surface, spot.element);
+    let at = |other: usize| SurfaceElement::from_surface(surface, other);
     let (other, xi, node, met) = if spot.xi == 1.0 {
         let other = (spot.element + 1) % count;
         (other, -1.0, own.last(), at(other).first())
@@ -397,7 +397,7 @@ fn past_end(
     if surface.endless || spot.xi.abs() < 1.0 || neighbour(surface, spot).is_some() {
         return false;
     }
-    let element = SurfaceElement::of(surface, spot.element);
+    let element = SurfaceElement::from_surface(surface, spot.element);
     let (nodes, s) = (element.nodes, element.shape(spot.xi));
     let (foot, slope) = (blend(nodes, positions, &s.n), blend(nodes, positions, &s.d));
     let beyond = spot.xi * ((slave[0] - foot[0]) * slope[0] + (slave[1] - foot[1]) * slope[1]);
@@ -429,7 +429,7 @@ fn closest(
     slave: [f64; 2],
     guess: Option<f64>,
 ) -> (f64, f64) {
-    let places = ElementPositions::of(element.nodes, positions);
+    let places = ElementPositions::from_nodes(element.nodes, positions);
     let squared = |n: &[f64; MAX_NODES]| {
         let to = away(slave, places.sum(n));
         to[0] * to[0] + to[1] * to[1]

@@ -2,7 +2,7 @@
 
 use crate::contact::corner::{Side, split};
 use crate::contact::projection::SurfacePoint;
-use crate::contact::table2::{Decision, Rule, Test, Tested};
+use crate::contact::table2::{Decision, Rule, Test, TestedQuantity};
 use crate::model::{Friction, Mode};
 use serde::{Deserialize, Serialize};
 
@@ -64,7 +64,10 @@ impl ContactRecord {
 
     /// Whether a test of this node's decision is a tie. Without friction limit, tests of friction compare 0 with 0 and decide nothing.
     pub fn is_tie(&self, test: &Test) -> bool {
-        let of_friction = matches!(test.tested, Tested::ShearForce | Tested::Slip);
+        let of_friction = matches!(
+            test.tested,
+            TestedQuantity::ShearForce | TestedQuantity::Slip
+        );
         test.tie && !(of_friction && self.t_max == 0.0)
     }
 

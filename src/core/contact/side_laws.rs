@@ -9,7 +9,7 @@ use crate::model::Surface;
 
 /// A side of the master that a node touches.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Touching {
+pub(super) struct TouchedSide {
     pub spot: SurfacePoint,
     pub side: Side,
     pub tangent: [f64; 2],
@@ -51,8 +51,8 @@ impl Amounts {
 /// slide there.
 pub(super) fn slip_into(
     surfaces: &[Surface],
-    sides: &[Touching],
-    this: &Touching,
+    sides: &[TouchedSide],
+    this: &TouchedSide,
     near: f64,
 ) -> Option<f64> {
     let mut others = sides
@@ -68,7 +68,7 @@ pub(super) fn slip_into(
 }
 
 /// Evaluates the laws on a single side.
-pub(super) fn on_side(scales: &Scales, force: [f64; 2], at: &Touching) -> Amounts {
+pub(super) fn on_side(scales: &Scales, force: [f64; 2], at: &TouchedSide) -> Amounts {
     let numbers = numbers(force, at);
     let JudgedNumbers {
         f_n,
@@ -96,7 +96,7 @@ pub(super) fn on_side(scales: &Scales, force: [f64; 2], at: &Touching) -> Amount
     }
 }
 
-fn numbers(force: [f64; 2], at: &Touching) -> JudgedNumbers {
+fn numbers(force: [f64; 2], at: &TouchedSide) -> JudgedNumbers {
     let f_n = dot(force, at.side.normal);
     JudgedNumbers {
         gap: 0.0,
@@ -115,7 +115,7 @@ pub(super) fn in_corner(
     surfaces: &[Surface],
     scales: &Scales,
     force: [f64; 2],
-    [one, other]: [&Touching; 2],
+    [one, other]: [&TouchedSide; 2],
 ) -> Amounts {
     let (before, behind) = if comes_first(surfaces, one, other) {
         (one, other)
@@ -157,7 +157,7 @@ pub(super) fn in_corner(
 
 /// Whether `one` precedes `other` in walking order, for two sides that meet. On two surfaces, the surface that ends at the common
 /// point precedes the surface that begins there; if two surfaces cross, the order is that of the walk into their concave corner.
-fn comes_first(surfaces: &[Surface], one: &Touching, other: &Touching) -> bool {
+fn comes_first(surfaces: &[Surface], one: &TouchedSide, other: &TouchedSide) -> bool {
     if one.spot.surface != other.spot.surface {
         return match (one.end, other.end) {
             (Some(a), Some(b)) if a != b => a > b,
@@ -174,8 +174,8 @@ fn comes_first(surfaces: &[Surface], one: &Touching, other: &Touching) -> bool {
 
 /// Direction (±1, along t) in which a node has slid since the last accepted state to the point where two sides meet: along t on
 /// the first side, against t on the second. `None` if it did not slide there.
-fn came_along(before: &Touching, behind: &Touching, near: f64) -> Option<f64> {
-    let slid = |side: &Touching, sign: f64| matches!(side.past, SideHistory::Touched(slip) if sign * slip > near);
+fn came_along(before: &TouchedSide, behind: &TouchedSide, near: f64) -> Option<f64> {
+    let slid = |side: &TouchedSide, sign: f64| matches!(side.past, SideHistory::Touched(slip) if sign * slip > near);
     if slid(before, 1.0) {
         Some(1.0)
     } else if slid(behind, -1.0) {
@@ -193,8 +193,8 @@ pub(super) fn beyond_border(surfaces: &[Surface], border: SurfacePoint) -> Optio
     let step = if ahead { 1 } else { count - 1 };
     let element = (border.element + step) % count;
     let (own, other) = (
-        SurfaceElement::of(surface, border.element),
-        SurfaceElement::of(surface, element),
+        SurfaceElement::from_surface(surface, border.element),
+        SurfaceElement::from_surface(surface, element),
     );
     let (mine, its) = if ahead {
         (own.last(), other.first())

@@ -89,7 +89,12 @@ pub fn distance(
 /// The same for `from.element <= to.element`.
 fn walk(surface: &Surface, from: SurfacePoint, to: SurfacePoint, positions: &[[f64; 2]]) -> f64 {
     let part = |element: usize, from: f64, to: f64| {
-        length(SurfaceElement::of(surface, element), from, to, positions)
+        length(
+            SurfaceElement::from_surface(surface, element),
+            from,
+            to,
+            positions,
+        )
     };
     if from.element == to.element {
         return part(from.element, from.xi, to.xi);
@@ -108,7 +113,7 @@ fn length(element: SurfaceElement<'_>, from: f64, to: f64, positions: &[[f64; 2]
         return 0.0;
     }
     let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-    let places = ElementPositions::of(element.nodes, positions);
+    let places = ElementPositions::from_nodes(element.nodes, positions);
     let slopes = element.slopes_at(POINTS.map(|(x, _)| middle + half * x));
     let speeds = slopes.iter().map(|slopes| span(places.sum(slopes)));
     let sum: f64 = speeds.zip(POINTS).map(|(speed, (_, w))| w * speed).sum();

@@ -111,7 +111,7 @@ pub struct Reason(pub &'static str);
 /// What an inequality of Table 2 compares.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Tested {
+pub enum TestedQuantity {
     /// F_n against 0 (force).
     NormalForce,
     /// |F_t| against |T_max| (force).
@@ -143,7 +143,7 @@ pub enum Tested {
 pub struct Test {
     /// The compared quantities.
     #[serde(deserialize_with = "tested")]
-    pub tested: Tested,
+    pub tested: TestedQuantity,
     /// Left-hand side.
     #[serde(default = "infinite", deserialize_with = "or_infinite")]
     pub value: f64,
@@ -159,9 +159,9 @@ pub struct Test {
 }
 
 /// Reads a name; an unknown one means a rule of the solver.
-fn tested<'de, D: Deserializer<'de>>(from: D) -> Result<Tested, D::Error> {
+fn tested<'de, D: Deserializer<'de>>(from: D) -> Result<TestedQuantity, D::Error> {
     let name: StringDeserializer<NoName> = String::deserialize(from)?.into_deserializer();
-    Ok(Tested::deserialize(name).unwrap_or(Tested::Own))
+    Ok(TestedQuantity::deserialize(name).unwrap_or(TestedQuantity::Own))
 }
 
 fn infinite() -> f64 {
@@ -232,7 +232,7 @@ pub struct Ties {
 /// Table 2: the next mode for a node's numbers.
 pub fn decide(numbers: &Numbers, ties: &Ties) -> Decision {
     let opens = ties.test(
-        Tested::NormalForce,
+        TestedQuantity::NormalForce,
         numbers.f_n,
         0.0,
         numbers.f_n,
@@ -240,7 +240,13 @@ pub fn decide(numbers: &Numbers, ties: &Ties) -> Decision {
     );
     let (next, rule, tests) = match numbers.mode {
         Mode::Free => {
-            let test = ties.test(Tested::Gap, numbers.gap, 0.0, numbers.gap, ties.length);
+            let test = ties.test(
+                TestedQuantity::Gap,
+                numbers.gap,
+                0.0,
+                numbers.gap,
+                ties.length,
+            );
             let (next, rule) = match (ties.switches(&test, false), numbers.entry) {
                 (false, _) => (Mode::Free, Rule::FreeStays),
                 (true, Entry::Fixed) => (Mode::Fixed, Rule::FreeSticks),
@@ -259,7 +265,13 @@ pub fn decide(numbers: &Numbers, ties: &Ties) -> Decision {
             let (shear, limit) = (numbers.f_t.abs(), numbers.t_max.abs());
             #[cfg(mutants)]
             let limit = crate::mutants::pick("friction-bound-with-its-sign", limit, numbers.t_max);
-            let test = ties.test(Tested::ShearForce, shear, limit, limit - shear, ties.force);
+            let test = ties.test(
+                TestedQuantity::ShearForce,
+                shear,
+                limit,
+                limit - shear,
+                ties.force,
+            );
             match ties.switches(&test, false) {
                 true => (Mode::Sliding, Rule::FixedSlides, [Some(opens), Some(test)]),
                 false => (Mode::Fixed, Rule::FixedStays, [Some(opens), Some(test)]),
@@ -273,7 +285,7 @@ pub fn decide(numbers: &Numbers, ties: &Ties) -> Decision {
             };
             #[cfg(mutants)]
             let slip = crate::mutants::pick("sliding-sticks-by-unsigned-slip", slip, numbers.slip);
-            let test = ties.test(Tested::Slip, slip, 0.0, slip, ties.length);
+            let test = ties.test(TestedQuantity::Slip, slip, 0.0, slip, ties.length);
             match ties.switches(&test, false) {
                 true => (Mode::Fixed, Rule::SlidingSticks, [Some(opens), Some(test)]),
                 false => (Mode::Sliding, Rule::SlidingStays, [Some(opens), Some(test)]),
@@ -294,7 +306,7 @@ impl Ties {
     /// length, as `tested`).
     pub fn test(
         &self,
-        tested: Tested,
+        tested: TestedQuantity,
         value: f64,
         bound: f64,
         margin: f64,
@@ -339,7 +351,7 @@ impl Decision {
     /// so it slides.
     pub fn dragged(self, slip: f64) -> Self {
         let test = Test {
-            tested: Tested::Slip,
+            tested: TestedQuantity::Slip,
             value: slip.abs(),
             bound: 0.0,
             margin: -slip.abs(),
@@ -380,7 +392,7 @@ impl Decision {
     /// the friction `opposing` the slip (force) is below the `least` friction.
     pub fn released(self, opposing: f64, least: f64) -> Self {
         let test = Test {
-            tested: Tested::LeastFriction,
+            tested: TestedQuantity::LeastFriction,
             value: opposing,
             bound: least,
             margin: opposing - least,
@@ -401,7 +413,7 @@ impl Decision {
         if self.rule != Rule::SlidingStays || way <= room {
             return self;
         }
-        let test = ties.test(Tested::Room, way, room, room - way, ties.length);
+        let test = ties.test(TestedQuantity::Room, way, room, room - way, ties.length);
         Decision {
             rule: Rule::SlidingPasses,
             tests: [self.tests[0], Some(test)],

@@ -121,8 +121,8 @@ fn the_normal_is_continuous_at_nodes_of_a_deformed_chain() {
         let count = surface.elements.len();
         for k in 0..count - usize::from(!round) {
             let (one, next) = (
-                SurfaceElement::of(&surface, k),
-                SurfaceElement::of(&surface, (k + 1) % count),
+                SurfaceElement::from_surface(&surface, k),
+                SurfaceElement::from_surface(&surface, (k + 1) % count),
             );
             assert_eq!(one.last(), next.first());
             let before = sum(one, &one.shape(1.0).d, &bent);

@@ -4,10 +4,10 @@
 //! entries are assembled in parallel ([`Executor`]). Each element adds to the same entries in the same order, independent of the
 //! executor.
 
-use crate::executor::{Executor, InTurn};
+use crate::executor::{Executor, SequentialExecutor};
 use crate::fem::beam::{self, Section};
 use crate::fem::continuum;
-use crate::fem::element::{Assembled, Element, Past};
+use crate::fem::element::{Element, ElementOutput, PreviousState};
 use crate::fem::material::Material;
 use crate::fem::matrix;
 use crate::fem::small;
@@ -44,13 +44,13 @@ pub struct Assembly {
     groups: Vec<Group>,
     /// Runs the assembly.
     executor: Arc<dyn Executor>,
-    room: Room,
+    room: Workspace,
     memory: Vec<f64>,
 }
 
 /// Workspace for the largest element.
 #[derive(Clone, Default)]
-struct Room {
+struct Workspace {
     force: Vec<f64>,
     tangent: Vec<f64>,
     u: Vec<f64>,
@@ -62,7 +62,7 @@ struct Group {
     elements: Range<usize>,
     /// First degree of freedom, entry and equation of the group.
     first: ScatterMap,
-    room: Room,
+    room: Workspace,
 }
 
 /// Start indices of degrees of freedom, entries of the stiffness, and equations.
@@ -74,14 +74,14 @@ struct ScatterMap {
 }
 
 /// Sums, from given start indices on.
-struct Sums<'a> {
+struct AssemblySums<'a> {
     first: ScatterMap,
-    out: Assembled<'a>,
+    out: ElementOutput<'a>,
 }
 
 /// Displacements for an assembly.
 #[derive(Debug, Clone, Copy)]
-pub struct Moved<'a> {
+pub struct AssemblyMotion<'a> {
     /// Displacements.
     pub u: &'a [f64],
     /// Remaining change of the degrees of freedom without an equation in this major iteration.
@@ -95,7 +95,7 @@ pub struct Moved<'a> {
 impl Assembly {
     /// Creates the elements of a scene, for sequential assembly.
     pub fn new(model: &Model) -> Self {
-        Assembly::with_executor(model, Arc::new(InTurn))
+        Assembly::with_executor(model, Arc::new(SequentialExecutor))
     }
 
     /// No elements.
@@ -107,7 +107,7 @@ impl Assembly {
             history_len: 0,
             groups: Vec::new(),
             executor,
-            room: Room::default(),
+            room: Workspace::default(),
             memory: Vec::new(),
         }
     }
@@ -282,7 +282,7 @@ impl Assembly {
     }
 
     /// Internal forces and tangent.
-    pub fn assemble(&mut self, dofs: &Dofs, moved: Moved<'_>, mut out: Assembled<'_>) {
+    pub fn assemble(&mut self, dofs: &Dofs, moved: AssemblyMotion<'_>, mut out: ElementOutput<'_>) {
         out.force.fill(0.0);
         out.size.fill(0.0);
         out.values.fill(0.0);
@@ -294,9 +294,9 @@ impl Assembly {
             dofs,
             moved,
         };
-        let sums = Sums {
+        let sums = AssemblySums {
             first: ScatterMap::default(),
-            out: Assembled {
+            out: ElementOutput {
                 force: &mut *out.force,
                 size: &mut *out.size,
                 values: &mut *out.values,
@@ -310,7 +310,7 @@ impl Assembly {
     }
 
     /// Internal forces only, with the same bits as [`Assembly::assemble`].
-    pub fn resist(&mut self, moved: Moved<'_>, force: &mut [f64], size: &mut [f64]) {
+    pub fn resist(&mut self, moved: AssemblyMotion<'_>, force: &mut [f64], size: &mut [f64]) {
         force.fill(0.0);
         size.fill(0.0);
         for placed in &self.elements {
@@ -324,7 +324,7 @@ impl Assembly {
             if !history.is_empty() {
                 placed.gather(moved.before, before);
             }
-            let past = Past { u: before, history };
+            let past = PreviousState { u: before, history };
             let answers = placed.element.resist(&past, u, own, tangent);
             for (&d, own) in placed.dofs.iter().zip(&*own) {
                 // No finite force is in balance if an element has no response.
@@ -338,7 +338,7 @@ impl Assembly {
     }
 
     /// Forces at the equations due to `step` of the degrees of freedom without an equation, as in [`Assembly::assemble`].
-    pub fn couple(&mut self, dofs: &Dofs, moved: Moved<'_>, coupling: &mut [f64]) {
+    pub fn couple(&mut self, dofs: &Dofs, moved: AssemblyMotion<'_>, coupling: &mut [f64]) {
         coupling.fill(0.0);
         for placed in self.elements.iter().filter(|p| p.held) {
             let n = placed.dofs.len();
@@ -352,7 +352,7 @@ impl Assembly {
             if !history.is_empty() {
                 placed.gather(moved.before, before);
             }
-            let past = Past { u: before, history };
+            let past = PreviousState { u: before, history };
             if placed.element.add(&past, u, force, tangent) {
                 placed.element.mirror(tangent);
                 placed.couple(dofs, tangent, moved.step, coupling, 0);
@@ -372,7 +372,7 @@ impl Assembly {
             let history = &mut history[placed.history.clone()];
             let old = &mut self.memory[..history.len()];
             old.copy_from_slice(history);
-            let past = Past {
+            let past = PreviousState {
                 u: &self.room.before[..n],
                 history: old,
             };
@@ -388,12 +388,12 @@ struct AssemblyWork<'a> {
     elements: &'a [AssembledElement],
     half: bool,
     dofs: &'a Dofs,
-    moved: Moved<'a>,
+    moved: AssemblyMotion<'a>,
 }
 
 impl AssemblyWork<'_> {
     /// Assembles these groups.
-    fn all(self, groups: &mut [Group], mut sums: Sums<'_>) {
+    fn all(self, groups: &mut [Group], mut sums: AssemblySums<'_>) {
         match groups {
             [] => {}
             [group] => self.group(group, &mut sums),
@@ -408,14 +408,14 @@ impl AssemblyWork<'_> {
         }
     }
 
-    fn group(self, group: &mut Group, sums: &mut Sums<'_>) {
-        let Room {
+    fn group(self, group: &mut Group, sums: &mut AssemblySums<'_>) {
+        let Workspace {
             force,
             tangent,
             u,
             before,
         } = &mut group.room;
-        let Moved { step, history, .. } = self.moved;
+        let AssemblyMotion { step, history, .. } = self.moved;
         for placed in &self.elements[group.elements.clone()] {
             let n = placed.dofs.len();
             let (u, before) = (&mut u[..n], &mut before[..n]);
@@ -427,7 +427,7 @@ impl AssemblyWork<'_> {
             if !history.is_empty() {
                 placed.gather(self.moved.before, before);
             }
-            let past = Past { u: before, history };
+            let past = PreviousState { u: before, history };
             if !placed.element.add(&past, u, force, tangent) {
                 placed.give_up(sums);
                 continue;
@@ -444,11 +444,11 @@ impl AssemblyWork<'_> {
     }
 }
 
-impl Sums<'_> {
-    fn reborrow(&mut self) -> Sums<'_> {
-        Sums {
+impl AssemblySums<'_> {
+    fn reborrow(&mut self) -> AssemblySums<'_> {
+        AssemblySums {
             first: self.first,
-            out: Assembled {
+            out: ElementOutput {
                 force: &mut *self.out.force,
                 size: &mut *self.out.size,
                 values: &mut *self.out.values,
@@ -458,16 +458,16 @@ impl Sums<'_> {
     }
 
     /// Splits the sums at given start indices.
-    fn split_at(&mut self, at: ScatterMap) -> (Sums<'_>, Sums<'_>) {
+    fn split_at(&mut self, at: ScatterMap) -> (AssemblySums<'_>, AssemblySums<'_>) {
         let first = self.first;
         let out = &mut self.out;
         let force = out.force.split_at_mut(at.dof - first.dof);
         let size = out.size.split_at_mut(at.dof - first.dof);
         let values = out.values.split_at_mut(at.slot - first.slot);
         let coupling = out.coupling.split_at_mut(at.equation - first.equation);
-        let sums = |first, force, size, values, coupling| Sums {
+        let sums = |first, force, size, values, coupling| AssemblySums {
             first,
-            out: Assembled {
+            out: ElementOutput {
                 force,
                 size,
                 values,
@@ -481,7 +481,7 @@ impl Sums<'_> {
     }
 }
 
-impl Room {
+impl Workspace {
     /// Resizes for an element with `count` degrees of freedom.
     fn hold(&mut self, count: usize) {
         let size = self.force.len().max(count);
@@ -543,7 +543,7 @@ impl AssembledElement {
         }
     }
 
-    fn scatter(&self, force: &[f64], tangent: &[f64], sums: &mut Sums<'_>) {
+    fn scatter(&self, force: &[f64], tangent: &[f64], sums: &mut AssemblySums<'_>) {
         let (first, out) = (sums.first, &mut sums.out);
         for (&d, force) in self.dofs.iter().zip(force) {
             out.force[d - first.dof] += force;
@@ -576,7 +576,7 @@ impl AssembledElement {
     }
 
     /// Sets infinite forces, which no finite force balances. The force scale stays finite, so that the residual is infinite too.
-    fn give_up(&self, sums: &mut Sums<'_>) {
+    fn give_up(&self, sums: &mut AssemblySums<'_>) {
         let (first, force) = (sums.first.dof, &mut *sums.out.force);
         self.dofs
             .iter()

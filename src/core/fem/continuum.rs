@@ -1,7 +1,7 @@
 //! The kinds of continuum elements by name. To add one, add a file in [`super::kinds`], a kind in [`ElementKind`], and a line in
 //! each of the tables here.
 
-use crate::fem::element::{Element, Past};
+use crate::fem::element::{Element, PreviousState};
 use crate::fem::isoparametric::{self, PointState};
 use crate::fem::kinds::{Parent, Shape, quad4, quad8, quad9, triangle3, triangle6};
 use crate::fem::material::Material;
@@ -75,7 +75,7 @@ impl Element for Malformed {
         self.history
     }
 
-    fn add(&self, _: &Past<'_>, _: &[f64], _: &mut [f64], _: &mut [f64]) -> bool {
+    fn add(&self, _: &PreviousState<'_>, _: &[f64], _: &mut [f64], _: &mut [f64]) -> bool {
         false
     }
 }
@@ -86,7 +86,7 @@ pub fn states(
     kind: ElementKind,
     at: &[[f64; 2]],
     (material, update): (Material, Update),
-    past: &Past<'_>,
+    past: &PreviousState<'_>,
     u: &[f64],
 ) -> Vec<([f64; 2], Option<PointState>)> {
     with_rule!(kind, states_by(at, (material, update), past, u))
@@ -96,7 +96,7 @@ fn states_by<const N: usize, const P: usize>(
     rule: &'static [Parent<N>; P],
     at: &[[f64; 2]],
     (material, update): (Material, Update),
-    past: &Past<'_>,
+    past: &PreviousState<'_>,
     u: &[f64],
 ) -> Vec<([f64; 2], Option<PointState>)> {
     let Ok(at) = <[[f64; 2]; N]>::try_from(at) else {
@@ -120,7 +120,7 @@ fn states_by<const N: usize, const P: usize>(
 
 /// ∂u/∂X at a point of an element.
 #[derive(Debug, Clone, Copy)]
-pub struct Sampled {
+pub struct PointGradient {
     /// H, in the plane.
     pub h: [[f64; 2]; 2],
     /// Hoop strain u_x/X of a body of revolution; 0 on the axis.
@@ -138,7 +138,7 @@ pub fn sample(
     kind: ElementKind,
     count: usize,
     node: impl Fn(usize) -> ([f64; 2], [f64; 2]),
-    see: impl FnMut(Sampled),
+    see: impl FnMut(PointGradient),
 ) {
     match kind {
         ElementKind::Triangle3 => sample_by(&*triangle3::RULE, &triangle3::NODES, count, node, see),
@@ -155,7 +155,7 @@ fn sample_by<const N: usize>(
     nodes: &[Parent<N>; N],
     count: usize,
     node: impl Fn(usize) -> ([f64; 2], [f64; 2]),
-    mut see: impl FnMut(Sampled),
+    mut see: impl FnMut(PointGradient),
 ) {
     if count != N {
         return;
@@ -171,7 +171,7 @@ fn sample_by<const N: usize>(
                 parent.n.iter().zip(of).map(|(n, x)| n * x[k]).sum()
             };
             let (x, moved) = (mean(&at, 0), [mean(&u, 0), mean(&u, 1)]);
-            see(Sampled {
+            see(PointGradient {
                 h,
                 hoop: if x > 0.0 { moved[0] / x } else { 0.0 },
                 at: [x + moved[0], mean(&at, 1) + moved[1]],

@@ -17,7 +17,7 @@
 //! - **the updated stress update**: each increment starts with the small-strain moduli, and for small increments P = M (s − 1)
 //!   under uniaxial strain. The law does not soften and has no range limit; it only requires det F > 0.
 
-use super::continuum::{self, Sampled};
+use super::continuum::{self, PointGradient};
 use super::material::Material;
 use crate::model::{BodyKind, Elastic, Law, Model, Plane, Update};
 use serde::{Deserialize, Serialize};
@@ -75,7 +75,7 @@ pub enum StretchRange {
 
 impl StretchRange {
     /// The range of a material's law.
-    pub fn of(elastic: &Elastic) -> StretchRange {
+    pub fn from_elastic(elastic: &Elastic) -> StretchRange {
         match (elastic.update, elastic.law) {
             (Update::Total, Law::Svk) => StretchRange::Stretch(SOFTENING),
             (Update::Total, Law::NeoHookean) => StretchRange::Volume(E),
@@ -114,7 +114,7 @@ pub fn deformation(model: &Model, u: &[f64]) -> Option<Deformation> {
         if is_less(point.stretch, worst.smallest.stretch) {
             worst.smallest = point;
         }
-        let uses = StretchRange::of(elastic).used(&point);
+        let uses = StretchRange::from_elastic(elastic).used(&point);
         if uses > used {
             (used, worst.outside) = (uses, Some(point));
         }
@@ -176,7 +176,7 @@ fn each_point(model: &Model, u: &[f64], mut see: impl FnMut(&Elastic, PointDefor
 }
 
 /// Smallest principal stretch and det F.
-fn measures(elastic: &Elastic, point: &Sampled) -> [f64; 2] {
+fn measures(elastic: &Elastic, point: &PointGradient) -> [f64; 2] {
     let [[h11, h12], [h21, h22]] = point.h;
     let (a, b) = (
         (2.0 + h11 + h22).hypot(h21 - h12),
@@ -199,7 +199,7 @@ fn measures(elastic: &Elastic, point: &Sampled) -> [f64; 2] {
 }
 
 /// Thickness stretch in plane stress; −1 if the law admits no positive thickness.
-fn thickness(elastic: &Elastic, point: &Sampled) -> f64 {
+fn thickness(elastic: &Elastic, point: &PointGradient) -> f64 {
     let [[h11, h12], [h21, h22]] = point.h;
     let strain = nalgebra::Vector3::new(
         h11 + 0.5 * (h11 * h11 + h21 * h21),

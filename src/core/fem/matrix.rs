@@ -8,7 +8,7 @@
 //! W may be singular, so its forces y are unknowns in addition to the displacements. The right-hand side `free λ` is a load on
 //! their equations.
 
-use crate::fem::element::Assembled;
+use crate::fem::element::ElementOutput;
 use crate::linalg::Pattern;
 use crate::model::{Body, Dofs, Form, Linear};
 
@@ -122,7 +122,7 @@ impl MatrixElement {
     }
 
     /// Adds forces at displacements `u`, the matrix, and the effect of `step` of the restrained degrees of freedom.
-    pub fn add(&self, dofs: &Dofs, u: &[f64], step: &[f64], out: &mut Assembled<'_>) {
+    pub fn add(&self, dofs: &Dofs, u: &[f64], step: &[f64], out: &mut ElementOutput<'_>) {
         for (dof, range) in self.ranges() {
             let mut force = 0.0;
             for k in range {

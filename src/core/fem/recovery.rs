@@ -6,7 +6,7 @@
 //! elasticity.
 
 use super::continuum;
-use super::element::Past;
+use super::element::PreviousState;
 use super::material::Material;
 use crate::model::{Body, BodyKind, ElementKind, Model, Solid};
 use nalgebra::DMatrix;
@@ -104,13 +104,13 @@ pub fn nodal_stresses(model: &Model, at: Configuration<'_>) -> Vec<Vec<Option<St
 }
 
 /// A point's position in the parent element, then its undeformed position and stress; `None` if the material has no response.
-type Found = ([f64; 2], Option<([f64; 2], Stress)>);
+type ParentPoint = ([f64; 2], Option<([f64; 2], Stress)>);
 
 /// Calls a function with body, element, solid, and the element's points.
 fn each_element(
     model: &Model,
     at: Configuration<'_>,
-    mut with: impl FnMut(usize, usize, &Solid, &[Found]),
+    mut with: impl FnMut(usize, usize, &Solid, &[ParentPoint]),
 ) {
     let mut remembered = 0;
     for (b, body) in model.bodies.iter().enumerate() {
@@ -126,14 +126,14 @@ fn each_element(
             };
             let count = continuum::history_len(element.kind, elastic.update);
             let (u, before) = (own(at.u), own(at.before));
-            let past = Past {
+            let past = PreviousState {
                 u: &before,
                 history: &at.history[remembered..remembered + count],
             };
             remembered += count;
             let made_of = (Material::new(elastic), elastic.update);
             let states = continuum::states(element.kind, &places, made_of, &past, &u);
-            let points: Vec<Found> = states
+            let points: Vec<ParentPoint> = states
                 .into_iter()
                 .map(|(parent, state)| {
                     let stress =

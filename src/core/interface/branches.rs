@@ -10,12 +10,12 @@
 //!   compliance W is positive semidefinite, E is convex in the motions, and its tangent at a point that violates it is a linear
 //!   condition that excludes this point. A definite W thus bounds all forces and motions.
 //!
-//! A branch whose relaxation is infeasible (proven by [`Forms::can_hold`], with all bounds relaxed by 1e-8) is pruned. Other
+//! A branch whose relaxation is infeasible (proven by [`BoundedForms::can_hold`], with all bounds relaxed by 1e-8) is pruned. Other
 //! branches are split at the node that violates its complementarity most. The remaining combinations are solved and checked by
 //! the census like in a complete enumeration.
 
-use crate::interface::feasible::Forms;
-use crate::interface::problem::{Assumed, InterfaceProblem};
+use crate::interface::feasible::BoundedForms;
+use crate::interface::problem::{AssumedMode, InterfaceProblem};
 use crate::linalg::DenseFactors;
 
 /// Relaxation of every bound, in the problem's units of force and length. A combination is consistent if it violates them by at
@@ -40,9 +40,9 @@ const MINUS: u8 = 8;
 
 /// Result for a problem.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Left {
+pub struct BranchResult {
     /// The combinations that are not ruled out, in search order.
-    pub assumptions: Vec<Vec<Assumed>>,
+    pub assumptions: Vec<Vec<AssumedMode>>,
     /// Number of visited branches.
     pub visited: usize,
     /// Whether all branches were visited.
@@ -51,11 +51,15 @@ pub struct Left {
 
 /// The combinations that cannot be ruled out, visiting at most `budget` branches, and stopping when `stop` returns true. `None`
 /// if the relation does not determine the motions.
-pub fn left(problem: &InterfaceProblem, budget: usize, stop: &dyn Fn() -> bool) -> Option<Left> {
+pub fn left(
+    problem: &InterfaceProblem,
+    budget: usize,
+    stop: &dyn Fn() -> bool,
+) -> Option<BranchResult> {
     let mut branches = Branches::new(problem, budget, stop)?;
     let choices: Vec<u8> = problem.nodes.iter().map(|n| mask(n.choices())).collect();
     let all = branches.down(&choices);
-    Some(Left {
+    Some(BranchResult {
         assumptions: branches.found,
         visited: branches.visited,
         all,
@@ -81,33 +85,33 @@ struct Branches<'a> {
     /// F_n, F_t, gap and slip of each node in units of force and length: coefficients and a constant.
     numbers: Vec<[Vec<f64>; 4]>,
     nodes: Vec<BranchNode>,
-    forms: Forms,
+    forms: BoundedForms,
     /// Whether the energy is convex.
     convex: bool,
     tangent: usize,
     budget: usize,
     stop: &'a dyn Fn() -> bool,
     visited: usize,
-    found: Vec<Vec<Assumed>>,
+    found: Vec<Vec<AssumedMode>>,
 }
 
-fn mask(choices: &[Assumed]) -> u8 {
+fn mask(choices: &[AssumedMode]) -> u8 {
     choices.iter().fold(0, |mask, &assumed| mask | bit(assumed))
 }
 
-fn bit(assumed: Assumed) -> u8 {
+fn bit(assumed: AssumedMode) -> u8 {
     match assumed {
-        Assumed::Free => FREE,
-        Assumed::Fixed => FIXED,
-        Assumed::Plus => PLUS,
-        Assumed::Minus => MINUS,
+        AssumedMode::Free => FREE,
+        AssumedMode::Fixed => FIXED,
+        AssumedMode::Plus => PLUS,
+        AssumedMode::Minus => MINUS,
     }
 }
 
 impl<'a> Branches<'a> {
     fn new(problem: &InterfaceProblem, budget: usize, stop: &'a dyn Fn() -> bool) -> Option<Self> {
         let numbers = numbers(problem);
-        let energy = Energy::of(&numbers, problem.relation.count());
+        let energy = Energy::from_numbers(&numbers, problem.relation.count());
         let nodes: Vec<BranchNode> = problem
             .nodes
             .iter()
@@ -135,7 +139,7 @@ impl<'a> Branches<'a> {
                 }
             })
             .collect();
-        let forms = Forms::new(1, vec![1.0, 0.0], SLACK)?;
+        let forms = BoundedForms::new(1, vec![1.0, 0.0], SLACK)?;
         let mut branches = Branches {
             numbers,
             nodes,
@@ -210,7 +214,7 @@ impl<'a> Branches<'a> {
             }
         }
         all.resize(all.len() + TANGENTS * width, 0.0);
-        self.forms = Forms::new(width - 1, all, SLACK)?;
+        self.forms = BoundedForms::new(width - 1, all, SLACK)?;
         self.tangent = 0;
         self.bound_all(choices);
         Some(())
@@ -402,12 +406,12 @@ impl<'a> Branches<'a> {
 }
 
 /// The only remaining choice.
-fn only(choices: u8) -> Assumed {
+fn only(choices: u8) -> AssumedMode {
     match choices {
-        FREE => Assumed::Free,
-        FIXED => Assumed::Fixed,
-        PLUS => Assumed::Plus,
-        _ => Assumed::Minus,
+        FREE => AssumedMode::Free,
+        FIXED => AssumedMode::Fixed,
+        PLUS => AssumedMode::Plus,
+        _ => AssumedMode::Minus,
     }
 }
 
@@ -467,7 +471,7 @@ struct Energy {
 }
 
 impl Energy {
-    fn of(numbers: &[[Vec<f64>; 4]], count: usize) -> Energy {
+    fn from_numbers(numbers: &[[Vec<f64>; 4]], count: usize) -> Energy {
         let mut form = vec![0.0; count * count];
         let (mut linear, mut constant) = (vec![0.0; count], 0.0);
         for [f_n, f_t, gap, slip] in numbers {

@@ -8,7 +8,7 @@
 use crate::interface::branches;
 use crate::interface::kinematics::NodeIncrement;
 use crate::interface::problem::{
-    self, Answer, Assumed, InterfaceProblem, Margin, NodeAnswer, SINGULAR,
+    self, Answer, AssumedMode, InterfaceProblem, Margin, NodeAnswer, SINGULAR,
 };
 use crate::interface::response::InterfaceResponse;
 
@@ -144,7 +144,7 @@ pub fn by_blocks(problem: &InterfaceProblem, budget: usize, stop: &dyn Fn() -> b
 
 /// Placeholder for a node of a block that has not been searched.
 const NOTHING: NodeAnswer = NodeAnswer {
-    assumed: Assumed::Free,
+    assumed: AssumedMode::Free,
     f_n: 0.0,
     f_t: 0.0,
     limit: 0.0,
@@ -264,7 +264,7 @@ struct Walk<'a> {
     reduced: Vec<Vec<f64>>,
     pivots: Vec<usize>,
     /// Current mode of each node.
-    assumed: Vec<Assumed>,
+    assumed: Vec<AssumedMode>,
     /// Solutions for the right-hand side and for the probe.
     z: [Vec<f64>; 2],
     found: Census,
@@ -298,7 +298,7 @@ impl<'a> Walk<'a> {
             equations,
             reduced: vec![vec![0.0; count + 2]; count],
             pivots: vec![0; count],
-            assumed: vec![Assumed::Free; problem.nodes.len()],
+            assumed: vec![AssumedMode::Free; problem.nodes.len()],
             z: [vec![0.0; count], vec![0.0; count]],
             found: Census::empty(),
         }
@@ -316,7 +316,7 @@ impl<'a> Walk<'a> {
         };
         for (choice, &assumed) in self.problem.nodes[place].choices().iter().enumerate() {
             #[cfg(mutants)]
-            if assumed == Assumed::Minus && crate::mutants::is_active("census-slides-one-way") {
+            if assumed == AssumedMode::Minus && crate::mutants::is_active("census-slides-one-way") {
                 continue;
             }
             self.assumed[place] = assumed;
@@ -334,7 +334,7 @@ impl<'a> Walk<'a> {
     }
 
     /// Tries one combination.
-    fn try_one(&mut self, assumed: &[Assumed]) {
+    fn try_one(&mut self, assumed: &[AssumedMode]) {
         let nodes = self.problem.nodes.len();
         self.assumed.copy_from_slice(assumed);
         for depth in 0..nodes {

@@ -17,9 +17,9 @@
 //! therefore several starts are used. The form of [`crate::interface::lemke`] has half as many rows but is not
 //! copositive.
 
-use crate::contact::table2::Tested;
-use crate::interface::problem::{Assumed, InterfaceProblem};
-use crate::interface::tableau::{Begin, Columns, PathEnd, Tableau};
+use crate::contact::table2::TestedQuantity;
+use crate::interface::problem::{AssumedMode, InterfaceProblem};
+use crate::interface::tableau::{Columns, PathEnd, PathStart, Tableau};
 
 /// A path that ends on a ray counts as solved if the covering variable is at most this (relative): the rows that should bound it
 /// are tied, and round-off decides between them.
@@ -146,7 +146,7 @@ impl Copositive {
             path.nodes.push(HeldComponent::Rough(first));
         }
         let shift = SHIFT * SHIFT_FALLS.powi(number as i32);
-        let begin = Begin {
+        let begin = PathStart {
             cover: &|row| match number {
                 0 => 1.0,
                 _ => 0.2 + 0.8 * spread(row, number),
@@ -207,36 +207,36 @@ impl Copositive {
     }
 
     /// The node of the last pivot, and the quantity that reached its bound. `None` if that was the covering variable.
-    pub fn bound(&self) -> Option<(usize, Tested)> {
+    pub fn bound(&self) -> Option<(usize, TestedQuantity)> {
         let (place, kind) = self.owners[self.tableau.left()?];
         let tested = match kind {
-            FORCE => Tested::NormalForce,
-            GAP => Tested::Gap,
-            PLUS | MINUS | ROOM => Tested::ShearForce,
-            _ => Tested::Slip,
+            FORCE => TestedQuantity::NormalForce,
+            GAP => TestedQuantity::Gap,
+            PLUS | MINUS | ROOM => TestedQuantity::ShearForce,
+            _ => TestedQuantity::Slip,
         };
         Some((place, tested))
     }
 
     /// Mode of a node in the current basis. A node whose friction has not reached a bound sticks.
-    pub fn assumed(&self, place: usize) -> Assumed {
+    pub fn assumed(&self, place: usize) -> AssumedMode {
         let first = match self.nodes[place] {
-            HeldComponent::No => return Assumed::Free,
+            HeldComponent::No => return AssumedMode::Free,
             HeldComponent::Smooth(first) if self.tableau.is_basic(first + FORCE) => {
-                return Assumed::Plus;
+                return AssumedMode::Plus;
             }
-            HeldComponent::Smooth(_) => return Assumed::Free,
+            HeldComponent::Smooth(_) => return AssumedMode::Free,
             HeldComponent::Rough(first) => first,
         };
         let basic = |kind| self.tableau.is_basic(first + kind);
         if !basic(FORCE) {
-            Assumed::Free
+            AssumedMode::Free
         } else if basic(ROOM) || !basic(SPEED) {
-            Assumed::Fixed
+            AssumedMode::Fixed
         } else if basic(MINUS) || (!basic(PLUS) && !basic(MINUS_REST)) {
-            Assumed::Minus
+            AssumedMode::Minus
         } else {
-            Assumed::Plus
+            AssumedMode::Plus
         }
     }
 

@@ -28,7 +28,7 @@ pub struct Compliance<'a> {
 
 impl<'a> Compliance<'a> {
     /// The compliance. `None` if it does not exist because a body is loose, or if no component can vary.
-    pub fn of(problem: &'a InterfaceProblem) -> Option<Self> {
+    pub fn from_problem(problem: &'a InterfaceProblem) -> Option<Self> {
         let relation = &problem.relation;
         let count = relation.count();
         let response = DMatrix::from_column_slice(count, count, &relation.response);

@@ -13,7 +13,7 @@
 //! pressure, because it would jump.
 
 use crate::interface::census::{Census, Consistent};
-use crate::interface::feasible::Forms;
+use crate::interface::feasible::BoundedForms;
 use crate::interface::problem::InterfaceProblem;
 use nalgebra::DMatrix;
 
@@ -54,7 +54,7 @@ pub fn families(problem: &InterfaceProblem, census: &Census) -> Vec<Family> {
     }
     let found = groups.into_iter().filter_map(|states| {
         let all: Vec<&Consistent> = states.iter().map(|&k| &census.answers[k]).collect();
-        let (dimension, ranges) = Around::of(problem, &all)?.family()?;
+        let (dimension, ranges) = ForceFamily::from_states(problem, &all)?.family()?;
         Some(Family {
             states,
             dimension,
@@ -82,7 +82,7 @@ enum FamilyDirection {
 }
 
 /// Forces without motion, about a mean of states with equal motions; in multiples of `unit`.
-struct Around<'a> {
+struct ForceFamily<'a> {
     problem: &'a InterfaceProblem,
     /// The largest force of these states, or of the problem.
     unit: f64,
@@ -94,9 +94,9 @@ struct Around<'a> {
     directions: DMatrix<f64>,
 }
 
-impl<'a> Around<'a> {
+impl<'a> ForceFamily<'a> {
     /// `None` if every force causes motion.
-    fn of(problem: &'a InterfaceProblem, states: &[&Consistent]) -> Option<Self> {
+    fn from_states(problem: &'a InterfaceProblem, states: &[&Consistent]) -> Option<Self> {
         let relation = &problem.relation;
         if relation.stiffness.is_infinite() {
             return None;
@@ -151,7 +151,7 @@ impl<'a> Around<'a> {
         let still: Vec<usize> = (0..sizes.len())
             .filter(|&k| sizes[k] <= MOVES_NOTHING * sizes.max())
             .collect();
-        (!still.is_empty()).then(|| Around {
+        (!still.is_empty()).then(|| ForceFamily {
             problem,
             unit,
             force,
@@ -192,7 +192,7 @@ impl<'a> Around<'a> {
         }
         let rows = |form: usize| forms[form * (size + 1)..(form + 1) * (size + 1) - 1].to_vec();
         let of_bounded: Vec<Vec<f64>> = bounded.iter().map(|&form| rows(form)).collect();
-        let mut inside = Forms::new(size, forms, SLACK)?;
+        let mut inside = BoundedForms::new(size, forms, SLACK)?;
         (0..size).for_each(|k| inside.bound(k, -REACH, REACH));
         for &form in &bounded {
             inside.bound(form, 0.0, f64::INFINITY);

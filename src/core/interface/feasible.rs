@@ -2,7 +2,7 @@
 //!
 //! A form is c + a·z in free coordinates z, and has a lower and an upper bound, either of which may be infinite. As many forms as
 //! there are coordinates represent the coordinates (the columns of the tableau); all others are expressed by them (its rows).
-//! [`Forms::can_hold`] moves the forms into their bounds by the dual simplex method with long steps. The objective does not
+//! [`BoundedForms::can_hold`] moves the forms into their bounds by the dual simplex method with long steps. The objective does not
 //! matter, so its costs are arbitrary, and bounds may change at any time without restarting.
 //!
 //! Infeasible" is a proof: one row violates its bound for all values of the columns within theirs (Farkas). The row is checked
@@ -19,7 +19,7 @@ const REACH: f64 = 1e6;
 
 /// Affine forms with bounds.
 #[derive(Debug, Clone)]
-pub struct Forms {
+pub struct BoundedForms {
     /// Number of coordinates.
     count: usize,
     /// A row of `count` coefficients and a constant per form.
@@ -41,12 +41,12 @@ pub struct Forms {
     since: usize,
 }
 
-impl Forms {
+impl BoundedForms {
     /// Forms of `count` coordinates in sequence (coefficients, then the constant), initially unbounded; all bounds are relaxed by
     /// `slack`. `None` if they do not determine the coordinates.
-    pub fn new(count: usize, forms: Vec<f64>, slack: f64) -> Option<Forms> {
+    pub fn new(count: usize, forms: Vec<f64>, slack: f64) -> Option<BoundedForms> {
         let all = forms.len() / (count + 1);
-        let mut made = Forms {
+        let mut made = BoundedForms {
             count,
             forms,
             bounds: vec![[f64::NEG_INFINITY, f64::INFINITY]; all],

@@ -11,10 +11,10 @@
 //! and without friction only the first line; [`crate::interface::tableau`] pivots through its bases. In this form cohesion also
 //! acts on open nodes, which Coulomb's law excludes; therefore the result is checked afterwards.
 
-use crate::contact::table2::Tested;
-use crate::interface::problem::{Assumed, InterfaceProblem};
+use crate::contact::table2::TestedQuantity;
+use crate::interface::problem::{AssumedMode, InterfaceProblem};
 pub use crate::interface::tableau::PathEnd;
-use crate::interface::tableau::{Begin, Columns, Tableau};
+use crate::interface::tableau::{Columns, PathStart, Tableau};
 
 /// A variable of the tableau.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,20 +50,25 @@ pub struct Lemke {
 pub const STARTS: usize = 4;
 
 /// Mode of every node in the basis of a start: 0 all free, 1 initial modes, 2 all fixed, 3 all sliding.
-fn start(problem: &InterfaceProblem, brought: &[Assumed], number: usize) -> Vec<Assumed> {
-    let of = |(place, &brought): (usize, &Assumed)| match (number, problem.nodes[place].choices()) {
-        (0, _) | (_, [Assumed::Free]) => Assumed::Free,
-        (1, _) => brought,
-        (2, choices) if choices.contains(&Assumed::Fixed) => Assumed::Fixed,
-        _ => Assumed::Plus,
-    };
+fn start(problem: &InterfaceProblem, brought: &[AssumedMode], number: usize) -> Vec<AssumedMode> {
+    let of =
+        |(place, &brought): (usize, &AssumedMode)| match (number, problem.nodes[place].choices()) {
+            (0, _) | (_, [AssumedMode::Free]) => AssumedMode::Free,
+            (1, _) => brought,
+            (2, choices) if choices.contains(&AssumedMode::Fixed) => AssumedMode::Fixed,
+            _ => AssumedMode::Plus,
+        };
     brought.iter().enumerate().map(of).collect()
 }
 
 impl Lemke {
     /// The tableau of a problem at start `number`, which is less than [`STARTS`]; `brought` are the initial modes, one per node.
     /// `None` if the basis of that start is singular.
-    pub fn new(problem: &InterfaceProblem, brought: &[Assumed], number: usize) -> Option<Lemke> {
+    pub fn new(
+        problem: &InterfaceProblem,
+        brought: &[AssumedMode],
+        number: usize,
+    ) -> Option<Lemke> {
         let start = start(problem, brought, number);
         let (relation, count) = (&problem.relation, problem.relation.count());
         let friction: Vec<Option<(f64, f64)>> = problem
@@ -136,7 +141,7 @@ impl Lemke {
         let basis = (0..lemke.variables.len())
             .filter(|&v| lemke.is_basic(lemke.variables[v], &start))
             .collect();
-        lemke.tableau.start(basis, rhs, Begin::PLAIN)?;
+        lemke.tableau.start(basis, rhs, PathStart::PLAIN)?;
         Some(lemke)
     }
 
@@ -152,17 +157,21 @@ impl Lemke {
     }
 
     /// Whether a variable is basic if its node has this mode.
-    fn is_basic(&self, (place, kind): (usize, VariableKind), start: &[Assumed]) -> bool {
+    fn is_basic(&self, (place, kind): (usize, VariableKind), start: &[AssumedMode]) -> bool {
         let does = start[place];
         match kind {
             VariableKind::Loose => true,
-            VariableKind::Force => does != Assumed::Free,
-            VariableKind::Gap => does == Assumed::Free,
+            VariableKind::Force => does != AssumedMode::Free,
+            VariableKind::Gap => does == AssumedMode::Free,
             // A free node has no friction, so either side may be used.
-            VariableKind::Slip { plus: true } => matches!(does, Assumed::Plus | Assumed::Free),
-            VariableKind::Slack { plus: true } => matches!(does, Assumed::Fixed | Assumed::Minus),
-            VariableKind::Slip { plus: false } => does == Assumed::Minus,
-            VariableKind::Slack { plus: false } => does != Assumed::Minus,
+            VariableKind::Slip { plus: true } => {
+                matches!(does, AssumedMode::Plus | AssumedMode::Free)
+            }
+            VariableKind::Slack { plus: true } => {
+                matches!(does, AssumedMode::Fixed | AssumedMode::Minus)
+            }
+            VariableKind::Slip { plus: false } => does == AssumedMode::Minus,
+            VariableKind::Slack { plus: false } => does != AssumedMode::Minus,
         }
     }
 
@@ -177,13 +186,13 @@ impl Lemke {
     }
 
     /// The node of the last pivot, and the quantity that reached its bound. `None` if that was the covering variable.
-    pub fn bound(&self) -> Option<(usize, Tested)> {
+    pub fn bound(&self) -> Option<(usize, TestedQuantity)> {
         let (place, kind) = self.variables[self.tableau.left()?];
         let tested = match kind {
-            VariableKind::Force => Tested::NormalForce,
-            VariableKind::Gap => Tested::Gap,
-            VariableKind::Slack { .. } => Tested::ShearForce,
-            VariableKind::Slip { .. } => Tested::Slip,
+            VariableKind::Force => TestedQuantity::NormalForce,
+            VariableKind::Gap => TestedQuantity::Gap,
+            VariableKind::Slack { .. } => TestedQuantity::ShearForce,
+            VariableKind::Slip { .. } => TestedQuantity::Slip,
             VariableKind::Loose => return None,
         };
         Some((place, tested))
@@ -202,16 +211,16 @@ impl Lemke {
     }
 
     /// Mode of a node in the current basis.
-    pub fn assumed(&self, place: usize) -> Assumed {
+    pub fn assumed(&self, place: usize) -> AssumedMode {
         let basic = |kind| self.at(place, kind).is_some();
         if !basic(VariableKind::Force) {
-            Assumed::Free
+            AssumedMode::Free
         } else if self.friction[place].is_none() || basic(VariableKind::Slip { plus: true }) {
-            Assumed::Plus
+            AssumedMode::Plus
         } else if basic(VariableKind::Slip { plus: false }) {
-            Assumed::Minus
+            AssumedMode::Minus
         } else {
-            Assumed::Fixed
+            AssumedMode::Fixed
         }
     }
 

@@ -4,8 +4,8 @@
 //! a node enters contact, the number of nodes that may change at once, the test itself, or a search over all nodes together
 //! ([`Search`]).
 
-use crate::contact::table2::{Decision, Entry, Numbers, Rule, Tested, Ties, decide};
-use crate::interface::problem::{Assumed, InterfaceProblem};
+use crate::contact::table2::{Decision, Entry, Numbers, Rule, TestedQuantity, Ties, decide};
+use crate::interface::problem::{AssumedMode, InterfaceProblem};
 use crate::interface::sweep::Sweep;
 use crate::model::{BoundUpdate, Friction, Strategy};
 use serde::{Deserialize, Serialize};
@@ -24,14 +24,14 @@ pub trait Method: Send + Sync {
     }
 
     /// The next mode of a node, with the reason.
-    fn choose(&self, numbers: &Numbers, known: &Known<'_>) -> Choice {
+    fn choose(&self, numbers: &Numbers, known: &NodeContext<'_>) -> Choice {
         Choice {
             decision: decide(numbers, known.ties),
             sign: None,
         }
     }
 
-    /// Whether [`Method::choose`] uses [`Known::spring`].
+    /// Whether [`Method::choose`] uses [`NodeContext::spring`].
     fn compares_by_springs(&self) -> bool {
         false
     }
@@ -70,7 +70,7 @@ pub trait Method: Send + Sync {
 
 /// Data for a node's decision in addition to the numbers of Table 2.
 #[derive(Debug, Clone, Copy)]
-pub struct Known<'a> {
+pub struct NodeContext<'a> {
     /// Current friction of the node.
     pub friction: &'a Friction,
     /// Tie tolerances.
@@ -98,11 +98,11 @@ pub trait Search {
     ///
     /// # Errors
     /// [`NoProposal`] if there is none.
-    fn propose(&self, asked: Asked<'_>) -> Result<Proposal, NoProposal>;
+    fn propose(&self, asked: SearchInput<'_>) -> Result<Proposal, NoProposal>;
 }
 
 /// Input of a search.
-pub struct Asked<'a> {
+pub struct SearchInput<'a> {
     /// Current start of the search, from 0.
     pub start: usize,
     /// Step from that start, from 0.
@@ -110,7 +110,7 @@ pub struct Asked<'a> {
     /// Number of its states that a minor iteration did not confirm.
     pub unconfirmed: usize,
     /// Mode of every node at the start of the major iteration.
-    pub brought: &'a [Assumed],
+    pub brought: &'a [AssumedMode],
     /// The interface problem; `None` if the bodies cannot be condensed.
     pub problem: &'a mut dyn FnMut() -> Option<InterfaceProblem>,
     /// Starts sweeps over the interface problem.
@@ -123,22 +123,22 @@ pub struct Asked<'a> {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Proposal {
     /// Mode of every node, with F_n, F_t (forces), gap and slip (lengths).
-    pub nodes: Vec<(Assumed, [f64; 4])>,
+    pub nodes: Vec<(AssumedMode, [f64; 4])>,
     /// The rule for the records.
     pub rule: Rule,
     /// Remaining relaxation of the problem, or remaining change or error of the forces (relative).
     pub cover: f64,
     /// Which of these it is.
-    pub covers: Tested,
+    pub covers: TestedQuantity,
     /// The quantity that reached its bound, and the node.
-    pub bound: Option<(usize, Tested)>,
+    pub bound: Option<(usize, TestedQuantity)>,
     /// Where the search continues.
-    pub next: Searched,
+    pub next: SearchProgress,
 }
 
 /// Progress of a search over all nodes in a major iteration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub enum Searched {
+pub enum SearchProgress {
     /// Not started: the initial modes are tried first.
     #[default]
     Not,

@@ -101,7 +101,7 @@ fn record(
         slip,
         entry,
     };
-    let known = method::Known {
+    let known = method::NodeContext {
         friction,
         ties,
         spring: check.stiffness,

@@ -36,7 +36,7 @@ pub struct Input {
 }
 
 impl Input {
-    fn of(node: &ContactState) -> Self {
+    fn from_node(node: &ContactState) -> Self {
         Input {
             mode: node.mode,
             t_max: if node.mode == Mode::Sliding {
@@ -81,7 +81,7 @@ impl MinorHistory {
 
     /// Adds the input of the next minor iteration.
     pub fn push(&mut self, nodes: &[ContactState]) {
-        self.entries.extend(nodes.iter().map(Input::of));
+        self.entries.extend(nodes.iter().map(Input::from_node));
     }
 
     /// Number of stored iterations, each with this number of nodes.
@@ -114,7 +114,7 @@ impl MinorHistory {
         let same = |then: usize| {
             let then = &self.entries[then * width..(then + 1) * width];
             let mut pairs = then.iter().zip(nodes);
-            pairs.all(|(then, node)| then.repeats(&Input::of(node), force, ratio))
+            pairs.all(|(then, node)| then.repeats(&Input::from_node(node), force, ratio))
         };
         let found = cycle::closed(self.len(width), 1, same, |_| true)?;
         let round = || self.entries[found.start * width..].chunks_exact(width);

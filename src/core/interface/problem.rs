@@ -54,7 +54,7 @@ pub struct ProblemNode {
 
 /// Assumed mode of a node, with the direction of sliding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-pub enum Assumed {
+pub enum AssumedMode {
     /// No force.
     Free,
     /// Touching and sticking.
@@ -65,39 +65,43 @@ pub enum Assumed {
     Minus,
 }
 
-impl Assumed {
+impl AssumedMode {
     /// One letter, as in the reference solutions: F, X, +, −.
     pub fn letter(self) -> char {
         match self {
-            Assumed::Free => 'F',
-            Assumed::Fixed => 'X',
-            Assumed::Plus => '+',
-            Assumed::Minus => '-',
+            AssumedMode::Free => 'F',
+            AssumedMode::Fixed => 'X',
+            AssumedMode::Plus => '+',
+            AssumedMode::Minus => '-',
         }
     }
 
     /// The mode without the direction.
     pub fn mode(self) -> Mode {
         match self {
-            Assumed::Free => Mode::Free,
-            Assumed::Fixed => Mode::Fixed,
-            Assumed::Plus | Assumed::Minus => Mode::Sliding,
+            AssumedMode::Free => Mode::Free,
+            AssumedMode::Fixed => Mode::Fixed,
+            AssumedMode::Plus | AssumedMode::Minus => Mode::Sliding,
         }
     }
 
     /// The assumption for this mode and sign of the tangential force.
-    pub fn of(mode: Mode, sign: f64) -> Self {
+    pub fn from_mode(mode: Mode, sign: f64) -> Self {
         match mode {
-            Mode::Free => Assumed::Free,
-            Mode::Fixed => Assumed::Fixed,
-            Mode::Sliding if sign < 0.0 => Assumed::Minus,
-            Mode::Sliding => Assumed::Plus,
+            Mode::Free => AssumedMode::Free,
+            Mode::Fixed => AssumedMode::Fixed,
+            Mode::Sliding if sign < 0.0 => AssumedMode::Minus,
+            Mode::Sliding => AssumedMode::Plus,
         }
     }
 
     /// Sign of F_t when sliding; 1 for the other assumptions.
     pub fn sign(self) -> f64 {
-        if self == Assumed::Minus { -1.0 } else { 1.0 }
+        if self == AssumedMode::Minus {
+            -1.0
+        } else {
+            1.0
+        }
     }
 }
 
@@ -108,18 +112,23 @@ impl ProblemNode {
     }
 
     /// The possible assumptions for the node. Without friction, a node cannot stick, and sliding has no direction.
-    pub fn choices(&self) -> &'static [Assumed] {
+    pub fn choices(&self) -> &'static [AssumedMode] {
         if self.kinematics.is_none() {
-            &[Assumed::Free]
+            &[AssumedMode::Free]
         } else if self.friction.is_smooth() {
-            &[Assumed::Free, Assumed::Plus]
+            &[AssumedMode::Free, AssumedMode::Plus]
         } else {
-            &[Assumed::Free, Assumed::Fixed, Assumed::Plus, Assumed::Minus]
+            &[
+                AssumedMode::Free,
+                AssumedMode::Fixed,
+                AssumedMode::Plus,
+                AssumedMode::Minus,
+            ]
         }
     }
 
     /// Table 1's equations of an assumption, normal and tangential; T_max follows F_n in them.
-    pub fn equations(&self, assumed: Assumed, settings: &Settings) -> [Equation; 2] {
+    pub fn equations(&self, assumed: AssumedMode, settings: &Settings) -> [Equation; 2] {
         let known = SlipDirection {
             gap: self.kinematics.map_or(0.0, |k| k.gap),
             ratio: 0.0,
@@ -140,7 +149,7 @@ impl ProblemNode {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct NodeAnswer {
     /// The assumption.
-    pub assumed: Assumed,
+    pub assumed: AssumedMode,
     /// Total normal force; compression positive.
     pub f_n: f64,
     /// Total tangential force along t.
@@ -290,7 +299,7 @@ impl InterfaceProblem {
 pub fn node_answer(
     problem: &InterfaceProblem,
     node: &ProblemNode,
-    assumed: Assumed,
+    assumed: AssumedMode,
     NodeIncrement { force, motion }: NodeIncrement,
 ) -> NodeAnswer {
     let (f_n, f_t) = (node.state.f_n + force[0], node.state.f_t + force[1]);
@@ -309,8 +318,8 @@ pub fn node_answer(
     };
     let pressed = of_force(Condition::NoTension, f_n);
     let worst = match assumed {
-        Assumed::Free => of_length(Condition::NoPenetration, gap),
-        Assumed::Fixed => smaller(pressed, of_force(Condition::WithinLimit, limit - f_t.abs())),
+        AssumedMode::Free => of_length(Condition::NoPenetration, gap),
+        AssumedMode::Fixed => smaller(pressed, of_force(Condition::WithinLimit, limit - f_t.abs())),
         _ if node.friction.is_smooth() => pressed,
         _ => smaller(
             pressed,

@@ -14,7 +14,7 @@
 //! ```
 
 use crate::interface::blocks::Blocks;
-use crate::interface::problem::{Assumed, InterfaceProblem, ProblemNode};
+use crate::interface::problem::{AssumedMode, InterfaceProblem, ProblemNode};
 use crate::linalg::DenseFactors;
 use std::ops::Range;
 use std::sync::Arc;
@@ -29,7 +29,7 @@ pub struct Sweep {
     compliance: Arc<Blocks>,
     /// Whether W was given by its entries, and not inverted.
     given: bool,
-    nodes: Vec<Alone>,
+    nodes: Vec<SingleNode>,
     /// The nodes, part by part, and the parts.
     order: Vec<usize>,
     parts: Vec<Part>,
@@ -55,8 +55,8 @@ struct Part {
 
 /// A single node.
 #[derive(Debug, Clone, Copy)]
-struct Alone {
-    does: Assumed,
+struct SingleNode {
+    does: AssumedMode,
     coefficient: f64,
     cohesion: f64,
     /// Whether it can have a normal force, and whether it has friction.
@@ -64,11 +64,11 @@ struct Alone {
     rough: bool,
 }
 
-impl Alone {
+impl SingleNode {
     fn new(node: &ProblemNode) -> Self {
         let [normal, tangential] = node.moves();
-        Alone {
-            does: Assumed::Free,
+        SingleNode {
+            does: AssumedMode::Free,
             coefficient: node.friction.coefficient(),
             cohesion: node.friction.cohesion,
             presses: normal,
@@ -138,7 +138,7 @@ impl Sweep {
         Sweep {
             compliance,
             given: true,
-            nodes: nodes.iter().map(Alone::new).collect(),
+            nodes: nodes.iter().map(SingleNode::new).collect(),
             parts: ranges.collect(),
             order: parts.concat(),
             forces: vec![0.0; free.len()],
@@ -253,7 +253,7 @@ impl Sweep {
             false => f_n,
         };
         let limit = match node.does {
-            Assumed::Free => 0.0,
+            AssumedMode::Free => 0.0,
             _ => (node.coefficient * f_n + node.cohesion).max(0.0),
         };
         let tangential = f_t - (f_t - by(e_t, tt)).clamp(-limit, limit);
@@ -272,7 +272,7 @@ impl Sweep {
         ];
         let node = &mut self.nodes[place];
         if !node.presses || q[0] >= 0.0 {
-            node.does = Assumed::Free;
+            node.does = AssumedMode::Free;
             return [0.0; 2];
         }
         if !node.rough {
@@ -280,7 +280,7 @@ impl Sweep {
                 self.unanswered = true;
                 return [f_n, 0.0];
             }
-            node.does = Assumed::Plus;
+            node.does = AssumedMode::Plus;
             return [-q[0] / nn, 0.0];
         }
         let (mu, cohesion) = (node.coefficient, node.cohesion);
@@ -291,11 +291,11 @@ impl Sweep {
                 (tn * q[0] - nn * q[1]) / determinant,
             ];
             if fixed[0] >= 0.0 && fixed[1].abs() <= mu * fixed[0] + cohesion {
-                node.does = Assumed::Fixed;
+                node.does = AssumedMode::Fixed;
                 return fixed;
             }
         }
-        for does in [Assumed::Plus, Assumed::Minus] {
+        for does in [AssumedMode::Plus, AssumedMode::Minus] {
             let sign = does.sign();
             let gives = nn + sign * mu * nt;
             let f_n = -(q[0] + nt * sign * cohesion) / gives;
@@ -316,7 +316,7 @@ impl Sweep {
     }
 
     /// Mode of a node after the last sweep.
-    pub fn assumed(&self, place: usize) -> Assumed {
+    pub fn assumed(&self, place: usize) -> AssumedMode {
         self.nodes[place].does
     }
 
@@ -324,8 +324,8 @@ impl Sweep {
     pub fn numbers(&self, place: usize) -> [f64; 4] {
         let (n, t) = (2 * place, 2 * place + 1);
         let gap = match self.nodes[place].does {
-            Assumed::Free if self.nodes[place].presses => self.motions[n],
-            Assumed::Free => f64::INFINITY,
+            AssumedMode::Free if self.nodes[place].presses => self.motions[n],
+            AssumedMode::Free => f64::INFINITY,
             _ => 0.0,
         };
         [self.forces[n], self.forces[t], gap, -self.motions[t]]

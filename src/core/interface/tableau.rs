@@ -89,7 +89,7 @@ impl Columns<'_> {
 
 /// Parameters for starting a path.
 #[derive(Clone, Copy)]
-pub struct Begin<'a> {
+pub struct PathStart<'a> {
     /// Relaxation of each row by the covering variable; positive.
     pub cover: &'a dyn Fn(usize) -> f64,
     /// Shift of each row. `None` to break ties lexicographically.
@@ -98,9 +98,9 @@ pub struct Begin<'a> {
     pub pivots: usize,
 }
 
-impl Begin<'_> {
+impl PathStart<'_> {
     /// All rows are relaxed equally, and ties are broken lexicographically.
-    pub const PLAIN: Begin<'static> = Begin {
+    pub const PLAIN: PathStart<'static> = PathStart {
         cover: &|_| 1.0,
         shift: None,
         pivots: PIVOTS,
@@ -166,7 +166,7 @@ impl Tableau {
     }
 
     /// Starts the path from a basis (one variable per row, ascending). `None` if it is singular.
-    pub fn start(&mut self, basis: Vec<usize>, rhs: Vec<f64>, begin: Begin<'_>) -> Option<()> {
+    pub fn start(&mut self, basis: Vec<usize>, rhs: Vec<f64>, begin: PathStart<'_>) -> Option<()> {
         let (rows, cover) = (self.rows, self.variables());
         self.basis = basis;
         self.row_of = vec![None; cover + 1];

@@ -7,7 +7,7 @@ use crate::interface::kinematics::NodeIncrement;
 use crate::interface::method::Method;
 use crate::interface::minor::{self, Check};
 use crate::interface::problem::{
-    Answer, Assumed, InterfaceProblem, ProblemNode, SINGULAR, node_answer,
+    Answer, AssumedMode, InterfaceProblem, ProblemNode, SINGULAR, node_answer,
 };
 use crate::interface::rows;
 use crate::linalg::DenseFactors;
@@ -38,7 +38,7 @@ impl<'a> Trials<'a> {
     }
 
     /// The solution for a combination, one entry per node. `None` if its equations are singular.
-    pub fn answer(&mut self, assumed: &[Assumed]) -> Option<Answer> {
+    pub fn answer(&mut self, assumed: &[AssumedMode]) -> Option<Answer> {
         let problem = self.problem;
         let given = self.solve(|s, node| node.equations(assumed[s], &problem.settings))?;
         let nodes = problem.nodes.iter().zip(assumed).zip(given);

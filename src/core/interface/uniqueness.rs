@@ -84,7 +84,7 @@ pub enum Inapplicable {
 
 /// Applies the criterion to a problem. It takes a few dense factorizations of the interface's size.
 pub fn uniqueness(problem: &InterfaceProblem) -> Uniqueness {
-    let compliance = match CompliancePart::of(problem) {
+    let compliance = match CompliancePart::from_problem(problem) {
         Ok(compliance) => compliance,
         Err(why @ Inapplicable::Cohesion(_)) => return Uniqueness::Not(why),
         Err(why) => return Uniqueness::Not(semidefinite(problem).unwrap_or(why)),
@@ -101,7 +101,7 @@ pub fn uniqueness(problem: &InterfaceProblem) -> Uniqueness {
 
 /// Whether the compliance is semidefinite.
 fn semidefinite(problem: &InterfaceProblem) -> Option<Inapplicable> {
-    let compliance = definite::Compliance::of(problem)?;
+    let compliance = definite::Compliance::from_problem(problem)?;
     let round_off = compliance.round_off();
     let zero = compliance.within(round_off);
     (zero > 0 && compliance.ends()[0] >= -round_off).then_some(Inapplicable::Semidefinite(zero))
@@ -109,7 +109,7 @@ fn semidefinite(problem: &InterfaceProblem) -> Option<Inapplicable> {
 
 /// tan φ √cond W with the largest tan φ: below 1, states are unique. `None` if there is no definite compliance.
 pub fn plain(problem: &InterfaceProblem) -> Option<f64> {
-    let compliance = CompliancePart::of(problem).ok()?;
+    let compliance = CompliancePart::from_problem(problem).ok()?;
     let (size, w) = (compliance.size, &compliance.matrix);
     let largest = power(size, |x| times(w, size, x));
     let mut factors = DenseFactors::new(size, 1).ok()?;
@@ -139,7 +139,7 @@ struct CompliancePart {
 }
 
 impl CompliancePart {
-    fn of(problem: &InterfaceProblem) -> Result<CompliancePart, Inapplicable> {
+    fn from_problem(problem: &InterfaceProblem) -> Result<CompliancePart, Inapplicable> {
         let relation = &problem.relation;
         let count = relation.count();
         let mut kept = Vec::new();

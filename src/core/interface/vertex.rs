@@ -7,17 +7,17 @@
 //! they reach F_n = 0, where no mode change is possible. This is analogous to finding a vertex of a polyhedron in linear
 //! programming (Megiddo, ORSA J. Computing 3, 1991).
 
-use crate::interface::problem::{Assumed, InterfaceProblem};
+use crate::interface::problem::{AssumedMode, InterfaceProblem};
 
 /// Columns whose remainder is below this fraction of the largest are linearly dependent.
 const DEPENDENT: f64 = 1e-10;
 
 /// Mode and forces of a node.
-pub type Held = (Assumed, [f64; 2]);
+pub type NodeForce = (AssumedMode, [f64; 2]);
 
 /// Changes modes and forces (one entry per node) such that no forces in these modes are without motion. The motions stay the
 /// same, and the forces obey Coulomb's law if they did before.
-pub fn vertex(problem: &InterfaceProblem, nodes: &mut [Held]) {
+pub fn vertex(problem: &InterfaceProblem, nodes: &mut [NodeForce]) {
     let mut still = motionless(problem, nodes);
     orthonormal(&mut still);
     while let Some(along) = still.last() {
@@ -32,7 +32,7 @@ pub fn vertex(problem: &InterfaceProblem, nodes: &mut [Held]) {
         nodes[bound.place].0 = bound.then;
         let put = &mut nodes[bound.place].1;
         match bound.then {
-            Assumed::Free => *put = [0.0; 2],
+            AssumedMode::Free => *put = [0.0; 2],
             does => {
                 let friction = &problem.nodes[bound.place].friction;
                 put[1] = does.sign() * (friction.coefficient() * put[0] + friction.cohesion);
@@ -91,9 +91,9 @@ fn subtract(from: &mut [f64], times: f64, what: &[f64]) {
 }
 
 /// [`vertex`] for a proposal of a search: mode of every node with F_n, F_t, gap and slip.
-pub fn vertices(problem: &InterfaceProblem, nodes: &mut [(Assumed, [f64; 4])]) {
-    let of = |&(does, [f_n, f_t, ..]): &(Assumed, [f64; 4])| (does, [f_n, f_t]);
-    let mut held: Vec<Held> = nodes.iter().map(of).collect();
+pub fn vertices(problem: &InterfaceProblem, nodes: &mut [(AssumedMode, [f64; 4])]) {
+    let of = |&(does, [f_n, f_t, ..]): &(AssumedMode, [f64; 4])| (does, [f_n, f_t]);
+    let mut held: Vec<NodeForce> = nodes.iter().map(of).collect();
     vertex(problem, &mut held);
     for (node, (does, [f_n, f_t])) in nodes.iter_mut().zip(held) {
         node.0 = does;
@@ -105,7 +105,7 @@ pub fn vertices(problem: &InterfaceProblem, nodes: &mut [(Assumed, [f64; 4])]) {
 struct VertexBound {
     place: usize,
     step: f64,
-    then: Assumed,
+    then: AssumedMode,
     /// The quantity that is zero there, as factors of the node's F_n and F_t.
     factors: [f64; 2],
     /// Whether a mode change is possible there.
@@ -119,15 +119,15 @@ impl VertexBound {
 }
 
 /// The first edge along d or −d. `None` if there is none.
-fn nearest(problem: &InterfaceProblem, nodes: &[Held], along: &[f64]) -> Option<VertexBound> {
+fn nearest(problem: &InterfaceProblem, nodes: &[NodeForce], along: &[f64]) -> Option<VertexBound> {
     let mut found: Option<VertexBound> = None;
-    let mut look = |place: usize, then: Assumed, factors: [f64; 2], left: f64| {
+    let mut look = |place: usize, then: AssumedMode, factors: [f64; 2], left: f64| {
         let bound = VertexBound {
             place,
             step: 0.0,
             then,
             factors,
-            open: then != Assumed::Free || problem.nodes[place].friction.cohesion == 0.0,
+            open: then != AssumedMode::Free || problem.nodes[place].friction.cohesion == 0.0,
         };
         let falls = -bound.of(along);
         let size = along.iter().fold(0.0_f64, |m, d| m.max(d.abs()));
@@ -146,21 +146,23 @@ fn nearest(problem: &InterfaceProblem, nodes: &[Held], along: &[f64]) -> Option<
         let friction = &problem.nodes[place].friction;
         let limit = friction.coefficient() * f_n + friction.cohesion;
         match does {
-            Assumed::Free => {}
-            Assumed::Plus | Assumed::Minus => look(place, Assumed::Free, [1.0, 0.0], *f_n),
-            Assumed::Fixed => {
+            AssumedMode::Free => {}
+            AssumedMode::Plus | AssumedMode::Minus => {
+                look(place, AssumedMode::Free, [1.0, 0.0], *f_n)
+            }
+            AssumedMode::Fixed => {
                 if friction.cohesion > 0.0 {
-                    look(place, Assumed::Free, [1.0, 0.0], *f_n);
+                    look(place, AssumedMode::Free, [1.0, 0.0], *f_n);
                 }
                 look(
                     place,
-                    Assumed::Plus,
+                    AssumedMode::Plus,
                     [friction.coefficient(), -1.0],
                     limit - f_t,
                 );
                 look(
                     place,
-                    Assumed::Minus,
+                    AssumedMode::Minus,
                     [friction.coefficient(), 1.0],
                     limit + f_t,
                 );
@@ -174,14 +176,14 @@ fn nearest(problem: &InterfaceProblem, nodes: &[Held], along: &[f64]) -> Option<
 ///
 /// These form the null space of (I + R / k). Its columns for the nodes' forces are eliminated with the largest remaining entry as
 /// pivot.
-pub fn motionless(problem: &InterfaceProblem, nodes: &[Held]) -> Vec<Vec<f64>> {
+pub fn motionless(problem: &InterfaceProblem, nodes: &[NodeForce]) -> Vec<Vec<f64>> {
     let (relation, count) = (&problem.relation, problem.relation.count());
     let mut directions: Vec<(usize, [f64; 2])> = Vec::new();
     for (place, (does, _)) in nodes.iter().enumerate() {
         let coefficient = problem.nodes[place].friction.coefficient();
         match does {
-            Assumed::Free => {}
-            Assumed::Fixed => directions.extend([(place, [1.0, 0.0]), (place, [0.0, 1.0])]),
+            AssumedMode::Free => {}
+            AssumedMode::Fixed => directions.extend([(place, [1.0, 0.0]), (place, [0.0, 1.0])]),
             does => directions.push((place, [1.0, does.sign() * coefficient])),
         }
     }

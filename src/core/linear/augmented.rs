@@ -1,7 +1,7 @@
 //! Minor iterations on the full system of bodies and interface (eqn 9), which is factored for every combination of modes.
 
 use super::partners::{partners_motion, place_partners};
-use super::source::{At, Solved};
+use super::source::{LinearisationPoint, SolveResult};
 use super::system::{System, dot};
 use crate::contact::state::ContactState;
 use crate::contact::table1::{Equation, RelativeMotion};
@@ -12,7 +12,11 @@ use crate::model::Model;
 const SUSPICIOUS: f64 = 1e12;
 
 impl System {
-    pub(super) fn solve_augmented(&mut self, model: &Model, at: &At<'_>) -> Solved {
+    pub(super) fn solve_augmented(
+        &mut self,
+        model: &Model,
+        at: &LinearisationPoint<'_>,
+    ) -> SolveResult {
         self.condensed.fresh = false;
         self.scale(model, at);
         self.start_values();
@@ -48,7 +52,7 @@ impl System {
     }
 
     /// Computes the common scale for all systems of this linearisation, using the one in which every node is held.
-    pub(super) fn scale(&mut self, model: &Model, at: &At<'_>) {
+    pub(super) fn scale(&mut self, model: &Model, at: &LinearisationPoint<'_>) {
         if std::mem::replace(&mut self.scaled, true) {
             return;
         }
@@ -109,13 +113,13 @@ impl System {
         row.value - component.map_or(0.0, |k| interface.prescribed_along(k, &frame))
     }
 
-    pub(super) fn factor_and_solve(&mut self) -> Solved {
+    pub(super) fn factor_and_solve(&mut self) -> SolveResult {
         let Some(factors) = &mut self.whole else {
-            return Solved::Not;
+            return SolveResult::Not;
         };
         self.done.factorizations += 1;
         if factors.factor(&self.values).is_err() || factors.solve(&self.rhs, &mut self.x).is_err() {
-            return Solved::Not;
+            return SolveResult::Not;
         }
         suspicion(factors.inverse_norm())
     }
@@ -161,10 +165,10 @@ pub(super) fn springs(give: f64) -> [Equation; 2] {
     ]
 }
 
-pub(super) fn suspicion(inverse_norm: f64) -> Solved {
+pub(super) fn suspicion(inverse_norm: f64) -> SolveResult {
     if inverse_norm > SUSPICIOUS {
-        Solved::NearlySingular
+        SolveResult::NearlySingular
     } else {
-        Solved::Well
+        SolveResult::Well
     }
 }

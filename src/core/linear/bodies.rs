@@ -1,13 +1,13 @@
 //! The program's own bodies as a source: beams, continua and matrix bodies, over surfaces followed by projection.
 
 use crate::contact::balance::{self, Forces};
-use crate::contact::judge::{Judge, Seen};
+use crate::contact::judge::{Judge, JudgedState};
 use crate::contact::laws::{JudgedLaw, Scales, Verdict};
 use crate::contact::projection::SurfacePoint;
 use crate::contact::state::{ContactState, in_mode, largest_drift};
 use crate::contact::stick_point::pierced;
 use crate::contact::tracking::Ground;
-use crate::executor::{Executor, InTurn};
+use crate::executor::{Executor, SequentialExecutor};
 use crate::fem::assembly::history_len;
 use crate::fem::deformation::{Deformation, deformation};
 use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
@@ -19,11 +19,11 @@ use crate::linear::norms::Norms;
 use crate::linear::point_forces::PointForces;
 use crate::linear::singular::{self, Singular};
 use crate::linear::sizes::Sizes;
-use crate::linear::source::{At, Solved, Source, Work};
+use crate::linear::source::{LinearisationPoint, SolveResult, Source, Work};
 use crate::linear::stability::Stability;
 use crate::linear::system::System;
 use crate::linear::tangent::Tangent;
-use crate::model::{Axis, Contact, Factor, Friction, Mode, Model, Settings, Watched};
+use crate::model::{Axis, Contact, Factor, Friction, Mode, Model, MonitorQuantity, Settings};
 use std::sync::Arc;
 
 /// Minimum relative tolerance for violations of laws; it is larger if the settings' tolerance or round-off is larger.
@@ -69,7 +69,7 @@ struct Bench {
 impl Bodies {
     /// The bodies of a model, processed sequentially.
     pub fn new(model: Arc<Model>) -> Self {
-        Bodies::with_executor(model, Arc::new(InTurn))
+        Bodies::with_executor(model, Arc::new(SequentialExecutor))
     }
 
     /// The bodies of a model, processed in parallel by an executor; the results are the same.
@@ -133,18 +133,24 @@ impl Bodies {
 }
 
 /// Value of a monitor that needs only displacements and contacts; not a number for the others.
-pub(super) fn value(watched: &Watched, contacts: &[Contact], at: &At<'_>) -> f64 {
+pub(super) fn value(
+    watched: &MonitorQuantity,
+    contacts: &[Contact],
+    at: &LinearisationPoint<'_>,
+) -> f64 {
     match watched {
-        Watched::Displacement { dof } => at.u[*dof],
-        Watched::Contact { slaves, axis } => {
+        MonitorQuantity::Displacement { dof } => at.u[*dof],
+        MonitorQuantity::Contact { slaves, axis } => {
             let k = if *axis == Axis::X { 0 } else { 1 };
             slaves.iter().map(|&s| at.contacts[s].force()[k]).sum()
         }
-        Watched::Modes { slaves, mode } => in_mode(at.contacts, slaves, *mode),
-        Watched::Drift { slaves } => largest_drift(at.contacts, slaves),
-        Watched::Pressure { slaves, shear } => pressure(contacts, at.contacts, slaves, *shear),
-        Watched::Arc => at.arc,
-        Watched::Told { .. } | Watched::Reaction { .. } => f64::NAN,
+        MonitorQuantity::Modes { slaves, mode } => in_mode(at.contacts, slaves, *mode),
+        MonitorQuantity::Drift { slaves } => largest_drift(at.contacts, slaves),
+        MonitorQuantity::Pressure { slaves, shear } => {
+            pressure(contacts, at.contacts, slaves, *shear)
+        }
+        MonitorQuantity::Arc => at.arc,
+        MonitorQuantity::Told { .. } | MonitorQuantity::Reaction { .. } => f64::NAN,
     }
 }
 
@@ -246,7 +252,7 @@ impl Source for Bodies {
         let same = is_laid_out_alike(&self.model, model);
         if same {
             self.system.sizes = Sizes::new(model);
-            self.system.estimate = Estimate::of(model);
+            self.system.estimate = Estimate::from_model(model);
             self.system.done = Work::default();
             self.tangent = None;
             self.model = model.clone();
@@ -254,15 +260,15 @@ impl Source for Bodies {
         same
     }
 
-    fn linearise(&mut self, at: &At<'_>) -> Result<(), SolveError> {
+    fn linearise(&mut self, at: &LinearisationPoint<'_>) -> Result<(), SolveError> {
         self.system.linearise(&self.model, at)
     }
 
-    fn turn(&mut self, at: &At<'_>) {
+    fn turn(&mut self, at: &LinearisationPoint<'_>) {
         self.system.turn(&self.model, at);
     }
 
-    fn aim(&mut self, at: &At<'_>) -> bool {
+    fn aim(&mut self, at: &LinearisationPoint<'_>) -> bool {
         // A following pressure has a stiffness that depends on the load.
         let dead = self.system.pressures.is_empty();
         let holds =
@@ -273,7 +279,7 @@ impl Source for Bodies {
         holds
     }
 
-    fn norms(&mut self, at: &At<'_>) -> Norms {
+    fn norms(&mut self, at: &LinearisationPoint<'_>) -> Norms {
         self.system.norms_of(&self.model, at)
     }
 
@@ -289,7 +295,7 @@ impl Source for Bodies {
         self.system.kinematics(contact)
     }
 
-    fn solve(&mut self, at: &At<'_>) -> Solved {
+    fn solve(&mut self, at: &LinearisationPoint<'_>) -> SolveResult {
         self.system.solve(&self.model, at)
     }
 
@@ -305,7 +311,7 @@ impl Source for Bodies {
         self.system.given(contact)
     }
 
-    fn problem(&mut self, at: &At<'_>) -> Result<InterfaceProblem, SolveError> {
+    fn problem(&mut self, at: &LinearisationPoint<'_>) -> Result<InterfaceProblem, SolveError> {
         self.system.problem(&self.model, at)
     }
 
@@ -317,7 +323,7 @@ impl Source for Bodies {
         self.system.condenses(settings)
     }
 
-    fn recover(&mut self) -> Solved {
+    fn recover(&mut self) -> SolveResult {
         self.system.recover(&self.model)
     }
 
@@ -365,7 +371,7 @@ impl Source for Bodies {
         changed
     }
 
-    fn rebalance(&mut self, at: &At<'_>) {
+    fn rebalance(&mut self, at: &LinearisationPoint<'_>) {
         self.system.rebalance(&self.model, at);
     }
 
@@ -395,7 +401,7 @@ impl Source for Bodies {
         })
     }
 
-    fn judge(&mut self, at: &At<'_>, after: &Norms) -> Verdict {
+    fn judge(&mut self, at: &LinearisationPoint<'_>, after: &Norms) -> Verdict {
         let scales = self.scales(at.chosen.tolerance, after);
         let (model, bench) = (&self.model, &mut self.bench);
         bench.before.clear();
@@ -455,7 +461,7 @@ impl Source for Bodies {
             }
         }
         let [out, was_out] = &bench.out;
-        let seen = Seen {
+        let seen = JudgedState {
             surfaces: &model.surfaces,
             contacts: &model.contacts,
             friction: at.friction,
@@ -528,7 +534,7 @@ impl Source for Bodies {
         true
     }
 
-    fn stability(&mut self, at: &At<'_>) -> Stability {
+    fn stability(&mut self, at: &LinearisationPoint<'_>) -> Stability {
         let (system, model) = (&self.system, &self.model);
         let tangent = self
             .tangent
@@ -544,10 +550,10 @@ impl Source for Bodies {
         self.system.done
     }
 
-    fn monitor(&self, watched: &Watched, at: &At<'_>) -> f64 {
+    fn monitor(&self, watched: &MonitorQuantity, at: &LinearisationPoint<'_>) -> f64 {
         match watched {
             // Use the load of the current displacements, not of the next target.
-            Watched::Reaction { dof } => {
+            MonitorQuantity::Reaction { dof } => {
                 let loads = self.model.loads.iter().filter(|load| load.dof == *dof);
                 let mut load: f64 = loads.map(|l| l.value * l.scale.at(at.last_target)).sum();
                 let (factor, own) = (|scale: &Factor| scale.at(at.last_target), *dof);

@@ -18,7 +18,7 @@
 //! the bodies are factored. At a limit point of the bodies themselves, x0, X and x1 are large but their sum is not. Therefore the
 //! check is whether the bordered inverse is bounded ([`System::bordered_norm`]), not that of the bodies.
 
-use super::source::{Along, At};
+use super::source::{LinearisationPoint, LoadEquation};
 use super::system::{System, dot};
 use crate::linalg::SolveError;
 use crate::model::{Factor, Model};
@@ -30,7 +30,12 @@ const ORDINARY: f64 = 1e6;
 
 impl System {
     /// Computes c, q and p at the last linearisation.
-    pub(super) fn lay_border(&mut self, model: &Model, at: &At<'_>, along: &Along<'_>) {
+    pub(super) fn lay_border(
+        &mut self,
+        model: &Model,
+        at: &LinearisationPoint<'_>,
+        along: &LoadEquation<'_>,
+    ) {
         self.find_rates(model, at);
         let border = &mut self.border;
         border.row.clear();
@@ -44,13 +49,13 @@ impl System {
             }
         };
         match along {
-            Along::Load { .. } => border.given[1] = 1.0,
-            Along::Displacements { row, .. } => {
+            LoadEquation::Load { .. } => border.given[1] = 1.0,
+            LoadEquation::Displacements { row, .. } => {
                 let weights = row.iter().enumerate().filter(|(_, weight)| **weight != 0.0);
                 weights.for_each(|(dof, &weight)| add(dof, weight));
             }
-            Along::Dof { dof, .. } => add(*dof, 1.0),
-            Along::Slip { contact, .. } => {
+            LoadEquation::Dof { dof, .. } => add(*dof, 1.0),
+            LoadEquation::Slip { contact, .. } => {
                 let frame = self.frames[*contact];
                 let interface = &self.interfaces[*contact];
                 for (i, link) in interface.links.iter().enumerate() {
@@ -61,7 +66,7 @@ impl System {
     }
 
     /// Computes q and the rates of prescribed displacements with respect to the load factor.
-    fn find_rates(&mut self, model: &Model, at: &At<'_>) {
+    fn find_rates(&mut self, model: &Model, at: &LinearisationPoint<'_>) {
         let border = &mut self.border;
         border.rates.clear();
         border.rates.resize(model.dofs.len(), 0.0);
@@ -105,7 +110,7 @@ impl System {
 
     /// Subtracts from q the effect of prescribed displacements through the stiffness: the coupling of the linearisation, with
     /// rates instead of steps.
-    fn couple_rates(&mut self, model: &Model, at: &At<'_>) {
+    fn couple_rates(&mut self, model: &Model, at: &LinearisationPoint<'_>) {
         let kept = [
             self.stiffness.clone(),
             self.force.clone(),
@@ -123,7 +128,7 @@ impl System {
     }
 
     /// Records the contribution to the constraint of the displacements for z = 0, which have just been computed.
-    pub(super) fn begin_border(&mut self, along: &Along<'_>) {
+    pub(super) fn begin_border(&mut self, along: &LoadEquation<'_>) {
         let border = &mut self.border;
         let found = border.row.iter().zip(&self.x).map(|(c, x)| c * x);
         border.start = along.step() - border.given[0] - found.sum::<f64>();

@@ -50,7 +50,7 @@ enum CondensationPath {
 /// The condensed bodies of a major iteration. Matrices are stored column by column.
 pub struct Condensation {
     pattern: Arc<Pattern>,
-    parts: Vec<Part>,
+    parts: Vec<BodyGroup>,
     executor: Arc<dyn Executor>,
     way: CondensationPath,
     /// Index among the interface's unknowns, by equation.
@@ -75,7 +75,7 @@ pub struct Condensation {
 }
 
 /// Bodies without stiffness coupling to other bodies.
-struct Part {
+struct BodyGroup {
     factors: SymmetricFactors,
     /// Their equations, and their range of the stiffness values.
     equations: Range<usize>,
@@ -446,7 +446,7 @@ impl Condensation {
     }
 }
 
-impl Part {
+impl BodyGroup {
     fn new(
         pattern: &Pattern,
         equations: Range<usize>,
@@ -459,7 +459,7 @@ impl Part {
             .unzip();
         let (pattern, values) = pattern.block(equations.clone());
         let c = unknowns.len();
-        Ok(Part {
+        Ok(BodyGroup {
             factors: SymmetricFactors::new(Arc::new(pattern), &last)?,
             values,
             unknowns,
@@ -510,7 +510,7 @@ fn parts(
     pattern: &Pattern,
     interface: &[usize],
     executor: &dyn Executor,
-) -> Result<Vec<Part>, SolveError> {
+) -> Result<Vec<BodyGroup>, SolveError> {
     let mut ranges: Vec<Range<usize>> = Vec::new();
     for block in pattern.blocks() {
         match ranges.last_mut() {
@@ -520,7 +520,7 @@ fn parts(
     }
     let mut parts: Vec<_> = ranges.into_iter().map(|range| (range, None)).collect();
     each(executor, &mut parts, &|(range, part)| {
-        *part = Some(Part::new(pattern, range.clone(), interface));
+        *part = Some(BodyGroup::new(pattern, range.clone(), interface));
     });
     parts.into_iter().filter_map(|(_, part)| part).collect()
 }

@@ -10,7 +10,7 @@ use crate::interface::response::InterfaceResponse;
 use crate::linalg::{DenseFactors, SolveError};
 
 /// The condensed interface of a major iteration, and the result of the last minor iteration.
-pub struct Condensed {
+pub struct CondensedSystem {
     /// Whether `relation` belongs to the current linearisation.
     pub fresh: bool,
     /// Estimated norm of the inverse of the factored matrices.
@@ -35,10 +35,10 @@ pub struct Condensed {
     pub motions: Vec<[f64; 2]>,
 }
 
-impl Condensed {
+impl CondensedSystem {
     /// Allocates results for this many slave nodes; the condensed matrices are allocated on demand.
     pub fn new(slaves: usize) -> Self {
-        Condensed {
+        CondensedSystem {
             fresh: false,
             norm: 0.0,
             relation: InterfaceResponse {

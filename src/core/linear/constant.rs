@@ -13,9 +13,9 @@ use crate::contact::projection::SurfacePoint;
 use crate::contact::state::ContactState;
 use crate::interface::kinematics::NodeKinematics;
 use crate::linalg::SolveError;
-use crate::linear::condensed::Condensed;
+use crate::linear::condensed::CondensedSystem;
 use crate::linear::norms::Norms;
-use crate::linear::source::{At, Source};
+use crate::linear::source::{LinearisationPoint, Source};
 use crate::linear::violation::violation;
 use crate::model::{Bond, Contact, Dofs, Friction, Mode, Model, Node, Settings, Touch};
 
@@ -103,7 +103,7 @@ impl Constant {
             settings: Settings { touch, ..settings },
             dofs: Dofs::default(),
             length: self.length,
-            ..Model::of_contacts(
+            ..Model::from_contacts(
                 "A constant interface",
                 (0..self.gaps.len()).map(node).collect(),
                 Vec::new(),
@@ -117,7 +117,7 @@ impl Constant {
         let contacts = self.gaps.len();
         ConstantSource {
             gaps: self.gaps.clone(),
-            condensed: Condensed::new(contacts),
+            condensed: CondensedSystem::new(contacts),
             norms: Norms::default(),
             interface: self,
         }
@@ -144,7 +144,7 @@ pub struct ConstantSource {
     interface: Constant,
     /// Gaps in the last linearisation.
     gaps: Vec<f64>,
-    condensed: Condensed,
+    condensed: CondensedSystem,
     norms: Norms,
 }
 
@@ -159,7 +159,7 @@ impl ConstantSource {
     }
 
     /// Force scale: the loads and the current forces.
-    fn scale(&self, at: &At<'_>) -> f64 {
+    fn scale(&self, at: &LinearisationPoint<'_>) -> f64 {
         let loads = self.interface.load.iter().map(|p| (at.target * p).abs());
         let forces = at.contacts.iter().map(|c| c.f_n.abs().max(c.f_t.abs()));
         loads.chain(forces).fold(0.0, f64::max)
@@ -194,7 +194,7 @@ impl Source for ConstantSource {
         }
     }
 
-    fn linearise(&mut self, at: &At<'_>) -> Result<(), SolveError> {
+    fn linearise(&mut self, at: &LinearisationPoint<'_>) -> Result<(), SolveError> {
         self.condensed.resize(self.interface.gaps.len())?;
         for (k, (gap, start)) in self.gaps.iter_mut().zip(&self.interface.gaps).enumerate() {
             *gap = start + at.u[2 * k];
@@ -221,7 +221,7 @@ impl Source for ConstantSource {
         Ok(())
     }
 
-    fn norms(&mut self, at: &At<'_>) -> Norms {
+    fn norms(&mut self, at: &LinearisationPoint<'_>) -> Norms {
         let over = |contact: usize| self.kinematics(contact);
         self.norms.interface = violation(at, self.interface.length, self.norms.scale, over);
         self.norms
@@ -246,7 +246,7 @@ impl Source for ConstantSource {
         })
     }
 
-    fn slid(&self, contact: usize, at: &At<'_>) -> Option<f64> {
+    fn slid(&self, contact: usize, at: &LinearisationPoint<'_>) -> Option<f64> {
         let along = 2 * contact + 1;
         Some(at.accepted.u[along] - at.u[along])
     }
@@ -255,11 +255,11 @@ impl Source for ConstantSource {
         self.interface.length
     }
 
-    fn condensed(&self) -> Option<&Condensed> {
+    fn condensed(&self) -> Option<&CondensedSystem> {
         Some(&self.condensed)
     }
 
-    fn condensed_mut(&mut self) -> Option<&mut Condensed> {
+    fn condensed_mut(&mut self) -> Option<&mut CondensedSystem> {
         Some(&mut self.condensed)
     }
 }

@@ -1,7 +1,7 @@
 //! A slave node's part of the linearised system: the displacements in its equations, and their matrix entries.
 
 use crate::contact::geometric_tangent::Variation;
-use crate::contact::point_force::Linearised;
+use crate::contact::point_force::LinearisedForce;
 use crate::contact::projection::{Projection, tangent};
 use crate::contact::state::ContactState;
 use crate::linalg::Pattern;
@@ -55,7 +55,7 @@ pub struct Interface {
     pub bond: Bond,
     pub given: f64,
     /// The linearised contact on an element with local flexibility (a single entry); empty for other elements.
-    pub point: Vec<Linearised>,
+    pub point: Vec<LinearisedForce>,
     /// Couplings with the other contacts on that element.
     pub partners: Vec<Partner>,
     pub links: Vec<Link>,

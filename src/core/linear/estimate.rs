@@ -89,7 +89,7 @@ struct Factoring {
 
 impl Estimate {
     /// Estimates the cost of a scene with these settings.
-    pub fn of(model: &Model) -> Estimate {
+    pub fn from_model(model: &Model) -> Estimate {
         let budget = model
             .settings
             .memory

@@ -5,9 +5,9 @@
 //! and rotates the force of i by ∂c_ij/∂ξ_i ΔF_j + ∂²c_ij/∂ξ_i∂ξ_j F_j X_j Δu.
 
 use super::coupling::{Interface, Partner};
-use super::point_forces::{PointForces, Press};
-use super::source::At;
-use crate::contact::point_force::{Over, linearise};
+use super::point_forces::{FlexibleContact, PointForces};
+use super::source::LinearisationPoint;
+use crate::contact::point_force::{NodeOverElement, linearise};
 use crate::fem::lagrange::MAX_NODES;
 use crate::linalg::Pattern;
 use crate::model::Model;
@@ -18,7 +18,7 @@ pub fn find_points(
     (positions, step): (&[[f64; 2]], &[f64]),
     pattern: Option<&Pattern>,
     model: &Model,
-    at: &At<'_>,
+    at: &LinearisationPoint<'_>,
 ) {
     interfaces.iter_mut().for_each(|i| i.point.clear());
     points.find(model, positions, at.contacts);
@@ -32,7 +32,7 @@ pub fn find_points(
             }
             let state = &at.contacts[press.contact];
             let interface = &mut interfaces[press.contact];
-            interface.point.push(linearise(&Over {
+            interface.point.push(linearise(&NodeOverElement {
                 slave: positions[slave],
                 nodes: &nodes[..element.len()],
                 xi: press.spot.xi,
@@ -178,7 +178,12 @@ impl Interface {
 }
 
 /// Updates the couplings between the contacts of a group; looks up the matrix entries of new pairs.
-fn pair_up(interfaces: &mut [Interface], group: &[Press], model: &Model, pattern: &Pattern) {
+fn pair_up(
+    interfaces: &mut [Interface],
+    group: &[FlexibleContact],
+    model: &Model,
+    pattern: &Pattern,
+) {
     for press in group {
         let others = || group.iter().filter(|other| other.contact != press.contact);
         let own = &interfaces[press.contact].partners;
@@ -204,8 +209,8 @@ fn pair_up(interfaces: &mut [Interface], group: &[Press], model: &Model, pattern
 /// Indices of the coupling entries of two contacts in the whole system.
 fn places(
     interfaces: &[Interface],
-    press: &Press,
-    other: &Press,
+    press: &FlexibleContact,
+    other: &FlexibleContact,
     model: &Model,
     pattern: &Pattern,
 ) -> Partner {

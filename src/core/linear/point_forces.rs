@@ -2,7 +2,7 @@
 //! interaction.
 
 use crate::contact::element::SurfaceElement;
-use crate::contact::point_force::{self, Others, Pair, tilt, turned};
+use crate::contact::point_force::{self, OtherForces, Pair, tilt, turned};
 use crate::contact::projection::{SurfacePoint, projection_at};
 use crate::contact::state::ContactState;
 use crate::model::{Mode, Model, PointGive};
@@ -12,7 +12,7 @@ const ROUNDS: usize = 8;
 
 /// A contact over an element with local flexibility.
 #[derive(Debug, Clone, Copy)]
-pub struct Press {
+pub struct FlexibleContact {
     /// Number of the contact.
     pub contact: usize,
     /// Closest point on the master surface.
@@ -31,11 +31,16 @@ pub struct Press {
     pub line: [f64; 2],
     own: Pair,
     /// Contribution of the other forces on the element at this point.
-    pub others: Others,
+    pub others: OtherForces,
 }
 
-impl Press {
-    fn new(model: &Model, positions: &[[f64; 2]], s: usize, node: &ContactState) -> Option<Press> {
+impl FlexibleContact {
+    fn new(
+        model: &Model,
+        positions: &[[f64; 2]],
+        s: usize,
+        node: &ContactState,
+    ) -> Option<FlexibleContact> {
         let (slave, spot) = (&model.contacts[s], node.spot?);
         let surface = &model.surfaces[spot.surface];
         let give = point_force::of(surface, spot)?;
@@ -43,13 +48,13 @@ impl Press {
             return None;
         }
         let over = projection_at(&model.surfaces, spot, positions, positions[slave.node]);
-        let degree = SurfaceElement::of(surface, spot.element).degree();
+        let degree = SurfaceElement::from_surface(surface, spot.element).degree();
         let f_n = if node.mode == Mode::Free {
             0.0
         } else {
             node.f_n
         };
-        Some(Press {
+        Some(FlexibleContact {
             contact: s,
             spot,
             give,
@@ -61,12 +66,12 @@ impl Press {
             lever: over.lever()?,
             line: over.normal,
             own: Pair::new(&give, degree, spot.xi, spot.xi),
-            others: Others::default(),
+            others: OtherForces::default(),
         })
     }
 
     /// c_ij and its derivatives for this contact and another contact on the same element.
-    pub fn with(&self, other: &Press) -> Pair {
+    pub fn with(&self, other: &FlexibleContact) -> Pair {
         Pair::new(&self.give, self.degree, self.spot.xi, other.spot.xi)
     }
 
@@ -90,17 +95,17 @@ impl Press {
 /// All contacts over elements with local flexibility, grouped by element.
 #[derive(Debug, Default)]
 pub struct PointForces {
-    presses: Vec<Press>,
+    presses: Vec<FlexibleContact>,
 }
 
 impl PointForces {
     /// Updates the list for contacts in these states.
     pub fn find(&mut self, model: &Model, positions: &[[f64; 2]], contacts: &[ContactState]) {
         let nodes = contacts.iter().enumerate();
-        let found = nodes.filter_map(|(s, node)| Press::new(model, positions, s, node));
+        let found = nodes.filter_map(|(s, node)| FlexibleContact::new(model, positions, s, node));
         self.presses.clear();
         self.presses.extend(found);
-        let key = |press: &Press| (press.spot.surface, press.spot.element, press.contact);
+        let key = |press: &FlexibleContact| (press.spot.surface, press.spot.element, press.contact);
         self.presses.sort_unstable_by_key(key);
         for group in self.presses.chunk_by_mut(on_one_element) {
             settle(group);
@@ -108,33 +113,33 @@ impl PointForces {
     }
 
     /// Iterates over the contacts of each element.
-    pub fn groups(&self) -> impl Iterator<Item = &[Press]> {
+    pub fn groups(&self) -> impl Iterator<Item = &[FlexibleContact]> {
         self.presses.chunk_by(on_one_element)
     }
 
     /// All contacts in the list.
-    pub fn all(&self) -> &[Press] {
+    pub fn all(&self) -> &[FlexibleContact] {
         &self.presses
     }
 }
 
-fn on_one_element(a: &Press, b: &Press) -> bool {
+fn on_one_element(a: &FlexibleContact, b: &FlexibleContact) -> bool {
     (a.spot.surface, a.spot.element) == (b.spot.surface, b.spot.element)
 }
 
 /// Computes angles and forces of the contacts on an element.
-fn settle(group: &mut [Press]) {
+fn settle(group: &mut [FlexibleContact]) {
     if let [alone] = group {
         return alone.turn();
     }
     for _ in 0..ROUNDS {
         for i in 0..group.len() {
-            let mut others = Others::default();
+            let mut others = OtherForces::default();
             for (_, other) in group.iter().enumerate().filter(|(j, _)| *j != i) {
                 others.add(&group[i].with(other), other.force);
             }
             group[i].others = others;
         }
-        group.iter_mut().for_each(Press::turn);
+        group.iter_mut().for_each(FlexibleContact::turn);
     }
 }

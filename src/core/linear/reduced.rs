@@ -1,7 +1,7 @@
 //! Minor iterations on the interface alone; the bodies are condensed to it once per major iteration (eqn 6).
 
 use super::augmented::{springs, suspicion};
-use super::source::{At, Solved};
+use super::source::{LinearisationPoint, SolveResult};
 use super::system::{Layout, System};
 use crate::interface::kinematics::through;
 use crate::interface::problem::{InterfaceProblem, ProblemNode};
@@ -14,11 +14,15 @@ const SUSPICIOUS: f64 = 1e9;
 
 impl System {
     /// Solves for the interface alone, using its compliance, which is computed once per major iteration.
-    pub(super) fn solve_condensed(&mut self, model: &Model, at: &At<'_>) -> Solved {
+    pub(super) fn solve_condensed(
+        &mut self,
+        model: &Model,
+        at: &LinearisationPoint<'_>,
+    ) -> SolveResult {
         if !self.condensed.fresh {
             self.condensed.norm = match self.condense(model, at) {
                 Ok(norm) => norm,
-                Err(_) => return Solved::Not,
+                Err(_) => return SolveResult::Not,
             };
             self.condensed.fresh = true;
         }
@@ -32,7 +36,7 @@ impl System {
             }
         }
         let Ok(norm) = self.condensed.solve() else {
-            return Solved::Not;
+            return SolveResult::Not;
         };
         for (s, frame) in self.frames.iter().enumerate() {
             let prescribed = [0, 1].map(|k| self.interfaces[s].prescribed_along(k, frame));
@@ -42,7 +46,7 @@ impl System {
             self.find_load_step();
         }
         if norm > SUSPICIOUS {
-            return Solved::NearlySingular;
+            return SolveResult::NearlySingular;
         }
         suspicion(self.condensed.norm)
     }
@@ -52,7 +56,11 @@ impl System {
     ///
     /// # Errors
     /// [`SolveError`] if the bodies cannot be condensed.
-    pub fn problem(&mut self, model: &Model, at: &At<'_>) -> Result<InterfaceProblem, SolveError> {
+    pub fn problem(
+        &mut self,
+        model: &Model,
+        at: &LinearisationPoint<'_>,
+    ) -> Result<InterfaceProblem, SolveError> {
         if !self.condensed.fresh {
             if self.estimate.condensed.bytes > self.estimate.budget {
                 return Err(SolveError::OutOfMemory);
@@ -101,7 +109,11 @@ impl System {
     /// Condenses the bodies to the interface; returns an estimate of the norm of the inverse of the factored matrix.
     ///
     /// Bodies that [`Bodies`] cannot factor in this state are factored together with the interface, with pivoting.
-    pub(super) fn condense(&mut self, model: &Model, at: &At<'_>) -> Result<f64, SolveError> {
+    pub(super) fn condense(
+        &mut self,
+        model: &Model,
+        at: &LinearisationPoint<'_>,
+    ) -> Result<f64, SolveError> {
         self.condensed.resize(self.interfaces.len())?;
         self.frames.clear();
         let nodes = self.interfaces.iter().zip(at.contacts);
@@ -133,7 +145,11 @@ impl System {
     /// Condenses with every interface equation replaced by `motion − ΔF / stiffness = z`; the forces are then a linear function
     /// of z, computed column by column. If a bond has a compliance, the motion is that of its touching point
     /// ([`crate::interface::kinematics`]).
-    pub(super) fn condense_whole(&mut self, model: &Model, at: &At<'_>) -> Result<f64, SolveError> {
+    pub(super) fn condense_whole(
+        &mut self,
+        model: &Model,
+        at: &LinearisationPoint<'_>,
+    ) -> Result<f64, SolveError> {
         self.scale(model, at);
         self.start_values();
         let unknowns = model.dofs.equations;
@@ -214,14 +230,14 @@ impl System {
 
     /// Completes a solve by computing the displacements of the bodies. Costs one back substitution if the bodies were condensed,
     /// otherwise nothing.
-    pub fn recover(&mut self, model: &Model) -> Solved {
+    pub fn recover(&mut self, model: &Model) -> SolveResult {
         if !self.condensed.fresh {
-            return Solved::Well;
+            return SolveResult::Well;
         }
         if self.border.active {
             return match self.recover_bordered() {
-                Ok(()) => Solved::Well,
-                Err(_) => Solved::Not,
+                Ok(()) => SolveResult::Well,
+                Err(_) => SolveResult::Not,
             };
         }
         let done = match (self.layout, &mut self.bodies, &mut self.whole) {
@@ -236,8 +252,8 @@ impl System {
             _ => Err(SolveError::Singular),
         };
         match done {
-            Ok(()) => Solved::Well,
-            Err(_) => Solved::Not,
+            Ok(()) => SolveResult::Well,
+            Err(_) => SolveResult::Not,
         }
     }
 }

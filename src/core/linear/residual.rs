@@ -4,7 +4,7 @@ use super::drag::add_drag;
 use super::norms::Norms;
 use super::partners::find_points;
 use super::sizes::ROUND_OFF;
-use super::source::At;
+use super::source::LinearisationPoint;
 use super::system::{Layout, System};
 use super::violation::violation;
 use crate::linalg::Factors;
@@ -12,7 +12,7 @@ use crate::model::{Factor, Model};
 
 impl System {
     /// Computes the out-of-balance force R − F of eqn (22) and its norms.
-    pub(super) fn balance(&mut self, model: &Model, at: &At<'_>) {
+    pub(super) fn balance(&mut self, model: &Model, at: &LinearisationPoint<'_>) {
         self.interaction.fill(0.0);
         if self.has_points {
             let pattern = self.whole.as_ref().map(Factors::pattern);
@@ -110,7 +110,7 @@ impl System {
 
     /// Changes the target load of the last linearisation at the same displacements. Apart from prescribed displacements, nothing
     /// else changes if no element has a history.
-    pub fn aim(&mut self, model: &Model, at: &At<'_>) {
+    pub fn aim(&mut self, model: &Model, at: &LinearisationPoint<'_>) {
         self.load(model, at);
         self.allow(model, at);
         if !model.prescribed.is_empty() {
@@ -121,7 +121,7 @@ impl System {
         self.balance(model, at);
     }
 
-    pub(super) fn load(&mut self, model: &Model, at: &At<'_>) {
+    pub(super) fn load(&mut self, model: &Model, at: &LinearisationPoint<'_>) {
         self.external.fill(0.0);
         for load in &model.loads {
             self.external[load.dof] += load.value * load.scale.at(at.target);
@@ -133,7 +133,7 @@ impl System {
     }
 
     /// Recomputes the residual after interface forces have changed; geometry and stiffness stay.
-    pub fn rebalance(&mut self, model: &Model, at: &At<'_>) {
+    pub fn rebalance(&mut self, model: &Model, at: &LinearisationPoint<'_>) {
         self.balance(model, at);
     }
 
@@ -164,14 +164,14 @@ impl System {
     }
 
     /// Largest relative violation of the interface conditions by a state's forces and gaps.
-    fn violation(&self, model: &Model, at: &At<'_>) -> f64 {
+    fn violation(&self, model: &Model, at: &LinearisationPoint<'_>) -> f64 {
         let kinematics = |contact: usize| self.kinematics(contact);
         violation(at, model.length, self.norms.scale, kinematics)
     }
 
     /// Norms of the last linearisation with the interface conditions of this state. They must not depend on whether the workspace
     /// has been rebuilt since.
-    pub fn norms_of(&mut self, model: &Model, at: &At<'_>) -> Norms {
+    pub fn norms_of(&mut self, model: &Model, at: &LinearisationPoint<'_>) -> Norms {
         self.norms.interface = self.violation(model, at);
         self.norms
     }

@@ -8,7 +8,7 @@
 //!   only accurate to a few times the loads: regardless of the residual, no digit of its contact forces is right.
 
 use crate::fem::pressure::Pressures;
-use crate::linear::source::At;
+use crate::linear::source::LinearisationPoint;
 use crate::model::Component;
 use crate::model::{Body, BodyKind, Factor, Form, Model};
 
@@ -20,7 +20,7 @@ const STEP: f64 = 32.0;
 
 /// Quantity balanced by the equation of a degree of freedom.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Balanced {
+pub enum BalancedQuantity {
     /// Forces.
     Force,
     /// Moments, which are divided by the scene's length to compare with forces.
@@ -32,7 +32,7 @@ pub enum Balanced {
 /// Scales of a scene.
 pub struct Sizes {
     /// Quantity balanced by each degree of freedom's equation.
-    pub kind: Vec<Balanced>,
+    pub kind: Vec<BalancedQuantity>,
     /// Largest load over the history (force).
     pub reference: f64,
     /// Stiffness of the softest body as a whole.
@@ -72,9 +72,9 @@ impl Sizes {
     /// Divisor that converts a generalised force at a degree of freedom to a force; `None` if lengths are balanced.
     pub fn lever(&self, dof: usize) -> Option<f64> {
         match self.kind[dof] {
-            Balanced::Force => Some(1.0),
-            Balanced::Moment => Some(self.length),
-            Balanced::Length => None,
+            BalancedQuantity::Force => Some(1.0),
+            BalancedQuantity::Moment => Some(self.length),
+            BalancedQuantity::Length => None,
         }
     }
 
@@ -88,7 +88,12 @@ impl Sizes {
 
     /// The forces of interest: loads, contact forces, and reactions of prescribed displacements; `reaction` returns the reaction
     /// force. Without loads, at least the force that moves the softest body by the largest displacement of the scene.
-    pub fn wanted(&self, model: &Model, at: &At<'_>, reaction: impl Fn(usize) -> f64) -> f64 {
+    pub fn wanted(
+        &self,
+        model: &Model,
+        at: &LinearisationPoint<'_>,
+        reaction: impl Fn(usize) -> f64,
+    ) -> f64 {
         let mut wanted = self.reference;
         for node in at.contacts {
             wanted = wanted.max(node.f_n.abs()).max(node.f_t.abs());
@@ -100,7 +105,7 @@ impl Sizes {
         }
         if self.reference == 0.0 {
             let motions = at.u.iter().zip(&self.kind);
-            let motions = motions.filter(|(_, kind)| **kind == Balanced::Force);
+            let motions = motions.filter(|(_, kind)| **kind == BalancedQuantity::Force);
             let largest = motions.fold(0.0_f64, |most, (u, _)| most.max(u.abs()));
             wanted = wanted.max(self.softest * largest);
         }
@@ -117,19 +122,19 @@ impl Sizes {
         for (kind, equation) in self.kind.iter().zip(&model.dofs.equation) {
             let Some(e) = *equation else { continue };
             match kind {
-                Balanced::Force => units[e] = 1.0 / root,
-                Balanced::Moment => units[e] = 1.0 / (root * length),
-                Balanced::Length => {}
+                BalancedQuantity::Force => units[e] = 1.0 / root,
+                BalancedQuantity::Moment => units[e] = 1.0 / (root * length),
+                BalancedQuantity::Length => {}
             }
         }
     }
 
     /// Largest displacement; rotations are multiplied by the scene's length.
     pub fn largest_motion(&self, u: &[f64]) -> f64 {
-        let motion = |(u, kind): (&f64, &Balanced)| match kind {
-            Balanced::Force => u.abs(),
-            Balanced::Moment => u.abs() * self.length,
-            Balanced::Length => 0.0,
+        let motion = |(u, kind): (&f64, &BalancedQuantity)| match kind {
+            BalancedQuantity::Force => u.abs(),
+            BalancedQuantity::Moment => u.abs() * self.length,
+            BalancedQuantity::Length => 0.0,
         };
         // Not `max`, which ignores NaN.
         let motions = u.iter().zip(&self.kind).map(motion);
@@ -181,14 +186,14 @@ fn peak(path: &[f64], scale: &Factor) -> f64 {
 }
 
 /// Quantity balanced by the equation of each degree of freedom.
-fn kinds(model: &Model) -> Vec<Balanced> {
-    let mut kinds = vec![Balanced::Length; model.dofs.len()];
+fn kinds(model: &Model) -> Vec<BalancedQuantity> {
+    let mut kinds = vec![BalancedQuantity::Length; model.dofs.len()];
     for (&first, &count) in model.dofs.first.iter().zip(&model.dofs.count) {
         for k in 0..count as usize {
             kinds[first + k] = if k == Component::Rotation as usize {
-                Balanced::Moment
+                BalancedQuantity::Moment
             } else {
-                Balanced::Force
+                BalancedQuantity::Force
             };
         }
     }

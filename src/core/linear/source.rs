@@ -16,11 +16,11 @@ use crate::interface::problem::{InterfaceProblem, ProblemNode};
 use crate::interface::rows;
 use crate::interface::sweep::Sweep;
 use crate::linalg::SolveError;
-use crate::linear::condensed::Condensed;
+use crate::linear::condensed::CondensedSystem;
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
 use crate::linear::stability::Stability;
-use crate::model::{Axis, Friction, Mode, Model, Settings, Watched};
+use crate::model::{Axis, Friction, Mode, Model, MonitorQuantity, Settings};
 use std::sync::Arc;
 
 /// Estimated norm of the scaled inverse from which on the equations are suspected to be singular.
@@ -30,12 +30,12 @@ const TOLERANCE: f64 = 1e-8;
 
 /// The state about which a source linearises.
 #[derive(Debug, Clone, Copy)]
-pub struct At<'a> {
+pub struct LinearisationPoint<'a> {
     /// The source's own unknowns at the start of the current major iteration; for the program's bodies, the values of all degrees
     /// of freedom ([`crate::model::Dofs`]).
     pub u: &'a [f64],
     /// The last accepted state.
-    pub accepted: Accepted<'a>,
+    pub accepted: AcceptedState<'a>,
     /// Leg of the path on which the increment lies.
     pub leg: usize,
     /// Load factor of the last accepted state.
@@ -65,14 +65,14 @@ pub struct At<'a> {
     pub settings: Settings,
     /// The constraint of the current major iteration if the load factor is an unknown; the solve then adds to `target`. `None`
     /// under load control.
-    pub along: Option<Along<'a>>,
+    pub along: Option<LoadEquation<'a>>,
     /// Arc from the start of the history to the last accepted state; 0 under load control.
     pub arc: f64,
 }
 
 /// The additional equation if the load factor is an unknown.
 #[derive(Debug, Clone, Copy)]
-pub enum Along<'a> {
+pub enum LoadEquation<'a> {
     /// The load factor changes by a given amount.
     Load {
         /// Change of the load factor.
@@ -101,21 +101,21 @@ pub enum Along<'a> {
     },
 }
 
-impl Along<'_> {
+impl LoadEquation<'_> {
     /// Right-hand side of the equation.
     pub fn step(&self) -> f64 {
         match *self {
-            Along::Load { step }
-            | Along::Displacements { step, .. }
-            | Along::Dof { step, .. }
-            | Along::Slip { step, .. } => step,
+            LoadEquation::Load { step }
+            | LoadEquation::Displacements { step, .. }
+            | LoadEquation::Dof { step, .. }
+            | LoadEquation::Slip { step, .. } => step,
         }
     }
 }
 
 /// The last accepted state, from which the current increment started.
 #[derive(Debug, Clone, Copy)]
-pub struct Accepted<'a> {
+pub struct AcceptedState<'a> {
     /// The source's unknowns.
     pub u: &'a [f64],
     /// History variables of the elements.
@@ -135,7 +135,7 @@ pub struct Work {
 
 /// Result of a solve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Solved {
+pub enum SolveResult {
     /// The solution satisfies the equations.
     Well,
     /// It does, but the matrix is singular to working precision.
@@ -182,7 +182,7 @@ pub trait Source: Send {
 
     /// Called when the stepper jumps to another state; sources that only have workspace need not do anything. Returns whether the
     /// last linearisation is valid for such a state; if not, [`Source::linearise`] follows.
-    fn restore(&mut self, _at: &At<'_>) -> bool {
+    fn restore(&mut self, _at: &LinearisationPoint<'_>) -> bool {
         true
     }
 
@@ -196,19 +196,19 @@ pub trait Source: Send {
     ///
     /// # Errors
     /// [`SolveError`] if the equations cannot be set up.
-    fn linearise(&mut self, at: &At<'_>) -> Result<(), SolveError>;
+    fn linearise(&mut self, at: &LinearisationPoint<'_>) -> Result<(), SolveError>;
 
     /// Adds the effect of rotating and moving interaction forces to the linearisation, once the state has its final forces.
-    fn turn(&mut self, _at: &At<'_>) {}
+    fn turn(&mut self, _at: &LinearisationPoint<'_>) {}
 
     /// Whether the last linearisation is valid for a state that differs only in the load factor; if so, updates its
     /// out-of-balance forces.
-    fn aim(&mut self, _at: &At<'_>) -> bool {
+    fn aim(&mut self, _at: &LinearisationPoint<'_>) -> bool {
         false
     }
 
     /// Residual norms of the state of the last linearisation, including its interface conditions.
-    fn norms(&mut self, at: &At<'_>) -> Norms;
+    fn norms(&mut self, at: &LinearisationPoint<'_>) -> Norms;
 
     /// Largest force that the next solve has to balance, including the contribution of prescribed motions, relative to the scale
     /// of [`Norms::relative`].
@@ -226,17 +226,17 @@ pub trait Source: Send {
     fn kinematics(&self, contact: usize) -> Option<NodeKinematics>;
 
     /// The response of the interface in the last linearisation. `None` for a source that solves by itself.
-    fn condensed(&self) -> Option<&Condensed> {
+    fn condensed(&self) -> Option<&CondensedSystem> {
         None
     }
 
     /// The same, to solve with.
-    fn condensed_mut(&mut self) -> Option<&mut Condensed> {
+    fn condensed_mut(&mut self) -> Option<&mut CondensedSystem> {
         None
     }
 
     /// One minor iteration: solves for the modes of the contacts.
-    fn solve(&mut self, at: &At<'_>) -> Solved {
+    fn solve(&mut self, at: &LinearisationPoint<'_>) -> SolveResult {
         if let Some(condensed) = self.condensed_mut() {
             condensed.clear();
         }
@@ -251,21 +251,21 @@ pub trait Source: Send {
             }
         }
         let Some(condensed) = self.condensed_mut() else {
-            return Solved::Not;
+            return SolveResult::Not;
         };
         let Ok(norm) = condensed.solve() else {
-            return Solved::Not;
+            return SolveResult::Not;
         };
         for k in 0..at.contacts.len() {
             condensed.read(k, [0.0; 2]);
         }
         match norm > SUSPICIOUS {
-            true => Solved::NearlySingular,
-            false => Solved::Well,
+            true => SolveResult::NearlySingular,
+            false => SolveResult::Well,
         }
     }
 
-    /// Change of the load factor in the last solve, if it is an unknown ([`At::along`]).
+    /// Change of the load factor in the last solve, if it is an unknown ([`LinearisationPoint::along`]).
     fn load_step(&self) -> f64 {
         0.0
     }
@@ -277,7 +277,7 @@ pub trait Source: Send {
 
     /// Result of the last solve at a contact.
     fn increment(&self, contact: usize) -> NodeIncrement {
-        let of = |condensed: &Condensed| NodeIncrement {
+        let of = |condensed: &CondensedSystem| NodeIncrement {
             force: condensed.forces[contact],
             motion: condensed.motions[contact],
         };
@@ -288,7 +288,7 @@ pub trait Source: Send {
     ///
     /// # Errors
     /// [`SolveError`] where the bodies cannot be condensed.
-    fn problem(&mut self, at: &At<'_>) -> Result<InterfaceProblem, SolveError> {
+    fn problem(&mut self, at: &LinearisationPoint<'_>) -> Result<InterfaceProblem, SolveError> {
         let force = self.norms(at).scale;
         let condensed = self.condensed().ok_or(SolveError::Singular)?;
         let nodes = at
@@ -316,7 +316,7 @@ pub trait Source: Send {
     ///
     /// # Errors
     /// [`NotFound`] if the bodies cannot be condensed, or are unsupported without contact.
-    fn sweep(&mut self, at: &At<'_>) -> Result<Sweep, NotFound> {
+    fn sweep(&mut self, at: &LinearisationPoint<'_>) -> Result<Sweep, NotFound> {
         let problem = self.problem(at).map_err(|_| NotFound::NotCondensed)?;
         Sweep::new(&problem).ok_or(NotFound::NoStart)
     }
@@ -343,7 +343,7 @@ pub trait Source: Send {
         })
     }
 
-    /// Whether it supports [`At::brake`].
+    /// Whether it supports [`LinearisationPoint::brake`].
     fn brakes(&self) -> bool {
         false
     }
@@ -354,8 +354,8 @@ pub trait Source: Send {
     }
 
     /// Computes the effect of the last solve on the bodies.
-    fn recover(&mut self) -> Solved {
-        Solved::Well
+    fn recover(&mut self) -> SolveResult {
+        SolveResult::Well
     }
 
     /// Moves the bodies according to the forces of the last minor iteration. Returns the largest displacement. By default the
@@ -383,7 +383,7 @@ pub trait Source: Send {
     }
 
     /// Updates the out-of-balance forces after contact forces have changed.
-    fn rebalance(&mut self, _at: &At<'_>) {}
+    fn rebalance(&mut self, _at: &LinearisationPoint<'_>) {}
 
     /// Updates the history variables of the elements when the state is accepted.
     fn accept(&mut self, _u: &[f64], _before: &[f64], _history: &mut [f64]) {}
@@ -412,12 +412,12 @@ pub trait Source: Send {
 
     /// How far a contact slid since the last accepted state, along t (length). `None` if the source does not measure it; its slip
     /// direction is then not judged.
-    fn slid(&self, _contact: usize, _at: &At<'_>) -> Option<f64> {
+    fn slid(&self, _contact: usize, _at: &LinearisationPoint<'_>) -> Option<f64> {
         None
     }
 
     /// Judges a converged state from positions and forces alone ([`crate::contact::judge`]).
-    fn judge(&mut self, at: &At<'_>, after: &Norms) -> Verdict {
+    fn judge(&mut self, at: &LinearisationPoint<'_>, after: &Norms) -> Verdict {
         let tolerance = (10.0 * at.chosen.tolerance).max(TOLERANCE);
         let scales = Scales {
             length: self.length(),
@@ -479,7 +479,7 @@ pub trait Source: Send {
     }
 
     /// Stability of the state of the last linearisation, with its contacts' modes.
-    fn stability(&mut self, _at: &At<'_>) -> Stability {
+    fn stability(&mut self, _at: &LinearisationPoint<'_>) -> Stability {
         Stability::NotKnown
     }
 
@@ -494,20 +494,22 @@ pub trait Source: Send {
     }
 
     /// Value of a monitor in the state of the last linearisation.
-    fn monitor(&self, watched: &Watched, at: &At<'_>) -> f64 {
+    fn monitor(&self, watched: &MonitorQuantity, at: &LinearisationPoint<'_>) -> f64 {
         match watched {
-            Watched::Displacement { dof } => at.u[*dof],
-            Watched::Contact { slaves, axis } => {
+            MonitorQuantity::Displacement { dof } => at.u[*dof],
+            MonitorQuantity::Contact { slaves, axis } => {
                 let of = |&s: &usize| match axis {
                     Axis::X => -at.contacts[s].f_t,
                     Axis::Y => at.contacts[s].f_n,
                 };
                 slaves.iter().map(of).sum()
             }
-            Watched::Modes { slaves, mode } => in_mode(at.contacts, slaves, *mode),
-            Watched::Drift { slaves } => largest_drift(at.contacts, slaves),
-            Watched::Arc => at.arc,
-            Watched::Pressure { .. } | Watched::Told { .. } | Watched::Reaction { .. } => f64::NAN,
+            MonitorQuantity::Modes { slaves, mode } => in_mode(at.contacts, slaves, *mode),
+            MonitorQuantity::Drift { slaves } => largest_drift(at.contacts, slaves),
+            MonitorQuantity::Arc => at.arc,
+            MonitorQuantity::Pressure { .. }
+            | MonitorQuantity::Told { .. }
+            | MonitorQuantity::Reaction { .. } => f64::NAN,
         }
     }
 }

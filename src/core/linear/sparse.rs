@@ -24,10 +24,10 @@ use crate::interface::sweep::Sweep;
 use crate::linalg::{DenseFactors, Factors, Pattern, SolveError};
 use crate::linear::bodies::value;
 use crate::linear::norms::Norms;
-use crate::linear::source::{At, SUSPICIOUS, Solved, Source, Work};
+use crate::linear::source::{LinearisationPoint, SUSPICIOUS, SolveResult, Source, Work};
 use crate::linear::sparse_contacts::sparse_contacts;
 use crate::linear::violation::violation;
-use crate::model::{Bond, Friction, Linear, Model, Settings, Watched};
+use crate::model::{Bond, Friction, Linear, Model, MonitorQuantity, Settings};
 use crate::strategy::SETTLED;
 use std::sync::Arc;
 
@@ -62,7 +62,7 @@ pub struct SparseInterface {
 }
 
 /// An unknown of a minor iteration: the force of a contact along a direction, and the motion that it determines.
-struct Unknown {
+struct ContactUnknown {
     contact: usize,
     /// ΔF_n, ΔF_t per unit.
     direction: [f64; 2],
@@ -155,7 +155,7 @@ impl SparseInterface {
     }
 
     /// The unknowns of a minor iteration; sets all forces that its modes prescribe. `None` if the equations have another form.
-    fn unknowns(&mut self, at: &At<'_>) -> Option<Vec<Unknown>> {
+    fn unknowns(&mut self, at: &LinearisationPoint<'_>) -> Option<Vec<ContactUnknown>> {
         let mut unknowns = Vec::new();
         for (contact, state) in at.contacts.iter().enumerate() {
             let friction = state.friction(&at.friction[contact]);
@@ -166,7 +166,7 @@ impl SparseInterface {
             self.forces[n] = state.f_n;
             self.forces[t] = state.f_t;
             let mut unknown = |direction, component, row| {
-                unknowns.push(Unknown {
+                unknowns.push(ContactUnknown {
                     contact,
                     direction,
                     component,
@@ -194,7 +194,7 @@ impl SparseInterface {
     }
 
     /// Solves for the unknowns; `moved` are the motions without them.
-    fn solve_for(&mut self, unknowns: &[Unknown]) -> Result<(Vec<f64>, f64), SolveError> {
+    fn solve_for(&mut self, unknowns: &[ContactUnknown]) -> Result<(Vec<f64>, f64), SolveError> {
         let size = unknowns.len();
         let mut first = vec![usize::MAX; self.gaps.len()];
         for (k, unknown) in unknowns.iter().enumerate().rev() {
@@ -233,7 +233,7 @@ impl SparseInterface {
         factors.factor(&values)?;
         self.work.factorizations += 1;
         // The motion of S* against S is −Δw.
-        let wanted = |u: &Unknown| -u.row.value - self.moved[2 * u.contact + u.component];
+        let wanted = |u: &ContactUnknown| -u.row.value - self.moved[2 * u.contact + u.component];
         let right: Vec<f64> = unknowns.iter().map(wanted).collect();
         let mut x = vec![0.0; size];
         factors.solve(&right, &mut x)?;
@@ -241,7 +241,7 @@ impl SparseInterface {
     }
 
     /// The contacts for searches.
-    fn nodes(&self, at: &At<'_>) -> Vec<ProblemNode> {
+    fn nodes(&self, at: &LinearisationPoint<'_>) -> Vec<ProblemNode> {
         let nodes = at.contacts.iter().enumerate();
         let node = |(slave, state): (usize, &ContactState)| ProblemNode {
             slave,
@@ -317,7 +317,7 @@ impl Source for SparseInterface {
         }
     }
 
-    fn linearise(&mut self, at: &At<'_>) -> Result<(), SolveError> {
+    fn linearise(&mut self, at: &LinearisationPoint<'_>) -> Result<(), SolveError> {
         self.place(at.u);
         self.take_loads(at.target);
         let model = self.model.clone();
@@ -347,7 +347,7 @@ impl Source for SparseInterface {
         Ok(())
     }
 
-    fn norms(&mut self, at: &At<'_>) -> Norms {
+    fn norms(&mut self, at: &LinearisationPoint<'_>) -> Norms {
         let over = |contact: usize| self.kinematics(contact);
         self.norms.interface = violation(at, self.model.length, self.norms.scale, over);
         self.norms
@@ -365,15 +365,15 @@ impl Source for SparseInterface {
         })
     }
 
-    fn solve(&mut self, at: &At<'_>) -> Solved {
+    fn solve(&mut self, at: &LinearisationPoint<'_>) -> SolveResult {
         let Some(unknowns) = self.unknowns(at) else {
-            return Solved::Not;
+            return SolveResult::Not;
         };
         self.finish();
         let mut norm = 1.0;
         if !unknowns.is_empty() {
             let Ok((x, inverse)) = self.solve_for(&unknowns) else {
-                return Solved::Not;
+                return SolveResult::Not;
             };
             for (unknown, x) in unknowns.iter().zip(x) {
                 self.forces[2 * unknown.contact] += unknown.direction[0] * x;
@@ -383,8 +383,8 @@ impl Source for SparseInterface {
             norm = inverse;
         }
         match norm > SUSPICIOUS {
-            true => Solved::NearlySingular,
-            false => Solved::Well,
+            true => SolveResult::NearlySingular,
+            false => SolveResult::Well,
         }
     }
 
@@ -396,7 +396,7 @@ impl Source for SparseInterface {
         }
     }
 
-    fn sweep(&mut self, at: &At<'_>) -> Result<Sweep, NotFound> {
+    fn sweep(&mut self, at: &LinearisationPoint<'_>) -> Result<Sweep, NotFound> {
         let mut free = self.start.clone();
         for (k, state) in at.contacts.iter().enumerate() {
             free[2 * k] += self.gaps[k];
@@ -419,7 +419,7 @@ impl Source for SparseInterface {
     }
 
     /// With springs of stiffness k, for which a singular W has a response: ΔF = −(W + 1/k)⁻¹ (z + Δw without ΔF).
-    fn problem(&mut self, at: &At<'_>) -> Result<InterfaceProblem, SolveError> {
+    fn problem(&mut self, at: &LinearisationPoint<'_>) -> Result<InterfaceProblem, SolveError> {
         if self.gaps.len() > MOST_DENSE {
             return Err(SolveError::OutOfMemory);
         }
@@ -509,7 +509,7 @@ impl Source for SparseInterface {
         nodes.fold(0.0, |most: f64, (u, before)| most.max((u - before).abs()))
     }
 
-    fn slid(&self, contact: usize, at: &At<'_>) -> Option<f64> {
+    fn slid(&self, contact: usize, at: &LinearisationPoint<'_>) -> Option<f64> {
         let first = self.first(contact);
         Some(at.u[first] - at.accepted.u[first])
     }
@@ -518,7 +518,7 @@ impl Source for SparseInterface {
         self.work
     }
 
-    fn monitor(&self, watched: &Watched, at: &At<'_>) -> f64 {
+    fn monitor(&self, watched: &MonitorQuantity, at: &LinearisationPoint<'_>) -> f64 {
         value(watched, &self.model.contacts, at)
     }
 }

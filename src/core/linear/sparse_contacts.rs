@@ -1,8 +1,8 @@
 //! Recognises scenes that consist only of contacts on a level floor and one compliance: interface problems of other programs.
 
 use crate::model::{
-    Body, BodyKind, Bond, Contact, Control, Form, Linear, LinearSolver, Model, Monitor, Surface,
-    Watched,
+    Body, BodyKind, Bond, Contact, Control, Form, Linear, LinearSolver, Model, Monitor,
+    MonitorQuantity, Surface,
 };
 
 /// Maximum number of contacts for which the equations of a compliance are solved together with those of the contacts.
@@ -37,8 +37,12 @@ pub fn sparse_contacts(model: &Model) -> Option<SparseContacts<'_>> {
         && model.control == Control::Load
         && model.settings.solver != LinearSolver::Condensed;
     let many = model.contacts.len() > FEW && model.contacts.len() == body.nodes.len();
-    let watched =
-        |monitor: &Monitor| !matches!(monitor.of, Watched::Told { .. } | Watched::Reaction { .. });
+    let watched = |monitor: &Monitor| {
+        !matches!(
+            monitor.of,
+            MonitorQuantity::Told { .. } | MonitorQuantity::Reaction { .. }
+        )
+    };
     if !bare || !many || !model.monitors.iter().all(watched) || !is_unsupported(model, body) {
         return None;
     }

@@ -119,7 +119,7 @@ impl Conditions {
 
     /// Removes dependent conditions, which supports or other nodes already satisfy.
     pub fn keep_independent(&mut self) {
-        let reduced = Reduced::of(&self.motion);
+        let reduced = Reduced::from_rows(&self.motion);
         let mut kept = reduced.kept.iter();
         self.motion.retain(|_| *kept.next().unwrap_or(&true));
         let mut kept = reduced.kept.iter();
@@ -128,7 +128,7 @@ impl Conditions {
 
     /// N: a basis of the admissible motions of c unknowns, as columns.
     pub fn admissible(&self, c: usize) -> DMatrix<f64> {
-        let reduced = Reduced::of(&self.motion);
+        let reduced = Reduced::from_rows(&self.motion);
         let free: Vec<usize> = (0..c).filter(|k| !reduced.pivots.contains(k)).collect();
         let mut basis = DMatrix::zeros(c, free.len());
         for (column, &k) in free.iter().enumerate() {
@@ -150,7 +150,7 @@ struct Reduced {
 }
 
 impl Reduced {
-    fn of(rows: &[Vec<f64>]) -> Self {
+    fn from_rows(rows: &[Vec<f64>]) -> Self {
         let mut reduced = Reduced {
             rows: Vec::new(),
             pivots: Vec::new(),

@@ -1,6 +1,6 @@
 //! The full augmented system of a major iteration (eqn 9): bodies, interface, right-hand side.
 //!
-//! All data are rebuilt from a state ([`At`]) and never saved. [`System::linearise`] freezes geometry, stiffness and residual at
+//! All data are rebuilt from a state ([`LinearisationPoint`]) and never saved. [`System::linearise`] freezes geometry, stiffness and residual at
 //! the start of a major iteration; [`System::solve`] solves the system for the modes of one minor iteration. After the first pass
 //! neither allocates, unless a slave node moves to another deformable master element.
 
@@ -10,15 +10,15 @@ use crate::contact::state::ContactState;
 use crate::contact::stick_point::room;
 use crate::contact::table1::Equation;
 use crate::executor::Executor;
-use crate::fem::assembly::{Assembly, Moved};
-use crate::fem::element::Assembled;
+use crate::fem::assembly::{Assembly, AssemblyMotion};
+use crate::fem::element::ElementOutput;
 use crate::fem::pressure::Pressures;
 use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
 use crate::interface::rows;
 use crate::linalg::{Factors, Pattern, SolveError};
 use crate::linear::border::Border;
 use crate::linear::condensation::Condensation;
-use crate::linear::condensed::Condensed;
+use crate::linear::condensed::CondensedSystem;
 use crate::linear::coupling::Interface;
 use crate::linear::drag::stiffen;
 use crate::linear::estimate::{Estimate, condensable};
@@ -26,7 +26,7 @@ use crate::linear::norms::Norms;
 use crate::linear::partners::{join_partners, turn_points};
 use crate::linear::point_forces::PointForces;
 use crate::linear::sizes::Sizes;
-use crate::linear::source::{At, Solved, Work};
+use crate::linear::source::{LinearisationPoint, SolveResult, Work};
 use crate::model::{Geometry, Model, Refactor, Settings};
 use std::sync::Arc;
 
@@ -44,7 +44,7 @@ pub(super) enum Layout {
 
 /// Where the effect of rotating interaction forces is added.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Turned {
+enum RotationEffect {
     /// To the stiffness, and to the coupling with prescribed motions.
     Both,
     /// Only to the coupling with prescribed motions.
@@ -94,7 +94,7 @@ pub struct System {
     /// Largest coordinate of `positions` (length).
     pub(super) reach: f64,
     pub(super) interfaces: Vec<Interface>,
-    pub(super) condensed: Condensed,
+    pub(super) condensed: CondensedSystem,
     pub(super) stiffness: Vec<f64>,
     pub(super) values: Vec<f64>,
     /// Internal force at each degree of freedom.
@@ -142,7 +142,7 @@ impl System {
             scaled: false,
             bodies: None,
             executor,
-            estimate: Estimate::of(model),
+            estimate: Estimate::from_model(model),
             condensable: condensable(model),
             points: PointForces::default(),
             has_points: model.surfaces.iter().any(|s| !s.gives.is_empty()),
@@ -151,7 +151,7 @@ impl System {
             sizes: Sizes::new(model),
             positions: vec![[0.0; 2]; model.nodes.len()],
             reach: 0.0,
-            condensed: Condensed::new(interfaces.len()),
+            condensed: CondensedSystem::new(interfaces.len()),
             interfaces,
             stiffness: Vec::new(),
             values: Vec::new(),
@@ -194,7 +194,11 @@ impl System {
     ///
     /// # Errors
     /// [`SolveError`] if the pattern cannot be analysed.
-    pub fn linearise(&mut self, model: &Model, at: &At<'_>) -> Result<(), SolveError> {
+    pub fn linearise(
+        &mut self,
+        model: &Model,
+        at: &LinearisationPoint<'_>,
+    ) -> Result<(), SolveError> {
         if self.condenses(at.chosen) && self.condensable && at.along.is_none() {
             self.linearise_in(Layout::Bodies, model, at)
         } else {
@@ -206,7 +210,7 @@ impl System {
         &mut self,
         layout: Layout,
         model: &Model,
-        at: &At<'_>,
+        at: &LinearisationPoint<'_>,
     ) -> Result<(), SolveError> {
         if !std::mem::replace(&mut self.laid_out, true) {
             self.assembly = Assembly::with_executor(model, self.executor.clone());
@@ -248,12 +252,12 @@ impl System {
     }
 
     /// Computes the internal forces and the stiffness; the stiffness may be one from earlier displacements.
-    fn take_stiffness(&mut self, layout: Layout, model: &Model, at: &At<'_>) {
+    fn take_stiffness(&mut self, layout: Layout, model: &Model, at: &LinearisationPoint<'_>) {
         let about = at.factored.unwrap_or(at.u);
         self.stands =
             at.factored.is_some() && self.taken == about && self.remembered == at.accepted.history;
         if !self.stands {
-            self.assemble(model, &At { u: about, ..*at });
+            self.assemble(model, &LinearisationPoint { u: about, ..*at });
             self.taken.clear();
             if at.chosen.factor == Refactor::Needed {
                 self.taken.extend_from_slice(about);
@@ -277,7 +281,7 @@ impl System {
     }
 
     /// Computes the remaining overlaps at the target load.
-    pub(super) fn allow(&mut self, model: &Model, at: &At<'_>) {
+    pub(super) fn allow(&mut self, model: &Model, at: &LinearisationPoint<'_>) {
         let unclosed = model.unclosed(at.leg, at.target);
         for (interface, slave) in self.interfaces.iter_mut().zip(&model.contacts) {
             interface.allowed = slave.overlap * unclosed;
@@ -285,7 +289,7 @@ impl System {
     }
 
     /// Computes the remaining increments of prescribed displacements.
-    pub(super) fn prescribe(&mut self, model: &Model, at: &At<'_>) {
+    pub(super) fn prescribe(&mut self, model: &Model, at: &LinearisationPoint<'_>) {
         self.step.fill(0.0);
         for p in &model.prescribed {
             self.step[p.dof] = p.value * p.scale.at(at.target) - at.u[p.dof];
@@ -293,15 +297,15 @@ impl System {
     }
 
     /// Recomputes their effect through the stiffness of the last linearisation.
-    pub(super) fn couple(&mut self, model: &Model, at: &At<'_>) {
+    pub(super) fn couple(&mut self, model: &Model, at: &LinearisationPoint<'_>) {
         let moved = moved(at.factored.unwrap_or(at.u), &self.step, at);
         self.assembly.couple(&model.dofs, moved, &mut self.coupling);
-        self.turn_into(model, at, Turned::Coupling);
+        self.turn_into(model, at, RotationEffect::Coupling);
     }
 
     /// Internal forces and stiffness of the bodies, and the effect of prescribed displacements through it.
-    pub(super) fn assemble(&mut self, model: &Model, at: &At<'_>) {
-        let out = Assembled {
+    pub(super) fn assemble(&mut self, model: &Model, at: &LinearisationPoint<'_>) {
+        let out = ElementOutput {
             force: &mut self.force,
             size: &mut self.size,
             values: &mut self.stiffness,
@@ -318,7 +322,7 @@ impl System {
     }
 
     /// Adds the drag of a damped motion to the stiffness.
-    fn drag(&mut self, model: &Model, at: &At<'_>) {
+    fn drag(&mut self, model: &Model, at: &LinearisationPoint<'_>) {
         self.dragged = at.drag.is_some();
         if let Some(pattern) = self.pattern().filter(|_| self.dragged).cloned() {
             let diagonal = |e: usize| pattern.slot(e, e);
@@ -327,7 +331,7 @@ impl System {
     }
 
     /// Updates the pattern if a slave node has moved to another element with unknowns; rigid elements have no entries.
-    fn bind_whole(&mut self, model: &Model, at: &At<'_>) -> Result<(), SolveError> {
+    fn bind_whole(&mut self, model: &Model, at: &LinearisationPoint<'_>) -> Result<(), SolveError> {
         let changed = self.whole.is_none()
             || at
                 .contacts
@@ -367,7 +371,11 @@ impl System {
     }
 
     /// Prepares the layout for the bodies alone, whose pattern never changes.
-    fn bind_bodies(&mut self, model: &Model, at: &At<'_>) -> Result<(), SolveError> {
+    fn bind_bodies(
+        &mut self,
+        model: &Model,
+        at: &LinearisationPoint<'_>,
+    ) -> Result<(), SolveError> {
         self.link(model, at);
         if self.bodies.is_none() {
             self.bodies = Some(Condensation::new(
@@ -398,7 +406,7 @@ impl System {
         Ok(())
     }
 
-    fn link(&mut self, model: &Model, at: &At<'_>) {
+    fn link(&mut self, model: &Model, at: &LinearisationPoint<'_>) {
         let slaves = at.contacts.iter().zip(&model.contacts);
         for (interface, (node, slave)) in self.interfaces.iter_mut().zip(slaves) {
             interface.link(model, node, slave.node);
@@ -442,7 +450,7 @@ impl System {
         Ok(())
     }
 
-    pub(super) fn measure_interfaces(&mut self, model: &Model, at: &At<'_>) {
+    pub(super) fn measure_interfaces(&mut self, model: &Model, at: &LinearisationPoint<'_>) {
         for (interface, node) in self.interfaces.iter_mut().zip(at.contacts) {
             interface.room = node.spot.map_or([None; 2], |spot| {
                 room(&model.surfaces[spot.surface], spot, &self.positions)
@@ -466,17 +474,17 @@ impl System {
 
     /// Adds the effect of rotating and moving interaction forces to the stiffness, if the settings request it; once per
     /// linearisation, when the state has its final forces.
-    pub fn turn(&mut self, model: &Model, at: &At<'_>) {
-        self.turn_into(model, at, Turned::Both);
+    pub fn turn(&mut self, model: &Model, at: &LinearisationPoint<'_>) {
+        self.turn_into(model, at, RotationEffect::Both);
     }
 
-    fn turn_into(&mut self, model: &Model, at: &At<'_>, turned: Turned) {
+    fn turn_into(&mut self, model: &Model, at: &LinearisationPoint<'_>, turned: RotationEffect) {
         if at.settings.geometry == Geometry::Frozen {
             return;
         }
         turn_points(
             &self.interfaces,
-            (&mut self.stiffness, turned == Turned::Both),
+            (&mut self.stiffness, turned == RotationEffect::Both),
             (&mut self.coupling, &self.step),
             model,
         );
@@ -514,7 +522,7 @@ impl System {
                         &col.variation,
                     );
                     match interface.pairs[i * count + j] {
-                        Some(slot) if turned == Turned::Both => matrix[slot] -= value,
+                        Some(slot) if turned == RotationEffect::Both => matrix[slot] -= value,
                         Some(_) => {}
                         None => self.coupling[equation] -= value * self.step[col.dof],
                     }
@@ -535,7 +543,7 @@ impl System {
 
     /// Solves the linearised system for a state's modes. The interface's result is available at once, that of the bodies after
     /// [`System::recover`].
-    pub fn solve(&mut self, model: &Model, at: &At<'_>) -> Solved {
+    pub fn solve(&mut self, model: &Model, at: &LinearisationPoint<'_>) -> SolveResult {
         if self.condenses(at.chosen) || at.along.is_some() {
             self.solve_condensed(model, at)
         } else {
@@ -544,7 +552,7 @@ impl System {
     }
 
     /// Table 1's rows of a node.
-    pub(super) fn rows(&self, s: usize, at: &At<'_>) -> [Equation; 2] {
+    pub(super) fn rows(&self, s: usize, at: &LinearisationPoint<'_>) -> [Equation; 2] {
         let (node, kinematics) = (&at.contacts[s], self.kinematics(s));
         let friction = node.friction(&at.friction[s]);
         rows::rows(node, kinematics.as_ref(), &friction, &at.settings, at.brake)
@@ -591,8 +599,8 @@ impl System {
 }
 
 /// Displacements `u` within the current increment, with the prescribed ones.
-fn moved<'a>(u: &'a [f64], step: &'a [f64], at: &At<'a>) -> Moved<'a> {
-    Moved {
+fn moved<'a>(u: &'a [f64], step: &'a [f64], at: &LinearisationPoint<'a>) -> AssemblyMotion<'a> {
+    AssemblyMotion {
         u,
         step,
         before: at.accepted.u,

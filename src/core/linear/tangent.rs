@@ -5,13 +5,13 @@
 
 use super::coupling::Interface;
 use super::drag::stiffen;
-use super::sizes::{Balanced, Sizes};
-use super::source::At;
+use super::sizes::{BalancedQuantity, Sizes};
+use super::source::LinearisationPoint;
 use super::stability::{Conditions, Dense, Stability, ZERO, sliding, smooth};
 use super::system::System;
 use crate::contact::geometric_tangent::{Variation, geometric_tangent};
-use crate::fem::assembly::{Assembly, Moved};
-use crate::fem::element::Assembled;
+use crate::fem::assembly::{Assembly, AssemblyMotion};
+use crate::fem::element::ElementOutput;
 use crate::linalg::{Pattern, SymmetricFactors};
 use crate::model::{Body, BodyKind, Form, Mode, Model};
 use nalgebra::DMatrix;
@@ -51,7 +51,7 @@ impl Tangent {
         let mut levers = vec![1.0; model.dofs.equations];
         for (dof, equation) in model.dofs.equation.iter().enumerate() {
             if let Some(e) = equation {
-                lengths[*e] = system.sizes.kind[dof] == Balanced::Length;
+                lengths[*e] = system.sizes.kind[dof] == BalancedQuantity::Length;
                 levers[*e] = system.sizes.lever(dof).unwrap_or(1.0);
             }
         }
@@ -67,13 +67,23 @@ impl Tangent {
     }
 
     /// Stability of the state of the system's last linearisation, with its contacts' modes.
-    pub fn stability(&mut self, system: &System, model: &Model, at: &At<'_>) -> Stability {
+    pub fn stability(
+        &mut self,
+        system: &System,
+        model: &Model,
+        at: &LinearisationPoint<'_>,
+    ) -> Stability {
         let found = is_symmetric(model).then(|| self.assess(system, model, at));
         found.flatten().unwrap_or(Stability::NotKnown)
     }
 
     /// `None` if round-off decides, or if there are too many unknowns.
-    fn assess(&mut self, system: &System, model: &Model, at: &At<'_>) -> Option<Stability> {
+    fn assess(
+        &mut self,
+        system: &System,
+        model: &Model,
+        at: &LinearisationPoint<'_>,
+    ) -> Option<Stability> {
         if self.pattern.size() == 0 {
             // There are no unknowns.
             return Some(Stability::Stable);
@@ -97,7 +107,7 @@ impl Tangent {
     }
 
     /// The equations that touching nodes involve, and those of bodies that require pivoting.
-    fn reached(&self, system: &System, model: &Model, at: &At<'_>) -> Vec<usize> {
+    fn reached(&self, system: &System, model: &Model, at: &LinearisationPoint<'_>) -> Vec<usize> {
         let mut reached = self.pivoted.clone();
         for (interface, _) in touching(system, at) {
             for link in &interface.links {
@@ -109,17 +119,17 @@ impl Tangent {
         (0..reached.len()).filter(|&e| reached[e]).collect()
     }
 
-    fn assemble(&mut self, sizes: &Sizes, model: &Model, at: &At<'_>) {
+    fn assemble(&mut self, sizes: &Sizes, model: &Model, at: &LinearisationPoint<'_>) {
         let dofs = model.dofs.len();
         let (mut force, mut size, step) = (vec![0.0; dofs], vec![0.0; dofs], vec![0.0; dofs]);
         let mut coupling = vec![0.0; model.dofs.equations];
-        let out = Assembled {
+        let out = ElementOutput {
             force: &mut force,
             size: &mut size,
             values: &mut self.values,
             coupling: &mut coupling,
         };
-        let moved = Moved {
+        let moved = AssemblyMotion {
             u: at.u,
             step: &step,
             before: at.accepted.u,
@@ -138,7 +148,7 @@ impl Tangent {
         &mut self,
         system: &System,
         model: &Model,
-        at: &At<'_>,
+        at: &LinearisationPoint<'_>,
         last: Vec<usize>,
     ) -> Option<Dense> {
         if self.factors.as_ref().is_none_or(|(had, _)| *had != last) {
@@ -223,7 +233,7 @@ fn pivoted(model: &Model, lengths: &[bool]) -> Vec<bool> {
 /// The touching nodes with their part of the equations.
 fn touching<'a>(
     system: &'a System,
-    at: &At<'a>,
+    at: &LinearisationPoint<'a>,
 ) -> impl Iterator<Item = (&'a Interface, usize)> + use<'a> {
     let contacts = at.contacts;
     let nodes = system.interfaces.iter().enumerate();
@@ -233,7 +243,13 @@ fn touching<'a>(
 }
 
 /// Adds T.
-fn turn(matrix: &mut DMatrix<f64>, system: &System, model: &Model, at: &At<'_>, last: &[usize]) {
+fn turn(
+    matrix: &mut DMatrix<f64>,
+    system: &System,
+    model: &Model,
+    at: &LinearisationPoint<'_>,
+    last: &[usize],
+) {
     let place = |dof: usize| last.binary_search(&model.dofs.equation[dof]?).ok();
     for (interface, s) in touching(system, at) {
         let node = &at.contacts[s];
@@ -270,7 +286,12 @@ fn turn(matrix: &mut DMatrix<f64>, system: &System, model: &Model, at: &At<'_>, 
 
 /// The conditions of the touching nodes. `None` if the sliding direction of a node with friction is unknown, if its bond or
 /// element has a compliance, or if several nodes press on one flexible element.
-fn conditions(system: &System, model: &Model, at: &At<'_>, last: &[usize]) -> Option<Conditions> {
+fn conditions(
+    system: &System,
+    model: &Model,
+    at: &LinearisationPoint<'_>,
+    last: &[usize],
+) -> Option<Conditions> {
     let mut all = Conditions::default();
     for (interface, s) in touching(system, at) {
         let node = &at.contacts[s];

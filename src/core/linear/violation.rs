@@ -1,13 +1,13 @@
 //! Violation of the conditions of a state's modes.
 
-use super::source::At;
+use super::source::LinearisationPoint;
 use crate::interface::kinematics::NodeKinematics;
 use crate::model::{Mode, Sticking};
 
 /// Largest violation of the interface conditions by a state's forces and gaps, relative to a length and a force: gaps of touching
 /// contacts, penetration of free ones, drift of anchored ones, and |F_t − T_max| of sliding ones.
 pub fn violation(
-    at: &At<'_>,
+    at: &LinearisationPoint<'_>,
     length: f64,
     force: f64,
     kinematics: impl Fn(usize) -> Option<NodeKinematics>,

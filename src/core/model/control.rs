@@ -27,7 +27,7 @@ impl Control {
 #[derive(Debug, Clone, PartialEq)]
 pub struct ArcLength {
     /// The quantity whose change defines the size of an increment.
-    pub along: Measured,
+    pub along: ArcMeasure,
     /// Size of the first increment, in the measured quantity. `None`: the change along the tangent for one increment of the load
     /// factor.
     pub step: Option<f64>,
@@ -45,7 +45,7 @@ pub struct ArcLength {
 
 /// The quantity whose change defines the size of an increment with arc-length control.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-pub enum Measured {
+pub enum ArcMeasure {
     /// All displacements together, along the tangent at the start of the increment (Riks): the largest component of the
     /// projection on the tangent (length).
     #[default]
@@ -79,7 +79,7 @@ impl ArcLength {
 impl Default for ArcLength {
     fn default() -> Self {
         ArcLength {
-            along: Measured::default(),
+            along: ArcMeasure::default(),
             step: None,
             largest: None,
             least: None,

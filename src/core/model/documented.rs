@@ -6,16 +6,16 @@ pub struct Docs {
     /// Name of the type.
     pub name: &'static str,
     /// Its doc comment.
-    pub lines: Lines,
+    pub lines: DocAttributes,
     /// Name and doc comment of each part.
-    pub parts: &'static [(&'static str, Lines)],
+    pub parts: &'static [(&'static str, DocAttributes)],
 }
 
 /// The attributes of an item: each line of the doc comment, `None` for any other attribute.
-pub type Lines = &'static [Option<&'static str>];
+pub type DocAttributes = &'static [Option<&'static str>];
 
 /// A doc comment as one text: lines are joined, and empty lines separate paragraphs.
-pub fn text(lines: Lines) -> String {
+pub fn text(lines: DocAttributes) -> String {
     let mut text = String::new();
     for line in lines.iter().flatten().map(|line| line.trim()) {
         let gap = match (text.is_empty() || text.ends_with('\n'), line.is_empty()) {

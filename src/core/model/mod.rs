@@ -25,7 +25,7 @@ pub use body::{
     Beam, Body, BodyKind, Elastic, Form, Law, Linear, Plane, Solid, SolidElement, Truss, Update,
 };
 pub use contact::{Bond, Contact, Facing, Piece, PointGive, STENCIL, Surface};
-pub use control::{ArcLength, Bound, Control, Measured};
+pub use control::{ArcLength, ArcMeasure, Bound, Control};
 pub use dofs::{Axis, Component, Dofs};
 pub use friction::{Friction, InitialState, Mode};
 pub use load::{Factor, Jumps, Load, Prescribed, PressedFace, Pressure, least, on_leg};
@@ -112,12 +112,12 @@ pub struct Monitor {
     /// Name of the column in outputs.
     pub name: String,
     /// The reported quantity.
-    pub of: Watched,
+    pub of: MonitorQuantity,
 }
 
 /// The quantity that a monitor reports.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Watched {
+pub enum MonitorQuantity {
     /// Value of a degree of freedom.
     Displacement {
         /// Number of the degree of freedom.
@@ -203,7 +203,7 @@ pub fn diagonal<'a>(nodes: impl Iterator<Item = &'a Node>) -> f64 {
 impl Model {
     /// A model whose bodies are known to another solver only: nodes, masters and contacts, a load factor from 0 to 1 in one
     /// increment, and no unknowns. Callers fill in what else is known.
-    pub fn of_contacts(
+    pub fn from_contacts(
         title: &str,
         nodes: Vec<Node>,
         surfaces: Vec<Surface>,

@@ -18,14 +18,14 @@ use crate::contact::laws::{Finding, Verdict};
 use crate::contact::state::ContactState;
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
-use crate::model::{ArcLength, Jumps, Measured, Mode, Model};
+use crate::model::{ArcLength, ArcMeasure, Jumps, Mode, Model};
+use crate::step::arc_state::{ArcConstraint, Change, ROUNDING, farthest};
 use crate::step::event::{Failure, Outcome};
 use crate::step::iterate::Iterate;
-use crate::step::jump::Landing;
+use crate::step::jump::AcceptanceNotes;
 use crate::step::pace::RATIO;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
-use crate::step::way::{Aim, Change, ROUNDING, farthest};
 use std::sync::Arc;
 
 /// A step doubles back if its angle to the reverse of the previous step has at least this cosine.
@@ -37,7 +37,7 @@ const CHANGE: [f64; 2] = [0.5, 2.0];
 
 /// A point between two states at which an increment has to end.
 struct Goal {
-    aim: Aim,
+    aim: ArcConstraint,
     /// Its fraction of the distance between them.
     part: f64,
 }
@@ -58,9 +58,9 @@ impl Stepper {
         let moves = motion > NOTHING * self.now.model.length;
         let leaps = moves && motion > RATIO * predicted;
         let why = if self.now.state.doubles_back() {
-            Some(Failure::DoubledBack)
+            Some(Failure::PathReversal)
         } else {
-            leaps.then_some(Failure::Leapt {
+            leaps.then_some(Failure::BranchJump {
                 motion,
                 predicted,
                 unstable: None,
@@ -69,7 +69,7 @@ impl Stepper {
         let mut jumped = false;
         if let Some(why) = why {
             let jumps = self.now.model.jumps;
-            let leapt = matches!(why, Failure::Leapt { .. });
+            let leapt = matches!(why, Failure::BranchJump { .. });
             if !(leapt && jumps == Jumps::Accept)
                 && let Some(cut) = self.cut(&why)
             {
@@ -83,9 +83,9 @@ impl Stepper {
         }
         #[cfg(mutants)]
         let jumped = jumped && !crate::mutants::is_active("arc-jump-unmarked");
-        let landing = Landing {
+        let landing = AcceptanceNotes {
             jumped,
-            ..Landing::marked(marked)
+            ..AcceptanceNotes::marked(marked)
         };
         self.now.accept(after, verdict, landing)
     }
@@ -102,7 +102,7 @@ impl Iterate {
             return Ok(());
         }
         if !self.source.follows_paths() {
-            return Err(Failure::Unmoved);
+            return Err(Failure::ZeroMeasure);
         }
         let turned = self.state.way.as_ref().is_some_and(|way| way.turned);
         let (motion, slips, next) = if turned {
@@ -137,17 +137,17 @@ impl Iterate {
             return Ok(());
         };
         let (size, sign) = match way.measured {
-            Measured::Displacements => (largest, 1.0),
-            Measured::Dof(dof) => (motion[dof].abs(), motion[dof].signum()),
-            Measured::Slip(contact) => (slips[contact].abs(), slips[contact].signum()),
+            ArcMeasure::Displacements => (largest, 1.0),
+            ArcMeasure::Dof(dof) => (motion[dof].abs(), motion[dof].signum()),
+            ArcMeasure::Slip(contact) => (slips[contact].abs(), slips[contact].signum()),
         };
         #[cfg(mutants)]
         let sign = match way.measured {
-            Measured::Slip(_) if crate::mutants::is_active("arc-slip-sign-lost") => 1.0,
+            ArcMeasure::Slip(_) if crate::mutants::is_active("arc-slip-sign-lost") => 1.0,
             _ => sign,
         };
         if !(largest.is_finite() && largest > 0.0 && size > NOTHING * largest) {
-            return Err(Failure::Unmoved);
+            return Err(Failure::ZeroMeasure);
         }
         if way.step == 0.0 {
             way.first = model.arc.step.unwrap_or(size);
@@ -172,7 +172,7 @@ impl Iterate {
         let state = &mut self.state;
         let Some(way) = &mut state.way else { return };
         let reached = match way.aim {
-            Aim::Load(to) => to,
+            ArcConstraint::Load(to) => to,
             _ => state.target + self.source.load_step(),
         };
         way.left = way.remaining(&state.u, &state.start.u);
@@ -199,7 +199,7 @@ impl Iterate {
         };
         let corner = model.path[state.start.leg + 1];
         let of_load = part(state.start.load_factor, state.load_factor, corner).map(|part| Goal {
-            aim: Aim::Load(corner),
+            aim: ArcConstraint::Load(corner),
             part,
         });
         let bounds = model.arc.bounds.iter().filter_map(|bound| {
@@ -207,7 +207,7 @@ impl Iterate {
             let part = part(from, to, bound.at)?;
             let (dof, to) = (bound.dof, bound.at);
             Some(Goal {
-                aim: Aim::Dof { dof, to },
+                aim: ArcConstraint::Dof { dof, to },
                 part,
             })
         });
@@ -225,24 +225,24 @@ impl Iterate {
         };
         let (u, start) = (&state.u, &state.start.u);
         way.length += match way.measured {
-            Measured::Displacements => way.gone(u, start),
-            Measured::Dof(dof) => (u[dof] - start[dof]).abs(),
-            Measured::Slip(contact) => state.nodes[contact].slip.abs(),
+            ArcMeasure::Displacements => way.gone(u, start),
+            ArcMeasure::Dof(dof) => (u[dof] - start[dof]).abs(),
+            ArcMeasure::Slip(contact) => state.nodes[contact].slip.abs(),
         };
         #[cfg(mutants)]
         if crate::mutants::is_active("arc-slip-length-signed")
-            && let Measured::Slip(contact) = way.measured
+            && let ArcMeasure::Slip(contact) = way.measured
         {
             way.length += state.nodes[contact].slip - state.nodes[contact].slip.abs();
         }
-        let bounded = |aim: Aim| {
+        let bounded = |aim: ArcConstraint| {
             let mut bounds = model.arc.bounds.iter();
             bounds.any(
-                |bound| matches!(aim, Aim::Dof { dof, to } if (dof, to) == (bound.dof, bound.at)),
+                |bound| matches!(aim, ArcConstraint::Dof { dof, to } if (dof, to) == (bound.dof, bound.at)),
             )
         };
         let ends = bounded(way.aim) || way.length >= farthest(&model) * (1.0 - ROUNDING);
-        let whole = !matches!(way.aim, Aim::Load(_)) && !bounded(way.aim);
+        let whole = !matches!(way.aim, ArcConstraint::Load(_)) && !bounded(way.aim);
         if whole {
             let wanted = f64::from(model.arc.iterations) / f64::from(state.next.major);
             way.step *= wanted.sqrt().clamp(CHANGE[0], CHANGE[1]);
@@ -281,7 +281,7 @@ impl State {
         if crate::mutants::is_active("arc-step-doubles-back") {
             return false;
         }
-        let behind = way.measured == Measured::Displacements
+        let behind = way.measured == ArcMeasure::Displacements
             && way.gone(&state.u, &state.start.u) <= -ROUNDING * way.step;
         if behind || self.turned_back() || way.turned || way.last.is_empty() {
             return behind || self.turned_back();
@@ -292,12 +292,12 @@ impl State {
         goes_back(moved, &way.last) && load * way.last_load <= 0.0
     }
 
-    fn aim_at(&mut self, aim: Aim) {
+    fn aim_at(&mut self, aim: ArcConstraint) {
         let state = &mut *self;
         let Some(way) = &mut state.way else { return };
         way.aim = aim;
         way.left = match aim {
-            Aim::Load(to) => to - state.load_factor,
+            ArcConstraint::Load(to) => to - state.load_factor,
             _ => way.remaining(&state.u, &state.start.u),
         };
     }

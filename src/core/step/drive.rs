@@ -1,7 +1,7 @@
 //! Runs a solver: the loop over minor iterations, and how it ended.
 
 use crate::step::event::{Failure, Outcome};
-use crate::step::solver::{Lost, Solver};
+use crate::step::solver::{Solver, SolverLost};
 use crate::step::stepper::Stepper;
 use std::convert::Infallible;
 use std::ops::ControlFlow;
@@ -67,12 +67,12 @@ pub enum RunEnd<S> {
 /// Steps until the end, and calls the observer, which may intervene, after every minor iteration.
 ///
 /// # Errors
-/// [`Lost`] if the solver cannot continue.
+/// [`SolverLost`] if the solver cannot continue.
 pub fn drive<T: Solver + ?Sized, S>(
     solver: &mut T,
     until: Until<'_>,
     observe: impl FnMut(&mut T) -> ControlFlow<S>,
-) -> Result<RunEnd<S>, Lost> {
+) -> Result<RunEnd<S>, SolverLost> {
     drive_by(solver, T::step, until, observe)
 }
 

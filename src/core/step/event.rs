@@ -9,11 +9,11 @@ use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
 use crate::linear::stability::Stability;
 use crate::model::{Model, Strategy};
+use crate::step::arc_state::{Change, ROUNDING, farthest};
 use crate::step::major_history::MajorCycle;
 use crate::step::recovery::fallback::Fallback;
 use crate::step::recovery::motion::Motion;
 use crate::step::watch::StabilityLoss;
-use crate::step::way::{Change, ROUNDING, farthest};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
@@ -120,7 +120,7 @@ pub enum Outcome {
         target: f64,
     },
     /// The strategy cannot continue; the next strategy of the ladder restarts this major iteration.
-    Climbed {
+    StrategyChange {
         /// Why the previous strategy failed.
         why: Failure,
         /// The next strategy.
@@ -136,14 +136,14 @@ pub enum Outcome {
         size: f64,
     },
     /// The halves of an increment that may jump failed: the whole increment is taken, which has this size.
-    Leaps {
+    WholeIncrement {
         /// Why its halves failed.
         why: Failure,
         /// Size of the whole (load factor).
         size: f64,
     },
     /// Along the path: the increment failed at a corner of the path and is restarted behind it (`step::recovery::path_corner`).
-    Turns {
+    PathCorner {
         /// Cause of the failure.
         why: Failure,
         /// Contacts that take another mode there.
@@ -157,7 +157,7 @@ pub enum Outcome {
         stiffness: f64,
     },
     /// A damped motion past a limit point begins, has completed a step, or repeats one.
-    Moves(Moves),
+    Motion(MotionEvent),
     /// The halves of an increment failed: it is restarted with a fallback.
     Fallback {
         /// Why the last attempt failed.
@@ -231,7 +231,7 @@ impl Outcome {
             self,
             Outcome::Minor
                 | Outcome::Damped { .. }
-                | Outcome::Climbed { .. }
+                | Outcome::StrategyChange { .. }
                 | Outcome::HeldBack { .. }
         )
     }
@@ -239,9 +239,9 @@ impl Outcome {
 
 /// Progress of a damped motion.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Moves {
+pub enum MotionEvent {
     /// It begins: there is no longer an equilibrium near the last one.
-    LetsGo {
+    DynamicStart {
         /// Why the smallest increment failed.
         why: Failure,
         /// Load factor of the last equilibrium.
@@ -255,12 +255,12 @@ pub enum Moves {
         number: u32,
     },
     /// A step is repeated more slowly, or an attempt at rest was premature and the motion continues.
-    Slower(Slow),
+    Slower(SmallerStepReason),
 }
 
 /// Why a step of a damped motion is rejected.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Slow {
+pub enum SmallerStepReason {
     /// It failed.
     Failed(Failure),
     /// It moves further than a step may.
@@ -304,13 +304,16 @@ pub enum Failure {
         noise: f64,
     },
     /// Along the path: the increment would return along the path that it came from.
-    DoubledBack,
+    #[serde(rename = "DoubledBack")]
+    PathReversal,
     /// Along the path: the measured quantity does not change while the load does, so that no step size can be defined; or the
     /// source cannot solve for the load factor ([`crate::linear::source::Source::follows_paths`]).
-    Unmoved,
+    #[serde(rename = "Unmoved")]
+    ZeroMeasure,
     /// The increment moved further than its tangent and the previous increments predict: it may have jumped to another branch of
     /// equilibrium.
-    Leapt {
+    #[serde(rename = "Leapt")]
+    BranchJump {
         /// Motion (length).
         motion: f64,
         /// Predicted motion (length).
@@ -320,7 +323,8 @@ pub enum Failure {
         unstable: Option<Stability>,
     },
     /// A damped motion past a limit point does not end at rest.
-    Restless {
+    #[serde(rename = "Restless")]
+    NoRest {
         /// Number of steps.
         steps: u32,
     },

@@ -5,7 +5,7 @@ use crate::linear::norms::Norms;
 use crate::model::{Mode, least};
 use crate::step::event::Outcome;
 use crate::step::iterate::Iterate;
-use crate::step::jump::Landing;
+use crate::step::jump::AcceptanceNotes;
 use crate::step::recovery::fallback::Fallback;
 use crate::step::state::Status;
 use crate::step::sub_increment::SubIncrement;
@@ -41,7 +41,12 @@ impl Iterate {
     }
 
     /// Makes the current state the start of the next increment.
-    pub(super) fn accept(&mut self, after: Norms, verdict: Verdict, landing: Landing) -> Outcome {
+    pub(super) fn accept(
+        &mut self,
+        after: Norms,
+        verdict: Verdict,
+        landing: AcceptanceNotes,
+    ) -> Outcome {
         let unsettled = self.state.unsettled;
         let leg = self.leg_reached();
         let bounded = self.go_along(leg);

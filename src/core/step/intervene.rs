@@ -6,7 +6,7 @@ use crate::contact::table1::t_max;
 use crate::linear::estimate::Estimate;
 use crate::model::{Friction, Settings, Touch, least};
 use crate::model::{Mode, Model};
-use crate::step::recovery::proximal::Brake;
+use crate::step::recovery::proximal::SlipStiffness;
 use crate::step::state::{Progress, State, Status};
 use crate::step::sub_increment::SubIncrement;
 use std::sync::Arc;
@@ -163,7 +163,7 @@ impl State {
             return Err(Refusal::StartGaps);
         }
         if settings.solver != self.controls.settings.solver
-            && let Some(why) = Estimate::of(model).too_large(settings.solver)
+            && let Some(why) = Estimate::from_model(model).too_large(settings.solver)
         {
             return Err(Refusal::TooLarge(why));
         }
@@ -201,7 +201,7 @@ impl State {
     pub fn attempt_again(&self) -> State {
         let mut again = self.clone();
         again.start_again();
-        again.brake = self.brake.map(|brake| Brake::new(brake.spring));
+        again.brake = self.brake.map(|brake| SlipStiffness::new(brake.spring));
         again
     }
 

@@ -20,7 +20,7 @@ use crate::linear::stability::Stability;
 use crate::model::Jumps;
 use crate::step::event::{Failure, Outcome};
 use crate::step::iterate::Iterate;
-use crate::step::pace::{Pace, Suspect};
+use crate::step::pace::{Pace, SuspectIncrement};
 use crate::step::recovery::fallback::{Fallback, FallbackState};
 use crate::step::stepper::Stepper;
 use crate::step::watch::{FAR, StabilityLoss};
@@ -31,7 +31,7 @@ const NOTHING: f64 = 1e-9;
 
 /// Reservations with which a state is accepted.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Landing {
+pub(super) struct AcceptanceNotes {
     /// Law that the state violates.
     pub marked: Option<Finding>,
     /// Whether the increment leaves the branch of stable equilibrium.
@@ -42,30 +42,30 @@ pub(super) struct Landing {
 
 /// Motion of an increment and the data to judge it.
 #[derive(Clone, Copy)]
-struct Trip {
+struct IncrementMotion {
     /// Largest displacement (length).
     motion: f64,
     /// Load factors at its start and end.
     span: [f64; 2],
     /// Record of the whole increment when it was first suspected; of this increment if it was not suspected before.
-    suspect: Suspect,
+    suspect: SuspectIncrement,
     /// Whether the motion exceeds the expected motion.
     exceeds: bool,
     /// Stability of the end state, if it was checked.
     found: Option<Stability>,
 }
 
-impl Landing {
+impl AcceptanceNotes {
     /// A landing that violates this law, if any, without other reservations.
     pub fn marked(marked: Option<Finding>) -> Self {
-        Landing {
+        AcceptanceNotes {
             marked,
-            ..Landing::default()
+            ..AcceptanceNotes::default()
         }
     }
 }
 
-impl Trip {
+impl IncrementMotion {
     fn size(&self) -> f64 {
         (self.span[1] - self.span[0]).abs()
     }
@@ -89,9 +89,9 @@ impl Stepper {
             return self.land_on_way(after, verdict, marked);
         }
         let (mut trip, why) = self.now.trip();
-        let mut landing = Landing {
+        let mut landing = AcceptanceNotes {
             unstable: self.now.state.watch.loss(trip.found),
-            ..Landing::marked(marked)
+            ..AcceptanceNotes::marked(marked)
         };
         let cuts = matches!(self.now.model.jumps, Jumps::Cut | Jumps::Stop);
         if trip.exceeds || landing.unstable.is_some() && cuts {
@@ -110,7 +110,7 @@ impl Stepper {
     }
 
     /// Cuts an increment that may have jumped, or fails if jumps are not allowed. `None` if the increment is accepted.
-    fn try_parts(&mut self, trip: &Trip, why: &Failure) -> Option<Outcome> {
+    fn try_parts(&mut self, trip: &IncrementMotion, why: &Failure) -> Option<Outcome> {
         let (jumps, size) = (self.now.model.jumps, trip.size());
         let smallest = size <= self.now.state.controls.least;
         if jumps == Jumps::Dynamic && smallest && trip.follows() {
@@ -139,7 +139,7 @@ impl Stepper {
 
 impl Iterate {
     /// Motion of the current increment, and the failure to report if the motion is too large.
-    fn trip(&mut self) -> (Trip, Failure) {
+    fn trip(&mut self) -> (IncrementMotion, Failure) {
         let state = &self.state;
         let span = [state.start.load_factor, state.load_factor];
         let motion = self.source.moved(&state.u, &state.start.u);
@@ -152,7 +152,7 @@ impl Iterate {
         let exceeds = sudden || far && self.stalled().can_move();
         let (majors, cost) = (state.next.major, self.source.stability_cost());
         let looks = !exceeds && (far || state.watch.is_due(majors, cost));
-        let here = Suspect {
+        let here = SuspectIncrement {
             motion,
             size: (span[1] - span[0]).abs(),
             sub_increment: state.sub_increment,
@@ -160,12 +160,12 @@ impl Iterate {
         let suspect = state.pace.suspect.unwrap_or(here);
         let found = looks.then(|| self.look());
         let unstable = self.state.watch.loss(found).map(|loss| loss.stability);
-        let why = Failure::Leapt {
+        let why = Failure::BranchJump {
             motion,
             predicted: expected.least(),
             unstable,
         };
-        let trip = Trip {
+        let trip = IncrementMotion {
             motion,
             span,
             suspect,
@@ -185,8 +185,8 @@ impl Iterate {
         &mut self,
         after: Norms,
         verdict: Verdict,
-        mut landing: Landing,
-        trip: &Trip,
+        mut landing: AcceptanceNotes,
+        trip: &IncrementMotion,
     ) -> Outcome {
         let (state, model) = (&mut self.state, &self.model);
         state.watch.take(trip.span[1], state.next.major, trip.found);

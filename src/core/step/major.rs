@@ -3,10 +3,10 @@
 use crate::contact::corner::least_friction;
 use crate::contact::record::ContactRecord;
 use crate::contact::state::ContactState;
-use crate::interface::method::Searched;
+use crate::interface::method::SearchProgress;
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
-use crate::linear::source::Solved;
+use crate::linear::source::SolveResult;
 use crate::model::{AtLimit, Friction, Mode, Refactor, ResidualMethod, SlipCount, Sticking};
 use crate::step::event::{Failure, Outcome};
 use crate::step::iterate::Iterate;
@@ -39,7 +39,7 @@ impl Stepper {
             true => self.now.source.asked(),
             false => f64::INFINITY,
         };
-        if self.now.source.recover() == Solved::Not {
+        if self.now.source.recover() == SolveResult::Not {
             let singular = self.now.explain();
             return self.fail(Failure::Singular(singular));
         }
@@ -47,7 +47,7 @@ impl Stepper {
         let search = &mut self.now.state.search;
         (search.first, search.fewest, search.rounds) = (None, None, 0);
         let frozen = std::mem::take(&mut search.frozen);
-        search.searched = Searched::Not;
+        search.searched = SearchProgress::Not;
         self.now.state.searched.frozen |= frozen;
         self.now.kept = None;
         let norms = self.norms();

@@ -60,7 +60,7 @@ pub struct RepeatScales {
 }
 
 impl MajorEntry {
-    fn of(node: &ContactState, at: [f64; 2]) -> Self {
+    fn from_node(node: &ContactState, at: [f64; 2]) -> Self {
         MajorEntry {
             at,
             mode: node.mode,
@@ -106,7 +106,7 @@ impl MajorHistory {
     pub fn push(&mut self, nodes: &[ContactState], positions: impl Iterator<Item = [f64; 2]>) {
         let nodes = nodes.iter().zip(positions);
         self.entries
-            .extend(nodes.map(|(node, at)| MajorEntry::of(node, at)));
+            .extend(nodes.map(|(node, at)| MajorEntry::from_node(node, at)));
     }
 
     /// The cycle that ends if the last recorded iteration, the major iteration `major`, starts from the same state as an earlier

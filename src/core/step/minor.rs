@@ -8,10 +8,10 @@ use crate::interface::method::Method;
 use crate::interface::minor::{self, Check};
 use crate::interface::minor_history::Cycle;
 use crate::interface::rows::carried;
-use crate::interface::spiral::{Fate, spiral};
+use crate::interface::t_max_iteration::{TMaxLimit, spiral};
 use crate::linear::singular::Singular;
 use crate::linear::sizes::ROUND_OFF;
-use crate::linear::source::Solved;
+use crate::linear::source::SolveResult;
 use crate::model::{self, AtCycle, AtLimit, Mode, SlipCount};
 use crate::step::event::{Failure, Outcome};
 use crate::step::iterate::Iterate;
@@ -135,13 +135,13 @@ impl Stepper {
 
 impl Iterate {
     /// Why a solve has no solution, or no meaningful one.
-    pub(super) fn unsolvable(&self, solved: Solved) -> Option<Failure> {
+    pub(super) fn unsolvable(&self, solved: SolveResult) -> Option<Failure> {
         let singular = match solved {
-            Solved::Well => None,
-            Solved::NearlySingular => {
+            SolveResult::Well => None,
+            SolveResult::NearlySingular => {
                 Some(self.explain()).filter(|why| matches!(why, Singular::Rigid { .. }))
             }
-            Solved::Not => Some(self.explain()),
+            SolveResult::Not => Some(self.explain()),
         };
         singular
             .map(Failure::Singular)
@@ -250,7 +250,7 @@ impl Iterate {
             };
             inputs.is_some_and(as_found)
         });
-        if found.fate != Fate::Cycles || !went_round {
+        if found.fate != TMaxLimit::Cycles || !went_round {
             return None;
         }
         let pattern = |modes: &[Mode]| (1..=period).rev().map(|b| modes[phase(b)]).collect();

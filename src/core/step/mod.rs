@@ -13,8 +13,10 @@
 //! - [`drive`]: the loop over minor iterations; [`intervene`]: applies an [`intervention`] of the user.
 
 mod arc;
+pub mod arc_state;
 pub mod drive;
 pub mod event;
+mod external_state;
 mod increment;
 pub mod intervene;
 pub mod intervention;
@@ -23,18 +25,16 @@ mod jump;
 mod major;
 pub mod major_history;
 mod minor;
-mod outside;
 pub mod pace;
-pub mod places;
 pub mod recovery;
 mod search;
 pub mod solver;
 pub mod state;
 pub mod stepper;
+pub mod stored_states;
 pub mod sub_increment;
 mod verdict;
 pub mod watch;
-pub mod way;
 
 #[cfg(test)]
 mod tests;

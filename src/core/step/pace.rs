@@ -46,14 +46,14 @@ pub struct Pace {
     #[serde(default, skip_serializing_if = "is_at_zero")]
     pub span: [f64; 2],
     /// The suspected increment that the current one is a part of.
-    pub suspect: Option<Suspect>,
+    pub suspect: Option<SuspectIncrement>,
     /// Whether its halves have failed, so that it is no longer cut on suspicion.
     pub over: bool,
 }
 
 /// An increment that moved more than expected.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Suspect {
+pub struct SuspectIncrement {
     /// Its largest displacement.
     pub motion: f64,
     /// Its size.
@@ -65,7 +65,7 @@ pub struct Suspect {
 
 /// Expected motions of an increment (length), by the tangent and by the previous increments.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Expected {
+pub(super) struct ExpectedMotion {
     /// Predicted by the tangent; 0 without a prediction.
     tangent: f64,
     /// Whether the tangent held.
@@ -98,12 +98,12 @@ impl Pace {
     }
 
     /// Computes the expected motions over a span of the load factor.
-    pub(super) fn expected(&self, model: &Model, span: [f64; 2]) -> Expected {
+    pub(super) fn expected(&self, model: &Model, span: [f64; 2]) -> ExpectedMotion {
         let before = match self.fastest > 0.0 {
             true => parallel(model, self.span, span),
             false => None,
         };
-        Expected {
+        ExpectedMotion {
             tangent: self.predicted,
             holds: self.corrected <= OFF * self.predicted,
             before: before
@@ -119,7 +119,7 @@ impl Pace {
         self.fastest = carried.max(rate);
         (self.last, self.span) = (rate, span);
         // A suspected increment is dropped once the run has passed its end.
-        let passed = |suspect: &Suspect| {
+        let passed = |suspect: &SuspectIncrement| {
             let whole = suspect.sub_increment;
             (span[1] - whole.target()) * (whole.to - whole.from).signum() >= 0.0
         };
@@ -129,7 +129,7 @@ impl Pace {
     }
 }
 
-impl Expected {
+impl ExpectedMotion {
     /// Smaller of the motions predicted by the tangent and by the fastest previous increment (length).
     pub(super) fn least(&self) -> f64 {
         self.before
@@ -146,7 +146,7 @@ impl Expected {
     }
 }
 
-impl Suspect {
+impl SuspectIncrement {
     /// Whether the motion of a part of it is large enough for a jump.
     pub(super) fn jumps(&self, motion: f64, size: f64) -> bool {
         motion > self.motion * (size / self.size).sqrt().sqrt()
@@ -217,7 +217,7 @@ mod tests {
     use crate::model::Load;
 
     fn model(scales: &[&[(f64, f64)]]) -> Model {
-        let mut model = Model::of_contacts("t", Vec::new(), Vec::new(), Vec::new());
+        let mut model = Model::from_contacts("t", Vec::new(), Vec::new(), Vec::new());
         model.path = vec![0.0, 1.0, 2.0];
         model.loads = scales
             .iter()
@@ -232,7 +232,7 @@ mod tests {
 
     #[test]
     fn what_shrinks_with_the_increment_or_its_root_is_no_jump_and_what_stays_is_one() {
-        let whole = Suspect {
+        let whole = SuspectIncrement {
             motion: 1.0,
             size: 1.0,
             sub_increment: SubIncrement::default(),

@@ -4,15 +4,15 @@ use crate::contact::record::{ContactRecord, Forced};
 use crate::contact::state::ContactState;
 use crate::contact::table1::t_max;
 use crate::contact::table2::{Decision, Rule, Test};
-use crate::interface::method::{Asked, NoProposal, NotFound, Proposal, Searched};
+use crate::interface::method::{NoProposal, NotFound, Proposal, SearchInput, SearchProgress};
 use crate::interface::minor_history::Input;
-use crate::interface::problem::Assumed;
+use crate::interface::problem::AssumedMode;
 use crate::linear::singular::Singular;
 use crate::model::{Contact, Geometry, Mode};
 use crate::step::event::{Failure, Outcome};
 use crate::step::iterate::Iterate;
 use crate::step::recovery::FROZEN;
-use crate::step::recovery::left_out::LeftOut;
+use crate::step::recovery::left_out::OmittedStep;
 use crate::step::state::Progress;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
@@ -26,7 +26,7 @@ impl Stepper {
         let searches = self.method().search().is_some();
         // Forces that are not unique have no solve that confirms them, but sweeps find them.
         let sweeps_on = matches!(why, Failure::Singular(_)) && self.now.source.takes_forces();
-        if searches && (self.now.state.search.searched == Searched::Not || sweeps_on) {
+        if searches && (self.now.state.search.searched == SearchProgress::Not || sweeps_on) {
             return self.now.state.begin_search();
         }
         let chosen = self.now.state.controls.settings.strategy;
@@ -45,7 +45,7 @@ impl Stepper {
         let contacts = self.now.state.nodes.len();
         let mut next = strategy::next_rung(chosen, search.rung, contacts);
         if let Some((rung, to)) = next
-            && self.left_out == Some(LeftOut::Strategy(to))
+            && self.left_out == Some(OmittedStep::Strategy(to))
         {
             next = strategy::next_rung(chosen, rung, contacts);
         }
@@ -61,9 +61,9 @@ impl Stepper {
             && !proven
         {
             search.rung = rung;
-            (search.fewest, search.rounds, search.searched) = (None, 0, Searched::Not);
+            (search.fewest, search.rounds, search.searched) = (None, 0, SearchProgress::Not);
             self.now.state.next.minor += 1;
-            return Outcome::Climbed {
+            return Outcome::StrategyChange {
                 why,
                 to,
                 frozen: search.frozen,
@@ -97,7 +97,7 @@ impl Stepper {
             || chosen.geometry == Geometry::Frozen
             || state.brake.is_some()
             || state.way.is_some()
-            || self.left_out == Some(LeftOut::Recovery(FROZEN))
+            || self.left_out == Some(OmittedStep::Recovery(FROZEN))
             || self.now.stalled().is_given()
         {
             return None;
@@ -111,7 +111,7 @@ impl Stepper {
         };
         self.now.forget_workspace();
         self.now.state.next.minor += 1;
-        Some(Outcome::Climbed {
+        Some(Outcome::StrategyChange {
             why: why.clone(),
             to,
             frozen: true,
@@ -122,8 +122,8 @@ impl Stepper {
     pub(super) fn searching(&self) -> Option<(usize, usize)> {
         self.method().search()?;
         match self.now.state.search.searched {
-            Searched::At { start, step } => Some((start, step)),
-            Searched::Not | Searched::Found { .. } => None,
+            SearchProgress::At { start, step } => Some((start, step)),
+            SearchProgress::Not | SearchProgress::Found { .. } => None,
         }
     }
 
@@ -139,7 +139,7 @@ impl Stepper {
             ..
         } = &mut self.now;
         let source = RefCell::new(source);
-        let asked = Asked {
+        let asked = SearchInput {
             start,
             step,
             unconfirmed: state.search.unconfirmed,
@@ -207,10 +207,10 @@ impl Stepper {
 
 impl Iterate {
     /// Modes and T_max of the contacts that are not tied, at the start of the current major iteration.
-    fn brought(&self) -> Vec<Assumed> {
+    fn brought(&self) -> Vec<AssumedMode> {
         let first = self.state.minor_history.first(self.state.nodes.len());
         let of = |(input, slave): (&Input, &Contact)| {
-            (!slave.bond.is_tied()).then(|| Assumed::of(input.mode, input.t_max))
+            (!slave.bond.is_tied()).then(|| AssumedMode::from_mode(input.mode, input.t_max))
         };
         first
             .iter()
@@ -244,7 +244,7 @@ impl Iterate {
     fn assume(
         &mut self,
         contact: usize,
-        assumed: Assumed,
+        assumed: AssumedMode,
         [f_n, f_t, gap, slip]: [f64; 4],
         proposal: &Proposal,
     ) -> ContactRecord {
@@ -318,17 +318,17 @@ impl State {
     pub(super) fn begin_search(&mut self) -> Outcome {
         let search = &mut self.search;
         let start = match search.searched {
-            Searched::Not => {
+            SearchProgress::Not => {
                 search.unconfirmed = 0;
                 0
             }
-            Searched::At { start, .. } => start + 1,
-            Searched::Found { start } => {
+            SearchProgress::At { start, .. } => start + 1,
+            SearchProgress::Found { start } => {
                 search.unconfirmed += 1;
                 start + 1
             }
         };
-        search.searched = Searched::At { start, step: 0 };
+        search.searched = SearchProgress::At { start, step: 0 };
         self.take_back();
         self.next.minor += 1;
         Outcome::Minor

@@ -75,10 +75,10 @@
 //!         Ok(())
 //!     }
 //!     fn intervene(&mut self, intervention: &Intervention) -> Result<(), Refusal> {
-//!         self.offers().check(intervention)?;
+//!         self.capabilities().check(intervention)?;
 //!         self.state.intervene(&self.model, intervention)
 //!     }
-//!     fn offers(&self) -> Offers {
+//!     fn capabilities(&self) -> Offers {
 //!         Offers { name: "pressed".into(), force: true, hold: true, goes_back: GoesBack::ToAny, ..Offers::default() }
 //!     }
 //! }
@@ -104,7 +104,7 @@
 //!
 //! [`Outside::place`]: super::state::Outside::place
 //! [`Outside::asked`]: super::state::Outside::asked
-//! [`Places`]: super::places::Places
+//! [`Places`]: super::stored_states::Places
 
 use crate::model::{Friction, Model};
 use crate::step::event::Event;
@@ -119,15 +119,15 @@ use std::sync::atomic::AtomicUsize;
 /// A solver that cannot continue: it has exited, or violates its interface. Its earlier iterations remain valid.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{reason}")]
-pub struct Lost {
+pub struct SolverLost {
     /// What happened, and what was expected.
     pub reason: String,
 }
 
-impl Lost {
+impl SolverLost {
     /// With the reason.
     pub fn new(reason: impl Into<String>) -> Self {
-        Lost {
+        SolverLost {
             reason: reason.into(),
         }
     }
@@ -147,14 +147,14 @@ pub trait Solver: Send {
     /// Does one minor iteration and updates event and state; `false` if the history is finished and nothing was solved.
     ///
     /// # Errors
-    /// [`Lost`] if it cannot continue; state and event are unchanged.
-    fn step(&mut self) -> Result<bool, Lost>;
+    /// [`SolverLost`] if it cannot continue; state and event are unchanged.
+    fn step(&mut self) -> Result<bool, SolverLost>;
 
     /// Returns to an earlier state, with the changes made there.
     ///
     /// # Errors
-    /// [`Lost`] if it cannot return to that state.
-    fn restore(&mut self, state: &State) -> Result<(), Lost>;
+    /// [`SolverLost`] if it cannot return to that state.
+    fn restore(&mut self, state: &State) -> Result<(), SolverLost>;
 
     /// Applies a change made by the user.
     ///
@@ -167,16 +167,18 @@ pub trait Solver: Send {
     fn monitors(&mut self, _out: &mut Vec<f64>) {}
 
     /// Capabilities offered to a debugger.
-    fn offers(&self) -> Offers {
-        Offers::default()
+    fn capabilities(&self) -> Capabilities {
+        Capabilities::default()
     }
 
     /// The interface problem of a state with everything else frozen, if the solver offers it.
     ///
     /// # Errors
     /// Why it is not available.
-    fn posed(&mut self, _state: &State) -> Result<Posed, Lost> {
-        Err(Lost::new("the solver does not offer its interface problem"))
+    fn interface_problem(&mut self, _state: &State) -> Result<ReportedProblem, SolverLost> {
+        Err(SolverLost::new(
+            "the solver does not offer its interface problem",
+        ))
     }
 
     /// The built-in stepper, if the solver is one.
@@ -185,17 +187,17 @@ pub trait Solver: Send {
     }
 
     /// Installs the counter of the user's interrupt requests. A solver that cannot interrupt an iteration stops after it.
-    fn heed(&mut self, _asks: Arc<AtomicUsize>) {}
+    fn set_cancel(&mut self, _asks: Arc<AtomicUsize>) {}
 
     /// A notice for the user about how the current state was reached; returned once.
-    fn remark(&mut self) -> Option<String> {
+    fn take_notice(&mut self) -> Option<String> {
         None
     }
 }
 
 /// Capabilities of a solver offered to a debugger; none by default.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Offers {
+pub struct Capabilities {
     /// Name of the solver; empty for the built-in one.
     pub name: String,
     /// Version reported by the solver; may be empty.
@@ -215,17 +217,17 @@ pub struct Offers {
     /// Settings of the two-level method can be changed.
     pub settings: bool,
     /// How the solver returns to earlier states.
-    pub goes_back: GoesBack,
-    /// Its frozen interface problem is available ([`Solver::posed`]).
+    pub goes_back: RewindSupport,
+    /// Its frozen interface problem is available ([`Solver::interface_problem`]).
     pub problem: bool,
     /// Other parameters that can be changed.
     pub parameters: Vec<Parameter>,
 }
 
-impl Offers {
+impl Capabilities {
     /// Everything that the built-in stepper offers.
-    pub fn all() -> Offers {
-        Offers {
+    pub fn all() -> Capabilities {
+        Capabilities {
             name: String::new(),
             version: String::new(),
             past: None,
@@ -235,7 +237,7 @@ impl Offers {
             friction: true,
             cohesion: true,
             settings: true,
-            goes_back: GoesBack::ToAny,
+            goes_back: RewindSupport::ToAny,
             problem: true,
             parameters: Vec::new(),
         }
@@ -293,7 +295,7 @@ impl Offers {
 
 /// How a solver returns to an earlier state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum GoesBack {
+pub enum RewindSupport {
     /// By restarting and repeating everything.
     #[default]
     Again,
@@ -426,11 +428,11 @@ impl std::fmt::Display for Range {
 ///
 /// where u is the motion of the node relative to its master along t since the increment began, so that u = 0 sticks.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Posed {
+pub struct ReportedProblem {
     /// Contact numbers, in the order of the pairs.
     pub contacts: Vec<usize>,
     /// Kind of the matrix.
-    pub form: PosedForm,
+    pub form: ReportedForm,
     /// Rows: 2n rows of 2n numbers.
     pub matrix: Vec<Vec<f64>>,
     /// Gap and motion without any force (length), 2n numbers.
@@ -442,14 +444,14 @@ pub struct Posed {
     pub friction: Vec<Friction>,
 }
 
-impl Posed {
+impl ReportedProblem {
     /// Gap and motion u of each contact under total forces (length); `None` if K is singular.
     pub fn motion(&self, forces: &DVector<f64>) -> Option<DVector<f64>> {
         let size = self.q.len();
         let matrix = DMatrix::from_fn(size, size, |i, j| self.matrix[i][j]);
         let pushed = match self.form {
-            PosedForm::Compliance => matrix * forces,
-            PosedForm::Stiffness => {
+            ReportedForm::Compliance => matrix * forces,
+            ReportedForm::Stiffness => {
                 let load = DVector::from_column_slice(&self.load);
                 matrix.lu().solve(&(forces + load))?
             }
@@ -458,10 +460,10 @@ impl Posed {
     }
 }
 
-/// Kind of the matrix of a [`Posed`] problem.
+/// Kind of the matrix of a [`ReportedProblem`] problem.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum PosedForm {
+pub enum ReportedForm {
     /// W (length per force).
     Compliance,
     /// K (force per length).
@@ -481,11 +483,11 @@ impl Solver for Stepper {
         Stepper::event(self)
     }
 
-    fn step(&mut self) -> Result<bool, Lost> {
+    fn step(&mut self) -> Result<bool, SolverLost> {
         Ok(Stepper::step(self).is_some())
     }
 
-    fn restore(&mut self, state: &State) -> Result<(), Lost> {
+    fn restore(&mut self, state: &State) -> Result<(), SolverLost> {
         Stepper::restore(self, state);
         Ok(())
     }
@@ -498,8 +500,8 @@ impl Solver for Stepper {
         Stepper::monitors(self, out);
     }
 
-    fn offers(&self) -> Offers {
-        Offers::all()
+    fn capabilities(&self) -> Capabilities {
+        Capabilities::all()
     }
 
     fn stepper(&mut self) -> Option<&mut Stepper> {

@@ -7,21 +7,21 @@ use crate::contact::laws::Verdict;
 use crate::contact::state::ContactState;
 use crate::fem::assembly::history_len;
 use crate::interface::line_search::LineSearch;
-use crate::interface::method::Searched;
+use crate::interface::method::SearchProgress;
 use crate::interface::minor_history::MinorHistory;
-use crate::linear::source::{Accepted, At};
+use crate::linear::source::{AcceptedState, LinearisationPoint};
 use crate::model::least;
 use crate::model::{Control, Friction, Geometry, Model, Settings, SlipCount};
+use crate::step::arc_state::ArcState;
 use crate::step::event::{Failure, Position};
 use crate::step::intervention::{Intervention, Value};
 use crate::step::major_history::MajorHistory;
 use crate::step::pace::Pace;
 use crate::step::recovery::fallback::{Fallback, FallbackState};
 use crate::step::recovery::motion::Motion;
-use crate::step::recovery::proximal::Brake;
+use crate::step::recovery::proximal::SlipStiffness;
 use crate::step::sub_increment::SubIncrement;
 use crate::step::watch::StabilityWatch;
-use crate::step::way::Way;
 use crate::strategy;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -87,10 +87,10 @@ pub struct State {
     pub watch: StabilityWatch,
     /// How sliding is held back in the current attempt ([`crate::step::recovery::proximal`]). `None` if it is not.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub brake: Option<Brake>,
+    pub brake: Option<SlipStiffness>,
     /// Arc-length data of the path. `None` under load control.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub way: Option<Box<Way>>,
+    pub way: Option<Box<ArcState>>,
     /// Damped motion past a limit point that is in progress; each of its steps is an attempt at the increment.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub motion: Option<Motion>,
@@ -98,18 +98,18 @@ pub struct State {
     #[serde(rename = "detour", default, skip_serializing_if = "Option::is_none")]
     pub fallback: Option<FallbackState>,
     /// Record of the searches done so far.
-    #[serde(default, skip_serializing_if = "Searches::is_new")]
-    pub searched: Searches,
+    #[serde(default, skip_serializing_if = "SearchRecord::is_new")]
+    pub searched: SearchRecord,
     /// Position of an attached solver, which stores its own data. `None` for the built-in solver.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub outside: Option<Box<Outside>>,
+    pub outside: Option<Box<ExternalState>>,
     /// Whether and how the solver can continue.
     pub status: Status,
 }
 
 /// Position of an attached solver, and the changes to send before its next iteration.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Outside {
+pub struct ExternalState {
     /// Number of the state from which it continues; 0 is the start.
     pub place: u64,
     /// Changes since then, in order.
@@ -124,7 +124,7 @@ pub struct Outside {
 /// Record of the search for recoveries in a run ([`crate::model::SearchMode`]). Costs are numbers of factorizations: one of the
 /// interface for each minor iteration, one of the bodies for each major iteration.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Searches {
+pub struct SearchRecord {
     /// Cost of all searches.
     pub spent: u32,
     /// Cost of the rest of the run.
@@ -146,7 +146,7 @@ pub struct Searches {
 /// Limit of the cost of searches over that of the rest of the run, unless the scene sets one.
 const WORTH: u32 = 4;
 
-impl Searches {
+impl SearchRecord {
     /// Whether a fallback may continue within the limit; 0 means [`WORTH`] times the cost of the run. Smaller increments may
     /// spend half of it.
     pub(super) fn can_afford(&self, by: Fallback, limit: u32) -> bool {
@@ -162,7 +162,7 @@ impl Searches {
 
     /// Whether no search was done yet.
     pub fn is_new(&self) -> bool {
-        *self == Searches::default()
+        *self == SearchRecord::default()
     }
 }
 
@@ -207,7 +207,7 @@ pub struct Progress {
     pub rounds: u32,
     /// Progress of the search over all nodes in the current major iteration.
     #[serde(rename = "pivoting")]
-    pub searched: Searched,
+    pub searched: SearchProgress,
     /// Number of states found by it that were not confirmed.
     pub unconfirmed: usize,
     /// Whether the tangent of the current major iteration omits the change of the contact geometry: with it, no strategy found
@@ -296,10 +296,10 @@ impl State {
             pace: Pace::default(),
             watch: StabilityWatch::default(),
             brake: None,
-            way: (model.control == Control::Arc).then(|| Box::new(Way::new(model))),
+            way: (model.control == Control::Arc).then(|| Box::new(ArcState::new(model))),
             motion: None,
             fallback: None,
-            searched: Searches::default(),
+            searched: SearchRecord::default(),
             cuts: BTreeMap::new(),
             outside: None,
             status: Status::Running,
@@ -329,7 +329,7 @@ impl State {
         State {
             pace: self.pace.digested(),
             watch: StabilityWatch::default(),
-            searched: Searches {
+            searched: SearchRecord {
                 run: 0,
                 ..self.searched.clone()
             },
@@ -385,10 +385,10 @@ impl State {
     }
 
     /// The part of the state that a source may read.
-    pub fn at(&self) -> At<'_> {
-        At {
+    pub fn at(&self) -> LinearisationPoint<'_> {
+        LinearisationPoint {
             u: &self.u,
-            accepted: Accepted {
+            accepted: AcceptedState {
                 u: &self.start.u,
                 history: &self.start.history,
                 contacts: &self.start.nodes,

@@ -12,7 +12,7 @@
 //! forces, `verdict` and `jump` decide whether a converged state is accepted, `increment` accepts it or cuts.
 
 use crate::contact::state::ContactState;
-use crate::executor::{Executor, InTurn};
+use crate::executor::{Executor, SequentialExecutor};
 use crate::interface::kinematics::NodeKinematics;
 use crate::interface::method::Method;
 use crate::interface::minor_history::Cycle;
@@ -20,14 +20,14 @@ use crate::interface::problem::InterfaceProblem;
 use crate::linear::bodies::Bodies;
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
-use crate::linear::source::{Solved, Source, Work};
+use crate::linear::source::{SolveResult, Source, Work};
 use crate::linear::sparse::SparseInterface;
 use crate::linear::stability::Stability;
 use crate::model::{Model, Strategy};
 use crate::step::event::{Event, Failure, Outcome};
 use crate::step::intervene::{Intervention, Refusal};
 use crate::step::iterate::Iterate;
-use crate::step::recovery::left_out::LeftOut;
+use crate::step::recovery::left_out::OmittedStep;
 use crate::step::state::{State, Status};
 use crate::strategy::{self, AnyMethod};
 use std::sync::Arc;
@@ -36,18 +36,18 @@ use std::sync::Arc;
 pub struct Stepper {
     pub(super) now: Iterate,
     /// Frozen problem borrowed from another stepper of the same scene.
-    borrowed: Option<Box<Lent>>,
+    borrowed: Option<Box<FrozenProblem>>,
     /// Contacts at the start of the current minor iteration, if only one of them may change.
     pub(super) before: Vec<ContactState>,
     pub(super) event: Event,
     /// The recovery or strategy that is disabled.
-    pub(super) left_out: Option<LeftOut>,
+    pub(super) left_out: Option<OmittedStep>,
     /// The strategy used instead of Table 2.
     custom: Option<Arc<dyn Method>>,
 }
 
 /// Frozen problem that one stepper lends to another of the same scene.
-pub struct Lent {
+pub struct FrozenProblem {
     state: State,
     problem: InterfaceProblem,
     /// The cycle that the minor iterations from this state run into.
@@ -57,7 +57,7 @@ pub struct Lent {
 impl Stepper {
     /// A stepper of built-in bodies at the start of a scene's history.
     pub fn new(model: Arc<Model>) -> Self {
-        Stepper::with_executor(model, Arc::new(InTurn))
+        Stepper::with_executor(model, Arc::new(SequentialExecutor))
     }
 
     /// The same, with an executor that works on the bodies in parallel.
@@ -169,7 +169,7 @@ impl Stepper {
         if !settled {
             return Some(self.go_on());
         }
-        if solved == Solved::NearlySingular && self.now.is_unbounded() {
+        if solved == SolveResult::NearlySingular && self.now.is_unbounded() {
             return Some(self.escalate(Failure::Singular(Singular::Unexplained)));
         }
         self.now
@@ -274,10 +274,10 @@ impl Stepper {
 
     /// Restores a state and lends its frozen problem, if it is available: if the bodies are condensed, and within the same major
     /// iteration.
-    pub fn lend(&mut self, state: &State) -> Option<Lent> {
+    pub fn lend(&mut self, state: &State) -> Option<FrozenProblem> {
         let at_hand = self.condenses() && self.stands_for(state);
         at_hand.then(|| self.restore(state))?;
-        Some(Lent {
+        Some(FrozenProblem {
             problem: self.interface_problem()?,
             cycle: self.cycle_ahead(),
             state: state.clone(),
@@ -285,7 +285,7 @@ impl Stepper {
     }
 
     /// Borrows a frozen problem from another stepper of the same scene, so that it is not recomputed within its major iteration.
-    pub fn borrow(&mut self, lent: Lent) {
+    pub fn borrow(&mut self, lent: FrozenProblem) {
         self.borrowed = Some(Box::new(lent));
     }
 

@@ -162,7 +162,7 @@ fn cornered(solver: LinearSolver, pressed: [f64; 2]) -> Stepper {
             inner: 0,
         },
         length: 1.0,
-        ..Model::of_contacts(
+        ..Model::from_contacts(
             "In a corner",
             nodes.collect(),
             vec![surface("floor", [1, 2]), surface("wall", [2, 3])],

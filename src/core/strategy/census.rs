@@ -1,10 +1,12 @@
 //! The census as a strategy: tries all combinations of modes ([`crate::interface::census`]). Consistent ones are proposed in
 //! sequence, starting with the one that changes the fewest nodes.
 
-use crate::contact::table2::{Rule, Tested};
+use crate::contact::table2::{Rule, TestedQuantity};
 use crate::interface::census;
-use crate::interface::method::{Asked, Method, NoProposal, NotFound, Proposal, Search, Searched};
-use crate::interface::problem::{Assumed, NodeAnswer};
+use crate::interface::method::{
+    Method, NoProposal, NotFound, Proposal, Search, SearchInput, SearchProgress,
+};
+use crate::interface::problem::{AssumedMode, NodeAnswer};
 use crate::model::BoundUpdate;
 
 /// All combinations of modes of the nodes that can touch.
@@ -22,7 +24,7 @@ impl Method for CensusStrategy {
 
 impl Search for CensusStrategy {
     /// Proposes solution number `asked.start`.
-    fn propose(&self, asked: Asked<'_>) -> Result<Proposal, NoProposal> {
+    fn propose(&self, asked: SearchInput<'_>) -> Result<Proposal, NoProposal> {
         let problem = (asked.problem)().ok_or(NotFound::NotCondensed)?;
         let undecided: Vec<usize> = (0..problem.nodes.len())
             .filter(|&place| problem.nodes[place].choices().len() > 1)
@@ -43,7 +45,7 @@ impl Search for CensusStrategy {
                 states => NotFound::Unconfirmed { states }.into(),
             });
         };
-        let free = (Assumed::Free, [0.0, 0.0, f64::INFINITY, 0.0]);
+        let free = (AssumedMode::Free, [0.0, 0.0, f64::INFINITY, 0.0]);
         let mut nodes = vec![free; asked.brought.len()];
         for (&place, node) in undecided.iter().zip(&found.answer.nodes) {
             let numbers = [node.f_n, node.f_t, node.gap, node.slip];
@@ -53,9 +55,9 @@ impl Search for CensusStrategy {
             nodes,
             rule: Rule::Found,
             cover: 0.0,
-            covers: Tested::Cover,
+            covers: TestedQuantity::Cover,
             bound: None,
-            next: Searched::Found { start: asked.start },
+            next: SearchProgress::Found { start: asked.start },
         })
     }
 }

@@ -4,9 +4,11 @@
 //! If forces are not unique, those found by pivoting are moved to a state whose modes have a unique solution
 //! ([`crate::interface::vertex`]). Table 2 checks the result in the next minor iteration.
 
-use crate::contact::table2::{Rule, Tested};
+use crate::contact::table2::{Rule, TestedQuantity};
 use crate::interface::copositive::{Copositive as Pivoting, STARTS};
-use crate::interface::method::{Asked, Method, NoProposal, NotFound, Proposal, Search, Searched};
+use crate::interface::method::{
+    Method, NoProposal, NotFound, Proposal, Search, SearchInput, SearchProgress,
+};
 use crate::interface::tableau::PathEnd;
 use crate::interface::vertex::vertices;
 use crate::model::BoundUpdate;
@@ -48,7 +50,7 @@ impl Method for CopositiveStrategy {
 
 impl Search for CopositiveStrategy {
     /// One step of the path; if it has ended on a ray, continues with the next start.
-    fn propose(&self, mut asked: Asked<'_>) -> Result<Proposal, NoProposal> {
+    fn propose(&self, mut asked: SearchInput<'_>) -> Result<Proposal, NoProposal> {
         if asked.start >= STARTS {
             return Err(match asked.unconfirmed {
                 0 => NotFound::Ray.into(),
@@ -78,15 +80,15 @@ impl Search for CopositiveStrategy {
             nodes,
             rule: if solved { Rule::Found } else { Rule::Pivots },
             cover: pivoting.cover(),
-            covers: Tested::Cover,
+            covers: TestedQuantity::Cover,
             bound: pivoting.bound(),
             next: match ended {
-                None => Searched::At {
+                None => SearchProgress::At {
                     start: path.start,
                     step: path.step,
                 },
-                Some(PathEnd::Solved) => Searched::Found { start: path.start },
-                Some(PathEnd::Ray | PathEnd::Astray) => Searched::At {
+                Some(PathEnd::Solved) => SearchProgress::Found { start: path.start },
+                Some(PathEnd::Ray | PathEnd::Astray) => SearchProgress::At {
                     start: path.start + 1,
                     step: 0,
                 },
@@ -97,12 +99,12 @@ impl Search for CopositiveStrategy {
     }
 }
 
-fn path_is_at(path: &CopositivePath, asked: &Asked<'_>) -> bool {
+fn path_is_at(path: &CopositivePath, asked: &SearchInput<'_>) -> bool {
     (path.start, path.step) == (asked.start, asked.step)
 }
 
 /// The path after the pivots done so far.
-fn path(asked: &mut Asked<'_>) -> Result<CopositivePath, NotFound> {
+fn path(asked: &mut SearchInput<'_>) -> Result<CopositivePath, NotFound> {
     let problem = (asked.problem)().ok_or(NotFound::NotCondensed)?;
     let mut path = CopositivePath {
         pivoting: Pivoting::new(&problem, asked.start).ok_or(NotFound::NoStart)?,

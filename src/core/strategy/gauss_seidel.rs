@@ -9,9 +9,11 @@
 //! fallen by a factor of 10, at most [`MOST_SWEEPS`] times. Below [`SETTLED`] the modes are solved for once more; if they have no
 //! unique solution, the forces of the sweeps are accepted.
 
-use crate::contact::table2::{Rule, Tested};
-use crate::interface::method::{Asked, Method, NoProposal, NotFound, Proposal, Search, Searched};
-use crate::interface::problem::Assumed;
+use crate::contact::table2::{Rule, TestedQuantity};
+use crate::interface::method::{
+    Method, NoProposal, NotFound, Proposal, Search, SearchInput, SearchProgress,
+};
+use crate::interface::problem::AssumedMode;
 use crate::interface::sweep::Sweep;
 use crate::interface::vertex::vertices;
 use crate::model::BoundUpdate;
@@ -36,7 +38,7 @@ const MEASURED: usize = 10;
 const MOST_GIVEN: usize = 100_000;
 
 /// State of the sweeps.
-struct Going {
+struct SweepState {
     sweep: Sweep,
     /// Number of proposals so far, and of minor iterations since the last one.
     start: usize,
@@ -47,8 +49,8 @@ struct Going {
     lasted: usize,
     patience: usize,
     /// The previous modes, and those of the last proposal.
-    does: Vec<Assumed>,
-    found: Vec<Assumed>,
+    does: Vec<AssumedMode>,
+    found: Vec<AssumedMode>,
     /// Change in the last sweep, or the error of a given compliance (relative).
     change: f64,
     /// Sweeps done.
@@ -57,9 +59,9 @@ struct Going {
     unanswered: usize,
 }
 
-impl Going {
+impl SweepState {
     fn new(sweep: Sweep) -> Self {
-        Going {
+        SweepState {
             sweep,
             start: 0,
             step: 0,
@@ -83,7 +85,7 @@ impl Going {
         }
         self.done += 1;
         self.step += 1;
-        let does: Vec<Assumed> = (0..nodes).map(|k| self.sweep.assumed(k)).collect();
+        let does: Vec<AssumedMode> = (0..nodes).map(|k| self.sweep.assumed(k)).collect();
         self.unanswered = match self.sweep.is_answered() {
             true => 0,
             false => self.unanswered + 1,
@@ -154,10 +156,10 @@ impl Method for GaussSeidel {
 
 impl Search for GaussSeidel {
     /// Several sweeps over all nodes.
-    fn propose(&self, mut asked: Asked<'_>) -> Result<Proposal, NoProposal> {
+    fn propose(&self, mut asked: SearchInput<'_>) -> Result<Proposal, NoProposal> {
         let nodes = asked.brought.len();
         let kept = asked.kept.take().and_then(|kept| kept.downcast().ok());
-        let mut going: Box<Going> = match kept {
+        let mut going: Box<SweepState> = match kept {
             Some(going) if is_at(&going, &asked) => going,
             _ => Box::new(going(&mut asked)?),
         };
@@ -184,13 +186,13 @@ impl Search for GaussSeidel {
             },
             cover: going.change,
             covers: match going.sweep.is_given() {
-                true => Tested::Error,
-                false => Tested::Change,
+                true => TestedQuantity::Error,
+                false => TestedQuantity::Change,
             },
             bound: None,
             next: match lasts {
-                true => Searched::Found { start: asked.start },
-                false => Searched::At {
+                true => SearchProgress::Found { start: asked.start },
+                false => SearchProgress::At {
                     start: asked.start,
                     step: going.step,
                 },
@@ -201,13 +203,13 @@ impl Search for GaussSeidel {
     }
 }
 
-fn is_at(going: &Going, asked: &Asked<'_>) -> bool {
+fn is_at(going: &SweepState, asked: &SearchInput<'_>) -> bool {
     (going.start, going.step) == (asked.start, asked.step)
 }
 
 /// The state of the sweeps so far.
-fn going(asked: &mut Asked<'_>) -> Result<Going, NotFound> {
-    let mut going = Going::new((asked.sweep)()?);
+fn going(asked: &mut SearchInput<'_>) -> Result<SweepState, NotFound> {
+    let mut going = SweepState::new((asked.sweep)()?);
     while !is_at(&going, asked) && !going.is_over() {
         going.go(asked.brought.len());
     }

@@ -1,9 +1,11 @@
 //! Lemke's pivoting on the linear complementarity problem of Coulomb's law ([`crate::interface::lemke`]), with one pivot per
 //! minor iteration. Table 2 checks the result in the next minor iteration.
 
-use crate::contact::table2::{Rule, Tested};
+use crate::contact::table2::{Rule, TestedQuantity};
 use crate::interface::lemke::{Lemke as Tableau, PathEnd, STARTS};
-use crate::interface::method::{Asked, Method, NoProposal, NotFound, Proposal, Search, Searched};
+use crate::interface::method::{
+    Method, NoProposal, NotFound, Proposal, Search, SearchInput, SearchProgress,
+};
 use crate::model::BoundUpdate;
 
 /// Pivoting from several starts.
@@ -28,7 +30,7 @@ impl Method for LemkeStrategy {
 
 impl Search for LemkeStrategy {
     /// One pivot; if a path has ended on a ray, continues with the next start.
-    fn propose(&self, mut asked: Asked<'_>) -> Result<Proposal, NoProposal> {
+    fn propose(&self, mut asked: SearchInput<'_>) -> Result<Proposal, NoProposal> {
         let kept = asked.kept.take().and_then(|kept| kept.downcast().ok());
         let mut path: Box<LemkePath> = match kept {
             Some(path) if is_at(&path, &asked) => path,
@@ -49,15 +51,15 @@ impl Search for LemkeStrategy {
                 _ => Rule::Pivots,
             },
             cover: tableau.cover(),
-            covers: Tested::Cover,
+            covers: TestedQuantity::Cover,
             bound: tableau.bound(),
             next: match ended {
-                None => Searched::At {
+                None => SearchProgress::At {
                     start,
                     step: path.step,
                 },
-                Some(PathEnd::Solved) => Searched::Found { start },
-                Some(PathEnd::Ray | PathEnd::Astray) => Searched::At {
+                Some(PathEnd::Solved) => SearchProgress::Found { start },
+                Some(PathEnd::Ray | PathEnd::Astray) => SearchProgress::At {
                     start: start + 1,
                     step: 0,
                 },
@@ -68,12 +70,12 @@ impl Search for LemkeStrategy {
     }
 }
 
-fn is_at(path: &LemkePath, asked: &Asked<'_>) -> bool {
+fn is_at(path: &LemkePath, asked: &SearchInput<'_>) -> bool {
     (path.start, path.step) == (asked.start, asked.step)
 }
 
 /// The tableau after the pivots done so far, for a start or the next one with a regular basis.
-fn path(asked: &mut Asked<'_>) -> Result<LemkePath, NotFound> {
+fn path(asked: &mut SearchInput<'_>) -> Result<LemkePath, NotFound> {
     let problem = (asked.problem)().ok_or(NotFound::NotCondensed)?;
     let mut starts = (asked.start..STARTS).filter_map(|number| {
         let tableau = Tableau::new(&problem, asked.brought, number)?;

@@ -16,8 +16,8 @@
 //!
 //! If full steps cycle, a line search repeats them ([`crate::interface::line_search`]).
 
-use crate::contact::table2::{Decision, Numbers, Rule, Tested};
-use crate::interface::method::{Choice, Known, Method};
+use crate::contact::table2::{Decision, Numbers, Rule, TestedQuantity};
+use crate::interface::method::{Choice, Method, NodeContext};
 use crate::model::{BoundUpdate, Mode};
 
 /// Newton's method on the projection equations.
@@ -36,7 +36,7 @@ impl Method for Newton {
         true
     }
 
-    fn choose(&self, numbers: &Numbers, known: &Known<'_>) -> Choice {
+    fn choose(&self, numbers: &Numbers, known: &NodeContext<'_>) -> Choice {
         let (friction, ties) = (known.friction, known.ties);
         let (stiffness, had) = (known.spring, known.sign);
         let before = numbers.mode;
@@ -67,9 +67,9 @@ impl Method for Newton {
             }
         };
         let touch = kept(opens == (before == Mode::Free), pressure);
-        let pressed = ties.test(Tested::Pressure, pressure, 0.0, touch, ties.force);
+        let pressed = ties.test(TestedQuantity::Pressure, pressure, 0.0, touch, ties.force);
         let shear = kept(next == before && sign == had, drag.abs() - limit);
-        let sheared = ties.test(Tested::Drag, drag.abs(), limit, shear, ties.force);
+        let sheared = ties.test(TestedQuantity::Drag, drag.abs(), limit, shear, ties.force);
         let decision = Decision {
             before,
             next,

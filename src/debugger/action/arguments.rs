@@ -1,13 +1,15 @@
 //! Parses the arguments of actions.
 
 use super::context::{Context, any_or_exact, chosen, exact, find, model, several};
-use super::meaning::{Action, ChartOf, Colours, CopyTarget, Filter, Question, Sort, Ui, Whose};
-use super::misread::Misread;
+use super::meaning::{
+    Action, ChartOf, Colours, CopyTarget, Filter, HiddenDecisions, Question, Sort, Ui,
+};
 use super::parameters::{parameter, set_paths};
+use super::parse_error::ParseError;
 use super::table::{ActionEntry, Verb};
 use crate::history::breakpoints::Condition;
 use crate::history::watches::{Watch, WatchQuantity};
-use crate::record::command::{Command, ExportScope, To};
+use crate::record::command::{BranchTarget, Command, ExportScope};
 use std::path::PathBuf;
 use stickslip_core::model::Mode;
 use stickslip_manual as manual;
@@ -17,20 +19,20 @@ use stickslip_study::Vary;
 const LONGEST_REST: usize = 1000;
 
 /// Parses a line: the name of an action and its arguments.
-pub fn parse(line: &str, context: &Context) -> Result<Action, Misread> {
+pub fn parse(line: &str, context: &Context) -> Result<Action, ParseError> {
     let line = line.trim();
     let (word, rest) = line.split_once(char::is_whitespace).unwrap_or((line, ""));
     if word.is_empty() {
-        return Err(Misread::Nothing);
+        return Err(ParseError::Nothing);
     }
     context.entry(word)?.act(rest.trim(), context)
 }
 
 impl ActionEntry {
     /// The action of this entry with these arguments.
-    pub fn act(&self, rest: &str, context: &Context) -> Result<Action, Misread> {
+    pub fn act(&self, rest: &str, context: &Context) -> Result<Action, ParseError> {
         if rest.chars().count() > LONGEST_REST {
-            return Err(Misread::LongRest {
+            return Err(ParseError::LongRest {
                 name: self.name,
                 most: LONGEST_REST,
             });
@@ -70,7 +72,7 @@ impl ActionEntry {
                 [word] => Command::Goto {
                     step: word
                         .parse()
-                        .map_err(|_| Misread::no_value(word, "step number", self.usage()))?,
+                        .map_err(|_| ParseError::no_value(word, "step number", self.usage()))?,
                 },
                 _ => return Err(self.misused()),
             },
@@ -78,7 +80,7 @@ impl ActionEntry {
             Verb::Branch(None) | Verb::Rename | Verb::Unwatch if rest.is_empty() => {
                 return Err(self.misused());
             }
-            Verb::Branch(None) => Command::Branch(To::Named(rest.into())),
+            Verb::Branch(None) => Command::Branch(BranchTarget::Named(rest.into())),
             Verb::Rename => Command::Rename(rest.into()),
             Verb::Unwatch => Command::Unwatch(rest.into()),
             Verb::Compare => Command::Compare((!rest.is_empty()).then(|| rest.into())),
@@ -150,7 +152,7 @@ impl ActionEntry {
                 return match words[..] {
                     [] => ui(Ui::Magnify(None)),
                     [word] => match number(word) {
-                        None => Err(Misread::no_value(
+                        None => Err(ParseError::no_value(
                             word,
                             "factor from 1 to 1e9",
                             self.usage(),
@@ -166,7 +168,7 @@ impl ActionEntry {
             Verb::Answer if rest.is_empty() => return ask(Question::Answer),
             Verb::Answer => return ui(Ui::Answer(rest.into())),
             Verb::Predict => {
-                let whose = one_of(&words, Whose::ALL, Whose::word)?;
+                let whose = one_of(&words, HiddenDecisions::ALL, HiddenDecisions::word)?;
                 return ui(Ui::Predict(whose));
             }
             Verb::Monitor if rest.is_empty() => return ui(Ui::Monitor(None)),
@@ -181,44 +183,48 @@ impl ActionEntry {
     }
 
     /// The error for too few or too many words.
-    fn misused(&self) -> Misread {
-        Misread::Usage(self.usage())
+    fn misused(&self) -> ParseError {
+        ParseError::Usage(self.usage())
     }
 
-    fn count(&self, words: &[&str]) -> Result<u32, Misread> {
+    fn count(&self, words: &[&str]) -> Result<u32, ParseError> {
         let Some(word) = words.first() else {
             return Ok(1);
         };
         match word.parse() {
             Ok(count) if count > 0 => Ok(count),
-            _ => Err(Misread::no_value(word, "count", self.usage())),
+            _ => Err(ParseError::no_value(word, "count", self.usage())),
         }
     }
 
     /// An entry of a list, counted from 0.
-    fn number(&self, words: &[&str]) -> Result<usize, Misread> {
+    fn number(&self, words: &[&str]) -> Result<usize, ParseError> {
         let [word] = words[..] else {
             return Err(self.misused());
         };
         match word.parse::<usize>() {
             Ok(number) if number > 0 => Ok(number - 1),
-            _ => Err(Misread::no_value(word, "list entry", self.usage())),
+            _ => Err(ParseError::no_value(word, "list entry", self.usage())),
         }
     }
 
     /// The number of a breakpoint; `None` for all.
-    fn number_or_all(&self, words: &[&str]) -> Result<Option<u32>, Misread> {
+    fn number_or_all(&self, words: &[&str]) -> Result<Option<u32>, ParseError> {
         match words[..] {
             ["all"] => Ok(None),
             [word] => match word.parse() {
                 Ok(number) => Ok(Some(number)),
-                Err(_) => Err(Misread::no_value(word, "breakpoint number", self.usage())),
+                Err(_) => Err(ParseError::no_value(
+                    word,
+                    "breakpoint number",
+                    self.usage(),
+                )),
             },
             _ => Err(self.misused()),
         }
     }
 
-    fn watch(&self, words: &[&str], context: &Context) -> Result<Watch, Misread> {
+    fn watch(&self, words: &[&str], context: &Context) -> Result<Watch, ParseError> {
         let (what, name) = match words.iter().position(|word| *word == "as") {
             Some(at) if at + 1 == words.len() => return Err(self.misused()),
             Some(at) => (&words[..at], Some(words[at + 1..].join(" "))),
@@ -228,9 +234,9 @@ impl ActionEntry {
             return Err(self.misused());
         };
         let model = model(context)?;
-        let quantity = WatchQuantity::of_word(word).ok_or_else(|| {
+        let quantity = WatchQuantity::from_word(word).ok_or_else(|| {
             let all = WatchQuantity::NAMES.join(", ");
-            Misread::NotWatched(word.to_string(), all)
+            ParseError::NotWatched(word.to_string(), all)
         })?;
         let slave = match (quantity.is_nodal(), rest) {
             (true, []) => chosen(None, context)?,
@@ -245,14 +251,14 @@ impl ActionEntry {
         })
     }
 
-    fn force(&self, words: &[&str], hold: bool, context: &Context) -> Result<Action, Misread> {
+    fn force(&self, words: &[&str], hold: bool, context: &Context) -> Result<Action, ParseError> {
         let (node, word) = match words[..] {
             [] if !hold => return Ok(Action::Ui(Ui::Ask(Question::Mode))),
             [word] => (None, word),
             [node, word] => (Some(node), word),
             _ => return Err(self.misused()),
         };
-        let mode = mode(word).ok_or_else(|| Misread::no_mode(word))?;
+        let mode = mode(word).ok_or_else(|| ParseError::no_mode(word))?;
         Ok(Action::Session(Command::Force {
             slave: chosen(node, context)?,
             mode,
@@ -260,7 +266,7 @@ impl ActionEntry {
         }))
     }
 
-    fn set(&self, rest: &str, words: &[&str], context: &Context) -> Result<Command, Misread> {
+    fn set(&self, rest: &str, words: &[&str], context: &Context) -> Result<Command, ParseError> {
         // Names and texts of attached solvers may contain spaces.
         if let Some((known, value)) = parameter(rest, context)
             && !value.is_empty()
@@ -272,7 +278,10 @@ impl ActionEntry {
         }
         let [path, value] = words[..] else {
             let paths = set_paths(context).join(", ");
-            return Err(Misread::Usage(format!("{}; paths: {paths}", self.usage())));
+            return Err(ParseError::Usage(format!(
+                "{}; paths: {paths}",
+                self.usage()
+            )));
         };
         Ok(Command::Set {
             path: path.into(),
@@ -287,11 +296,11 @@ pub(super) const CONDITIONS: [&str; 8] = [
 ];
 
 /// Parses a breakpoint condition. A missing node, or `any`, means any node.
-fn condition(words: &[&str], context: &Context) -> Result<Condition, Misread> {
+fn condition(words: &[&str], context: &Context) -> Result<Condition, ParseError> {
     let (word, rest) = words
         .split_first()
         .map_or(("", words), |(w, rest)| (*w, rest));
-    let usage = |how: &str| Misread::Usage(format!("usage: break {word} {how}"));
+    let usage = |how: &str| ParseError::Usage(format!("usage: break {word} {how}"));
     match (word, rest) {
         ("mode" | "leaves", _) if rest.len() <= 2 => {
             let (node, mode) = node_and_mode(rest, context)?;
@@ -306,7 +315,7 @@ fn condition(words: &[&str], context: &Context) -> Result<Condition, Misread> {
         ("margin", [.., value]) if rest.len() <= 2 => {
             let below = value.parse::<f64>().ok().filter(|below| below.is_finite());
             let below = below
-                .ok_or_else(|| Misread::no_value(value, "margin", "expected a number".into()))?;
+                .ok_or_else(|| ParseError::no_value(value, "margin", "expected a number".into()))?;
             let node = any_or_exact(rest.get(rest.len().wrapping_sub(2)), context)?;
             Ok(Condition::Margin { node, below })
         }
@@ -321,7 +330,7 @@ fn condition(words: &[&str], context: &Context) -> Result<Condition, Misread> {
         ("cycle" | "residual" | "failure", _) => Err(usage("")),
         ("at", [place]) => Ok(Condition::At(place.parse()?)),
         ("at", _) => Err(usage("INC[.MAJOR[.MINOR]]")),
-        _ => Err(Misread::NoCondition(word.into(), CONDITIONS.join(", "))),
+        _ => Err(ParseError::NoCondition(word.into(), CONDITIONS.join(", "))),
     }
 }
 
@@ -329,7 +338,7 @@ fn condition(words: &[&str], context: &Context) -> Result<Condition, Misread> {
 fn node_and_mode(
     words: &[&str],
     context: &Context,
-) -> Result<(Option<usize>, Option<Mode>), Misread> {
+) -> Result<(Option<usize>, Option<Mode>), ParseError> {
     match words {
         [] => Ok((None, None)),
         [word] => match mode(word) {
@@ -337,7 +346,7 @@ fn node_and_mode(
             None => Ok((any_or_exact(Some(word), context)?, None)),
         },
         [node, word, ..] => {
-            let mode = mode(word).ok_or_else(|| Misread::no_mode(word))?;
+            let mode = mode(word).ok_or_else(|| ParseError::no_mode(word))?;
             Ok((any_or_exact(Some(node), context)?, Some(mode)))
         }
     }
@@ -359,18 +368,18 @@ pub fn mode(word: &str) -> Option<Mode> {
 }
 
 /// Parses an increment size.
-pub fn increment(word: &str) -> Result<f64, Misread> {
+pub fn increment(word: &str) -> Result<f64, ParseError> {
     match word.trim().parse::<f64>() {
         Ok(size) if size.is_finite() && size > 0.0 => Ok(size),
         _ => {
             let instead = "expected a positive number such as 0.005".into();
-            Err(Misread::no_value(word.trim(), "increment", instead))
+            Err(ParseError::no_value(word.trim(), "increment", instead))
         }
     }
 }
 
 /// Parses a file, or settings with their values; nothing means the scene's own chart.
-fn chart_of(rest: &str, words: &[&str]) -> Result<ChartOf, Misread> {
+fn chart_of(rest: &str, words: &[&str]) -> Result<ChartOf, ParseError> {
     if rest.is_empty() {
         return Ok(ChartOf::Scene);
     }
@@ -378,7 +387,7 @@ fn chart_of(rest: &str, words: &[&str]) -> Result<ChartOf, Misread> {
         return Ok(ChartOf::File(rest.into()));
     }
     let over: Result<_, _> = words.iter().map(|word| Vary::parse(word)).collect();
-    over.map(ChartOf::Settings).map_err(Misread::NoChart)
+    over.map(ChartOf::Settings).map_err(ParseError::NoChart)
 }
 
 /// The choice that a word is a prefix of; `None` without a word.
@@ -386,7 +395,7 @@ fn one_of<T: Copy>(
     words: &[&str],
     all: impl IntoIterator<Item = T>,
     spell: fn(T) -> &'static str,
-) -> Result<Option<T>, Misread> {
+) -> Result<Option<T>, ParseError> {
     let Some(word) = words.first() else {
         return Ok(None);
     };
@@ -398,20 +407,20 @@ fn one_of<T: Copy>(
             word.to_string(),
             all.iter().map(|&one| spell(one)).collect(),
         );
-        Misread::NoneOf { word, all }
+        ParseError::NoneOf { word, all }
     })
 }
 
 /// The number of the monitor with this name.
-fn monitor(name: &str, context: &Context) -> Result<usize, Misread> {
+fn monitor(name: &str, context: &Context) -> Result<usize, ParseError> {
     let monitors = &model(context)?.monitors;
     let found = monitors.iter().position(|monitor| monitor.name == name);
     found.ok_or_else(|| match monitors.is_empty() {
-        true => Misread::NoMonitors,
+        true => ParseError::NoMonitors,
         false => {
             let names: Vec<_> = monitors.iter().map(|m| m.name.as_str()).collect();
             let (name, monitors) = (name.to_string(), names.join(", "));
-            Misread::NoMonitor { name, monitors }
+            ParseError::NoMonitor { name, monitors }
         }
     })
 }

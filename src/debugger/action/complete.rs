@@ -2,7 +2,7 @@
 
 use super::arguments::CONDITIONS;
 use super::context::{Context, names};
-use super::meaning::{Colours, CopyTarget, Filter, Sort, Whose};
+use super::meaning::{Colours, CopyTarget, Filter, HiddenDecisions, Sort};
 use super::parameters::{parameter_lines, set_paths};
 use super::paths::beginning_with;
 use super::table::{ACTIONS, ActionEntry, Verb, by_name};
@@ -117,7 +117,7 @@ impl ActionEntry {
                 let names = context.lessons.iter();
                 names.map(|lesson| lesson.name.into()).collect()
             }
-            (Verb::Predict, 0) => Whose::NAMES.map(String::from).into(),
+            (Verb::Predict, 0) => HiddenDecisions::NAMES.map(String::from).into(),
             (Verb::Copy, 0) => CopyTarget::all().map(|what| what.word().into()).collect(),
             (Verb::Colours, 0) => Colours::NAMES.map(String::from).into(),
             (Verb::Mouse, 0) => ["on", "off"].map(String::from).into(),

@@ -46,16 +46,16 @@ impl Default for Config {
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Written {
+struct ConfigFile {
     #[serde(default)]
-    colours: WrittenColours,
+    colours: ConfigColours,
     #[serde(default = "on")]
     mouse: bool,
 }
 
 #[derive(Deserialize, Default)]
 #[serde(rename_all = "snake_case")]
-enum WrittenColours {
+enum ConfigColours {
     #[default]
     Auto,
     Dark,
@@ -91,14 +91,14 @@ impl Config {
     pub fn from(folder: &Path) -> Result<Config, SceneError> {
         let mut config = Config::default();
         if let Some((file, text)) = text(&folder.join(DEBUGGER))? {
-            let written: Written = read::value(&file, &text, "configuration")?;
+            let written: ConfigFile = read::value(&file, &text, "configuration")?;
             config.mouse = written.mouse;
             config.colours = match written.colours {
-                WrittenColours::Auto => None,
-                WrittenColours::Dark => Some(Colours::Dark),
-                WrittenColours::Light => Some(Colours::Light),
-                WrittenColours::HighContrast => Some(Colours::HighContrast),
-                WrittenColours::None => Some(Colours::None),
+                ConfigColours::Auto => None,
+                ConfigColours::Dark => Some(Colours::Dark),
+                ConfigColours::Light => Some(Colours::Light),
+                ConfigColours::HighContrast => Some(Colours::HighContrast),
+                ConfigColours::None => Some(Colours::None),
             };
         }
         if let Some((file, text)) = text(&folder.join(KEYS))? {

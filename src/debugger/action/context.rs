@@ -1,12 +1,12 @@
 //! The context in which arguments of actions are read, and the lookup of slave nodes by name.
 
 use super::keymap::Keymap;
-use super::misread::Misread;
+use super::parse_error::ParseError;
 use super::table::{ActionEntry, begun, by_name};
 use crate::history::tree::Tree;
 use stickslip_core::interface::census::MOST;
 use stickslip_core::model::Model;
-use stickslip_core::step::solver::Offers;
+use stickslip_core::step::solver::Capabilities;
 use stickslip_core::step::state::State;
 use stickslip_scene::Scene;
 use stickslip_scene::embedded::EmbeddedFile;
@@ -27,7 +27,7 @@ pub struct Context<'a> {
     /// The built-in lessons.
     pub lessons: &'a [EmbeddedFile],
     /// Capabilities of an attached solver; `None` for our own.
-    pub offers: Option<&'a Offers>,
+    pub offers: Option<&'a Capabilities>,
     /// The shown state.
     pub state: Option<&'a State>,
     /// The current keys; `None` for the defaults.
@@ -36,7 +36,7 @@ pub struct Context<'a> {
 
 impl Context<'_> {
     /// Finds an entry by name, one-letter key, or unique prefix.
-    pub fn entry(&self, word: &str) -> Result<&'static ActionEntry, Misread> {
+    pub fn entry(&self, word: &str) -> Result<&'static ActionEntry, ParseError> {
         let key = (word.chars().count() == 1).then_some(word);
         match (self.keymap, key) {
             (Some(keymap), Some(key)) => match keymap.by_key(key) {
@@ -49,21 +49,21 @@ impl Context<'_> {
 }
 
 /// The named slave node, or the selected one without a name.
-pub(super) fn chosen(word: Option<&str>, context: &Context) -> Result<usize, Misread> {
+pub(super) fn chosen(word: Option<&str>, context: &Context) -> Result<usize, ParseError> {
     match word {
         Some(word) => exact(word, context),
         None if context.selected < model(context)?.contacts.len() => Ok(context.selected),
-        None => Err(Misread::NoSlaves),
+        None => Err(ParseError::NoSlaves),
     }
 }
 
 /// The model of the open scene.
-pub(super) fn model<'a>(context: &Context<'a>) -> Result<&'a Model, Misread> {
-    context.model.ok_or(Misread::NoScene)
+pub(super) fn model<'a>(context: &Context<'a>) -> Result<&'a Model, ParseError> {
+    context.model.ok_or(ParseError::NoScene)
 }
 
 /// The slave node with exactly this name. No guessing, because the action changes the solve.
-pub fn exact(word: &str, context: &Context) -> Result<usize, Misread> {
+pub fn exact(word: &str, context: &Context) -> Result<usize, ParseError> {
     let model = model(context)?;
     let alias = context.scene.and_then(|scene| scene.node(word).ok());
     let node = model
@@ -81,8 +81,8 @@ pub fn exact(word: &str, context: &Context) -> Result<usize, Misread> {
     }
     let (word, slaves) = (word.to_string(), some_names(model));
     Err(match node.is_some() {
-        true => Misread::NoSlave { word, slaves },
-        false => Misread::NoNode { word, slaves },
+        true => ParseError::NoSlave { word, slaves },
+        false => ParseError::NoNode { word, slaves },
     })
 }
 
@@ -100,7 +100,7 @@ fn respelled(word: &str, model: &Model) -> Option<usize> {
 
 /// Slave nodes separated by spaces or commas, in ascending order without duplicates: by name or, if no node has
 /// that name, by index in the scene's list, from 1.
-pub(super) fn several(words: &[&str], context: &Context) -> Result<Vec<usize>, Misread> {
+pub(super) fn several(words: &[&str], context: &Context) -> Result<Vec<usize>, ParseError> {
     let words = words.iter().flat_map(|word| word.split(','));
     let mut nodes = Vec::new();
     for word in words.filter(|word| !word.is_empty()) {
@@ -118,12 +118,12 @@ pub(super) fn several(words: &[&str], context: &Context) -> Result<Vec<usize>, M
     nodes.sort_unstable();
     match nodes.len() {
         0..=MOST => Ok(nodes),
-        n => Err(Misread::ManyNodes(n)),
+        n => Err(ParseError::ManyNodes(n)),
     }
 }
 
 /// The next slave node after the selected one whose name equals or else contains the word.
-pub(super) fn find(word: &str, context: &Context) -> Result<usize, Misread> {
+pub(super) fn find(word: &str, context: &Context) -> Result<usize, ParseError> {
     if let Ok(slave) = exact(word, context) {
         return Ok(slave);
     }
@@ -133,7 +133,7 @@ pub(super) fn find(word: &str, context: &Context) -> Result<usize, Misread> {
     (1..=count)
         .map(|step| (context.selected + step) % count)
         .find(hit)
-        .ok_or_else(|| Misread::NotFound {
+        .ok_or_else(|| ParseError::NotFound {
             word: word.to_string(),
             slaves: some_names(model),
         })
@@ -160,7 +160,7 @@ fn some_names(model: &Model) -> String {
 pub(super) fn any_or_exact(
     word: Option<&&str>,
     context: &Context,
-) -> Result<Option<usize>, Misread> {
+) -> Result<Option<usize>, ParseError> {
     match word {
         None | Some(&"any") => Ok(None),
         Some(word) => exact(word, context).map(Some),

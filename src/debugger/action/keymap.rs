@@ -50,22 +50,22 @@ pub struct Keymap {
 }
 
 /// The entries of the file, in order.
-struct WrittenKeys(Vec<(String, Vec<String>)>);
+struct KeysFile(Vec<(String, Vec<String>)>);
 
-impl<'de> Deserialize<'de> for WrittenKeys {
+impl<'de> Deserialize<'de> for KeysFile {
     fn deserialize<D: Deserializer<'de>>(reader: D) -> Result<Self, D::Error> {
         struct Pairs;
         impl<'de> Visitor<'de> for Pairs {
-            type Value = WrittenKeys;
+            type Value = KeysFile;
             fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
                 f.write_str("a map from actions to keys, { \"step\": [\"s\"], ... }")
             }
-            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<WrittenKeys, A::Error> {
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<KeysFile, A::Error> {
                 let mut pairs = Vec::new();
                 while let Some(pair) = map.next_entry()? {
                     pairs.push(pair);
                 }
-                Ok(WrittenKeys(pairs))
+                Ok(KeysFile(pairs))
             }
         }
         reader.deserialize_map(Pairs)
@@ -77,7 +77,7 @@ impl Keymap {
     ///
     /// # Errors If the text cannot be parsed, an action or key is unknown, or two actions share a key.
     pub fn read(file: &str, text: &str) -> Result<Keymap, SceneError> {
-        let WrittenKeys(written) = read::value(file, text, "list of keys")?;
+        let KeysFile(written) = read::value(file, text, "list of keys")?;
         let wrong = |byte: usize, path: &Path, message: String| SceneError {
             file: file.to_owned(),
             at: Some(line_and_column(text, byte)),

@@ -77,7 +77,7 @@ pub enum Ui {
     /// Answer the lesson's question, or predict a mode.
     Answer(String),
     /// Free mode: choose whose decisions are hidden until predicted; `None` switches it on or off.
-    Predict(Option<Whose>),
+    Predict(Option<HiddenDecisions>),
     /// Show the log of an attached solver.
     Log,
     /// Show the parameters of an attached solver.
@@ -205,7 +205,7 @@ stickslip_core::words! {
 
 /// Whose decisions are hidden, in free mode, until they are predicted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Whose {
+pub enum HiddenDecisions {
     /// All, until any one node is predicted, such as the selected one.
     Selected,
     /// Those of all nodes whose mode changes.
@@ -215,7 +215,7 @@ pub enum Whose {
 }
 
 stickslip_core::words! {
-    Whose, ALL, word:
+    HiddenDecisions, ALL, word:
     Selected "selected",
     Changed "changed",
     Off "off",

@@ -16,24 +16,24 @@ pub mod arguments;
 pub mod complete;
 pub mod config;
 pub mod context;
+mod cycle_focus;
 pub mod keymap;
 pub mod meaning;
-pub mod misread;
 mod offered;
 mod parameters;
+pub mod parse_error;
 mod paths;
 pub mod table;
 #[cfg(test)]
 mod tests;
-mod turns;
 
 pub use arguments::{increment, mode, parse};
 pub use complete::{complete, takes_path};
 pub use context::{Context, exact};
 pub use keymap::Keymap;
 pub use meaning::{
-    Action, ChartOf, Colours, CopyTarget, Filter, Page, Question, Sort, Step, Ui, Whose,
+    Action, ChartOf, Colours, CopyTarget, Filter, HiddenDecisions, Page, Question, Sort, Step, Ui,
 };
-pub use misread::Misread;
 pub use parameters::{parameter, present};
+pub use parse_error::ParseError;
 pub use table::{ACTIONS, ActionEntry, Group, by_key, by_name, markdown};

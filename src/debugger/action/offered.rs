@@ -8,7 +8,7 @@ use crate::record::command::{Command, ExportScope};
 use crate::record::export;
 use stickslip_core::model::{Friction, Mode};
 use stickslip_core::step::intervene::Intervention;
-use stickslip_core::step::solver::Offers;
+use stickslip_core::step::solver::Capabilities;
 
 /// What an action needs of the current solver.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,7 +42,7 @@ enum Need {
 
 impl Need {
     /// Checks the need; `None` is our own solver.
-    fn check(self, solver: Option<&Offers>) -> Result<(), String> {
+    fn check(self, solver: Option<&Capabilities>) -> Result<(), String> {
         match (solver, self) {
             (None, Need::Attached) => {
                 Err("only attached solvers (`stickslip attach`) have a log and parameters".into())
@@ -52,7 +52,7 @@ impl Need {
         }
     }
 
-    fn of(self, offers: &Offers) -> Result<(), String> {
+    fn of(self, offers: &Capabilities) -> Result<(), String> {
         let takes = |one: Intervention| offers.check(&one).map_err(|why| why.to_string());
         let has = |has: bool, what: &str| match has {
             true => Ok(()),
@@ -87,13 +87,13 @@ impl Need {
         }
     }
 
-    fn of_verb(verb: &Verb) -> Option<Need> {
+    fn from_verb(verb: &Verb) -> Option<Need> {
         Some(match verb {
             Verb::Force { hold: false } => Need::ForceOrHold,
             Verb::Force { hold: true } => Need::Hold,
             Verb::Release => Need::ForceOrHold,
             Verb::Increment => Need::Increment,
-            Verb::SetPath(path) => return Need::of_path(path),
+            Verb::SetPath(path) => return Need::from_path(path),
             Verb::Set => Need::Parameters,
             Verb::StartFrom => Need::Answers,
             Verb::Apply | Verb::Census => Need::Problem,
@@ -103,12 +103,12 @@ impl Need {
             } => Need::Problem,
             Verb::Chart => Need::Chart,
             Verb::Journal => Need::Journal,
-            Verb::Do(ui) => return Need::of_ui(ui),
+            Verb::Do(ui) => return Need::from_ui(ui),
             _ => return None,
         })
     }
 
-    fn of_path(path: &str) -> Option<Need> {
+    fn from_path(path: &str) -> Option<Need> {
         match path {
             "friction.angle" => Some(Need::Friction),
             "friction.cohesion" => Some(Need::Cohesion),
@@ -117,7 +117,7 @@ impl Need {
         }
     }
 
-    fn of_ui(ui: &Ui) -> Option<Need> {
+    fn from_ui(ui: &Ui) -> Option<Need> {
         Some(match ui {
             Ui::Ask(Question::Mode) => Need::ForceOrHold,
             Ui::Ask(Question::Increment) => Need::Increment,
@@ -129,13 +129,13 @@ impl Need {
         })
     }
 
-    fn of_command(command: &Command) -> Option<Need> {
+    fn from_command(command: &Command) -> Option<Need> {
         Some(match command {
             Command::Force { hold: false, .. } => Need::Force,
             Command::Force { hold: true, .. } => Need::Hold,
             Command::Release { .. } => Need::ForceOrHold,
             Command::Increment(_) => Need::Increment,
-            Command::Set { path, .. } => return Need::of_path(path),
+            Command::Set { path, .. } => return Need::from_path(path),
             Command::Assume(_) => Need::Answers,
             Command::Census(_) | Command::Remedies => Need::Problem,
             Command::Journal(_) => Need::Journal,
@@ -158,7 +158,7 @@ impl ActionEntry {
     ///
     /// # Errors The reason why not.
     pub fn offered(&self, context: &Context) -> Result<(), String> {
-        Need::of_verb(&self.verb).map_or(Ok(()), |need| need.check(context.offers))
+        Need::from_verb(&self.verb).map_or(Ok(()), |need| need.check(context.offers))
     }
 }
 
@@ -168,8 +168,8 @@ impl Action {
     /// # Errors The reason why not.
     pub fn offered(&self, context: &Context) -> Result<(), String> {
         let need = match self {
-            Action::Session(command) => Need::of_command(command),
-            Action::Ui(ui) => Need::of_ui(ui),
+            Action::Session(command) => Need::from_command(command),
+            Action::Ui(ui) => Need::from_ui(ui),
         };
         need.map_or(Ok(()), |need| need.check(context.offers))
     }

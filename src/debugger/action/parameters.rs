@@ -26,7 +26,7 @@ pub fn present(known: &Parameter, context: &Context) -> String {
         _ => known.value.clone(),
     };
     match now {
-        Value::Number(value) => number::plain(value),
+        Value::Number(value) => number::shortest(value),
         other => other.to_string(),
     }
 }

@@ -3,8 +3,8 @@
 //! Keys are plain strings here (`"s"`, `"F10"`, `"Ctrl-c"`), independent of any terminal library.
 
 use super::meaning::{Page, Step, Ui};
-use super::misread::Misread;
-use crate::record::command::{Command, ExportScope, To, Unit};
+use super::parse_error::ParseError;
+use crate::record::command::{BranchTarget, Command, ExportScope, Unit};
 
 /// Heading under which help lists an action.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -69,7 +69,7 @@ pub(super) enum Verb {
     SetPath(&'static str),
     Goto,
     /// Go to the named branch, or to this one.
-    Branch(Option<To>),
+    Branch(Option<BranchTarget>),
     Rename,
     Compare,
     Break,
@@ -159,8 +159,8 @@ pub const ACTIONS: &[ActionEntry] = &[
     entry(Group::Change, "set", "PATH VALUE", &[], "", "Change friction.* or settings.*, or a parameter of an attached solver", Verb::Set),
 
     entry(Group::Branches, "branch", "NAME", &[], "", "Go to the tip of another branch: b2, its name, or a prefix", Verb::Branch(None)),
-    entry(Group::Branches, "branch-next", "", &["]"], "", "Go to the next branch", Verb::Branch(Some(To::Next))),
-    entry(Group::Branches, "branch-previous", "", &["["], "", "Go to the previous branch", Verb::Branch(Some(To::Previous))),
+    entry(Group::Branches, "branch-next", "", &["]"], "", "Go to the next branch", Verb::Branch(Some(BranchTarget::Next))),
+    entry(Group::Branches, "branch-previous", "", &["["], "", "Go to the previous branch", Verb::Branch(Some(BranchTarget::Previous))),
     entry(Group::Branches, "tree", "", &["v"], "", "Show the branches as a tree, and compare two; Enter goes to the selected one", Verb::Do(Ui::Page(Page::Branches))),
     entry(Group::Branches, "branches", "", &[], "", "List all branches, and how each one ended", Verb::Plain(Command::Branches)),
     entry(Group::Branches, "rename", "NAME", &[], "", "Rename this branch", Verb::Rename),
@@ -239,9 +239,9 @@ pub fn by_key(key: &str) -> Option<&'static ActionEntry> {
 const LONGEST_NAME: usize = 40;
 
 /// Finds an entry by name, one-letter key, or unique prefix.
-pub fn by_name(word: &str) -> Result<&'static ActionEntry, Misread> {
+pub fn by_name(word: &str) -> Result<&'static ActionEntry, ParseError> {
     if word.chars().count() > LONGEST_NAME {
-        return Err(Misread::LongName);
+        return Err(ParseError::LongName);
     }
     if let Some(entry) = ACTIONS.iter().find(|entry| entry.name == word) {
         return Ok(entry);
@@ -255,18 +255,18 @@ pub fn by_name(word: &str) -> Result<&'static ActionEntry, Misread> {
 }
 
 /// The only entry whose name begins with a word.
-pub(super) fn begun(word: &str) -> Result<&'static ActionEntry, Misread> {
+pub(super) fn begun(word: &str) -> Result<&'static ActionEntry, ParseError> {
     let found: Vec<_> = ACTIONS
         .iter()
         .filter(|entry| begins(entry.name, word))
         .collect();
     match found[..] {
         [entry] => Ok(entry),
-        [] => Err(Misread::NoAction(word.into())),
+        [] => Err(ParseError::NoAction(word.into())),
         _ => {
             let names = found.iter().map(|entry| entry.name).collect();
             let word = word.into();
-            Err(Misread::Ambiguous { word, names })
+            Err(ParseError::Ambiguous { word, names })
         }
     }
 }

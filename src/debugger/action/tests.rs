@@ -26,7 +26,7 @@ fn model() -> Model {
         budget: 1e9,
         dofs: Default::default(),
         length: 1.0,
-        ..Model::of_contacts("", nodes, vec![], vec![slave(1), slave(2)])
+        ..Model::from_contacts("", nodes, vec![], vec![slave(1), slave(2)])
     }
 }
 

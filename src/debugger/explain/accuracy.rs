@@ -1,6 +1,6 @@
 //! Describes how far round-off limits the accuracy of a scene.
 
-use stickslip_core::contact::table2::{Rule, Test, Tested};
+use stickslip_core::contact::table2::{Rule, Test, TestedQuantity};
 use stickslip_core::linear::norms::Norms;
 use stickslip_core::step::event::Event;
 
@@ -28,7 +28,7 @@ pub fn raised(tolerance: f64, reached: f64) -> Option<String> {
 pub fn sweeps(event: &Event) -> String {
     match first_test(event) {
         None => "sweeps".to_owned(),
-        Some(test) if test.tested == Tested::Error => {
+        Some(test) if test.tested == TestedQuantity::Error => {
             format!(
                 "sweeps; the natural map of the forces is {:.1e}",
                 test.value

@@ -51,9 +51,9 @@ pub fn advice(model: &Model, state: &State, failure: &Failure) -> Vec<Advice> {
             | Failure::NoAnswer { .. }
             | Failure::RoundOff { .. }
             | Failure::OverConstrained { .. }
-            | Failure::Leapt { .. }
-            | Failure::DoubledBack
-            | Failure::Unmoved
+            | Failure::BranchJump { .. }
+            | Failure::PathReversal
+            | Failure::ZeroMeasure
     );
     let finer = refines(failure).then_some(Advice::Finer);
     let gaps = [InitialGaps::Ramp, InitialGaps::Adjust]
@@ -153,10 +153,10 @@ fn kinds(state: &State, failure: &Failure) -> Vec<RemedyKind> {
             );
         }
         Failure::NoAnswer { .. }
-        | Failure::Leapt { .. }
-        | Failure::DoubledBack
-        | Failure::Unmoved
-        | Failure::Restless { .. }
+        | Failure::BranchJump { .. }
+        | Failure::PathReversal
+        | Failure::ZeroMeasure
+        | Failure::NoRest { .. }
         | Failure::RoundOff { .. }
         | Failure::Inverted(_)
         | Failure::CutTooOften { .. }
@@ -204,11 +204,11 @@ fn by_hand(model: &Model, state: &State, failure: &Failure) -> &'static [&'stati
         ],
         Failure::Refused(_) => &["a smaller history.least"],
         Failure::Inverted(_) => &["a load or prescribed motion that compresses the element less"],
-        Failure::Restless { .. } => &["a support or surface that stops the motion"],
+        Failure::NoRest { .. } => &["a support or surface that stops the motion"],
         Failure::CutTooOften { .. } => {
             &["stepping through its last attempts, to see the states it alternates between"]
         }
-        Failure::Leapt { .. } => match model.jumps {
+        Failure::BranchJump { .. } => match model.jumps {
             Jumps::Stop => &[
                 "history.jumps=cut, to continue on the other branch",
                 "history.jumps=dynamic, for a damped motion to the next equilibrium",
@@ -216,11 +216,11 @@ fn by_hand(model: &Model, state: &State, failure: &Failure) -> &'static [&'stati
             ],
             _ => &["a prescribed displacement instead of the load"],
         },
-        Failure::DoubledBack => &[
+        Failure::PathReversal => &[
             "another path measure: history.arc.monitor or history.arc.slip",
             "a smaller history.arc.least",
         ],
-        Failure::Unmoved => &["another path measure: history.arc.monitor or history.arc.slip"],
+        Failure::ZeroMeasure => &["another path measure: history.arc.monitor or history.arc.slip"],
         Failure::RoundOff { .. } => {
             &["stiffnesses of similar size: a far smaller stiffness still acts as rigid"]
         }

@@ -9,7 +9,7 @@ use super::facts::{Fact, Part};
 use super::interface_scene::stepper;
 use super::walk::{ReportedIterations, walk};
 use stickslip_core::model::Model;
-use stickslip_core::step::solver::Posed;
+use stickslip_core::step::solver::ReportedProblem;
 use stickslip_core::step::state::{State, Status};
 
 /// Shown without reported minor iterations of the problem.
@@ -22,7 +22,7 @@ const NOT_COMPARED: &str =
 pub fn examine(
     model: &Model,
     state: &State,
-    posed: &Posed,
+    posed: &ReportedProblem,
     reported: &ReportedIterations,
     contacts: &[usize],
     stop: &dyn Fn() -> bool,

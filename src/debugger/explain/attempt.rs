@@ -54,13 +54,13 @@ impl Attempt {
                 }
                 Outcome::Increment { .. }
                 | Outcome::Cut { .. }
-                | Outcome::Leaps { .. }
-                | Outcome::Turns { .. }
+                | Outcome::WholeIncrement { .. }
+                | Outcome::PathCorner { .. }
                 | Outcome::Fallback { .. }
-                | Outcome::Moves(_) => ControlFlow::Break(()),
+                | Outcome::Motion(_) => ControlFlow::Break(()),
                 Outcome::Minor
                 | Outcome::Damped { .. }
-                | Outcome::Climbed { .. }
+                | Outcome::StrategyChange { .. }
                 | Outcome::HeldBack { .. }
                 | Outcome::Failed(_) => ControlFlow::Continue(()),
             }

@@ -5,8 +5,8 @@
 //! master surfaces cannot show: nodes of a master inside a slave's body, and increments in which friction
 //! produced work.
 
+use stickslip_core::contact::closest_points::place;
 use stickslip_core::contact::element::SurfaceElement;
-use stickslip_core::contact::feet::place;
 use stickslip_core::contact::laws::{Finding, JudgedLaw};
 use stickslip_core::fem::deformation::{PointDeformation, deformation};
 use stickslip_core::model::Model;
@@ -30,7 +30,7 @@ pub struct WorstFinding {
 
 /// A master node inside a slave's body.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Inside {
+pub struct PenetratingMaster {
     /// Increment number, from 1.
     pub increment: u32,
     /// Load factor λ at the end of the increment.
@@ -45,7 +45,7 @@ pub struct Inside {
 
 /// A point of a solid.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Stretched {
+pub struct StretchFinding {
     /// Increment number, from 1.
     pub increment: u32,
     /// Load factor λ at the end of the increment.
@@ -69,11 +69,11 @@ pub struct Audit {
     /// The increment in which friction produced the most work.
     pub work: Option<WorstFinding>,
     /// The master node deepest inside a slave's body.
-    pub inside: Option<Inside>,
+    pub inside: Option<PenetratingMaster>,
     /// The smallest principal stretch of the solids.
-    pub stretch: Option<Stretched>,
+    pub stretch: Option<StretchFinding>,
     /// The first point outside the range of its material law.
-    pub outside: Option<Stretched>,
+    pub outside: Option<StretchFinding>,
 }
 
 impl Audit {
@@ -102,7 +102,7 @@ impl Audit {
         }
         keep_worse(&mut self.work, verdict.work.map(found));
         if let Some(found) = deformation(stepper.model(), &state.start.u) {
-            let stretched = |point: PointDeformation| Stretched {
+            let stretched = |point: PointDeformation| StretchFinding {
                 increment: event.position.increment,
                 load_factor: event.load_factor,
                 point,
@@ -122,7 +122,7 @@ impl Audit {
                 .as_ref()
                 .is_none_or(|inside| depth > inside.depth)
         {
-            self.inside = Some(Inside {
+            self.inside = Some(PenetratingMaster {
                 increment: event.position.increment,
                 load_factor: event.load_factor,
                 node,

@@ -2,7 +2,7 @@
 
 use stickslip_core::contact::record::ContactRecord;
 use stickslip_core::model::{Bond, Contact};
-use stickslip_scene::number::four;
+use stickslip_scene::number::sig4;
 
 /// The name of the law.
 pub fn name(contact: &Contact) -> &'static str {
@@ -24,16 +24,16 @@ pub fn lines(contact: &Contact, record: &ContactRecord) -> Vec<String> {
     if contact.bond.is_tied() {
         lines.push(format!(
             "tied: F_n {}, F_t {} (not limited)",
-            four(record.f_n),
-            four(record.f_t)
+            sig4(record.f_n),
+            sig4(record.f_t)
         ));
     }
     if normal > 0.0 {
-        let (give, inside) = (four(normal), four(normal * record.f_n));
+        let (give, inside) = (sig4(normal), sig4(normal * record.f_n));
         lines.push(format!("penalty: penetration c F_n = {inside}, c = {give}"));
     }
     if tangential > 0.0 {
-        let (give, slip) = (four(tangential), four(tangential * record.f_t));
+        let (give, slip) = (sig4(tangential), sig4(tangential * record.f_t));
         lines.push(format!("elastic slip c F_t = {slip}, c = {give}"));
     }
     lines

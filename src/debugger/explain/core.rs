@@ -7,7 +7,7 @@ use stickslip_core::contact::state::ContactState;
 use stickslip_core::interface::minor_history::Cycle;
 use stickslip_core::interface::minor_history::MinorHistory;
 use stickslip_core::interface::problem::InterfaceProblem;
-use stickslip_core::interface::spiral::{Fate, spiral};
+use stickslip_core::interface::t_max_iteration::{TMaxLimit, spiral};
 use stickslip_core::interface::trials::Trials;
 use stickslip_core::model::Mode;
 use stickslip_core::strategy::method;
@@ -160,7 +160,7 @@ fn spiralling(problem: &InterfaceProblem) -> Option<Cycle> {
     let takes_part =
         |(place, modes): &(usize, &Vec<Mode>)| changes(modes) || found.places.contains(place);
     let members = found.modes.iter().enumerate().filter(takes_part);
-    (found.fate == Fate::Cycles).then(|| Cycle {
+    (found.fate == TMaxLimit::Cycles).then(|| Cycle {
         start: found.start + 1 - found.period,
         period: found.period,
         members: members

@@ -9,10 +9,10 @@ use crate::explain::proven;
 use crate::explain::tested;
 use stickslip_core::contact::record::ContactRecord;
 use stickslip_core::contact::state::ContactState;
-use stickslip_core::contact::table2::{Rule, Tested};
+use stickslip_core::contact::table2::{Rule, TestedQuantity};
 use stickslip_core::interface::census::{self, Census, MOST, MOST_SEARCHED, search};
 use stickslip_core::interface::minor_history::Cycle;
-use stickslip_core::interface::problem::{Assumed, Condition, InterfaceProblem, NodeAnswer};
+use stickslip_core::interface::problem::{AssumedMode, Condition, InterfaceProblem, NodeAnswer};
 use stickslip_core::interface::trials::Trials;
 use stickslip_core::model::{BoundUpdate, SlipCount};
 use stickslip_core::model::{Mode, Model};
@@ -76,7 +76,7 @@ pub struct Push {
     /// The effect, with the pushing node.
     pub influence: Influence,
     /// The tested quantity.
-    pub tested: Tested,
+    pub tested: TestedQuantity,
 }
 
 /// Why Table 2 cycles.
@@ -251,16 +251,18 @@ fn push(
 }
 
 /// The inequality that changed a node's mode.
-fn fired(rule: Rule) -> Option<Tested> {
+fn fired(rule: Rule) -> Option<TestedQuantity> {
     match rule {
-        Rule::FixedOpens | Rule::SlidingOpens | Rule::CornerOpens => Some(Tested::NormalForce),
-        Rule::FixedSlides | Rule::CornerSlides => Some(Tested::ShearForce),
-        Rule::CornerReleases => Some(Tested::LeastFriction),
-        Rule::FixedDragged => Some(Tested::Slip),
-        Rule::SlidingSticks => Some(Tested::Slip),
-        Rule::FreeSticks | Rule::FreeSlides | Rule::FreeEnters => Some(Tested::Gap),
-        Rule::NewtonOpens => Some(Tested::NormalForce),
-        Rule::NewtonSticks | Rule::NewtonSlides => Some(Tested::ShearForce),
+        Rule::FixedOpens | Rule::SlidingOpens | Rule::CornerOpens => {
+            Some(TestedQuantity::NormalForce)
+        }
+        Rule::FixedSlides | Rule::CornerSlides => Some(TestedQuantity::ShearForce),
+        Rule::CornerReleases => Some(TestedQuantity::LeastFriction),
+        Rule::FixedDragged => Some(TestedQuantity::Slip),
+        Rule::SlidingSticks => Some(TestedQuantity::Slip),
+        Rule::FreeSticks | Rule::FreeSlides | Rule::FreeEnters => Some(TestedQuantity::Gap),
+        Rule::NewtonOpens => Some(TestedQuantity::NormalForce),
+        Rule::NewtonSticks | Rule::NewtonSlides => Some(TestedQuantity::ShearForce),
         _ => None,
     }
 }
@@ -633,7 +635,7 @@ fn differing<'a>(census: &Census, name: &impl Fn(usize) -> &'a str) -> Vec<Strin
             let node = of(number);
             let (does, f_n, f_t) = (assumed_words(node.assumed), node.f_n, node.f_t);
             match node.assumed {
-                Assumed::Free => format!("{does} in {}, gap {:.4e}", number + 1, node.gap),
+                AssumedMode::Free => format!("{does} in {}, gap {:.4e}", number + 1, node.gap),
                 _ => format!("{does} in {}, F_n {f_n:.4e}, F_t {f_t:.4e}", number + 1),
             }
         });
@@ -647,12 +649,12 @@ fn differing<'a>(census: &Census, name: &impl Fn(usize) -> &'a str) -> Vec<Strin
 }
 
 /// The assumed mode of a node, in words.
-pub fn assumed_words(assumed: Assumed) -> &'static str {
+pub fn assumed_words(assumed: AssumedMode) -> &'static str {
     match assumed {
-        Assumed::Free => "free",
-        Assumed::Fixed => "fixed",
-        Assumed::Plus => "sliding with F_t > 0",
-        Assumed::Minus => "sliding with F_t < 0",
+        AssumedMode::Free => "free",
+        AssumedMode::Fixed => "fixed",
+        AssumedMode::Plus => "sliding with F_t > 0",
+        AssumedMode::Minus => "sliding with F_t < 0",
     }
 }
 

@@ -6,7 +6,7 @@ use super::diagnosis::{self, Cause, Diagnosis, MOST_NODES, cycling, started, too
 use super::facts::{Fact, Part};
 use super::names;
 use super::proven;
-use super::smaller::smaller;
+use super::step_size_probe::smaller;
 use stickslip_core::interface::census::{BUDGET, Census, MOST_SEARCHED, search};
 use stickslip_core::interface::minor_history::Cycle;
 use stickslip_core::interface::problem::InterfaceProblem;

@@ -5,7 +5,7 @@ use super::report::describe_failure;
 use stickslip_core::model::Model;
 use stickslip_core::step::event::Failure;
 use stickslip_core::step::state::State;
-use stickslip_scene::number::plain;
+use stickslip_scene::number::shortest;
 use stickslip_scene::shown::first_of;
 
 /// Maximum number of nodes named.
@@ -18,7 +18,7 @@ pub fn headline(model: &Model, state: &State, failure: &Failure) -> String {
 
 /// A line with the increment and load of a state.
 pub fn at(state: &State, text: &str) -> String {
-    let load = plain(state.load_factor);
+    let load = shortest(state.load_factor);
     format!("increment {}, load {load}: {text}", state.next.increment)
 }
 

@@ -8,11 +8,11 @@ use super::diagnosis::{answer_words, condition_words};
 use stickslip_core::interface::census::search;
 use stickslip_core::interface::definite::Compliance;
 use stickslip_core::interface::lemke::{Lemke, PathEnd, STARTS};
-use stickslip_core::interface::problem::{Answer, Assumed, InterfaceProblem};
+use stickslip_core::interface::problem::{Answer, AssumedMode, InterfaceProblem};
 use stickslip_core::interface::trials::Trials;
 use stickslip_core::model::Strategy;
 use stickslip_core::strategy::{in_force, method, rungs};
-use stickslip_scene::number::four;
+use stickslip_scene::number::sig4;
 
 /// Negative eigenvalues up to this fraction of the largest one may be due to rounding.
 const SMALL: f64 = 1e-2;
@@ -48,15 +48,15 @@ pub enum IndefiniteOutcome {
     /// The problem is not solved; results of the trials.
     Tried {
         /// The solution after the problem is made semidefinite.
-        semidefinite: Option<Solved>,
+        semidefinite: Option<ConsistentState>,
         /// The smallest tolerance tried (`settings.tolerance`) with which the original problem is solved.
-        tolerance: Option<(f64, Solved)>,
+        tolerance: Option<(f64, ConsistentState)>,
     },
 }
 
 /// A consistent state, and the strategy that found it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Solved {
+pub struct ConsistentState {
     /// The strategy.
     pub by: Strategy,
     /// The state.
@@ -71,7 +71,7 @@ pub fn indefinite(problem: &InterfaceProblem, stop: &dyn Fn() -> bool) -> Option
     if problem.nodes.len() > MOST {
         return None;
     }
-    let compliance = Compliance::of(problem)?;
+    let compliance = Compliance::from_problem(problem)?;
     let [least, largest] = compliance.ends();
     if least >= -compliance.round_off() {
         return None;
@@ -93,7 +93,7 @@ pub fn indefinite(problem: &InterfaceProblem, stop: &dyn Fn() -> bool) -> Option
     let semidefinite = without.and_then(|raised| {
         let (by, answer) = solved(&raised, OBEYED, stop)?;
         let as_given = as_given(problem, &answer);
-        Some(Solved {
+        Some(ConsistentState {
             by,
             answer,
             as_given,
@@ -106,7 +106,7 @@ pub fn indefinite(problem: &InterfaceProblem, stop: &dyn Fn() -> bool) -> Option
         coarse.settings.tolerance = tolerance;
         let (by, answer) = solved(&coarse, tolerance, stop)?;
         let as_given = Some(answer.clone());
-        let solved = Solved {
+        let solved = ConsistentState {
             by,
             answer,
             as_given,
@@ -121,7 +121,7 @@ pub fn indefinite(problem: &InterfaceProblem, stop: &dyn Fn() -> bool) -> Option
 
 /// The state with the same modes in another problem.
 fn as_given(problem: &InterfaceProblem, answer: &Answer) -> Option<Answer> {
-    let assumed: Vec<Assumed> = answer.nodes.iter().map(|node| node.assumed).collect();
+    let assumed: Vec<AssumedMode> = answer.nodes.iter().map(|node| node.assumed).collect();
     Trials::new(problem)?.answer(&assumed)
 }
 
@@ -165,10 +165,10 @@ fn by_iterations(problem: &InterfaceProblem) -> Option<Answer> {
         let (records, settled) = trials.minor(&mut nodes, method)?;
         if settled {
             let of = records.iter().zip(&problem.nodes).map(|(record, node)| {
-                let assumed = Assumed::of(record.decision.next, record.t_max_used);
+                let assumed = AssumedMode::from_mode(record.decision.next, record.t_max_used);
                 match node.choices().contains(&assumed) {
                     true => assumed,
-                    false => Assumed::of(record.decision.next, 1.0),
+                    false => AssumedMode::from_mode(record.decision.next, 1.0),
                 }
             });
             return trials.answer(&of.collect::<Vec<_>>());
@@ -181,9 +181,9 @@ fn by_iterations(problem: &InterfaceProblem) -> Option<Answer> {
 fn by_pivoting(problem: &InterfaceProblem, tolerance: f64) -> Option<Answer> {
     let brought = problem.nodes.iter().map(|node| {
         let state = &node.state;
-        Assumed::of(state.mode, state.t_max)
+        AssumedMode::from_mode(state.mode, state.t_max)
     });
-    let brought: Vec<Assumed> = brought.collect();
+    let brought: Vec<AssumedMode> = brought.collect();
     let mut trials = Trials::new(problem)?;
     (0..STARTS).find_map(|start| {
         let mut path = Lemke::new(problem, &brought, start)?;
@@ -191,7 +191,7 @@ fn by_pivoting(problem: &InterfaceProblem, tolerance: f64) -> Option<Answer> {
             path.pivot()?;
         }
         let found = path.ended() == Some(PathEnd::Solved);
-        let assumed: Vec<Assumed> = (0..brought.len()).map(|k| path.assumed(k)).collect();
+        let assumed: Vec<AssumedMode> = (0..brought.len()).map(|k| path.assumed(k)).collect();
         let answer = found.then(|| trials.answer(&assumed)).flatten()?;
         answer.obeys(tolerance).then_some(answer)
     })
@@ -215,8 +215,8 @@ pub fn words<'a>(found: &Indefinite, name: &impl Fn(usize) -> &'a str) -> Vec<St
     let [least, largest] = found.ends;
     let head = format!(
         "W, the compliance of the interface, has the eigenvalue {} ({} of the largest)",
-        four(least),
-        four(-least / largest)
+        sig4(least),
+        sig4(-least / largest)
     );
     let (semidefinite, tolerance) = match &found.outcome {
         IndefiniteOutcome::NotByRounding => {
@@ -266,7 +266,7 @@ pub fn words<'a>(found: &Indefinite, name: &impl Fn(usize) -> &'a str) -> Vec<St
 }
 
 /// The state in the original matrix.
-fn in_given<'a>(solved: &Solved, name: &impl Fn(usize) -> &'a str) -> String {
+fn in_given<'a>(solved: &ConsistentState, name: &impl Fn(usize) -> &'a str) -> String {
     let worst = |answer: &Answer| answer.worst().filter(|_| !answer.obeys(OBEYED));
     match &solved.as_given {
         None => "with the original W its equations are singular".to_owned(),
@@ -276,7 +276,7 @@ fn in_given<'a>(solved: &Solved, name: &impl Fn(usize) -> &'a str) -> String {
                 "with the original W the state violates \"{}\" at {} by {}",
                 condition_words(margin.condition),
                 name(place),
-                four(-margin.value)
+                sig4(-margin.value)
             ),
         },
     }

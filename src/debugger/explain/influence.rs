@@ -131,7 +131,7 @@ pub struct PushPath {
 }
 
 /// The frozen problem between two minor iterations, and the nodes' states before the first of them.
-pub struct Between {
+pub struct FrozenStep {
     problem: InterfaceProblem,
     before: Vec<ContactState>,
 }
@@ -142,7 +142,7 @@ pub fn pushes(stepper: &mut Stepper, slave: usize, way: &PushPath) -> Option<Vec
 }
 
 /// Repeats the steps and the iteration after them.
-pub fn between(stepper: &mut Stepper, way: &PushPath) -> Option<Between> {
+pub fn between(stepper: &mut Stepper, way: &PushPath) -> Option<FrozenStep> {
     stepper.restore(&way.state);
     let mut before: Vec<ContactState> = Vec::new();
     for (place, step) in way.steps.iter().enumerate() {
@@ -157,11 +157,11 @@ pub fn between(stepper: &mut Stepper, way: &PushPath) -> Option<Between> {
         }
     }
     let problem = stepper.interface_problem()?;
-    Some(Between { problem, before })
+    Some(FrozenStep { problem, before })
 }
 
 /// The pushes on a node between two minor iterations.
-pub fn pushed(Between { problem, before }: &Between, slave: usize) -> Option<Vec<NodePush>> {
+pub fn pushed(FrozenStep { problem, before }: &FrozenStep, slave: usize) -> Option<Vec<NodePush>> {
     let after = problem.states();
     let target = problem.nodes.iter().position(|node| node.slave == slave)?;
     let of = |node: usize| problem.nodes[node].slave;

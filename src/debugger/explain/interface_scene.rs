@@ -4,7 +4,7 @@
 use super::names;
 use std::sync::Arc;
 use stickslip_core::model::{InitialState, Mode, Model, Strategy};
-use stickslip_core::step::solver::{Posed, PosedForm};
+use stickslip_core::step::solver::{ReportedForm, ReportedProblem};
 use stickslip_core::step::state::State;
 use stickslip_core::step::stepper::Stepper;
 use stickslip_scene::Scene;
@@ -13,7 +13,7 @@ use stickslip_scene::format::condensed::{Contact, Matrix, Problem};
 use stickslip_scene::limits;
 
 /// The scene of a reported problem, starting with the modes of a state.
-pub fn problem(model: &Model, state: &State, posed: &Posed) -> Problem {
+pub fn problem(model: &Model, state: &State, posed: &ReportedProblem) -> Problem {
     let contacts = posed.contacts.iter().enumerate().map(|(place, &slave)| {
         let (node, friction) = (&state.nodes[slave], posed.friction[place]);
         let bound = friction.coefficient() * node.f_n + friction.cohesion;
@@ -47,8 +47,8 @@ pub fn problem(model: &Model, state: &State, posed: &Posed) -> Problem {
         about: String::new(),
         contacts: contacts.collect(),
         matrix: match posed.form {
-            PosedForm::Compliance => Matrix::Compliance(rows),
-            PosedForm::Stiffness => Matrix::Stiffness(rows),
+            ReportedForm::Compliance => Matrix::Compliance(rows),
+            ReportedForm::Stiffness => Matrix::Stiffness(rows),
         },
         free: free.collect(),
         spacing: None,

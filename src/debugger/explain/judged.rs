@@ -3,7 +3,7 @@
 use crate::explain::names::slave;
 use stickslip_core::contact::laws::{Finding, JudgedLaw, JudgedNumbers};
 use stickslip_core::model::Model;
-use stickslip_scene::number::four;
+use stickslip_scene::number::sig4;
 
 /// A finding, as part of a sentence.
 pub fn finding(model: &Model, finding: &Finding) -> String {
@@ -63,7 +63,7 @@ pub fn place(model: &Model, places: &[[f64; 2]], finding: &Finding) -> String {
     let Some(contact) = finding.slave.and_then(|s| model.contacts.get(s)) else {
         return "in the scene as a whole".into();
     };
-    let [x, y] = places[contact.node].map(four);
+    let [x, y] = places[contact.node].map(sig4);
     let JudgedNumbers {
         gap,
         f_n,
@@ -74,9 +74,9 @@ pub fn place(model: &Model, places: &[[f64; 2]], finding: &Finding) -> String {
     let name = &model.nodes[contact.node].name;
     format!(
         "{name} at ({x}, {y}): gap {}, F_n {}, F_t {} (limit {})",
-        four(gap),
-        four(f_n),
-        four(f_t),
-        four(limit)
+        sig4(gap),
+        sig4(f_n),
+        sig4(f_t),
+        sig4(limit)
     )
 }

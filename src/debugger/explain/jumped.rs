@@ -4,7 +4,7 @@ use stickslip_core::linear::stability::Stability;
 use stickslip_core::model::Model;
 use stickslip_core::step::event::Event;
 use stickslip_core::step::watch::StabilityLoss;
-use stickslip_scene::number::plain;
+use stickslip_scene::number::shortest;
 
 /// The motions that lead away from an unstable state.
 pub fn leads_away(stability: Stability) -> String {
@@ -35,7 +35,7 @@ pub fn reservation(jumped: bool, unstable: Option<&StabilityLoss>) -> String {
     match unstable {
         Some(loss) => {
             let since = loss.stable_at.map_or(String::new(), |load| {
-                format!("; last known to be stable at load {}", plain(load))
+                format!("; last known to be stable at load {}", shortest(load))
             });
             format!(", unstable: {}{since}", leads_away(loss.stability))
         }

@@ -1,18 +1,18 @@
 //! The load at which a body becomes loose, and why: friction is used up, or no contact presses against the
 //! motion any more.
 //!
-//! Repeats the failed increment in smaller steps ([`super::reach`]). In the last equilibrium, computes the remaining
+//! Repeats the failed increment in smaller steps ([`super::load_limit_probe`]). In the last equilibrium, computes the remaining
 //! resistance of each contact of the body against the free motion. With v the relative velocity, friction resists with at
 //! most tan φ F_n + c per |v_t|, of which |F_t| is used; an opening contact yields F_n per v_n until its force is zero.
 
-use super::loose::Moving;
-use super::reach::{Reach, reach};
+use super::load_limit_probe::{LoadLimitProbe, reach};
+use super::rigid_motion::BodyMotion;
 use stickslip_core::linear::singular::{RigidMotion, Singular};
 use stickslip_core::model::Mode;
 use stickslip_core::step::event::Failure;
 use stickslip_core::step::state::State;
 use stickslip_core::step::stepper::Stepper;
-use stickslip_scene::number::four;
+use stickslip_scene::number::sig4;
 
 /// Fraction of the friction or of the contact forces below which nothing is left.
 const LEFT: f64 = 1e-2;
@@ -39,7 +39,7 @@ pub fn limit_load(
         return None;
     }
     let found = reach(stepper, state, stop)?;
-    let Reach { load, from, .. } = found;
+    let LoadLimitProbe { load, from, .. } = found;
     found.ends.as_ref()?;
     if load == from && from == stepper.model().path[0] {
         return None;
@@ -48,7 +48,7 @@ pub fn limit_load(
     let places = model.places(&found.at.start.u);
     let mut held = (*found.at).clone();
     held.nodes.clone_from(&found.at.start.nodes);
-    let moving = Moving::new(&model, &places, &held, motion)?;
+    let moving = BodyMotion::new(&model, &places, &held, motion)?;
     let resistance = resistance(&moving, &held);
     let why = match resistance {
         Resistance {
@@ -64,7 +64,7 @@ pub fn limit_load(
     let name = moving.name();
     Some(format!(
         "limit load: {why} at load {}: body {name} is held up to this load",
-        four(load)
+        sig4(load)
     ))
 }
 
@@ -78,7 +78,7 @@ fn rigid(failure: &Failure) -> Option<&[RigidMotion]> {
     }
 }
 
-fn resistance(moving: &Moving<'_>, state: &State) -> Resistance {
+fn resistance(moving: &BodyMotion<'_>, state: &State) -> Resistance {
     let mut all = Resistance::default();
     for (contact, [v_n, v_t]) in moving.rates(state) {
         let node = &state.nodes[contact];

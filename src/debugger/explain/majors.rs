@@ -10,7 +10,7 @@ use stickslip_core::contact::projection::SurfacePoint;
 use stickslip_core::model::{Geometry, Mode, Model, ResidualMethod, Settings};
 use stickslip_core::step::major_history::{MajorCycle, Stop};
 use stickslip_core::step::state::State;
-use stickslip_scene::number::four;
+use stickslip_scene::number::sig4;
 use stickslip_scene::shown::first_of;
 
 /// Maximum number of cycle members described.
@@ -46,7 +46,7 @@ impl Kink {
         let curve = |(surface, element): (usize, usize)| {
             let surface = model.surfaces.get(surface)?;
             let kinked = surface.smooth.is_empty() && element < surface.elements.len();
-            kinked.then(|| SurfaceElement::of(surface, element))
+            kinked.then(|| SurfaceElement::from_surface(surface, element))
         };
         let (one, other) = (curve(a)?, curve(b)?);
         let (before, after) = match () {
@@ -71,9 +71,9 @@ impl Kink {
         };
         format!(
             "which meet at ({}, {}) in a {kind} kink of {} degrees",
-            four(self.at[0]),
-            four(self.at[1]),
-            four(self.degrees.abs())
+            sig4(self.at[0]),
+            sig4(self.at[1]),
+            sig4(self.degrees.abs())
         )
     }
 }
@@ -111,11 +111,11 @@ pub fn cycle_words(model: &Model, attempt: &Attempt, round: &MajorCycle) -> Vec<
         let at = places[contact.node];
         let way = moved(model, around, contact.node);
         let name = slave(model, *s);
-        let here = format!("({}, {})", four(at[0]), four(at[1]));
-        let of_length = four(100.0 * way / model.length);
+        let here = format!("({}, {})", sig4(at[0]), sig4(at[1]));
+        let of_length = sig4(100.0 * way / model.length);
         let moves = format!(
             "it moves by {}, {of_length} % of the scene's length",
-            four(way)
+            sig4(way)
         );
         match (hops(stops), switches(stops)) {
             (Some([a, b]), _) => {
@@ -132,7 +132,7 @@ pub fn cycle_words(model: &Model, attempt: &Attempt, round: &MajorCycle) -> Vec<
                 lines.push(Fact::why(match kink {
                     Some(kink) if kink.degrees >= 0.0 => format!(
                         "between the elements its normal turns by {} degrees, and its forces with it: on each element they push it across the edge onto the other",
-                        four(kink.degrees)
+                        sig4(kink.degrees)
                     ),
                     Some(_) => "in a concave corner both sides press on the node, but only one can hold it; it then penetrates the other".to_owned(),
                     None if is_smooth(a.0) && is_smooth(b.0) => "the surface is smooth, but its curvature differs between the elements: the steps from each of them are too long".to_owned(),
@@ -226,7 +226,7 @@ pub fn limit_words(model: &Model, settings: &Settings, attempt: &Attempt) -> Vec
     match (rate(&errors), errors.last()) {
         (Some(rate), Some(&last)) => lines.push(Fact::why(format!(
             "the residual falls by a factor of {} per major iteration; about {:.0} more would reach {limit:.1e}",
-            four(rate),
+            sig4(rate),
             ((limit / last).ln() / rate.ln()).ceil().max(1.0)
         ))),
         _ => lines.extend(not_falling(model, attempt)),
@@ -280,7 +280,7 @@ fn largest(model: &Model, major: &Major) -> Option<String> {
         .bodies
         .iter()
         .find(|body| body.nodes.contains(&node))?;
-    let [x, y] = model.place(&major.u, node).map(four);
+    let [x, y] = model.place(&major.u, node).map(sig4);
     Some(format!(
         "the largest residual is {force:.3e} at node {} of {} at ({x}, {y})",
         model.nodes[node].name, body.name
@@ -326,8 +326,8 @@ pub fn flight_words(model: &Model, state: &State, attempt: &Attempt) -> Vec<Fact
         Fact::why(format!(
             "{} moved furthest from the last equilibrium, by {} (scene length {})",
             model.nodes[node].name,
-            four(way(node)),
-            four(model.length)
+            sig4(way(node)),
+            sig4(model.length)
         ))
     });
     let mut lines: Vec<Fact> = place.into_iter().collect();

@@ -4,7 +4,7 @@ use stickslip_core::contact::table2::Rule;
 use stickslip_core::model::{Mode, Model};
 use stickslip_core::step::event::Position;
 use stickslip_core::step::intervene::Start;
-use stickslip_scene::number::plain;
+use stickslip_scene::number::shortest;
 
 /// Name of a slave node.
 pub fn slave(model: &Model, slave: usize) -> &str {
@@ -102,7 +102,7 @@ pub fn load_of(model: &Model, leg: usize, load: f64) -> String {
         0 | 1 => String::new(),
         _ => format!(" (leg {leg} of {legs})"),
     };
-    format!("load {} of {}{which}", plain(load), plain(end))
+    format!("load {} of {}{which}", shortest(load), shortest(end))
 }
 
 /// The position of a minor iteration.

@@ -9,19 +9,19 @@ use super::attempt::Attempt;
 use super::diagnosis::undecided;
 use super::examination::{DONE, Examination, frozen, nothing};
 use super::facts::{Fact, Part};
-use super::finer::{Finer, finer};
 use super::headline::{at, headline};
 use super::indefinite::{self, indefinite};
 use super::judged;
 use super::jumped::leads_away;
 use super::limit_load::limit_load;
-use super::loose::loose;
+use super::load_limit_probe::reach;
 use super::majors;
+use super::mesh_probe::{MeshProbe, finer};
 use super::names;
-use super::reach::reach;
-use super::remedies::{self, Trial, TrialEnd, attempt};
-use super::remedy::{How, Remedy, RemedyKind};
+use super::remedies::{self, RemedyTrial, TrialEnd, attempt};
+use super::remedy::{Remedy, RemedyInput, RemedyKind};
 use super::report::{describe_failure, sound};
+use super::rigid_motion::loose;
 use super::strain::MaterialCause;
 use super::try_list::{self, TryLine, TryOutcome, helps};
 use stickslip_core::linear::norms::Norms;
@@ -32,7 +32,7 @@ use stickslip_core::step::state::{State, Status};
 use stickslip_core::step::stepper::Stepper;
 use stickslip_scene::format::spec::Spec;
 use stickslip_scene::gaps::turned;
-use stickslip_scene::number::four;
+use stickslip_scene::number::sig4;
 
 /// Shown if the first increment fails and nodes start inside their surface.
 const OVERLAP: &str = "nodes start inside their surface; settings.initial_gaps=ramp moves them out over the first leg of the path, adjust moves them onto the surface";
@@ -62,7 +62,7 @@ pub fn page(
         }
         return Some(found);
     };
-    let mut page = PageBuilder::of(stepper, state, failure, stop);
+    let mut page = PageBuilder::from_state(stepper, state, failure, stop);
     tell(&page.shown("trying remedies …"));
     page.pending = page.remedies(stepper.model(), state, failure);
     while !page.pending.is_empty() {
@@ -71,7 +71,7 @@ pub fn page(
         match attempt(stepper, state, spec, remedy, stop) {
             Some(trial) => page.trials.push(trial),
             // The scene cannot be changed this way, so there is no trial.
-            None if matches!(remedy.how, How::Restart(_)) && !stop() => {}
+            None if matches!(remedy.how, RemedyInput::Restart(_)) && !stop() => {}
             None => return None,
         }
         page.pending.remove(0);
@@ -102,7 +102,7 @@ pub fn causes(
     failure: &Failure,
     stop: &dyn Fn() -> bool,
 ) -> Vec<String> {
-    let mut page = PageBuilder::of(stepper, state, failure, stop);
+    let mut page = PageBuilder::from_state(stepper, state, failure, stop);
     page.add_limit_load(stepper, state, failure, stop);
     page.shown("").why
 }
@@ -118,7 +118,7 @@ pub fn first_that_works(
 ) -> Option<TryLine> {
     let mut minors = 0;
     for remedy in advised(stepper.model(), state, failure) {
-        let typed = matches!(remedy.how, How::Set(..) | How::Restart(_));
+        let typed = matches!(remedy.how, RemedyInput::Set(..) | RemedyInput::Restart(_));
         if !typed || minors >= most || stop() {
             continue;
         }
@@ -252,16 +252,16 @@ struct PageBuilder {
     by_hand: Vec<&'static str>,
     /// Remedies that are still to be tried, and the trials of the others.
     pending: Vec<Remedy>,
-    trials: Vec<Trial>,
+    trials: Vec<RemedyTrial>,
     /// Whether a finer mesh can help.
     refines: bool,
-    finer: Option<Finer>,
+    finer: Option<MeshProbe>,
     /// The examination of the frozen problem.
     found: Examination,
 }
 
 impl PageBuilder {
-    fn of(
+    fn from_state(
         stepper: &mut Stepper,
         state: &State,
         failure: &Failure,
@@ -377,14 +377,14 @@ impl PageBuilder {
             Failure::Singular(Singular::Unexplained) => {
                 self.facts.push(Fact::why(unexplained(stepper.model())));
             }
-            Failure::Leapt {
+            Failure::BranchJump {
                 unstable: Some(stability),
                 ..
             } => self.facts.push(Fact::why(format!(
                 "{}, even with the smallest increment: no stable equilibrium is near",
                 leads_away(*stability)
             ))),
-            Failure::Leapt {
+            Failure::BranchJump {
                 motion, predicted, ..
             } => {
                 self.facts.push(Fact::why(format!(
@@ -392,13 +392,13 @@ impl PageBuilder {
                     motion / predicted.max(f64::MIN_POSITIVE)
                 )));
             }
-            Failure::DoubledBack => self.facts.push(Fact::why(
+            Failure::PathReversal => self.facts.push(Fact::why(
                 "displacements and load turn back along the last increment: the path turns by more than a right angle here, or ends",
             )),
-            Failure::Unmoved => self.facts.push(Fact::why(
+            Failure::ZeroMeasure => self.facts.push(Fact::why(
                 "the tangent at the start of the increment does not change what history.arc measures",
             )),
-            Failure::Restless { .. } => self.facts.push(Fact::why(
+            Failure::NoRest { .. } => self.facts.push(Fact::why(
                 "beyond the last equilibrium load nothing stops the motion",
             )),
             Failure::RoundOff { .. } => self.facts.extend(stiffest(stepper.model()).map(Fact::why)),
@@ -562,7 +562,7 @@ impl PageBuilder {
 }
 
 /// The line of a finer mesh that was tried.
-fn finer_line(finer: &Finer) -> TryLine {
+fn finer_line(finer: &MeshProbe) -> TryLine {
     let (outcome, end) = match &finer.run.failure {
         None => (
             TryOutcome::Works,
@@ -605,12 +605,12 @@ fn over_constrained(stepper: &mut Stepper, state: &State, slave: usize) -> Optio
     let over = stepper.kinematics(slave)?;
     let model = stepper.model();
     let contact = model.contacts.get(slave)?;
-    let [x, y] = model.place(&state.u, contact.node).map(four);
-    let [n_x, n_y] = over.normal.map(four);
+    let [x, y] = model.place(&state.u, contact.node).map(sig4);
+    let [n_x, n_y] = over.normal.map(sig4);
     Some(format!(
         "{} at ({x}, {y}), its gap {} along the normal ({n_x}, {n_y}); supports or prescribed motions fix it along that normal, and its surface is rigid",
         names::slave(model, slave),
-        four(over.gap)
+        sig4(over.gap)
     ))
 }
 
@@ -633,7 +633,7 @@ fn stiffest(model: &Model) -> Option<String> {
     Some(format!(
         "body {} is the stiffest, {word} = {}: its forces are large numbers that cancel, with a round-off above {:.0e} of the loads",
         body.name,
-        four(value),
+        sig4(value),
         Norms::LOUDEST
     ))
 }

@@ -4,10 +4,10 @@
 use stickslip_core::interface::census::{Census, MOST_SEARCHED};
 use stickslip_core::interface::family::{Family, families};
 use stickslip_core::interface::problem::InterfaceProblem;
-use stickslip_core::interface::spiral::{Fate, Spiral, spiral};
+use stickslip_core::interface::t_max_iteration::{TMaxIteration, TMaxLimit, spiral};
 use stickslip_core::interface::uniqueness::{Inapplicable, Uniqueness};
 use stickslip_core::strategy::method;
-use stickslip_scene::number::four;
+use stickslip_scene::number::sig4;
 
 /// Number of minor iterations used to follow T_max.
 const AHEAD: usize = 200;
@@ -102,7 +102,7 @@ fn end(value: f64) -> String {
     match value.is_infinite() {
         true if value < 0.0 => "−∞".into(),
         true => "∞".into(),
-        false => four(value),
+        false => sig4(value),
     }
 }
 
@@ -114,8 +114,8 @@ pub fn too_many(nodes: usize) -> String {
 }
 
 /// The limit of T_max while the modes repeat, in words.
-pub fn spiral_words(problem: &InterfaceProblem, spiral: &Spiral) -> String {
-    let Spiral { period, radius, .. } = spiral;
+pub fn spiral_words(problem: &InterfaceProblem, spiral: &TMaxIteration) -> String {
+    let TMaxIteration { period, radius, .. } = spiral;
     let round = match period {
         1 => "in each iteration".to_owned(),
         _ => format!("in each period of {period} iterations"),
@@ -126,23 +126,23 @@ pub fn spiral_words(problem: &InterfaceProblem, spiral: &Spiral) -> String {
     };
     let away = spiral.distance;
     match spiral.fate {
-        Fate::Cycles if *radius <= AT_ONCE => {
+        TMaxLimit::Cycles if *radius <= AT_ONCE => {
             format!("the modes repeat endlessly, with the same T_max {round}")
         }
-        Fate::Cycles => format!(
+        TMaxLimit::Cycles => format!(
             "T_max spirals into the cycle by a factor of {radius:.4} {round} ({away:.3e} away \
              after {} iterations); {more}, but the modes repeat endlessly",
             spiral.start
         ),
-        Fate::Settles => format!(
+        TMaxLimit::Settles => format!(
             "the modes have settled; T_max converges by a factor of {radius:.4} {round} ({away:.3e} away after {} \
              iterations); {more}",
             spiral.start
         ),
-        Fate::SwingsApart => format!(
+        TMaxLimit::Diverges => format!(
             "T_max diverges by a factor of {radius:.4} {round}: it cannot settle with these modes"
         ),
-        Fate::Passes => "the modes repeat for a while, but will change".to_owned(),
+        TMaxLimit::Passes => "the modes repeat for a while, but will change".to_owned(),
     }
 }
 
@@ -155,7 +155,7 @@ pub fn cycle_words<'a>(
         return Vec::new();
     }
     match spiral(problem, method(problem.settings.strategy), AHEAD) {
-        Some(found) if found.fate != Fate::Passes && found.radius > AT_ONCE => {
+        Some(found) if found.fate != TMaxLimit::Passes && found.radius > AT_ONCE => {
             let mut lines = vec![spiral_words(problem, &found)];
             lines.extend(fixed_words(&found, name));
             lines
@@ -165,7 +165,7 @@ pub fn cycle_words<'a>(
 }
 
 /// The fixed point of T_max at the first nodes.
-fn fixed_words<'a>(found: &Spiral, name: &impl Fn(usize) -> &'a str) -> Option<String> {
+fn fixed_words<'a>(found: &TMaxIteration, name: &impl Fn(usize) -> &'a str) -> Option<String> {
     let all = found.places.iter().zip(&found.fixed);
     let text = all
         .take(MOST_NAMED)
@@ -200,7 +200,7 @@ pub fn slow_words<'a>(problem: &InterfaceProblem, name: &impl Fn(usize) -> &'a s
             name(place)
         )
     }));
-    if found.fate == Fate::SwingsApart {
+    if found.fate == TMaxLimit::Diverges {
         lines.push("  settings.t_max=consistent uses the T_max of the same iteration".into());
     }
     lines

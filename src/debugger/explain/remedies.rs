@@ -5,7 +5,7 @@
 
 use super::advice::{Advice, advice};
 use super::examination::{Examination, frozen};
-use super::remedy::{How, Remedy, RemedyKind};
+use super::remedy::{Remedy, RemedyInput, RemedyKind};
 use super::restart;
 use super::tested::Dimension;
 use std::cmp::Ordering;
@@ -19,7 +19,7 @@ use stickslip_core::model::{Mode, Model, Strategy};
 use stickslip_core::step::drive::{RunEnd, Until, drive};
 use stickslip_core::step::event::{Event, Failure, Outcome};
 use stickslip_core::step::intervene::Intervention;
-use stickslip_core::step::solver::{Offers, Solver};
+use stickslip_core::step::solver::{Capabilities, Solver};
 use stickslip_core::step::state::{State, Status};
 use stickslip_core::step::stepper::Stepper;
 use stickslip_scene::format::paths;
@@ -52,7 +52,7 @@ const ROUND_OFF: f64 = 1e-14;
 
 /// Remaining violations in the accepted state, relative to the scale of forces and the length of the scene.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Left {
+pub struct RemainingViolations {
     /// Largest penetration, or largest gap with a force across it (length).
     pub penetration: f64,
     /// Largest tension of a node in contact (force).
@@ -69,11 +69,11 @@ pub struct Left {
 
 /// Result of a trial.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Trial {
+pub struct RemedyTrial {
     /// Name of the remedy in the list.
     pub label: String,
     /// What to type to apply it.
-    pub how: How,
+    pub how: RemedyInput,
     /// How it ended.
     pub end: TrialEnd,
     /// Number of minor iterations.
@@ -85,15 +85,15 @@ pub struct Trial {
     /// Wall time of the solves.
     pub seconds: f64,
     /// Violations in the accepted state.
-    pub left: Option<Left>,
+    pub left: Option<RemainingViolations>,
     /// Minor iterations (`None`) and interventions, in order.
     pub steps: Vec<Option<Intervention>>,
 }
 
-impl Trial {
+impl RemedyTrial {
     /// A trial that has not started.
-    fn new(remedy: &Remedy) -> Trial {
-        Trial {
+    fn new(remedy: &Remedy) -> RemedyTrial {
+        RemedyTrial {
             label: remedy.label.clone(),
             how: remedy.how.clone(),
             end: TrialEnd::Budget,
@@ -157,7 +157,7 @@ pub fn all(
     if let Status::Failed(failure) = &state.status {
         for advice in advice(model, state, failure) {
             if let Advice::Remedy(remedy) = advice
-                && (spec.is_some() || !matches!(remedy.how, How::Restart(_)))
+                && (spec.is_some() || !matches!(remedy.how, RemedyInput::Restart(_)))
             {
                 add(remedy);
             }
@@ -167,7 +167,12 @@ pub fn all(
 }
 
 /// Remedies that an attached solver supports: initial modes, and possibly another increment size.
-pub fn offered(model: &Model, state: &State, offers: &Offers, found: &Examination) -> Vec<Remedy> {
+pub fn offered(
+    model: &Model,
+    state: &State,
+    offers: &Capabilities,
+    found: &Examination,
+) -> Vec<Remedy> {
     let parts = [RemedyKind::Part(0.5), RemedyKind::Part(0.1)];
     let parts = parts
         .into_iter()
@@ -188,7 +193,7 @@ fn attempt_restart(
     state: &State,
     (remedy, changes): (&Remedy, &[(String, &str)]),
     stop: &dyn Fn() -> bool,
-) -> Option<Trial> {
+) -> Option<RemedyTrial> {
     let mut spec = spec.clone();
     for (path, value) in changes {
         paths::set(&mut spec, path, value).ok()?;
@@ -197,7 +202,7 @@ fn attempt_restart(
     let began = Instant::now();
     let run = restart::restart(&mut stepper, state, stop)?;
     let count = |n: u64| u32::try_from(n).unwrap_or(u32::MAX);
-    let mut trial = Trial::new(remedy);
+    let mut trial = RemedyTrial::new(remedy);
     trial.seconds = began.elapsed().as_secs_f64();
     (trial.minors, trial.majors) = (count(run.minors), count(run.majors));
     trial.factorizations = count(run.factorizations);
@@ -222,14 +227,14 @@ pub fn attempt(
     spec: Option<&Spec>,
     remedy: &Remedy,
     stop: &dyn Fn() -> bool,
-) -> Option<Trial> {
-    if let How::Restart(changes) = &remedy.how {
+) -> Option<RemedyTrial> {
+    if let RemedyInput::Restart(changes) = &remedy.how {
         return attempt_restart(spec?, state, (remedy, changes), stop);
     }
     solver.restore(state).ok()?;
     let target = (state.start.leg, state.load_factor);
-    let mut trial = Trial::new(remedy);
-    let change = |solver: &mut dyn Solver, trial: &mut Trial, what: Intervention| {
+    let mut trial = RemedyTrial::new(remedy);
+    let change = |solver: &mut dyn Solver, trial: &mut RemedyTrial, what: Intervention| {
         // Impossible interventions are skipped: a node past its surface cannot touch.
         if solver.intervene(&what).is_ok() {
             trial.steps.push(Some(what));
@@ -327,7 +332,7 @@ fn hysteresis(stepper: &Stepper, event: &Event) -> Vec<Intervention> {
 }
 
 /// The judge's findings in the last accepted state.
-fn left(stepper: &Stepper, event: &Event, after: &Norms) -> Left {
+fn left(stepper: &Stepper, event: &Event, after: &Norms) -> RemainingViolations {
     let verdict = stepper.state().start.verdict.as_ref();
     let amount = |law: JudgedLaw| {
         let found = verdict.and_then(|verdict| verdict.of(law));
@@ -340,7 +345,7 @@ fn left(stepper: &Stepper, event: &Event, after: &Norms) -> Left {
     let inside = amount(JudgedLaw::Penetration).max(gap);
     let (tension, shear) = (amount(JudgedLaw::Tension), amount(JudgedLaw::Cone));
     let decisions = event.nodes.iter().map(|record| &record.decision);
-    Left {
+    RemainingViolations {
         penetration: inside * stepper.model().length,
         tension: tension * after.scale,
         shear: shear * after.scale,
@@ -351,7 +356,7 @@ fn left(stepper: &Stepper, event: &Event, after: &Norms) -> Left {
 }
 
 /// Order of a trial: 0 if it converged without violations, 1 with some, 2 if it did not converge.
-pub fn rank(trial: &Trial) -> u8 {
+pub fn rank(trial: &RemedyTrial) -> u8 {
     match (&trial.end, &trial.left) {
         (TrialEnd::Converged, Some(left)) if left.worst > CLEAN || left.held > 0 => 1,
         (TrialEnd::Converged, _) => 0,
@@ -363,17 +368,17 @@ pub fn rank(trial: &Trial) -> u8 {
 /// Order of two trials, best first: those that converged without violations, then those with violations, by size, then the
 /// others. Of those that converged, a change of the scene comes first, because only it removes a cause in the scene; then
 /// what lasts over later increments; then by cost.
-pub fn compare(a: &Trial, b: &Trial) -> Ordering {
-    let worst = |trial: &Trial| trial.left.map_or(0.0, |left| left.worst);
+pub fn compare(a: &RemedyTrial, b: &RemedyTrial) -> Ordering {
+    let worst = |trial: &RemedyTrial| trial.left.map_or(0.0, |left| left.worst);
     let by_size = match (rank(a), rank(b)) {
         (1, 1) => worst(a).total_cmp(&worst(b)),
         _ => Ordering::Equal,
     };
-    let lasts = |trial: &Trial| match (rank(trial), &trial.how) {
+    let lasts = |trial: &RemedyTrial| match (rank(trial), &trial.how) {
         (2, _) => 0,
-        (_, How::Restart(_)) => 0,
-        (_, How::Set(..) | How::Increment(_) | How::IncrementOn(..)) => 1,
-        (_, How::StartFrom(_) | How::Listed) => 2,
+        (_, RemedyInput::Restart(_)) => 0,
+        (_, RemedyInput::Set(..) | RemedyInput::Increment(_) | RemedyInput::IncrementOn(..)) => 1,
+        (_, RemedyInput::StartFrom(_) | RemedyInput::Listed) => 2,
     };
     (rank(a).cmp(&rank(b)))
         .then(by_size)
@@ -383,7 +388,7 @@ pub fn compare(a: &Trial, b: &Trial) -> Ordering {
 }
 
 /// Sorts trials, best first.
-pub fn sort(trials: &mut [Trial]) {
+pub fn sort(trials: &mut [RemedyTrial]) {
     trials.sort_by(compare);
 }
 
@@ -406,10 +411,10 @@ pub fn end_words(end: &TrialEnd) -> String {
         Failure::Refused(_) => "refused",
         Failure::Inverted(_) => "inverted",
         Failure::CutTooOften { .. } => "cut too often",
-        Failure::Restless { .. } => "no rest",
-        Failure::Leapt { .. } => "jumps",
-        Failure::DoubledBack => "doubles back",
-        Failure::Unmoved => "does not move",
+        Failure::NoRest { .. } => "no rest",
+        Failure::BranchJump { .. } => "jumps",
+        Failure::PathReversal => "doubles back",
+        Failure::ZeroMeasure => "does not move",
         Failure::RoundOff { .. } => "round-off",
         Failure::Reported { .. } => "failed",
         Failure::NoAnswer { .. } => "no answer",
@@ -425,12 +430,12 @@ pub const COLUMNS: [&str; 10] = [
 ];
 
 /// A trial as a row of the table, in the order of [`COLUMNS`].
-pub fn row(trial: &Trial) -> [String; 10] {
+pub fn row(trial: &RemedyTrial) -> [String; 10] {
     let tiny = |value: f64| match value {
         value if value <= 0.0 => "0".into(),
         value => format!("{value:.0e}"),
     };
-    let number = |of: fn(&Left) -> f64| {
+    let number = |of: fn(&RemainingViolations) -> f64| {
         trial
             .left
             .as_ref()

@@ -61,7 +61,7 @@ pub enum RemedyKind {
 
 /// What to type to apply a remedy.
 #[derive(Debug, Clone, PartialEq)]
-pub enum How {
+pub enum RemedyInput {
     /// A setting: path and value.
     Set(&'static str, String),
     /// An increment size.
@@ -76,20 +76,20 @@ pub enum How {
     Listed,
 }
 
-impl How {
+impl RemedyInput {
     /// What to type in the debugger.
     pub fn typed(&self) -> String {
         match self {
-            How::Set(path, value) => format!(":set {path} {value}"),
-            How::Increment(size) | How::IncrementOn(_, size) => {
-                format!(":increment {}", number::plain(*size))
+            RemedyInput::Set(path, value) => format!(":set {path} {value}"),
+            RemedyInput::Increment(size) | RemedyInput::IncrementOn(_, size) => {
+                format!(":increment {}", number::shortest(*size))
             }
-            How::StartFrom(answer) => format!(":start-from {}", answer + 1),
-            How::Restart(changes) => {
+            RemedyInput::StartFrom(answer) => format!(":start-from {}", answer + 1),
+            RemedyInput::Restart(changes) => {
                 let option = |(path, value): &(String, &str)| format!("--set {path}={value}");
                 changes.iter().map(option).collect::<Vec<_>>().join(" ")
             }
-            How::Listed => "r, then select it and press Enter".into(),
+            RemedyInput::Listed => "r, then select it and press Enter".into(),
         }
     }
 }
@@ -102,7 +102,7 @@ pub struct Remedy {
     /// Short name, also used for its branch.
     pub label: String,
     /// What to type to apply it.
-    pub how: How,
+    pub how: RemedyInput,
     /// Interventions before the first minor iteration.
     pub first: Vec<Intervention>,
 }
@@ -122,14 +122,14 @@ impl Remedy {
         (!first.is_empty()).then(|| Remedy {
             kind: RemedyKind::Start(mode),
             label: format!("start contacts {}", names::mode(mode)),
-            how: How::Listed,
+            how: RemedyInput::Listed,
             first,
         })
     }
 
     /// The remedy of a kind at a state; `None` if it would change nothing or does not apply.
     pub fn from_kind(kind: RemedyKind, model: &Model, state: &State) -> Option<Remedy> {
-        let remedy = |label: &str, how: How, first: Vec<Intervention>| Remedy {
+        let remedy = |label: &str, how: RemedyInput, first: Vec<Intervention>| Remedy {
             kind,
             label: label.to_owned(),
             how,
@@ -139,7 +139,7 @@ impl Remedy {
             RemedyKind::Answer(_) | RemedyKind::Law => None,
             RemedyKind::Reverse(surface) => {
                 let name = &model.surfaces.get(surface)?.name;
-                let how = How::Restart(vec![(format!("surfaces.{name}.reverse"), "true")]);
+                let how = RemedyInput::Restart(vec![(format!("surfaces.{name}.reverse"), "true")]);
                 Some(remedy(&format!("reverse surface {name}"), how, Vec::new()))
             }
             RemedyKind::Gaps(gaps) => {
@@ -152,12 +152,16 @@ impl Remedy {
                     InitialGaps::Ramp => ("ramp", "initial_gaps: ramp"),
                     InitialGaps::Keep => return None,
                 };
-                let how = How::Restart(vec![("settings.initial_gaps".to_owned(), word)]);
+                let how = RemedyInput::Restart(vec![("settings.initial_gaps".to_owned(), word)]);
                 let overlaps = starts && keeps && start_gaps(model).iter().any(inside);
                 // If a surface has the wrong orientation, all nodes are inside.
                 (overlaps && turned(model).is_empty()).then(|| remedy(label, how, Vec::new()))
             }
-            RemedyKind::Hysteresis => Some(remedy("hysteresis of 1e-3", How::Listed, Vec::new())),
+            RemedyKind::Hysteresis => Some(remedy(
+                "hysteresis of 1e-3",
+                RemedyInput::Listed,
+                Vec::new(),
+            )),
             RemedyKind::Part(part) => {
                 let size = state.controls.increment * part;
                 let label = match part {
@@ -167,22 +171,22 @@ impl Remedy {
                 };
                 let first = vec![Intervention::Increment(size)];
                 let how = match model.increments.is_empty() {
-                    true => How::Increment(size),
-                    false => How::IncrementOn(state.start.leg, size),
+                    true => RemedyInput::Increment(size),
+                    false => RemedyInput::IncrementOn(state.start.leg, size),
                 };
                 Some(remedy(&label, how, first))
             }
             RemedyKind::Start(mode) => {
                 let first = starts(model, state, mode);
                 let label = format!("start contacts {}", names::mode(mode));
-                (!first.is_empty()).then(|| remedy(&label, How::Listed, first))
+                (!first.is_empty()).then(|| remedy(&label, RemedyInput::Listed, first))
             }
             _ => {
                 let mut settings = state.controls.settings;
                 let (label, path, value) = change(kind, &mut settings)?;
                 let first = vec![Intervention::Settings(settings)];
                 (settings != state.controls.settings)
-                    .then(|| remedy(label, How::Set(path, value), first))
+                    .then(|| remedy(label, RemedyInput::Set(path, value), first))
             }
         }
     }
@@ -206,7 +210,7 @@ impl Remedy {
         let law = Remedy {
             kind: RemedyKind::Law,
             label,
-            how: How::Restart(changes),
+            how: RemedyInput::Restart(changes),
             first: Vec::new(),
         };
         Some((law, cause.is_certain()))
@@ -225,7 +229,7 @@ impl Remedy {
             Some(Remedy {
                 kind: RemedyKind::Answer(number),
                 label: format!("state {}: {}{more}", number + 1, some.join(", ")),
-                how: How::StartFrom(number),
+                how: RemedyInput::StartFrom(number),
                 first: vec![Intervention::Assume(starts)],
             })
         };

@@ -8,17 +8,19 @@ use crate::explain::jumped;
 use crate::explain::names::{self, mode, position_in, slave};
 use crate::explain::strain;
 use stickslip_core::contact::record::ContactRecord;
-use stickslip_core::contact::table2::{Decision, Rule, Tested};
+use stickslip_core::contact::table2::{Decision, Rule, TestedQuantity};
 use stickslip_core::interface::census;
 use stickslip_core::interface::method::NotFound;
 use stickslip_core::linear::norms::Norms;
 use stickslip_core::linear::singular::{LooseMotion, RigidMotion, Singular};
 use stickslip_core::model::Model;
-use stickslip_core::step::event::{Event, Failure, Moves, Outcome, Position, Slow};
+use stickslip_core::step::arc_state::Change;
+use stickslip_core::step::event::{
+    Event, Failure, MotionEvent, Outcome, Position, SmallerStepReason,
+};
 use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::state::State;
-use stickslip_core::step::way::Change;
-use stickslip_scene::number::{four, plain, six};
+use stickslip_scene::number::{shortest, sig4, sig6};
 use stickslip_scene::shown::first_of;
 
 /// Maximum number of nodes or motions named.
@@ -78,10 +80,12 @@ pub fn reason(decision: &Decision, friction: bool) -> String {
                 mode(decision.next)
             );
             let first = match decision.tests[1].map(|test| test.tested) {
-                Some(Tested::Gap) => " Its gap was the first to close.",
-                Some(Tested::NormalForce) => " Its F_n was the first to vanish.",
-                Some(Tested::ShearForce) => " It was the first to reach its friction limit.",
-                Some(Tested::Slip) => " Its slip was the first to end.",
+                Some(TestedQuantity::Gap) => " Its gap was the first to close.",
+                Some(TestedQuantity::NormalForce) => " Its F_n was the first to vanish.",
+                Some(TestedQuantity::ShearForce) => {
+                    " It was the first to reach its friction limit."
+                }
+                Some(TestedQuantity::Slip) => " Its slip was the first to end.",
                 _ => "",
             };
             return here + first;
@@ -173,9 +177,9 @@ fn outcome_with(model: &Model, event: &Event, failed: fn(&Model, &Failure) -> St
         } => format!(
             "{at}: {}; damped: solves load {} first",
             failed(model, &Failure::Cycle(c.clone())),
-            plain(*aim)
+            shortest(*aim)
         ),
-        Outcome::Climbed { why, to, frozen } => format!(
+        Outcome::StrategyChange { why, to, frozen } => format!(
             "{at}: {}; continues with strategy {}{}",
             failed(model, why),
             to.name(),
@@ -188,14 +192,14 @@ fn outcome_with(model: &Model, event: &Event, failed: fn(&Model, &Failure) -> St
         Outcome::Cut { why, size } => format!(
             "{at}: {}; the increment is cut to {}",
             failed(model, why),
-            six(*size)
+            sig6(*size)
         ),
-        Outcome::Leaps { why, size } => format!(
+        Outcome::WholeIncrement { why, size } => format!(
             "{at}: {}; no equilibrium is near, so the whole increment {} is solved",
             failed(model, why),
-            six(*size)
+            sig6(*size)
         ),
-        Outcome::Turns { why, changes } => {
+        Outcome::PathCorner { why, changes } => {
             let change = |change: &Change| {
                 let (name, to) = (slave(model, change.contact), mode(change.to));
                 format!("{name} is {to}")
@@ -214,15 +218,15 @@ fn outcome_with(model: &Model, event: &Event, failed: fn(&Model, &Failure) -> St
             );
             format!(
                 "{at}: {why}; the major iteration restarts with slip stiffness {}",
-                four(*stiffness)
+                sig4(*stiffness)
             )
         }
-        Outcome::Moves(moves) => format!("{at}: {}", self::moves(model, moves, failed)),
+        Outcome::Motion(moves) => format!("{at}: {}", self::moves(model, moves, failed)),
         Outcome::Fallback { why, by, size } => format!(
             "{at}: {}; tries {} (size {})",
             failed(model, why),
             by.words(),
-            six(*size)
+            sig6(*size)
         ),
         Outcome::Major { after, settled } => {
             let leaves = |node: &ContactRecord| node.decision.rule == Rule::CornerReleases;
@@ -256,7 +260,7 @@ fn outcome_with(model: &Model, event: &Event, failed: fn(&Model, &Failure) -> St
             let left = left.map_or(String::new(), |left| format!("; {left}"));
             format!(
                 "{at}: load {} accepted{found}{}{left}{end}",
-                plain(event.load_factor),
+                shortest(event.load_factor),
                 reservations(model, event)
             )
         }
@@ -268,21 +272,22 @@ fn outcome_with(model: &Model, event: &Event, failed: fn(&Model, &Failure) -> St
 pub fn recovery(outcome: &Outcome) -> Option<&'static str> {
     Some(match outcome {
         Outcome::Damped { .. } => "increment damped",
-        Outcome::Climbed { .. } => "strategy changed",
+        Outcome::StrategyChange { .. } => "strategy changed",
         Outcome::Cut { .. } => "increment cut",
-        Outcome::Leaps { .. } => "whole increment solved",
-        Outcome::Turns { .. } => "corner of the path found",
+        Outcome::WholeIncrement { .. } => "whole increment solved",
+        Outcome::PathCorner { .. } => "corner of the path found",
         Outcome::Fallback { .. } => "fallback tried",
         Outcome::Refused { .. } => "state refused",
-        Outcome::Moves(Moves::LetsGo { .. }) => "damped motion started",
+        Outcome::Motion(MotionEvent::DynamicStart { .. }) => "damped motion started",
         _ => return None,
     })
 }
 
 /// The bodies that failed to be held in an event that kept a run going.
 pub fn loose_bodies(outcome: &Outcome) -> Vec<&str> {
-    let (Outcome::Climbed { why, .. } | Outcome::Cut { why, .. } | Outcome::Fallback { why, .. }) =
-        outcome
+    let (Outcome::StrategyChange { why, .. }
+    | Outcome::Cut { why, .. }
+    | Outcome::Fallback { why, .. }) = outcome
     else {
         return Vec::new();
     };
@@ -293,21 +298,21 @@ pub fn loose_bodies(outcome: &Outcome) -> Vec<&str> {
 }
 
 /// Describes a damped motion.
-fn moves(model: &Model, moves: &Moves, failed: fn(&Model, &Failure) -> String) -> String {
+fn moves(model: &Model, moves: &MotionEvent, failed: fn(&Model, &Failure) -> String) -> String {
     match moves {
-        Moves::LetsGo { why, load } => format!(
+        MotionEvent::DynamicStart { why, load } => format!(
             "{}; no equilibrium is near that of load {}: a damped motion starts there",
             failed(model, why),
-            plain(*load)
+            shortest(*load)
         ),
-        Moves::Step { motion, number } => {
+        MotionEvent::Step { motion, number } => {
             format!("step {number} of a damped motion, by {motion:.3e}")
         }
-        Moves::Slower(slow) => {
+        MotionEvent::Slower(slow) => {
             let why = match slow {
-                Slow::Failed(why) => failed(model, why),
-                Slow::Far { motion } => format!("the step would move by {motion:.3e}"),
-                Slow::Unstable => "the step would end in an unstable state".to_owned(),
+                SmallerStepReason::Failed(why) => failed(model, why),
+                SmallerStepReason::Far { motion } => format!("the step would move by {motion:.3e}"),
+                SmallerStepReason::Unstable => "the step would end in an unstable state".to_owned(),
             };
             format!("{why}; the damped motion continues with a smaller step")
         }
@@ -325,10 +330,10 @@ fn pivot(model: &Model, event: &Event) -> String {
     let mut nodes = 0..event.nodes.len();
     let what = nodes.find_map(|s| {
         let what = match tests(s)[1]?.tested {
-            Tested::Gap => "the gap closed",
-            Tested::NormalForce => "F_n vanished",
-            Tested::ShearForce => "the friction limit was reached",
-            Tested::Slip | Tested::Room => "the slip ended",
+            TestedQuantity::Gap => "the gap closed",
+            TestedQuantity::NormalForce => "F_n vanished",
+            TestedQuantity::ShearForce => "the friction limit was reached",
+            TestedQuantity::Slip | TestedQuantity::Room => "the slip ended",
             _ => return None,
         };
         Some(format!("at {} {what}", slave(model, s)))
@@ -394,8 +399,8 @@ pub fn reservations(model: &Model, event: &Event) -> String {
         text += &format!(
             ", after a damped motion of {} steps from the equilibrium at load {} (energy {} dissipated)",
             motion.steps,
-            plain(motion.from),
-            six(motion.dissipated)
+            shortest(motion.from),
+            sig6(motion.dissipated)
         );
     }
     text
@@ -442,7 +447,7 @@ pub fn intervention(model: &Model, intervention: &Intervention) -> String {
         }
         Intervention::Release { slave: s } => format!("{} follows Table 2 again", slave(model, *s)),
         Intervention::Increment(increment) => {
-            format!("the increment restarts with size {}", plain(*increment))
+            format!("the increment restarts with size {}", shortest(*increment))
         }
         Intervention::Friction(f) => format!(
             "friction angle {} degrees, cohesion {}",
@@ -467,7 +472,7 @@ pub fn failure(model: &Model, state: &State, at: Position, load: f64, failure: &
     format!(
         "increment {} (load {}){again}, major {}, minor {}: {}; {}",
         at.increment,
-        plain(load),
+        shortest(load),
         at.major,
         at.minor,
         describe_failure(model, failure),
@@ -477,7 +482,7 @@ pub fn failure(model: &Model, state: &State, at: Position, load: f64, failure: &
 
 /// The last equilibrium of a failed run.
 pub fn sound(at: Position, state: &State) -> String {
-    let accepted = plain(state.start.load_factor);
+    let accepted = shortest(state.start.load_factor);
     match at.increment {
         0 | 1 => format!("no equilibrium after the start (load {accepted})"),
         n => format!(
@@ -553,18 +558,18 @@ pub fn describe_failure(model: &Model, failure: &Failure) -> String {
             slave(model, *s),
             describe_failure(model, last)
         ),
-        Failure::Restless { steps } => {
+        Failure::NoRest { steps } => {
             format!("the damped motion still moves after {steps} steps")
         }
-        Failure::Leapt {
+        Failure::BranchJump {
             motion,
             predicted,
             unstable,
         } => jumped::jump(*motion, *predicted, *unstable),
-        Failure::DoubledBack => {
+        Failure::PathReversal => {
             "the path control would turn back along the previous increment".into()
         }
-        Failure::Unmoved => {
+        Failure::ZeroMeasure => {
             "the path measure (history.arc) does not change with the load, so the increment has no size".into()
         }
         Failure::RoundOff { noise } => format!(

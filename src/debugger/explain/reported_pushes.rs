@@ -19,7 +19,7 @@ use stickslip_core::interface::kinematics::NodeIncrement;
 use stickslip_core::interface::trials::Trials;
 use stickslip_core::model::{BoundUpdate, Mode, Model};
 use stickslip_core::step::event::Event;
-use stickslip_core::step::solver::{GoesBack, Offers, Posed};
+use stickslip_core::step::solver::{Capabilities, ReportedProblem, RewindSupport};
 use stickslip_core::step::state::State;
 
 /// Maximum number of contacts for which the problem is requested in every iteration, because it is sent as text
@@ -38,9 +38,9 @@ pub struct Iterations {
 
 /// Whether a solver is asked for its problem in every iteration: it reports the problem, can return to any
 /// state, and has few enough contacts.
-pub fn are_available(model: &Model, offers: &Offers) -> bool {
+pub fn are_available(model: &Model, offers: &Capabilities) -> bool {
     let few = model.contacts.len() <= MOST;
-    offers.problem && offers.goes_back == GoesBack::ToAny && few
+    offers.problem && offers.goes_back == RewindSupport::ToAny && few
 }
 
 /// The pushes on a contact between the iterations; `posed` is the problem at the start of the later one. `None`
@@ -48,7 +48,7 @@ pub fn are_available(model: &Model, offers: &Offers) -> bool {
 pub fn pushes(
     model: &Model,
     iterations: &Iterations,
-    posed: &Posed,
+    posed: &ReportedProblem,
     slave: usize,
 ) -> Option<Vec<NodePush>> {
     let Some(target) = posed.contacts.iter().position(|&known| known == slave) else {
@@ -112,7 +112,7 @@ struct ReportedPushes {
 
 impl ReportedPushes {
     /// `None` if forces were not reported, or the problem gives other gaps.
-    fn new(posed: &Posed, nodes: &[ContactRecord]) -> Option<ReportedPushes> {
+    fn new(posed: &ReportedProblem, nodes: &[ContactRecord]) -> Option<ReportedPushes> {
         let records = posed.contacts.iter().map(|&slave| nodes.get(slave));
         let records: Vec<&ContactRecord> = records.collect::<Option<_>>()?;
         let forces = records.iter().flat_map(|record| [record.f_n, record.f_t]);
@@ -145,7 +145,7 @@ impl ReportedPushes {
     }
 
     /// Whether all sliding contacts satisfy f_t = ± (μ f_n + c) with the current normal force.
-    fn follows_law(&self, posed: &Posed) -> bool {
+    fn follows_law(&self, posed: &ReportedProblem) -> bool {
         let most = SAME * self.forces.amax();
         (0..self.modes.len()).all(|place| {
             let (friction, force) = (posed.friction[place], self.given(place).force);

@@ -5,7 +5,7 @@ use stickslip_core::fem::deformation::{Deformation, PointDeformation, StretchRan
 use stickslip_core::model::{BodyKind, Elastic, Law, Model, Update};
 use stickslip_core::step::event::Failure;
 use stickslip_core::step::state::State;
-use stickslip_scene::number::four;
+use stickslip_scene::number::sig4;
 
 /// Displacements beyond this multiple of the scene's length are meaningless as a shape.
 const LOST: f64 = 10.0;
@@ -28,7 +28,7 @@ pub fn element(model: &Model, point: &PointDeformation) -> String {
 
 /// Names an element and the location of its worst point.
 fn place(model: &Model, point: &PointDeformation) -> String {
-    let [x, y] = point.at.map(four);
+    let [x, y] = point.at.map(sig4);
     format!("{} at ({x}, {y})", element(model, point))
 }
 
@@ -37,19 +37,19 @@ pub fn inverted(model: &Model, point: &PointDeformation) -> String {
     format!(
         "{} is inverted: det F = {}, smallest principal stretch {}",
         place(model, point),
-        four(point.determinant),
-        four(point.stretch)
+        sig4(point.determinant),
+        sig4(point.stretch)
     )
 }
 
 /// Describes an element outside the range of its law, as part of a sentence.
 pub fn outside(model: &Model, point: &PointDeformation) -> String {
-    let stretch = four(point.stretch);
+    let stretch = sig4(point.stretch);
     format!(
         "{} is {}: {}",
         place(model, point),
         match range(model, point) {
-            StretchRange::Volume(_) => format!("swollen to det F = {}", four(point.determinant)),
+            StretchRange::Volume(_) => format!("swollen to det F = {}", sig4(point.determinant)),
             _ => format!("compressed to a stretch of {stretch}"),
         },
         limit(model, point)
@@ -58,7 +58,7 @@ pub fn outside(model: &Model, point: &PointDeformation) -> String {
 
 fn range(model: &Model, point: &PointDeformation) -> StretchRange {
     material(model, point).map_or(StretchRange::Unlimited, |(elastic, _)| {
-        StretchRange::of(elastic)
+        StretchRange::from_elastic(elastic)
     })
 }
 
@@ -68,15 +68,15 @@ pub fn limit(model: &Model, point: &PointDeformation) -> String {
         (StretchRange::Stretch(least), Some((elastic, _))) if elastic.update == Update::Small => {
             format!(
                 "below {} linear elasticity (update: small) neglects more than 5 % of the strain",
-                four(least)
+                sig4(least)
             )
         }
         (StretchRange::Stretch(least), _) => format!(
             "St Venant-Kirchhoff (law: svk) softens below {} under compression",
-            four(least)
+            sig4(least)
         ),
         (StretchRange::Volume(most), _) => {
-            format!("law: neohookean may soften beyond det F = {}", four(most))
+            format!("law: neohookean may soften beyond det F = {}", sig4(most))
         }
         (StretchRange::Unlimited, _) => "its stress update has no limit".into(),
     }
@@ -150,7 +150,7 @@ impl MaterialCause {
             Some(before) if before.stretch != self.point.stretch => format!(
                 "; in the last equilibrium, {} was compressed to {}",
                 element(model, before),
-                four(before.stretch)
+                sig4(before.stretch)
             ),
             _ => String::new(),
         };

@@ -1,7 +1,7 @@
 //! The quantities that Table 2 tests: their names and dimensions, and how a change of another node affects them.
 
 use super::influence::Influence;
-use stickslip_core::contact::table2::{Decision, Tested};
+use stickslip_core::contact::table2::{Decision, TestedQuantity};
 
 /// Dimension of a tested quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -16,17 +16,19 @@ pub enum Dimension {
     Unknown,
 }
 
-impl From<Tested> for Dimension {
-    fn from(tested: Tested) -> Dimension {
+impl From<TestedQuantity> for Dimension {
+    fn from(tested: TestedQuantity) -> Dimension {
         match tested {
-            Tested::NormalForce
-            | Tested::ShearForce
-            | Tested::LeastFriction
-            | Tested::Pressure
-            | Tested::Drag => Dimension::Force,
-            Tested::Slip | Tested::Room | Tested::Gap => Dimension::Length,
-            Tested::Cover | Tested::Change | Tested::Error => Dimension::Ratio,
-            Tested::Own => Dimension::Unknown,
+            TestedQuantity::NormalForce
+            | TestedQuantity::ShearForce
+            | TestedQuantity::LeastFriction
+            | TestedQuantity::Pressure
+            | TestedQuantity::Drag => Dimension::Force,
+            TestedQuantity::Slip | TestedQuantity::Room | TestedQuantity::Gap => Dimension::Length,
+            TestedQuantity::Cover | TestedQuantity::Change | TestedQuantity::Error => {
+                Dimension::Ratio
+            }
+            TestedQuantity::Own => Dimension::Unknown,
         }
     }
 }
@@ -43,43 +45,45 @@ impl Dimension {
 }
 
 /// The name of a quantity, and of the bound that it is compared with; `None` for 0.
-pub fn sides(tested: Tested) -> (&'static str, Option<&'static str>) {
+pub fn sides(tested: TestedQuantity) -> (&'static str, Option<&'static str>) {
     match tested {
-        Tested::NormalForce => ("F_n", None),
-        Tested::ShearForce => ("|F_t|", Some("|T_max|")),
-        Tested::Slip => ("slip·sgn T_max", None),
-        Tested::LeastFriction => ("F_t against slip", Some("least")),
-        Tested::Room => ("way", Some("room")),
-        Tested::Gap => ("g", None),
-        Tested::Pressure => ("F_n − k·g", None),
-        Tested::Drag => ("|F_t + k·slip|", Some("limit")),
-        Tested::Cover => ("z", None),
-        Tested::Change => ("change", None),
-        Tested::Error => ("error", None),
-        Tested::Own => ("its own", None),
+        TestedQuantity::NormalForce => ("F_n", None),
+        TestedQuantity::ShearForce => ("|F_t|", Some("|T_max|")),
+        TestedQuantity::Slip => ("slip·sgn T_max", None),
+        TestedQuantity::LeastFriction => ("F_t against slip", Some("least")),
+        TestedQuantity::Room => ("way", Some("room")),
+        TestedQuantity::Gap => ("g", None),
+        TestedQuantity::Pressure => ("F_n − k·g", None),
+        TestedQuantity::Drag => ("|F_t + k·slip|", Some("limit")),
+        TestedQuantity::Cover => ("z", None),
+        TestedQuantity::Change => ("change", None),
+        TestedQuantity::Error => ("error", None),
+        TestedQuantity::Own => ("its own", None),
     }
 }
 
 /// The quantity of the test that fired, or otherwise of the first test.
-pub fn deciding(decision: &Decision) -> Tested {
+pub fn deciding(decision: &Decision) -> TestedQuantity {
     let tests = || decision.tests.iter().flatten();
     let fired = tests().find(|test| test.margin < 0.0);
     fired
         .or(tests().next())
-        .map_or(Tested::Gap, |test| test.tested)
+        .map_or(TestedQuantity::Gap, |test| test.tested)
 }
 
 /// The effect on a tested quantity, or on the force that decides it, with its symbol.
-pub fn effect(tested: Tested, influence: &Influence) -> (&'static str, f64) {
+pub fn effect(tested: TestedQuantity, influence: &Influence) -> (&'static str, f64) {
     match tested {
-        Tested::Gap => ("Δg", influence.gap),
-        Tested::NormalForce
-        | Tested::Pressure
-        | Tested::Cover
-        | Tested::Change
-        | Tested::Error
-        | Tested::Own => ("ΔF_n", influence.f_n),
-        Tested::ShearForce | Tested::LeastFriction | Tested::Drag => ("ΔF_t", influence.f_t),
-        Tested::Slip | Tested::Room => ("Δslip", influence.slip),
+        TestedQuantity::Gap => ("Δg", influence.gap),
+        TestedQuantity::NormalForce
+        | TestedQuantity::Pressure
+        | TestedQuantity::Cover
+        | TestedQuantity::Change
+        | TestedQuantity::Error
+        | TestedQuantity::Own => ("ΔF_n", influence.f_n),
+        TestedQuantity::ShearForce | TestedQuantity::LeastFriction | TestedQuantity::Drag => {
+            ("ΔF_t", influence.f_t)
+        }
+        TestedQuantity::Slip | TestedQuantity::Room => ("Δslip", influence.slip),
     }
 }

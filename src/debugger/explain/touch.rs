@@ -26,11 +26,11 @@ pub struct TouchWatch {
     /// Current increment and attempt, and the nodes that touched in it.
     attempt: (u32, u32),
     touched: Vec<bool>,
-    decided: Option<Decided>,
+    decided: Option<TouchDecision>,
 }
 
 /// An increment in which nodes touched.
-struct Decided {
+struct TouchDecision {
     start: State,
     increment: u32,
     load: f64,
@@ -84,7 +84,7 @@ impl TouchWatch {
         let limit = limits.fold(0.0, f64::max);
         let most = self.decided.as_ref().map_or(0.0, |decided| decided.limit);
         if limit > most && !jumped && motion.is_none() {
-            self.decided = Some(Decided {
+            self.decided = Some(TouchDecision {
                 start: self.start.clone(),
                 increment: at.increment,
                 load: event.load_factor,
@@ -106,7 +106,7 @@ impl TouchWatch {
         let until = Until::end().minors(MOST_MINORS);
         let end = stepper.drive(until, |stepper| match stepper.event().outcome {
             Outcome::Increment { .. } => ControlFlow::Break(true),
-            Outcome::Cut { .. } | Outcome::Leaps { .. } | Outcome::Fallback { .. } => {
+            Outcome::Cut { .. } | Outcome::WholeIncrement { .. } | Outcome::Fallback { .. } => {
                 ControlFlow::Break(false)
             }
             _ => ControlFlow::Continue(()),

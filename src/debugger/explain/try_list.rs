@@ -1,7 +1,7 @@
 //! The list Try of the diagnosis page: what can be done, with the outcome of each trial.
 
-use super::remedies::{self, BUDGET, Trial, TrialEnd, compare};
-use super::remedy::{How, Remedy};
+use super::remedies::{self, BUDGET, RemedyTrial, TrialEnd, compare};
+use super::remedy::{Remedy, RemedyInput};
 
 /// Outcome of a line of the list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,19 +26,19 @@ pub struct TryLine {
     /// The outcome in words.
     pub end: String,
     /// Its trial, which can be repeated in a branch.
-    pub trial: Option<Trial>,
+    pub trial: Option<RemedyTrial>,
 }
 
 impl TryLine {
     /// The line of a tried remedy.
-    pub fn tried(trial: &Trial) -> TryLine {
+    pub fn tried(trial: &RemedyTrial) -> TryLine {
         let works = helps(trial);
         let minors = match trial.minors {
             1 => "1 minor".to_owned(),
             n => format!("{n} minors"),
         };
         let end = match (works, &trial.how) {
-            (true, How::Restart(_)) => format!("tried from the start: passes, {minors}"),
+            (true, RemedyInput::Restart(_)) => format!("tried from the start: passes, {minors}"),
             (true, _) => format!("tried: converges, {minors}"),
             (false, _) if trial.end == TrialEnd::Converged => {
                 "tried: held nodes violate a law".to_owned()
@@ -104,7 +104,7 @@ impl TryLine {
     /// The line with options for the command line instead of a command of the debugger.
     pub fn option(&self) -> String {
         match self.trial.as_ref().map(|trial| &trial.how) {
-            Some(How::Set(path, value)) => format!("--set {path}={value} ({})", self.end),
+            Some(RemedyInput::Set(path, value)) => format!("--set {path}={value} ({})", self.end),
             _ => format!("{} ({})", self.command(), self.end),
         }
     }
@@ -119,15 +119,15 @@ impl TryLine {
 }
 
 /// What to type; empty if only Enter on the line does it.
-fn typed(how: &How) -> String {
+fn typed(how: &RemedyInput) -> String {
     match how {
-        How::Listed => String::new(),
+        RemedyInput::Listed => String::new(),
         _ => how.typed(),
     }
 }
 
 /// Whether a trial reached the load without violations.
-pub fn helps(trial: &Trial) -> bool {
+pub fn helps(trial: &RemedyTrial) -> bool {
     trial.end == TrialEnd::Converged && trial.left.is_none_or(|left| left.held == 0)
 }
 

@@ -10,7 +10,7 @@ use stickslip_core::interface::problem::InterfaceProblem;
 use stickslip_core::interface::trials::Trials;
 use stickslip_core::model::{BoundUpdate, Mode, Model, Settings, SlipCount, Strategy, Touch};
 use stickslip_core::step::event::Event;
-use stickslip_core::step::solver::Posed;
+use stickslip_core::step::solver::ReportedProblem;
 use stickslip_core::step::state::State;
 use stickslip_core::strategy::method;
 use stickslip_scene::format::condensed::Problem;
@@ -41,7 +41,7 @@ impl ReportedIterations {
     }
 
     /// The interface problem as a scene that begins where the reported iterations begin.
-    pub fn problem(&self, model: &Model, state: &State, posed: &Posed) -> Problem {
+    pub fn problem(&self, model: &Model, state: &State, posed: &ReportedProblem) -> Problem {
         let mut problem = interface_scene::problem(model, state, posed);
         for (place, &slave) in posed.contacts.iter().enumerate() {
             if let Some(gap) = self.start_gap(model, slave) {
@@ -98,7 +98,7 @@ impl Walk {
 pub fn walk(
     model: &Model,
     state: &State,
-    posed: &Posed,
+    posed: &ReportedProblem,
     reported: &ReportedIterations,
 ) -> Option<Walk> {
     let iterations = &reported.events;
@@ -152,7 +152,11 @@ fn rules(base: Settings, t_max: BoundUpdate) -> impl Iterator<Item = Settings> {
 }
 
 /// The number of first iterations that the problem reproduces.
-fn reproduced(problem: &InterfaceProblem, posed: &Posed, iterations: &[Arc<Event>]) -> usize {
+fn reproduced(
+    problem: &InterfaceProblem,
+    posed: &ReportedProblem,
+    iterations: &[Arc<Event>],
+) -> usize {
     let Some(mut trials) = Trials::new(problem) else {
         return 0;
     };

@@ -13,7 +13,7 @@ use crate::history::strip::Strip;
 use crate::history::tree::Tree;
 use stickslip_core::model::{Mode, Model};
 use stickslip_core::step::event::Position;
-use stickslip_scene::number::plain;
+use stickslip_scene::number::shortest;
 use stickslip_scene::shown::first_of;
 
 /// Relative difference below which two states are the same.
@@ -210,7 +210,7 @@ pub fn describe(tree: &Tree, comparison: &Comparison) -> String {
         format!(
             "{} at load {}, residual {:.1e}, {minors} minor, {majors} major, {seconds:.3} s",
             branches::name(tree, side.branch),
-            plain(side.load_factor),
+            shortest(side.load_factor),
             side.residual
         )
     };
@@ -218,17 +218,17 @@ pub fn describe(tree: &Tree, comparison: &Comparison) -> String {
     let state = match (&comparison.common, comparison.sameness) {
         (None, _) => "the branches share no iteration after the fork".into(),
         (Some([a, _]), Some(Sameness::Same)) => {
-            format!("same state at load {}", plain(a.load_factor))
+            format!("same state at load {}", shortest(a.load_factor))
         }
         (Some([a, b]), Some(Sameness::Different)) => format!(
             "different states at load {}{}",
-            plain(a.load_factor),
+            shortest(a.load_factor),
             differing(model, a, b)
         ),
         (Some([a, _]), None) => {
             format!(
                 "at load {} one state was thinned; go there first to recompute it",
-                plain(a.load_factor)
+                shortest(a.load_factor)
             )
         }
     };

@@ -60,8 +60,8 @@ pub enum Rounds {
         members: Vec<(usize, Vec<Mode>)>,
     },
     /// They change without a period.
-    Restless {
-        /// Slave nodes that changed, and how often in the last [`Rounds::Restless::over`] iterations.
+    Irregular {
+        /// Slave nodes that changed, and how often in the last [`Rounds::Irregular::over`] iterations.
         members: Vec<(usize, usize)>,
         /// Number of iterations examined.
         over: usize,
@@ -122,7 +122,7 @@ pub fn rounds(strips: &[Strip]) -> Option<Rounds> {
         .filter(|(_, count)| *count >= OFTEN)
         .collect();
     members.sort_by_key(|&(slave, count)| (usize::MAX - count, slave));
-    (!members.is_empty()).then_some(Rounds::Restless { members, over })
+    (!members.is_empty()).then_some(Rounds::Irregular { members, over })
 }
 
 /// The behaviour in a sentence; `tells_since` adds the first step.
@@ -151,7 +151,7 @@ pub fn words(model: &Model, rounds: &Rounds, tells_since: bool) -> String {
                 more(members.len())
             )
         }
-        Rounds::Restless { members, over } => {
+        Rounds::Irregular { members, over } => {
             let member = |(slave, count): &(usize, usize)| {
                 format!("{} ({count} times)", names::slave(model, *slave))
             };

@@ -9,7 +9,7 @@ use crate::explain::strain;
 use stickslip_core::fem::deformation::deformation;
 use stickslip_core::model::Model;
 use stickslip_core::step::event::Outcome;
-use stickslip_scene::number::{four, plain};
+use stickslip_scene::number::{shortest, sig4};
 use stickslip_scene::shown::first_of;
 
 /// Maximum number of cuts, loads and increments listed.
@@ -19,7 +19,7 @@ const SLOW: f32 = 1.0;
 
 /// Cost of an accepted increment, with its failed attempts.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-struct Cost {
+struct IncrementCost {
     increment: u32,
     load: f64,
     minors: u32,
@@ -34,13 +34,13 @@ pub fn run_report(model: &Model, strips: &[Strip], frames: &[Frame]) -> (String,
     let head = format!(
         "The history is complete: {} increments to load {}, {minors} minor iterations.",
         costs.len(),
-        plain(load)
+        shortest(load)
     );
     let mut lines = cuts(model, strips, frames);
     let loads = |is: &dyn Fn(&Strip, &Frame) -> bool| {
         let all = strips.iter().zip(frames);
         let all = all.filter(|(strip, frame)| is(strip, frame));
-        let loads: Vec<String> = all.map(|(strip, _)| plain(strip.load_factor)).collect();
+        let loads: Vec<String> = all.map(|(strip, _)| shortest(strip.load_factor)).collect();
         (!loads.is_empty()).then(|| first_of(loads, MOST, ", "))
     };
     let jumped =
@@ -61,7 +61,7 @@ pub fn run_report(model: &Model, strips: &[Strip], frames: &[Frame]) -> (String,
     lines.extend(most("most iterations", &costs, |cost| {
         (cost.minors as f32, format!("{} minor", cost.minors))
     }));
-    let slow: Vec<Cost> = costs.into_iter().filter(|c| c.seconds >= SLOW).collect();
+    let slow: Vec<IncrementCost> = costs.into_iter().filter(|c| c.seconds >= SLOW).collect();
     lines.extend(most("slowest", &slow, |cost| {
         (cost.seconds, format!("{:.1} s", cost.seconds))
     }));
@@ -69,9 +69,9 @@ pub fn run_report(model: &Model, strips: &[Strip], frames: &[Frame]) -> (String,
 }
 
 /// The cost of each accepted increment.
-fn costs(strips: &[Strip]) -> Vec<Cost> {
+fn costs(strips: &[Strip]) -> Vec<IncrementCost> {
     let mut all = Vec::new();
-    let mut cost = Cost::default();
+    let mut cost = IncrementCost::default();
     for strip in strips.iter().filter(|strip| strip.kind.is_solved()) {
         cost.minors += 1;
         cost.seconds += strip.seconds;
@@ -97,12 +97,12 @@ fn cuts(model: &Model, strips: &[Strip], frames: &[Frame]) -> Vec<String> {
     let all = strips.iter().zip(frames).filter(|(strip, _)| is_cut(strip));
     let causes = all.filter_map(|(strip, frame)| {
         let why = match &frame.event.as_ref()?.outcome {
-            Outcome::Cut { why, .. } | Outcome::Leaps { why, .. } => why,
-            Outcome::Turns { why, .. } | Outcome::Fallback { why, .. } => why,
+            Outcome::Cut { why, .. } | Outcome::WholeIncrement { why, .. } => why,
+            Outcome::PathCorner { why, .. } | Outcome::Fallback { why, .. } => why,
             _ => return None,
         };
         let increment = strip.position.increment;
-        let load = plain(strip.load_factor);
+        let load = shortest(strip.load_factor);
         Some(format!(
             "  increment {increment}, load {load}: {}",
             brief(model, why)
@@ -123,16 +123,20 @@ fn worst_element(model: &Model, frames: &[Frame]) -> Option<String> {
     let element = strain::element(model, &point);
     Some(format!(
         "worst element: {element}, smallest principal stretch {}",
-        four(point.stretch)
+        sig4(point.stretch)
     ))
 }
 
 /// The increments with the largest values.
-fn most(what: &str, costs: &[Cost], of: impl Fn(&Cost) -> (f32, String)) -> Option<String> {
+fn most(
+    what: &str,
+    costs: &[IncrementCost],
+    of: impl Fn(&IncrementCost) -> (f32, String),
+) -> Option<String> {
     let mut costs = costs.to_vec();
     costs.sort_by(|a, b| of(b).0.total_cmp(&of(a).0));
     let words = costs.iter().take(MOST).map(|cost| {
-        let (increment, load) = (cost.increment, plain(cost.load));
+        let (increment, load) = (cost.increment, shortest(cost.load));
         format!("increment {increment} at load {load} ({})", of(cost).1)
     });
     let words: Vec<String> = words.collect();

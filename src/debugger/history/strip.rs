@@ -51,12 +51,12 @@ impl PointKind {
         match outcome {
             Outcome::Minor => PointKind::Minor,
             Outcome::Damped { .. } => PointKind::Damped,
-            Outcome::Climbed { .. } => PointKind::Climbed,
+            Outcome::StrategyChange { .. } => PointKind::Climbed,
             Outcome::Cut { .. }
-            | Outcome::Leaps { .. }
+            | Outcome::WholeIncrement { .. }
             | Outcome::Fallback { .. }
-            | Outcome::Turns { .. }
-            | Outcome::Moves(_) => PointKind::Cut,
+            | Outcome::PathCorner { .. }
+            | Outcome::Motion(_) => PointKind::Cut,
             Outcome::HeldBack { .. } => PointKind::Damped,
             Outcome::Major { .. } => PointKind::Major,
             Outcome::Refused { .. } => PointKind::Refused,

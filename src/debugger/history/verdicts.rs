@@ -6,7 +6,7 @@ use super::strip::PointKind;
 use super::tree::Tree;
 use stickslip_core::interface::minor_history::Cycle;
 use stickslip_core::step::event::{Failure, Outcome, Position};
-use stickslip_scene::number::plain;
+use stickslip_scene::number::shortest;
 
 /// How a branch ends so far. Branches are numbers in [`Tree::branches`].
 #[derive(Debug, Clone, PartialEq)]
@@ -213,13 +213,13 @@ pub fn describe(tree: &Tree, verdict: &BranchEnd) -> String {
         BranchEnd::Accepted => "accepted".into(),
         BranchEnd::Marked => "accepted, but fails the check".into(),
         BranchEnd::Same { branch, load } => {
-            format!("same state as {} at load {}", b(branch), plain(*load))
+            format!("same state as {} at load {}", b(branch), shortest(*load))
         }
         BranchEnd::Other { branch, load } => {
             format!(
                 "valid, but different from {} at load {}",
                 b(branch),
-                plain(*load)
+                shortest(*load)
             )
         }
         BranchEnd::SameCycle { branch } => format!("same cycle as {}", name(tree, *branch)),

@@ -68,7 +68,7 @@ pub enum Command {
         step: usize,
     },
     /// Go to the tip of another branch.
-    Branch(To),
+    Branch(BranchTarget),
     /// Rename the current branch.
     Rename(String),
     /// List the branches.
@@ -127,7 +127,7 @@ pub enum ExportScope {
 
 /// Which branch to go to.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub enum To {
+pub enum BranchTarget {
     /// The next one in the list.
     Next,
     /// The one before in the list.

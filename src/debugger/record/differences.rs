@@ -357,7 +357,7 @@ fn status(status: &Status) -> String {
             interface: 0.0,
         },
         Failure::Diverged { .. } => return "diverged".into(),
-        Failure::Leapt { .. } => return "jumps".into(),
+        Failure::BranchJump { .. } => return "jumps".into(),
         Failure::RoundOff { .. } => return "round-off".into(),
         Failure::Inverted(point) => {
             return format!("element {} of body {} inverted", point.element, point.body);

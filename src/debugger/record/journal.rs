@@ -1,7 +1,7 @@
 //! The journal of a session: all its commands, written as they are executed, from which the session can be
 //! replayed bit by bit.
 //!
-//! A RON text file with one entry per line. The first line is the [`Header`] with the whole scene, so that the
+//! A RON text file with one entry per line. The first line is the [`JournalHeader`] with the whole scene, so that the
 //! file is self-contained. Each command that changed something or moved the cursor adds an [`Entry`] with a
 //! digest of the resulting state; a motion that solves is announced by a line before it starts. Entries that
 //! changed something are synced to disk (fdatasync), and so is the folder of a new journal; cursor moves are
@@ -33,7 +33,7 @@ const EXTENSION: &str = "journal";
 /// The first line.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Header {
+pub struct JournalHeader {
     /// Format version.
     pub format: u32,
     /// Version of the program that wrote the journal.
@@ -134,7 +134,7 @@ impl From<SceneError> for JournalError {
 
 /// Where to write the journal of a session.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub enum Keep {
+pub enum JournalTarget {
     /// No journal.
     Nowhere,
     /// In the user's folder for journals.
@@ -185,7 +185,7 @@ impl Journal {
 
     fn open_with(&mut self, scene: &Scene, done: &[Entry]) -> Result<(), JournalError> {
         self.lock()?;
-        let header = Header {
+        let header = JournalHeader {
             format: FORMAT,
             version: env!("CARGO_PKG_VERSION").into(),
             began: now(),
@@ -307,7 +307,7 @@ pub struct Record {
     /// Name of the file for messages.
     pub file: String,
     /// The first line.
-    pub header: Header,
+    pub header: JournalHeader,
     /// Entries with their line numbers.
     pub entries: Vec<(usize, Entry)>,
     /// A motion that was running when the session ended.
@@ -402,13 +402,13 @@ impl Record {
     }
 }
 
-fn header(file: &str, line: &str) -> Result<Header, SceneError> {
+fn header(file: &str, line: &str) -> Result<JournalHeader, SceneError> {
     /// The part that every format version has.
     #[derive(Deserialize)]
-    struct Any {
+    struct VersionLine {
         format: u32,
     }
-    if let Ok(Any { format }) = notation::read(line)
+    if let Ok(VersionLine { format }) = notation::read(line)
         && format != FORMAT
     {
         return Err(SceneError::whole(

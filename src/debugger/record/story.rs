@@ -1,7 +1,7 @@
 //! A journal as readable text: what the user did and what happened.
 
 use crate::explain::names;
-use crate::record::command::{Command, To, Unit};
+use crate::record::command::{BranchTarget, Command, Unit};
 use crate::record::journal::{Entry, JournalError, Record, date};
 use stickslip_core::model::Model;
 
@@ -89,7 +89,7 @@ pub fn done(model: &Model, entry: &Entry) -> String {
         }
         Command::Increment(size) => format!("Restarted the increment with size {size}."),
         Command::Set { path, value } => format!("Set {path} to {value}."),
-        Command::Branch(To::Named(name)) => format!("Went to branch {name}."),
+        Command::Branch(BranchTarget::Named(name)) => format!("Went to branch {name}."),
         Command::Branch(_) => "Went to another branch.".into(),
         Command::Rename(name) => format!("Renamed the branch to '{name}'."),
         Command::Break(condition) => {

@@ -12,14 +12,16 @@ use serde::de::value::{Error as NoName, StrDeserializer};
 use std::sync::Arc;
 use stickslip_core::contact::projection::SurfacePoint;
 use stickslip_core::contact::record::{ContactRecord, Forced};
-use stickslip_core::contact::table2::{Decision, Entry, Numbers, Rule, Test, Tested, Ties, decide};
-use stickslip_core::interface::method::Known;
+use stickslip_core::contact::table2::{
+    Decision, Entry, Numbers, Rule, Test, TestedQuantity, Ties, decide,
+};
+use stickslip_core::interface::method::NodeContext;
 use stickslip_core::linear::norms::Norms;
 use stickslip_core::model::{Friction, Mode, Model, Strategy};
 use stickslip_core::step::event::{Event, Failure, Outcome, Position, Words};
 use stickslip_core::step::state::State;
 use stickslip_core::strategy::method;
-use stickslip_exchange::attach::message::{self, Decides, Ended, Found, Id};
+use stickslip_exchange::attach::message::{self, ContactResult, Decides, EndedLevel, Id};
 use stickslip_scene::Scene;
 use stickslip_scene::shown;
 
@@ -159,7 +161,7 @@ impl WireFrame<'_> {
             return unfit("size: must be positive");
         }
         let count = self.ids.len();
-        let solved = sent.ended != Ended::Failure && sent.ended != Ended::Cut;
+        let solved = sent.ended != EndedLevel::Failure && sent.ended != EndedLevel::Cut;
         if sent.contacts.len() != count && (solved || !sent.contacts.is_empty()) {
             return unfit(format!(
                 "it has {} contacts; the scene has {count}",
@@ -207,7 +209,7 @@ impl WireFrame<'_> {
         &self,
         from: &State,
         k: usize,
-        found: &Found,
+        found: &ContactResult,
         spring: Option<f64>,
         ties: &Ties,
     ) -> (ContactRecord, String) {
@@ -250,7 +252,7 @@ impl WireFrame<'_> {
     }
 
     /// A point on the node's surface, or `None` past its ends. Only the solver knows the element.
-    fn spot(&self, k: usize, found: &Found) -> Option<SurfacePoint> {
+    fn spot(&self, k: usize, found: &ContactResult) -> Option<SurfacePoint> {
         found.over.then(|| SurfacePoint {
             surface: self.model.contacts[k]
                 .surfaces
@@ -265,7 +267,7 @@ impl WireFrame<'_> {
     /// The decision, and what our rules yield for the solver's numbers.
     fn decision(
         &self,
-        found: &Found,
+        found: &ContactResult,
         friction: &Friction,
         spring: Option<f64>,
         ties: &Ties,
@@ -278,7 +280,7 @@ impl WireFrame<'_> {
             None => None,
         };
         let own = found.margin.map(|margin| Test {
-            tested: Tested::Own,
+            tested: TestedQuantity::Own,
             value: margin,
             bound: 0.0,
             margin,
@@ -332,7 +334,7 @@ impl RecordedStep {
 }
 
 /// Whether a node is forced: as reported, or as requested.
-fn forced(from: &State, k: usize, found: &Found) -> Forced {
+fn forced(from: &State, k: usize, found: &ContactResult) -> Forced {
     match found.forced {
         Some(message::Forced::Once) => Forced::Once(found.mode),
         Some(message::Forced::Held) => Forced::Held(found.next),
@@ -340,7 +342,7 @@ fn forced(from: &State, k: usize, found: &Found) -> Forced {
     }
 }
 
-fn by_table_2(found: &Found, friction: &Friction, ties: &Ties) -> Option<Decision> {
+fn by_table_2(found: &ContactResult, friction: &Friction, ties: &Ties) -> Option<Decision> {
     let before = found.mode;
     // Numbers that the row does not use may be missing.
     let rest = |x: Option<f64>, needed: bool| match (x, needed) {
@@ -366,7 +368,7 @@ fn by_table_2(found: &Found, friction: &Friction, ties: &Ties) -> Option<Decisio
 }
 
 fn by_newton(
-    found: &Found,
+    found: &ContactResult,
     friction: &Friction,
     spring: Option<f64>,
     ties: &Ties,
@@ -385,7 +387,7 @@ fn by_newton(
     if numbers.gap.is_nan() {
         return None;
     }
-    let known = Known {
+    let known = NodeContext {
         spring: spring?,
         friction,
         ties,
@@ -402,7 +404,7 @@ fn rule(name: &str) -> Option<Rule> {
 }
 
 /// Residual norms; unreported ones are NaN.
-fn norms(sent: &message::Norms) -> Norms {
+fn norms(sent: &message::NormsMessage) -> Norms {
     let known = |x: Option<f64>| x.unwrap_or(f64::NAN);
     Norms {
         force: known(sent.force),
@@ -425,16 +427,18 @@ fn outcome(sent: &message::State) -> Outcome {
             .map(|after| after.relative.unwrap_or(f64::INFINITY)),
     };
     match sent.ended {
-        Ended::Iteration => Outcome::Minor,
-        Ended::Equilibrium => Outcome::Major {
+        EndedLevel::Iteration => Outcome::Minor,
+        EndedLevel::Equilibrium => Outcome::Major {
             after,
             settled: true,
         },
-        Ended::Cut => Outcome::Cut {
+        EndedLevel::Cut => Outcome::Cut {
             why: why(),
             size: sent.size.unwrap_or(f64::NAN),
         },
-        Ended::Failure => Outcome::Failed(why()),
-        Ended::Increment | Ended::Done => Outcome::accepted(after, sent.ended == Ended::Done),
+        EndedLevel::Failure => Outcome::Failed(why()),
+        EndedLevel::Increment | EndedLevel::Done => {
+            Outcome::accepted(after, sent.ended == EndedLevel::Done)
+        }
     }
 }

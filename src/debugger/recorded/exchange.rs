@@ -13,13 +13,13 @@ use std::sync::Arc;
 use stickslip_core::model::Model;
 use stickslip_core::step::event::Event;
 use stickslip_core::step::intervene::{Intervention, Refusal};
-use stickslip_core::step::places::Places;
-use stickslip_core::step::solver::{GoesBack, Lost, Offers, Solver};
+use stickslip_core::step::solver::{Capabilities, RewindSupport, Solver, SolverLost};
 use stickslip_core::step::state::{State, Status};
+use stickslip_core::step::stored_states::StoredStates;
 use stickslip_exchange::attach::conversation::STARTED;
 use stickslip_exchange::attach::message::{Hello, Id};
-use stickslip_exchange::attach::{Answer, Kept, Request, Side};
-use stickslip_exchange::broken::Broken;
+use stickslip_exchange::attach::{Answer, Request, Side, TranscriptLine};
+use stickslip_exchange::format_error::FormatError;
 use stickslip_platform::input::{self, Unreadable};
 use stickslip_scene::Scene;
 use stickslip_scene::format::kind::FileKind;
@@ -32,8 +32,8 @@ pub type Line = Vec<Option<Intervention>>;
 pub struct RecordedSolver {
     start: State,
     model: Arc<Model>,
-    places: Places<Option<RecordedStep>>,
-    offers: Offers,
+    places: StoredStates<Option<RecordedStep>>,
+    offers: Capabilities,
     /// The current state, and the iteration before it.
     now: RecordedStep,
 }
@@ -58,7 +58,7 @@ const MOST_BYTES: u64 = 1 << 30;
 /// Reads a stored exchange; `None` if the file is something else.
 pub fn file(name: &str) -> Option<Result<OpenedExchange, SceneError>> {
     let path = Path::new(name);
-    (FileKind::of_file(path)? == FileKind::Exchange).then(|| {
+    (FileKind::from_file(path)? == FileKind::Exchange).then(|| {
         let not_read = |why: Unreadable| read::not_read(name, &why);
         let large = "too large for an exchange";
         let mut bytes = input::bytes(path, MOST_BYTES, large).map_err(not_read)?;
@@ -78,13 +78,13 @@ pub fn file(name: &str) -> Option<Result<OpenedExchange, SceneError>> {
 ///
 /// # Errors If it is damaged.
 pub fn open(name: &str, text: &str) -> Result<OpenedExchange, SceneError> {
-    let kept = Kept::read(text).map_err(|broken| read::of_file(name, broken))?;
+    let kept = TranscriptLine::read(text).map_err(|broken| read::of_file(name, broken))?;
     let log = Log::default();
     let mut reader = ExchangeReader::new();
     for (number, line) in kept.iter().enumerate() {
-        let broken = |broken: Broken| {
+        let broken = |broken: FormatError| {
             let column = broken.at.map_or(1, |(_, column)| column + 2);
-            read::of_file(name, Broken::at(number + 2, column, broken.message))
+            read::of_file(name, FormatError::at(number + 2, column, broken.message))
         };
         match line.side {
             Side::Noted => {
@@ -115,12 +115,12 @@ pub fn open(name: &str, text: &str) -> Result<OpenedExchange, SceneError> {
         return Err(SceneError::whole(name, Fault::NoScene.to_string()));
     };
     let past = RecordedSolver {
-        offers: Offers {
+        offers: Capabilities {
             name: met.hello.name,
             version: met.hello.version,
             past: Some(READ_ONLY),
-            goes_back: GoesBack::ToAny,
-            ..Offers::default()
+            goes_back: RewindSupport::ToAny,
+            ..Capabilities::default()
         },
         start: met.start.state.clone(),
         now: met.start,
@@ -143,7 +143,7 @@ pub fn open(name: &str, text: &str) -> Result<OpenedExchange, SceneError> {
 struct ExchangeReader {
     hello: Option<Hello>,
     met: Option<Greeting>,
-    places: Places<Option<RecordedStep>>,
+    places: StoredStates<Option<RecordedStep>>,
     /// Current state of the solver, and the interventions there.
     at: u64,
     changed: Vec<Intervention>,
@@ -165,7 +165,7 @@ impl ExchangeReader {
         ExchangeReader {
             hello: None,
             met: None,
-            places: Places::new(None),
+            places: StoredStates::new(None),
             at: 0,
             changed: Vec::new(),
             tokens: HashMap::new(),
@@ -284,18 +284,18 @@ impl Solver for RecordedSolver {
         &self.now.event
     }
 
-    fn step(&mut self) -> Result<bool, Lost> {
+    fn step(&mut self) -> Result<bool, SolverLost> {
         if self.now.state.status == Status::Finished {
             return Ok(false);
         }
         let Some(led) = self.next().cloned() else {
-            return Err(Lost::new(Fault::Past.to_string()));
+            return Err(SolverLost::new(Fault::Past.to_string()));
         };
         self.now = led;
         Ok(true)
     }
 
-    fn restore(&mut self, state: &State) -> Result<(), Lost> {
+    fn restore(&mut self, state: &State) -> Result<(), SolverLost> {
         self.now.state.clone_from(state);
         Ok(())
     }
@@ -308,7 +308,7 @@ impl Solver for RecordedSolver {
         out.extend_from_slice(&self.now.monitors);
     }
 
-    fn offers(&self) -> Offers {
+    fn capabilities(&self) -> Capabilities {
         self.offers.clone()
     }
 }

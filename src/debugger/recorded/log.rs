@@ -8,7 +8,7 @@ use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 use stickslip_exchange::attach::conversation::SEALED_HEAD;
 use stickslip_exchange::attach::message::Level;
-use stickslip_exchange::attach::{Kept, Side};
+use stickslip_exchange::attach::{Side, TranscriptLine};
 use stickslip_scene::shown;
 
 /// Maximum number of lines kept for display.
@@ -51,10 +51,10 @@ impl LogOrigin {
 
 /// Handle of the log; all clones share it.
 #[derive(Debug, Clone, Default)]
-pub struct Log(Arc<Mutex<Inner>>);
+pub struct Log(Arc<Mutex<LogContents>>);
 
 #[derive(Debug, Default)]
-struct Inner {
+struct LogContents {
     lines: VecDeque<LogLine>,
     /// Number of lines so far, including dropped ones.
     count: usize,
@@ -164,13 +164,13 @@ impl Log {
         self.with(|inner| inner.lost.take())
     }
 
-    fn with<T>(&self, with: impl FnOnce(&mut Inner) -> T) -> T {
+    fn with<T>(&self, with: impl FnOnce(&mut LogContents) -> T) -> T {
         // Even after a panic in another thread, the lines are valid.
         with(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
 }
 
-impl Inner {
+impl LogContents {
     fn push(&mut self, how: LogOrigin, line: &str) {
         if self.lines.len() == MOST_LINES {
             self.lines.pop_front();
@@ -184,7 +184,7 @@ impl Inner {
         let Some(file) = &mut self.kept else {
             return;
         };
-        if let Err(error) = file.write_all(Kept::line(side, text).as_bytes()) {
+        if let Err(error) = file.write_all(TranscriptLine::line(side, text).as_bytes()) {
             self.lost = Some(format!("the exchange is no longer stored: {error}"));
             self.kept = None;
         }

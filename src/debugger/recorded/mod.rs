@@ -17,6 +17,6 @@ pub mod judged;
 pub mod log;
 pub mod orders;
 
-pub mod posed;
+pub mod interface_problem;
 pub mod recording;
 pub mod story;

@@ -2,7 +2,7 @@
 
 use stickslip_core::model::{Friction, Mode};
 use stickslip_core::step::intervene::{self, Intervention};
-use stickslip_core::step::solver::{Offers, Range};
+use stickslip_core::step::solver::{Capabilities, Range};
 use stickslip_exchange::attach::Request;
 use stickslip_exchange::attach::message::Id;
 
@@ -14,7 +14,7 @@ pub const FRICTION: &str = "friction";
 pub const COHESION: &str = "cohesion";
 
 /// The requests for an intervention.
-pub fn requests(intervention: &Intervention, ids: &[Id], offers: &Offers) -> Vec<Request> {
+pub fn requests(intervention: &Intervention, ids: &[Id], offers: &Capabilities) -> Vec<Request> {
     let force = |slave: usize, mode: Mode, hold: bool| {
         let contact = ids.get(slave)?.clone();
         Some(Request::Force {
@@ -68,7 +68,7 @@ pub fn requests(intervention: &Intervention, ids: &[Id], offers: &Offers) -> Vec
 }
 
 /// Whether a parameter is an integer.
-fn is_whole(name: &str, offers: &Offers) -> bool {
+fn is_whole(name: &str, offers: &Capabilities) -> bool {
     let known = offers.parameters.iter().find(|known| known.name == name);
     known.is_some_and(|known| matches!(known.range, Range::Numbers { whole: true, .. }))
 }

@@ -17,7 +17,7 @@ const TOLD: usize = 20;
 /// The text of the file with this name.
 pub fn story(file: &str, opened: &mut OpenedExchange) -> String {
     let model = opened.past.model().clone();
-    let offers = opened.past.offers();
+    let offers = opened.past.capabilities();
     let who = format!("{} {}", offers.name, offers.version);
     let mut text = format!(
         "{file}: {}\nStored exchange with {} (read-only).\n",

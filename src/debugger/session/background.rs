@@ -24,10 +24,10 @@ use super::worst_points::{WorstPoints, worst_point};
 use crate::explain::examination::examine_nodes;
 use crate::explain::influence::{NodePush, PushPath, between, pushed, pushes};
 use crate::explain::page::{DiagnosisPage, page};
-use crate::explain::remedies::{self, Trial};
+use crate::explain::remedies::{self, RemedyTrial};
 use crate::explain::reported_pushes::{self, Iterations};
 use crate::explain::walk::ReportedIterations;
-use crate::record::export::shown::ExportError;
+use crate::record::export::export_state::ExportError;
 use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -36,7 +36,7 @@ use std::thread;
 use stickslip_core::fem::deformation::PointDeformation;
 use stickslip_core::linear::estimate::Estimate;
 use stickslip_core::model::Model;
-use stickslip_core::step::solver::{Offers, Posed};
+use stickslip_core::step::solver::{Capabilities, ReportedProblem};
 use stickslip_core::step::state::State;
 use stickslip_core::step::stepper::Stepper;
 use stickslip_scene::format::spec::Spec;
@@ -61,7 +61,7 @@ pub struct RemedyTrials {
     /// The remedy that is running.
     pub now: String,
     /// Finished trials, in the order of [`remedies::sort`].
-    pub trials: Vec<Trial>,
+    pub trials: Vec<RemedyTrial>,
     /// Whether the trials were interrupted before the last one.
     pub stopped: bool,
 }
@@ -110,7 +110,7 @@ pub(super) enum BackgroundReply {
         all: usize,
         now: String,
     },
-    Trial(Box<Trial>),
+    Trial(Box<RemedyTrial>),
     Done {
         stopped: bool,
     },
@@ -123,13 +123,13 @@ struct Helper {
     /// The scene, for our own solver.
     spec: Option<Spec>,
     /// Capabilities of the session's solver.
-    offers: Offers,
+    offers: Capabilities,
     /// Stop flag, for trials that run on the session's thread.
     stopping: Arc<AtomicBool>,
     /// Built on the first request.
     stepper: Option<Stepper>,
     /// State and interface problem that an attached solver last reported.
-    posed: Option<(State, Posed)>,
+    posed: Option<(State, ReportedProblem)>,
     /// Whether the solver takes much memory.
     large: bool,
     /// Access to the session's solver.
@@ -164,21 +164,26 @@ impl Background {
     /// `spec` is the scene as written by its author, which a finer mesh may be generated from. `lender` gives
     /// access to the session's solver.
     pub fn new(model: Arc<Model>, spec: Spec, lender: Lender) -> Background {
-        Background::start(model, Some(spec), Offers::all(), lender)
+        Background::start(model, Some(spec), Capabilities::all(), lender)
     }
 
     /// Starts the thread for an attached solver. Only that solver knows the deformable bodies.
-    pub fn attached(model: Arc<Model>, offers: Offers, lender: Lender) -> Background {
+    pub fn attached(model: Arc<Model>, offers: Capabilities, lender: Lender) -> Background {
         Background::start(model, None, offers, lender)
     }
 
-    fn start(model: Arc<Model>, spec: Option<Spec>, offers: Offers, lender: Lender) -> Background {
+    fn start(
+        model: Arc<Model>,
+        spec: Option<Spec>,
+        offers: Capabilities,
+        lender: Lender,
+    ) -> Background {
         let (asks, orders) = channel::<BackgroundRequest>();
         let (news, replies) = channel();
         let stop = Arc::new(AtomicBool::new(false));
         let flag = stop.clone();
         thread::spawn(move || {
-            let effort = Estimate::of(&model).with(model.settings.solver).0;
+            let effort = Estimate::from_model(&model).with(model.settings.solver).0;
             let mut helper = Helper {
                 large: effort.bytes > LARGE,
                 model,
@@ -508,7 +513,7 @@ impl Helper {
             BackgroundRequest::Export(ask) => {
                 let done = match self.spec.is_none() && is_of_problem(&ask) {
                     true => self
-                        .posed(&ask.state)
+                        .interface_problem(&ask.state)
                         .map_err(ExportError::from)
                         .and_then(|posed| write_posed(&self.model, &posed, &ask)),
                     false => write(self.solver().0, &ask),

@@ -16,7 +16,7 @@ impl Session {
         intervention: Intervention,
         setting: Option<(&str, &str)>,
     ) -> Result<String, Refusal> {
-        let offers = self.connection.offers();
+        let offers = self.connection.capabilities();
         offers.check(&intervention).map_err(Refusal::Intervention)?;
         if self.cursor() < self.timeline.tip() {
             self.timeline.check_room()?;

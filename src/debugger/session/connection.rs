@@ -6,16 +6,16 @@ use crate::history::strip::Strip;
 use crate::recorded::log::Log;
 use stickslip_core::model::Friction;
 use stickslip_core::step::intervene::Intervention;
-use stickslip_core::step::solver::{GoesBack, Offers};
+use stickslip_core::step::solver::{Capabilities, RewindSupport};
 use stickslip_core::step::state::{Controls, State};
 
 /// A solver as its session sees it.
 pub struct Connection {
-    offers: Offers,
+    offers: Capabilities,
     /// Output of an attached solver; `None` for our own.
     log: Option<Log>,
     /// Identifier of the state that an attached solver is in
-    /// ([`stickslip_core::step::state::Outside::place`]); `None` if unknown.
+    /// ([`stickslip_core::step::state::ExternalState::place`]); `None` if unknown.
     at: Option<u64>,
     lost: Option<String>,
     repeats: String,
@@ -23,7 +23,7 @@ pub struct Connection {
 
 impl Connection {
     /// The connection with a solver at its start; `log` is the output of an attached one.
-    pub(super) fn new(offers: Offers, log: Option<Log>) -> Connection {
+    pub(super) fn new(offers: Capabilities, log: Option<Log>) -> Connection {
         Connection {
             offers,
             at: log.as_ref().map(|_| 0),
@@ -34,7 +34,7 @@ impl Connection {
     }
 
     /// Capabilities of the solver.
-    pub fn offers(&self) -> &Offers {
+    pub fn capabilities(&self) -> &Capabilities {
         &self.offers
     }
 
@@ -96,14 +96,14 @@ impl Connection {
                 "the solver, whose connection was lost, restarts",
                 solved(way),
             )),
-            GoesBack::Again => Some(again("the solver restarts", solved(way))),
-            GoesBack::ToIncrements => {
+            RewindSupport::Again => Some(again("the solver restarts", solved(way))),
+            RewindSupport::ToIncrements => {
                 let begun = way.iter().rposition(|strip| strip.kind.is_accepted());
                 let count = solved(&way[begun.map_or(0, |at| at + 1)..]);
                 let start = "the solver returns to the start of the increment";
                 (count > 0).then(|| again(start, count))
             }
-            GoesBack::ToAny => None,
+            RewindSupport::ToAny => None,
         }
     }
 

@@ -7,13 +7,13 @@ use crate::explain::interface_scene;
 use crate::explain::report;
 use crate::history::strip::Strip;
 use crate::record::command::ExportScope;
-use crate::record::export::shown::{ExportError, PictureRequest, Shown};
+use crate::record::export::export_state::{ExportError, ExportState, PictureRequest};
 use crate::record::export::{self, ExportKind, Origin};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stickslip_core::model::Model;
 use stickslip_core::step::event::Event;
-use stickslip_core::step::solver::Posed;
+use stickslip_core::step::solver::ReportedProblem;
 use stickslip_core::step::state::{State, Status};
 use stickslip_core::step::stepper::Stepper;
 use stickslip_platform::files;
@@ -97,7 +97,7 @@ fn shown(
         Status::Failed(failure) => report::describe_failure(stepper.model(), failure),
         _ => String::new(),
     };
-    let shown = Shown {
+    let shown = ExportState {
         scene: &seen.scene,
         origin: &ask.origin,
         state: &ask.state,
@@ -115,7 +115,11 @@ fn shown(
 
 /// Writes the interface problem that an attached solver reports, or its core, possibly in another program's
 /// format.
-pub(super) fn write_posed(model: &Model, posed: &Posed, ask: &Export) -> Result<(), ExportError> {
+pub(super) fn write_posed(
+    model: &Model,
+    posed: &ReportedProblem,
+    ask: &Export,
+) -> Result<(), ExportError> {
     let solver = || {
         let problem = interface_scene::problem(model, &ask.state, posed);
         interface_scene::stepper(problem).map_err(Box::new)

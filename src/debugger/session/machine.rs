@@ -29,7 +29,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use stickslip_core::model::Model;
 use stickslip_core::step::intervene::Intervention;
-use stickslip_core::step::solver::{Offers, Solver};
+use stickslip_core::step::solver::{Capabilities, Solver};
 use stickslip_core::step::stepper::Stepper;
 use stickslip_scene::Scene;
 use stickslip_scene::gaps;
@@ -91,7 +91,7 @@ impl Session {
         let own = model.clone();
         let worker = Worker::new(move || Box::new(solver(own))).unattended();
         let background = Background::new(model.clone(), scene.spec.clone(), worker.lender());
-        let connection = Connection::new(Offers::all(), None);
+        let connection = Connection::new(Capabilities::all(), None);
         let timeline = Timeline::new(Tree::new(model, start, budget));
         Session::from_parts(scene, connection, timeline, worker, background)
     }
@@ -99,7 +99,7 @@ impl Session {
     /// A session with an attached solver, at the start of the scene that it reported.
     pub fn attached(scene: Scene, solver: Box<dyn Solver>, log: Log) -> Self {
         let (model, start) = (solver.model().clone(), solver.state().clone());
-        let offers = solver.offers();
+        let offers = solver.capabilities();
         let worker = Worker::new(move || solver);
         let background = Background::attached(model.clone(), offers.clone(), worker.lender());
         let connection = Connection::new(offers, Some(log));
@@ -377,7 +377,7 @@ impl Session {
             }
             Message::Lost(lost) => {
                 self.task = None;
-                if self.connection.offers().past.is_some() {
+                if self.connection.capabilities().past.is_some() {
                     return Some(lost.to_string());
                 }
                 self.connection.lose(lost.to_string());

@@ -11,8 +11,8 @@ use crate::explain::reported_pushes;
 use crate::history::run_report::run_report;
 use crate::history::strip::PointKind;
 use crate::record::command::ExportScope;
-use crate::record::export::shown::ExportError;
-use crate::record::export::{self, MadeOf, Origin};
+use crate::record::export::export_state::ExportError;
+use crate::record::export::{self, ExportSource, Origin};
 use crate::record::snapshot::{self, Snapshot};
 use std::path::PathBuf;
 use stickslip_core::model::BodyKind;
@@ -58,7 +58,7 @@ impl Session {
         };
         let is_attached = self.connection.log().is_some();
         if is_attached
-            && !reported_pushes::are_available(timeline.model(), self.connection.offers())
+            && !reported_pushes::are_available(timeline.model(), self.connection.capabilities())
         {
             return self.background.pushes_unknown(place, slave);
         }
@@ -93,7 +93,7 @@ impl Session {
             return "the diagnosis (d) shows the report of the run".into();
         }
         // The solver moves to this state to report its problem, together with all changes made there.
-        if connection.offers().problem {
+        if connection.capabilities().problem {
             let way = connection.way_back(timeline, timeline.cursor());
             reply.extend(way.map(|way| way + "; "));
             let asks = |state: &&State| {
@@ -118,7 +118,7 @@ impl Session {
         files::regular(&file)?;
         if what == ExportScope::Shown {
             let kind = export::kind(&file)?;
-            if matches!(kind.made_of, MadeOf::Journal) {
+            if matches!(kind.made_of, ExportSource::Journal) {
                 return Err(ExportError::OfJournal.into());
             }
             for part in kind.files(&file).map_err(ExportError::NoFile)? {

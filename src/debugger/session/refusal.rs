@@ -3,11 +3,11 @@
 use crate::history::branches::NoBranch;
 use crate::history::breakpoints::NoBreakpoint;
 use crate::history::watches::WatchError;
-use crate::record::export::shown::ExportError;
+use crate::record::export::export_state::ExportError;
 use crate::record::journal::JournalError;
 use crate::record::snapshot::SnapshotError;
 use stickslip_platform::files::FileError;
-use stickslip_scene::format::error::NotSet;
+use stickslip_scene::format::error::SetError;
 
 /// Why a session rejects a command, with a hint at what would work.
 #[derive(Debug, thiserror::Error)]
@@ -31,7 +31,7 @@ pub enum Refusal {
     Intervention(stickslip_core::step::intervene::Refusal),
     /// Unknown setting, or a value of the wrong type.
     #[error(transparent)]
-    NotSet(#[from] NotSet),
+    NotSet(#[from] SetError),
     /// A value of the right type that the scene cannot have.
     #[error("{0}")]
     Unsound(String),

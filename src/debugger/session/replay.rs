@@ -4,7 +4,7 @@ use super::machine::Session;
 use super::refusal::Departure;
 use crate::history::breakpoints::Breakpoints;
 use crate::record::command::Unit;
-use crate::record::journal::{self, Entry, Journal, JournalError, Keep, Record};
+use crate::record::journal::{self, Entry, Journal, JournalError, JournalTarget, Record};
 use stickslip_scene::shown;
 
 impl Session {
@@ -101,15 +101,15 @@ impl Record {
     }
 }
 
-impl Keep {
+impl JournalTarget {
     /// Starts the journal of a session.
     ///
     /// # Errors If the named file exists or cannot be written.
     pub fn begin(&self, session: &mut Session) -> Result<(), JournalError> {
         match self {
-            Keep::Nowhere => {}
-            Keep::Default => session.journal_mut().write_to_default_path(),
-            Keep::File(path) => {
+            JournalTarget::Nowhere => {}
+            JournalTarget::Default => session.journal_mut().write_to_default_path(),
+            JournalTarget::File(path) => {
                 let journal = Journal::create(path, session.scene(), &[])?;
                 session.journal_mut().write_to(journal);
             }

@@ -15,8 +15,8 @@ use crate::history::rounds::{self, rounds};
 use crate::history::strip::{PointKind, Strip};
 use crate::history::tree::Tree;
 use crate::history::verdicts;
-use crate::record::command::{To, Unit};
-use crate::record::export::shown::COLUMNS;
+use crate::record::command::{BranchTarget, Unit};
+use crate::record::export::export_state::COLUMNS;
 use crate::record::snapshot::AppliedIntervention;
 use std::sync::Arc;
 use stickslip_core::linear::norms::Norms;
@@ -153,12 +153,12 @@ impl Timeline {
     }
 
     /// Switches to another branch, and reports how it ends.
-    pub(super) fn switch_to(&mut self, to: &To) -> Result<String, Refusal> {
+    pub(super) fn switch_to(&mut self, to: &BranchTarget) -> Result<String, Refusal> {
         let (count, current) = (self.tree.branches().len(), self.tree.current());
         let to = match to {
-            To::Next => (current + 1) % count,
-            To::Previous => (current + count - 1) % count,
-            To::Named(name) => branches::find(&self.tree, name)?,
+            BranchTarget::Next => (current + 1) % count,
+            BranchTarget::Previous => (current + count - 1) % count,
+            BranchTarget::Named(name) => branches::find(&self.tree, name)?,
         };
         if count == 1 {
             return Err(Refusal::OneBranch);

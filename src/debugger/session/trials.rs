@@ -1,7 +1,7 @@
 //! Trials of remedies on the background thread.
 
 use super::background::BackgroundReply;
-use crate::explain::remedies::{self, Trial};
+use crate::explain::remedies::{self, RemedyTrial};
 use crate::explain::remedy::Remedy;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::Sender;
@@ -29,7 +29,7 @@ pub(super) fn try_remedies(
 pub(super) fn try_all(
     all: &[Remedy],
     news: &Sender<BackgroundReply>,
-    mut attempt: impl FnMut(&Remedy) -> Option<Option<Trial>>,
+    mut attempt: impl FnMut(&Remedy) -> Option<Option<RemedyTrial>>,
 ) -> Option<()> {
     let mut stopped = false;
     for remedy in all {

@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 use stickslip_core::step::drive::{RunEnd, Until, drive};
 use stickslip_core::step::event::Event;
 use stickslip_core::step::intervene::Intervention;
-use stickslip_core::step::solver::{Lost, Solver};
+use stickslip_core::step::solver::{Solver, SolverLost};
 use stickslip_core::step::state::State;
 
 /// Sleep between two polls while waiting for the worker. Waking the waiting thread with every message would
@@ -29,7 +29,7 @@ pub enum Job {
     /// Take steps from a state.
     Steps(Box<State>, Steps),
     /// Call a function on the solver, between two other jobs.
-    Look(Look),
+    Look(SolverTask),
     /// End the thread.
     End,
 }
@@ -67,7 +67,7 @@ pub enum Steps {
 
 /// A function called on the solver; it reports its own result. It may leave the solver in another state, since
 /// every job starts by restoring its own.
-pub type Look = Box<dyn FnOnce(&mut dyn Solver) + Send>;
+pub type SolverTask = Box<dyn FnOnce(&mut dyn Solver) + Send>;
 
 /// Gives other threads access to the worker's solver while it is idle.
 pub struct Lender {
@@ -85,7 +85,7 @@ impl Lender {
             return None;
         }
         let (reply, answer) = channel();
-        let look: Look = Box::new(move |solver| {
+        let look: SolverTask = Box::new(move |solver| {
             // The caller is waiting, so sending succeeds.
             let _ = reply.send(look(solver));
         });
@@ -112,7 +112,7 @@ pub enum Message {
         remark: Option<String>,
     },
     /// The solver cannot continue. Earlier messages stay valid.
-    Lost(Lost),
+    Lost(SolverLost),
     /// The thread has ended.
     Died,
 }
@@ -140,7 +140,7 @@ impl Worker {
         let at_work = busy.clone();
         let thread = thread::spawn(move || {
             let mut solver = make();
-            solver.heed(flag.clone());
+            solver.set_cancel(flag.clone());
             let solver = &mut *solver;
             while let Ok(job) = orders.recv() {
                 at_work.store(!matches!(job, Job::Look(_)), Ordering::Relaxed);
@@ -306,7 +306,7 @@ fn run(
     };
     let interrupted = matches!(end, RunEnd::Interrupted);
     let round = round.map(|round| rounds::words(solver.model(), &round, false));
-    let parts: Vec<String> = solver.remark().into_iter().chain(round).collect();
+    let parts: Vec<String> = solver.take_notice().into_iter().chain(round).collect();
     let remark = (!parts.is_empty()).then(|| parts.join("; "));
     news.send(Message::Done {
         interrupted,
@@ -366,7 +366,7 @@ fn follow(
             Err(lost) => return news.send(Message::Lost(lost)).ok(),
         }
     }
-    let (hits, remark) = (Vec::new(), solver.remark());
+    let (hits, remark) = (Vec::new(), solver.take_notice());
     news.send(Message::Done {
         interrupted,
         hits,

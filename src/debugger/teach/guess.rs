@@ -1,7 +1,7 @@
 //! Free mode: decisions of Table 2 are hidden until the user has predicted them.
 
-use super::refusal::NotNow;
-use crate::action::{Action, Whose, mode};
+use super::refusal::LessonRefusal;
+use crate::action::{Action, HiddenDecisions, mode};
 use crate::explain::names;
 use crate::explain::report;
 use crate::history::frame::Frame;
@@ -12,7 +12,7 @@ use stickslip_core::model::{Mode, Model};
 /// Predictions, and which decisions are hidden.
 #[derive(Debug, Clone)]
 pub struct Guess {
-    whose: Whose,
+    whose: HiddenDecisions,
     /// Frames up to this one have been seen.
     start: usize,
     seen: BTreeSet<usize>,
@@ -27,7 +27,7 @@ pub struct Guess {
 
 impl Guess {
     /// Hides decisions after this frame.
-    pub fn new(whose: Whose, cursor: usize) -> Self {
+    pub fn new(whose: HiddenDecisions, cursor: usize) -> Self {
         Guess {
             whose,
             start: cursor,
@@ -61,10 +61,15 @@ impl Guess {
     /// discards what was known about later frames.
     ///
     /// # Errors If something has to be predicted first.
-    pub fn permits(&mut self, action: &Action, cursor: usize, frame: &Frame) -> Result<(), NotNow> {
+    pub fn permits(
+        &mut self,
+        action: &Action,
+        cursor: usize,
+        frame: &Frame,
+    ) -> Result<(), LessonRefusal> {
         match action {
             Action::Session(Command::Forward { .. }) if self.is_open(cursor, frame) => {
-                Err(NotNow::PredictFirst)
+                Err(LessonRefusal::PredictFirst)
             }
             Action::Session(Command::Forward { .. } | Command::Back { .. }) => Ok(()),
             Action::Session(_) => {
@@ -96,18 +101,18 @@ impl Guess {
         frame: &Frame,
         slave: usize,
         word: &str,
-    ) -> Result<(bool, String), NotNow> {
-        let said = mode(word).ok_or_else(|| NotNow::NoMode(word.into()))?;
+    ) -> Result<(bool, String), LessonRefusal> {
+        let said = mode(word).ok_or_else(|| LessonRefusal::NoMode(word.into()))?;
         let event = frame.event.as_ref().filter(|_| self.is_open(cursor, frame));
         let Some(record) = event.and_then(|event| event.nodes.get(slave)) else {
-            return Err(NotNow::NothingHidden);
+            return Err(LessonRefusal::NothingHidden);
         };
         if self.at != cursor {
             self.at = cursor;
             self.said.clear();
         }
         if self.said.insert(slave, said).is_some() {
-            return Err(NotNow::Predicted(names::slave(model, slave).into()));
+            return Err(LessonRefusal::Predicted(names::slave(model, slave).into()));
         }
         let (next, reason) = (
             record.decision.next,
@@ -125,7 +130,7 @@ impl Guess {
         let left = nodes
             .filter(changed)
             .filter(|(slave, _)| !self.said.contains_key(slave));
-        let more = self.whose == Whose::Changed && left.count() > 0;
+        let more = self.whose == HiddenDecisions::Changed && left.count() > 0;
         if !more {
             self.seen.insert(cursor);
         }

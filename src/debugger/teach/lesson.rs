@@ -1,7 +1,7 @@
 //! Lessons: read from a file and checked against their scene; and the built-in ones.
 
 use super::quantity::{self, LessonQuantity, Template};
-use super::refusal::NoPress;
+use super::refusal::PressError;
 use super::runs::Runs;
 use super::spec::{AnswerSpec, LessonSpec, SceneSpec, StepSpec, When};
 use crate::action::{self, Action, Context};
@@ -421,13 +421,13 @@ impl LessonReader<'_> {
 }
 
 /// The action of a step, and how to perform it, in words.
-fn press_of(press: &str, context: &Context) -> Result<(Action, String), NoPress> {
+fn press_of(press: &str, context: &Context) -> Result<(Action, String), PressError> {
     let press = press.trim();
     let digits = press.len() - press.trim_start_matches(|c: char| c.is_ascii_digit()).len();
     let (count, key) = press.split_at(digits);
     if let Some(entry) = action::by_key(key) {
         if !count.is_empty() && !entry.takes_count() {
-            return Err(NoPress::NoCount(key.into()));
+            return Err(PressError::NoCount(key.into()));
         }
         let action = entry.act(count, context)?;
         return Ok((action, format!("press {press} ({})", entry.name)));
@@ -437,7 +437,7 @@ fn press_of(press: &str, context: &Context) -> Result<(Action, String), NoPress>
         // No suggestion for short words such as `up`: almost any name is similar.
         let names = action::ACTIONS.iter().map(|entry| entry.name);
         let names = names.filter(|name| name.len() > 3);
-        NoPress::NoAction(why, did_you_mean(word, names))
+        PressError::NoAction(why, did_you_mean(word, names))
     })?;
     let action = action::parse(press, context)?;
     let how = match found.keys.first() {

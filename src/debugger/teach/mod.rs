@@ -7,9 +7,9 @@
 //!   errors.
 //! - [`play`]: plays a lesson automatically, to check it; [`progress`]: saves the user's progress.
 
+pub mod frame_values;
 pub mod guess;
 pub mod lesson;
-pub mod look;
 pub mod play;
 pub mod progress;
 pub mod quantity;
@@ -18,7 +18,7 @@ pub mod runs;
 pub mod spec;
 pub mod tutor;
 
+pub use frame_values::FrameValues;
 pub use guess::Guess;
 pub use lesson::{Lesson, find, list};
-pub use look::Look;
 pub use tutor::Tutor;

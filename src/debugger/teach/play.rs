@@ -1,7 +1,7 @@
 //! Plays a lesson automatically, to check that every step can be reached and every question has one answer.
 
 use super::lesson::{Lesson, LessonStep};
-use super::refusal::{NotNow, Unplayable};
+use super::refusal::{LessonRefusal, PlaybackError};
 use super::tutor::{AnswerKind, Tutor, TutorQuestion};
 use crate::action::Action;
 use crate::explain::names;
@@ -9,7 +9,7 @@ use crate::record::command::{Command, Unit};
 use crate::session::Session;
 use std::sync::Arc;
 use stickslip_scene::format::SceneError;
-use stickslip_scene::number::four;
+use stickslip_scene::number::sig4;
 
 /// Maximum number of minor iterations that provide the predictions of a step.
 const MOST_STEPS: u32 = 1000;
@@ -38,8 +38,8 @@ pub fn play(lesson: &Arc<Lesson>) -> Result<Vec<AnsweredQuestion>, SceneError> {
     let mut answered = Vec::new();
     while let Some(step) = lesson.steps.get(tutor.at()) {
         let at = tutor.at();
-        let fault = |why: Unplayable| lesson.fault(at, why.to_string());
-        let refused = |why: NotNow| fault(why.into());
+        let fault = |why: PlaybackError| lesson.fault(at, why.to_string());
+        let refused = |why: LessonRefusal| fault(why.into());
         if let Some(message) = tutor.fault() {
             return Err(lesson.fault(at, message.to_owned()));
         }
@@ -79,7 +79,7 @@ pub fn play(lesson: &Arc<Lesson>) -> Result<Vec<AnsweredQuestion>, SceneError> {
 }
 
 /// Executes the action of a step; actions of the screen need no session.
-fn perform(action: &Action, session: &mut Session) -> Result<(), Unplayable> {
+fn perform(action: &Action, session: &mut Session) -> Result<(), PlaybackError> {
     if let Action::Session(command) = action {
         session.submit(command.clone())?;
         session.wait();
@@ -88,7 +88,7 @@ fn perform(action: &Action, session: &mut Session) -> Result<(), Unplayable> {
 }
 
 /// Predicts what Table 2 decides until enough predictions were right.
-fn predict(right: u32, tutor: &mut Tutor, session: &mut Session) -> Result<(), Unplayable> {
+fn predict(right: u32, tutor: &mut Tutor, session: &mut Session) -> Result<(), PlaybackError> {
     let step = Action::Session(Command::Forward {
         unit: Unit::Minor,
         count: 1,
@@ -113,7 +113,7 @@ fn predict(right: u32, tutor: &mut Tutor, session: &mut Session) -> Result<(), U
             return Ok(());
         }
     }
-    Err(Unplayable::FewIterations(right))
+    Err(PlaybackError::FewIterations(right))
 }
 
 /// An answer as listed by the check.
@@ -125,7 +125,7 @@ fn readable(tutor: &Tutor, word: &str) -> String {
             format!("{word} ({text})")
         }
         Some(question) if question.kind == AnswerKind::Number => {
-            word.parse().map_or(word.to_owned(), four)
+            word.parse().map_or(word.to_owned(), sig4)
         }
         _ => word.to_owned(),
     }

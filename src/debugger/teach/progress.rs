@@ -156,17 +156,17 @@ impl LessonProgress {
 
 /// Saves progress during a lesson.
 #[derive(Debug, Clone, Default)]
-pub struct Keeper {
+pub struct ProgressStore {
     /// The file; `None` if nothing is saved.
     file: Option<PathBuf>,
     /// The lesson and step saved last.
     kept: Option<(String, usize)>,
 }
 
-impl Keeper {
+impl ProgressStore {
     /// Saves to this file.
-    pub fn new(file: Option<PathBuf>) -> Keeper {
-        Keeper { file, kept: None }
+    pub fn new(file: Option<PathBuf>) -> ProgressStore {
+        ProgressStore { file, kept: None }
     }
 
     /// Saves the state of a lesson if its step has changed.

@@ -10,24 +10,24 @@
 //! (relative) and `factorizations`. In addition, `right` is the right answer of the previous question, and `key
 //! ACTION` the key of an action.
 
-use super::look::Look;
-use super::refusal::Unknown;
+use super::frame_values::FrameValues;
+use super::refusal::LessonError;
 use crate::action::{self, Context};
 use crate::explain::judged;
 use crate::explain::names;
 use crate::explain::report;
 use crate::explain::round_off::RoundOff;
-use stickslip_scene::number::four;
+use stickslip_scene::number::sig4;
 
 /// A quantity that the solver can provide.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LessonQuantity {
     /// A quantity of a slave node (by slave number).
-    Of(Nodal, usize),
+    Of(NodeQuantity, usize),
     /// A quantity of the solve.
-    Solve(Whole),
+    Solve(SolveQuantity),
     /// A quantity of the run of the lesson's chart with these settings.
-    Run(OfRun, Vec<(String, String)>),
+    Run(RunQuantity, Vec<(String, String)>),
     /// A literal number.
     Written(f64),
     /// The right answer of the question.
@@ -38,7 +38,7 @@ pub enum LessonQuantity {
 
 /// Quantities of a slave node.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Nodal {
+pub enum NodeQuantity {
     /// Gap (length), negative for penetration.
     Gap,
     /// Normal force; compression is positive.
@@ -61,7 +61,7 @@ pub enum Nodal {
 
 /// Quantities of the solve.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Whole {
+pub enum SolveQuantity {
     /// The load factor λ.
     Load,
     /// Size of the increment, as a load factor.
@@ -88,7 +88,7 @@ pub enum Whole {
 
 /// Quantities of a run in a chart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum OfRun {
+pub enum RunQuantity {
     /// Relative error.
     Error,
     /// Number of factorizations.
@@ -96,7 +96,7 @@ pub enum OfRun {
 }
 
 stickslip_core::words! {
-    Nodal, ALL, word:
+    NodeQuantity, ALL, word:
     Gap "gap",
     Fn "F_n",
     Ft "F_t",
@@ -109,13 +109,13 @@ stickslip_core::words! {
 }
 
 stickslip_core::words! {
-    OfRun, ALL, word:
+    RunQuantity, ALL, word:
     Error "error",
     Factorizations "factorizations",
 }
 
 stickslip_core::words! {
-    Whole, ALL, word:
+    SolveQuantity, ALL, word:
     Load "load",
     Increment "increment",
     Angle "angle",
@@ -133,29 +133,29 @@ impl LessonQuantity {
     /// Parses a quantity: `F_n beam.end`, `load`.
     ///
     /// # Errors If the quantity or its node is unknown.
-    pub fn read(text: &str, context: &Context) -> Result<LessonQuantity, Unknown> {
+    pub fn read(text: &str, context: &Context) -> Result<LessonQuantity, LessonError> {
         let (word, rest) = text.split_once(' ').unwrap_or((text, ""));
         let rest = rest.trim();
-        if let Some(nodal) = Nodal::of_word(word) {
+        if let Some(nodal) = NodeQuantity::from_word(word) {
             return match rest {
-                "" => Err(Unknown::WhichNode(word.into())),
+                "" => Err(LessonError::WhichNode(word.into())),
                 node => Ok(LessonQuantity::Of(nodal, action::exact(node, context)?)),
             };
         }
-        if let Some(of) = OfRun::of_word(word) {
+        if let Some(of) = RunQuantity::from_word(word) {
             return Ok(LessonQuantity::Run(of, settings(rest)?));
         }
-        let whole = Whole::of_word(word);
+        let whole = SolveQuantity::from_word(word);
         match (word, whole, rest) {
             ("key", _, action) => {
                 let entry = action::ACTIONS.iter().find(|entry| entry.name == action);
                 let key = entry.and_then(|entry| entry.keys.first());
-                let none = || Unknown::NoKey(action.into());
+                let none = || LessonError::NoKey(action.into());
                 key.map(|key| LessonQuantity::Key(key)).ok_or_else(none)
             }
             ("right", _, "") => Ok(LessonQuantity::Right),
             (_, Some(whole), "") => Ok(LessonQuantity::Solve(whole)),
-            (_, Some(_), _) => Err(Unknown::NotNodal(word.into())),
+            (_, Some(_), _) => Err(LessonError::NotNodal(word.into())),
             _ => Err(unknown(word)),
         }
     }
@@ -163,41 +163,44 @@ impl LessonQuantity {
     /// Its value, if it is a number.
     ///
     /// # Errors If it is not a number or not known.
-    pub fn number(&self, look: &Look) -> Result<f64, Unknown> {
+    pub fn number(&self, look: &FrameValues) -> Result<f64, LessonError> {
         match self {
             LessonQuantity::Of(nodal, slave) => {
                 let record = look.record(*slave)?;
                 let round_off = RoundOff::new(&look.model, &look.event()?.before);
                 match nodal {
-                    Nodal::Gap => Ok(round_off.length(record.gap)),
-                    Nodal::Fn => Ok(round_off.force(record.f_n)),
-                    Nodal::Ft => Ok(round_off.force(record.f_t)),
-                    Nodal::TMax => Ok(round_off.force(record.t_max)),
-                    Nodal::Slip => Ok(round_off.length(record.slip)),
-                    Nodal::Lag => look.lag(*slave),
-                    Nodal::Mode | Nodal::Next | Nodal::Reason => Err(Unknown::NoNumber),
+                    NodeQuantity::Gap => Ok(round_off.length(record.gap)),
+                    NodeQuantity::Fn => Ok(round_off.force(record.f_n)),
+                    NodeQuantity::Ft => Ok(round_off.force(record.f_t)),
+                    NodeQuantity::TMax => Ok(round_off.force(record.t_max)),
+                    NodeQuantity::Slip => Ok(round_off.length(record.slip)),
+                    NodeQuantity::Lag => look.lag(*slave),
+                    NodeQuantity::Mode | NodeQuantity::Next | NodeQuantity::Reason => {
+                        Err(LessonError::NoNumber)
+                    }
                 }
             }
             LessonQuantity::Solve(whole) => whole_number(*whole, look),
             LessonQuantity::Run(of, settings) => {
                 let run = look.runs()?.of(settings)?;
                 match of {
-                    OfRun::Error => run.error.ok_or(Unknown::NoError),
-                    OfRun::Factorizations => Ok(run.factorizations as f64),
+                    RunQuantity::Error => run.error.ok_or(LessonError::NoError),
+                    RunQuantity::Factorizations => Ok(run.factorizations as f64),
                 }
             }
             LessonQuantity::Written(number) => Ok(*number),
-            LessonQuantity::Right | LessonQuantity::Key(_) => Err(Unknown::NoNumber),
+            LessonQuantity::Right | LessonQuantity::Key(_) => Err(LessonError::NoNumber),
         }
     }
 
     /// Whether the quantity is a number.
     pub fn is_number(&self) -> bool {
         match self {
-            LessonQuantity::Of(nodal, _) => {
-                !matches!(nodal, Nodal::Mode | Nodal::Next | Nodal::Reason)
-            }
-            LessonQuantity::Solve(whole) => *whole != Whole::Verdict,
+            LessonQuantity::Of(nodal, _) => !matches!(
+                nodal,
+                NodeQuantity::Mode | NodeQuantity::Next | NodeQuantity::Reason
+            ),
+            LessonQuantity::Solve(whole) => *whole != SolveQuantity::Verdict,
             LessonQuantity::Run(..) | LessonQuantity::Written(_) => true,
             LessonQuantity::Right | LessonQuantity::Key(_) => false,
         }
@@ -208,28 +211,39 @@ impl LessonQuantity {
     fn looks_ahead(&self) -> bool {
         match self {
             LessonQuantity::Right => true,
-            LessonQuantity::Of(of, _) => matches!(of, Nodal::Lag | Nodal::Next | Nodal::Reason),
+            LessonQuantity::Of(of, _) => matches!(
+                of,
+                NodeQuantity::Lag | NodeQuantity::Next | NodeQuantity::Reason
+            ),
             LessonQuantity::Solve(whole) => matches!(
                 whole,
-                Whole::Answers | Whole::Minors | Whole::Period | Whole::Majors | Whole::Verdict
+                SolveQuantity::Answers
+                    | SolveQuantity::Minors
+                    | SolveQuantity::Period
+                    | SolveQuantity::Majors
+                    | SolveQuantity::Verdict
             ),
             LessonQuantity::Run(..) | LessonQuantity::Written(_) | LessonQuantity::Key(_) => false,
         }
     }
 
     /// The quantity as text; `right` is the text of the right answer.
-    fn text(&self, look: &Look, right: &str) -> Result<String, Unknown> {
+    fn text(&self, look: &FrameValues, right: &str) -> Result<String, LessonError> {
         match self {
             LessonQuantity::Right => Ok(right.into()),
             LessonQuantity::Key(key) => Ok((*key).into()),
-            LessonQuantity::Of(Nodal::Mode, slave) => Ok(names::mode(look.before(*slave)).into()),
-            LessonQuantity::Of(Nodal::Next, slave) => Ok(names::mode(look.next(*slave)).into()),
-            LessonQuantity::Of(Nodal::Reason, slave) => {
+            LessonQuantity::Of(NodeQuantity::Mode, slave) => {
+                Ok(names::mode(look.before(*slave)).into())
+            }
+            LessonQuantity::Of(NodeQuantity::Next, slave) => {
+                Ok(names::mode(look.next(*slave)).into())
+            }
+            LessonQuantity::Of(NodeQuantity::Reason, slave) => {
                 let record = look.record(*slave)?;
                 Ok(report::reason(&record.decision, record.t_max != 0.0))
             }
-            LessonQuantity::Of(..) => self.number(look).map(four),
-            LessonQuantity::Solve(Whole::Verdict) => {
+            LessonQuantity::Of(..) => self.number(look).map(sig4),
+            LessonQuantity::Solve(SolveQuantity::Verdict) => {
                 let worst = look
                     .verdict()?
                     .broken()
@@ -240,45 +254,45 @@ impl LessonQuantity {
                 })
             }
             LessonQuantity::Solve(_) | LessonQuantity::Run(..) | LessonQuantity::Written(_) => {
-                self.number(look).map(four)
+                self.number(look).map(sig4)
             }
         }
     }
 }
 
-fn whole_number(whole: Whole, look: &Look) -> Result<f64, Unknown> {
+fn whole_number(whole: SolveQuantity, look: &FrameValues) -> Result<f64, LessonError> {
     let controls = &look.frame.state.controls;
-    let friction = || controls.friction.first().ok_or(Unknown::NoSlaves);
+    let friction = || controls.friction.first().ok_or(LessonError::NoSlaves);
     Ok(match whole {
-        Whole::Load => match &look.frame.event {
+        SolveQuantity::Load => match &look.frame.event {
             Some(event) => event.load_factor,
             None => look.frame.state.load_factor,
         },
-        Whole::Increment => controls.increment,
-        Whole::Angle => friction()?.angle,
-        Whole::Tan => friction()?.coefficient(),
-        Whole::Cohesion => friction()?.cohesion,
-        Whole::Answers => look.answers()? as f64,
-        Whole::Minors => f64::from(look.end()?.minors),
-        Whole::Period => match look.end()?.cycle {
+        SolveQuantity::Increment => controls.increment,
+        SolveQuantity::Angle => friction()?.angle,
+        SolveQuantity::Tan => friction()?.coefficient(),
+        SolveQuantity::Cohesion => friction()?.cohesion,
+        SolveQuantity::Answers => look.answers()? as f64,
+        SolveQuantity::Minors => f64::from(look.end()?.minors),
+        SolveQuantity::Period => match look.end()?.cycle {
             Some(cycle) => f64::from(cycle.period),
-            None => return Err(Unknown::NoCycle),
+            None => return Err(LessonError::NoCycle),
         },
-        Whole::Majors => f64::from(look.end()?.majors),
-        Whole::Residual => look.residual()?,
-        Whole::Verdict => return Err(Unknown::NoNumber),
+        SolveQuantity::Majors => f64::from(look.end()?.majors),
+        SolveQuantity::Residual => look.residual()?,
+        SolveQuantity::Verdict => return Err(LessonError::NoNumber),
     })
 }
 
 /// Parses a quantity or a literal number.
 ///
 /// # Errors As [`LessonQuantity::read`], and if the quantity is not a number.
-pub fn number(text: &str, context: &Context) -> Result<LessonQuantity, Unknown> {
+pub fn number(text: &str, context: &Context) -> Result<LessonQuantity, LessonError> {
     match text.trim().parse() {
         Ok(number) => Ok(LessonQuantity::Written(number)),
         Err(_) => match LessonQuantity::read(text.trim(), context)? {
             quantity if quantity.is_number() => Ok(quantity),
-            _ => Err(Unknown::NoNumber),
+            _ => Err(LessonError::NoNumber),
         },
     }
 }
@@ -286,23 +300,26 @@ pub fn number(text: &str, context: &Context) -> Result<LessonQuantity, Unknown> 
 /// Parses the settings of a run: `PATH=VALUE PATH=VALUE`.
 ///
 /// # Errors If they cannot be parsed.
-pub fn settings(text: &str) -> Result<Vec<(String, String)>, Unknown> {
+pub fn settings(text: &str) -> Result<Vec<(String, String)>, LessonError> {
     let setting = |word: &str| {
         let (path, value) = word.split_once('=')?;
         Some((path.to_owned(), value.to_owned()))
     };
     let settings: Option<Vec<_>> = text.split_whitespace().map(setting).collect();
-    let none = || Unknown::NoRun(text.to_owned());
+    let none = || LessonError::NoRun(text.to_owned());
     settings
         .filter(|settings| !settings.is_empty())
         .ok_or_else(none)
 }
 
-fn unknown(word: &str) -> Unknown {
-    let all = Nodal::NAMES.into_iter().chain(Whole::NAMES);
-    Unknown::NoQuantity {
+fn unknown(word: &str) -> LessonError {
+    let all = NodeQuantity::NAMES.into_iter().chain(SolveQuantity::NAMES);
+    LessonError::NoQuantity {
         word: word.into(),
-        known: all.chain(OfRun::NAMES).chain(["right", "key"]).collect(),
+        known: all
+            .chain(RunQuantity::NAMES)
+            .chain(["right", "key"])
+            .collect(),
     }
 }
 
@@ -320,13 +337,13 @@ impl Template {
     /// Parses a text with quantities in braces. Line breaks become spaces, since the screen wraps.
     ///
     /// # Errors For the first unknown quantity.
-    pub fn read(text: &str, context: &Context) -> Result<Template, Unknown> {
+    pub fn read(text: &str, context: &Context) -> Result<Template, LessonError> {
         let mut pieces = Vec::new();
         let words: Vec<&str> = text.split_whitespace().collect();
         let text = words.join(" ");
         let mut rest = text.as_str();
         while let Some((words, after)) = rest.split_once('{') {
-            let (name, after) = after.split_once('}').ok_or(Unknown::Brace)?;
+            let (name, after) = after.split_once('}').ok_or(LessonError::Brace)?;
             pieces.push(Piece::Words(words.into()));
             pieces.push(Piece::Value(LessonQuantity::read(name.trim(), context)?));
             rest = after;
@@ -338,14 +355,14 @@ impl Template {
     /// Checks that the text may be a hint: it must neither look ahead nor contain `asked`, the answer.
     ///
     /// # Errors
-    /// [`Unknown::TellsAnswer`] if it is not allowed.
-    pub fn check_hint(&self, asked: Option<&LessonQuantity>) -> Result<(), Unknown> {
+    /// [`LessonError::TellsAnswer`] if it is not allowed.
+    pub fn check_hint(&self, asked: Option<&LessonQuantity>) -> Result<(), LessonError> {
         let tells = |piece: &Piece| match piece {
             Piece::Value(quantity) => quantity.looks_ahead() || Some(quantity) == asked,
             Piece::Words(_) => false,
         };
         match self.0.iter().any(tells) {
-            true => Err(Unknown::TellsAnswer),
+            true => Err(LessonError::TellsAnswer),
             false => Ok(()),
         }
     }
@@ -353,7 +370,7 @@ impl Template {
     /// The text with the current values.
     ///
     /// # Errors If a value is not known.
-    pub fn fill(&self, look: &Look, right: &str) -> Result<String, Unknown> {
+    pub fn fill(&self, look: &FrameValues, right: &str) -> Result<String, LessonError> {
         let piece = |piece: &Piece| match piece {
             Piece::Words(words) => Ok(words.clone()),
             Piece::Value(quantity) => quantity.text(look, right),

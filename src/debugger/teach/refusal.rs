@@ -1,12 +1,12 @@
 //! Errors of lessons: actions that are not allowed now, and unavailable quantities.
 
-use crate::action::Misread;
+use crate::action::ParseError;
 use crate::session::Refusal;
 use stickslip_scene::format::error::did_you_mean;
 
 /// Why an action is not allowed now.
 #[derive(Debug, thiserror::Error)]
-pub enum NotNow {
+pub enum LessonRefusal {
     /// The lesson waits for another action.
     #[error("the lesson waits: {0}")]
     Waits(String),
@@ -44,7 +44,7 @@ pub enum NotNow {
 
 /// Why a quantity is unavailable or a lesson is invalid.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum Unknown {
+pub enum LessonError {
     /// No iteration has been solved.
     #[error("no iteration has been solved yet")]
     Unsolved,
@@ -130,25 +130,25 @@ pub enum Unknown {
     },
     /// Unknown action.
     #[error(transparent)]
-    Misread(#[from] Misread),
+    Misread(#[from] ParseError),
 }
 
 /// Why the action of a step is neither a key nor a typed line.
 #[derive(Debug, thiserror::Error)]
-pub(super) enum NoPress {
+pub(super) enum PressError {
     #[error("{0} takes no count")]
     NoCount(String),
     #[error("not a key, and {0}{1}")]
-    NoAction(Misread, String),
+    NoAction(ParseError, String),
     #[error(transparent)]
-    Misread(#[from] Misread),
+    Misread(#[from] ParseError),
 }
 
 /// Why a lesson cannot be played to its end.
 #[derive(Debug, thiserror::Error)]
-pub(super) enum Unplayable {
+pub(super) enum PlaybackError {
     #[error(transparent)]
-    NotNow(#[from] NotNow),
+    NotNow(#[from] LessonRefusal),
     #[error(transparent)]
     Refused(#[from] Refusal),
     #[error("the history has fewer than {0} iterations to predict")]

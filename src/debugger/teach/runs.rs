@@ -1,6 +1,6 @@
 //! The runs of a lesson's chart, measured once: their cost and their error.
 
-use super::refusal::Unknown;
+use super::refusal::LessonError;
 use std::sync::OnceLock;
 use stickslip_study::chart_file::Chart;
 use stickslip_study::chart_runs::PlannedChart;
@@ -30,7 +30,7 @@ impl Runs {
     /// Measures the runs, unless that has been done.
     ///
     /// # Errors If a scene is invalid or the chart cannot be measured.
-    pub fn measure(&self) -> Result<&Precision, Unknown> {
+    pub fn measure(&self) -> Result<&Precision, LessonError> {
         let measured = self.measured.get_or_init(|| {
             let mut chart = Chart::open(&self.scene, &self.over).map_err(|e| e.to_string())?;
             chart.set.extend(self.set.iter().cloned());
@@ -46,14 +46,14 @@ impl Runs {
             };
             precision::run(&planned, measure, &watch).map_err(|e| e.to_string())
         });
-        let failed = |why: &String| Unknown::NoChart(why.clone());
+        let failed = |why: &String| LessonError::NoChart(why.clone());
         measured.as_ref().map_err(failed)
     }
 
     /// The run with these settings.
     ///
     /// # Errors If none or several match.
-    pub fn of(&self, settings: &[(String, String)]) -> Result<&Point, Unknown> {
+    pub fn of(&self, settings: &[(String, String)]) -> Result<&Point, LessonError> {
         let points = self.measure()?.points.iter();
         let mut found = points.filter(|point| {
             let has =
@@ -66,7 +66,7 @@ impl Runs {
                 let settings = settings
                     .iter()
                     .map(|(path, value)| format!("{path}={value}"));
-                Err(Unknown::NoRun(settings.collect::<Vec<_>>().join(" ")))
+                Err(LessonError::NoRun(settings.collect::<Vec<_>>().join(" ")))
             }
         }
     }
@@ -75,7 +75,11 @@ impl Runs {
     ///
     /// # Errors
     /// As [`Runs::of`].
-    pub fn is_cheapest(&self, settings: &[(String, String)], error: f64) -> Result<bool, Unknown> {
+    pub fn is_cheapest(
+        &self,
+        settings: &[(String, String)],
+        error: f64,
+    ) -> Result<bool, LessonError> {
         let own = self.of(settings)?;
         let near = |point: &&Point| point.error.is_some_and(|own| own <= error);
         let mut points = self.measure()?.points.iter().filter(near);

@@ -5,12 +5,12 @@
 //! ([`Tutor::settled`]), and draws its text ([`Tutor::page`], [`Tutor::todo`]). Right answers come from a
 //! separate solver, which starts from the shown frame.
 
+use super::frame_values::FrameValues;
 use super::guess::Guess;
 use super::lesson::{self, Answer, Ask, Lesson, LessonStep, Truth};
-use super::look::Look;
 use super::quantity::Template;
-use super::refusal::{NotNow, Unknown};
-use crate::action::{self, Action, Whose};
+use super::refusal::{LessonError, LessonRefusal};
+use crate::action::{self, Action, HiddenDecisions};
 use crate::explain::names::{self, MODES, TABLE_2};
 use crate::explain::report;
 use crate::explain::tested;
@@ -20,7 +20,7 @@ use std::sync::Arc;
 use stickslip_core::contact::table2::{Decision, Rule, Test};
 use stickslip_core::model::Mode;
 use stickslip_core::step::state::Status;
-use stickslip_scene::number::four;
+use stickslip_scene::number::sig4;
 
 /// Number of wrong answers after which the right one is shown.
 const TRIES: u32 = 2;
@@ -58,7 +58,7 @@ pub struct TutorQuestion {
     pub kind: AnswerKind,
     /// The choices, if there are any.
     pub options: Vec<String>,
-    right: Right,
+    right: RightAnswer,
     /// The decision at the node in question, if any, and whether there is friction.
     node: Option<(usize, Decision, bool)>,
     /// Whether the decision is in a later iteration.
@@ -80,7 +80,7 @@ pub enum AnswerKind {
 }
 
 #[derive(Debug, Clone, PartialEq)]
-enum Right {
+enum RightAnswer {
     Mode(Mode),
     Choice(usize),
     Number { value: f64, tolerance: f64 },
@@ -172,7 +172,7 @@ impl Tutor {
         self.fault = None;
         self.done = false;
         let lesson = self.lesson.clone();
-        let look = Look {
+        let look = FrameValues {
             model: lesson.model.clone(),
             frame: frame.clone(),
             runs: lesson.runs.clone(),
@@ -181,7 +181,7 @@ impl Tutor {
             None => return self.text = self.farewell(),
             Some(LessonStep::Text(text) | LessonStep::Press { text, .. }) => (text, None),
             Some(LessonStep::Predict { text, .. }) => {
-                self.guess = Some(Guess::new(Whose::Selected, cursor));
+                self.guess = Some(Guess::new(HiddenDecisions::Selected, cursor));
                 (text, None)
             }
             Some(LessonStep::Ask(ask)) => (&ask.text, Some(ask)),
@@ -230,7 +230,7 @@ impl Tutor {
         action: &Action,
         cursor: usize,
         frame: &Frame,
-    ) -> Result<bool, NotNow> {
+    ) -> Result<bool, LessonRefusal> {
         match self.step() {
             None => return Ok(false),
             Some(LessonStep::Press { action: wanted, .. }) if action == wanted && !self.pending => {
@@ -251,7 +251,7 @@ impl Tutor {
                 Some(guess) => guess.permits(action, cursor, frame).map(|()| false),
                 None => Ok(false),
             },
-            _ => Err(NotNow::Waits(self.todo())),
+            _ => Err(LessonRefusal::Waits(self.todo())),
         }
     }
 
@@ -276,15 +276,15 @@ impl Tutor {
     /// Continues, if the step only waits for that.
     ///
     /// # Errors If the lesson waits for something else.
-    pub fn on(&mut self, cursor: usize, frame: &Frame) -> Result<(), NotNow> {
+    pub fn on(&mut self, cursor: usize, frame: &Frame) -> Result<(), LessonRefusal> {
         match self.step() {
-            None => Err(NotNow::Over),
+            None => Err(LessonRefusal::Over),
             Some(_) if self.is_read() => {
                 self.at += 1;
                 self.enter(cursor, frame);
                 Ok(())
             }
-            Some(_) => Err(NotNow::Waits(self.todo())),
+            Some(_) => Err(LessonRefusal::Waits(self.todo())),
         }
     }
 
@@ -297,7 +297,7 @@ impl Tutor {
         selected: usize,
         cursor: usize,
         frame: &Frame,
-    ) -> Result<(), NotNow> {
+    ) -> Result<(), LessonRefusal> {
         if let (Some(guess), false) = (&mut self.guess, self.done) {
             let model = &self.lesson.model;
             let (good, text) = guess.predict(model, cursor, frame, selected, word)?;
@@ -320,9 +320,9 @@ impl Tutor {
             return Ok(());
         }
         if self.done {
-            return Err(NotNow::Answered);
+            return Err(LessonRefusal::Answered);
         }
-        let question = self.question.as_mut().ok_or(NotNow::NothingAsked)?;
+        let question = self.question.as_mut().ok_or(LessonRefusal::NothingAsked)?;
         let good = question.is_right(word)?;
         question.tries += 1;
         self.done = good || question.tries >= TRIES;
@@ -435,9 +435,9 @@ impl Tutor {
     /// The right answer, as typed; used to play lessons automatically.
     pub fn solution(&self) -> Option<String> {
         self.question().map(|question| match question.right {
-            Right::Mode(mode) => names::mode(mode).into(),
-            Right::Choice(index) => (index + 1).to_string(),
-            Right::Number { value, .. } => value.to_string(),
+            RightAnswer::Mode(mode) => names::mode(mode).into(),
+            RightAnswer::Choice(index) => (index + 1).to_string(),
+            RightAnswer::Number { value, .. } => value.to_string(),
         })
     }
 }
@@ -445,9 +445,9 @@ impl Tutor {
 impl TutorQuestion {
     /// Gets the right answer from the solver. Texts shown before the answer are filled from the current state
     /// `now`.
-    fn ask(ask: &Ask, now: &Look) -> Result<TutorQuestion, Unknown> {
+    fn ask(ask: &Ask, now: &FrameValues) -> Result<TutorQuestion, LessonError> {
         let look = now.ahead(ask.ahead)?;
-        let found = |slave: usize| -> Result<_, Unknown> {
+        let found = |slave: usize| -> Result<_, LessonError> {
             let record = look.record(slave)?;
             Ok((slave, record.decision, record.t_max != 0.0))
         };
@@ -457,7 +457,7 @@ impl TutorQuestion {
                 (
                     AnswerKind::Mode,
                     Vec::new(),
-                    Right::Mode(node.1.next),
+                    RightAnswer::Mode(node.1.next),
                     Some(node),
                 )
             }
@@ -467,20 +467,20 @@ impl TutorQuestion {
                 (
                     AnswerKind::Choice,
                     options,
-                    Right::Choice(right),
+                    RightAnswer::Choice(right),
                     Some(node),
                 )
             }
             Answer::Number(quantity, tolerance) => {
                 let value = quantity.number(&look)?;
                 if !value.is_finite() {
-                    return Err(Unknown::NotFinite);
+                    return Err(LessonError::NotFinite);
                 }
                 let tolerance = *tolerance;
                 (
                     AnswerKind::Number,
                     Vec::new(),
-                    Right::Number { value, tolerance },
+                    RightAnswer::Number { value, tolerance },
                     None,
                 )
             }
@@ -490,7 +490,7 @@ impl TutorQuestion {
                 (
                     AnswerKind::Choice,
                     options,
-                    Right::Choice(chosen(choices, &look)?),
+                    RightAnswer::Choice(chosen(choices, &look)?),
                     None,
                 )
             }
@@ -510,23 +510,25 @@ impl TutorQuestion {
         Ok(question)
     }
 
-    fn is_right(&self, word: &str) -> Result<bool, NotNow> {
+    fn is_right(&self, word: &str) -> Result<bool, LessonRefusal> {
         let word = word.trim();
         match &self.right {
-            Right::Mode(right) => match action::mode(word) {
+            RightAnswer::Mode(right) => match action::mode(word) {
                 Some(mode) => Ok(mode == *right),
-                None => Err(NotNow::NoMode(word.into())),
+                None => Err(LessonRefusal::NoMode(word.into())),
             },
-            Right::Choice(right) => match word.parse::<usize>() {
+            RightAnswer::Choice(right) => match word.parse::<usize>() {
                 Ok(number) if (1..=self.options.len()).contains(&number) => {
                     Ok(number - 1 == *right)
                 }
-                _ => Err(NotNow::NoOption(word.into(), self.options.len())),
+                _ => Err(LessonRefusal::NoOption(word.into(), self.options.len())),
             },
-            Right::Number { value, tolerance } => {
+            RightAnswer::Number { value, tolerance } => {
                 // Accept typographic minus signs and decimal commas.
                 let plain = word.replace('−', "-").replace(',', ".");
-                let given: f64 = plain.parse().map_err(|_| NotNow::NoNumber(word.into()))?;
+                let given: f64 = plain
+                    .parse()
+                    .map_err(|_| LessonRefusal::NoNumber(word.into()))?;
                 Ok((given - value).abs() <= tolerance * value.abs())
             }
         }
@@ -535,9 +537,9 @@ impl TutorQuestion {
     /// The right answer in words.
     fn words(&self) -> String {
         match &self.right {
-            Right::Mode(mode) => names::mode(*mode).into(),
-            Right::Choice(index) => format!("{}", index + 1),
-            Right::Number { value, .. } => four(*value),
+            RightAnswer::Mode(mode) => names::mode(*mode).into(),
+            RightAnswer::Choice(index) => format!("{}", index + 1),
+            RightAnswer::Number { value, .. } => sig4(*value),
         }
     }
 
@@ -592,9 +594,9 @@ impl TutorQuestion {
 }
 
 /// Cells of Table 2 in the row of the node's mode, and the index of the one that applied.
-fn cells(decision: &Decision) -> Result<(Vec<String>, usize), Unknown> {
+fn cells(decision: &Decision) -> Result<(Vec<String>, usize), LessonError> {
     if matches!(decision.rule, Rule::Held | Rule::OffSurface) {
-        return Err(Unknown::NoCell);
+        return Err(LessonError::NoCell);
     }
     let place = |mode: Mode| MODES.iter().position(|m| *m == mode).unwrap_or(0);
     let cell = |(column, mode): (usize, &Mode)| {
@@ -607,7 +609,7 @@ fn cells(decision: &Decision) -> Result<(Vec<String>, usize), Unknown> {
 }
 
 /// The only right choice.
-fn chosen(choices: &[(Template, Truth)], look: &Look) -> Result<usize, Unknown> {
+fn chosen(choices: &[(Template, Truth)], look: &FrameValues) -> Result<usize, LessonError> {
     let mut right = Vec::new();
     for (index, (_, truth)) in choices.iter().enumerate() {
         let holds = match truth {
@@ -630,8 +632,8 @@ fn chosen(choices: &[(Template, Truth)], look: &Look) -> Result<usize, Unknown> 
     }
     match right[..] {
         [index] => Ok(index),
-        [] => Err(Unknown::NoneTrue),
-        _ => Err(Unknown::SeveralTrue),
+        [] => Err(LessonError::NoneTrue),
+        _ => Err(LessonError::SeveralTrue),
     }
 }
 
@@ -646,9 +648,9 @@ fn compared(decision: &Decision) -> String {
         };
         let (name, bound) = tested::sides(test.tested);
         let bound = bound.map_or("0".into(), |bound| {
-            format!("{bound} = {}", four(test.bound))
+            format!("{bound} = {}", sig4(test.bound))
         });
-        format!("{name} = {} {sign} {bound}", four(test.value))
+        format!("{name} = {} {sign} {bound}", sig4(test.value))
     };
     let tests: Vec<String> = decision.tests.iter().flatten().map(side).collect();
     tests.join(", and ")

@@ -2,10 +2,10 @@
 //!
 //! The first line of such a file is [`SEALED_HEAD`]. Every other line starts with a character for its direction and a space: `>`
 //! to the solver, `<` from the solver, `!` the solver's standard error, `#` other events (start, end). Messages are stored
-//! verbatim, for people, scripts and [`Kept::read`]. Each line ends with its digest ([`crate::seal`]); files of earlier versions
+//! verbatim, for people, scripts and [`TranscriptLine::read`]. Each line ends with its digest ([`crate::seal`]); files of earlier versions
 //! start with just [`HEAD`] and have no digests.
 
-use crate::broken::Broken;
+use crate::format_error::FormatError;
 use crate::seal::{self, Seal};
 
 /// Start of the first line.
@@ -48,14 +48,14 @@ pub const STARTED: &str = "started";
 
 /// A line of a transcript.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Kept {
+pub struct TranscriptLine {
     /// Direction.
     pub side: Side,
     /// Text without the line end.
     pub text: String,
 }
 
-impl Kept {
+impl TranscriptLine {
     /// The line of the file with its line end; several lines if the text has several.
     pub fn line(side: Side, text: &str) -> String {
         let text = text.trim_end_matches(['\n', '\r']);
@@ -73,10 +73,10 @@ impl Kept {
     ///
     /// # Errors
     /// If the file is not a transcript, a line has no direction, or a line was changed after it was written.
-    pub fn read(text: &str) -> Result<Vec<Kept>, Broken> {
-        if !Kept::is_one(text) {
+    pub fn read(text: &str) -> Result<Vec<TranscriptLine>, FormatError> {
+        if !TranscriptLine::is_one(text) {
             let message = format!("the first line of a transcript must begin with {HEAD:?}");
-            return Err(Broken::at(1, 1, message));
+            return Err(FormatError::at(1, 1, message));
         }
         let are_sealed = text.starts_with(SEALED_HEAD);
         let whole = match text.rfind('\n') {
@@ -89,7 +89,9 @@ impl Kept {
                 let line = match seal::opened(line) {
                     _ if !are_sealed => line,
                     Seal::Whole(line) => line,
-                    Seal::Broken | Seal::Missing => return Err(Broken::at(number + 1, 1, CHANGED)),
+                    Seal::Broken | Seal::Missing => {
+                        return Err(FormatError::at(number + 1, 1, CHANGED));
+                    }
                 };
                 let (sign, text) = line.split_at_checked(1).unwrap_or((line, ""));
                 let side = Side::ALL
@@ -97,14 +99,14 @@ impl Kept {
                     .find(|(_, known)| sign.starts_with(*known))
                     .map(|(side, _)| *side)
                     .ok_or_else(|| {
-                        Broken::at(
+                        FormatError::at(
                             number + 1,
                             1,
                             "a line must begin with >, <, ! or # and a space",
                         )
                     })?;
                 let text = text.strip_prefix(' ').unwrap_or(text).to_owned();
-                Ok(Kept { side, text })
+                Ok(TranscriptLine { side, text })
             })
             .collect()
     }
@@ -125,27 +127,30 @@ mod tests {
         let mut text = format!("{SEALED_HEAD}\n");
         lines
             .iter()
-            .for_each(|(side, line)| text += &Kept::line(*side, line));
-        let read = Kept::read(&text).expect("sound");
+            .for_each(|(side, line)| text += &TranscriptLine::line(*side, line));
+        let read = TranscriptLine::read(&text).expect("sound");
         assert_eq!(read.len(), 4);
         assert_eq!(
             (read[1].side, read[1].text.as_str()),
             (Side::Asked, "{\"type\":\"step\"}")
         );
-        let torn = Kept::read(&(text + "< {\"type\":\"st")).expect("torn");
+        let torn = TranscriptLine::read(&(text + "< {\"type\":\"st")).expect("torn");
         assert_eq!(torn, read);
     }
 
     #[test]
     fn a_changed_digit_is_detected_and_a_file_without_digests_is_read() {
         let answer = "{\"type\":\"state\",\"f_n\":1.25}";
-        let text = format!("{SEALED_HEAD}\n{}", Kept::line(Side::Answered, answer));
-        assert_eq!(Kept::read(&text).expect("sound")[0].text, answer);
-        let broken = Kept::read(&text.replace("1.25", "1.35")).expect_err("changed");
+        let text = format!(
+            "{SEALED_HEAD}\n{}",
+            TranscriptLine::line(Side::Answered, answer)
+        );
+        assert_eq!(TranscriptLine::read(&text).expect("sound")[0].text, answer);
+        let broken = TranscriptLine::read(&text.replace("1.25", "1.35")).expect_err("changed");
         assert_eq!(broken.at, Some((2, 1)));
         let bare = format!("{SEALED_HEAD}\n< {answer}\n");
-        assert!(Kept::read(&bare).is_err());
-        let old = Kept::read(&format!("{HEAD}\n< {answer}\n! a\t0123456789abcdef\n"));
+        assert!(TranscriptLine::read(&bare).is_err());
+        let old = TranscriptLine::read(&format!("{HEAD}\n< {answer}\n! a\t0123456789abcdef\n"));
         let texts: Vec<String> = old
             .expect("sound")
             .into_iter()
@@ -156,8 +161,11 @@ mod tests {
 
     #[test]
     fn every_line_of_a_text_has_its_direction() {
-        let text = format!("{SEALED_HEAD}\n{}", Kept::line(Side::Noted, "lost:\nall\n"));
-        let read = Kept::read(&text).expect("sound");
+        let text = format!(
+            "{SEALED_HEAD}\n{}",
+            TranscriptLine::line(Side::Noted, "lost:\nall\n")
+        );
+        let read = TranscriptLine::read(&text).expect("sound");
         let texts: Vec<&str> = read.iter().map(|kept| kept.text.as_str()).collect();
         assert_eq!(texts, ["lost:", "all"]);
         assert!(read.iter().all(|kept| kept.side == Side::Noted));
@@ -165,8 +173,8 @@ mod tests {
 
     #[test]
     fn other_files_are_not_transcripts() {
-        assert!(Kept::read("Scene(").is_err());
-        let broken = Kept::read(&format!("{HEAD}\n?\n")).expect_err("no sign");
+        assert!(TranscriptLine::read("Scene(").is_err());
+        let broken = TranscriptLine::read(&format!("{HEAD}\n?\n")).expect_err("no sign");
         assert_eq!(broken.at, Some((2, 1)));
     }
 }

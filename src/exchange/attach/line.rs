@@ -22,15 +22,15 @@ const SHOWN: usize = 80;
 
 /// Reads a stream line by line.
 #[derive(Debug)]
-pub struct Lines<R> {
+pub struct LineReader<R> {
     stream: R,
     most: usize,
 }
 
-impl<R: BufRead> Lines<R> {
+impl<R: BufRead> LineReader<R> {
     /// Limits lines to `most` bytes.
     pub fn new(stream: R, most: usize) -> Self {
-        Lines { stream, most }
+        LineReader { stream, most }
     }
 
     /// Waits for the next line. After [`Line::TooLong`] the rest of the stream is unusable.
@@ -75,7 +75,7 @@ mod tests {
     use super::*;
 
     fn all(bytes: &[u8], most: usize) -> Vec<Line> {
-        let mut lines = Lines::new(bytes, most);
+        let mut lines = LineReader::new(bytes, most);
         let mut found = Vec::new();
         loop {
             let line = lines.next_line().expect("memory can be read");

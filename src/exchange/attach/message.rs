@@ -5,7 +5,7 @@ use serde_json::Value;
 pub use stickslip_core::contact::table2::Test;
 pub use stickslip_core::model::{Mode, Node, ToldKind};
 pub use stickslip_core::step::event::Position;
-pub use stickslip_core::step::solver::PosedForm;
+pub use stickslip_core::step::solver::ReportedForm;
 
 /// A request from the debugger. Each has one answer, except [`Request::Interrupt`] and [`Request::Bye`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -84,7 +84,7 @@ pub enum Answer {
         token: Value,
     },
     /// The frozen interface problem.
-    Problem(Box<Problem>),
+    Problem(Box<ProblemMessage>),
     /// Text for the user; not an answer to a request.
     Message {
         /// Severity.
@@ -167,7 +167,7 @@ pub struct Hello {
     pub decides: Option<Decides>,
     /// Parameters that can be changed during a run.
     #[serde(default)]
-    pub parameters: Vec<Parameter>,
+    pub parameters: Vec<ParameterMessage>,
 }
 
 /// Optional features of a solver; omitted ones are not supported.
@@ -211,7 +211,7 @@ pub enum Decides {
 
 /// A parameter that can be changed during a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Parameter {
+pub struct ParameterMessage {
     /// Its name. `increment`, `friction` and `cohesion` have a predefined meaning.
     pub name: String,
     /// Kind of value.
@@ -261,7 +261,7 @@ pub struct Scene {
     pub lines: Vec<Vec<usize>>,
     /// Masters.
     #[serde(default)]
-    pub surfaces: Vec<Surface>,
+    pub surfaces: Vec<SurfaceMessage>,
     /// The slave nodes.
     pub contacts: Vec<Contact>,
     /// Load factors at the start and at the end of the history.
@@ -298,7 +298,7 @@ pub enum Monitor {
 
 /// A master surface: a chain of nodes with the outward side on the right of the walk.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Surface {
+pub struct SurfaceMessage {
     /// Name shown to the user.
     pub name: String,
     /// Indices into [`Scene::nodes`].
@@ -359,7 +359,7 @@ pub struct State {
     /// Load factor at the end of the increment.
     pub load: Option<f64>,
     /// The level that ended with this iteration.
-    pub ended: Ended,
+    pub ended: EndedLevel,
     /// Reason of a failure or cut.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub reason: String,
@@ -367,13 +367,13 @@ pub struct State {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub size: Option<f64>,
     /// All contacts in scene order; empty if the iteration could not be solved.
-    pub contacts: Vec<Found>,
+    pub contacts: Vec<ContactResult>,
     /// Norms before the solve.
     #[serde(default)]
-    pub residual: Norms,
+    pub residual: NormsMessage,
     /// Norms at the end of a major iteration.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub after: Option<Norms>,
+    pub after: Option<NormsMessage>,
     /// Displacements of the scene's nodes along x and y (length); unchanged if omitted.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub displacements: Option<Vec<[f64; 2]>>,
@@ -394,7 +394,7 @@ pub struct State {
 /// The level that ended with an iteration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Ended {
+pub enum EndedLevel {
     /// Only the iteration.
     Iteration,
     /// The major iteration.
@@ -411,7 +411,7 @@ pub enum Ended {
 
 /// Result of an iteration at a contact. `None` if a number is unknown or infinite.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Found {
+pub struct ContactResult {
     /// The contact.
     pub id: Id,
     /// Mode used in this solve.
@@ -487,7 +487,7 @@ pub enum Forced {
 /// Residual norms; all except `force` and `scale` are relative.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default)]
-pub struct Norms {
+pub struct NormsMessage {
     /// Out-of-balance force divided by the force scale.
     pub relative: Option<f64>,
     /// Out-of-balance force.
@@ -513,13 +513,13 @@ pub struct Norms {
 /// The frozen interface problem: (gap, u) = W f + q, with the total forces f = (f_n, f_t) at the end of the increment and the
 /// motion u of the node relative to its master along t since the start of the increment; u = 0 for stick.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Problem {
+pub struct ProblemMessage {
     /// The participating contacts, in the order of the pairs.
     pub contacts: Vec<Id>,
     /// Kind of matrix.
-    pub kind: PosedForm,
+    pub kind: ReportedForm,
     /// The matrix, of size 2n.
-    pub matrix: Matrix,
+    pub matrix: MatrixMessage,
     /// Gap and motion without forces (length).
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub q: Vec<f64>,
@@ -536,7 +536,7 @@ pub struct Problem {
 /// A matrix, by rows or by entries.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(untagged)]
-pub enum Matrix {
+pub enum MatrixMessage {
     /// Rows.
     Rows(Vec<Vec<f64>>),
     /// Row, column (from 0) and value; duplicate entries are added.

@@ -13,8 +13,8 @@ pub mod line;
 pub mod message;
 mod reading;
 
-pub use conversation::{Kept, Side};
-pub use line::{Line, Lines};
+pub use conversation::{Side, TranscriptLine};
+pub use line::{Line, LineReader};
 pub use message::{Answer, Request};
 
 /// Supported protocol version.

@@ -3,8 +3,8 @@
 //! An answer is parsed twice: first only its `type`, then the whole message as that type. This avoids an intermediate tree (a
 //! state of 1,000 contacts is 0.3 MB), and errors have a path in the message and a column in the line.
 
-use super::message::{Answer, Matrix, Request};
-use crate::broken::Broken;
+use super::message::{Answer, MatrixMessage, Request};
+use crate::format_error::FormatError;
 use serde::de::{self, Deserializer, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -25,7 +25,7 @@ impl Request {
     ///
     /// # Errors
     /// The error, with its column.
-    pub fn read(line: &str) -> Result<Request, Broken> {
+    pub fn read(line: &str) -> Result<Request, FormatError> {
         kind(line)?;
         body(line)
     }
@@ -41,7 +41,7 @@ impl Answer {
     ///
     /// # Errors
     /// The error, with its column.
-    pub fn read(line: &str) -> Result<Answer, Broken> {
+    pub fn read(line: &str) -> Result<Answer, FormatError> {
         Ok(match &*kind(line)? {
             "state" => Answer::State(body(line)?),
             "scene" => Answer::Scene(body(line)?),
@@ -60,7 +60,7 @@ fn line(message: &impl Serialize) -> String {
 }
 
 /// The `type` of a message.
-fn kind(line: &str) -> Result<Cow<'_, str>, Broken> {
+fn kind(line: &str) -> Result<Cow<'_, str>, FormatError> {
     #[derive(Deserialize)]
     struct Kind<'a> {
         #[serde(rename = "type", borrow)]
@@ -69,7 +69,7 @@ fn kind(line: &str) -> Result<Cow<'_, str>, Broken> {
     body::<Kind<'_>>(line).map(|message| message.kind)
 }
 
-fn body<'a, T: Deserialize<'a>>(line: &'a str) -> Result<T, Broken> {
+fn body<'a, T: Deserialize<'a>>(line: &'a str) -> Result<T, FormatError> {
     serde_json::from_str(line).map_err(|error| {
         // The path is only computed for errors; a message that ends too early has no meaningful path.
         let mut again = serde_json::Deserializer::from_str(line);
@@ -84,7 +84,7 @@ fn body<'a, T: Deserialize<'a>>(line: &'a str) -> Result<T, Broken> {
 }
 
 /// Converts a serde error to one with the message path and the column.
-fn broken(line: &str, path: &str, error: &serde_json::Error) -> Broken {
+fn broken(line: &str, path: &str, error: &serde_json::Error) -> FormatError {
     let told = error.to_string();
     // The position is reported separately.
     let mut told = told.split(" at line ").next().unwrap_or(&told).to_owned();
@@ -110,32 +110,33 @@ fn broken(line: &str, path: &str, error: &serde_json::Error) -> Broken {
         told = format!("{path}{cut}: {told}");
     }
     match error.column() {
-        0 => Broken::whole(told),
-        _ => Broken::at(error.line().max(1), line[..at].chars().count() + 1, told),
+        0 => FormatError::whole(told),
+        _ => FormatError::at(error.line().max(1), line[..at].chars().count() + 1, told),
     }
 }
 
-impl<'de> Deserialize<'de> for Matrix {
-    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Matrix, D::Error> {
-        from.deserialize_any(OfMatrix)
+impl<'de> Deserialize<'de> for MatrixMessage {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<MatrixMessage, D::Error> {
+        from.deserialize_any(MatrixReader)
     }
 }
 
 /// Reads a matrix, possibly with millions of numbers, directly from the stream.
-struct OfMatrix;
+struct MatrixReader;
 
-impl<'de> Visitor<'de> for OfMatrix {
-    type Value = Matrix;
+impl<'de> Visitor<'de> for MatrixReader {
+    type Value = MatrixMessage;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("rows of numbers, or an object with size and triplets")
     }
 
-    fn visit_seq<A: SeqAccess<'de>>(self, rows: A) -> Result<Matrix, A::Error> {
-        Deserialize::deserialize(de::value::SeqAccessDeserializer::new(rows)).map(Matrix::Rows)
+    fn visit_seq<A: SeqAccess<'de>>(self, rows: A) -> Result<MatrixMessage, A::Error> {
+        Deserialize::deserialize(de::value::SeqAccessDeserializer::new(rows))
+            .map(MatrixMessage::Rows)
     }
 
-    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<Matrix, A::Error> {
+    fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<MatrixMessage, A::Error> {
         #[derive(Deserialize)]
         struct Sparse {
             size: usize,
@@ -143,7 +144,7 @@ impl<'de> Visitor<'de> for OfMatrix {
         }
         let Sparse { size, triplets } =
             Deserialize::deserialize(de::value::MapAccessDeserializer::new(map))?;
-        Ok(Matrix::Triplets { size, triplets })
+        Ok(MatrixMessage::Triplets { size, triplets })
     }
 }
 
@@ -155,14 +156,14 @@ mod tests {
 
     #[test]
     fn infinite_and_missing_numbers_are_null_and_read_as_none() {
-        let norms = Norms {
+        let norms = NormsMessage {
             relative: number(f64::INFINITY),
             force: number(-0.0),
-            ..Norms::default()
+            ..NormsMessage::default()
         };
         let text = line(&norms);
         assert_eq!(text, "{\"relative\":null,\"force\":-0.0}\n");
-        let back: Norms = body(&text).expect("its own text");
+        let back: NormsMessage = body(&text).expect("its own text");
         assert_eq!(back.relative, None);
         assert_eq!(back.force.map(f64::to_bits), Some((-0.0_f64).to_bits()));
     }
@@ -309,8 +310,8 @@ mod tests {
             numbers in [float(), float(), float(), float(), float(), float()],
             rule in ".{0,8}",
             over in any::<bool>(),
-        ) -> Found {
-            Found {
+        ) -> ContactResult {
+            ContactResult {
                 id,
                 mode: modes.0,
                 next: modes.1,
@@ -346,11 +347,11 @@ mod tests {
             Answer::State(Box::new(State {
                 at: Position { increment, attempt, major, minor },
                 load: numbers[0],
-                ended: Ended::Iteration,
+                ended: EndedLevel::Iteration,
                 reason,
                 size: numbers[1],
                 contacts,
-                residual: Norms { relative: numbers[0], ..Norms::default() },
+                residual: NormsMessage { relative: numbers[0], ..NormsMessage::default() },
                 after: None,
                 displacements: None,
                 spring: None,

@@ -14,14 +14,14 @@
 
 use super::Stop;
 use super::lines::{Field, Lines, ResultLine};
-use crate::broken::Broken;
+use crate::format_error::FormatError;
 use std::collections::HashMap;
 use std::io::BufRead;
 use std::ops::Range;
 
 /// Position in a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub struct At {
+pub struct RunPosition {
     /// Step, from 1.
     pub step: u32,
     /// Increment of the step, from 1.
@@ -43,7 +43,7 @@ pub enum Slave {
 
 /// A slave in contact with a master face in an iteration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Closed {
+pub struct ClosedContact {
     /// Index into [`ContactElements::slaves`].
     pub slave: u32,
     /// Index into [`ContactElements::masters`].
@@ -60,9 +60,9 @@ pub struct ContactElements {
     /// Every master face that was ever touched: its corners, ascending; a triangle repeats its last corner.
     pub masters: Vec<[u32; 4]>,
     /// The iterations with contact elements, ascending, each with its range of `closed`.
-    pub iterations: Vec<(At, Range<usize>)>,
+    pub iterations: Vec<(RunPosition, Range<usize>)>,
     /// The closed contacts, iteration by iteration, each sorted by slave and master.
-    pub closed: Vec<Closed>,
+    pub closed: Vec<ClosedContact>,
     /// Where the file is truncated, if it is.
     pub stop: Option<Stop>,
 }
@@ -71,7 +71,7 @@ pub struct ContactElements {
 ///
 /// # Errors
 /// If it cannot be read, a line is invalid, or its iterations are not in order.
-pub fn read(from: impl BufRead) -> Result<ContactElements, Broken> {
+pub fn read(from: impl BufRead) -> Result<ContactElements, FormatError> {
     let mut lines = Lines::new(from);
     let mut reading = Reading::default();
     while let Some(line) = lines.next()? {
@@ -100,7 +100,7 @@ struct Reading {
     slaves: HashMap<Slave, u32>,
     masters: HashMap<[u32; 4], u32>,
     /// The current iteration, and the number of nodes of its next element.
-    now: Option<(At, usize)>,
+    now: Option<(RunPosition, usize)>,
     /// Number and nodes of the current element, and how many of them have been read.
     element: [u32; MOST + 1],
     read: usize,
@@ -109,7 +109,7 @@ struct Reading {
 }
 
 impl Reading {
-    fn header(&mut self, line: ResultLine) -> Result<(), Broken> {
+    fn header(&mut self, line: ResultLine) -> Result<(), FormatError> {
         if self.open.is_some() {
             let message = format!(
                 "a new element begins, but the previous one has only {} numbers",
@@ -136,7 +136,7 @@ impl Reading {
         Ok(())
     }
 
-    fn data(&mut self, line: ResultLine) -> Result<(), Broken> {
+    fn data(&mut self, line: ResultLine) -> Result<(), FormatError> {
         for field in line.fields() {
             let nodes = match (self.open, self.now) {
                 (Some(_), Some((_, nodes))) => nodes,
@@ -156,7 +156,7 @@ impl Reading {
     }
 
     /// Adds the element that this field completes.
-    fn take(&mut self, field: Field) -> Result<(), Broken> {
+    fn take(&mut self, field: Field) -> Result<(), FormatError> {
         let nodes = &self.element[1..self.read];
         let (slave, master) = match *nodes {
             [a, b, c, s] => (Slave::Node(s), [a, b, c, c]),
@@ -176,7 +176,7 @@ impl Reading {
         let last = self.found.closed[begun..].last_mut();
         match last.filter(|closed| (closed.slave, closed.master) == (slave, master)) {
             Some(closed) => closed.elements = closed.elements.saturating_add(1),
-            None => self.found.closed.push(Closed {
+            None => self.found.closed.push(ClosedContact {
                 slave,
                 master,
                 elements: 1,
@@ -247,7 +247,7 @@ fn corners(mut face: [u32; 4]) -> [u32; 4] {
 }
 
 /// Parses a header: position in the run, and number of nodes of the element.
-fn header(line: ResultLine) -> Result<(At, usize), Broken> {
+fn header(line: ResultLine) -> Result<(RunPosition, usize), FormatError> {
     let mut fields = line.fields();
     let first = fields.next().ok_or_else(|| line.ends_early(NO_CEL))?;
     if !first.bytes.eq_ignore_ascii_case(b"*ELEMENT") {
@@ -281,7 +281,7 @@ fn header(line: ResultLine) -> Result<(At, usize), Broken> {
 }
 
 /// Parses the name of a set.
-fn place(name: &str) -> Option<At> {
+fn place(name: &str) -> Option<RunPosition> {
     let name = name.to_ascii_lowercase();
     let mut rest = name.strip_prefix("contactelements")?;
     let mut next = |tag: &str, last: bool| {
@@ -293,7 +293,7 @@ fn place(name: &str) -> Option<At> {
         rest = after;
         (!last || after.is_empty()).then(|| number.parse().ok())?
     };
-    Some(At {
+    Some(RunPosition {
         step: next("_st", false)?,
         increment: next("_in", false)?,
         attempt: next("_at", false)?,
@@ -337,14 +337,14 @@ mod tests {
         let found = read(NODES.as_bytes()).unwrap();
         assert_eq!(found.slaves, [Slave::Node(9), Slave::Node(7)]);
         assert_eq!(found.masters, [[1005, 1006, 1007, 1008], [1, 2, 3, 3]]);
-        let at = |iteration| At {
+        let at = |iteration| RunPosition {
             step: 1,
             increment: 1,
             attempt: 1,
             iteration,
         };
         assert_eq!(found.iterations, [(at(1), 0..2), (at(2), 2..3)]);
-        let of = |slave, master| Closed {
+        let of = |slave, master| ClosedContact {
             slave,
             master,
             elements: 1,

@@ -5,9 +5,9 @@
 //! heat flux and temperature. CalculiX writes 0/0 as 1e-30 and x/0 as 1e30 (writecvg.f).
 
 use super::Table;
-use super::cel::At;
+use super::cel::RunPosition;
 use super::lines::{Field, ResultLine, table};
-use crate::broken::Broken;
+use crate::format_error::FormatError;
 use std::io::BufRead;
 
 /// The numbers of an iteration.
@@ -29,7 +29,7 @@ pub struct Norms {
 ///
 /// # Errors
 /// If it is not such a file, or a row is invalid.
-pub fn read(from: impl BufRead) -> Result<Table<(At, Norms)>, Broken> {
+pub fn read(from: impl BufRead) -> Result<Table<(RunPosition, Norms)>, FormatError> {
     let mut rows = Vec::new();
     let take = |line: ResultLine, fields: &[Field]| {
         let &[
@@ -46,7 +46,7 @@ pub fn read(from: impl BufRead) -> Result<Table<(At, Norms)>, Broken> {
         let &[residual, correction, flux, temperature] = percent else {
             return Err(line.ends_early(short(fields.len())));
         };
-        let at = At {
+        let at = RunPosition {
             step: step.whole_number("step")?,
             increment: increment.whole_number("increment")?,
             attempt: attempt.whole_number("attempt")?,

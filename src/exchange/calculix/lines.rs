@@ -4,7 +4,7 @@
 //! does not fit its column.
 
 use super::Stop;
-use crate::broken::Broken;
+use crate::format_error::FormatError;
 use std::io::{BufRead, Read};
 
 /// Maximum length of a line in bytes; the longest line of CalculiX has 160.
@@ -41,7 +41,7 @@ impl<R: BufRead> Lines<R> {
     ///
     /// # Errors
     /// If it cannot be read, or is longer than any line of such a file.
-    pub fn next(&mut self) -> Result<Option<ResultLine<'_>>, Broken> {
+    pub fn next(&mut self) -> Result<Option<ResultLine<'_>>, FormatError> {
         self.bytes.clear();
         self.number += 1;
         let most = MOST as u64 + 1;
@@ -50,7 +50,7 @@ impl<R: BufRead> Lines<R> {
             .by_ref()
             .take(most)
             .read_until(b'\n', &mut self.bytes);
-        read.map_err(|error| Broken::at(self.number, 1, format!("reading failed: {error}")))?;
+        read.map_err(|error| FormatError::at(self.number, 1, format!("reading failed: {error}")))?;
         if self.bytes.is_empty() {
             return Ok(None);
         }
@@ -58,7 +58,7 @@ impl<R: BufRead> Lines<R> {
         if !whole && self.bytes.len() > MOST {
             let message =
                 format!("the line is longer than {MOST} bytes; CalculiX writes no such lines");
-            return Err(Broken::at(self.number, 1, message));
+            return Err(FormatError::at(self.number, 1, message));
         }
         let end = self.bytes.len() - usize::from(whole);
         let bytes = &self.bytes[..end];
@@ -99,13 +99,13 @@ impl<'a> ResultLine<'a> {
     }
 
     /// An error after a byte of the line.
-    pub fn wrong(self, byte: usize, message: impl Into<String>) -> Broken {
+    pub fn wrong(self, byte: usize, message: impl Into<String>) -> FormatError {
         let before = String::from_utf8_lossy(&self.bytes[..byte.min(self.bytes.len())]);
-        Broken::at(self.number, 1 + before.chars().count(), message)
+        FormatError::at(self.number, 1 + before.chars().count(), message)
     }
 
     /// Something is missing at the end of the line.
-    pub fn ends_early(self, message: impl Into<String>) -> Broken {
+    pub fn ends_early(self, message: impl Into<String>) -> FormatError {
         self.wrong(self.bytes.len(), message)
     }
 }
@@ -120,7 +120,7 @@ impl Field<'_> {
     }
 
     /// An error in the field.
-    pub fn wrong(self, message: impl Into<String>) -> Broken {
+    pub fn wrong(self, message: impl Into<String>) -> FormatError {
         self.line.wrong(self.start, message)
     }
 
@@ -140,7 +140,7 @@ impl Field<'_> {
     }
 
     /// The field as a whole number; `what` names it in errors.
-    pub fn whole_number(self, what: &str) -> Result<u32, Broken> {
+    pub fn whole_number(self, what: &str) -> Result<u32, FormatError> {
         let text = std::str::from_utf8(self.bytes).ok();
         let plain = text.filter(|text| text.bytes().all(|byte| byte.is_ascii_digit()));
         let number = plain.and_then(|text| text.parse().ok());
@@ -153,7 +153,7 @@ impl Field<'_> {
     }
 
     /// The field as a number; `what` names it in errors.
-    pub fn number(self, what: &str) -> Result<f64, Broken> {
+    pub fn number(self, what: &str) -> Result<f64, FormatError> {
         let text = std::str::from_utf8(self.bytes).ok();
         text.and_then(fortran).ok_or_else(|| {
             let shown = self.shown();
@@ -173,8 +173,8 @@ pub(super) fn table(
     from: impl BufRead,
     title: &str,
     what: &str,
-    mut take: impl FnMut(ResultLine, &[Field]) -> Result<(), Broken>,
-) -> Result<Option<Stop>, Broken> {
+    mut take: impl FnMut(ResultLine, &[Field]) -> Result<(), FormatError>,
+) -> Result<Option<Stop>, FormatError> {
     let mut lines = Lines::new(from);
     let mut headings = true;
     while let Some(line) = lines.next()? {

@@ -9,8 +9,8 @@
 
 pub mod cel;
 pub mod cvg;
+pub mod files;
 mod lines;
-pub mod past;
 pub mod sta;
 pub mod stiffness;
 

@@ -5,12 +5,12 @@
 
 use super::Table;
 use super::lines::{Field, ResultLine, table};
-use crate::broken::Broken;
+use crate::format_error::FormatError;
 use std::io::BufRead;
 
 /// A finished attempt.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Ended {
+pub struct FinishedAttempt {
     /// Step, from 1.
     pub step: u32,
     /// Increment of the step, from 1.
@@ -33,7 +33,7 @@ pub struct Ended {
 ///
 /// # Errors
 /// If it is not such a file, or a row is invalid.
-pub fn read(from: impl BufRead) -> Result<Table<Ended>, Broken> {
+pub fn read(from: impl BufRead) -> Result<Table<FinishedAttempt>, FormatError> {
     let mut rows = Vec::new();
     let take = |line: ResultLine, fields: &[Field]| {
         let &[step, increment, attempt, iterations, total, of_step, size] = fields else {
@@ -42,7 +42,7 @@ pub fn read(from: impl BufRead) -> Result<Table<Ended>, Broken> {
                 fields.len()
             )));
         };
-        rows.push(Ended {
+        rows.push(FinishedAttempt {
             step: step.whole_number("step")?,
             increment: increment.whole_number("increment")?,
             attempt: attempt.without(b"U").whole_number("attempt")?,

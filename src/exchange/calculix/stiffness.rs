@@ -4,13 +4,13 @@
 //! of the .sti is an entry, `ROW COLUMN VALUE`, where rows and columns are line numbers of the .dof, from 1. The matrix is
 //! symmetric, and each pair of entries is stored once.
 
-use crate::broken::Broken;
+use crate::format_error::FormatError;
 use crate::problem::Matrix;
 use crate::words::Words;
 
 /// An unknown of a stiffness: a component of a node's displacement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct Unknown {
+pub struct MatrixUnknown {
     /// Node number in the deck.
     pub node: u64,
     /// 0 for x, 1 for y.
@@ -21,7 +21,7 @@ pub struct Unknown {
 ///
 /// # Errors
 /// The error with its position, also for an unknown out of the plane.
-pub fn unknowns(text: &str) -> Result<Vec<Unknown>, Broken> {
+pub fn unknowns(text: &str) -> Result<Vec<MatrixUnknown>, FormatError> {
     let mut words = Words::new(text);
     let mut unknowns = Vec::new();
     while words.peek().is_some() {
@@ -41,10 +41,10 @@ pub fn unknowns(text: &str) -> Result<Vec<Unknown>, Broken> {
             }
             _ => return Err(words.unlike(word, wanted)),
         };
-        unknowns.push(Unknown { node, direction });
+        unknowns.push(MatrixUnknown { node, direction });
     }
     match unknowns.is_empty() {
-        true => Err(Broken::whole("the file contains no unknowns")),
+        true => Err(FormatError::whole("the file contains no unknowns")),
         false => Ok(unknowns),
     }
 }
@@ -53,7 +53,7 @@ pub fn unknowns(text: &str) -> Result<Vec<Unknown>, Broken> {
 ///
 /// # Errors
 /// The error with its position.
-pub fn matrix(text: &str, unknowns: usize) -> Result<Matrix, Broken> {
+pub fn matrix(text: &str, unknowns: usize) -> Result<Matrix, FormatError> {
     let mut words = Words::new(text);
     let mut entries = Vec::new();
     while words.peek().is_some() {
@@ -74,7 +74,7 @@ pub fn matrix(text: &str, unknowns: usize) -> Result<Matrix, Broken> {
         }
     }
     match entries.is_empty() {
-        true => Err(Broken::whole("the file contains no entries")),
+        true => Err(FormatError::whole("the file contains no entries")),
         false => Ok(Matrix {
             rows: unknowns,
             columns: unknowns,

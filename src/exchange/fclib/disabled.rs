@@ -1,13 +1,13 @@
 //! Replacement in a build without the feature `fclib`: rejects fclib files.
 
-use crate::broken::Broken;
+use crate::format_error::FormatError;
 use crate::problem::{Local, Problem};
 
 /// Whether this build reads and writes such files.
 ///
 /// # Errors
 /// How to build a version that does.
-pub fn ready() -> Result<(), Broken> {
+pub fn ready() -> Result<(), FormatError> {
     Err(not_built())
 }
 
@@ -15,7 +15,7 @@ pub fn ready() -> Result<(), Broken> {
 ///
 /// # Errors
 /// Always.
-pub fn read(_: Vec<u8>) -> Result<Problem, Broken> {
+pub fn read(_: Vec<u8>) -> Result<Problem, FormatError> {
     Err(not_built())
 }
 
@@ -23,12 +23,12 @@ pub fn read(_: Vec<u8>) -> Result<Problem, Broken> {
 ///
 /// # Errors
 /// Always.
-pub fn write(_: &Local, _: &str) -> Result<Vec<u8>, Broken> {
+pub fn write(_: &Local, _: &str) -> Result<Vec<u8>, FormatError> {
     Err(not_built())
 }
 
-fn not_built() -> Broken {
-    Broken::whole(
+fn not_built() -> FormatError {
+    FormatError::whole(
         "this build has no fclib (HDF5) support; cargo install stickslip --features fclib",
     )
 }

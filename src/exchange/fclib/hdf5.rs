@@ -10,7 +10,7 @@
 //! states the reverse, but CSparse, which it calls, and Siconos use this order). Other groups of a file, `solution` and
 //! `guesses`, are ignored.
 
-use crate::broken::Broken;
+use crate::format_error::FormatError;
 use crate::problem::{Bilateral, Global, Local, Matrix, Problem, is_there};
 use hdf5_pure::{Dataset, File, FileBuilder, GroupBuilder, LibVer};
 
@@ -25,7 +25,7 @@ const BY_ROWS: i64 = -2;
 ///
 /// # Errors
 /// Never.
-pub fn ready() -> Result<(), Broken> {
+pub fn ready() -> Result<(), FormatError> {
     Ok(())
 }
 
@@ -33,19 +33,19 @@ pub fn ready() -> Result<(), Broken> {
 ///
 /// # Errors
 /// The error; it has no line.
-pub fn read(bytes: Vec<u8>) -> Result<Problem, Broken> {
+pub fn read(bytes: Vec<u8>) -> Result<Problem, FormatError> {
     let size = bytes.len() as u64;
     let file = File::from_bytes(bytes)
-        .map_err(|why| Broken::whole(format!("invalid HDF5 file: {why}")))?;
+        .map_err(|why| FormatError::whole(format!("invalid HDF5 file: {why}")))?;
     let groups = file.root().groups().unwrap_or_default();
     let has = |name: &str| groups.iter().any(|group| group == name);
     if has("fclib_global_rolling") {
-        return Err(Broken::whole(
+        return Err(FormatError::whole(
             "the problem has rolling friction (fclib_global_rolling), which is not supported; fclib_local and fclib_global are",
         ));
     }
     if !has("fclib_local") && !has("fclib_global") {
-        return Err(Broken::whole(
+        return Err(FormatError::whole(
             "the file contains neither fclib_local nor fclib_global; HDF5 files are read as fclib problems",
         ));
     }
@@ -74,7 +74,7 @@ pub fn read(bytes: Vec<u8>) -> Result<Problem, Broken> {
     }
 }
 
-fn local(part: &Part<'_>) -> Result<Problem, Broken> {
+fn local(part: &Part<'_>) -> Result<Problem, FormatError> {
     let w = part.matrix("W")?;
     let size = w.rows;
     part.pairs("W", &w, size)?;
@@ -94,7 +94,7 @@ fn local(part: &Part<'_>) -> Result<Problem, Broken> {
 }
 
 /// Bilateral constraints add unknowns: `[M −G; Gᵀ 0] (v, l) = (H r + f, −b)`.
-fn global(part: &Part<'_>) -> Result<Problem, Broken> {
+fn global(part: &Part<'_>) -> Result<Problem, FormatError> {
     let (mut m, mut h) = (part.matrix("M")?, part.matrix("H")?);
     part.sized("M", &m, m.rows, m.rows)?;
     part.sized("H", &h, m.rows, h.columns)?;
@@ -132,8 +132,8 @@ struct Part<'f> {
 }
 
 impl Part<'_> {
-    fn broken(&self, name: &str, what: &str) -> Broken {
-        Broken::whole(format!("{}/{name} {what}", self.root))
+    fn broken(&self, name: &str, what: &str) -> FormatError {
+        FormatError::whole(format!("{}/{name} {what}", self.root))
     }
 
     fn has(&self, group: &str) -> bool {
@@ -141,7 +141,7 @@ impl Part<'_> {
     }
 
     /// A dataset, no longer than the file can contain.
-    fn dataset(&self, name: &str) -> Result<Dataset, Broken> {
+    fn dataset(&self, name: &str) -> Result<Dataset, FormatError> {
         let path = format!("{}/{name}", self.root);
         let unread =
             |why: &dyn std::fmt::Display| self.broken(name, &format!("cannot be read: {why}"));
@@ -160,24 +160,24 @@ impl Part<'_> {
         }
     }
 
-    fn wholes(&self, name: &str) -> Result<Vec<i64>, Broken> {
+    fn wholes(&self, name: &str) -> Result<Vec<i64>, FormatError> {
         let read = self.dataset(name)?.read_i64();
         read.map_err(|why| self.broken(name, &format!("cannot be read: {why}")))
     }
 
-    fn whole(&self, name: &str) -> Result<i64, Broken> {
+    fn whole(&self, name: &str) -> Result<i64, FormatError> {
         let found = self.wholes(name)?;
         let first = found.first().copied();
         first.ok_or_else(|| self.broken(name, "is empty; it must be a whole number"))
     }
 
-    fn count(&self, name: &str) -> Result<usize, Broken> {
+    fn count(&self, name: &str) -> Result<usize, FormatError> {
         let found = self.whole(name)?;
         usize::try_from(found)
             .map_err(|_| self.broken(name, &format!("is {found}; it must not be negative")))
     }
 
-    fn numbers(&self, name: &str, count: usize) -> Result<Vec<f64>, Broken> {
+    fn numbers(&self, name: &str, count: usize) -> Result<Vec<f64>, FormatError> {
         let read = self.dataset(name)?.read_f64();
         let found = read.map_err(|why| self.broken(name, &format!("cannot be read: {why}")))?;
         if found.len() != count {
@@ -190,7 +190,7 @@ impl Part<'_> {
         }
     }
 
-    fn coefficients(&self, count: usize) -> Result<Vec<f64>, Broken> {
+    fn coefficients(&self, count: usize) -> Result<Vec<f64>, FormatError> {
         let mu = self.numbers("vectors/mu", count)?;
         match mu.iter().find(|mu| **mu < 0.0) {
             Some(mu) => {
@@ -201,7 +201,13 @@ impl Part<'_> {
         }
     }
 
-    fn sized(&self, name: &str, of: &Matrix, rows: usize, columns: usize) -> Result<(), Broken> {
+    fn sized(
+        &self,
+        name: &str,
+        of: &Matrix,
+        rows: usize,
+        columns: usize,
+    ) -> Result<(), FormatError> {
         if (of.rows, of.columns) == (rows, columns) {
             return Ok(());
         }
@@ -213,7 +219,7 @@ impl Part<'_> {
     }
 
     /// Rejects a size that is not two components per contact.
-    fn pairs(&self, name: &str, of: &Matrix, size: usize) -> Result<(), Broken> {
+    fn pairs(&self, name: &str, of: &Matrix, size: usize) -> Result<(), FormatError> {
         if size > 0 && size.is_multiple_of(2) {
             let rows = if name == "W" { size } else { of.rows };
             return self.sized(name, of, rows, size);
@@ -223,7 +229,7 @@ impl Part<'_> {
         Err(self.broken(name, &what))
     }
 
-    fn matrix(&self, name: &str) -> Result<Matrix, Broken> {
+    fn matrix(&self, name: &str) -> Result<Matrix, FormatError> {
         let of = |what: &str| format!("{name}/{what}");
         let (rows, columns) = (self.count(&of("m"))?, self.count(&of("n"))?);
         let storage = self.whole(&of("nz"))?;
@@ -286,7 +292,7 @@ impl Part<'_> {
         p: &[i64],
         lists: usize,
         entries: usize,
-    ) -> Result<Vec<i64>, Broken> {
+    ) -> Result<Vec<i64>, FormatError> {
         let wrong = || {
             self.broken(
                 &format!("{name}/p"),
@@ -313,9 +319,9 @@ impl Part<'_> {
 ///
 /// # Errors
 /// If it has more entries than fclib can count.
-pub fn write(problem: &Local, title: &str) -> Result<Vec<u8>, Broken> {
+pub fn write(problem: &Local, title: &str) -> Result<Vec<u8>, FormatError> {
     let failed = |why: &dyn std::fmt::Display| {
-        Broken::whole(format!("creating the HDF5 file failed: {why}"))
+        FormatError::whole(format!("creating the HDF5 file failed: {why}"))
     };
     let mut file = FileBuilder::new();
     // Readable by every HDF5 library from version 1.8.
@@ -344,7 +350,7 @@ pub fn write(problem: &Local, title: &str) -> Result<Vec<u8>, Broken> {
 }
 
 /// Writes compressed columns. HDF5 datasets cannot be empty, so one zero of a zero matrix is written.
-fn write_matrix(group: &mut GroupBuilder, matrix: &Matrix) -> Result<(), Broken> {
+fn write_matrix(group: &mut GroupBuilder, matrix: &Matrix) -> Result<(), FormatError> {
     let mut entries = matrix.entries.clone();
     entries.sort_by_key(|&(row, column, _)| (column, row));
     if entries.is_empty() {
@@ -352,7 +358,7 @@ fn write_matrix(group: &mut GroupBuilder, matrix: &Matrix) -> Result<(), Broken>
     }
     let small = |n: usize| {
         i32::try_from(n).map_err(|_| {
-            Broken::whole(format!(
+            FormatError::whole(format!(
                 "fclib uses 32-bit counts, and the matrix has {n} entries"
             ))
         })

@@ -1,6 +1,6 @@
 //! A cursor in a file whose numbers are text or binary, as its header states.
 
-use crate::broken::Broken;
+use crate::format_error::FormatError;
 
 /// Number format of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -36,10 +36,10 @@ impl<'a> Cursor<'a> {
     }
 
     /// An error at a byte; in a text file with line and column.
-    pub fn fault(&self, byte: usize, message: impl Into<String>) -> Broken {
+    pub fn fault(&self, byte: usize, message: impl Into<String>) -> FormatError {
         let message = message.into();
         if self.form != CursorForm::Text {
-            return Broken::whole(format!("byte {byte}: {message}"));
+            return FormatError::whole(format!("byte {byte}: {message}"));
         }
         let before = &self.bytes[..byte.min(self.bytes.len())];
         let line = before
@@ -47,7 +47,7 @@ impl<'a> Cursor<'a> {
             .rposition(|&b| b == b'\n')
             .map_or(0, |k| k + 1);
         let column = 1 + String::from_utf8_lossy(&before[line..]).chars().count();
-        Broken::at(
+        FormatError::at(
             1 + before.iter().filter(|&&b| b == b'\n').count(),
             column,
             message,
@@ -55,7 +55,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// An error in the last item read.
-    pub fn wrong(&self, message: impl Into<String>) -> Broken {
+    pub fn wrong(&self, message: impl Into<String>) -> FormatError {
         self.fault(self.last, message)
     }
 
@@ -91,7 +91,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// A count or a tag.
-    pub fn size(&mut self, what: &str) -> Result<u64, Broken> {
+    pub fn size(&mut self, what: &str) -> Result<u64, FormatError> {
         match self.form {
             CursorForm::Text => self.parsed(what, "a nonnegative whole number"),
             CursorForm::Binary { big } => {
@@ -106,7 +106,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// A signed 32-bit number.
-    pub fn int(&mut self, what: &str) -> Result<i64, Broken> {
+    pub fn int(&mut self, what: &str) -> Result<i64, FormatError> {
         match self.form {
             CursorForm::Text => self.parsed(what, "a whole number"),
             CursorForm::Binary { big } => {
@@ -122,7 +122,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// A finite coordinate.
-    pub fn float(&mut self, what: &str) -> Result<f64, Broken> {
+    pub fn float(&mut self, what: &str) -> Result<f64, FormatError> {
         let value = match self.form {
             CursorForm::Text => self.parsed(what, "a number")?,
             CursorForm::Binary { big } => {
@@ -141,12 +141,16 @@ impl<'a> Cursor<'a> {
     }
 
     /// A number that is text even in binary files.
-    pub fn number<T: std::str::FromStr>(&mut self, what: &str, kind: &str) -> Result<T, Broken> {
+    pub fn number<T: std::str::FromStr>(
+        &mut self,
+        what: &str,
+        kind: &str,
+    ) -> Result<T, FormatError> {
         self.parsed(what, kind)
     }
 
     /// Checks a count of items with at least this many numbers each against the rest of the file.
-    pub fn count(&self, count: u64, numbers: usize, what: &str) -> Result<usize, Broken> {
+    pub fn count(&self, count: u64, numbers: usize, what: &str) -> Result<usize, FormatError> {
         let least = match self.form {
             // One digit and a space.
             CursorForm::Text => 2,
@@ -162,7 +166,7 @@ impl<'a> Cursor<'a> {
         }
     }
 
-    fn parsed<T: std::str::FromStr>(&mut self, what: &str, kind: &str) -> Result<T, Broken> {
+    fn parsed<T: std::str::FromStr>(&mut self, what: &str, kind: &str) -> Result<T, FormatError> {
         let Some(word) = self.word() else {
             return Err(self.fault(
                 self.bytes.len(),
@@ -178,7 +182,7 @@ impl<'a> Cursor<'a> {
         })
     }
 
-    fn take<const N: usize>(&mut self, what: &str) -> Result<[u8; N], Broken> {
+    fn take<const N: usize>(&mut self, what: &str) -> Result<[u8; N], FormatError> {
         self.last = self.next;
         let found = self.bytes[self.next..].first_chunk::<N>();
         let found =

@@ -19,7 +19,7 @@ mod sections;
 mod v2;
 mod v4;
 
-use crate::broken::Broken;
+use crate::format_error::FormatError;
 use crate::mesh::Mesh;
 use cursor::Cursor;
 use sections::HEAD;
@@ -34,7 +34,7 @@ pub fn is_one(bytes: &[u8]) -> bool {
 /// # Errors
 /// If the file is not a Gmsh mesh, has errors or another version, or has non-plane or third-order cells. Errors have a line and
 /// column in a text file, and a byte offset in a binary one.
-pub fn read(bytes: &[u8]) -> Result<Mesh, Broken> {
+pub fn read(bytes: &[u8]) -> Result<Mesh, FormatError> {
     let mut cursor = Cursor::new(bytes);
     let raw = sections::read(&mut cursor)?;
     raw.mesh(&cursor)

@@ -3,7 +3,7 @@
 use super::cursor::Cursor;
 use super::elements::{RawCell, RawNode};
 use super::groups::Groups;
-use crate::broken::Broken;
+use crate::format_error::FormatError;
 use crate::mesh::{Cell, Mesh};
 
 /// Nodes are in one plane if their z differ by at most this fraction of the extent in x and y.
@@ -11,7 +11,7 @@ const FLAT: f64 = 1e-9;
 
 /// Contents of a file, identified by its tags.
 #[derive(Default)]
-pub(super) struct Raw {
+pub(super) struct TaggedMesh {
     pub nodes: Vec<RawNode>,
     pub cells: Vec<RawCell>,
     /// Node tags of all cells, in sequence.
@@ -19,13 +19,13 @@ pub(super) struct Raw {
     pub groups: Groups,
 }
 
-impl Raw {
+impl TaggedMesh {
     /// The mesh, if its nodes exist and lie in a plane.
-    pub fn mesh(self, cursor: &Cursor<'_>) -> Result<Mesh, Broken> {
+    pub fn mesh(self, cursor: &Cursor<'_>) -> Result<Mesh, FormatError> {
         if self.cells.is_empty() {
             let message =
                 "the file has no elements; generate a mesh first, with `gmsh -2` or Mesh > 2D";
-            return Err(Broken::whole(message));
+            return Err(FormatError::whole(message));
         }
         let index = self.index(cursor)?;
         let mut cells = Vec::with_capacity(self.cells.len());
@@ -61,7 +61,7 @@ impl Raw {
     }
 
     /// Tags of the nodes with their indices, ascending.
-    fn index(&self, cursor: &Cursor<'_>) -> Result<Vec<(u64, usize)>, Broken> {
+    fn index(&self, cursor: &Cursor<'_>) -> Result<Vec<(u64, usize)>, FormatError> {
         let tags = self.nodes.iter().enumerate();
         let mut index: Vec<(u64, usize)> = tags.map(|(k, node)| (node.tag, k)).collect();
         index.sort_unstable();
@@ -78,7 +78,7 @@ impl Raw {
     }
 
     /// Rejects cells whose nodes do not lie in one plane z = const.
-    fn check_flat(&self, cells: &[Cell], cursor: &Cursor<'_>) -> Result<(), Broken> {
+    fn check_flat(&self, cells: &[Cell], cursor: &Cursor<'_>) -> Result<(), FormatError> {
         let used = || {
             cells
                 .iter()

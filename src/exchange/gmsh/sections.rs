@@ -1,9 +1,9 @@
 //! The sections of a file of any version.
 
 use super::cursor::{Cursor, CursorForm};
-use super::raw::Raw;
+use super::raw::TaggedMesh;
 use super::{v2, v4};
-use crate::broken::Broken;
+use crate::format_error::FormatError;
 
 /// Required start of a file.
 pub(super) const HEAD: &[u8] = b"$MeshFormat";
@@ -16,13 +16,13 @@ enum Version {
 }
 
 /// Reads all sections that a mesh needs.
-pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<Raw, Broken> {
+pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<TaggedMesh, FormatError> {
     if cursor.word() != Some(HEAD) {
         let message = "a Gmsh mesh must begin with $MeshFormat";
         return Err(cursor.wrong(message));
     }
     let version = head(cursor)?;
-    let mut raw = Raw::default();
+    let mut raw = TaggedMesh::default();
     let mut seen: Vec<&[u8]> = Vec::new();
     while let Some(word) = cursor.word() {
         let Some(name) = word.strip_prefix(b"$").filter(|name| !name.is_empty()) else {
@@ -33,7 +33,9 @@ pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<Raw, Broken> {
         };
         let begin = cursor.last();
         cursor.line();
-        let reader: fn(&mut Cursor<'_>, &mut Raw) -> Result<(), Broken> = match (name, version) {
+        let reader: fn(&mut Cursor<'_>, &mut TaggedMesh) -> Result<(), FormatError> = match (
+            name, version,
+        ) {
             (b"PhysicalNames", _) => names,
             (b"Entities", Version::Four) => v4::entities,
             (b"Nodes", Version::Two) => v2::nodes,
@@ -64,7 +66,7 @@ pub(super) fn read(cursor: &mut Cursor<'_>) -> Result<Raw, Broken> {
     }
     for needed in [&b"Nodes"[..], b"Elements"] {
         if !seen.contains(&needed) {
-            return Err(Broken::whole(format!(
+            return Err(FormatError::whole(format!(
                 "the file has no section ${}",
                 shown(needed)
             )));
@@ -78,7 +80,7 @@ fn shown(bytes: &[u8]) -> String {
 }
 
 /// Reads the end of a section.
-fn end(cursor: &mut Cursor<'_>, name: &[u8]) -> Result<(), Broken> {
+fn end(cursor: &mut Cursor<'_>, name: &[u8]) -> Result<(), FormatError> {
     let wanted = [b"$End", name].concat();
     match cursor.word() {
         Some(word) if word == wanted => Ok(()),
@@ -95,7 +97,7 @@ fn end(cursor: &mut Cursor<'_>, name: &[u8]) -> Result<(), Broken> {
 }
 
 /// Reads version and number format.
-fn head(cursor: &mut Cursor<'_>) -> Result<Version, Broken> {
+fn head(cursor: &mut Cursor<'_>) -> Result<Version, FormatError> {
     let version: f64 = cursor.number("the version", "4.1 or 2.2")?;
     let known = match version {
         v if (2.0..3.0).contains(&v) => Version::Two,
@@ -133,7 +135,7 @@ fn head(cursor: &mut Cursor<'_>) -> Result<Version, Broken> {
 }
 
 /// Names of physical groups; text even in binary files.
-fn names(cursor: &mut Cursor<'_>, raw: &mut Raw) -> Result<(), Broken> {
+fn names(cursor: &mut Cursor<'_>, raw: &mut TaggedMesh) -> Result<(), FormatError> {
     let count: u64 = cursor.number("the number of physical names", "a whole number")?;
     for _ in 0..count {
         let dimension: u8 = cursor.number("the dimension of a physical group", "0 to 3")?;

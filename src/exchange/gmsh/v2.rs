@@ -2,11 +2,11 @@
 
 use super::cursor::{Cursor, CursorForm};
 use super::elements::{RawCell, RawNode, kind};
-use super::raw::Raw;
-use crate::broken::Broken;
+use super::raw::TaggedMesh;
+use crate::format_error::FormatError;
 
 /// Reads `count`, then number, x, y, z of each node.
-pub(super) fn nodes(cursor: &mut Cursor<'_>, raw: &mut Raw) -> Result<(), Broken> {
+pub(super) fn nodes(cursor: &mut Cursor<'_>, raw: &mut TaggedMesh) -> Result<(), FormatError> {
     let count = announced(cursor, 4, "nodes")?;
     raw.nodes.reserve_exact(count);
     for _ in 0..count {
@@ -24,7 +24,7 @@ pub(super) fn nodes(cursor: &mut Cursor<'_>, raw: &mut Raw) -> Result<(), Broken
 
 /// Reads `count`, then number, type, tags and nodes of each element; in binary files, elements with the same type and number of
 /// tags share a header.
-pub(super) fn elements(cursor: &mut Cursor<'_>, raw: &mut Raw) -> Result<(), Broken> {
+pub(super) fn elements(cursor: &mut Cursor<'_>, raw: &mut TaggedMesh) -> Result<(), FormatError> {
     let count = announced(cursor, 3, "elements")?;
     raw.cells.reserve_exact(count);
     let mut left = count;
@@ -83,7 +83,7 @@ pub(super) fn elements(cursor: &mut Cursor<'_>, raw: &mut Raw) -> Result<(), Bro
 }
 
 /// A count; text even in binary files.
-fn announced(cursor: &mut Cursor<'_>, numbers: usize, what: &str) -> Result<usize, Broken> {
+fn announced(cursor: &mut Cursor<'_>, numbers: usize, what: &str) -> Result<usize, FormatError> {
     let count = cursor.number("a count", "a nonnegative whole number")?;
     let count = cursor.count(count, numbers, what)?;
     if cursor.form != CursorForm::Text {
@@ -93,7 +93,7 @@ fn announced(cursor: &mut Cursor<'_>, numbers: usize, what: &str) -> Result<usiz
 }
 
 /// The number of a node or an element.
-fn tag(cursor: &mut Cursor<'_>, what: &str) -> Result<u64, Broken> {
+fn tag(cursor: &mut Cursor<'_>, what: &str) -> Result<u64, FormatError> {
     let value = cursor.int(what)?;
     u64::try_from(value)
         .map_err(|_| cursor.wrong(format!("{what} is {value}; it must not be negative")))

@@ -2,11 +2,11 @@
 
 use super::cursor::Cursor;
 use super::elements::{RawCell, RawNode, kind};
-use super::raw::Raw;
-use crate::broken::Broken;
+use super::raw::TaggedMesh;
+use crate::format_error::FormatError;
 
 /// Reads the physical groups of each geometric entity.
-pub(super) fn entities(cursor: &mut Cursor<'_>, raw: &mut Raw) -> Result<(), Broken> {
+pub(super) fn entities(cursor: &mut Cursor<'_>, raw: &mut TaggedMesh) -> Result<(), FormatError> {
     let mut counts = [0; 4];
     for count in &mut counts {
         *count = cursor.size("a number of entities")?;
@@ -30,7 +30,7 @@ pub(super) fn entities(cursor: &mut Cursor<'_>, raw: &mut Raw) -> Result<(), Bro
 }
 
 /// A count and that many numbers.
-fn list(cursor: &mut Cursor<'_>, what: &str) -> Result<Vec<i64>, Broken> {
+fn list(cursor: &mut Cursor<'_>, what: &str) -> Result<Vec<i64>, FormatError> {
     let count = cursor.size("a count")?;
     let count = cursor.count(count, 1, "numbers")?;
     (0..count).map(|_| cursor.int(what)).collect()
@@ -41,7 +41,7 @@ fn announced(
     cursor: &mut Cursor<'_>,
     numbers: usize,
     what: &str,
-) -> Result<(usize, usize), Broken> {
+) -> Result<(usize, usize), FormatError> {
     let blocks = cursor.size("the number of blocks")?;
     let blocks = cursor.count(blocks, 4, "blocks")?;
     let count = cursor.size("a count")?;
@@ -53,7 +53,7 @@ fn announced(
 
 /// Reads the blocks of nodes: their numbers, then their coordinates, followed by parameters on their entity if they are
 /// parametric.
-pub(super) fn nodes(cursor: &mut Cursor<'_>, raw: &mut Raw) -> Result<(), Broken> {
+pub(super) fn nodes(cursor: &mut Cursor<'_>, raw: &mut TaggedMesh) -> Result<(), FormatError> {
     let (blocks, count) = announced(cursor, 4, "nodes")?;
     raw.nodes.reserve_exact(count);
     for _ in 0..blocks {
@@ -95,7 +95,7 @@ pub(super) fn nodes(cursor: &mut Cursor<'_>, raw: &mut Raw) -> Result<(), Broken
 }
 
 /// Reads the blocks of elements: number and nodes of each.
-pub(super) fn elements(cursor: &mut Cursor<'_>, raw: &mut Raw) -> Result<(), Broken> {
+pub(super) fn elements(cursor: &mut Cursor<'_>, raw: &mut TaggedMesh) -> Result<(), FormatError> {
     let (blocks, count) = announced(cursor, 2, "elements")?;
     raw.cells.reserve_exact(count);
     for _ in 0..blocks {
@@ -124,7 +124,7 @@ pub(super) fn elements(cursor: &mut Cursor<'_>, raw: &mut Raw) -> Result<(), Bro
 }
 
 /// Size of a block, limited by the remaining total.
-fn within(cursor: &Cursor<'_>, alike: u64, left: usize, what: &str) -> Result<usize, Broken> {
+fn within(cursor: &Cursor<'_>, alike: u64, left: usize, what: &str) -> Result<usize, FormatError> {
     let alike = usize::try_from(alike).ok().filter(|alike| *alike <= left);
     alike.ok_or_else(|| {
         cursor.wrong(format!(
@@ -134,7 +134,7 @@ fn within(cursor: &Cursor<'_>, alike: u64, left: usize, what: &str) -> Result<us
 }
 
 /// Rejects blocks with fewer items than declared.
-fn whole(cursor: &Cursor<'_>, found: usize, count: usize, what: &str) -> Result<(), Broken> {
+fn whole(cursor: &Cursor<'_>, found: usize, count: usize, what: &str) -> Result<(), FormatError> {
     match found == count {
         true => Ok(()),
         false => Err(cursor.wrong(format!(

@@ -8,7 +8,7 @@
 //!
 //! Case and spaces within words do not matter, as in CalculiX. Parameters continue on the next line after a trailing comma.
 
-use super::source::{Done, Fault, Place, SourceLine, plain};
+use super::source::{DeckLocation, Done, Fault, SourceLine, plain};
 use crate::bail;
 
 /// A keyword with its parameters and data.
@@ -18,7 +18,7 @@ pub(super) struct Card<'t> {
     pub key: String,
     /// As written, without the star.
     pub shown: String,
-    pub place: Place,
+    pub place: DeckLocation,
     parameters: Vec<Parameter>,
     pub lines: Vec<SourceLine<'t>>,
 }
@@ -29,7 +29,7 @@ pub(super) struct Parameter {
     pub name: String,
     /// Uppercase, without spaces and quotes.
     pub value: Option<String>,
-    pub place: Place,
+    pub place: DeckLocation,
 }
 
 /// All parameters are supported.
@@ -182,7 +182,7 @@ impl<'t> Card<'t> {
     }
 
     /// Location of a parameter.
-    pub fn place_of(&self, name: &str) -> Place {
+    pub fn place_of(&self, name: &str) -> DeckLocation {
         self.parameter(name).map_or(self.place, |p| p.place)
     }
 
@@ -258,7 +258,7 @@ pub(super) fn cells(line: SourceLine<'_>) -> Vec<CardCell<'_>> {
 }
 
 impl CardCell<'_> {
-    pub fn place(&self) -> Place {
+    pub fn place(&self) -> DeckLocation {
         self.line.place(self.byte)
     }
 

@@ -1,6 +1,6 @@
 //! The contents of a deck as plain data; objects refer to each other by index.
 
-use super::source::Place;
+use super::source::DeckLocation;
 use crate::mesh::CellKind;
 
 /// A CalculiX or Abaqus deck.
@@ -50,7 +50,7 @@ pub struct Node {
     /// Position.
     pub at: [f64; 2],
     /// Where it is defined.
-    pub place: Place,
+    pub place: DeckLocation,
 }
 
 /// Family of elements.
@@ -87,7 +87,7 @@ pub struct Element {
     /// Indices into [`Deck::nodes`].
     pub nodes: Vec<usize>,
     /// Where it is defined.
-    pub place: Place,
+    pub place: DeckLocation,
 }
 
 /// A named set of nodes or elements.
@@ -107,7 +107,7 @@ pub struct Surface {
     /// Faces or nodes of the surface.
     pub of: Faces,
     /// Where it is defined.
-    pub place: Place,
+    pub place: DeckLocation,
 }
 
 /// Faces or nodes of a surface.
@@ -129,9 +129,9 @@ pub struct Material {
     /// Mass per volume.
     pub density: Option<f64>,
     /// Where it is defined.
-    pub place: Place,
+    pub place: DeckLocation,
     /// Location of `*ELASTIC`.
-    pub elastic_place: Place,
+    pub elastic_place: DeckLocation,
 }
 
 /// Assigns a material to elements.
@@ -144,7 +144,7 @@ pub struct Section {
     /// Kind of section.
     pub form: Form,
     /// Location.
-    pub place: Place,
+    pub place: DeckLocation,
 }
 
 /// Kind of section.
@@ -174,7 +174,7 @@ pub struct Amplitude {
     /// Time and factor, with ascending times.
     pub points: Vec<(f64, f64)>,
     /// Where it is defined.
-    pub place: Place,
+    pub place: DeckLocation,
 }
 
 /// Interaction of two surfaces.
@@ -189,11 +189,11 @@ pub struct Interaction {
     /// Stick slope: shear stress per elastic slip; `None` for rigid stick.
     pub stick: Option<f64>,
     /// Where it is defined.
-    pub place: Place,
+    pub place: DeckLocation,
     /// Location of `*SURFACE BEHAVIOR`.
-    pub normal_place: Place,
+    pub normal_place: DeckLocation,
     /// Location of `*FRICTION`.
-    pub friction_place: Place,
+    pub friction_place: DeckLocation,
 }
 
 /// A contact law in the normal direction.
@@ -229,7 +229,7 @@ pub struct Pair {
     /// Nodes that are moved onto the master at the start.
     pub adjust: Option<Adjust>,
     /// Location.
-    pub place: Place,
+    pub place: DeckLocation,
 }
 
 /// Nodes that are moved onto their master before the first step, without stress.
@@ -253,16 +253,16 @@ pub struct Tie {
     /// Whether tied nodes are moved onto the master without stress.
     pub adjust: bool,
     /// Location.
-    pub place: Place,
+    pub place: DeckLocation,
 }
 
 /// A step.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Step {
     /// Location of its first line.
-    pub place: Place,
+    pub place: DeckLocation,
     /// Location of `*STATIC`.
-    pub static_place: Place,
+    pub static_place: DeckLocation,
     /// Whether strains and rotations are large.
     pub nlgeom: bool,
     /// Whether loads without an amplitude apply at once instead of in proportion to time.
@@ -323,7 +323,7 @@ pub struct Value {
     /// Its amplitude.
     pub amplitude: Option<usize>,
     /// Location.
-    pub place: Place,
+    pub place: DeckLocation,
 }
 
 /// Pressure on a side of an element.
@@ -338,7 +338,7 @@ pub struct Pressure {
     /// Its amplitude.
     pub amplitude: Option<usize>,
     /// Location.
-    pub place: Place,
+    pub place: DeckLocation,
 }
 
 /// A volume force on an element.
@@ -351,7 +351,7 @@ pub struct Weight {
     /// Its amplitude.
     pub amplitude: Option<usize>,
     /// Location.
-    pub place: Place,
+    pub place: DeckLocation,
 }
 
 /// Kind of a volume force.
@@ -367,7 +367,7 @@ pub enum Volume {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Remark {
     /// First location.
-    pub place: Place,
+    pub place: DeckLocation,
     /// How the input was interpreted.
     pub text: String,
     /// Number of occurrences.

@@ -3,7 +3,7 @@
 use super::cards::{Card, CardCell, cells, short};
 use super::deck::{Element, ElementType, Faces, Family, Node, Set, Surface};
 use super::reader::{Names, Reader};
-use super::source::{Done, Fault, Place, plain};
+use super::source::{DeckLocation, Done, Fault, plain};
 use crate::bail;
 use crate::mesh::CellKind;
 
@@ -13,7 +13,7 @@ const MEMBERS: usize = 20_000_000;
 
 impl Names {
     /// Counts members of sets against the limit.
-    pub fn count(&mut self, more: usize, place: Place) -> Done {
+    pub fn count(&mut self, more: usize, place: DeckLocation) -> Done {
         self.members += more;
         match self.members <= MEMBERS {
             true => Ok(()),
@@ -77,7 +77,7 @@ impl Reader {
             let coordinate = |k: usize| super::cards::number_or_zero(&cells, k, "a coordinate");
             let (x, y, z) = (coordinate(1)?, coordinate(2)?, coordinate(3)?);
             if let Some(more) = cells.get(4) {
-                self.deck.remark(
+                self.deck.add_note(
                     more.place(),
                     "the text after a node's three coordinates is ignored",
                 );
@@ -113,7 +113,7 @@ impl Reader {
         let kind = element_type(card)?;
         let count = kind.cell.nodes();
         if matches!(kind.cell, CellKind::Triangle3 | CellKind::Quad4) {
-            self.deck.remark(
+            self.deck.add_note(
             card.place_of("TYPE"),
             "elements with 3 and 4 nodes are fully integrated plane elements; CalculiX expands them to \
              three-dimensional elements, whose results differ by some percent on coarse meshes",
@@ -244,7 +244,7 @@ impl Reader {
     }
 
     /// Index of a set by name.
-    pub(super) fn set_of(&self, name: &str, place: Place, kind: MeshKind) -> Done<usize> {
+    pub(super) fn set_of(&self, name: &str, place: DeckLocation, kind: MeshKind) -> Done<usize> {
         let sets = match kind {
             MeshKind::Nodes => &self.names.node_sets,
             MeshKind::Elements => &self.names.element_sets,

@@ -26,7 +26,7 @@ pub use deck::Deck;
 use deck::{Remark, Value};
 use keywords::{Pass, Reading, Treatment, nearest, treatment};
 use reader::Reader;
-pub use source::{DECK_BYTES, Fault, Include, Place, Wrong};
+pub use source::{DECK_BYTES, DeckError, DeckLocation, Fault, Include};
 use source::{Done, Sources};
 
 /// Whether a text could be a deck: its first line that is neither blank nor a comment begins with a star.
@@ -48,10 +48,10 @@ pub fn is_one(text: &str) -> bool {
 ///
 /// # Errors
 /// The first error or unsupported input, with what is expected.
-pub fn read(name: &str, text: &str, include: &mut Include<'_>) -> Result<Deck, Wrong> {
+pub fn read(name: &str, text: &str, include: &mut Include<'_>) -> Result<Deck, DeckError> {
     let (sources, gathered) = Sources::gather(name, text, include);
     let deck = gathered.and_then(|()| whole(&sources));
-    deck.map_err(|fault| Wrong {
+    deck.map_err(|fault| DeckError {
         file: sources
             .names
             .get(fault.place.file)
@@ -85,7 +85,7 @@ fn whole(sources: &Sources) -> Done<Deck> {
             }
         }
     }
-    let start = Place {
+    let start = DeckLocation {
         file: 0,
         line: 1,
         column: 1,
@@ -118,7 +118,7 @@ impl Reader {
             Some(Treatment::Read(_, reading)) => Ok(reading),
             Some(Treatment::Ignored(why)) => {
                 let what = format!("*{} is ignored: {why}", card.shown);
-                self.deck.remark(card.place, what);
+                self.deck.add_note(card.place, what);
                 Ok(None)
             }
         }
@@ -132,7 +132,7 @@ impl Reader {
 }
 
 impl Deck {
-    fn remark(&mut self, place: Place, text: impl Into<String>) {
+    fn add_note(&mut self, place: DeckLocation, text: impl Into<String>) {
         let text = text.into();
         match self.remarks.iter_mut().find(|remark| remark.text == text) {
             Some(remark) => remark.times += 1,
@@ -145,7 +145,7 @@ impl Deck {
     }
 
     /// The name of the file of a location.
-    pub fn file(&self, place: Place) -> &str {
+    pub fn file(&self, place: DeckLocation) -> &str {
         self.files.get(place.file).map_or("", String::as_str)
     }
 

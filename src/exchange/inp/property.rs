@@ -136,7 +136,7 @@ impl Reader {
     pub(super) fn interaction(&mut self, card: &Card<'_>) -> Done {
         let name = free(card, &self.deck.interactions, |i| &i.name)?;
         if let Some(line) = card.lines.first() {
-            self.deck.remark(
+            self.deck.add_note(
                 line.place(0),
                 "the thickness of the surface is ignored: contact forces are those of the mesh",
             );
@@ -193,7 +193,7 @@ impl Reader {
         interaction.normal = normal;
         interaction.normal_place = place;
         if let Some((place, why)) = ignored {
-            self.deck.remark(place, why);
+            self.deck.add_note(place, why);
         }
         Ok(())
     }
@@ -216,7 +216,7 @@ impl Reader {
             );
         }
         if card.has("SLIPTOLERANCE") {
-            self.deck.remark(
+            self.deck.add_note(
                 card.place_of("SLIPTOLERANCE"),
                 "SLIP TOLERANCE is ignored: a stuck node does not slip at all",
             );
@@ -341,7 +341,7 @@ impl Reader {
         let interaction = index_of(card, "INTERACTION", what, all, |i| &i.name)?;
         let faces = card.choice("TYPE", &["NODE TO SURFACE", "SURFACE TO SURFACE"])? == 1;
         if faces {
-            self.deck.remark(
+            self.deck.add_note(
                 card.place_of("TYPE"),
                 "SURFACE TO SURFACE is treated as node to surface: the law holds at each slave node with \
                  its tributary area, not at points of the sides",

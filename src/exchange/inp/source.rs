@@ -2,7 +2,7 @@
 
 /// A location: file number ([`Deck::files`](super::Deck::files)), line and column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Place {
+pub struct DeckLocation {
     /// 0 is the deck itself.
     pub file: usize,
     /// From 1.
@@ -14,11 +14,11 @@ pub struct Place {
 /// An error in a deck.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{file}:{}:{}: {message}", place.line, place.column)]
-pub struct Wrong {
+pub struct DeckError {
     /// Name of the file.
     pub file: String,
     /// Location.
-    pub place: Place,
+    pub place: DeckLocation,
     /// What is wrong and what is expected.
     pub message: String,
 }
@@ -33,7 +33,7 @@ pub(super) fn plain(word: &str) -> String {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Fault {
     /// Location.
-    pub place: Place,
+    pub place: DeckLocation,
     /// What is wrong and what is expected.
     pub message: String,
 }
@@ -43,14 +43,14 @@ pub(super) type Done<T = ()> = Result<T, Fault>;
 
 impl Fault {
     /// An error from its parts.
-    pub fn new(place: Place, message: impl Into<String>) -> Self {
+    pub fn new(place: DeckLocation, message: impl Into<String>) -> Self {
         let message = message.into();
         Fault { place, message }
     }
 }
 
-impl From<(Place, String)> for Fault {
-    fn from((place, message): (Place, String)) -> Self {
+impl From<(DeckLocation, String)> for Fault {
+    fn from((place, message): (DeckLocation, String)) -> Self {
         Fault { place, message }
     }
 }
@@ -75,9 +75,9 @@ pub(super) struct SourceLine<'t> {
 
 impl SourceLine<'_> {
     /// The location of a byte of the line.
-    pub fn place(&self, byte: usize) -> Place {
+    pub fn place(&self, byte: usize) -> DeckLocation {
         let before = self.text.get(..byte).unwrap_or(self.text);
-        Place {
+        DeckLocation {
             file: self.file,
             line: self.number,
             column: before.chars().count() + 1,
@@ -218,7 +218,7 @@ struct Inclusion {
     end: usize,
     /// Number of lines up to and including it.
     line: usize,
-    place: Place,
+    place: DeckLocation,
     file: Result<String, &'static str>,
 }
 

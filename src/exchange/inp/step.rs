@@ -4,12 +4,12 @@ use super::cards::{Card, CardCell, cells, number_or_zero, short};
 use super::deck::{Direction, Element, Faces, Family, Pressure, Step, Time, Value, Volume, Weight};
 use super::mesh::{MeshKind, side_of};
 use super::reader::Reader;
-use super::source::{Done, Place, plain};
+use super::source::{DeckLocation, Done, plain};
 use crate::bail;
 
 impl Reader {
     /// Rejects a deck without steps or with an unfinished step.
-    pub(super) fn finish(&self, last: Place) -> Done {
+    pub(super) fn finish(&self, last: DeckLocation) -> Done {
         match &self.step {
             Some(step) => bail!(step.place, "the step has no end; *END STEP is missing"),
             None if self.deck.steps.is_empty() => bail!(
@@ -31,7 +31,7 @@ impl Reader {
             };
         }
         if card.has("INC") {
-            self.deck.remark(
+            self.deck.add_note(
                 card.place_of("INC"),
                 "INC is ignored: the number of increments is not limited",
             );
@@ -80,7 +80,7 @@ impl Reader {
             }
         }
         if card.has("SOLVER") {
-            self.deck.remark(
+            self.deck.add_note(
                 card.place_of("SOLVER"),
                 "SOLVER is ignored; see settings.solver",
             );
@@ -176,7 +176,7 @@ impl Reader {
             let mut read = Vec::new();
             for number in from..=to {
                 match number {
-                    3..=5 if value == 0.0 => self.deck.remark(
+                    3..=5 if value == 0.0 => self.deck.add_note(
                         place,
                         "directions 3, 4 and 5 are always fixed in plane problems",
                     ),

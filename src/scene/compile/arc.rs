@@ -4,7 +4,8 @@ use super::super::nodes::Names;
 use crate::format::error::{AtPath, Fault, Path, at, bail, fault, some_of};
 use crate::format::spec::Spec;
 use stickslip_core::model::{
-    ArcLength, Bound, Contact, Control, InitialGaps, LinearSolver, Measured, Monitor, Watched,
+    ArcLength, ArcMeasure, Bound, Contact, Control, InitialGaps, LinearSolver, Monitor,
+    MonitorQuantity,
 };
 
 /// Resolves `history.arc`, and rejects invalid settings.
@@ -38,9 +39,9 @@ pub(super) fn arc(
         );
     }
     let along = match (given.monitor.as_str(), given.slip.as_str()) {
-        ("", "") => Measured::Displacements,
-        (name, "") => Measured::Dof(displacement(&here.then("monitor"), name, monitors)?),
-        ("", name) => Measured::Slip(slave(&here.then("slip"), name, names, slaves)?),
+        ("", "") => ArcMeasure::Displacements,
+        (name, "") => ArcMeasure::Dof(displacement(&here.then("monitor"), name, monitors)?),
+        ("", name) => ArcMeasure::Slip(slave(&here.then("slip"), name, names, slaves)?),
         _ => {
             bail!(
                 here.then("slip"),
@@ -88,10 +89,11 @@ fn follows(spec: &Spec) -> Result<(), Fault> {
 
 /// The degree of freedom of a displacement monitor.
 fn displacement(here: &Path, name: &str, monitors: &[Monitor]) -> Result<usize, Fault> {
-    let is_displacement = |monitor: &&Monitor| matches!(monitor.of, Watched::Displacement { .. });
+    let is_displacement =
+        |monitor: &&Monitor| matches!(monitor.of, MonitorQuantity::Displacement { .. });
     match monitors.iter().find(|monitor| monitor.name == name) {
         Some(Monitor {
-            of: Watched::Displacement { dof },
+            of: MonitorQuantity::Displacement { dof },
             ..
         }) => Ok(*dof),
         found => {

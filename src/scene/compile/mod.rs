@@ -40,7 +40,7 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     history::memory(&spec.settings)?;
     check_texts(spec)?;
     check_lengths(spec)?;
-    let mut names = Names::of(spec)?;
+    let mut names = Names::from_spec(spec)?;
     bodies::materials(spec)?;
     let mut bodies = bodies::bodies(spec, &names)?;
     let mut on_body = vec![false; names.nodes.len()];
@@ -136,7 +136,7 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
         length,
         finished: None,
     };
-    match Estimate::of(&model).too_large(model.settings.solver) {
+    match Estimate::from_model(&model).too_large(model.settings.solver) {
         Some(message) => Err(Fault::new(at!["settings", "memory"], message.to_string())),
         None => Ok((model, names)),
     }

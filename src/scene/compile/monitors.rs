@@ -6,7 +6,7 @@ use super::layout::no_rotation;
 use crate::format::error::{AtPath, Fault, Path, at, bail, fault, quoted, some_of};
 use crate::format::spec::{Quantity, Spec};
 use std::collections::HashMap;
-use stickslip_core::model::{Contact, Control, Dofs, Monitor, Watched};
+use stickslip_core::model::{Contact, Control, Dofs, Monitor, MonitorQuantity};
 
 /// Name of the last monitor of an arc-length history.
 const ARC: &str = "arc";
@@ -49,7 +49,7 @@ pub(super) fn monitors(
         }
         made.push(Monitor {
             name: ARC.to_owned(),
-            of: Watched::Arc,
+            of: MonitorQuantity::Arc,
         });
     }
     Ok(made)
@@ -86,14 +86,14 @@ fn watched(
     on_body: &[bool],
     dofs: &Dofs,
     slaves: &[Contact],
-) -> Result<Watched, Fault> {
+) -> Result<MonitorQuantity, Fault> {
     let node_of = |name: &str| names.node(name).at(here.then("node"));
     let dof_of = |node, component| {
         let fault = || Fault::new(here.then("component"), no_rotation(names, node));
         dofs.dof(node, component).ok_or_else(fault)
     };
     match quantity {
-        Quantity::Displacement { node, component } => Ok(Watched::Displacement {
+        Quantity::Displacement { node, component } => Ok(MonitorQuantity::Displacement {
             dof: dof_of(node_of(node)?, *component)?,
         }),
         Quantity::Reaction { node, component } => {
@@ -112,19 +112,19 @@ fn watched(
                     "{component} of node {name:?} is free and has no reaction; fix it in supports, or use a Displacement monitor"
                 );
             }
-            Ok(Watched::Reaction { dof })
+            Ok(MonitorQuantity::Reaction { dof })
         }
-        Quantity::Contact { node, component } => Ok(Watched::Contact {
+        Quantity::Contact { node, component } => Ok(MonitorQuantity::Contact {
             slaves: slave_numbers(here, node.as_deref(), "contact force", names, slaves)?,
             axis: *component,
         }),
-        Quantity::Modes { mode } => Ok(Watched::Modes {
+        Quantity::Modes { mode } => Ok(MonitorQuantity::Modes {
             slaves: slave_numbers(here, None, "mode", names, slaves)?,
             mode: *mode,
         }),
         Quantity::Pressure { node } => pressure(here, node.as_deref(), false, names, slaves),
         Quantity::Shear { node } => pressure(here, node.as_deref(), true, names, slaves),
-        Quantity::Drift { node } => Ok(Watched::Drift {
+        Quantity::Drift { node } => Ok(MonitorQuantity::Drift {
             slaves: slave_numbers(here, node.as_deref(), "drift", names, slaves)?,
         }),
     }
@@ -137,7 +137,7 @@ fn pressure(
     shear: bool,
     names: &Names,
     slaves: &[Contact],
-) -> Result<Watched, Fault> {
+) -> Result<MonitorQuantity, Fault> {
     let mut found = slave_numbers(here, name, "contact pressure", names, slaves)?;
     found.retain(|&slave| slaves[slave].area.is_some_and(|area| area > 0.0));
     if found.is_empty() {
@@ -146,7 +146,7 @@ fn pressure(
             "none of these slave nodes has a tributary area, which a pressure needs; give the pair an `area`"
         );
     }
-    Ok(Watched::Pressure {
+    Ok(MonitorQuantity::Pressure {
         slaves: found,
         shear,
     })

@@ -7,7 +7,7 @@ use super::layout::{Layout, Loads};
 use super::linear::free_motions;
 use super::{history, interface};
 use crate::format::error::{Path, Step};
-use crate::format::paths::Found;
+use crate::format::paths::ScalarPath;
 use crate::format::spec::{SlaveSpec, Spec};
 use stickslip_core::linear::estimate::Estimate;
 use stickslip_core::model::{Control, Model};
@@ -42,7 +42,7 @@ pub(crate) struct Groups(Vec<usize>);
 
 impl Choices {
     /// The choices of a scene.
-    pub(crate) fn of(spec: &Spec) -> Choices {
+    pub(crate) fn from_spec(spec: &Spec) -> Choices {
         let group = |own: &SlaveSpec| SlaveSpec {
             nodes: Vec::new(),
             on: Vec::new(),
@@ -68,7 +68,7 @@ impl Choices {
     }
 
     /// Sets a scalar that was found there; `None` if the value has the wrong kind.
-    pub(crate) fn set(&mut self, found: &Found, value: &str) -> Option<()> {
+    pub(crate) fn set(&mut self, found: &ScalarPath, value: &str) -> Option<()> {
         self.loaded |= key(&found.at, 0) == "loads";
         found.set(&mut self.spec, value)
     }
@@ -104,7 +104,7 @@ impl Choices {
     /// model.
     pub(crate) fn loads(&self, with: &Compiled<'_>) -> Option<Loads> {
         let solver = self.spec.settings.solver;
-        let fits = || Estimate::of(with.model).too_large(solver).is_none();
+        let fits = || Estimate::from_model(with.model).too_large(solver).is_none();
         let areas = with
             .model
             .contacts
@@ -181,7 +181,7 @@ fn key(path: &Path, step: usize) -> &str {
 
 impl Groups {
     /// The groups of a scene; `None` if a contact belongs to no group, which does not happen.
-    pub(crate) fn of(scene: &Compiled<'_>) -> Option<Groups> {
+    pub(crate) fn from_scene(scene: &Compiled<'_>) -> Option<Groups> {
         let mut of_node = vec![None; scene.model.nodes.len()];
         for (k, group) in scene.spec.slaves.iter().enumerate() {
             for name in &group.nodes {

@@ -1,6 +1,6 @@
 //! Nodes, elements, materials and sections of a deck.
 
-use super::{Fault, MESH, Made};
+use super::{DeckObjects, Fault, MESH};
 use crate::format::error::at;
 use crate::format::error::bail;
 use crate::format::given::Cells;
@@ -16,7 +16,7 @@ const SHEAR: f64 = 5.0 / 6.0;
 /// Elements with equal keys form one body: their section, their element family, and a representative of their connected nodes.
 type Part = (usize, Family, usize);
 
-impl Made<'_> {
+impl DeckObjects<'_> {
     /// Creates the mesh, its bodies and their materials.
     pub(super) fn bodies(&mut self, nlgeom: bool) -> Result<(), Fault> {
         let section_of = self.sections()?;
@@ -64,7 +64,7 @@ impl Made<'_> {
 
     /// The continuum elements of each body, in deck order.
     fn parts(&self, section_of: &[usize]) -> BTreeMap<Part, Vec<usize>> {
-        let mut groups = DeckGroups::of(self.deck.nodes.len());
+        let mut groups = DeckGroups::from_deck(self.deck.nodes.len());
         let solids = || {
             self.deck
                 .elements
@@ -244,7 +244,7 @@ impl Made<'_> {
         for (k, (section, kind, nodes)) in chains.into_iter().enumerate() {
             let section = &deck.sections[section];
             if k == 0 && !nlgeom {
-                self.remark(
+                self.add_note(
                     section.place,
                     "beams use large rotations even without NLGEOM",
                 );
@@ -301,7 +301,7 @@ fn kind_of(kind: ElementType) -> ElementKind {
 pub(super) struct DeckGroups(Vec<usize>);
 
 impl DeckGroups {
-    pub fn of(nodes: usize) -> Self {
+    pub fn from_deck(nodes: usize) -> Self {
         DeckGroups((0..nodes).collect())
     }
 

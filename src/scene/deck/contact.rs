@@ -2,7 +2,7 @@
 
 use super::super::corners::{self, CORNER};
 use super::bodies::DeckGroups;
-use super::{Fault, MESH, Made};
+use super::{DeckObjects, Fault, MESH};
 use crate::format::contact_law::{ContactLaw, FrictionSpec};
 use crate::format::error::at;
 use crate::format::error::bail;
@@ -10,7 +10,7 @@ use crate::format::given::SideSet;
 use crate::format::spec::{Nodes, SlaveSpec, SurfaceSpec};
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use stickslip_core::model::{InitialGaps, Mode};
-use stickslip_exchange::inp::Place;
+use stickslip_exchange::inp::DeckLocation;
 use stickslip_exchange::inp::deck::{Adjust, Faces, Family, Normal, Tie};
 
 /// Without a POSITION TOLERANCE, nodes within this fraction of a side's length are tied, as in CalculiX.
@@ -31,12 +31,12 @@ struct DeckContact {
     slaves: Vec<usize>,
     master: usize,
     laws: Laws,
-    place: Place,
+    place: DeckLocation,
     /// Locations of the law and the friction; a tie has neither.
-    of_laws: Option<[Place; 2]>,
+    of_laws: Option<[DeckLocation; 2]>,
 }
 
-impl Made<'_> {
+impl DeckObjects<'_> {
     pub(super) fn contacts(&mut self) -> Result<(), Fault> {
         let mut all = Vec::new();
         for pair in &self.deck.pairs {
@@ -48,13 +48,13 @@ impl Made<'_> {
             };
             let tied = law == ContactLaw::Tied;
             if tied {
-                self.remark(
+                self.add_note(
                     interaction.normal_place,
                     "TIED is rigid: stiffness and stick slope are ignored",
                 );
             }
             if pair.small_sliding {
-                self.remark(
+                self.add_note(
                     pair.place,
                     "SMALL SLIDING is ignored: the projection of a slave node on its master is computed in each iteration",
                 );
@@ -93,7 +93,7 @@ impl Made<'_> {
             .first()
             .filter(|_| self.deck.steps.iter().all(|step| !step.nlgeom))
         {
-            self.remark(
+            self.add_note(
                 pair.place,
                 "without NLGEOM strains are small, but contact is detected at the displaced positions",
             );
@@ -137,13 +137,13 @@ impl Made<'_> {
             let smooth =
                 (cut || !convex) && !concave && self.is_made_smooth(touching.master, sides, all);
             if cut {
-                self.remark(
+                self.add_note(
                     surface.place,
                     "the surface is cut at its convex corners; a slave node touches the pieces that its own side faces",
                 );
             }
             if smooth {
-                self.remark(
+                self.add_note(
                     surface.place,
                     "the surface is smoothed into one curve through its nodes, because its contact has a \
                      stiffness: a node inside would hop between two sides where the normal jumps",
@@ -211,7 +211,7 @@ impl Made<'_> {
         &mut self,
         sides: &[(usize, usize)],
         name: &str,
-        place: Place,
+        place: DeckLocation,
     ) -> Vec<String> {
         let deck = self.deck;
         let sides: Vec<Vec<usize>> = sides.iter().map(|&(e, side)| deck.side(e, side)).collect();
@@ -220,7 +220,7 @@ impl Made<'_> {
             let next = number.len();
             number.entry(*node).or_insert(next);
         }
-        let mut groups = DeckGroups::of(number.len());
+        let mut groups = DeckGroups::from_deck(number.len());
         for side in &sides {
             side.windows(2)
                 .for_each(|pair| groups.join(number[&pair[0]], number[&pair[1]]));
@@ -443,10 +443,10 @@ impl Made<'_> {
                 slaves.len() - near.len(),
                 slaves.len()
             );
-            self.remark(tie.place, &text);
+            self.add_note(tie.place, &text);
         }
         if !tie.adjust {
-            self.remark(
+            self.add_note(
                 tie.place,
                 "ADJUST=NO is ignored: tied nodes are moved onto their master",
             );

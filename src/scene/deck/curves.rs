@@ -41,7 +41,7 @@ fn increment(time: &Time) -> f64 {
 }
 
 impl Clock {
-    pub fn of(deck: &Deck) -> Clock {
+    pub fn from_deck(deck: &Deck) -> Clock {
         let mut begin = 0.0;
         let leg = |step: &Step| {
             let leg = Leg {
@@ -71,7 +71,7 @@ impl Clock {
 
 /// Values given for a load in a step.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Given {
+pub(super) struct StepValues {
     /// Values with their amplitudes; they are added.
     pub values: Vec<(f64, Option<usize>)>,
     /// Whether values of earlier steps are removed.
@@ -81,7 +81,11 @@ pub(super) struct Given {
 }
 
 /// A value as a function of the load factor: points with ascending load factors, starting at (0, 0).
-pub(super) fn curve(clock: &Clock, amplitudes: &[Amplitude], given: &[Given]) -> Vec<(f64, f64)> {
+pub(super) fn curve(
+    clock: &Clock,
+    amplitudes: &[Amplitude],
+    given: &[StepValues],
+) -> Vec<(f64, f64)> {
     let mut points = vec![(0.0, 0.0)];
     let mut before = 0.0;
     let mut acting: Vec<(f64, Option<usize>)> = Vec::new();
@@ -95,7 +99,7 @@ pub(super) fn curve(clock: &Clock, amplitudes: &[Amplitude], given: &[Given]) ->
         }
         let goes_on =
             |&(_, amplitude): &(f64, Option<usize>)| amplitude.is_some_and(|a| amplitudes[a].total);
-        let of_step = Acting {
+        let of_step = StepLoad {
             loads: &acting,
             amplitudes,
             begin: leg.begin,
@@ -125,7 +129,7 @@ pub(super) fn curve(clock: &Clock, amplitudes: &[Amplitude], given: &[Given]) ->
 }
 
 /// A load within a step.
-struct Acting<'a> {
+struct StepLoad<'a> {
     loads: &'a [(f64, Option<usize>)],
     amplitudes: &'a [Amplitude],
     begin: f64,
@@ -136,7 +140,7 @@ struct Acting<'a> {
     jump: bool,
 }
 
-impl Acting<'_> {
+impl StepLoad<'_> {
     /// Value at a time since the start of the step.
     fn at(&self, time: f64) -> f64 {
         let own = |a: usize| {

@@ -1,14 +1,14 @@
 //! Supports, prescribed displacements, loads, increments and output requests of a deck.
 
-use super::curves::{Clock, Given, curve, scaled};
-use super::{Fault, MESH, Made};
+use super::curves::{Clock, StepValues, curve, scaled};
+use super::{DeckObjects, Fault, MESH};
 use crate::format::error::at;
 use crate::format::error::bail;
 use crate::format::given::NodeSet;
 use crate::format::spec::{LoadSpec, MonitorSpec, Nodes, Quantity, SupportSpec};
 use std::collections::{BTreeMap, HashMap};
 use stickslip_core::model::{Axis, Component};
-use stickslip_exchange::inp::Place;
+use stickslip_exchange::inp::DeckLocation;
 use stickslip_exchange::inp::deck::{Direction, Family, Step, Value, Volume};
 
 /// Maximum number of nodes in a printed set for which displacement monitors are created.
@@ -16,22 +16,22 @@ const PRINTED: usize = 20;
 
 /// The values on a target, step by step, and their first location.
 struct Course {
-    place: Place,
-    given: Vec<Given>,
+    place: DeckLocation,
+    given: Vec<StepValues>,
 }
 
 /// A value given in a step: its target, value, amplitude and location.
-type Said<T> = (T, f64, Option<usize>, Place);
+type StepValue<T> = (T, f64, Option<usize>, DeckLocation);
 /// An element and one of its sides.
 type Side = (usize, usize);
 /// Key of volume forces that form one load: body, axis, whether it is weight, and the curve.
-type Alike = (usize, usize, bool, Vec<u64>);
+type VolumeLoadKey = (usize, usize, bool, Vec<u64>);
 
 /// A value and its amplitude.
-type Acts = (f64, Vec<(f64, f64)>);
+type TimedValue = (f64, Vec<(f64, f64)>);
 
-/// Nodal values in the form that [`Made::courses`] takes.
-fn listed(values: &[Value]) -> Vec<Said<(usize, Direction)>> {
+/// Nodal values in the form that [`DeckObjects::courses`] takes.
+fn listed(values: &[Value]) -> Vec<StepValue<(usize, Direction)>> {
     let one = |value: &Value| (value.target(), value.value, value.amplitude, value.place);
     values.iter().map(one).collect()
 }
@@ -44,7 +44,7 @@ fn bits(points: &[(f64, f64)]) -> Vec<u64> {
         .collect()
 }
 
-impl Made<'_> {
+impl DeckObjects<'_> {
     pub(super) fn loads(&mut self, clock: &Clock) -> Result<(), Fault> {
         self.motions(clock)?;
         self.forces(clock)?;
@@ -58,13 +58,13 @@ impl Made<'_> {
     /// later value of a step replaces an earlier one.
     fn courses<T: Ord>(
         &self,
-        values: impl Fn(&Step) -> Vec<Said<T>>,
+        values: impl Fn(&Step) -> Vec<StepValue<T>>,
         new: impl Fn(&Step) -> bool,
         adds: bool,
     ) -> BTreeMap<T, Course> {
         let steps = &self.deck.steps;
-        let empty = || -> Vec<Given> {
-            let of = |step: &Step| Given {
+        let empty = || -> Vec<StepValues> {
+            let of = |step: &Step| StepValues {
                 values: Vec::new(),
                 new: new(step),
                 at_once: step.at_once,
@@ -104,7 +104,7 @@ impl Made<'_> {
     fn motions(&mut self, clock: &Clock) -> Result<(), Fault> {
         let mut courses =
             self.courses(|step| listed(&step.motions), |step| step.new_motions, false);
-        let mut from_model: BTreeMap<(usize, Direction), Place> = BTreeMap::new();
+        let mut from_model: BTreeMap<(usize, Direction), DeckLocation> = BTreeMap::new();
         for support in &self.deck.supports {
             from_model.entry(support.target()).or_insert(support.place);
         }
@@ -118,8 +118,8 @@ impl Made<'_> {
             self.stays(target, courses.get(target), from_model.contains_key(target))?;
         }
         self.held = from_model.keys().chain(courses.keys()).copied().collect();
-        let mut held: BTreeMap<usize, (Vec<Component>, Place)> = BTreeMap::new();
-        let mut hold = |(node, direction): (usize, Direction), place: Place| {
+        let mut held: BTreeMap<usize, (Vec<Component>, DeckLocation)> = BTreeMap::new();
+        let mut hold = |(node, direction): (usize, Direction), place: DeckLocation| {
             held.entry(node)
                 .or_insert((Vec::new(), place))
                 .0
@@ -204,8 +204,8 @@ impl Made<'_> {
         Ok(())
     }
 
-    fn supports(&mut self, held: BTreeMap<usize, (Vec<Component>, Place)>) {
-        let mut alike: Vec<(Vec<Component>, Place, Vec<usize>)> = Vec::new();
+    fn supports(&mut self, held: BTreeMap<usize, (Vec<Component>, DeckLocation)>) {
+        let mut alike: Vec<(Vec<Component>, DeckLocation, Vec<usize>)> = Vec::new();
         for (node, (components, place)) in held {
             for component in &components {
                 match component {
@@ -277,7 +277,7 @@ impl Made<'_> {
                 continue;
             };
             if self.held.contains(&(node, direction)) {
-                self.remark(
+                self.add_note(
                     course.place,
                     "forces along restrained directions go into the support and are left out",
                 );
@@ -320,7 +320,7 @@ impl Made<'_> {
                 .collect()
         };
         let courses = self.courses(listed, |step| step.new_pressures, true);
-        let mut alike: Vec<(Vec<Side>, Acts, Place)> = Vec::new();
+        let mut alike: Vec<(Vec<Side>, TimedValue, DeckLocation)> = Vec::new();
         let mut known: HashMap<Vec<u64>, usize> = HashMap::new();
         for (side, course) in courses {
             let points = curve(clock, &self.deck.amplitudes, &course.given);
@@ -328,7 +328,7 @@ impl Made<'_> {
                 continue;
             };
             if self.is_held(side) {
-                self.remark(
+                self.add_note(
                     course.place,
                     "pressure on restrained sides goes into the supports and is left out",
                 );
@@ -383,7 +383,7 @@ impl Made<'_> {
             parts.filter(|(_, value, ..)| *value != 0.0).collect()
         };
         let courses = self.courses(listed, |step| step.new_pressures, true);
-        let mut alike: BTreeMap<Alike, (usize, Acts, Place)> = BTreeMap::new();
+        let mut alike: BTreeMap<VolumeLoadKey, (usize, TimedValue, DeckLocation)> = BTreeMap::new();
         for ((element, axis, is_weight), course) in courses {
             let points = curve(clock, &deck.amplitudes, &course.given);
             let (Some(acts), Some(body)) = (scaled(&points), self.body_of[element]) else {
@@ -429,7 +429,7 @@ impl Made<'_> {
     }
 
     /// Density of the material of a body.
-    fn density(&self, body: usize, place: Place) -> Result<f64, Fault> {
+    fn density(&self, body: usize, place: DeckLocation) -> Result<f64, Fault> {
         let element = self.body_of.iter().position(|of| *of == Some(body));
         let material = element.map(|element| &self.deck.materials[self.material_of[element]]);
         material
@@ -467,7 +467,7 @@ impl Made<'_> {
             .iter()
             .find(|step| !step.time.direct && step.time.initial < step.time.period)
         {
-            self.remark(
+            self.add_note(
                 step.static_place,
                 "automatic increments: a step is divided into increments of the size of its first one, but \
                  into at most ten unless its maximum increment requires more; see history.increment",
@@ -519,7 +519,7 @@ struct DeckMotion {
     direction: Direction,
     value: f64,
     scale: Vec<(f64, f64)>,
-    place: Place,
+    place: DeckLocation,
 }
 
 fn component(direction: Direction) -> Component {

@@ -26,7 +26,7 @@ use std::path::Path as FilePath;
 use stickslip_platform::input::{self, Unreadable};
 
 use stickslip_exchange::inp::deck::Direction;
-use stickslip_exchange::inp::{self, DECK_BYTES, Deck, Fault, Place, Wrong};
+use stickslip_exchange::inp::{self, DECK_BYTES, Deck, DeckError, DeckLocation, Fault};
 
 pub(super) use stickslip_exchange::inp::is_one;
 
@@ -34,7 +34,7 @@ pub(super) use stickslip_exchange::inp::is_one;
 const MESH: &str = "n";
 
 /// A deck as a scene.
-pub(super) struct Read {
+pub(super) struct DeckScene {
     /// The scene.
     pub spec: Spec,
     /// Where its values come from.
@@ -49,11 +49,11 @@ pub(super) struct Origin {
     /// Names of the deck and of its include files.
     files: Vec<String>,
     /// Location of each node of the mesh.
-    nodes: Vec<Place>,
+    nodes: Vec<DeckLocation>,
     /// Location of each element of each list of cells.
-    cells: Vec<Vec<Place>>,
+    cells: Vec<Vec<DeckLocation>>,
     /// Locations of all other values.
-    others: Vec<(Path, Place)>,
+    others: Vec<(Path, DeckLocation)>,
 }
 
 impl Origin {
@@ -63,7 +63,7 @@ impl Origin {
         Some((self.files.get(place.file)?, (place.line, place.column)))
     }
 
-    fn place(&self, path: &Path) -> Option<Place> {
+    fn place(&self, path: &Path) -> Option<DeckLocation> {
         let key = |k: usize| match path.0.get(k) {
             Some(Step::Key(key)) => key.as_str(),
             _ => "",
@@ -89,16 +89,16 @@ impl Origin {
         exact.or_else(around).copied()
     }
 
-    fn note(&mut self, path: Path, place: Place) {
+    fn note(&mut self, path: Path, place: DeckLocation) {
         self.others.push((path, place));
     }
 }
 
 /// Names in use: sets, parts, surfaces and bodies of a deck share the names of one mesh.
 #[derive(Debug, Default)]
-struct Free(HashSet<String>);
+struct UsedNames(HashSet<String>);
 
-impl Free {
+impl UsedNames {
     /// A valid, unused name similar to the wanted one; marks it as used.
     fn take(&mut self, wanted: &str) -> String {
         const MOST: usize = 50;
@@ -124,7 +124,7 @@ impl Free {
 }
 
 /// Reads a deck and its include files, which must be in its folder.
-pub(super) fn read(name: &str, text: &str) -> Result<Read, SceneError> {
+pub(super) fn read(name: &str, text: &str) -> Result<DeckScene, SceneError> {
     let mut include = |wanted: &str| included(FilePath::new(name), wanted);
     let deck = inp::read(name, text, &mut include).map_err(|wrong| unread(name, wrong))?;
     scene(name, &deck).map_err(|fault| SceneError {
@@ -133,7 +133,7 @@ pub(super) fn read(name: &str, text: &str) -> Result<Read, SceneError> {
     })
 }
 
-fn unread(name: &str, wrong: Wrong) -> SceneError {
+fn unread(name: &str, wrong: DeckError) -> SceneError {
     SceneError {
         at: Some((wrong.place.line, wrong.place.column)),
         ..SceneError::whole(&shown(name, &wrong.file), wrong.message)
@@ -175,11 +175,11 @@ pub(super) fn is_called_so(name: &str) -> bool {
 }
 
 /// Converts a deck to a scene.
-fn scene(name: &str, deck: &Deck) -> Result<Read, Fault> {
-    let mut made = Made::new(name, deck);
+fn scene(name: &str, deck: &Deck) -> Result<DeckScene, Fault> {
+    let mut made = DeckObjects::new(name, deck);
     let nlgeom = one_geometry(deck)?;
     made.bodies(nlgeom)?;
-    let clock = curves::Clock::of(deck);
+    let clock = curves::Clock::from_deck(deck);
     made.loads(&clock)?;
     made.contacts()?;
     made.history(&clock);
@@ -199,13 +199,13 @@ fn one_geometry(deck: &Deck) -> Result<bool, Fault> {
 }
 
 /// A scene under construction.
-struct Made<'d> {
+struct DeckObjects<'d> {
     deck: &'d Deck,
     spec: Spec,
     origin: Origin,
     /// Warnings with their locations.
-    remarks: Vec<(Place, String)>,
-    free: Free,
+    remarks: Vec<(DeckLocation, String)>,
+    free: UsedNames,
     /// The body of each continuum element.
     body_of: Vec<Option<usize>>,
     /// The deck's material of each element.
@@ -218,7 +218,7 @@ struct Made<'d> {
     still: Vec<[bool; 2]>,
 }
 
-impl<'d> Made<'d> {
+impl<'d> DeckObjects<'d> {
     fn new(name: &str, deck: &'d Deck) -> Self {
         let file = FilePath::new(name)
             .file_name()
@@ -241,7 +241,7 @@ impl<'d> Made<'d> {
             };
             (remark.place, format!("{}{times}", remark.text))
         };
-        Made {
+        DeckObjects {
             spec: Spec {
                 title: cut(title, super::limits::TITLE - 3),
                 about: format!("Read from the deck {}.", error::shortened(&file)),
@@ -252,7 +252,7 @@ impl<'d> Made<'d> {
                 ..Origin::default()
             },
             remarks: deck.remarks.iter().map(remark).collect(),
-            free: Free::default(),
+            free: UsedNames::default(),
             body_of: vec![None; deck.elements.len()],
             material_of: Vec::new(),
             held: HashSet::new(),
@@ -263,7 +263,7 @@ impl<'d> Made<'d> {
     }
 
     /// Adds a warning about a location.
-    fn remark(&mut self, place: Place, text: &str) {
+    fn add_note(&mut self, place: DeckLocation, text: &str) {
         let remark = (place, text.to_owned());
         if self.remarks.last() != Some(&remark) {
             self.remarks.push(remark);
@@ -275,11 +275,11 @@ impl<'d> Made<'d> {
         format!("{MESH}.{}", self.deck.nodes[node].label)
     }
 
-    fn whole(self, name: &str) -> Read {
+    fn whole(self, name: &str) -> DeckScene {
         let mut origin = self.origin;
         origin.note(
             at![],
-            Place {
+            DeckLocation {
                 file: 0,
                 line: 1,
                 column: 1,
@@ -288,11 +288,11 @@ impl<'d> Made<'d> {
         debug_assert_eq!(origin.files.first().map(String::as_str), Some(name));
         let mut remarks = self.remarks;
         remarks.sort_by_key(|(place, _)| (place.file, place.line));
-        let told = |(place, text): (Place, String)| {
+        let told = |(place, text): (DeckLocation, String)| {
             let file = origin.files.get(place.file).map_or(name, String::as_str);
             format!("{file}:{}: {text}", place.line)
         };
-        Read {
+        DeckScene {
             spec: self.spec,
             remarks: remarks.into_iter().map(told).collect(),
             origin,

@@ -84,7 +84,7 @@ pub use fault;
 
 /// Reasons why a scalar of a scene cannot be set.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum NotSet {
+pub enum SetError {
     /// No scalar has this path; the message suggests similar ones.
     #[error("{0}")]
     NoScalar(String),

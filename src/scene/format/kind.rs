@@ -120,14 +120,14 @@ impl Start<'_> {
 
 impl FileKind {
     /// Kind of a file, from its first part.
-    pub fn of_file(path: &std::path::Path) -> Option<FileKind> {
+    pub fn from_file(path: &std::path::Path) -> Option<FileKind> {
         const READ: u64 = 4096;
         let start = input::start(path, READ).ok()?;
-        FileKind::of(&String::from_utf8_lossy(&start))
+        FileKind::from_text(&String::from_utf8_lossy(&start))
     }
 
     /// Kind of a text, from its beginning and its outermost fields; `None` if unknown.
-    pub fn of(text: &str) -> Option<FileKind> {
+    pub fn from_text(text: &str) -> Option<FileKind> {
         let text = text.trim_start_matches(input::MARK);
         let rows = text.lines().filter(|line| !line.starts_with('#'));
         let start = Start {
@@ -184,7 +184,7 @@ pub fn is_contacts(text: &str) -> bool {
 
 /// The message if a text is not of the kind `wanted`: ``this is a snapshot; `stickslip replay FILE` reads it``.
 pub fn mistaken(file: &str, text: &str, wanted: FileKind) -> Option<String> {
-    let kind = FileKind::of(text).filter(|kind| *kind != wanted)?;
+    let kind = FileKind::from_text(text).filter(|kind| *kind != wanted)?;
     let name = kind.name();
     Some(match kind.reader(file) {
         Some(reader) => format!("this is {name}; `{reader}` reads it"),
@@ -239,10 +239,10 @@ mod tests {
             ("SUMMARY OF JOB INFORMATION\n STEP\n", FileKind::Progress),
             ("SUMMARY OF C0NVERGENCE INFORMATION\n", FileKind::Progress),
         ] {
-            assert_eq!(FileKind::of(text), Some(kind), "{text}");
+            assert_eq!(FileKind::from_text(text), Some(kind), "{text}");
         }
         for text in ["", "((", "(title: \"a\")", "<svg>", "hello"] {
-            assert_eq!(FileKind::of(text), None, "{text}");
+            assert_eq!(FileKind::from_text(text), None, "{text}");
         }
     }
 

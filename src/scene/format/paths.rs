@@ -4,7 +4,7 @@
 //! walk over the scene, so they always agree.
 
 use super::described::{Described, ScalarPlace, Visit};
-use super::error::{NotSet, Path, nearest, quoted};
+use super::error::{Path, SetError, nearest, quoted};
 use super::spec::Spec;
 use stickslip_core::model::Settings;
 
@@ -21,7 +21,7 @@ pub struct Override {
 
 /// A scalar of a scene with its value and accepted values.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Listed {
+pub struct ListedScalar {
     /// Path as a user types it.
     pub path: String,
     /// Value as a user types it.
@@ -33,11 +33,11 @@ pub struct Listed {
 }
 
 /// All scalars of a scene, in file order.
-pub fn list(spec: &Spec) -> Vec<Listed> {
+pub fn list(spec: &Spec) -> Vec<ListedScalar> {
     let mut all = Vec::new();
     // The walk also serves setting, so it needs a mutable scene.
     walk(&mut spec.clone(), &mut |place, scalar| {
-        all.push(Listed {
+        all.push(ListedScalar {
             path: place.name(),
             value: scalar.value(),
             kind: scalar.kind(),
@@ -62,7 +62,7 @@ pub fn of_settings() -> Vec<(String, &'static [&'static str])> {
 ///
 /// # Errors
 /// If the path does not exist, or the value has the wrong kind.
-pub fn set(spec: &mut Spec, path: &str, value: &str) -> Result<Override, NotSet> {
+pub fn set(spec: &mut Spec, path: &str, value: &str) -> Result<Override, SetError> {
     let path = path.trim();
     let mut done = None;
     walk(spec, &mut |place, scalar| {
@@ -76,13 +76,13 @@ pub fn set(spec: &mut Spec, path: &str, value: &str) -> Result<Override, NotSet>
             value: value.trim().to_owned(),
             at: result?,
         }),
-        None => Err(NotSet::NoScalar(unknown(spec, path))),
+        None => Err(SetError::NoScalar(unknown(spec, path))),
     }
 }
 
 /// Location of a scalar in a scene, found once for many settings of it.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Found {
+pub(crate) struct ScalarPath {
     /// Its number in the walk. Setting values does not change it, because the list of scalars does not depend on their values.
     number: usize,
     /// Path in the scene.
@@ -90,21 +90,21 @@ pub(crate) struct Found {
 }
 
 /// Finds a scalar; `None` if the path does not exist.
-pub(crate) fn find(spec: &Spec, path: &str) -> Option<Found> {
+pub(crate) fn find(spec: &Spec, path: &str) -> Option<ScalarPath> {
     let path = path.trim();
     let (mut number, mut found) = (0, None);
     // The walk also serves setting, so it needs a mutable scene.
     walk(&mut spec.clone(), &mut |place, _| {
         if found.is_none() && place.is(path) {
             let at = place.at();
-            found = Some(Found { number, at });
+            found = Some(ScalarPath { number, at });
         }
         number += 1;
     });
     found
 }
 
-impl Found {
+impl ScalarPath {
     /// Sets the scalar in the scene where it was found, or in one that differs from that only in scalars; `None` if the value has
     /// the wrong kind.
     pub(crate) fn set(&self, spec: &mut Spec, value: &str) -> Option<()> {

@@ -9,7 +9,7 @@ use super::spec::Spec;
 use crate::shown;
 use ron::error::SpannedError;
 use serde::de::DeserializeOwned;
-use stickslip_exchange::broken::Broken;
+use stickslip_exchange::format_error::FormatError;
 use stickslip_platform::input::{self, Unreadable};
 
 /// Maximum size of a scene file in bytes: enough for a dense matrix of 2,500 contacts with all digits.
@@ -160,7 +160,7 @@ pub fn near(file: &str, error: &Unreadable) -> String {
 }
 
 /// Error in a file of another program.
-pub fn of_file(file: &str, broken: Broken) -> SceneError {
+pub fn of_file(file: &str, broken: FormatError) -> SceneError {
     SceneError {
         at: broken.at,
         ..SceneError::whole(file, broken.message)

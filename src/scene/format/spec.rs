@@ -174,7 +174,7 @@ described! {
             sides: Sides,
             /// Rotation and translation applied to the finished block, including its curved sides. Default: no change.
             #[serde(default)]
-            place: Place,
+            place: BlockPosition,
         },
         /// Several blocks joined along edges into one mesh. Blocks without a joint stay separate, however close they are.
         Mesh {
@@ -315,7 +315,7 @@ described! {
     /// Position of a block: rotation, then translation.
     #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
     #[serde(deny_unknown_fields, default)]
-    pub struct Place {
+    pub struct BlockPosition {
         /// Rotation in degrees, anticlockwise. Default: 0.
         pub turn: f64,
         /// Center of the rotation. Default: (0, 0).

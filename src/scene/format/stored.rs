@@ -17,7 +17,7 @@ pub const HEAD: &str = "Stored";
 /// Nodes that may touch one rigid straight surface.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Touching {
+pub struct RigidContact {
     /// Node numbers in the deck.
     pub nodes: Vec<u64>,
     /// Outward normal of the surface, which points to the nodes; any length. Default: upwards, (0, 1).
@@ -37,7 +37,7 @@ pub struct Touching {
 /// A load on each of several nodes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Pulled {
+pub struct NodalLoad {
     /// Node numbers in the deck.
     pub nodes: Vec<u64>,
     /// Force along x at load factor 1. Default: 0.
@@ -51,7 +51,7 @@ pub struct Pulled {
 /// Nodes with prescribed displacements. Degrees of freedom restrained in the deck have no unknowns and stay fixed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Moved {
+pub struct MovedNodes {
     /// Node numbers in the deck.
     pub nodes: Vec<u64>,
     /// Displacement along x at load factor 1. Default: free.
@@ -74,13 +74,13 @@ pub struct Stored {
     /// The file of its unknowns (.dof). Default: the name of the stiffness file with this extension.
     pub unknowns: Option<String>,
     /// The nodes that may touch, in the order of the contacts.
-    pub contacts: Vec<Touching>,
+    pub contacts: Vec<RigidContact>,
     /// Dead loads on nodes. Default: none.
     #[serde(default)]
-    pub loads: Vec<Pulled>,
+    pub loads: Vec<NodalLoad>,
     /// Nodes with prescribed displacements. Default: none.
     #[serde(default)]
-    pub moved: Vec<Moved>,
+    pub moved: Vec<MovedNodes>,
     /// A typical length of gaps and motions, to which length tolerances are relative. Default: the largest gap or motion.
     pub spacing: Option<f64>,
     /// Path of the load factor. Default: one increment from 0 to 1.

@@ -115,7 +115,7 @@ impl Names {
         for (k, cells) in lists.iter().enumerate() {
             let first = made.len();
             let here = here.then(k).then("nodes");
-            let folds = Folds::of(cells.kind);
+            let folds = Folds::from_kind(cells.kind);
             for (e, labels) in cells.nodes.iter().enumerate() {
                 let path = || here.then(e);
                 let nodes = mesh.numbers(path, labels)?;

@@ -163,7 +163,7 @@ impl NameEntry {
 impl Names {
     /// Generates all nodes of a scene. Meshes of several blocks, and then chains over existing nodes, come last, so that they may
     /// refer to later entries of the scene.
-    pub(crate) fn of(spec: &Spec) -> Result<Names, Fault> {
+    pub(crate) fn from_spec(spec: &Spec) -> Result<Names, Fault> {
         limits::count(&at!["refine"], spec.refine, 1..=limits::NODES, "refine")?;
         check_ids(spec)?;
         check_total(spec)?;

@@ -31,7 +31,7 @@ struct MarketNames {
 }
 
 impl MarketNames {
-    fn of(file: &Path) -> Result<MarketNames, String> {
+    fn from_file(file: &Path) -> Result<MarketNames, String> {
         let stem = file.file_stem().unwrap_or_default().to_string_lossy();
         let wrong = |part: &&&str| stem.ends_with(&format!("_{part}"));
         if let Some(part) = PARTS.iter().find(wrong) {
@@ -59,7 +59,7 @@ impl MarketNames {
 /// If one of the files has errors or is missing.
 pub fn read(file: &str, text: &str, memory: Option<f64>) -> Result<Problem, SceneError> {
     let whole = |why: String| SceneError::whole(file, why);
-    let names = MarketNames::of(Path::new(file)).map_err(whole)?;
+    let names = MarketNames::from_file(Path::new(file)).map_err(whole)?;
     let matrix = matrix_market::read(text).map_err(|broken| read::of_file(file, broken))?;
     let size = matrix.rows;
     if size == 0 || size != matrix.columns || !size.is_multiple_of(2) {
@@ -138,7 +138,7 @@ fn column(names: &MarketNames, part: &str, size: usize) -> Result<Option<Vec<f64
 /// # Errors
 /// If the name is that of a stiffness or of another file of a problem.
 pub fn parts(file: &Path) -> Result<[PathBuf; 3], String> {
-    let names = MarketNames::of(file)?;
+    let names = MarketNames::from_file(file)?;
     if names.stiffness {
         return Err(format!(
             "the matrix is a compliance, but {} would be read as a stiffness; end the name with _W.mtx",
@@ -166,7 +166,9 @@ mod tests {
 
     #[test]
     fn the_matrix_name_determines_its_kind_and_the_other_files() {
-        let of = |name: &str| MarketNames::of(Path::new(name)).map(|n| (n.part("q"), n.stiffness));
+        let of = |name: &str| {
+            MarketNames::from_file(Path::new(name)).map(|n| (n.part("q"), n.stiffness))
+        };
         assert_eq!(of("a/b_W.mtx"), Ok((PathBuf::from("a/b_q.mtx"), false)));
         assert_eq!(of("b_K.mtx"), Ok((PathBuf::from("b_q.mtx"), true)));
         assert_eq!(of("b.mtx"), Ok((PathBuf::from("b_q.mtx"), false)));

@@ -28,7 +28,7 @@ pub struct Friction2d {
 
 /// An error in a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Broken {
+pub struct SiconosError {
     /// Line, from 1; that of the last word if the file ends too early, and 1 if no line is at fault.
     pub line: usize,
     /// Column, from 1.
@@ -46,7 +46,7 @@ pub fn is_one(text: &str) -> bool {
 ///
 /// # Errors
 /// The error and its line.
-pub fn read(text: &str) -> Result<Friction2d, Broken> {
+pub fn read(text: &str) -> Result<Friction2d, SiconosError> {
     read_within(text, None)
 }
 
@@ -54,9 +54,9 @@ pub fn read(text: &str) -> Result<Friction2d, Broken> {
 ///
 /// # Errors
 /// As [`read`].
-pub fn read_within(text: &str, memory: Option<f64>) -> Result<Friction2d, Broken> {
+pub fn read_within(text: &str, memory: Option<f64>) -> Result<Friction2d, SiconosError> {
     let local = local_within(text, memory, super::fits)?;
-    let problem = Friction2d::of(local);
+    let problem = Friction2d::from_local(local);
     Ok(problem)
 }
 
@@ -68,10 +68,10 @@ pub(super) fn local_within(
     text: &str,
     memory: Option<f64>,
     fits: fn(usize, Option<f64>) -> Result<(), String>,
-) -> Result<Local, Broken> {
+) -> Result<Local, SiconosError> {
     let broken = |at: Option<(usize, usize)>, message| {
         let (line, column) = at.unwrap_or((1, 1));
-        Broken {
+        SiconosError {
             line,
             column,
             message,
@@ -159,7 +159,7 @@ pub(super) fn problem(local: Local, title: &str) -> Problem {
 }
 
 impl Friction2d {
-    fn of(local: Local) -> Self {
+    fn from_local(local: Local) -> Self {
         Friction2d {
             w: local.w.dense(),
             q: local.q,

@@ -13,12 +13,12 @@ use super::condense::{NotEliminated, condensed, reduced};
 use super::fits;
 use crate::format::condensed::{Contact, Matrix, Problem};
 use crate::format::error::{AtPath, Fault, Path, at, bail, fault, quoted};
-use crate::format::stored::{Stored, Touching};
+use crate::format::stored::{RigidContact, Stored};
 use crate::format::{SceneError, read};
 use crate::placed;
 use std::collections::HashMap;
 use stickslip_core::model::InitialState;
-use stickslip_exchange::calculix::stiffness::{self, Unknown};
+use stickslip_exchange::calculix::stiffness::{self, MatrixUnknown};
 use stickslip_exchange::problem;
 use stickslip_platform::input;
 
@@ -48,23 +48,23 @@ pub fn read(file: &str, text: &str, memory: Option<f64>) -> Result<Problem, Scen
     let stored = super::text(&matrix)?;
     let k = stiffness::matrix(&stored, list.len()).map_err(|b| of(&matrix, b))?;
     drop(stored);
-    Posed::new(&spec, &list, memory)
+    StoredParts::new(&spec, &list, memory)
         .and_then(|posed| posed.condensed(&k))
         .map_err(place)
 }
 
 /// State of an unknown: free, with its number among the free ones, or prescribed, with its value.
 #[derive(Clone, Copy)]
-enum Known {
+enum UnknownState {
     Free(usize),
     Moved(f64),
 }
 
 /// The problem without its stiffness.
-struct Posed<'s> {
+struct StoredParts<'s> {
     spec: &'s Stored,
     /// State of each unknown.
-    known: Vec<Known>,
+    known: Vec<UnknownState>,
     /// Number of free unknowns.
     free: usize,
     /// Loads on the free unknowns.
@@ -80,11 +80,11 @@ struct Point<'s> {
     unknowns: [Option<usize>; 2],
     /// Unit normal.
     normal: [f64; 2],
-    touching: &'s Touching,
+    touching: &'s RigidContact,
 }
 
-impl<'s> Posed<'s> {
-    fn new(spec: &'s Stored, list: &[Unknown], memory: Option<f64>) -> Result<Self, Fault> {
+impl<'s> StoredParts<'s> {
+    fn new(spec: &'s Stored, list: &[MatrixUnknown], memory: Option<f64>) -> Result<Self, Fault> {
         let numbers = Numbers::new(list)?;
         let mut known: Vec<Option<f64>> = vec![None; list.len()];
         for (k, moved) in spec.moved.iter().enumerate() {
@@ -108,13 +108,13 @@ impl<'s> Posed<'s> {
             }
         }
         let mut free = 0;
-        let known: Vec<Known> = known
+        let known: Vec<UnknownState> = known
             .into_iter()
             .map(|value| match value {
-                Some(value) => Known::Moved(value),
+                Some(value) => UnknownState::Moved(value),
                 None => {
                     free += 1;
-                    Known::Free(free - 1)
+                    UnknownState::Free(free - 1)
                 }
             })
             .collect();
@@ -125,7 +125,7 @@ impl<'s> Posed<'s> {
                 for (direction, value) in [pulled.x, pulled.y].into_iter().enumerate() {
                     finite(&at!["loads", k, ["x", "y"][direction]], value)?;
                     // Loads on restrained components go into the support.
-                    if let Some(Known::Free(place)) = unknowns[direction].map(|u| known[u]) {
+                    if let Some(UnknownState::Free(place)) = unknowns[direction].map(|u| known[u]) {
                         load[place] += value;
                     }
                 }
@@ -133,7 +133,7 @@ impl<'s> Posed<'s> {
         }
         let contacts = points(spec, &numbers)?;
         fits(contacts.len(), memory.or(spec.settings.memory)).at(at!["contacts"])?;
-        Ok(Posed {
+        Ok(StoredParts {
             spec,
             known,
             free,
@@ -150,9 +150,9 @@ impl<'s> Posed<'s> {
         };
         for &(i, j, value) in &k.entries {
             match (self.known[i], self.known[j]) {
-                (Known::Free(i), Known::Free(j)) => inner.entries.push((i, j, value)),
-                (Known::Free(i), Known::Moved(by)) => self.load[i] -= value * by,
-                (Known::Moved(_), _) => {}
+                (UnknownState::Free(i), UnknownState::Free(j)) => inner.entries.push((i, j, value)),
+                (UnknownState::Free(i), UnknownState::Moved(by)) => self.load[i] -= value * by,
+                (UnknownState::Moved(_), _) => {}
             }
         }
         if inner.entries.is_empty() {
@@ -174,7 +174,7 @@ impl<'s> Posed<'s> {
         let mut kept = Vec::with_capacity(2 * self.contacts.len());
         for point in &self.contacts {
             for unknown in point.unknowns {
-                let Some(Known::Free(place)) = unknown.map(|u| self.known[u]) else {
+                let Some(UnknownState::Free(place)) = unknown.map(|u| self.known[u]) else {
                     bail!(
                         &point.at,
                         "the stiffness is singular: only the contacts support the body, but a component of this \
@@ -225,7 +225,7 @@ impl<'s> Posed<'s> {
         let mut entries = Vec::new();
         for (k, point) in self.contacts.iter().enumerate() {
             for (direction, unknown) in point.unknowns.into_iter().enumerate() {
-                if let Some(Known::Free(place)) = unknown.map(|u| self.known[u]) {
+                if let Some(UnknownState::Free(place)) = unknown.map(|u| self.known[u]) {
                     let [n, t] = point.components(direction);
                     entries.extend([(place, 2 * k, n), (place, 2 * k + 1, t)]);
                 }
@@ -243,7 +243,7 @@ impl<'s> Posed<'s> {
         let of = |point: &Point<'_>| {
             let mut pair = [0.0; 2];
             for (direction, unknown) in point.unknowns.into_iter().enumerate() {
-                if let Some(Known::Moved(by)) = unknown.map(|u| self.known[u]) {
+                if let Some(UnknownState::Moved(by)) = unknown.map(|u| self.known[u]) {
                     let [n, t] = point.components(direction);
                     pair[0] += n * by;
                     pair[1] += t * by;
@@ -334,7 +334,7 @@ fn finite(path: &Path, value: f64) -> Result<(), Fault> {
 struct Numbers(HashMap<u64, [Option<usize>; 2]>);
 
 impl Numbers {
-    fn new(list: &[Unknown]) -> Result<Self, Fault> {
+    fn new(list: &[MatrixUnknown]) -> Result<Self, Fault> {
         let mut numbers: HashMap<u64, [Option<usize>; 2]> = HashMap::new();
         for (place, unknown) in list.iter().enumerate() {
             let of_node = numbers.entry(unknown.node).or_default();

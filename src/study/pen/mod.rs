@@ -1,6 +1,6 @@
 //! Shapes as SVG and PNG, with the same bits on every machine, because the program contains the font.
 //!
-//! Builds without the feature `plot` use `penless.rs` instead.
+//! Builds without the feature `plot` use `pen/disabled.rs` instead.
 
 mod bitmap;
 mod font;

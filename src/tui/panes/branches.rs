@@ -91,7 +91,7 @@ fn line<'a>(
     let verdict = verdicts::describe(tree, &branch.verdict);
     let cost = format!(
         "  load {}  {} minor, {} major",
-        number::plain(branch.load_factor),
+        number::shortest(branch.load_factor),
         branch.whole.minors,
         branch.whole.majors
     );
@@ -147,7 +147,7 @@ fn comparison(
     let (sides, place) = match &found.common {
         Some(common) => (
             common,
-            format!("at load {}", number::plain(common[0].load_factor)),
+            format!("at load {}", number::shortest(common[0].load_factor)),
         ),
         None => (&found.tips, "at the last states".into()),
     };
@@ -209,7 +209,7 @@ fn comparison(
         let cell = |node: &compare::NodeSide| {
             let numbers = match node.forces {
                 Some(forces) => forces
-                    .map(|force| number::cell(round_off.force(force), 12))
+                    .map(|force| number::fixed_width(round_off.force(force), 12))
                     .concat(),
                 None => String::new(),
             };

@@ -1,7 +1,7 @@
 //! The chooser: scenes, lessons and files, with a preview of the selection if there is room.
 
 use crate::app::App;
-use crate::choosing::{Chooser, Glance, Group, Offer, Preview};
+use crate::chooser_state::{Chooser, Group, Offer, Preview, PreviewContent};
 use crate::paint;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Constraint, Layout, Rect};
@@ -163,7 +163,7 @@ fn look(buffer: &mut Buffer, area: Rect, preview: &Preview, beside: bool, app: &
     picture
 }
 
-fn description(glance: &Glance, width: u16, app: &App) -> paint::Lines {
+fn description(glance: &PreviewContent, width: u16, app: &App) -> paint::Lines {
     let width = usize::from(width.saturating_sub(2));
     let mut lines = paint::wrapped(&glance.title, width, app.theme.heading);
     lines.extend(paint::wrapped(&glance.about, width, app.theme.text));

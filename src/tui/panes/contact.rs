@@ -16,7 +16,7 @@ use stickslip_core::contact::record::ContactRecord;
 use stickslip_debugger::explain::influence::NodePush;
 use stickslip_debugger::explain::tested;
 use stickslip_debugger::explain::trail::{self, Cone, TrailPoint};
-use stickslip_scene::number::{UNREPORTED, four, short};
+use stickslip_scene::number::{UNREPORTED, short, sig4};
 use unicode_width::UnicodeWidthStr;
 
 /// Minimum width and height of a picture.
@@ -118,7 +118,7 @@ fn words(
         false => UNREPORTED.to_owned(),
     };
     let pair = |v: [f64; 2]| {
-        let [x, y] = v.map(|x| known(x, four(x + 0.0)));
+        let [x, y] = v.map(|x| known(x, sig4(x + 0.0)));
         format!("({x}, {y})")
     };
     let place = match record.spot {
@@ -129,7 +129,7 @@ fn words(
             format!(
                 "{surface}, element {}, ξ {}",
                 spot.element + 1,
-                known(spot.xi, four(spot.xi))
+                known(spot.xi, sig4(spot.xi))
             )
         }
     };
@@ -244,7 +244,7 @@ fn cobweb(buffer: &mut Buffer, area: Rect, trail: &[TrailPoint], app: &App, view
     let theme = &app.theme;
     let factor = trail::factor(trail);
     let heading = match factor {
-        Some(factor) => format!("T_max: change ×{} per iteration", four(factor)),
+        Some(factor) => format!("T_max: change ×{} per iteration", sig4(factor)),
         None => "T_max by iteration".into(),
     };
     let area = headed(buffer, area, &heading, app);
@@ -293,7 +293,7 @@ fn cobweb(buffer: &mut Buffer, area: Rect, trail: &[TrailPoint], app: &App, view
     frame.tick(buffer, bottom, &tick(low), theme.faint);
     let name = match origin == 0.0 {
         true => "used".to_owned(),
-        false => format!("less {}", four(origin)),
+        false => format!("less {}", sig4(origin)),
     };
     below(buffer, frame, [low, high], &name, app);
 }

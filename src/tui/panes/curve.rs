@@ -11,7 +11,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 use stickslip_debugger::history::frame;
-use stickslip_scene::number::{plain, short};
+use stickslip_scene::number::{short, shortest};
 
 /// Width of the axis with its labels.
 const LABELS: u16 = 9;
@@ -44,7 +44,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         Span::styled(" ● ", theme.strong),
         Span::raw(short(*value)),
         Span::styled("  at load ", theme.faint),
-        Span::raw(plain(*load)),
+        Span::raw(shortest(*load)),
     ]);
     paint::lines(buffer, inner, &[caption]);
     // One row for the caption above, one for the numbers below.

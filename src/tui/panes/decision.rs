@@ -10,7 +10,7 @@ use ratatui::layout::Rect;
 use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span};
 use stickslip_core::contact::record::{ContactRecord, Forced, SideForce};
-use stickslip_core::contact::table2::{Decision, Rule, Test, Tested};
+use stickslip_core::contact::table2::{Decision, Rule, Test, TestedQuantity};
 use stickslip_core::model::Mode;
 use stickslip_core::model::TieRule;
 use stickslip_debugger::explain::bond;
@@ -20,7 +20,7 @@ use stickslip_debugger::explain::report;
 use stickslip_debugger::explain::reported_pushes;
 use stickslip_debugger::explain::round_off::NOTE;
 use stickslip_debugger::explain::tested::{self, Dimension};
-use stickslip_scene::number::{self, four, long};
+use stickslip_scene::number::{self, long, sig4};
 use unicode_width::UnicodeWidthStr;
 
 /// Width of the row headings.
@@ -428,8 +428,8 @@ const NEWTON: &str = "Newton";
 /// Name of the rules that an attached solver's values were compared with, from the tested quantities.
 fn rules(decision: &Decision) -> Option<&'static str> {
     match decision.tests[0]?.tested {
-        Tested::Pressure | Tested::Drag => Some(NEWTON),
-        Tested::Own => None,
+        TestedQuantity::Pressure | TestedQuantity::Drag => Some(NEWTON),
+        TestedQuantity::Own => None,
         _ => Some("Table 2"),
     }
 }
@@ -528,7 +528,7 @@ fn sides(record: &ContactRecord, slave: usize, view: &View, theme: &Theme) -> pa
         return Vec::new();
     };
     let one = |(k, side): (usize, &SideForce)| {
-        let (f_n, f_t, limit) = (four(side.f_n), four(side.f_t), four(side.limit));
+        let (f_n, f_t, limit) = (sig4(side.f_n), sig4(side.f_t), sig4(side.limit));
         let text = format!(" side {}: F_n {f_n}, F_t {f_t}, limit {limit}", k + 1);
         Line::styled(text, theme.text)
     };

@@ -259,16 +259,16 @@ fn differs(census: &Census, place: usize) -> bool {
 fn cell(answer: &NodeAnswer, app: &App) -> [Span<'static>; 2] {
     let mode = answer.assumed.mode();
     let letter = match answer.assumed {
-        stickslip_core::interface::problem::Assumed::Plus => "S+",
-        stickslip_core::interface::problem::Assumed::Minus => "S-",
-        stickslip_core::interface::problem::Assumed::Free => "F ",
-        stickslip_core::interface::problem::Assumed::Fixed => "X ",
+        stickslip_core::interface::problem::AssumedMode::Plus => "S+",
+        stickslip_core::interface::problem::AssumedMode::Minus => "S-",
+        stickslip_core::interface::problem::AssumedMode::Free => "F ",
+        stickslip_core::interface::problem::AssumedMode::Fixed => "X ",
     };
     let last = match mode {
         stickslip_core::model::Mode::Free => answer.gap,
         _ => answer.slip,
     };
-    let numbers = [answer.f_n, answer.f_t, last].map(|value| number::cell(value, 10));
+    let numbers = [answer.f_n, answer.f_t, last].map(|value| number::fixed_width(value, 10));
     [
         Span::styled(format!(" {letter}"), app.theme.lit(mode)),
         Span::raw(format!(" {:<width$}", numbers.concat(), width = CELL - 4)),

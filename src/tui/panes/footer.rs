@@ -2,7 +2,7 @@
 
 use crate::app::{App, Overlay, Tone};
 use crate::commandline::Purpose;
-use crate::layout::{Pane, Places};
+use crate::layout::{Pane, ScreenAreas};
 use crate::paint::{self, wrapped};
 use crate::theme::Theme;
 use crate::view::View;
@@ -20,7 +20,7 @@ const ALWAYS: [&str; 3] = ["pane", "help", "quit"];
 
 /// Draws message and keys. A message that needs more rows starts further up, over the last rows inside the panes; their lower
 /// borders move above it.
-pub fn draw(buffer: &mut Buffer, places: &Places, app: &App, view: Option<&View>) {
+pub fn draw(buffer: &mut Buffer, places: &ScreenAreas, app: &App, view: Option<&View>) {
     let width = places.message.width as usize;
     let mut lines = message(app, view, places, width);
     let keys = keys(app, view, places);
@@ -48,7 +48,7 @@ pub fn draw(buffer: &mut Buffer, places: &Places, app: &App, view: Option<&View>
     paint::over(buffer, area, &lines, &app.theme);
 }
 
-fn message(app: &App, view: Option<&View>, places: &Places, width: usize) -> paint::Lines {
+fn message(app: &App, view: Option<&View>, places: &ScreenAreas, width: usize) -> paint::Lines {
     let theme = &app.theme;
     if let Overlay::Line(line) = &app.overlay {
         let prompt = match line.purpose {
@@ -111,7 +111,7 @@ fn question(app: &App, view: Option<&View>) -> Option<String> {
         ),
         Overlay::Line(line) if line.purpose == Purpose::Increment => Some(format!(
             "new increment (now {}): ",
-            number::plain(view.frame().state.controls.increment)
+            number::shortest(view.frame().state.controls.increment)
         )),
         _ => None,
     }
@@ -136,7 +136,7 @@ fn said(app: &App, view: Option<&View>, width: usize) -> paint::Lines {
     }
 }
 
-fn keys(app: &App, view: Option<&View>, places: &Places) -> paint::Lines {
+fn keys(app: &App, view: Option<&View>, places: &ScreenAreas) -> paint::Lines {
     let room = places.footer.width as usize;
     let typed = match &app.overlay {
         Overlay::Manual(reader) => reader.typed(),
@@ -220,7 +220,7 @@ fn hint(key: &str, label: &str, theme: &Theme) -> [Span<'static>; 2] {
 }
 
 /// The labelled actions of the table that fit, in table order; the ones in [`ALWAYS`] get space first.
-fn table_keys(app: &App, view: Option<&View>, places: &Places, room: usize) -> Line<'static> {
+fn table_keys(app: &App, view: Option<&View>, places: &ScreenAreas, room: usize) -> Line<'static> {
     let teaches = app.learning.lesson.is_some() || app.learning.guess.is_some();
     // An action without a key is left out; it can still be typed by name.
     let key = |entry: &'static ActionEntry| app.keymap.keys(entry).next().map(str::to_owned);
@@ -296,7 +296,7 @@ fn fitted(hints: &[(bool, String, String)], room: usize, theme: &Theme) -> Line<
 }
 
 /// Label of an action; for Tab, the page number if panes are shown one at a time.
-fn label(entry: &ActionEntry, app: &App, places: &Places) -> String {
+fn label(entry: &ActionEntry, app: &App, places: &ScreenAreas) -> String {
     if entry.name == "pane" && places.paged {
         return format!("page {}/{}", app.panes.focus.page(), Pane::ALL.len());
     }

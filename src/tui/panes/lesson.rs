@@ -71,7 +71,7 @@ pub fn top(app: &App, tutor: &Tutor, width: usize, room: usize) -> usize {
     let wanted = match now.0 == then.0 {
         true if now.1 == then.1 => app.learning.reading.top,
         // The question above an answer has been read.
-        true => all - remark(tutor, width, &app.theme).len(),
+        true => all - result_lines(tutor, width, &app.theme).len(),
         false => 0,
     };
     wanted.min(all.saturating_sub(room))
@@ -108,7 +108,7 @@ pub fn said(tutor: &Tutor, width: usize, theme: &Theme) -> paint::Lines {
 }
 
 /// The tutor's reply to the last answer.
-fn remark(tutor: &Tutor, width: usize, theme: &Theme) -> paint::Lines {
+fn result_lines(tutor: &Tutor, width: usize, theme: &Theme) -> paint::Lines {
     match tutor.page().last() {
         Some(part @ (Paragraph::Right(_) | Paragraph::Wrong(_))) => paragraph(part, width, theme),
         _ => Vec::new(),

@@ -11,7 +11,7 @@ use ratatui::layout::{Position, Rect};
 use ratatui::style::{Modifier, Style};
 use ratatui::text::{Line, Span};
 use stickslip_core::contact::record::{ContactRecord, Forced};
-use stickslip_core::contact::table2::Tested;
+use stickslip_core::contact::table2::TestedQuantity;
 use stickslip_core::model::Mode;
 use stickslip_debugger::action::{Filter, Sort};
 use stickslip_debugger::explain::names;
@@ -348,17 +348,17 @@ fn numbers(
     view: &View,
 ) -> Vec<Span<'static>> {
     // The value that changed the mode is shown exactly, even within round-off.
-    let decided = |tested: Tested| {
+    let decided = |tested: TestedQuantity| {
         let mut tests = record.decision.tests.iter().flatten();
         record.decision.changes() && tests.any(|test| test.tested == tested)
     };
     let cell = |value| view.cell(value, columns.number);
-    let number = |value: f64, tested: Tested| match Dimension::from(tested) {
+    let number = |value: f64, tested: TestedQuantity| match Dimension::from(tested) {
         _ if decided(tested) => cell(value),
         Dimension::Force => cell(round_off.force(value)),
         _ => cell(round_off.length(value)),
     };
-    let ratio = match decided(Tested::ShearForce) {
+    let ratio = match decided(TestedQuantity::ShearForce) {
         _ if view.is_unreported(record.f_t / record.t_max) => number::UNREPORTED.into(),
         true => number::ratio(record.f_t, record.t_max),
         // T_max is settled to the tolerance, and so is its ratio to the force of a sliding node.
@@ -366,12 +366,12 @@ fn numbers(
         false => round_off.ratio(record.f_t, record.t_max),
     };
     let texts = [
-        number(record.gap, Tested::Gap),
-        number(record.f_n, Tested::NormalForce),
-        number(record.f_t, Tested::ShearForce),
-        number(record.t_max, Tested::ShearForce),
+        number(record.gap, TestedQuantity::Gap),
+        number(record.f_n, TestedQuantity::NormalForce),
+        number(record.f_t, TestedQuantity::ShearForce),
+        number(record.t_max, TestedQuantity::ShearForce),
         format!("{ratio:<width$}", width = columns.ratio),
-        number(record.slip, Tested::Slip),
+        number(record.slip, TestedQuantity::Slip),
     ];
     let style = |index: usize| number_style(index, record, app);
     texts
@@ -395,10 +395,10 @@ fn is_at_limit(record: &ContactRecord, view: &View) -> bool {
 /// Highlights tested values that are ties.
 fn number_style(column: usize, record: &ContactRecord, app: &App) -> Style {
     let tested = match column {
-        0 => Tested::Gap,
-        1 => Tested::NormalForce,
-        2 | 4 => Tested::ShearForce,
-        5 => Tested::Slip,
+        0 => TestedQuantity::Gap,
+        1 => TestedQuantity::NormalForce,
+        2 | 4 => TestedQuantity::ShearForce,
+        5 => TestedQuantity::Slip,
         _ => return app.theme.text,
     };
     let mut tests = record.decision.tests.iter().flatten();

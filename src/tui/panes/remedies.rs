@@ -8,7 +8,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
 use ratatui::text::{Line, Span};
-use stickslip_debugger::explain::remedies::{self, COLUMNS, Trial, TrialEnd, rank};
+use stickslip_debugger::explain::remedies::{self, COLUMNS, RemedyTrial, TrialEnd, rank};
 use stickslip_scene::shown;
 use unicode_width::UnicodeWidthStr;
 
@@ -134,7 +134,7 @@ fn shown(rows: &[[String; 10]], width: usize) -> Vec<(usize, usize)> {
 }
 
 /// Mark of a trial: converged cleanly, converged with warnings, or not converged.
-fn mark(trial: &Trial, app: &App) -> (&'static str, Style) {
+fn mark(trial: &RemedyTrial, app: &App) -> (&'static str, Style) {
     let theme = &app.theme;
     match rank(trial) {
         0 => ("✓", theme.good),

@@ -44,7 +44,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let words = |value: f64| short(value, view);
     let percent = |part: f64| match part.is_nan() {
         true => number::UNREPORTED.to_owned(),
-        false => format!("{} %", number::plain(100.0 * part)),
+        false => format!("{} %", number::shortest(100.0 * part)),
     };
     let (main, (other, value), limit) = match &view.model.finished {
         None => (

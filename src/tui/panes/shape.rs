@@ -574,7 +574,7 @@ fn worst_words(model: &Model, point: &PointDeformation) -> String {
     match point.determinant > 0.0 {
         true => format!(
             " {WORST} {element}: stretch {}  ",
-            number::four(point.stretch)
+            number::sig4(point.stretch)
         ),
         false => format!(" {WORST} {element}: inverted  "),
     }
@@ -590,7 +590,7 @@ fn caption(buffer: &mut Buffer, inner: Rect, shown: Scales, moves: bool, app: &A
         .into_iter()
         .collect();
     if magnified != 1.0 {
-        let text = format!(" displacements ×{} (*)  ", number::plain(magnified));
+        let text = format!(" displacements ×{} (*)  ", number::shortest(magnified));
         spans.push(Span::styled(text, theme.strong));
     }
     spans.push(Span::styled(UNLOADED, theme.faint));

@@ -217,7 +217,7 @@ fn parameters(all: &[Parameter], width: usize, view: &View) -> Vec<Row> {
     for known in all {
         let name = shown::line(&known.name);
         let began = match &known.value {
-            Value::Number(value) => number::plain(*value),
+            Value::Number(value) => number::shortest(*value),
             other => other.to_string(),
         };
         let now = present(known, &context);

@@ -1,7 +1,7 @@
 //! The top of the screen: the scene, the position of the solver, and the outcome of the last minor iteration.
 
 use crate::app::{App, Overlay, TURN};
-use crate::layout::{Pane, Places};
+use crate::layout::{Pane, ScreenAreas};
 use crate::paint;
 use crate::view::{AttachedSolver, View};
 use ratatui::buffer::Buffer;
@@ -12,7 +12,7 @@ use stickslip_core::contact::record::Forced;
 use stickslip_core::model::Model;
 use stickslip_core::model::Strategy;
 use stickslip_core::step::event::{Event, Outcome};
-use stickslip_core::step::solver::GoesBack;
+use stickslip_core::step::solver::RewindSupport;
 use stickslip_core::step::state::Status;
 use stickslip_debugger::action::by_name;
 use stickslip_debugger::explain::names;
@@ -22,7 +22,7 @@ use stickslip_scene::number;
 use unicode_width::UnicodeWidthStr;
 
 /// Draws the status. Lines that do not fit cover the rows below.
-pub fn draw(buffer: &mut Buffer, places: &Places, app: &App, view: Option<&View>) {
+pub fn draw(buffer: &mut Buffer, places: &ScreenAreas, app: &App, view: Option<&View>) {
     let area = places.status;
     let Some(view) = view else {
         let title = " a step-through debugger for contact iterations";
@@ -59,12 +59,12 @@ fn solver_line(app: &App, view: &View, attached: &AttachedSolver, width: usize) 
     let (state, style) = match (attached.lost, offers.past, offers.goes_back) {
         (true, ..) => ("✗ lost; the next step restarts it", theme.bad),
         (_, Some(record), _) => (record, theme.warning),
-        (.., GoesBack::ToAny) => ("attached, can go back to any state", theme.faint),
-        (.., GoesBack::ToIncrements) => (
+        (.., RewindSupport::ToAny) => ("attached, can go back to any state", theme.faint),
+        (.., RewindSupport::ToIncrements) => (
             "attached, goes back to increments, then replays",
             theme.faint,
         ),
-        (.., GoesBack::Again) => ("attached, goes back by restart", theme.faint),
+        (.., RewindSupport::Again) => ("attached, goes back by restart", theme.faint),
     };
     let key = by_name("log")
         .ok()
@@ -171,7 +171,7 @@ fn place(app: &App, view: &View, apart: &str, attempt: bool) -> Line<'static> {
         ("attempt", at.attempt.to_string(), attempt || !two_levels),
         ("major", at.major.to_string(), two_levels),
         (minor, at.minor.to_string(), true),
-        (drive, number::plain(load), !load.is_nan()),
+        (drive, number::shortest(load), !load.is_nan()),
     ];
     let mut spans = vec![Span::raw(" ")];
     for (name, count, _) in counts.into_iter().filter(|(_, _, shown)| *shown) {
@@ -294,12 +294,12 @@ fn sentence(event: &Event, model: &Model, app: &App) -> (String, Style) {
     let (glyph, style) = match &event.outcome {
         Outcome::Minor | Outcome::Major { settled: true, .. } => ("▸", theme.text),
         Outcome::Damped { .. }
-        | Outcome::Climbed { .. }
+        | Outcome::StrategyChange { .. }
         | Outcome::Cut { .. }
-        | Outcome::Leaps { .. }
-        | Outcome::Turns { .. }
+        | Outcome::WholeIncrement { .. }
+        | Outcome::PathCorner { .. }
         | Outcome::HeldBack { .. }
-        | Outcome::Moves(_)
+        | Outcome::Motion(_)
         | Outcome::Fallback { .. }
         | Outcome::Refused { .. }
         | Outcome::Major { settled: false, .. } => ("▸", theme.warning),
@@ -341,8 +341,8 @@ fn interventions(view: &View) -> Option<String> {
     let increment = (controls.increment != of_scene).then(|| {
         format!(
             "increment {} (scene: {})",
-            number::plain(controls.increment),
-            number::plain(of_scene)
+            number::shortest(controls.increment),
+            number::shortest(of_scene)
         )
     });
     let settings = (controls.settings != view.model.settings).then(|| "settings changed".into());
@@ -360,7 +360,7 @@ fn interventions(view: &View) -> Option<String> {
         (state.sub_increment.cut > 0).then(|| {
             format!(
                 "increment cut to {}",
-                number::plain(state.sub_increment.size())
+                number::shortest(state.sub_increment.size())
             )
         }),
         (held > 0).then(|| format!("◆ {held} held")),

@@ -332,7 +332,7 @@ fn bracket(
         Some(
             Outcome::Failed(Failure::Cycle(cycle))
             | Outcome::Damped { cycle, .. }
-            | Outcome::Climbed {
+            | Outcome::StrategyChange {
                 why: Failure::Cycle(cycle),
                 ..
             },

@@ -203,7 +203,7 @@ fn details(page: &ChartPage, theme: &Theme, width: usize) -> paint::Lines {
     };
     let cost = format!(
         "   {error}   {} s, {} factorizations, {} minor iterations",
-        number::four(point.seconds),
+        number::sig4(point.seconds),
         point.factorizations,
         point.minors
     );

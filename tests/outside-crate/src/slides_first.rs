@@ -1,7 +1,7 @@
 //! Table 2 with one change: a fixed node slides before it opens.
 
 use stickslip_core::contact::table2::{Numbers, Reason, Rule, decide};
-use stickslip_core::interface::method::{Choice, Known, Method};
+use stickslip_core::interface::method::{Choice, Method, NodeContext};
 use stickslip_core::model::Mode;
 
 /// The strategy.
@@ -9,7 +9,7 @@ use stickslip_core::model::Mode;
 pub struct SlidesFirst;
 
 impl Method for SlidesFirst {
-    fn choose(&self, numbers: &Numbers, known: &Known<'_>) -> Choice {
+    fn choose(&self, numbers: &Numbers, known: &NodeContext<'_>) -> Choice {
         let mut decision = decide(numbers, known.ties);
         if (decision.before, decision.next) == (Mode::Fixed, Mode::Free) {
             (decision.next, decision.wanted) = (Mode::Sliding, Mode::Sliding);

@@ -9,9 +9,9 @@ use stickslip_core::contact::projection::SurfacePoint;
 use stickslip_core::contact::state::ContactState;
 use stickslip_core::interface::kinematics::NodeKinematics;
 use stickslip_core::linalg::SolveError;
-use stickslip_core::linear::condensed::Condensed;
+use stickslip_core::linear::condensed::CondensedSystem;
 use stickslip_core::linear::norms::Norms;
-use stickslip_core::linear::source::{At, Source};
+use stickslip_core::linear::source::{LinearisationPoint, Source};
 use stickslip_core::linear::violation::violation;
 use stickslip_core::model::{Bond, Friction, Mode};
 
@@ -25,7 +25,7 @@ pub struct Stiffening {
     pub load: [f64; 2],
     /// Gap at the start (length).
     pub gap: f64,
-    condensed: Condensed,
+    condensed: CondensedSystem,
     w: [f64; 2],
     norms: Norms,
 }
@@ -38,7 +38,7 @@ impl Stiffening {
             cubic,
             load,
             gap,
-            condensed: Condensed::new(1),
+            condensed: CondensedSystem::new(1),
             w: [0.0; 2],
             norms: Norms::default(),
         }
@@ -69,7 +69,7 @@ impl Source for Stiffening {
         }
     }
 
-    fn linearise(&mut self, at: &At<'_>) -> Result<(), SolveError> {
+    fn linearise(&mut self, at: &LinearisationPoint<'_>) -> Result<(), SolveError> {
         self.condensed.resize(1)?;
         self.w = [at.u[0], at.u[1]];
         let (state, relation) = (&at.contacts[0], &mut self.condensed.relation);
@@ -103,7 +103,7 @@ impl Source for Stiffening {
         Ok(())
     }
 
-    fn norms(&mut self, at: &At<'_>) -> Norms {
+    fn norms(&mut self, at: &LinearisationPoint<'_>) -> Norms {
         let over = |contact: usize| self.kinematics(contact);
         self.norms.interface = violation(at, self.length(), self.norms.scale, over);
         self.norms
@@ -120,11 +120,11 @@ impl Source for Stiffening {
         })
     }
 
-    fn condensed(&self) -> Option<&Condensed> {
+    fn condensed(&self) -> Option<&CondensedSystem> {
         Some(&self.condensed)
     }
 
-    fn condensed_mut(&mut self) -> Option<&mut Condensed> {
+    fn condensed_mut(&mut self) -> Option<&mut CondensedSystem> {
         Some(&mut self.condensed)
     }
 }
@@ -166,7 +166,7 @@ mod tests {
                 touch: Touch::Start,
                 ..Settings::default()
             },
-            ..Model::of_contacts("stiffening", vec![node], Vec::new(), vec![contact])
+            ..Model::from_contacts("stiffening", vec![node], Vec::new(), vec![contact])
         };
         let source = Stiffening::new(100.0, 50.0, [-60.0, -90.0], 0.1);
         let mut stepper = Stepper::with_source(Arc::new(model), Box::new(source));

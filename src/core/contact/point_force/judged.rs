@@ -4,9 +4,9 @@
 //! inner product of the two remainders. The closed forms of [`super::Pair`] are not used, so this is an independent check of
 //! them.
 
+use crate::contact::closest_points::{self, ClosestPoint};
 use crate::contact::element::{ElementPositions, SurfaceElement};
 use crate::contact::facing::{MOST, faced};
-use crate::contact::feet::{self, Foot};
 use crate::contact::point_force;
 use crate::contact::projection::SurfacePoint;
 use crate::fem::lagrange::{MAX_NODES, gauss};
@@ -14,7 +14,7 @@ use crate::model::{Contact, PointGive, Surface};
 
 /// The interface in one configuration, with its forces.
 #[derive(Debug, Clone, Copy)]
-pub struct Loaded<'a> {
+pub struct LoadedInterface<'a> {
     /// Master surfaces of the scene.
     pub surfaces: &'a [Surface],
     /// Slave nodes of the scene.
@@ -27,7 +27,7 @@ pub struct Loaded<'a> {
     pub forces: &'a [[f64; 2]],
 }
 
-impl Loaded<'_> {
+impl LoadedInterface<'_> {
     /// Position at which a slave node is judged: its own, plus the offset.
     pub fn point(&self, slave: usize) -> [f64; 2] {
         let (at, out) = (self.now[self.contacts[slave].node], self.out.get(slave));
@@ -44,7 +44,7 @@ struct JudgedForce {
     slave: usize,
     spot: SurfacePoint,
     give: PointGive,
-    projected: Projected,
+    projected: ProjectedStep,
     line: Line,
     /// Force on the node along n and t of the element's line; `bends` is the part that deforms the element.
     force: [f64; 2],
@@ -78,7 +78,7 @@ impl JudgedGives {
     }
 
     /// Computes deflection and rotation of all elements with local flexibility under the forces of a state.
-    pub fn find(&mut self, seen: &Loaded<'_>, feet: &mut Vec<Foot>) {
+    pub fn find(&mut self, seen: &LoadedInterface<'_>, feet: &mut Vec<ClosestPoint>) {
         self.presses.clear();
         if seen.surfaces.iter().all(|surface| surface.gives.is_empty()) {
             return;
@@ -90,19 +90,19 @@ impl JudgedGives {
             let (at, force) = (seen.point(slave), seen.forces[slave]);
             let mut room = [0; MOST];
             let surfaces = faced(contact, seen.surfaces, seen.now, &mut room);
-            feet::find(at, seen.surfaces, surfaces, seen.now, 0.0, feet);
+            closest_points::find(at, seen.surfaces, surfaces, seen.now, 0.0, feet);
             let press = feet.first().and_then(|foot| {
                 let surface = &seen.surfaces[foot.spot.surface];
                 let give = point_force::of(surface, foot.spot)?;
                 let line = Line::new(seen, foot.spot, at)?;
-                let degree = SurfaceElement::of(surface, foot.spot.element).degree();
+                let degree = SurfaceElement::from_surface(surface, foot.spot.element).degree();
                 let [c, s] = line.normal;
                 let force = [c * force[0] + s * force[1], c * force[1] - s * force[0]];
                 Some(JudgedForce {
                     slave,
                     spot: foot.spot,
                     give,
-                    projected: Projected::new(&self.rule, degree, foot.spot.xi),
+                    projected: ProjectedStep::new(&self.rule, degree, foot.spot.xi),
                     line,
                     force,
                     bends: force[0],
@@ -134,7 +134,7 @@ impl JudgedGives {
     fn sums(&self, at: &JudgedForce, own: Option<f64>) -> (f64, f64) {
         let element = |spot: &SurfacePoint| (spot.surface, spot.element);
         let mut sums = (0.0, 0.0);
-        let mut add = |other: &Projected, force: f64| {
+        let mut add = |other: &ProjectedStep, force: f64| {
             let (give, slope) = pair(&self.rule, &at.give, &at.projected, other);
             sums = (sums.0 + give * force, sums.1 + slope * force);
         };
@@ -166,7 +166,7 @@ impl JudgedGives {
     /// Tangent of a side (unit) under a slave node, rotated by the forces on the side's element.
     pub fn turned(
         &self,
-        seen: &Loaded<'_>,
+        seen: &LoadedInterface<'_>,
         slave: usize,
         spot: SurfacePoint,
         tangent: [f64; 2],
@@ -179,11 +179,11 @@ impl JudgedGives {
         let (Some(give), Some(line)) = (point_force::of(surface, spot), line) else {
             return tangent;
         };
-        let degree = SurfaceElement::of(surface, spot.element).degree();
+        let degree = SurfaceElement::from_surface(surface, spot.element).degree();
         let there = JudgedForce {
             spot,
             give,
-            projected: Projected::new(&self.rule, degree, spot.xi),
+            projected: ProjectedStep::new(&self.rule, degree, spot.xi),
             line,
             ..*own
         };
@@ -196,10 +196,10 @@ impl JudgedGives {
 }
 
 impl Line {
-    fn new(seen: &Loaded<'_>, spot: SurfacePoint, point: [f64; 2]) -> Option<Line> {
-        let element = SurfaceElement::of(&seen.surfaces[spot.surface], spot.element);
+    fn new(seen: &LoadedInterface<'_>, spot: SurfacePoint, point: [f64; 2]) -> Option<Line> {
+        let element = SurfaceElement::from_surface(&seen.surfaces[spot.surface], spot.element);
         let (places, s) = (
-            ElementPositions::of(element.nodes, seen.now),
+            ElementPositions::from_nodes(element.nodes, seen.now),
             element.shape(spot.xi),
         );
         let [x, d, dd] = [&s.n, &s.d, &s.dd].map(|weights| places.sum(weights));
@@ -213,7 +213,12 @@ impl Line {
 }
 
 /// c_ij of two points of an element (length per force), and ∂c_ij/∂ξ_i.
-fn pair(rule: &[(f64, f64)], give: &PointGive, one: &Projected, two: &Projected) -> (f64, f64) {
+fn pair(
+    rule: &[(f64, f64)],
+    give: &PointGive,
+    one: &ProjectedStep,
+    two: &ProjectedStep,
+) -> (f64, f64) {
     let (xi, other, degree) = (one.xi, two.xi, one.degree);
     let [low, high] = if xi < other { [xi, other] } else { [other, xi] };
     let over = |f: &dyn Fn(f64) -> f64| -> f64 {
@@ -252,7 +257,7 @@ fn pair(rule: &[(f64, f64)], give: &PointGive, one: &Projected, two: &Projected)
 /// Legendre coefficients of the projected step at ξ (`step`) and of its projected integral (`hat`), with derivatives with respect
 /// to ξ.
 #[derive(Debug, Clone, Copy)]
-struct Projected {
+struct ProjectedStep {
     degree: usize,
     xi: f64,
     step: [f64; MAX_NODES],
@@ -261,9 +266,9 @@ struct Projected {
     hat_slope: [f64; MAX_NODES],
 }
 
-impl Projected {
+impl ProjectedStep {
     fn new(rule: &[(f64, f64)], degree: usize, xi: f64) -> Self {
-        let mut all = Projected {
+        let mut all = ProjectedStep {
             degree,
             xi,
             step: [0.0; MAX_NODES],
@@ -318,19 +323,20 @@ fn legendre(k: usize, x: f64) -> f64 {
 /// Adds the force of a slave node to `contact` at the node, and its reaction at the nodes of the master element: at the closest
 /// point, plus the moment of the gap if `lever` is set.
 pub fn hand_on(
-    seen: &Loaded<'_>,
+    seen: &LoadedInterface<'_>,
     slave: usize,
-    foot: &Foot,
+    foot: &ClosestPoint,
     lever: bool,
     contact: &mut [[f64; 2]],
 ) {
     let (node, force) = (seen.contacts[slave].node, seen.forces[slave]);
-    let element = SurfaceElement::of(&seen.surfaces[foot.spot.surface], foot.spot.element);
+    let element =
+        SurfaceElement::from_surface(&seen.surfaces[foot.spot.surface], foot.spot.element);
     let s = element.shape(foot.spot.xi);
     let mut moment = [0.0; 2];
     if lever && foot.spot.xi.abs() < 1.0 {
         let (places, at) = (
-            ElementPositions::of(element.nodes, seen.now),
+            ElementPositions::from_nodes(element.nodes, seen.now),
             seen.point(slave),
         );
         let [x, d] = [&s.n, &s.d].map(|weights| places.sum(weights));
@@ -353,6 +359,6 @@ pub fn hand_on(
 #[cfg(test)]
 pub fn quadrature(give: &PointGive, degree: usize, xi: f64, other: f64) -> (f64, f64) {
     let rule = gauss(MAX_NODES);
-    let [one, two] = [xi, other].map(|xi| Projected::new(&rule, degree, xi));
+    let [one, two] = [xi, other].map(|xi| ProjectedStep::new(&rule, degree, xi));
     pair(&rule, give, &one, &two)
 }

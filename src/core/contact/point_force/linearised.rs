@@ -26,7 +26,7 @@ const STEPS: [usize; 2] = [12, 100];
 
 /// Deflection and slopes at a point of an element due to the other forces on it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Others {
+pub struct OtherForces {
     /// Σ c_j F_j (length).
     pub give: f64,
     /// Σ ∂c_j/∂ξ F_j (length).
@@ -35,7 +35,7 @@ pub struct Others {
     pub bend: f64,
 }
 
-impl Others {
+impl OtherForces {
     /// Adds the contribution of a force F_j.
     pub fn add(&mut self, pair: &Pair, force: f64) {
         self.give += pair.give * force;
@@ -46,7 +46,7 @@ impl Others {
 
 /// A slave node over an element, with the force on it.
 #[derive(Debug, Clone, Copy)]
-pub struct Over<'a> {
+pub struct NodeOverElement<'a> {
     /// Position of the slave node.
     pub slave: [f64; 2],
     /// Positions of the element's nodes.
@@ -58,12 +58,12 @@ pub struct Over<'a> {
     /// Local flexibilities of the element.
     pub give: &'a PointGive,
     /// Contribution of the other forces on the element at this point.
-    pub others: Others,
+    pub others: OtherForces,
 }
 
 /// A linearised contact. Its degrees of freedom are x and y of the slave node, then x and y of each node of the element.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Linearised {
+pub struct LinearisedForce {
     /// n, rotated by α (unit).
     pub normal: [f64; 2],
     /// g + Σ c_j F_j (length).
@@ -99,7 +99,7 @@ pub fn turned(normal: [f64; 2], a: f64) -> [f64; 2] {
 }
 
 /// tan α of a force F_n at a point with the lever √m / (m − g k).
-pub fn tilt(own: &Pair, lever: f64, f_n: f64, others: &Others) -> f64 {
+pub fn tilt(own: &Pair, lever: f64, f_n: f64, others: &OtherForces) -> f64 {
     let mut a = others.slope * lever;
     for step in 1..=STEPS[1] {
         let next = (others.slope + own.slope * f_n / (1.0 + a * a).sqrt()) * lever;
@@ -118,7 +118,7 @@ fn ends(step: usize, before: f64, after: f64) -> bool {
 }
 
 /// Computes gap, forces and derivatives of a contact.
-pub fn linearise(over: &Over<'_>) -> Linearised {
+pub fn linearise(over: &NodeOverElement<'_>) -> LinearisedForce {
     let count = over.nodes.len();
     let dofs = 2 * (count + 1);
     let xi = travel(over);
@@ -164,7 +164,7 @@ pub fn linearise(over: &Over<'_>) -> Linearised {
     let own_give = xi.then(pair.give, 2.0 * pair.slope);
     let law = gap + xi.then(over.others.give, over.others.slope) + own_give * force;
     let (along_n, along_t) = (f_n * cos - f_t * sin, f_n * sin + f_t * cos);
-    let mut found = Linearised {
+    let mut found = LinearisedForce {
         normal: turned(n.map(|n| n.value), a.value),
         gap: law.value,
         given: law.value - gap.value,
@@ -210,7 +210,7 @@ pub fn linearise(over: &Over<'_>) -> Linearised {
 }
 
 /// ξ of the closest point, with its derivatives X_i.
-fn travel(over: &Over<'_>) -> Dual {
+fn travel(over: &NodeOverElement<'_>) -> Dual {
     let s = lagrange::shape(over.nodes.len(), over.xi);
     let sum = |weights: &[f64; MAX_NODES], axis: usize| -> f64 {
         over.nodes

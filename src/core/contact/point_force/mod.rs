@@ -30,7 +30,7 @@ mod pair;
 #[cfg(test)]
 mod tests;
 
-pub use linearised::{Linearised, Others, Over, linearise, tilt, turned};
+pub use linearised::{LinearisedForce, NodeOverElement, OtherForces, linearise, tilt, turned};
 pub use pair::Pair;
 
 use crate::contact::element::SurfaceElement;
@@ -48,9 +48,9 @@ pub fn normal(surface: &Surface, spot: SurfacePoint, over: &Projection, f_n: f64
     let (Some(give), Some(lever)) = (of(surface, spot), over.lever()) else {
         return over.normal;
     };
-    let degree = SurfaceElement::of(surface, spot.element).degree();
+    let degree = SurfaceElement::from_surface(surface, spot.element).degree();
     let own = Pair::new(&give, degree, spot.xi, spot.xi);
-    turned(over.normal, tilt(&own, lever, f_n, &Others::default()))
+    turned(over.normal, tilt(&own, lever, f_n, &OtherForces::default()))
 }
 
 /// dx/dξ at an end of an element under a force there, rotated to the direction of the line on that side of the kink.
@@ -58,10 +58,10 @@ pub fn turned_end(surface: &Surface, end: SurfacePoint, slope: [f64; 2], f_n: f6
     let Some(give) = of(surface, end).filter(|_| f_n > 0.0) else {
         return slope;
     };
-    let degree = SurfaceElement::of(surface, end.element).degree();
+    let degree = SurfaceElement::from_surface(surface, end.element).degree();
     let size = (slope[0] * slope[0] + slope[1] * slope[1]).sqrt();
     let own = Pair::new(&give, degree, end.xi, end.xi);
-    let a = tilt(&own, 1.0 / size, f_n, &Others::default());
+    let a = tilt(&own, 1.0 / size, f_n, &OtherForces::default());
     let across = tangent(slope);
     [0, 1].map(|k| slope[k] + a * across[k])
 }

@@ -86,13 +86,13 @@ fn the_compliance_is_zero_at_the_ends_and_positive_between() {
 }
 
 /// A slave node over a bent element; the contribution of the other forces is constant.
-fn over<'a>(x: &'a [[f64; 2]], force: [f64; 2], others: Others) -> Over<'a> {
+fn over<'a>(x: &'a [[f64; 2]], force: [f64; 2], others: OtherForces) -> NodeOverElement<'a> {
     let surface = Surface::new("s", vec![(1..x.len()).collect()], false);
     let surfaces = [surface];
     let spot = project(x[0], &surfaces, &[0], x, None).unwrap();
     let found = projection_at(&surfaces, spot, x, x[0]);
     assert!(found.curve.is_some());
-    Over {
+    NodeOverElement {
         slave: x[0],
         nodes: &x[1..],
         xi: spot.xi,
@@ -110,8 +110,8 @@ fn bent(count: usize, gap: f64) -> Vec<[f64; 2]> {
 }
 
 /// Contribution of another force at ξ = −0.6, as a function of ξ.
-fn others_at(xi: f64) -> Others {
-    let mut others = Others::default();
+fn others_at(xi: f64) -> OtherForces {
+    let mut others = OtherForces::default();
     others.add(&Pair::new(&GIVE, 4, xi, -0.6), 0.05);
     others
 }
@@ -122,9 +122,9 @@ fn the_linearised_contact_is_the_derivative_of_its_gap_and_forces() {
         for f in [[0.2, 0.0], [0.15, -0.07]] {
             let x = bent(5, gap);
             let linearised = |x: &[[f64; 2]], f: [f64; 2]| {
-                let bare = over(x, f, Others::default());
+                let bare = over(x, f, OtherForces::default());
                 let others = others_at(bare.xi);
-                linearise(&Over { others, ..bare })
+                linearise(&NodeOverElement { others, ..bare })
             };
             let at = linearised(&x, f);
             let h = 1e-6;
@@ -132,7 +132,7 @@ fn the_linearised_contact_is_the_derivative_of_its_gap_and_forces() {
                 let moved = |by: f64| {
                     let mut x = x.clone();
                     x[j / 2][j % 2] += by;
-                    (linearised(&x, f), over(&x, f, Others::default()).xi)
+                    (linearised(&x, f), over(&x, f, OtherForces::default()).xi)
                 };
                 let ((plus, xi_plus), (minus, xi_minus)) = (moved(h), moved(-h));
                 let by = |plus: f64, minus: f64| (plus - minus) / (2.0 * h);
@@ -170,7 +170,7 @@ fn the_linearised_contact_is_the_derivative_of_its_gap_and_forces() {
 fn without_friction_there_is_one_potential() {
     let x = bent(5, -0.03);
     let (f_n, n) = (0.2, 2 * x.len());
-    let at = linearise(&over(&x, [f_n, 0.0], Others::default()));
+    let at = linearise(&over(&x, [f_n, 0.0], OtherForces::default()));
     for i in 0..n {
         let by_force = |i: usize| at.columns[0][i] / at.force_slope;
         let row = -at.rows[0][i] - at.compliance * at.force_by[i];

@@ -19,9 +19,9 @@
 //!   c : ε with the moduli of the small-strain law, and on acceptance σ = f S fᵀ / det f. Rigid motions cause no strain here
 //!   either, but the path is approximated by chords: the result depends on the increment size.
 //!
-//! In both cases force and tangent are pure functions of (shape, [`Past`], current displacements), and the tangent is exact.
+//! In both cases force and tangent are pure functions of (shape, [`PreviousState`], current displacements), and the tangent is exact.
 
-use crate::fem::element::{self, Past};
+use crate::fem::element::{self, PreviousState};
 use crate::fem::kinds::Parent;
 use crate::fem::material::{Material, Response};
 use crate::model::{Law, Update};
@@ -185,7 +185,7 @@ impl<const N: usize, const P: usize, const HOOP: bool> ContinuumElement<N, P, HO
         }
     }
 
-    fn reference(&self, past: &Past<'_>, u: &[f64]) -> Reference<N> {
+    fn reference(&self, past: &PreviousState<'_>, u: &[f64]) -> Reference<N> {
         let mut reference = Reference {
             at: self.at,
             u: pairs(u),
@@ -203,7 +203,12 @@ impl<const N: usize, const P: usize, const HOOP: bool> ContinuumElement<N, P, HO
     }
 
     /// Gauss point p; `None` if the material has no response, or the reference shape is folded.
-    fn point(&self, reference: &Reference<N>, past: &Past<'_>, p: usize) -> Option<Point<N>> {
+    fn point(
+        &self,
+        reference: &Reference<N>,
+        past: &PreviousState<'_>,
+        p: usize,
+    ) -> Option<Point<N>> {
         let Gradients { grad, area } = match self.update {
             Update::Total | Update::Small => self.points[p],
             Update::Updated => gradients(&self.rule[p], &reference.at),
@@ -241,7 +246,7 @@ impl<const N: usize, const P: usize, const HOOP: bool> ContinuumElement<N, P, HO
     /// The same in axisymmetry.
     fn point_of_revolution(
         &self,
-        past: &Past<'_>,
+        past: &PreviousState<'_>,
         p: usize,
         (grad, area): ([[f64; 2]; N], f64),
         h: [[f64; 2]; 2],
@@ -279,7 +284,7 @@ impl<const N: usize, const P: usize, const HOOP: bool> ContinuumElement<N, P, HO
     }
 
     /// State of Gauss point p; `None` if the material has no response.
-    pub fn point_state(&self, past: &Past<'_>, u: &[f64], p: usize) -> Option<PointState> {
+    pub fn point_state(&self, past: &PreviousState<'_>, u: &[f64], p: usize) -> Option<PointState> {
         let mut at = [0.0; 2];
         for (n, x) in self.rule[p].n.iter().zip(&self.at) {
             at = [at[0] + n * x[0], at[1] + n * x[1]];
@@ -339,7 +344,13 @@ impl<const N: usize, const P: usize, const HOOP: bool> element::Element
         history_len(self.update, P)
     }
 
-    fn add(&self, past: &Past<'_>, u: &[f64], force: &mut [f64], tangent: &mut [f64]) -> bool {
+    fn add(
+        &self,
+        past: &PreviousState<'_>,
+        u: &[f64],
+        force: &mut [f64],
+        tangent: &mut [f64],
+    ) -> bool {
         let dofs = 2 * N;
         let reference = self.reference(past, u);
         let mut terms = [Terms::default(); P];
@@ -383,7 +394,13 @@ impl<const N: usize, const P: usize, const HOOP: bool> element::Element
         true
     }
 
-    fn resist(&self, past: &Past<'_>, u: &[f64], force: &mut [f64], _: &mut [f64]) -> bool {
+    fn resist(
+        &self,
+        past: &PreviousState<'_>,
+        u: &[f64],
+        force: &mut [f64],
+        _: &mut [f64],
+    ) -> bool {
         let reference = self.reference(past, u);
         for p in 0..P {
             let Some(point) = self.point(&reference, past, p) else {
@@ -403,7 +420,7 @@ impl<const N: usize, const P: usize, const HOOP: bool> element::Element
         true
     }
 
-    fn advance(&self, past: &Past<'_>, u: &[f64], history: &mut [f64]) {
+    fn advance(&self, past: &PreviousState<'_>, u: &[f64], history: &mut [f64]) {
         if self.update != Update::Updated {
             return;
         }

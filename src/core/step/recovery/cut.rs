@@ -2,21 +2,21 @@
 
 use super::path_corner::smaller_arc;
 use super::retry::{Effect, Recovery, Retry};
-use super::stalled::Stalled;
+use super::stalled::FailedIncrement;
 use crate::model::ArcLength;
+use crate::step::arc_state::ROUNDING;
 use crate::step::event::{Failure, Outcome};
-use crate::step::way::ROUNDING;
 use crate::strategy;
 
 /// Half the increment, unless it is the smallest or the strategy does not cut.
-pub(super) struct Halve;
+pub(super) struct IncrementCut;
 
-impl Recovery for Halve {
+impl Recovery for IncrementCut {
     fn name(&self) -> &'static str {
         "halve"
     }
 
-    fn propose(&self, why: &Failure, stalled: &Stalled<'_>) -> Option<Retry> {
+    fn propose(&self, why: &Failure, stalled: &FailedIncrement<'_>) -> Option<Retry> {
         if !stalled.size_helps(why) {
             return None;
         }
@@ -44,7 +44,7 @@ impl Recovery for ShorterArc {
         "shorter-arc"
     }
 
-    fn propose(&self, why: &Failure, stalled: &Stalled<'_>) -> Option<Retry> {
+    fn propose(&self, why: &Failure, stalled: &FailedIncrement<'_>) -> Option<Retry> {
         if !stalled.size_helps(why) {
             return None;
         }

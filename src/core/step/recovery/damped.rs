@@ -21,12 +21,12 @@
 use super::fallback::Fallback;
 use super::motion::Motion;
 use super::retry::{Effect, Recovery, Retry};
-use super::stalled::Stalled;
+use super::stalled::FailedIncrement;
 use crate::contact::laws::{Finding, JudgedLaw, Verdict};
 use crate::linear::norms::Norms;
-use crate::linear::source::{Accepted, At};
-use crate::step::event::{Failure, Moves, Outcome, Slow};
-use crate::step::jump::Landing;
+use crate::linear::source::{AcceptedState, LinearisationPoint};
+use crate::step::event::{Failure, MotionEvent, Outcome, SmallerStepReason};
+use crate::step::jump::AcceptanceNotes;
 
 use crate::step::iterate::Iterate;
 use crate::step::pace::Pace;
@@ -63,32 +63,32 @@ impl Recovery for Release {
         "release"
     }
 
-    fn propose(&self, why: &Failure, stalled: &Stalled<'_>) -> Option<Retry> {
+    fn propose(&self, why: &Failure, stalled: &FailedIncrement<'_>) -> Option<Retry> {
         let helps = stalled.size_helps(why) || matches!(why, Failure::Singular(_));
         let (why, load) = (why.clone(), stalled.state.start.load_factor);
         (helps && stalled.can_move()).then_some(Retry {
             part: stalled.state.sub_increment,
             effect: Effect::Release,
-            outcome: Outcome::Moves(Moves::LetsGo { why, load }),
+            outcome: Outcome::Motion(MotionEvent::DynamicStart { why, load }),
         })
     }
 }
 
 /// Repeats a step of the damped motion more slowly.
-pub(super) struct Slower;
+pub(super) struct SlowerMotion;
 
-impl Recovery for Slower {
+impl Recovery for SlowerMotion {
     fn name(&self) -> &'static str {
         "slower"
     }
 
-    fn propose(&self, why: &Failure, stalled: &Stalled<'_>) -> Option<Retry> {
-        slower(Slow::Failed(why.clone()), stalled)
+    fn propose(&self, why: &Failure, stalled: &FailedIncrement<'_>) -> Option<Retry> {
+        slower(SmallerStepReason::Failed(why.clone()), stalled)
     }
 }
 
 /// Repeats the step with more drag, or continues the motion after a premature attempt at rest.
-fn slower(slow: Slow, stalled: &Stalled<'_>) -> Option<Retry> {
+fn slower(slow: SmallerStepReason, stalled: &FailedIncrement<'_>) -> Option<Retry> {
     if stalled.state.fallback.is_some() && !stalled.searches(Fallback::Release) {
         return None;
     }
@@ -103,13 +103,13 @@ fn slower(slow: Slow, stalled: &Stalled<'_>) -> Option<Retry> {
     Some(Retry {
         part: stalled.state.sub_increment,
         effect: Effect::Motion(motion),
-        outcome: Outcome::Moves(Moves::Slower(slow)),
+        outcome: Outcome::Motion(MotionEvent::Slower(slow)),
     })
 }
 
 impl Stepper {
     /// Repeats a step more slowly. `None` if the maximum drag is reached.
-    fn slow_down(&mut self, slow: Slow) -> Option<Outcome> {
+    fn slow_down(&mut self, slow: SmallerStepReason) -> Option<Outcome> {
         let retry = slower(slow, &self.now.stalled())?;
         self.now.try_again(retry)
     }
@@ -122,7 +122,9 @@ impl Stepper {
         worst: Option<Finding>,
     ) -> Outcome {
         let Some(motion) = self.now.state.motion else {
-            return self.now.accept(after, verdict, Landing::marked(worst));
+            return self
+                .now
+                .accept(after, verdict, AcceptanceNotes::marked(worst));
         };
         let moved = self
             .now
@@ -130,22 +132,22 @@ impl Stepper {
             .moved(&self.now.state.u, &self.now.state.start.u);
         let stride = STRIDE * self.now.model.length;
         let slow = match worst.filter(|found| found.law != JudgedLaw::Touch) {
-            Some(found) => Some(Slow::Failed(Failure::Refused(found))),
-            None if moved > stride => Some(Slow::Far { motion: moved }),
+            Some(found) => Some(SmallerStepReason::Failed(Failure::Refused(found))),
+            None if moved > stride => Some(SmallerStepReason::Far { motion: moved }),
             None if self
                 .now
                 .source
                 .stability(&self.now.state.at())
                 .is_unstable() =>
             {
-                Some(Slow::Unstable)
+                Some(SmallerStepReason::Unstable)
             }
             None => None,
         };
         if let Some(slow) = slow {
             let why = match &slow {
-                Slow::Failed(why) => why.clone(),
-                _ => Failure::Restless {
+                SmallerStepReason::Failed(why) => why.clone(),
+                _ => Failure::NoRest {
                     steps: motion.steps,
                 },
             };
@@ -161,9 +163,9 @@ impl Stepper {
             self.now.state.pace = Pace::default();
             let jumped = motion.travelled + moved > JUMP * self.now.model.length;
             self.now.state.watch = StabilityWatch::default();
-            let landing = Landing {
+            let landing = AcceptanceNotes {
                 jumped,
-                ..Landing::marked(worst)
+                ..AcceptanceNotes::marked(worst)
             };
             return self.now.accept(after, verdict, landing);
         }
@@ -171,7 +173,7 @@ impl Stepper {
             self.now.state.fallback.is_some() && !self.now.stalled().searches(Fallback::Release);
         if spent || motion.steps + 1 >= MOST_STEPS || motion.drag < SOFTEST * motion.stiffness {
             self.now.state.next_major();
-            return self.end_motion(Failure::Restless {
+            return self.end_motion(Failure::NoRest {
                 steps: motion.steps,
             });
         }
@@ -190,8 +192,8 @@ impl Iterate {
     /// it violates none, or if the scene requests damped motions.
     fn violated_since_origin(&mut self, after: &Norms) -> Option<Finding> {
         let origin = self.state.searched.origin.clone()?;
-        let at = At {
-            accepted: Accepted {
+        let at = LinearisationPoint {
+            accepted: AcceptedState {
                 u: &origin.u,
                 history: &origin.history,
                 contacts: &origin.nodes,
@@ -239,7 +241,7 @@ impl Iterate {
         self.state.next.attempt += 1;
         self.state.begin();
         self.forget_workspace();
-        Outcome::Moves(Moves::Step {
+        Outcome::Motion(MotionEvent::Step {
             motion: moved,
             number: motion.steps,
         })

@@ -2,7 +2,7 @@
 
 use super::fallback::{DEEPER, Fallback, FallbackState};
 use super::retry::{Effect, Recovery, Retry};
-use super::stalled::Stalled;
+use super::stalled::FailedIncrement;
 use crate::model::{Jumps, Settings};
 use crate::step::event::{Failure, Outcome};
 use crate::step::state::State;
@@ -23,7 +23,7 @@ impl Recovery for Fallback {
         }
     }
 
-    fn propose(&self, why: &Failure, stalled: &Stalled<'_>) -> Option<Retry> {
+    fn propose(&self, why: &Failure, stalled: &FailedIncrement<'_>) -> Option<Retry> {
         let state = stalled.state;
         let chosen = &state.controls.settings;
         let tried = state.fallback.map(|route| route.by);
@@ -34,7 +34,7 @@ impl Recovery for Fallback {
         };
         if out_of_turn
             || strategy::rungs(chosen.strategy).is_empty()
-            || matches!(why, Failure::Leapt { .. }) && state.fallback.is_none()
+            || matches!(why, Failure::BranchJump { .. }) && state.fallback.is_none()
             || !(matches!(self, Fallback::Touching | Fallback::Back)
                 || stalled.size_helps(why)
                 || stalled.drowned(why))
@@ -73,7 +73,7 @@ fn last_half(state: &State) -> SubIncrement {
 impl Fallback {
     /// Whether the fallback may help after this failure. If all bodies are given as matrices, the interface problem itself fails,
     /// and the ladder has already tried every strategy; at most, sliding can be held back.
-    fn helps(self, why: &Failure, stalled: &Stalled<'_>) -> bool {
+    fn helps(self, why: &Failure, stalled: &FailedIncrement<'_>) -> bool {
         let state = stalled.state;
         if self == Fallback::Back {
             return state.fallback.is_some();

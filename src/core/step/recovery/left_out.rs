@@ -4,7 +4,7 @@ use crate::model::Strategy;
 
 /// The recovery or strategy that a stepper does not use.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum LeftOut {
+pub enum OmittedStep {
     /// A recovery, by name ([`super::names`]).
     Recovery(&'static str),
     /// A strategy of the ladder after its first.

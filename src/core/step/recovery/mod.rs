@@ -41,10 +41,10 @@ use crate::step::iterate::Iterate;
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
 use fallback::Fallback;
-use left_out::LeftOut;
-use proximal::Brake;
+use left_out::OmittedStep;
+use proximal::SlipStiffness;
 use retry::{Effect, Recovery, Retry};
-use stalled::Stalled;
+use stalled::FailedIncrement;
 use std::sync::Arc;
 
 /// Maximum number of cuts of a whole increment because of the same node, before the increment fails.
@@ -53,13 +53,13 @@ const MOST_CUTS: u32 = 300;
 /// Name of the major iteration that the ladder repeats without the change of the contact geometry.
 pub(super) const FROZEN: &str = "frozen";
 
-const MOVING: [&dyn Recovery; 1] = [&damped::Slower];
+const MOVING: [&dyn Recovery; 1] = [&damped::SlowerMotion];
 const ALONG: [&dyn Recovery; 3] = [
-    &path_corner::Turn,
+    &path_corner::CornerRestart,
     &cut::ShorterArc,
-    &path_corner::TurnAtLast,
+    &path_corner::LastCornerRestart,
 ];
-const LOADED: [&dyn Recovery; 3] = [&cut::Halve, &whole::Whole, &damped::Release];
+const LOADED: [&dyn Recovery; 3] = [&cut::IncrementCut, &whole::WholeIncrement, &damped::Release];
 const FALLBACKS: [&dyn Recovery; 8] = [
     &Fallback::Touching,
     &Fallback::Section,
@@ -80,7 +80,7 @@ pub fn names() -> impl Iterator<Item = &'static str> {
 
 impl Stepper {
     /// Disables a recovery or a strategy, to find out whether a scene needs it. This is not part of the state.
-    pub fn leave_out(&mut self, left_out: LeftOut) {
+    pub fn leave_out(&mut self, left_out: OmittedStep) {
         self.left_out = Some(left_out);
     }
 
@@ -118,7 +118,8 @@ impl Stepper {
 
     fn recover(&mut self, recoveries: &[&dyn Recovery], why: &Failure) -> Option<Outcome> {
         let left_out = self.left_out;
-        let kept = |recovery: &&&dyn Recovery| Some(LeftOut::Recovery(recovery.name())) != left_out;
+        let kept =
+            |recovery: &&&dyn Recovery| Some(OmittedStep::Recovery(recovery.name())) != left_out;
         recoveries.iter().filter(kept).find_map(|recovery| {
             let retry = recovery.propose(why, &self.now.stalled())?;
             self.now.try_again(retry)
@@ -128,10 +129,10 @@ impl Stepper {
 
 impl Iterate {
     /// The state of a failed increment, for the recoveries.
-    pub(super) fn stalled(&self) -> Stalled<'_> {
+    pub(super) fn stalled(&self) -> FailedIncrement<'_> {
         let source: &dyn Source = &*self.source;
         let model: &Model = &self.model;
-        Stalled {
+        FailedIncrement {
             model,
             state: &self.state,
             source,
@@ -180,7 +181,7 @@ impl Iterate {
             self.restart(part);
         }
         if by == Some(Fallback::Held) {
-            self.state.brake = Some(Brake::new(self.source.spring()));
+            self.state.brake = Some(SlipStiffness::new(self.source.spring()));
         }
         Some(outcome)
     }

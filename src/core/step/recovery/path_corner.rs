@@ -24,18 +24,18 @@
 //! together do not agree on a sign, the path does not continue in these modes.
 
 use super::retry::{Effect, Recovery, Retry};
-use super::stalled::Stalled;
+use super::stalled::FailedIncrement;
 use crate::contact::record::ContactRecord;
 use crate::contact::record::Forced;
 use crate::contact::state::ContactState;
 use crate::contact::tracking::leave_border;
 use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
-use crate::linear::source::Solved;
+use crate::linear::source::SolveResult;
 use crate::model::{BoundUpdate, Friction, Mode};
+use crate::step::arc_state::{ArcState, Change};
 use crate::step::event::{Failure, Outcome};
 use crate::step::iterate::Iterate;
 use crate::step::state::State;
-use crate::step::way::{Change, Way};
 use std::sync::Arc;
 
 /// Ends of modes coincide if their distances differ by less than this fraction.
@@ -131,7 +131,7 @@ impl Iterate {
     /// If there is no such tangent.
     pub(in crate::step) fn tangent_behind(&mut self) -> Result<(Vec<f64>, Vec<f64>), Failure> {
         if !self.enter_corners() {
-            return Err(Failure::DoubledBack);
+            return Err(Failure::PathReversal);
         }
         // The start lies before the corner, so a solve includes the motion to it: two solves differ by the tangent.
         let (mut motion, given) = self.solve_tangent()?;
@@ -140,7 +140,7 @@ impl Iterate {
         }
         self.linearised = false;
         if !self.linearise() {
-            return Err(Failure::DoubledBack);
+            return Err(Failure::PathReversal);
         }
         let (still, there) = self.solve_tangent()?;
         let minus = |a: [f64; 2], b: [f64; 2]| [a[0] - b[0], a[1] - b[1]];
@@ -161,7 +161,7 @@ impl Iterate {
             let first = signs.next().unwrap_or(1.0);
             signs.all(|sign| sign == first).then_some(first)
         });
-        let sign = sign.ok_or(Failure::DoubledBack)?;
+        let sign = sign.ok_or(Failure::PathReversal)?;
         for (motion, still) in motion.iter_mut().zip(&still) {
             *motion = sign * (*motion - still);
         }
@@ -182,7 +182,7 @@ impl Iterate {
         if let Some(why) = self.unsolvable(solved) {
             return Err(why);
         }
-        if self.source.recover() == Solved::Not {
+        if self.source.recover() == SolveResult::Not {
             return Err(Failure::Singular(self.explain()));
         }
         let mut motion = vec![0.0; self.state.u.len()];
@@ -308,34 +308,34 @@ impl State {
 }
 
 /// Restart behind the corner of the path at which the increment starts.
-pub(super) struct Turn;
+pub(super) struct CornerRestart;
 
-impl Recovery for Turn {
+impl Recovery for CornerRestart {
     fn name(&self) -> &'static str {
         "turn"
     }
 
-    fn propose(&self, why: &Failure, stalled: &Stalled<'_>) -> Option<Retry> {
+    fn propose(&self, why: &Failure, stalled: &FailedIncrement<'_>) -> Option<Retry> {
         turn(why, stalled, AT_START, false)
     }
 }
 
 /// At the minimum arc: restart behind the corner just ahead, or the one where contacts changed first.
-pub(super) struct TurnAtLast;
+pub(super) struct LastCornerRestart;
 
-impl Recovery for TurnAtLast {
+impl Recovery for LastCornerRestart {
     fn name(&self) -> &'static str {
         "turn-at-last"
     }
 
-    fn propose(&self, why: &Failure, stalled: &Stalled<'_>) -> Option<Retry> {
+    fn propose(&self, why: &Failure, stalled: &FailedIncrement<'_>) -> Option<Retry> {
         turn(why, stalled, AHEAD, true)
     }
 }
 
 /// Restarts the increment behind a corner that lies at most this fraction of its size ahead. `None` if there is no such corner,
 /// or if that restart was what failed.
-fn turn(why: &Failure, stalled: &Stalled<'_>, reach: f64, seen: bool) -> Option<Retry> {
+fn turn(why: &Failure, stalled: &FailedIncrement<'_>, reach: f64, seen: bool) -> Option<Retry> {
     let mut way = stalled.state.way.clone().filter(|way| way.known)?;
     if !stalled.size_helps(why) || way.turned && !way.pass_through() {
         return None;
@@ -352,12 +352,12 @@ fn turn(why: &Failure, stalled: &Stalled<'_>, reach: f64, seen: bool) -> Option<
     Some(Retry {
         part: stalled.state.sub_increment,
         effect: Effect::Path(way),
-        outcome: Outcome::Turns { why, changes },
+        outcome: Outcome::PathCorner { why, changes },
     })
 }
 
 /// Size to which an increment is cut: up to the next corner if that lies within it, otherwise half.
-pub(in crate::step) fn smaller_arc(way: &Way) -> f64 {
+pub(in crate::step) fn smaller_arc(way: &ArcState) -> f64 {
     let to = BEFORE * way.next_at;
     let ahead = !way.next.is_empty() && !way.turned && to < BEFORE * BEFORE * way.step;
     if ahead && to > AT_START * way.step {

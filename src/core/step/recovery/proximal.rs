@@ -32,17 +32,17 @@ const MOST: f64 = 1e6;
 
 /// State of the held-back sliding.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Brake {
+pub struct SlipStiffness {
     /// Stiffness of the interface at the start of the attempt (force per length).
     pub spring: f64,
     /// κ of the current major iteration (force per length).
     pub stiffness: f64,
 }
 
-impl Brake {
+impl SlipStiffness {
     /// At the start of an attempt, with the interface's stiffness (force per length).
     pub(in crate::step) fn new(spring: f64) -> Self {
-        Brake {
+        SlipStiffness {
             spring,
             stiffness: spring,
         }

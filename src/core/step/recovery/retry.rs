@@ -2,10 +2,10 @@
 
 use super::fallback::FallbackState;
 use super::motion::Motion;
-use super::stalled::Stalled;
+use super::stalled::FailedIncrement;
+use crate::step::arc_state::ArcState;
 use crate::step::event::{Failure, Outcome};
 use crate::step::sub_increment::SubIncrement;
-use crate::step::way::Way;
 
 /// One way to restart an increment.
 pub(super) trait Recovery: Sync {
@@ -13,7 +13,7 @@ pub(super) trait Recovery: Sync {
     fn name(&self) -> &'static str;
 
     /// What to try after the failure `why`. `None` if this recovery does not apply or has been tried.
-    fn propose(&self, why: &Failure, stalled: &Stalled<'_>) -> Option<Retry>;
+    fn propose(&self, why: &Failure, stalled: &FailedIncrement<'_>) -> Option<Retry>;
 }
 
 /// How to restart an increment.
@@ -31,7 +31,7 @@ pub(super) enum Effect {
     /// One more cut, attributed to this slave node, if any.
     Cut(Option<usize>),
     /// The arc and the corner of the path.
-    Path(Box<Way>),
+    Path(Box<ArcState>),
     /// The increment is accepted although it jumps.
     Whole,
     /// The loads are kept constant, and a damped motion begins.

@@ -1,6 +1,6 @@
 //! Major iterations in which sliding is held back ([`super::proximal`]), and which of them are undone.
 
-use super::proximal::Brake;
+use super::proximal::SlipStiffness;
 use crate::contact::record::ContactRecord;
 use crate::linear::norms::Norms;
 use crate::model::Mode;
@@ -18,11 +18,11 @@ const EXACT: f64 = 1e-9;
 pub(in crate::step) const PATIENCE: u32 = 5;
 
 /// A major iteration that may have to be undone.
-pub(in crate::step) struct Held {
+pub(in crate::step) struct UndoableMajor {
     /// State at its start.
     state: Box<State>,
     /// Brake in force during it.
-    brake: Brake,
+    brake: SlipStiffness,
     /// Slips of the sliding contacts, 0 for the others (length).
     slips: Vec<f64>,
     /// Σ δ d before it (force times length).
@@ -31,7 +31,7 @@ pub(in crate::step) struct Held {
 
 impl Iterate {
     /// Records a major iteration before it is done, if sliding is held back.
-    pub(in crate::step) fn hold(&self, records: &[ContactRecord]) -> Option<Held> {
+    pub(in crate::step) fn hold(&self, records: &[ContactRecord]) -> Option<UndoableMajor> {
         self.state.brake.map(|brake| {
             let (mut work, mut slips) = (0.0, Vec::new());
             for (contact, node) in self.state.nodes.iter().enumerate() {
@@ -45,7 +45,7 @@ impl Iterate {
                 work += slip * (node.f_t - record.t_max_used);
                 slips.push(slip);
             }
-            Held {
+            UndoableMajor {
                 state: Box::new(self.state.clone()),
                 brake,
                 slips,
@@ -55,8 +55,8 @@ impl Iterate {
     }
 
     /// Undoes a major iteration that moved too far or in the wrong direction. Otherwise decreases κ for the next one.
-    pub(in crate::step) fn hold_back(&mut self, held: Held) -> Option<Outcome> {
-        let Held {
+    pub(in crate::step) fn hold_back(&mut self, held: UndoableMajor) -> Option<Outcome> {
+        let UndoableMajor {
             state,
             mut brake,
             slips,
@@ -108,7 +108,7 @@ impl State {
 
     /// Whether the brake still carries a part of the friction, which the judge would report as missing.
     pub(in crate::step) fn is_carried(&self, after: &Norms) -> bool {
-        let holds = |brake: Brake| brake.stiffness > 0.0;
+        let holds = |brake: SlipStiffness| brake.stiffness > 0.0;
         self.brake.is_some_and(holds) && after.interface > EXACT
     }
 }

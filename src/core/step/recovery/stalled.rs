@@ -14,13 +14,13 @@ const SMALLEST_HALF: f64 = 1e-9;
 const TOUCHING: f64 = 1e-9;
 
 /// A failed increment.
-pub(in crate::step) struct Stalled<'a> {
+pub(in crate::step) struct FailedIncrement<'a> {
     pub model: &'a Model,
     pub state: &'a State,
     pub source: &'a dyn Source,
 }
 
-impl Stalled<'_> {
+impl FailedIncrement<'_> {
     /// Whether an increment with this failure may succeed with another size.
     pub fn size_helps(&self, why: &Failure) -> bool {
         match why {
@@ -104,7 +104,7 @@ impl Stalled<'_> {
                 | Failure::LadderEnded { .. }
                 | Failure::NoAnswer { .. }
                 | Failure::Refused(_)
-                | Failure::Leapt { .. }
+                | Failure::BranchJump { .. }
         );
         let touches = |node: &ContactState| node.mode != Mode::Free;
         let mut nodes = self.state.nodes.iter().chain(&self.state.start.nodes);

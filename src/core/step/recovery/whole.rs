@@ -2,23 +2,23 @@
 //! limit point the halves may have no equilibrium although the whole increment has one beyond it.
 
 use super::retry::{Effect, Recovery, Retry};
-use super::stalled::Stalled;
+use super::stalled::FailedIncrement;
 use crate::model::Jumps;
 use crate::step::event::{Failure, Outcome};
 use crate::strategy;
 
-pub(super) struct Whole;
+pub(super) struct WholeIncrement;
 
-impl Recovery for Whole {
+impl Recovery for WholeIncrement {
     fn name(&self) -> &'static str {
         "whole"
     }
 
-    fn propose(&self, why: &Failure, stalled: &Stalled<'_>) -> Option<Retry> {
+    fn propose(&self, why: &Failure, stalled: &FailedIncrement<'_>) -> Option<Retry> {
         let state = stalled.state;
         let rungs = strategy::rungs(state.controls.settings.strategy);
         let cuts = !rungs.is_empty() && stalled.model.jumps == Jumps::Cut;
-        if !cuts || matches!(why, Failure::Leapt { .. }) || !stalled.size_helps(why) {
+        if !cuts || matches!(why, Failure::BranchJump { .. }) || !stalled.size_helps(why) {
             return None;
         }
         let from = state.start.load_factor;
@@ -27,7 +27,7 @@ impl Recovery for Whole {
         Some(Retry {
             part,
             effect: Effect::Whole,
-            outcome: Outcome::Leaps { why, size },
+            outcome: Outcome::WholeIncrement { why, size },
         })
     }
 }

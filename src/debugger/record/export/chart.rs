@@ -1,12 +1,12 @@
 //! Charts in a picture: the load over a monitor, and the force of a contact in its friction cone with T_max by iteration.
 
-use super::shown::Shown;
+use super::export_state::ExportState;
 use super::timeline::colour;
 use crate::explain::names;
 use crate::explain::round_off::RoundOff;
 use crate::explain::trail::{self, Cone, TrailPoint};
-use stickslip_core::model::Watched;
-use stickslip_scene::number::{four, short};
+use stickslip_core::model::MonitorQuantity;
+use stickslip_scene::number::{short, sig4};
 use stickslip_study::drawn::PlotError;
 use stickslip_study::sheet::{Axes, BLACK, COLOURS, GREY, LABEL, MARGIN, SMALL, Sheet};
 
@@ -45,7 +45,7 @@ fn axes(
             } else {
                 value
             };
-            (part, four(value))
+            (part, sig4(value))
         })
     };
     axes.draw(sheet, (x.0, ticks(x.1)), (y.0, ticks(y.1)));
@@ -66,7 +66,7 @@ fn range(values: impl Iterator<Item = f64>) -> [f64; 2] {
 }
 
 /// The load over the requested monitor, or over the first that moves.
-pub(super) fn load(sheet: &mut Sheet, shown: &Shown, high: f64) -> Result<(), PlotError> {
+pub(super) fn load(sheet: &mut Sheet, shown: &ExportState, high: f64) -> Result<(), PlotError> {
     let monitors = &shown.scene.model.monitors;
     let round_off = shown
         .event
@@ -79,7 +79,7 @@ pub(super) fn load(sheet: &mut Sheet, shown: &Shown, high: f64) -> Result<(), Pl
                 .filter_map(|(_, values)| values.get(*at).copied()),
         );
         let noise = round_off.map_or(0.0, |round_off| match monitors[*at].of {
-            Watched::Displacement { .. } => round_off.length,
+            MonitorQuantity::Displacement { .. } => round_off.length,
             _ => round_off.force,
         });
         high - low > noise && (low, high) != (0.0, 1.0)
@@ -122,7 +122,7 @@ pub(super) fn load(sheet: &mut Sheet, shown: &Shown, high: f64) -> Result<(), Pl
 }
 
 /// The force of a contact in its cone, and the cobweb of T_max.
-pub(super) fn cone(sheet: &mut Sheet, shown: &Shown, high: f64) -> Result<(), PlotError> {
+pub(super) fn cone(sheet: &mut Sheet, shown: &ExportState, high: f64) -> Result<(), PlotError> {
     let model = &shown.scene.model;
     let size = |slave: usize| {
         let record = shown.event.and_then(|event| event.nodes.get(slave));
@@ -144,7 +144,7 @@ pub(super) fn cone(sheet: &mut Sheet, shown: &Shown, high: f64) -> Result<(), Pl
         short(now.f_n),
         short(now.f_t),
         short(now.t_max),
-        four(friction.angle)
+        sig4(friction.angle)
     );
     sheet.paragraph(&[words], LABEL, BLACK)?;
     let width = sheet.width;
@@ -172,7 +172,7 @@ pub(super) fn cone(sheet: &mut Sheet, shown: &Shown, high: f64) -> Result<(), Pl
         let span = [low - margin, top + margin];
         let less = match origin == 0.0 {
             true => String::new(),
-            false => format!(" less {}", four(origin)),
+            false => format!(" less {}", sig4(origin)),
         };
         let (used, found) = (format!("T_max used{less}"), format!("T_max found{less}"));
         let ranges = ((used.as_str(), span), (found.as_str(), span));

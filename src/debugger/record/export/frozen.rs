@@ -323,7 +323,7 @@ fn text(
 ///
 /// # Errors If it cannot be written: the format supports only a compliance, and no cohesion.
 pub fn siconos(model: &Model, problem: &InterfaceProblem) -> Result<Friction2d, NoExport> {
-    let Total { slaves, w, q } = total(model, problem)?;
+    let TotalForceProblem { slaves, w, q } = total(model, problem)?;
     let of = |slave: &usize| problem.nodes.iter().find(|node| node.slave == *slave);
     let nodes = || slaves.iter().filter_map(of);
     if let Some(node) = nodes().find(|node| node.friction.cohesion != 0.0) {
@@ -336,7 +336,7 @@ pub fn siconos(model: &Model, problem: &InterfaceProblem) -> Result<Friction2d, 
 
 /// A problem in the total forces of its nodes: (gap, u) = W f + q, with n and t of each node in turn. u is the
 /// slave's motion along t relative to its master since the start of the increment.
-pub struct Total {
+pub struct TotalForceProblem {
     /// Slave numbers of the nodes.
     pub slaves: Vec<usize>,
     /// W, row by row (length by force).
@@ -348,7 +348,7 @@ pub struct Total {
 /// A problem in total forces.
 ///
 /// # Errors If some motion is unrestrained, or a support carries the contact force of a node.
-pub fn total(model: &Model, problem: &InterfaceProblem) -> Result<Total, NoExport> {
+pub fn total(model: &Model, problem: &InterfaceProblem) -> Result<TotalForceProblem, NoExport> {
     let here = writable(problem);
     if here.is_empty() {
         return Err(NoExport::NoInterface);
@@ -366,7 +366,7 @@ pub fn total(model: &Model, problem: &InterfaceProblem) -> Result<Total, NoExpor
         pair[1] -= node.state.slipped(&problem.settings);
     }
     let slaves = problem.nodes.iter().map(|node| node.slave).collect();
-    Ok(Total { slaves, w, q })
+    Ok(TotalForceProblem { slaves, w, q })
 }
 
 /// Rejects nodes whose forces are carried by a support.

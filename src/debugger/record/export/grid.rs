@@ -24,7 +24,7 @@
 //! of text stored as bytes, because only VTK's own reader supports arrays of text. Beam elements with more than
 //! three nodes are written as lines from node to node, and so are surfaces.
 
-use super::shown::{ExportError, Shown};
+use super::export_state::{ExportError, ExportState};
 use stickslip_core::contact::record::ContactRecord;
 use stickslip_core::fem::deformation;
 use stickslip_core::fem::recovery::{self, Configuration};
@@ -39,7 +39,7 @@ const VECTOR: &[&str] = &["X", "Y", "Z"];
 const TENSOR: &[&str] = &["XX", "YY", "ZZ", "XY", "YZ", "XZ"];
 
 /// The contents of the file.
-pub(super) fn vtu(shown: &Shown, _: &mut Stepper) -> Result<Vec<u8>, ExportError> {
+pub(super) fn vtu(shown: &ExportState, _: &mut Stepper) -> Result<Vec<u8>, ExportError> {
     let (at, load) = match shown.event {
         Some(event) => (event.position, event.load_factor),
         None => (shown.origin.at, shown.state.start.load_factor),

@@ -11,10 +11,10 @@
 //! The film of a session is made from a journal by the terminal front end; the list only contains its
 //! extension.
 
+pub mod export_state;
 pub mod frozen;
 pub mod grid;
 pub mod picture;
-pub mod shown;
 pub mod skeleton;
 pub mod written;
 
@@ -23,7 +23,7 @@ mod pressures;
 mod timeline;
 mod window;
 
-use shown::{ExportError, Shown};
+use export_state::{ExportError, ExportState};
 use std::path::{Path, PathBuf};
 use stickslip_core::step::stepper::Stepper;
 use stickslip_scene::problems::market;
@@ -31,13 +31,13 @@ use stickslip_scene::problems::market;
 pub use frozen::{FileMismatch, NoExport, Origin, compared, core, whole, writable};
 
 /// Function that returns the contents of several files made from a state.
-type MakeParts = fn(&Shown, &mut Stepper) -> Result<Vec<Vec<u8>>, ExportError>;
+type MakeParts = fn(&ExportState, &mut Stepper) -> Result<Vec<Vec<u8>>, ExportError>;
 
 /// What a kind of file is made from.
 #[derive(Clone, Copy)]
-pub enum MadeOf {
+pub enum ExportSource {
     /// A state. The stepper belongs to the same model and may be in any state.
-    State(fn(&Shown, &mut Stepper) -> Result<Vec<u8>, ExportError>),
+    State(fn(&ExportState, &mut Stepper) -> Result<Vec<u8>, ExportError>),
     /// A state, in several files: those of [`ExportKind::files`].
     Parts(MakeParts),
     /// A whole session.
@@ -53,7 +53,7 @@ pub struct ExportKind {
     /// Whether it can contain either the scene or its frozen problem. The latter must be requested.
     pub may_be_frozen: bool,
     /// What it is made from, and the function that makes it.
-    pub made_of: MadeOf,
+    pub made_of: ExportSource,
 }
 
 impl ExportKind {
@@ -62,8 +62,8 @@ impl ExportKind {
     /// # Errors If the name is not suitable.
     pub fn files(&self, file: &Path) -> Result<Vec<PathBuf>, String> {
         match self.made_of {
-            MadeOf::Parts(_) => Ok(market::parts(file)?.into()),
-            MadeOf::State(_) | MadeOf::Journal => Ok(vec![file.to_owned()]),
+            ExportSource::Parts(_) => Ok(market::parts(file)?.into()),
+            ExportSource::State(_) | ExportSource::Journal => Ok(vec![file.to_owned()]),
         }
     }
 
@@ -72,13 +72,13 @@ impl ExportKind {
     /// # Errors If they cannot be made.
     pub fn made(
         &self,
-        shown: &Shown,
+        shown: &ExportState,
         stepper: &mut Stepper,
     ) -> Option<Result<Vec<Vec<u8>>, ExportError>> {
         match self.made_of {
-            MadeOf::State(make) => Some(make(shown, stepper).map(|bytes| vec![bytes])),
-            MadeOf::Parts(make) => Some(make(shown, stepper)),
-            MadeOf::Journal => None,
+            ExportSource::State(make) => Some(make(shown, stepper).map(|bytes| vec![bytes])),
+            ExportSource::Parts(make) => Some(make(shown, stepper)),
+            ExportSource::Journal => None,
         }
     }
 }
@@ -89,49 +89,49 @@ pub const KINDS: &[ExportKind] = &[
         extension: "svg",
         what: "a picture of the state",
         may_be_frozen: false,
-        made_of: MadeOf::State(picture::svg),
+        made_of: ExportSource::State(picture::svg),
     },
     ExportKind {
         extension: "png",
         what: "the picture as a bitmap",
         may_be_frozen: false,
-        made_of: MadeOf::State(picture::png),
+        made_of: ExportSource::State(picture::png),
     },
     ExportKind {
         extension: "ron",
         what: "the scene, or its frozen interface problem",
         may_be_frozen: true,
-        made_of: MadeOf::State(written::ron),
+        made_of: ExportSource::State(written::ron),
     },
     ExportKind {
         extension: "dat",
         what: "the frozen interface problem for Siconos",
         may_be_frozen: true,
-        made_of: MadeOf::State(written::dat),
+        made_of: ExportSource::State(written::dat),
     },
     ExportKind {
         extension: "mtx",
         what: "the frozen problem as three Matrix Market files",
         may_be_frozen: true,
-        made_of: MadeOf::Parts(written::mtx),
+        made_of: ExportSource::Parts(written::mtx),
     },
     ExportKind {
         extension: "h5",
         what: "the frozen problem for fclib",
         may_be_frozen: true,
-        made_of: MadeOf::State(written::h5),
+        made_of: ExportSource::State(written::h5),
     },
     ExportKind {
         extension: "vtu",
         what: "the state for ParaView",
         may_be_frozen: false,
-        made_of: MadeOf::State(grid::vtu),
+        made_of: ExportSource::State(grid::vtu),
     },
     ExportKind {
         extension: "cast",
         what: "a journal as a film for asciinema",
         may_be_frozen: false,
-        made_of: MadeOf::Journal,
+        made_of: ExportSource::Journal,
     },
 ];
 

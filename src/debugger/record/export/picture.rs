@@ -5,8 +5,8 @@
 //! shape of their markers, and in colours that also differ in greyscale.
 
 use super::chart;
+use super::export_state::{ExportError, ExportState, PicturePart};
 use super::pressures::pressures;
-use super::shown::{ExportError, PicturePart, Shown};
 use super::timeline::{self, chosen, colour};
 use super::window::{FORCE, Window};
 use crate::explain::conditions::{Given, conditions};
@@ -20,10 +20,10 @@ use stickslip_core::model::{BodyKind, Mode, Model, SolidElement};
 use stickslip_core::step::event::Outcome;
 use stickslip_core::step::state::Status;
 use stickslip_core::step::stepper::Stepper;
-use stickslip_scene::number::{plain, short};
+use stickslip_scene::number::{short, shortest};
 use stickslip_study::drawn::PlotError;
 use stickslip_study::origin;
-use stickslip_study::placing::{Patch, Placing};
+use stickslip_study::placing::{OccupiedArea, Patch};
 use stickslip_study::sheet::{
     Anchor, BLACK, Colour, GREY, LABEL, MARGIN, PALE, SMALL, Sheet, widest,
 };
@@ -51,11 +51,11 @@ const VERMILION: Colour = (213, 94, 0);
 /// Colour of bodies.
 const DARK: Colour = (60, 60, 60);
 
-pub(super) fn svg(shown: &Shown, _: &mut Stepper) -> Result<Vec<u8>, ExportError> {
+pub(super) fn svg(shown: &ExportState, _: &mut Stepper) -> Result<Vec<u8>, ExportError> {
     Ok(sheet(shown)?.svg()?.into_bytes())
 }
 
-pub(super) fn png(shown: &Shown, _: &mut Stepper) -> Result<Vec<u8>, ExportError> {
+pub(super) fn png(shown: &ExportState, _: &mut Stepper) -> Result<Vec<u8>, ExportError> {
     let pixels = if shown.picture.size.is_some() {
         1.0
     } else {
@@ -78,7 +78,7 @@ fn marker(sheet: &mut Sheet, at: (f64, f64), mode: Mode, r: f64) {
 ///
 /// # Errors
 /// If the font cannot be read, or the text leaves no room in the requested size.
-pub fn sheet(shown: &Shown) -> Result<Sheet, PlotError> {
+pub fn sheet(shown: &ExportState) -> Result<Sheet, PlotError> {
     let request = shown.picture;
     let factor = match (request.font, request.size) {
         (Some(font), _) => font / SMALL,
@@ -103,7 +103,7 @@ pub fn sheet(shown: &Shown) -> Result<Sheet, PlotError> {
 }
 
 /// The requested parts, with a shape, chart or timeline of a height.
-fn parts(shown: &Shown, width: f64, high: f64) -> Result<Sheet, PlotError> {
+fn parts(shown: &ExportState, width: f64, high: f64) -> Result<Sheet, PlotError> {
     let model = &shown.scene.model;
     let mut sheet = Sheet::new(width, &title(shown))?;
     sheet.paragraph(&[caption(shown)], LABEL, BLACK)?;
@@ -127,7 +127,7 @@ fn parts(shown: &Shown, width: f64, high: f64) -> Result<Sheet, PlotError> {
     Ok(sheet)
 }
 
-fn title(shown: &Shown) -> String {
+fn title(shown: &ExportState) -> String {
     match shown.scene.model.title.as_str() {
         "" => shown.scene.name.clone(),
         title => title.to_owned(),
@@ -135,12 +135,12 @@ fn title(shown: &Shown) -> String {
 }
 
 /// The position, load and outcome of the state.
-fn caption(shown: &Shown) -> String {
+fn caption(shown: &ExportState) -> String {
     let Some(event) = shown.event else {
         return "The start, before the first minor iteration.".to_owned();
     };
     let at = names::position(event.position);
-    let load = plain(event.load_factor);
+    let load = shortest(event.load_factor);
     let what = match (&event.outcome, &shown.state.status) {
         (_, Status::Failed(_)) | (Outcome::Failed(_), _) => {
             format!("last state; the increment failed: {}", shown.ended)
@@ -148,12 +148,12 @@ fn caption(shown: &Shown) -> String {
         (Outcome::Increment { .. }, Status::Finished) => "accepted; end of the history".to_owned(),
         (Outcome::Increment { .. }, _) => "accepted".to_owned(),
         (Outcome::Major { .. } | Outcome::Refused { .. }, _) => "not in equilibrium yet".to_owned(),
-        (Outcome::Moves(_), _) => "moving against viscous drag; not in equilibrium".to_owned(),
+        (Outcome::Motion(_), _) => "moving against viscous drag; not in equilibrium".to_owned(),
         (
             Outcome::Cut { .. }
-            | Outcome::Leaps { .. }
+            | Outcome::WholeIncrement { .. }
             | Outcome::Fallback { .. }
-            | Outcome::Turns { .. },
+            | Outcome::PathCorner { .. },
             _,
         ) => "the increment restarts".to_owned(),
         _ => "modes or T_max still change".to_owned(),
@@ -171,7 +171,7 @@ fn caption(shown: &Shown) -> String {
 }
 
 /// The origin of the picture: scene, strategy and program.
-fn footer(shown: &Shown) -> Vec<String> {
+fn footer(shown: &ExportState) -> Vec<String> {
     let mut from = format!("Scene: {}", shown.origin.scene);
     if !shown.origin.changes.is_empty() {
         from += &format!(", with {}", shown.origin.changes.join(", "));
@@ -208,7 +208,12 @@ fn stroke(sheet: &mut Sheet, window: &Window, points: &[Point], pen: &Pen) {
     }
 }
 
-fn shape(sheet: &mut Sheet, shown: &Shown, rows: &[usize], high: f64) -> Result<(), PlotError> {
+fn shape(
+    sheet: &mut Sheet,
+    shown: &ExportState,
+    rows: &[usize],
+    high: f64,
+) -> Result<(), PlotError> {
     let model = &shown.scene.model;
     let magnified = outline::magnification(model, std::iter::once(&shown.state.u[..]));
     let now = |node: usize| outline::magnified(model, &shown.state.u, node, magnified);
@@ -219,7 +224,7 @@ fn shape(sheet: &mut Sheet, shown: &Shown, rows: &[usize], high: f64) -> Result<
     };
     let seen = extent(model, &now).unwrap_or(Bounds::UNIT);
     let window = Window::new(&seen, patch, room(shown));
-    let mut taken = Placing::within(patch);
+    let mut taken = OccupiedArea::within(patch);
     bodies(sheet, &window, model, &now, &mut taken);
     surfaces(sheet, &window, model, &now, &mut taken);
     gaps(sheet, &window, shown, &now);
@@ -246,7 +251,7 @@ fn bodies(
     window: &Window,
     model: &Model,
     now: &dyn Fn(usize) -> Point,
-    taken: &mut Placing,
+    taken: &mut OccupiedArea,
 ) {
     let lines = || model.bodies.iter().flat_map(|body| body.kind.lines());
     let before = Pen {
@@ -290,7 +295,7 @@ fn surfaces(
     window: &Window,
     model: &Model,
     now: &dyn Fn(usize) -> Point,
-    taken: &mut Placing,
+    taken: &mut OccupiedArea,
 ) {
     for surface in &model.surfaces {
         let mut walked = 0.5 * SPACING;
@@ -312,7 +317,7 @@ fn normals(
     from: (f64, f64),
     to: (f64, f64),
     walked: &mut f64,
-    taken: &mut Placing,
+    taken: &mut OccupiedArea,
 ) {
     let (x, y) = (to.0 - from.0, to.1 - from.1);
     let length = x.hypot(y);
@@ -332,7 +337,7 @@ fn normals(
 }
 
 /// Open gaps as lines from node to surface, if they are wide enough to see.
-fn gaps(sheet: &mut Sheet, window: &Window, shown: &Shown, now: &dyn Fn(usize) -> Point) {
+fn gaps(sheet: &mut Sheet, window: &Window, shown: &ExportState, now: &dyn Fn(usize) -> Point) {
     let Some(event) = shown.event else { return };
     for (contact, found) in shown.scene.model.contacts.iter().zip(&event.nodes) {
         if found.spot.is_none() || found.decision.before != Mode::Free {
@@ -349,7 +354,7 @@ fn gaps(sheet: &mut Sheet, window: &Window, shown: &Shown, now: &dyn Fn(usize) -
 }
 
 /// Margins that the force arrows need outside the shape: left, top, right, bottom.
-fn room(shown: &Shown) -> [f64; 4] {
+fn room(shown: &ExportState) -> [f64; 4] {
     let (largest, mut room) = (largest(shown), [0.0_f64; 4]);
     let mut reach = |x: f64, y: f64| {
         for (room, reach) in room.iter_mut().zip([-x, y, x, -y]) {
@@ -386,7 +391,7 @@ fn size(found: &ContactRecord) -> f64 {
 }
 
 /// The largest contact force above round-off; 0 if there is none.
-fn largest(shown: &Shown) -> f64 {
+fn largest(shown: &ExportState) -> f64 {
     let Some(event) = shown.event else { return 0.0 };
     let round_off = RoundOff::new(&shown.scene.model, &event.before);
     let sizes = event.nodes.iter().map(|found| round_off.force(size(found)));
@@ -397,10 +402,10 @@ fn largest(shown: &Shown) -> f64 {
 fn given(
     sheet: &mut Sheet,
     window: &Window,
-    shown: &Shown,
+    shown: &ExportState,
     now: &dyn Fn(usize) -> Point,
     marked: f64,
-    taken: &mut Placing,
+    taken: &mut OccupiedArea,
 ) {
     let load_factor = shown.event.map_or(0.0, |event| event.load_factor);
     let found = conditions(&shown.scene.model, load_factor, now);
@@ -458,10 +463,10 @@ fn given(
 fn forces(
     sheet: &mut Sheet,
     window: &Window,
-    shown: &Shown,
+    shown: &ExportState,
     now: &dyn Fn(usize) -> Point,
     marked: f64,
-    taken: &mut Placing,
+    taken: &mut OccupiedArea,
 ) -> f64 {
     let largest = largest(shown);
     let Some(event) = shown.event.filter(|_| largest > 0.0) else {
@@ -490,11 +495,11 @@ fn forces(
 fn slaves(
     sheet: &mut Sheet,
     window: &Window,
-    shown: &Shown,
+    shown: &ExportState,
     now: &dyn Fn(usize) -> Point,
     rows: &[usize],
     r: f64,
-    taken: &mut Placing,
+    taken: &mut OccupiedArea,
 ) -> Result<(), PlotError> {
     let model = &shown.scene.model;
     let at = |slave: usize| window.at(now(model.contacts[slave].node));
@@ -539,7 +544,7 @@ fn radius(window: &Window, model: &Model, now: &dyn Fn(usize) -> Point) -> f64 {
 }
 
 /// The mode in the shown minor iteration; before the first one, the initial mode.
-fn mode(shown: &Shown, slave: usize) -> Mode {
+fn mode(shown: &ExportState, slave: usize) -> Mode {
     let found = shown.event.and_then(|event| event.nodes.get(slave));
     found.map_or(shown.state.nodes[slave].mode, |found| found.decision.before)
 }
@@ -554,7 +559,7 @@ fn entry(sheet: &mut Sheet, at: (f64, f64), text: &str) -> Result<f64, PlotError
 fn legend(
     sheet: &mut Sheet,
     window: &Window,
-    shown: &Shown,
+    shown: &ExportState,
     largest: f64,
     magnified: f64,
 ) -> Result<(), PlotError> {
@@ -572,21 +577,21 @@ fn legend(
             sheet.line(&[(end, y - 5.0), (end, y + 5.0)], 1.5, BLACK);
         }
         x += wide + 8.0;
-        x += entry(sheet, (x, y), &format!("length {}", plain(unit)))?;
+        x += entry(sheet, (x, y), &format!("length {}", shortest(unit)))?;
     }
     if largest > 0.0 {
         let unit = outline::round_down(0.8 * largest);
         let wide = FORCE * unit / largest;
         sheet.arrow((x, y), (x + wide, y), 2.0, VERMILION);
         x += wide + 8.0;
-        x += entry(sheet, (x, y), &format!("contact force {}", plain(unit)))?;
+        x += entry(sheet, (x, y), &format!("contact force {}", shortest(unit)))?;
     }
     sheet.arrow((x, y + 6.0), (x, y - 7.0), 1.0, GREY);
     sheet.text((x + 10.0, y), "outward side", SMALL, BLACK, Anchor::Left);
     let moved = moved(shown);
     let scale = match magnified == 1.0 {
         true => "to scale".to_owned(),
-        false => format!("magnified ×{}", plain(magnified)),
+        false => format!("magnified ×{}", shortest(magnified)),
     };
     let words = format!(
         "Displacements {scale}, maximum {}; dashed: undeformed; green: supports, loads, and prescribed motions (double line).",
@@ -599,13 +604,13 @@ fn legend(
 /// Four significant digits, without trailing zeros.
 fn plain_four(value: f64) -> String {
     match format!("{value:.3e}").parse::<f64>() {
-        Ok(rounded) => plain(rounded),
+        Ok(rounded) => shortest(rounded),
         Err(_) => short(value),
     }
 }
 
 /// The largest displacement of a node.
-fn moved(shown: &Shown) -> f64 {
+fn moved(shown: &ExportState) -> f64 {
     let model = &shown.scene.model;
     let far = |node: usize| {
         let (at, now) = (model.nodes[node].at, model.place(&shown.state.u, node));
@@ -616,7 +621,7 @@ fn moved(shown: &Shown) -> f64 {
 }
 
 /// The table of some slave nodes.
-fn table(sheet: &mut Sheet, shown: &Shown, rows: &[usize]) -> Result<(), PlotError> {
+fn table(sheet: &mut Sheet, shown: &ExportState, rows: &[usize]) -> Result<(), PlotError> {
     let Some(event) = shown.event.filter(|event| !event.nodes.is_empty()) else {
         return Ok(());
     };

@@ -1,6 +1,6 @@
 //! Contact pressures in a picture.
 
-use super::shown::Shown;
+use super::export_state::ExportState;
 use super::window::{FORCE, Window};
 use crate::explain::outline::Point;
 use crate::explain::round_off::RoundOff;
@@ -14,7 +14,7 @@ const BLUE: Colour = (86, 180, 233);
 pub(super) fn pressures(
     sheet: &mut Sheet,
     window: &Window,
-    shown: &Shown,
+    shown: &ExportState,
     now: &dyn Fn(usize) -> Point,
 ) -> f64 {
     let (model, Some(event)) = (&shown.scene.model, shown.event) else {

@@ -1,10 +1,10 @@
 //! The timeline in a picture: the modes of slave nodes in the last minor iterations, one cell each.
 
-use super::shown::COLUMNS;
+use super::export_state::COLUMNS;
 use crate::explain::names;
 use crate::history::strip::{PointKind, Strip};
 use stickslip_core::model::{Mode, Model};
-use stickslip_scene::number::plain;
+use stickslip_scene::number::shortest;
 use stickslip_study::drawn::PlotError;
 use stickslip_study::sheet::{Anchor, BLACK, Colour, GREY, LABEL, MARGIN, SMALL, Sheet, widest};
 
@@ -91,8 +91,8 @@ pub(super) fn draw(
         true => format!(
             "Modes by minor iteration, the last {}, loads {} to {}",
             columns.len(),
-            plain(first.load_factor),
-            plain(end.load_factor)
+            shortest(first.load_factor),
+            shortest(end.load_factor)
         ),
         false => "Modes by minor iteration".to_owned(),
     };

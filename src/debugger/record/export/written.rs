@@ -1,7 +1,7 @@
 //! Scenes as text (`.ron`), and frozen problems in other programs' formats: `.dat`, `.mtx`, `.h5`.
 
+use super::export_state::{ExportError, ExportState, problem};
 use super::frozen::{self, Origin};
-use super::shown::{ExportError, Shown, problem};
 use crate::explain::names;
 use stickslip_core::step::stepper::Stepper;
 use stickslip_exchange::fclib;
@@ -12,7 +12,7 @@ use stickslip_scene::shown as outside;
 use stickslip_scene::siconos::{Friction2d, Storage};
 
 /// The scene with all overrides, or its frozen problem if requested.
-pub(super) fn ron(shown: &Shown, stepper: &mut Stepper) -> Result<Vec<u8>, ExportError> {
+pub(super) fn ron(shown: &ExportState, stepper: &mut Stepper) -> Result<Vec<u8>, ExportError> {
     if !shown.frozen {
         return Ok(scene(shown.scene)?.into_bytes());
     }
@@ -28,31 +28,31 @@ pub(super) fn ron(shown: &Shown, stepper: &mut Stepper) -> Result<Vec<u8>, Expor
 }
 
 /// The frozen problem in Siconos format.
-pub(super) fn dat(shown: &Shown, stepper: &mut Stepper) -> Result<Vec<u8>, ExportError> {
+pub(super) fn dat(shown: &ExportState, stepper: &mut Stepper) -> Result<Vec<u8>, ExportError> {
     let friction = condensed(shown, stepper)?;
     Ok(friction.write(Storage::Dense).into_bytes())
 }
 
 /// The frozen problem as Matrix Market files.
-pub(super) fn mtx(shown: &Shown, stepper: &mut Stepper) -> Result<Vec<Vec<u8>>, ExportError> {
+pub(super) fn mtx(shown: &ExportState, stepper: &mut Stepper) -> Result<Vec<Vec<u8>>, ExportError> {
     let friction = condensed(shown, stepper)?;
     let texts = market::texts(&friction, &from(shown));
     Ok(texts.map(String::into_bytes).into())
 }
 
 /// The frozen problem in fclib format.
-pub(super) fn h5(shown: &Shown, stepper: &mut Stepper) -> Result<Vec<u8>, ExportError> {
+pub(super) fn h5(shown: &ExportState, stepper: &mut Stepper) -> Result<Vec<u8>, ExportError> {
     let friction = condensed(shown, stepper)?;
     fclib::write(&friction.local(), &from(shown)).map_err(|e| ExportError::NoFile(e.to_string()))
 }
 
-fn condensed(shown: &Shown, stepper: &mut Stepper) -> Result<Friction2d, ExportError> {
+fn condensed(shown: &ExportState, stepper: &mut Stepper) -> Result<Friction2d, ExportError> {
     let (problem, _) = problem(shown, stepper)?;
     Ok(frozen::siconos(&shown.scene.model, &problem)?)
 }
 
 /// Origin of the problem, in one line.
-fn from(shown: &Shown) -> String {
+fn from(shown: &ExportState) -> String {
     let text = format!(
         "From {}, {}",
         shown.scene.name,

@@ -5,8 +5,8 @@
 
 use std::ops::Range;
 use stickslip_core::interface::cycle;
-use stickslip_exchange::calculix::cel::Closed;
-use stickslip_exchange::calculix::past::{Attempt, End, PastRun};
+use stickslip_exchange::calculix::cel::ClosedContact;
+use stickslip_exchange::calculix::files::{Attempt, CalculixFiles, End};
 
 /// Number of digits printed.
 const DIGITS: i32 = 4;
@@ -33,7 +33,7 @@ impl Cycle {
 
 /// The first cycle in an attempt. Without residuals, only contact elements are compared, and only in attempts
 /// that did not converge, because contact elements can also recur on the way to convergence.
-pub fn first(run: &PastRun, attempt: &Attempt) -> Option<Cycle> {
+pub fn first(run: &CalculixFiles, attempt: &Attempt) -> Option<Cycle> {
     let of = |k: usize| attempt.iterations.start + k;
     let found = (0..attempt.iterations.len()).find_map(|here| {
         let (same, elsewhere) = (
@@ -58,7 +58,7 @@ pub fn first(run: &PastRun, attempt: &Attempt) -> Option<Cycle> {
 
 /// Whether two iterations differ by more than `limit` units of the last digit, or in contact elements; `None`
 /// if unknown.
-fn differ(run: &PastRun, attempt: &Attempt, a: usize, b: usize, limit: f64) -> Option<bool> {
+fn differ(run: &CalculixFiles, attempt: &Attempt, a: usize, b: usize, limit: f64) -> Option<bool> {
     let (one, other) = (&run.iterations[a], &run.iterations[b]);
     let touches = run.closed(a)? != run.closed(b)?;
     match (one.norms, other.norms) {
@@ -86,8 +86,8 @@ fn apart(a: f64, b: f64) -> Option<f64> {
 }
 
 /// The slaves whose contact elements differ between two iterations, in ascending order.
-pub fn changed(one: &[Closed], other: &[Closed]) -> Vec<usize> {
-    let groups = |closed: &'_ [Closed]| -> Vec<(u32, Range<usize>)> {
+pub fn changed(one: &[ClosedContact], other: &[ClosedContact]) -> Vec<usize> {
+    let groups = |closed: &'_ [ClosedContact]| -> Vec<(u32, Range<usize>)> {
         let mut start = 0;
         let parts = closed.chunk_by(|a, b| a.slave == b.slave);
         parts
@@ -135,8 +135,8 @@ mod tests {
 
     #[test]
     fn changed_slaves_include_those_of_one_iteration_only() {
-        let of = |slaves: &[(u32, u32)]| -> Vec<Closed> {
-            let closed = |&(slave, master): &(u32, u32)| Closed {
+        let of = |slaves: &[(u32, u32)]| -> Vec<ClosedContact> {
+            let closed = |&(slave, master): &(u32, u32)| ClosedContact {
                 slave,
                 master,
                 elements: 1,

@@ -16,10 +16,10 @@ use stickslip_core::linear::norms::Norms;
 use stickslip_core::model::{FinishedRun, Mode, Model};
 use stickslip_core::step::event::{Event, Failure, Outcome, Position, Words};
 use stickslip_core::step::intervene::{Intervention, Refusal};
-use stickslip_core::step::solver::{GoesBack, Lost, Offers, Solver};
+use stickslip_core::step::solver::{Capabilities, RewindSupport, Solver, SolverLost};
 use stickslip_core::step::state::{State, Status};
 use stickslip_exchange::attach::message::{self, Friction, Id, Level};
-use stickslip_exchange::calculix::past::End;
+use stickslip_exchange::calculix::files::End;
 use stickslip_scene::Scene;
 use stickslip_scene::calculix;
 
@@ -131,7 +131,7 @@ impl RecordedRun {
     pub fn new(opened: &OpenedRun) -> RecordedRun {
         let run = opened.run.clone();
         let all: Vec<(u32, u32)> = increments(&run).collect();
-        let number = |a: &stickslip_exchange::calculix::past::Attempt| {
+        let number = |a: &stickslip_exchange::calculix::files::Attempt| {
             all.partition_point(|increment| *increment <= (a.step, a.increment)) as u32
         };
         let model = Arc::new(opened.scene.model.clone());
@@ -169,7 +169,7 @@ impl RecordedRun {
                 element: closed.master as usize,
                 xi: 0.0,
             }),
-            ..ContactRecord::of_modes(modes[0], modes[1], &self.state.nodes[slave])
+            ..ContactRecord::from_modes(modes[0], modes[1], &self.state.nodes[slave])
         }
     }
 
@@ -251,35 +251,35 @@ impl Solver for RecordedRun {
         &self.event
     }
 
-    fn step(&mut self) -> Result<bool, Lost> {
+    fn step(&mut self) -> Result<bool, SolverLost> {
         let iteration = self.state.place().unwrap_or(0) as usize;
         if self.state.status == Status::Finished {
             return Ok(false);
         }
         if iteration >= self.run.files.iterations.len() {
             let text = format!("this is the last iteration of a {}", words::READ_ONLY);
-            return Err(Lost::new(text));
+            return Err(SolverLost::new(text));
         }
         self.event = self.event_of(iteration);
         self.state.follow(&self.event, iteration as u64 + 1);
         Ok(true)
     }
 
-    fn restore(&mut self, state: &State) -> Result<(), Lost> {
+    fn restore(&mut self, state: &State) -> Result<(), SolverLost> {
         self.state.clone_from(state);
         Ok(())
     }
 
     fn intervene(&mut self, intervention: &Intervention) -> Result<(), Refusal> {
-        self.offers().check(intervention)
+        self.capabilities().check(intervention)
     }
 
-    fn offers(&self) -> Offers {
-        Offers {
+    fn capabilities(&self) -> Capabilities {
+        Capabilities {
             name: "CalculiX".into(),
             past: Some(words::READ_ONLY),
-            goes_back: GoesBack::ToAny,
-            ..Offers::default()
+            goes_back: RewindSupport::ToAny,
+            ..Capabilities::default()
         }
     }
 }

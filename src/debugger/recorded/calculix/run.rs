@@ -2,9 +2,9 @@
 
 use super::cycle::{self, Cycle};
 use std::fmt::Write;
-use stickslip_exchange::calculix::cel::{Closed, Slave};
+use stickslip_exchange::calculix::cel::{ClosedContact, Slave};
 use stickslip_exchange::calculix::cvg::Norms;
-use stickslip_exchange::calculix::past::{End, PastRun};
+use stickslip_exchange::calculix::files::{CalculixFiles, End};
 
 /// A finished run.
 #[derive(Debug, Clone, PartialEq)]
@@ -12,7 +12,7 @@ pub struct CalculixRun {
     /// Path of the .cel, as typed by the user.
     pub name: String,
     /// Contents of the files.
-    pub files: PastRun,
+    pub files: CalculixFiles,
     /// The first cycle of each attempt.
     pub cycles: Vec<Option<Cycle>>,
     /// The contacts that switch, those with the most switches in one attempt first.
@@ -75,7 +75,7 @@ pub fn residual_limit(iteration: u32) -> f64 {
 
 impl CalculixRun {
     /// Finds the cycles and the contacts that switch.
-    pub fn new(name: impl Into<String>, files: PastRun) -> CalculixRun {
+    pub fn new(name: impl Into<String>, files: CalculixFiles) -> CalculixRun {
         let mut attempts = vec![0; files.iterations.len()];
         for (index, attempt) in files.attempts.iter().enumerate() {
             attempts[attempt.iterations.clone()].fill(index);
@@ -122,7 +122,7 @@ impl CalculixRun {
     }
 
     /// The contact elements of a slave in an iteration, by master, if known.
-    pub fn contact(&self, iteration: usize, slave: usize) -> Option<&[Closed]> {
+    pub fn contact(&self, iteration: usize, slave: usize) -> Option<&[ClosedContact]> {
         let closed = self.files.closed(iteration)?;
         let from = closed.partition_point(|c| (c.slave as usize) < slave);
         let to = closed.partition_point(|c| c.slave as usize <= slave);
@@ -135,7 +135,8 @@ impl CalculixRun {
             return Status::Unknown;
         };
         let (part, whole) = (u64::from(elements(now)), u64::from(self.most[slave]));
-        let masters = |closed: &[Closed]| closed.iter().map(|c| c.master).collect::<Vec<_>>();
+        let masters =
+            |closed: &[ClosedContact]| closed.iter().map(|c| c.master).collect::<Vec<_>>();
         let before = iteration.checked_sub(1);
         let before = before.filter(|before| self.attempt(*before) == self.attempt(iteration));
         let before = before.and_then(|before| self.contact(before, slave));
@@ -204,7 +205,7 @@ impl CalculixRun {
 }
 
 /// All slaves that switch.
-fn switching(files: &PastRun) -> Vec<Switching> {
+fn switching(files: &CalculixFiles) -> Vec<Switching> {
     let none = |slave| Switching {
         slave,
         attempts: Vec::new(),
@@ -231,7 +232,7 @@ fn switching(files: &PastRun) -> Vec<Switching> {
     all
 }
 
-fn elements(closed: &[Closed]) -> u32 {
+fn elements(closed: &[ClosedContact]) -> u32 {
     let counts = closed.iter().map(|closed| closed.elements);
     counts.fold(0, u32::saturating_add)
 }

@@ -4,8 +4,8 @@ use super::run::{CORRECTION_LIMIT, CalculixRun, Status, face, residual_limit};
 use std::fmt::Write;
 use stickslip_exchange::calculix::Stop;
 use stickslip_exchange::calculix::cel::Slave;
-use stickslip_exchange::calculix::past::Beside;
-use stickslip_scene::number::plain;
+use stickslip_exchange::calculix::files::OptionalFile;
+use stickslip_scene::number::shortest;
 use stickslip_scene::shown::{aligned, first_of};
 
 /// Kind of the recording.
@@ -63,9 +63,9 @@ pub fn notes(run: &CalculixRun) -> Vec<String> {
             ),
         })
     };
-    let beside = |end: &str, file: Beside, without: &str| match file {
-        Beside::Missing => Some(format!("{stem}.{end} is missing: {without}")),
-        Beside::Read(stop) => stopped(end, stop),
+    let beside = |end: &str, file: OptionalFile, without: &str| match file {
+        OptionalFile::Missing => Some(format!("{stem}.{end} is missing: {without}")),
+        OptionalFile::Read(stop) => stopped(end, stop),
     };
     let differs = files.differs.map(|(at, count)| {
         format!(
@@ -92,7 +92,7 @@ pub fn attempt(run: &CalculixRun, attempt: usize) -> String {
         "converged" => format!("converged after {iterations}"),
         "cut" => {
             let next = run.files.attempts[attempt + 1].row;
-            let size = next.map_or(String::new(), |row| format!(" to {}", plain(row.size)));
+            let size = next.map_or(String::new(), |row| format!(" to {}", shortest(row.size)));
             format!("not converged in {iterations}; cut{size}")
         }
         "failed" => format!("not converged in {iterations}; the run ends here"),
@@ -108,7 +108,7 @@ pub fn attempt(run: &CalculixRun, attempt: usize) -> String {
         };
         // Remove round-off from subtracting printed numbers.
         let start = (start * 1e6).round() / 1e6;
-        let _ = write!(text, "; time {} + {}", plain(start), plain(row.size));
+        let _ = write!(text, "; time {} + {}", shortest(start), shortest(row.size));
     }
     text
 }
@@ -117,7 +117,7 @@ pub fn attempt(run: &CalculixRun, attempt: usize) -> String {
 fn cycle(run: &CalculixRun, attempt: usize) -> Option<String> {
     let cycle = run.cycles[attempt].as_ref()?;
     let number = run.files.iterations[cycle.iterations.start].number;
-    let residual = |k| Some(plain(run.norms(k)?.residual));
+    let residual = |k| Some(shortest(run.norms(k)?.residual));
     let residuals: Vec<String> = cycle.iterations.clone().filter_map(residual).collect();
     let residuals = match residuals.is_empty() {
         true => String::new(),
@@ -150,9 +150,9 @@ pub fn iteration(run: &CalculixRun, iteration: usize) -> String {
         let _ = write!(
             text,
             ", residual {} % (limit {} %), correction {} % (limit {CORRECTION_LIMIT} %)",
-            plain(norms.residual),
+            shortest(norms.residual),
             residual_limit(this.number),
-            plain(norms.correction)
+            shortest(norms.correction)
         );
     }
     let attempt = run.attempt(iteration);
@@ -167,7 +167,7 @@ pub fn contact(run: &CalculixRun, iteration: usize, slave: usize) -> String {
         None => "contact elements unknown".to_owned(),
         Some([]) => "open".to_owned(),
         Some(closed) => {
-            let face = |closed: &stickslip_exchange::calculix::cel::Closed| {
+            let face = |closed: &stickslip_exchange::calculix::cel::ClosedContact| {
                 let face = face(&run.files.masters[closed.master as usize]);
                 match points {
                     true => format!("{face} at {}", counted(closed.elements as usize, "point")),
@@ -246,7 +246,7 @@ fn attempts(run: &CalculixRun) -> String {
     for (index, attempt) in run.files.attempts.iter().enumerate() {
         let last = attempt.iterations.clone().last();
         let norms = last.and_then(|last| run.norms(last));
-        let number = |value: Option<f64>| value.map_or("-".into(), plain);
+        let number = |value: Option<f64>| value.map_or("-".into(), shortest);
         let closed = last.and_then(|last| run.closed(last));
         rows.push([
             run.attempt_name(index),

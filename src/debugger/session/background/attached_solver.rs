@@ -11,22 +11,27 @@ use crate::explain::walk::ReportedIterations;
 use crate::session::trials::try_all;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::Sender;
-use stickslip_core::step::solver::{Lost, Posed};
+use stickslip_core::step::solver::{ReportedProblem, SolverLost};
 use stickslip_core::step::state::{State, Status};
 
 impl Helper {
     /// The interface problem that an attached solver reports for a state.
-    pub(super) fn posed(&self, state: &State) -> Result<Posed, Lost> {
+    pub(super) fn interface_problem(&self, state: &State) -> Result<ReportedProblem, SolverLost> {
         if !self.offers.problem {
-            return Err(Lost::new(self.offers.lacks("its interface problem")));
+            return Err(SolverLost::new(self.offers.lacks("its interface problem")));
         }
         let wanted = state.clone();
-        let asked = self.lender.look(move |solver| solver.posed(&wanted));
-        asked.unwrap_or_else(|| Err(Lost::new("the solver is busy; :census asks again")))
+        let asked = self
+            .lender
+            .look(move |solver| solver.interface_problem(&wanted));
+        asked.unwrap_or_else(|| Err(SolverLost::new("the solver is busy; :census asks again")))
     }
 
-    /// As [`Self::posed`], and returns the solver to its previous state. `None` if the solver is busy.
-    pub(super) fn posed_aside(&mut self, state: &State) -> Option<Result<Posed, Lost>> {
+    /// As [`Self::interface_problem`], and returns the solver to its previous state. `None` if the solver is busy.
+    pub(super) fn posed_aside(
+        &mut self,
+        state: &State,
+    ) -> Option<Result<ReportedProblem, SolverLost>> {
         if let Some((known, posed)) = &self.posed
             && known == state
         {
@@ -35,7 +40,7 @@ impl Helper {
         let wanted = state.clone();
         let posed = self.lender.look(move |solver| {
             let stood = solver.state().clone();
-            let posed = solver.posed(&wanted);
+            let posed = solver.interface_problem(&wanted);
             // If the solver cannot return to its state, its next step reports that.
             let _ = solver.restore(&stood);
             posed
@@ -83,7 +88,7 @@ impl Helper {
         stop: &AtomicBool,
     ) -> Examination {
         let stopped = || stop.load(Ordering::Relaxed);
-        match self.posed(state) {
+        match self.interface_problem(state) {
             Ok(posed) => attached::examine(&self.model, state, &posed, iterations, nodes, &stopped),
             Err(lost) => Examination {
                 head: format!("The frozen problem is not available: {lost}."),

@@ -14,8 +14,8 @@ mod model;
 mod types;
 mod words;
 
-use super::error::{NotSet, Path, quoted};
-use stickslip_core::model::documented::{Lines, text};
+use super::error::{Path, SetError, quoted};
+use stickslip_core::model::documented::{DocAttributes, text};
 pub use types::{Field, Form, Type};
 pub(crate) use types::{OWN_DEFAULTS, blank_form, known, link, read_blank};
 
@@ -168,9 +168,9 @@ impl Scalar<'_> {
         }
     }
 
-    pub(crate) fn set(self, text: &str) -> Result<(), NotSet> {
+    pub(crate) fn set(self, text: &str) -> Result<(), SetError> {
         let mut own = self;
-        own.take(text).ok_or_else(|| NotSet::NoValue {
+        own.take(text).ok_or_else(|| SetError::NoValue {
             value: quoted(text),
             kind: own.kind(),
         })
@@ -237,7 +237,7 @@ pub(crate) trait Described: Sized {
 /// A field as the reference shows it; `value` is its default if it is `optional`.
 pub(crate) fn field_of<T: Described>(
     name: &'static str,
-    docs: Lines,
+    docs: DocAttributes,
     value: &T,
     optional: bool,
 ) -> Field {

@@ -2,7 +2,7 @@
 
 use crate::format::notation::options;
 use serde::de::DeserializeOwned;
-use stickslip_core::model::documented::{Docs, Lines, text};
+use stickslip_core::model::documented::{DocAttributes, Docs, text};
 
 /// A type of the scene file, as the reference shows it.
 #[derive(Debug, Clone)]
@@ -69,7 +69,7 @@ pub(crate) fn link(name: &str) -> String {
 }
 
 /// The doc comment of a part.
-pub(super) fn lines_of(docs: &Docs, part: &str) -> Lines {
+pub(super) fn lines_of(docs: &Docs, part: &str) -> DocAttributes {
     let found = docs.parts.iter().find(|(name, _)| *name == part);
     found.map_or(&[], |(_, lines)| lines)
 }

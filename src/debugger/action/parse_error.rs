@@ -7,7 +7,7 @@ use stickslip_study::read::NoVary;
 
 /// Why a typed line is not an action, with a hint at what would be valid.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-pub enum Misread {
+pub enum ParseError {
     /// The line is empty.
     #[error("type the name of an action; ? lists all actions")]
     Nothing,
@@ -115,17 +115,17 @@ pub enum Misread {
     NoChart(#[from] NoVary),
 }
 
-impl Misread {
+impl ParseError {
     /// An invalid mode.
-    pub(super) fn no_mode(word: &str) -> Misread {
+    pub(super) fn no_mode(word: &str) -> ParseError {
         let instead = "expected free, sliding or fixed".into();
-        Misread::no_value(word, "mode", instead)
+        ParseError::no_value(word, "mode", instead)
     }
 
     /// A word that is not valid for its kind.
-    pub(super) fn no_value(word: &str, kind: &'static str, instead: String) -> Misread {
+    pub(super) fn no_value(word: &str, kind: &'static str, instead: String) -> ParseError {
         let word = word.into();
-        Misread::NoValue {
+        ParseError::NoValue {
             word,
             kind,
             instead,

@@ -13,7 +13,7 @@ const NAMED: usize = 3;
 
 /// Queued input.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Typed {
+pub enum QueuedInput {
     /// A key.
     Key(KeyEvent),
     /// A complete line.
@@ -24,7 +24,7 @@ pub enum Typed {
 
 /// What the queue waits for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Awaited {
+pub enum WaitReason {
     /// The end of a run.
     Run,
     /// A file to be loaded.
@@ -36,7 +36,7 @@ pub enum Awaited {
 }
 
 stickslip_core::words! {
-    Awaited, until:
+    WaitReason, until:
     Run "until the run stops; Ctrl-C interrupts it",
     Reading "until the file is loaded; Ctrl-C cancels",
     Finding "until the diagnosis is ready; Ctrl-C cancels",
@@ -46,8 +46,8 @@ stickslip_core::words! {
 /// The queue, oldest input first.
 #[derive(Debug, Clone, Default)]
 pub struct Ahead {
-    queue: VecDeque<Typed>,
-    awaited: Option<Awaited>,
+    queue: VecDeque<QueuedInput>,
+    awaited: Option<WaitReason>,
     full: bool,
 }
 
@@ -63,7 +63,7 @@ impl Ahead {
     }
 
     /// Appends an input to the queue.
-    pub(super) fn push(&mut self, typed: Typed, awaited: Option<Awaited>) {
+    pub(super) fn push(&mut self, typed: QueuedInput, awaited: Option<WaitReason>) {
         self.awaited = awaited.or(self.awaited);
         self.full = self.queue.len() >= MOST;
         if !self.full {
@@ -72,13 +72,13 @@ impl Ahead {
     }
 
     /// Takes the whole queue: the first input and the rest.
-    pub(super) fn take_first(&mut self) -> Option<(Typed, VecDeque<Typed>)> {
+    pub(super) fn take_first(&mut self) -> Option<(QueuedInput, VecDeque<QueuedInput>)> {
         let first = self.queue.pop_front()?;
         Some((first, std::mem::take(&mut self.queue)))
     }
 
     /// Appends inputs to the queue again.
-    pub(super) fn put_back(&mut self, rest: VecDeque<Typed>) {
+    pub(super) fn put_back(&mut self, rest: VecDeque<QueuedInput>) {
         self.queue.extend(rest);
         self.full &= self.queue.len() >= MOST;
     }
@@ -86,16 +86,16 @@ impl Ahead {
     /// One line that names the queued inputs and what they wait for; `None` if the queue is empty.
     pub fn note(&self) -> Option<String> {
         let count = self.queue.len();
-        let until = self.awaited.unwrap_or(Awaited::Run).until();
+        let until = self.awaited.unwrap_or(WaitReason::Run).until();
         if self.full {
             return Some(format!(
                 "{count} keys wait {until}; further keys are ignored"
             ));
         }
-        let name = |typed: &Typed| match typed {
-            Typed::Key(key) => keys::name(key).unwrap_or_default(),
-            Typed::Line(line) => format!(":{line}"),
-            Typed::Paste(_) => "pasted text".into(),
+        let name = |typed: &QueuedInput| match typed {
+            QueuedInput::Key(key) => keys::name(key).unwrap_or_default(),
+            QueuedInput::Line(line) => format!(":{line}"),
+            QueuedInput::Paste(_) => "pasted text".into(),
         };
         let all = count <= NAMED + 1;
         let named = if all { count } else { NAMED };
@@ -118,11 +118,11 @@ mod tests {
     fn what_waits_is_named_and_bounded() {
         let mut ahead = Ahead::default();
         assert_eq!(ahead.note(), None);
-        let key = |name| Typed::Key(keys::press(name).unwrap());
-        ahead.push(key("d"), Some(Awaited::Run));
+        let key = |name| QueuedInput::Key(keys::press(name).unwrap());
+        ahead.push(key("d"), Some(WaitReason::Run));
         let until = "until the run stops; Ctrl-C interrupts it";
         assert_eq!(ahead.note(), Some(format!("d waits {until}")));
-        ahead.push(Typed::Line("census".into()), None);
+        ahead.push(QueuedInput::Line("census".into()), None);
         assert_eq!(ahead.note(), Some(format!("d, :census wait {until}")));
         for _ in 0..3 {
             ahead.push(key("s"), None);

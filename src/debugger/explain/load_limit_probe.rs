@@ -7,11 +7,11 @@ use std::ops::ControlFlow;
 use stickslip_core::linear::singular::Singular;
 use stickslip_core::model::Model;
 use stickslip_core::step::drive::{RunEnd, Until};
-use stickslip_core::step::event::{Failure, Moves, Outcome};
+use stickslip_core::step::event::{Failure, MotionEvent, Outcome};
 use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::state::State;
 use stickslip_core::step::stepper::Stepper;
-use stickslip_scene::number::{plain, six};
+use stickslip_scene::number::{shortest, sig6};
 
 /// Smallest step, as a fraction of the increment.
 const FINEST: f64 = 1.0 / 4096.0;
@@ -22,7 +22,7 @@ const MINORS: u64 = 400;
 
 /// Result of the smaller steps.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Reach {
+pub struct LoadLimitProbe {
     /// Load factor reached.
     pub load: f64,
     /// Load factor of the last equilibrium before the failure.
@@ -36,11 +36,11 @@ pub struct Reach {
     pub ends: Option<(f64, Failure)>,
 }
 
-impl Reach {
+impl LoadLimitProbe {
     /// Describes the result; `first` is the failure of the increment.
     pub fn words(&self, model: &Model, first: &Failure) -> String {
-        let Reach { load, wanted, .. } = self;
-        let [at, to] = [load, wanted].map(|&load| plain(load));
+        let LoadLimitProbe { load, wanted, .. } = self;
+        let [at, to] = [load, wanted].map(|&load| shortest(load));
         match &self.ends {
             None if load == wanted => {
                 format!("smaller steps reach load {to}")
@@ -53,7 +53,7 @@ impl Reach {
                 };
                 let far = match *load == self.from {
                     true => format!("not even a step of {size:.1e} beyond load {at} succeeds"),
-                    false => format!("smaller steps reach load {}", six(*load)),
+                    false => format!("smaller steps reach load {}", sig6(*load)),
                 };
                 format!("{far}; there: {why}")
             }
@@ -63,7 +63,11 @@ impl Reach {
 
 /// Repeats the increment that failed in a state, in steps that are cut when they fail. `None` if interrupted.
 /// The stepper's final state is unspecified.
-pub fn reach(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -> Option<Reach> {
+pub fn reach(
+    stepper: &mut Stepper,
+    state: &State,
+    stop: &dyn Fn() -> bool,
+) -> Option<LoadLimitProbe> {
     let (from, wanted) = (state.start.load_factor, state.load_factor);
     let whole = (wanted - from).abs();
     let mut good = state.attempt_again();
@@ -87,7 +91,7 @@ pub fn reach(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -> O
             }
         }
     }
-    Some(Reach {
+    Some(LoadLimitProbe {
         at: Box::new(good),
         load,
         from,
@@ -114,10 +118,12 @@ fn step(
         }
         // This function does the cutting itself.
         Outcome::Cut { why, .. }
-        | Outcome::Leaps { why, .. }
+        | Outcome::WholeIncrement { why, .. }
         | Outcome::Fallback { why, .. }
-        | Outcome::Turns { why, .. } => ControlFlow::Break(Err(why.clone())),
-        Outcome::Moves(Moves::LetsGo { why, .. }) => ControlFlow::Break(Err(why.clone())),
+        | Outcome::PathCorner { why, .. } => ControlFlow::Break(Err(why.clone())),
+        Outcome::Motion(MotionEvent::DynamicStart { why, .. }) => {
+            ControlFlow::Break(Err(why.clone()))
+        }
         _ => ControlFlow::Continue(()),
     });
     match end {

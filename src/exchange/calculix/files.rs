@@ -3,16 +3,16 @@
 //! The .cel alone has no iterations without contact elements, no residuals, and no result of the last attempt. None of the three
 //! files contains stick and slip.
 
-use super::cel::{At, Closed, ContactElements, Slave};
+use super::cel::{ClosedContact, ContactElements, RunPosition, Slave};
 use super::cvg::Norms;
-use super::sta::Ended;
+use super::sta::FinishedAttempt;
 use super::{Stop, Table};
 use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// A finished run.
 #[derive(Debug, Clone, PartialEq)]
-pub struct PastRun {
+pub struct CalculixFiles {
     /// Every slave node and face that was ever in contact.
     pub slaves: Vec<Slave>,
     /// Every master face that was ever touched: its corners.
@@ -22,20 +22,20 @@ pub struct PastRun {
     /// The iterations of all attempts, in order.
     pub iterations: Vec<Iteration>,
     /// The closed contacts, iteration by iteration, each sorted by slave and master.
-    pub closed: Vec<Closed>,
+    pub closed: Vec<ClosedContact>,
     /// Where the .cel is truncated.
     pub cel: Option<Stop>,
     /// State of the .sta.
-    pub sta: Beside,
+    pub sta: OptionalFile,
     /// State of the .cvg.
-    pub cvg: Beside,
+    pub cvg: OptionalFile,
     /// Iterations where .cel and .cvg disagree on the number of contact elements: the first one, and their number.
-    pub differs: Option<(At, usize)>,
+    pub differs: Option<(RunPosition, usize)>,
 }
 
 /// State of an optional file next to the .cel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Beside {
+pub enum OptionalFile {
     /// The file does not exist.
     Missing,
     /// It was read, to its end or up to the given position.
@@ -54,8 +54,8 @@ pub struct Attempt {
     /// Result.
     pub end: End,
     /// Its row in the .sta.
-    pub row: Option<Ended>,
-    /// Its range of [`PastRun::iterations`]; empty if only the .sta contains it.
+    pub row: Option<FinishedAttempt>,
+    /// Its range of [`CalculixFiles::iterations`]; empty if only the .sta contains it.
     pub iterations: Range<usize>,
 }
 
@@ -75,7 +75,7 @@ pub enum End {
 pub struct Iteration {
     /// Number in the attempt, from 1.
     pub number: u32,
-    /// Its range of [`PastRun::closed`]; `None` if the .cvg counts contact elements that are missing in the .cel.
+    /// Its range of [`CalculixFiles::closed`]; `None` if the .cvg counts contact elements that are missing in the .cel.
     pub closed: Option<Range<usize>>,
     /// Whether it kept the contact elements of the previous iteration. Node-to-surface contact freezes them after iteration 8 of
     /// an attempt, or after the first with SMALL SLIDING (CalculiX's nonlingeo.c), and does not write them to the .cel. The .cvg
@@ -85,15 +85,16 @@ pub struct Iteration {
     pub norms: Option<Norms>,
 }
 
-impl PastRun {
+impl CalculixFiles {
     /// Combines the files; `None` for a missing one.
     pub fn new(
         cel: ContactElements,
-        sta: Option<Table<Ended>>,
-        cvg: Option<Table<(At, Norms)>>,
-    ) -> PastRun {
-        let beside = |stop: Option<Option<Stop>>| stop.map_or(Beside::Missing, Beside::Read);
-        let mut run = PastRun {
+        sta: Option<Table<FinishedAttempt>>,
+        cvg: Option<Table<(RunPosition, Norms)>>,
+    ) -> CalculixFiles {
+        let beside =
+            |stop: Option<Option<Stop>>| stop.map_or(OptionalFile::Missing, OptionalFile::Read);
+        let mut run = CalculixFiles {
             slaves: cel.slaves,
             masters: cel.masters,
             attempts: Vec::new(),
@@ -104,7 +105,7 @@ impl PastRun {
             cvg: beside(cvg.as_ref().map(|table| table.1)),
             differs: None,
         };
-        let mut all: BTreeMap<At, (Option<Range<usize>>, Option<Norms>)> = BTreeMap::new();
+        let mut all: BTreeMap<RunPosition, (Option<Range<usize>>, Option<Norms>)> = BTreeMap::new();
         for (at, closed) in cel.iterations {
             all.entry(at).or_default().0 = Some(closed);
         }
@@ -113,7 +114,7 @@ impl PastRun {
         }
         let rows = sta.into_iter().flat_map(|table| table.0);
         let rows = rows.map(|row| ((row.step, row.increment, row.attempt), row));
-        let mut rows: BTreeMap<(u32, u32, u32), Ended> = rows.collect();
+        let mut rows: BTreeMap<(u32, u32, u32), FinishedAttempt> = rows.collect();
         for (at, (closed, norms)) in all {
             let key = (at.step, at.increment, at.attempt);
             run.add_rows_before(&mut rows, key);
@@ -136,7 +137,7 @@ impl PastRun {
     }
 
     /// The closed contacts in an iteration; `None` if unknown.
-    pub fn closed(&self, iteration: usize) -> Option<&[Closed]> {
+    pub fn closed(&self, iteration: usize) -> Option<&[ClosedContact]> {
         let range = self.iterations.get(iteration)?.closed.clone()?;
         self.closed.get(range)
     }
@@ -182,10 +183,10 @@ impl PastRun {
     /// Iterations on which the files disagree, including the next one.
     fn told_differently(
         &self,
-        at: At,
+        at: RunPosition,
         listed: Option<&Range<usize>>,
         norms: Option<&Norms>,
-    ) -> Option<(At, usize)> {
+    ) -> Option<(RunPosition, usize)> {
         let counted = norms.map(|norms| u64::from(norms.elements));
         let listed = listed.map(|part| self.elements(part));
         let kept = self.before().map(|before| self.elements(&before));
@@ -203,7 +204,7 @@ impl PastRun {
     /// Adds attempts that only the .sta contains.
     fn add_rows_before(
         &mut self,
-        rows: &mut BTreeMap<(u32, u32, u32), Ended>,
+        rows: &mut BTreeMap<(u32, u32, u32), FinishedAttempt>,
         key: (u32, u32, u32),
     ) {
         while let Some(first) = rows.first_entry().filter(|first| *first.key() < key) {
@@ -212,7 +213,7 @@ impl PastRun {
         }
     }
 
-    fn begin(&mut self, (step, increment, attempt): (u32, u32, u32), row: Option<Ended>) {
+    fn begin(&mut self, (step, increment, attempt): (u32, u32, u32), row: Option<FinishedAttempt>) {
         let here = self.iterations.len();
         self.attempts.push(Attempt {
             step,
@@ -253,8 +254,8 @@ impl Attempt {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::broken::Broken;
     use crate::calculix::{cel, cvg, sta};
+    use crate::format_error::FormatError;
     use proptest::prelude::*;
 
     fn element(increment: u32, attempt: u32, iteration: u32, slave: u32) -> String {
@@ -281,11 +282,15 @@ mod tests {
         [cel, sta, cvg]
     }
 
-    fn read(cel: &[u8], sta: Option<&[u8]>, cvg: Option<&[u8]>) -> Result<PastRun, Broken> {
+    fn read(
+        cel: &[u8],
+        sta: Option<&[u8]>,
+        cvg: Option<&[u8]>,
+    ) -> Result<CalculixFiles, FormatError> {
         let cel = cel::read(cel)?;
         let sta = sta.map(sta::read).transpose()?;
         let cvg = cvg.map(cvg::read).transpose()?;
-        Ok(PastRun::new(cel, sta, cvg))
+        Ok(CalculixFiles::new(cel, sta, cvg))
     }
 
     #[test]
@@ -305,7 +310,9 @@ mod tests {
                 (2, 1, End::Unknown)
             ]
         );
-        let closed: Vec<_> = (0..5).map(|k| run.closed(k).map(<[Closed]>::len)).collect();
+        let closed: Vec<_> = (0..5)
+            .map(|k| run.closed(k).map(<[ClosedContact]>::len))
+            .collect();
         assert_eq!(closed, [Some(1), Some(0), Some(1), Some(1), Some(1)]);
         assert_eq!(run.iterations[4].norms, None);
         assert_eq!(run.attempts[0].iterations, 0..3);
@@ -316,7 +323,10 @@ mod tests {
     fn the_cel_can_be_read_alone() {
         let [cel, ..] = files();
         let run = read(cel.as_bytes(), None, None).unwrap();
-        assert_eq!((run.sta, run.cvg), (Beside::Missing, Beside::Missing));
+        assert_eq!(
+            (run.sta, run.cvg),
+            (OptionalFile::Missing, OptionalFile::Missing)
+        );
         let ends: Vec<_> = run.attempts.iter().map(|attempt| attempt.end).collect();
         assert_eq!(ends, [End::NotConverged, End::Converged, End::Unknown]);
         let numbers: Vec<_> = run
@@ -347,7 +357,12 @@ mod tests {
         let cvg = format!("SUMMARY OF C0NVERGENCE INFORMATION\n{rows}");
         let run = read(cel.as_bytes(), None, Some(cvg.as_bytes())).unwrap();
         let told: Vec<_> = (0..4)
-            .map(|k| (run.closed(k).map(<[Closed]>::len), run.iterations[k].kept))
+            .map(|k| {
+                (
+                    run.closed(k).map(<[ClosedContact]>::len),
+                    run.iterations[k].kept,
+                )
+            })
             .collect();
         assert_eq!(
             told,
@@ -374,7 +389,7 @@ mod tests {
     }
 
     /// Invariants of every run, whatever the files contain.
-    fn holds(run: &PastRun) -> Result<(), TestCaseError> {
+    fn holds(run: &CalculixFiles) -> Result<(), TestCaseError> {
         let mut end = 0;
         for attempt in &run.attempts {
             prop_assert_eq!(attempt.iterations.start, end);
@@ -392,7 +407,7 @@ mod tests {
     }
 
     /// Errors have a line and a column in the file.
-    fn told(broken: &Broken, files: [&[u8]; 3]) -> Result<(), TestCaseError> {
+    fn told(broken: &FormatError, files: [&[u8]; 3]) -> Result<(), TestCaseError> {
         let (line, column) = broken.at.expect("a place");
         let lines = files.map(|file| file.split(|byte| *byte == b'\n').count());
         prop_assert!(line >= 1 && column >= 1 && lines.iter().any(|count| line <= *count));

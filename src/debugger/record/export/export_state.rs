@@ -6,7 +6,7 @@ use crate::history::strip::Strip;
 use std::sync::Arc;
 use stickslip_core::interface::problem::InterfaceProblem;
 use stickslip_core::step::event::Event;
-use stickslip_core::step::solver::Lost;
+use stickslip_core::step::solver::SolverLost;
 use stickslip_core::step::state::{State, Status};
 use stickslip_core::step::stepper::Stepper;
 use stickslip_platform::files::FileError;
@@ -18,7 +18,7 @@ use stickslip_study::drawn::PlotError;
 pub const COLUMNS: usize = 60;
 
 /// A state and its context.
-pub struct Shown<'a> {
+pub struct ExportState<'a> {
     /// The scene of the run.
     pub scene: &'a Scene,
     /// The position of the state, and earlier changes.
@@ -105,7 +105,7 @@ pub enum ExportError {
     Unsound(#[from] Box<SceneError>),
     /// An attached solver does not report the data.
     #[error(transparent)]
-    Lost(#[from] Lost),
+    Lost(#[from] SolverLost),
     /// This kind is made from a journal.
     #[error(
         ".cast files are made from a journal: stickslip export JOURNAL -o FILE. :journal shows its path"
@@ -119,7 +119,7 @@ pub enum ExportError {
 /// The frozen interface problem of a state, and the state it belongs to: the problem to be solved next or, at
 /// the end of the history, the last one solved.
 pub(super) fn problem<'a>(
-    shown: &Shown<'a>,
+    shown: &ExportState<'a>,
     stepper: &mut Stepper,
 ) -> Result<(InterfaceProblem, &'a State), ExportError> {
     let state = match (&shown.state.status, shown.last_major) {

@@ -1,7 +1,7 @@
 //! Replaces `front` in a build without the feature `tui`: every function reports that this build has no debugger.
 
 use super::base::Error;
-use stickslip_debugger::record::journal::{Keep, Record};
+use stickslip_debugger::record::journal::{JournalTarget, Record};
 use stickslip_debugger::session::Session;
 use stickslip_debugger::teach::Lesson;
 
@@ -11,7 +11,7 @@ pub fn ready() -> Result<(), Error> {
     Err(Error::usage(text))
 }
 
-pub fn debug(_: Option<String>, _: &[(String, String)], _: &Keep) -> Result<(), Error> {
+pub fn debug(_: Option<String>, _: &[(String, String)], _: &JournalTarget) -> Result<(), Error> {
     ready()
 }
 

@@ -6,30 +6,30 @@ use stickslip_core::interface::census::census;
 use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::state::State;
 use stickslip_core::step::stepper::Stepper;
-use stickslip_scene::number::plain;
+use stickslip_scene::number::shortest;
 
 /// Maximum number of halvings of the increment.
 const HALVINGS: i32 = 6;
 
 /// Result of the search.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Smaller {
+pub enum StepSizeProbe {
     /// An increment of this size has a consistent state, with the bodies linearised at its start.
     Found(f64),
     /// No increment down to this size has one.
     None(f64),
 }
 
-impl Smaller {
+impl StepSizeProbe {
     /// Describes the result.
     pub fn words(&self) -> String {
         match self {
-            Smaller::Found(size) => {
-                let size = plain(*size);
+            StepSizeProbe::Found(size) => {
+                let size = shortest(*size);
                 format!("a smaller increment of {size} has a consistent state")
             }
-            Smaller::None(size) => {
-                let size = plain(*size);
+            StepSizeProbe::None(size) => {
+                let size = shortest(*size);
                 format!(
                     "smaller increments have no consistent state either (halved down to {size})"
                 )
@@ -40,7 +40,7 @@ impl Smaller {
 
 /// Searches for a consistent state in smaller increments from the start of a state's current increment. `None`
 /// if unknown. The stepper's final state is unspecified.
-pub fn smaller(stepper: &mut Stepper, state: &State) -> Option<Smaller> {
+pub fn smaller(stepper: &mut Stepper, state: &State) -> Option<StepSizeProbe> {
     let size = (state.load_factor - state.start.load_factor).abs();
     let mut smallest = size;
     for halvings in 1..=HALVINGS {
@@ -50,8 +50,8 @@ pub fn smaller(stepper: &mut Stepper, state: &State) -> Option<Smaller> {
         let problem = stepper.interface_problem()?;
         let problem = problem.reduced(&undecided(&problem))?;
         if !census(&problem).ok()?.answers.is_empty() {
-            return Some(Smaller::Found(smallest));
+            return Some(StepSizeProbe::Found(smallest));
         }
     }
-    Some(Smaller::None(smallest))
+    Some(StepSizeProbe::None(smallest))
 }

@@ -40,7 +40,7 @@ pub fn prepare() {
 
 /// A point of a surface that is closer than its neighbours on the same element.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Foot {
+pub struct ClosestPoint {
     /// Surface point.
     pub spot: SurfacePoint,
     /// Its position.
@@ -57,7 +57,7 @@ pub fn find(
     candidates: &[usize],
     positions: &[[f64; 2]],
     slack: f64,
-    feet: &mut Vec<Foot>,
+    feet: &mut Vec<ClosestPoint>,
 ) {
     feet.clear();
     // Nodes lie on the curves, so none is closer than the closest point, and few elements reach that far.
@@ -86,7 +86,7 @@ pub fn find(
                         element,
                         xi,
                     };
-                    feet.push(Foot { spot, at, distance });
+                    feet.push(ClosestPoint { spot, at, distance });
                 }
             };
             if chain.endless {
@@ -108,7 +108,7 @@ fn minima(
     found: &mut impl FnMut(f64),
 ) {
     let (places, count) = (
-        ElementPositions::of(element.nodes, positions),
+        ElementPositions::from_nodes(element.nodes, positions),
         intervals(element.degree()),
     );
     let at = |k: usize| {
@@ -228,7 +228,12 @@ mod tests {
         }]
     }
 
-    fn all(point: [f64; 2], surfaces: &[Surface], positions: &[[f64; 2]], slack: f64) -> Vec<Foot> {
+    fn all(
+        point: [f64; 2],
+        surfaces: &[Surface],
+        positions: &[[f64; 2]],
+        slack: f64,
+    ) -> Vec<ClosestPoint> {
         let mut feet = Vec::new();
         find(point, surfaces, &[0], positions, slack, &mut feet);
         feet
@@ -273,7 +278,11 @@ mod tests {
             "{xis:?}"
         );
         let above = all([0.3, 1.2], &half_circle, &x, 0.0);
-        let exact = place(SurfaceElement::of(&half_circle[0], 0), &x, above[0].spot.xi);
+        let exact = place(
+            SurfaceElement::from_surface(&half_circle[0], 0),
+            &x,
+            above[0].spot.xi,
+        );
         assert!((above[0].distance - (1.2_f64.hypot(0.3) - 1.0)).abs() < 2e-3);
         assert_eq!(above[0].at, exact);
     }

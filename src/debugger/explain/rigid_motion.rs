@@ -10,7 +10,7 @@ use stickslip_core::linear::singular::{LooseMotion, RigidMotion, Singular};
 use stickslip_core::model::{Factor, Mode, Model};
 use stickslip_core::step::state::State;
 use stickslip_core::step::stepper::Stepper;
-use stickslip_scene::number::{four, plain};
+use stickslip_scene::number::{shortest, sig4};
 use stickslip_scene::shown::first_of;
 
 /// Maximum number of motions described.
@@ -24,7 +24,7 @@ const NONE: f64 = 1e-9;
 
 /// Description of loose bodies, with arrows for the shape.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub struct Loose {
+pub struct LooseBodies {
     /// The facts.
     pub facts: Vec<Fact>,
     /// Points on a moving body, with directions of length one at most.
@@ -32,7 +32,7 @@ pub struct Loose {
 }
 
 /// A rigid motion of a body, in the direction of the loads.
-pub(super) struct Moving<'a> {
+pub(super) struct BodyMotion<'a> {
     model: &'a Model,
     places: &'a [[f64; 2]],
     body: usize,
@@ -43,7 +43,7 @@ pub(super) struct Moving<'a> {
 }
 
 /// Describes rigid motions that nothing resists in a state. The stepper is left at the state.
-pub fn loose(stepper: &mut Stepper, state: &State, motions: &[RigidMotion]) -> Loose {
+pub fn loose(stepper: &mut Stepper, state: &State, motions: &[RigidMotion]) -> LooseBodies {
     stepper.restore(state);
     // This locates the contacts; the matrix is not needed and may be singular.
     stepper.norms();
@@ -51,9 +51,9 @@ pub fn loose(stepper: &mut Stepper, state: &State, motions: &[RigidMotion]) -> L
     let still = matches!(stepper.loose(&state.nodes), Singular::Rigid { .. });
     let model = stepper.model();
     let places = model.places(&state.u);
-    let mut found = Loose::default();
+    let mut found = LooseBodies::default();
     for motion in motions.iter().take(MOST) {
-        let Some(moving) = Moving::new(model, &places, state, motion) else {
+        let Some(moving) = BodyMotion::new(model, &places, state, motion) else {
             continue;
         };
         found.facts.push(Fact::why(moving.pushed(state)));
@@ -67,7 +67,7 @@ pub fn loose(stepper: &mut Stepper, state: &State, motions: &[RigidMotion]) -> L
     found
 }
 
-impl<'a> Moving<'a> {
+impl<'a> BodyMotion<'a> {
     pub(super) fn new(
         model: &'a Model,
         places: &'a [[f64; 2]],
@@ -78,7 +78,7 @@ impl<'a> Moving<'a> {
             .bodies
             .iter()
             .position(|body| body.name == motion.body)?;
-        let mut moving = Moving {
+        let mut moving = BodyMotion {
             model,
             places,
             body,
@@ -139,7 +139,7 @@ impl<'a> Moving<'a> {
         let power = self.power(state);
         let moves = match self.motion {
             LooseMotion::Translation([x, y]) => {
-                let [x, y] = [x, y].map(|x| four(self.sign * x));
+                let [x, y] = [x, y].map(|x| sig4(self.sign * x));
                 format!("moves along ({x}, {y})")
             }
             LooseMotion::Rotation([x, y]) => {
@@ -148,14 +148,14 @@ impl<'a> Moving<'a> {
                 } else {
                     "clockwise"
                 };
-                format!("turns {way} about ({}, {})", four(x), four(y))
+                format!("turns {way} about ({}, {})", sig4(x), sig4(y))
             }
         };
         let loads = match (power > 0.0, self.motion) {
             (false, _) => "no load acts in this direction, and none could be carried".to_owned(),
-            (true, LooseMotion::Translation(_)) => format!("the loads push with {}", four(power)),
+            (true, LooseMotion::Translation(_)) => format!("the loads push with {}", sig4(power)),
             (true, LooseMotion::Rotation(_)) => {
-                format!("the loads turn it with moment {}", four(power))
+                format!("the loads turn it with moment {}", sig4(power))
             }
         };
         format!("body {} {moves} (→ in the shape); {loads}", self.name())
@@ -248,7 +248,7 @@ impl<'a> Moving<'a> {
             return format!(
                 "what would stop it: contact of {}, after a motion of {}; a prescribed displacement can move the body there in equilibrium, a load cannot",
                 slave(self.model, s),
-                four(way)
+                sig4(way)
             );
         }
         let support = match self.motion {
@@ -291,7 +291,7 @@ impl<'a> Moving<'a> {
 
 /// Since when the body is loose.
 fn since(model: &Model, state: &State, at_start: &Singular) -> String {
-    let load = plain(state.start.load_factor);
+    let load = shortest(state.start.load_factor);
     if matches!(at_start, Singular::Rigid { .. }) {
         return match state.next.increment {
             0 | 1 => "since when: from the start, with the initial modes of its nodes".into(),
@@ -311,7 +311,7 @@ fn since(model: &Model, state: &State, at_start: &Singular) -> String {
         true => format!("since when: after load {load}, at which it was held"),
         false => format!(
             "since when: after load {load}, at which it was held; on the way to {}, {} lost contact or stick",
-            plain(state.load_factor),
+            shortest(state.load_factor),
             first_of(let_go, MOST_NODES, ", ")
         ),
     }

@@ -7,7 +7,7 @@ use stickslip_scene::format::spec::Spec;
 
 /// Result of the trial.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Finer {
+pub struct MeshProbe {
     /// The refinement tried.
     pub refine: usize,
     /// End of the run.
@@ -16,7 +16,7 @@ pub struct Finer {
 
 /// Tries a scene with twice its refinement and the settings of a failed state. `None` if interrupted, or if
 /// none of its meshes is generated.
-pub fn finer(spec: &Spec, state: &State, stop: &dyn Fn() -> bool) -> Option<Finer> {
+pub fn finer(spec: &Spec, state: &State, stop: &dyn Fn() -> bool) -> Option<MeshProbe> {
     let mut spec = spec.clone();
     spec.refine *= 2;
     let refine = spec.refine;
@@ -25,5 +25,5 @@ pub fn finer(spec: &Spec, state: &State, stop: &dyn Fn() -> bool) -> Option<Fine
         return None;
     }
     let run = restart(&mut stepper, state, stop)?;
-    Some(Finer { refine, run })
+    Some(MeshProbe { refine, run })
 }

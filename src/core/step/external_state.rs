@@ -7,13 +7,13 @@ use crate::contact::table2::{Decision, Rule};
 use crate::model::{Mode, Model};
 use crate::step::event::{Event, Outcome, Position};
 use crate::step::intervention::Intervention;
-use crate::step::state::{IncrementStart, Outside, State, Status};
+use crate::step::state::{ExternalState, IncrementStart, State, Status};
 use std::sync::Arc;
 
-impl Outside {
+impl ExternalState {
     /// At a place, without changes since.
-    pub fn at(&self, place: u64) -> Outside {
-        Outside {
+    pub fn at(&self, place: u64) -> ExternalState {
+        ExternalState {
             place,
             asked: Vec::new(),
             set: self.set.clone(),
@@ -96,7 +96,7 @@ fn after(at: Position, outcome: &Outcome) -> Position {
     match outcome {
         Outcome::Minor
         | Outcome::Damped { .. }
-        | Outcome::Climbed { .. }
+        | Outcome::StrategyChange { .. }
         | Outcome::HeldBack { .. }
         | Outcome::Failed(_) => Position {
             minor: next(at.minor),
@@ -108,10 +108,10 @@ fn after(at: Position, outcome: &Outcome) -> Position {
             ..at
         },
         Outcome::Cut { .. }
-        | Outcome::Leaps { .. }
-        | Outcome::Turns { .. }
+        | Outcome::WholeIncrement { .. }
+        | Outcome::PathCorner { .. }
         | Outcome::Fallback { .. }
-        | Outcome::Moves(_) => Position {
+        | Outcome::Motion(_) => Position {
             attempt: next(at.attempt),
             major: 1,
             minor: 1,
@@ -149,7 +149,7 @@ impl ContactState {
 impl ContactRecord {
     /// Record of an attached solver for a node that solved in one mode and continues in another, by its own rules: no force and
     /// no slip, an infinite gap and the upward normal, until they are filled in.
-    pub fn of_modes(before: Mode, next: Mode, node: &ContactState) -> ContactRecord {
+    pub fn from_modes(before: Mode, next: Mode, node: &ContactState) -> ContactRecord {
         ContactRecord {
             decision: Decision {
                 before,

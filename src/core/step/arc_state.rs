@@ -2,14 +2,14 @@
 
 use crate::contact::state::ContactState;
 use crate::contact::table1::t_max;
-use crate::linear::source::Along;
-use crate::model::{ArcLength, Friction, Measured, Mode, Model};
+use crate::linear::source::LoadEquation;
+use crate::model::{ArcLength, ArcMeasure, Friction, Mode, Model};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Progress along the path, and the constraint of the current increment.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Way {
+pub struct ArcState {
     /// Arc length from the start of the history to the current increment (in the measured quantity).
     pub length: f64,
     /// Size of the current increment; 0 before the first tangent.
@@ -17,11 +17,11 @@ pub struct Way {
     /// Size of the first increment.
     pub first: f64,
     /// The quantity that measures increments.
-    pub measured: Measured,
+    pub measured: ArcMeasure,
     /// Direction of the load factor towards the leg's corner: −1 or 1.
     pub ahead: f64,
     /// Constraint of the current increment.
-    pub aim: Aim,
+    pub aim: ArcConstraint,
     /// Distance that the next major iteration has to cover.
     pub left: f64,
     /// Whether the tangent of the current increment is known.
@@ -71,7 +71,7 @@ pub struct Change {
 
 /// Constraint of an increment.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub enum Aim {
+pub enum ArcConstraint {
     /// None yet: the tangent has to be found.
     Tangent,
     /// The plane normal to the tangent.
@@ -98,16 +98,16 @@ pub(super) fn farthest(model: &Model) -> f64 {
     model.arc.length.unwrap_or(most)
 }
 
-impl Way {
+impl ArcState {
     /// State before the first increment.
     pub fn new(model: &Model) -> Self {
-        Way {
+        ArcState {
             length: 0.0,
             step: 0.0,
             first: 0.0,
             measured: model.arc.along,
             ahead: (model.path[1] - model.path[0]).signum(),
-            aim: Aim::Tangent,
+            aim: ArcConstraint::Tangent,
             left: 0.0,
             known: false,
             sign: 1.0,
@@ -123,21 +123,21 @@ impl Way {
     }
 
     /// Constraint equation of the next solve.
-    pub(super) fn along(&self) -> Along<'_> {
+    pub(super) fn along(&self) -> LoadEquation<'_> {
         let step = self.left;
         match self.aim {
-            Aim::Tangent if self.last.is_empty() => Along::Load { step },
-            Aim::Tangent => Along::Displacements {
+            ArcConstraint::Tangent if self.last.is_empty() => LoadEquation::Load { step },
+            ArcConstraint::Tangent => LoadEquation::Displacements {
                 row: &self.last,
                 step,
             },
-            Aim::Plane => Along::Displacements {
+            ArcConstraint::Plane => LoadEquation::Displacements {
                 row: &self.row,
                 step,
             },
-            Aim::Dof { dof, .. } => Along::Dof { dof, step },
-            Aim::Slip(contact) => Along::Slip { contact, step },
-            Aim::Load(_) => Along::Load { step },
+            ArcConstraint::Dof { dof, .. } => LoadEquation::Dof { dof, step },
+            ArcConstraint::Slip(contact) => LoadEquation::Slip { contact, step },
+            ArcConstraint::Load(_) => LoadEquation::Load { step },
         }
     }
 
@@ -148,7 +148,7 @@ impl Way {
             self.seen = Arc::default();
         }
         if !self.known {
-            self.aim = Aim::Tangent;
+            self.aim = ArcConstraint::Tangent;
             self.left = if self.last.is_empty() {
                 self.ahead * increment
             } else {
@@ -158,21 +158,21 @@ impl Way {
         }
         self.left = self.sign * self.step;
         self.aim = match self.measured {
-            Measured::Displacements => Aim::Plane,
-            Measured::Dof(dof) => Aim::Dof {
+            ArcMeasure::Displacements => ArcConstraint::Plane,
+            ArcMeasure::Dof(dof) => ArcConstraint::Dof {
                 dof,
                 to: start[dof] + self.left,
             },
-            Measured::Slip(contact) => Aim::Slip(contact),
+            ArcMeasure::Slip(contact) => ArcConstraint::Slip(contact),
         };
     }
 
     /// Remaining distance of the current constraint at displacements `u`.
     pub(super) fn remaining(&self, u: &[f64], start: &[f64]) -> f64 {
         match self.aim {
-            Aim::Plane => self.step - self.gone(u, start),
-            Aim::Dof { dof, to } => to - u[dof],
-            Aim::Tangent | Aim::Slip(_) | Aim::Load(_) => 0.0,
+            ArcConstraint::Plane => self.step - self.gone(u, start),
+            ArcConstraint::Dof { dof, to } => to - u[dof],
+            ArcConstraint::Tangent | ArcConstraint::Slip(_) | ArcConstraint::Load(_) => 0.0,
         }
     }
 

@@ -107,12 +107,12 @@ pub struct Preview {
     /// Name of the entry.
     pub name: String,
     /// The preview, or why the entry cannot be opened.
-    pub what: Result<Glance, String>,
+    pub what: Result<PreviewContent, String>,
 }
 
 /// Content of a preview: a scene, or a lesson with its scene.
 #[derive(Debug, Clone)]
-pub struct Glance {
+pub struct PreviewContent {
     /// Whether it is a lesson.
     pub is_lesson: bool,
     /// The scene's title.
@@ -163,9 +163,9 @@ impl Preview {
 
 /// Loads previews on a background thread.
 #[derive(Debug, Default)]
-pub struct Looking(Option<(String, Receiver<Preview>)>);
+pub struct PreviewLoader(Option<(String, Receiver<Preview>)>);
 
-impl Looking {
+impl PreviewLoader {
     /// Whether a preview is loading.
     pub fn is_busy(&self) -> bool {
         self.0.is_some()
@@ -201,19 +201,19 @@ impl Looking {
     }
 }
 
-fn scene(name: &str) -> Result<Glance, SceneError> {
+fn scene(name: &str) -> Result<PreviewContent, SceneError> {
     let scene = Scene::open(name, &[])?;
     let (title, about) = (scene.model.title.clone(), scene.spec.about.clone());
     Ok(glance(scene.model, title, about, false))
 }
 
-fn lesson(name: &str) -> Result<Glance, SceneError> {
+fn lesson(name: &str) -> Result<PreviewContent, SceneError> {
     let lesson = Lesson::open(name)?;
     let model = (*lesson.model).clone();
     Ok(glance(model, lesson.title, lesson.about, true))
 }
 
-fn glance(model: Model, title: String, about: String, is_lesson: bool) -> Glance {
+fn glance(model: Model, title: String, about: String, is_lesson: bool) -> PreviewContent {
     let model = Arc::new(model);
     let state = Stepper::new(model.clone()).state().clone();
     let frame = Frame {
@@ -222,7 +222,7 @@ fn glance(model: Model, title: String, about: String, is_lesson: bool) -> Glance
         intervention: None,
         monitors: None,
     };
-    Glance {
+    PreviewContent {
         is_lesson,
         title,
         about,

@@ -2,7 +2,7 @@
 
 use super::memory_pool::MemoryPool;
 use super::reason::Reason;
-use super::result::{CaseEnd, Failed, Row, Run};
+use super::result::{CaseEnd, Row, Run, RunFailure};
 use super::verdict::RunVerdict;
 use std::convert::Infallible;
 use std::ops::ControlFlow;
@@ -67,7 +67,10 @@ pub fn one(increments: u64, model: Arc<Model>, spare: &SolverPool, watch: &Watch
         minors += 1;
         let event = stepper.event();
         let (at, outcome) = (event.position, &event.outcome);
-        run.begun += u64::from(!matches!(outcome, Outcome::Minor | Outcome::Climbed { .. }));
+        run.begun += u64::from(!matches!(
+            outcome,
+            Outcome::Minor | Outcome::StrategyChange { .. }
+        ));
         if let Outcome::Increment {
             unsettled, jumped, ..
         } = *outcome
@@ -84,7 +87,7 @@ pub fn one(increments: u64, model: Arc<Model>, spare: &SolverPool, watch: &Watch
     run.end = match end {
         RunEnd::Failed(failure) => {
             let event = stepper.event();
-            CaseEnd::Failed(Failed {
+            CaseEnd::Failed(RunFailure {
                 reason: Reason::from(&failure),
                 verdict: RunVerdict::from_failure(&failure),
                 increment: event.position.increment,

@@ -1,4 +1,4 @@
-//! Tree of the states of an attached solver, for programs that store what the solver continues from: [`Places`].
+//! Tree of the states of an attached solver, for programs that store what the solver continues from: [`StoredStates`].
 //!
 //! A place is the result of one iteration. It has a number, [`Outside::place`], the place before that iteration, and the changes
 //! made there; the same changes at the same place give the same place. Place 0 is the start.
@@ -9,22 +9,22 @@ use crate::step::intervention::Intervention;
 
 /// The places of a solver, each with its stored data.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Places<T> {
-    all: Vec<Place<T>>,
+pub struct StoredStates<T> {
+    all: Vec<StoredState<T>>,
 }
 
 #[derive(Debug, Clone, PartialEq)]
-struct Place<T> {
+struct StoredState<T> {
     from: Option<(u64, Vec<Intervention>)>,
     led_to: Vec<u64>,
     kept: T,
 }
 
-impl<T> Places<T> {
+impl<T> StoredStates<T> {
     /// Only the start.
     pub fn new(start: T) -> Self {
-        Places {
-            all: vec![Place {
+        StoredStates {
+            all: vec![StoredState {
                 from: None,
                 led_to: Vec::new(),
                 kept: start,
@@ -32,7 +32,7 @@ impl<T> Places<T> {
         }
     }
 
-    fn place(&self, place: u64) -> Option<&Place<T>> {
+    fn place(&self, place: u64) -> Option<&StoredState<T>> {
         self.all.get(usize::try_from(place).ok()?)
     }
 
@@ -70,7 +70,7 @@ impl<T> Places<T> {
         if let Some(from) = self.all.get_mut(from as usize) {
             from.led_to.push(place);
         }
-        self.all.push(Place {
+        self.all.push(StoredState {
             from: Some((from, asked)),
             led_to: Vec::new(),
             kept,
@@ -121,7 +121,7 @@ mod tests {
             mode: Mode::Fixed,
             hold: false,
         };
-        let mut places = Places::new("start");
+        let mut places = StoredStates::new("start");
         let one = places.add(0, Vec::new(), "one");
         let two = places.add(one, Vec::new(), "two");
         let other = places.add(one, vec![forced.clone()], "other");

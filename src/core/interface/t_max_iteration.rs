@@ -33,7 +33,7 @@ const SQUARINGS: i32 = 24;
 
 /// Prediction of T_max.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Spiral {
+pub struct TMaxIteration {
     /// Number of minor iterations run until the modes had repeated.
     pub start: u32,
     /// Minor iterations per period.
@@ -49,23 +49,23 @@ pub struct Spiral {
     /// Spectral radius ρ of a period.
     pub radius: f64,
     /// Predicted outcome.
-    pub fate: Fate,
+    pub fate: TMaxLimit,
 }
 
 /// Outcome of a repeating sequence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Fate {
+pub enum TMaxLimit {
     /// The modes change within a period and will do so forever: a proven cycle.
     Cycles,
     /// The modes have converged, and T_max will converge.
     Settles,
     /// T_max diverges from the fixed point.
-    SwingsApart,
+    Diverges,
     /// The sequence of modes will end.
     Passes,
 }
 
-impl Spiral {
+impl TMaxIteration {
     /// Number of minor iterations after which T_max repeats to [`REPEATS`], for forces of this magnitude. `None` unless it
     /// converges.
     pub fn iterations(&self, force: f64) -> Option<u64> {
@@ -83,7 +83,11 @@ impl Spiral {
 
 /// Prediction for the minor iterations that start from a problem's states, based on at most `most` of them. `None` if they
 /// converge earlier, cannot be solved, or repeat no sequence of modes, and if T_max does not lag.
-pub fn spiral(problem: &InterfaceProblem, method: &dyn Method, most: usize) -> Option<Spiral> {
+pub fn spiral(
+    problem: &InterfaceProblem,
+    method: &dyn Method,
+    most: usize,
+) -> Option<TMaxIteration> {
     if method.bound(problem.settings.t_max) != BoundUpdate::Lagged {
         return None;
     }
@@ -105,10 +109,10 @@ pub fn spiral(problem: &InterfaceProblem, method: &dyn Method, most: usize) -> O
                     continue;
                 };
                 match found.fate {
-                    Fate::Passes => {}
+                    TMaxLimit::Passes => {}
                     // It may still reach a longer period.
-                    Fate::SwingsApart => apart = apart.or(Some(found)),
-                    Fate::Cycles | Fate::Settles => return Some(found),
+                    TMaxLimit::Diverges => apart = apart.or(Some(found)),
+                    TMaxLimit::Cycles | TMaxLimit::Settles => return Some(found),
                 }
             }
         }
@@ -147,7 +151,7 @@ fn of_round(
     method: &dyn Method,
     trail: &[Vec<ContactState>],
     period: usize,
-) -> Option<Spiral> {
+) -> Option<TMaxIteration> {
     let round = &trail[trail.len() - 1 - period..];
     let (first, last) = (&round[0], &round[period]);
     let slides = |s: &usize| round[..period].iter().any(|n| n[*s].mode == Mode::Sliding);
@@ -168,7 +172,7 @@ fn of_round(
     dense.solve(&mut step).ok()?;
     let fixed: Vec<f64> = had.iter().zip(&step).map(|(x, s)| x + s).collect();
     let away: Vec<f64> = has.iter().zip(&fixed).map(|(x, f)| x - f).collect();
-    let mut found = Spiral {
+    let mut found = TMaxIteration {
         start: trail.len() as u32 - 1,
         period: period as u32,
         modes: (0..first.len())
@@ -176,7 +180,7 @@ fn of_round(
             .collect(),
         distance: away.iter().fold(0.0, |m, x| x.abs().max(m)),
         radius: radius(&map, size),
-        fate: Fate::SwingsApart,
+        fate: TMaxLimit::Diverges,
         places,
         fixed,
     };
@@ -187,9 +191,9 @@ fn of_round(
             .iter()
             .any(|m| m.iter().any(|mode| *mode != m[0]));
         found.fate = match (stays, changes) {
-            (false, _) => Fate::Passes,
-            (true, true) => Fate::Cycles,
-            (true, false) => Fate::Settles,
+            (false, _) => TMaxLimit::Passes,
+            (true, true) => TMaxLimit::Cycles,
+            (true, false) => TMaxLimit::Settles,
         };
     }
     Some(found)
@@ -269,7 +273,7 @@ fn stays(
     trials: &mut Trials<'_>,
     method: &dyn Method,
     round: &[Vec<ContactState>],
-    spiral: &Spiral,
+    spiral: &TMaxIteration,
     (map, mut away): (&[f64], Vec<f64>),
 ) -> bool {
     let size = spiral.places.len();

@@ -3,17 +3,17 @@
 /// A file that cannot be parsed.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{message}")]
-pub struct Broken {
+pub struct FormatError {
     /// Line and column, both from 1, with columns in characters; `None` for errors in the whole file or in a binary part.
     pub at: Option<(usize, usize)>,
     /// What is wrong and what is expected.
     pub message: String,
 }
 
-impl Broken {
+impl FormatError {
     /// An error at a line and column, both from 1.
     pub fn at(line: usize, column: usize, message: impl Into<String>) -> Self {
-        Broken {
+        FormatError {
             at: Some((line, column)),
             message: message.into(),
         }
@@ -21,16 +21,16 @@ impl Broken {
 
     /// An error in the file as a whole.
     pub fn whole(message: impl Into<String>) -> Self {
-        Broken {
+        FormatError {
             at: None,
             message: message.into(),
         }
     }
 }
 
-impl From<((usize, usize), String)> for Broken {
+impl From<((usize, usize), String)> for FormatError {
     fn from(((line, column), message): ((usize, usize), String)) -> Self {
-        Broken::at(line, column, message)
+        FormatError::at(line, column, message)
     }
 }
 

@@ -4,7 +4,7 @@ use super::link::{Link, Start, name};
 use std::sync::Arc;
 use std::sync::atomic::AtomicUsize;
 use stickslip_core::step::intervene::Value;
-use stickslip_core::step::solver::{GoesBack, Offers, Parameter, Range};
+use stickslip_core::step::solver::{Capabilities, Parameter, Range, RewindSupport};
 use stickslip_debugger::recorded::fault::Fault;
 use stickslip_debugger::recorded::log::Log;
 use stickslip_debugger::recorded::orders::{COHESION, FRICTION, INCREMENT};
@@ -13,7 +13,7 @@ use stickslip_exchange::attach::{Answer, PROTOCOL, Request};
 use stickslip_scene::shown;
 
 /// A started solver.
-pub struct Met {
+pub struct StartedSolver {
     /// The child process.
     pub link: Link,
     /// Its greeting.
@@ -21,14 +21,14 @@ pub struct Met {
     /// Its scene.
     pub scene: Scene,
     /// Its capabilities.
-    pub offers: Offers,
+    pub offers: Capabilities,
 }
 
 /// Starts a solver, and reads its greeting and its scene.
 ///
 /// # Errors
 /// The fault that ended it.
-pub fn meet(start: &Start, log: &Log, asks: &Arc<AtomicUsize>) -> Result<Met, Fault> {
+pub fn meet(start: &Start, log: &Log, asks: &Arc<AtomicUsize>) -> Result<StartedSolver, Fault> {
     let mut link = Link::start(start, log, asks.clone())?;
     let request = Request::Hello {
         protocol: PROTOCOL,
@@ -42,13 +42,13 @@ pub fn meet(start: &Start, log: &Log, asks: &Arc<AtomicUsize>) -> Result<Met, Fa
     if hello.protocol != PROTOCOL {
         return Err(Fault::Version(hello.protocol));
     }
-    let offers = offers(&hello)?;
+    let offers = capabilities(&hello)?;
     link.set_interrupts(hello.abilities.interrupt);
     let scene = match link.ask(&Request::Scene, start.start)? {
         Answer::Scene(scene) => *scene,
         answer => return Err(other(&Request::Scene, answer, "scene")),
     };
-    Ok(Met {
+    Ok(StartedSolver {
         link,
         hello,
         scene,
@@ -72,7 +72,7 @@ pub fn other(request: &Request, answer: Answer, expected: &'static str) -> Fault
 }
 
 /// The capabilities of a solver, in the debugger's terms.
-fn offers(hello: &Hello) -> Result<Offers, Fault> {
+fn capabilities(hello: &Hello) -> Result<Capabilities, Fault> {
     let mut parameters: Vec<Parameter> = Vec::with_capacity(hello.parameters.len());
     for sent in &hello.parameters {
         let parameter = parameter(sent)?;
@@ -83,7 +83,7 @@ fn offers(hello: &Hello) -> Result<Offers, Fault> {
     }
     let has = |name: &str| parameters.iter().any(|known| known.name == name);
     let abilities = hello.abilities;
-    Ok(Offers {
+    Ok(Capabilities {
         name: shown::line(&hello.name).into_owned(),
         version: shown::line(&hello.version).into_owned(),
         past: None,
@@ -94,23 +94,23 @@ fn offers(hello: &Hello) -> Result<Offers, Fault> {
         cohesion: has(COHESION),
         settings: false,
         goes_back: match abilities.restore {
-            Restore::None => GoesBack::Again,
-            Restore::Increment => GoesBack::ToIncrements,
-            Restore::Any => GoesBack::ToAny,
+            Restore::None => RewindSupport::Again,
+            Restore::Increment => RewindSupport::ToIncrements,
+            Restore::Any => RewindSupport::ToAny,
         },
         problem: abilities.problem,
         parameters,
     })
 }
 
-fn unfit<T>(sent: &message::Parameter, why: &str) -> Result<T, Fault> {
+fn unfit<T>(sent: &message::ParameterMessage, why: &str) -> Result<T, Fault> {
     Err(Fault::Unfit {
         message: "hello",
         why: format!("parameter {:?}: {why}", sent.name),
     })
 }
 
-fn parameter(sent: &message::Parameter) -> Result<Parameter, Fault> {
+fn parameter(sent: &message::ParameterMessage) -> Result<Parameter, Fault> {
     if sent.name.is_empty()
         || sent
             .name

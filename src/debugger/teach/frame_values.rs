@@ -1,6 +1,6 @@
 //! Quantities of a state: now, some minor iterations later, or at the end of the increment.
 
-use super::refusal::Unknown;
+use super::refusal::LessonError;
 use super::runs::Runs;
 use crate::history::frame::Frame;
 use crate::history::strip::norms_after;
@@ -21,7 +21,7 @@ const ENDLESS: u32 = 20_000;
 
 /// A frame of the history with its model.
 #[derive(Debug, Clone)]
-pub struct Look {
+pub struct FrameValues {
     /// The scene's model.
     pub model: Arc<Model>,
     /// The shown iteration.
@@ -55,19 +55,19 @@ impl IncrementEnd {
     /// Whether the residuals near the solution converge quadratically rather than linearly.
     ///
     /// # Errors If none are near the solution.
-    pub fn is_quadratic(&self) -> Result<bool, Unknown> {
+    pub fn is_quadratic(&self) -> Result<bool, LessonError> {
         let near = |pair: &&[f64]| (FAR..NEAR).contains(&pair[0]);
         let mut pairs = self.residuals.windows(2).filter(near).peekable();
-        pairs.peek().ok_or(Unknown::NoRate)?;
+        pairs.peek().ok_or(LessonError::NoRate)?;
         Ok(pairs.any(|pair| pair[1] < pair[0].powf(DOUBLING)))
     }
 }
 
-impl Look {
+impl FrameValues {
     /// The frame after this many more minor iterations.
     ///
     /// # Errors If the history ends earlier.
-    pub fn ahead(&self, minors: u32) -> Result<Look, Unknown> {
+    pub fn ahead(&self, minors: u32) -> Result<FrameValues, LessonError> {
         let mut look = self.clone();
         if minors == 0 {
             return Ok(look);
@@ -76,7 +76,7 @@ impl Look {
         let until = Until::end().minors(minors.into()).past_failures();
         let end = stepper.drive(until, |_| ControlFlow::<Infallible>::Continue(()));
         if end == RunEnd::Finished {
-            return Err(Unknown::Done);
+            return Err(LessonError::Done);
         }
         look.frame.event = Some(Arc::new(stepper.event().clone()));
         look.frame.state = stepper.state().clone();
@@ -87,7 +87,7 @@ impl Look {
     /// How this increment ends without interventions.
     ///
     /// # Errors If it does not end within the limit.
-    pub fn end(&self) -> Result<IncrementEnd, Unknown> {
+    pub fn end(&self) -> Result<IncrementEnd, LessonError> {
         let mut stepper = self.stepper();
         let mut minors = 0;
         let (mut majors, mut residuals) = (0, Vec::new());
@@ -105,8 +105,8 @@ impl Look {
             RunEnd::Stopped(()) => (true, None),
             RunEnd::Failed(Failure::Cycle(cycle)) => (false, Some(cycle)),
             RunEnd::Failed(_) => (false, None),
-            RunEnd::Finished | RunEnd::Interrupted => return Err(Unknown::Done),
-            RunEnd::Spent => return Err(Unknown::Endless(ENDLESS)),
+            RunEnd::Finished | RunEnd::Interrupted => return Err(LessonError::Done),
+            RunEnd::Spent => return Err(LessonError::Endless(ENDLESS)),
         };
         Ok(IncrementEnd {
             minors,
@@ -120,19 +120,19 @@ impl Look {
     /// The judge's verdict on the last accepted increment.
     ///
     /// # Errors If no increment has been accepted.
-    pub fn verdict(&self) -> Result<&Verdict, Unknown> {
+    pub fn verdict(&self) -> Result<&Verdict, LessonError> {
         self.frame
             .state
             .start
             .verdict
             .as_ref()
-            .ok_or(Unknown::NotJudged)
+            .ok_or(LessonError::NotJudged)
     }
 
     /// The latest relative residual: after the major iteration if it ended here, otherwise before it.
     ///
     /// # Errors If no iteration has been solved.
-    pub fn residual(&self) -> Result<f64, Unknown> {
+    pub fn residual(&self) -> Result<f64, LessonError> {
         let event = self.event()?;
         Ok(norms_after(&event.outcome)
             .unwrap_or(&event.before)
@@ -143,34 +143,37 @@ impl Look {
     /// solve, or departs from it.
     ///
     /// # Errors If the node does not slide with a lagged T_max both now and after the next solve.
-    pub fn lag(&self, slave: usize) -> Result<f64, Unknown> {
-        let off = |look: &Look| -> Result<f64, Unknown> {
+    pub fn lag(&self, slave: usize) -> Result<f64, LessonError> {
+        let off = |look: &FrameValues| -> Result<f64, LessonError> {
             let record = look.record(slave)?;
             let slides = record.decision.before == Mode::Sliding;
             slides
                 .then_some(record.t_max - record.t_max_used)
-                .ok_or(Unknown::NoLag)
+                .ok_or(LessonError::NoLag)
         };
         let lag = off(&self.ahead(1)?)? / off(self)?;
         Some(lag)
             .filter(|lag| lag.is_finite())
-            .ok_or(Unknown::NoLag)
+            .ok_or(LessonError::NoLag)
     }
 
     /// The runs of the lesson's chart.
     ///
     /// # Errors If the lesson has no chart.
-    pub fn runs(&self) -> Result<&Runs, Unknown> {
-        self.runs.as_deref().ok_or(Unknown::NoRuns)
+    pub fn runs(&self) -> Result<&Runs, LessonError> {
+        self.runs.as_deref().ok_or(LessonError::NoRuns)
     }
 
     /// The number of consistent states of the frozen problem of this major iteration.
     ///
     /// # Errors If the bodies cannot be condensed, or there are too many nodes for a census.
-    pub fn answers(&self) -> Result<usize, Unknown> {
+    pub fn answers(&self) -> Result<usize, LessonError> {
         let frozen = self.stepper().interface_problem();
-        let frozen = frozen.ok_or(Unknown::NotCondensed)?;
-        Ok(census(&frozen).map_err(Unknown::NoCensus)?.answers.len())
+        let frozen = frozen.ok_or(LessonError::NotCondensed)?;
+        Ok(census(&frozen)
+            .map_err(LessonError::NoCensus)?
+            .answers
+            .len())
     }
 
     fn stepper(&self) -> Stepper {
@@ -182,17 +185,17 @@ impl Look {
     /// The last minor iteration.
     ///
     /// # Errors If there is none.
-    pub fn event(&self) -> Result<&Event, Unknown> {
+    pub fn event(&self) -> Result<&Event, LessonError> {
         let event = self.frame.event.as_deref();
-        event.ok_or(Unknown::Unsolved)
+        event.ok_or(LessonError::Unsolved)
     }
 
     /// The record of a slave node in it.
     ///
     /// # Errors If there is none.
-    pub fn record(&self, slave: usize) -> Result<&ContactRecord, Unknown> {
+    pub fn record(&self, slave: usize) -> Result<&ContactRecord, LessonError> {
         let record = self.event()?.nodes.get(slave);
-        record.ok_or(Unknown::Failed)
+        record.ok_or(LessonError::Failed)
     }
 
     /// The mode of a slave node in it; at the start, the initial mode.

@@ -2,13 +2,13 @@
 
 use super::fault::Fault;
 use stickslip_core::model::Friction;
-use stickslip_core::step::solver::{Posed, PosedForm};
-use stickslip_exchange::attach::message::{Id, Matrix, Problem};
+use stickslip_core::step::solver::{ReportedForm, ReportedProblem};
+use stickslip_exchange::attach::message::{Id, MatrixMessage, ProblemMessage};
 
 /// Converts the problem, whose contacts have these ids.
 ///
 /// # Errors [`Fault::Unfit`] if its parts do not match.
-pub fn posed(problem: &Problem, ids: &[Id]) -> Result<Posed, Fault> {
+pub fn read_problem(problem: &ProblemMessage, ids: &[Id]) -> Result<ReportedProblem, Fault> {
     let unfit = |why: String| Fault::Unfit {
         message: "problem",
         why,
@@ -36,7 +36,7 @@ pub fn posed(problem: &Problem, ids: &[Id]) -> Result<Posed, Fault> {
     if problem.q.is_empty() && problem.load.is_empty() {
         return Err(unfit("it needs either q or load".into()));
     }
-    if !problem.load.is_empty() && problem.kind == PosedForm::Compliance {
+    if !problem.load.is_empty() && problem.kind == ReportedForm::Compliance {
         return Err(unfit("load is only allowed with a stiffness".into()));
     }
     let lengths = [
@@ -51,8 +51,8 @@ pub fn posed(problem: &Problem, ids: &[Id]) -> Result<Posed, Fault> {
         )));
     }
     let matrix = match &problem.matrix {
-        Matrix::Rows(rows) => rows.clone(),
-        Matrix::Triplets {
+        MatrixMessage::Rows(rows) => rows.clone(),
+        MatrixMessage::Triplets {
             size: sent,
             triplets,
         } => {
@@ -88,7 +88,7 @@ pub fn posed(problem: &Problem, ids: &[Id]) -> Result<Posed, Fault> {
             "mu and cohesion must be finite and not negative".into(),
         ));
     }
-    Ok(Posed {
+    Ok(ReportedProblem {
         contacts,
         form: problem.kind,
         matrix,
