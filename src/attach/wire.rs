@@ -7,8 +7,8 @@ use stickslip_core::linear::norms::Norms;
 use stickslip_core::model::{Axis, Bond, Control, Jumps, Model, MonitorQuantity};
 use stickslip_core::step::event::{Event, Failure, Outcome};
 use stickslip_core::step::state::State;
+use stickslip_debugger::explain::failures;
 use stickslip_debugger::explain::names;
-use stickslip_debugger::explain::report;
 use stickslip_exchange::attach::message::{
     self, Contact, ContactResult, EndedLevel, Forced, Friction, Id, Monitor, Scene, SurfaceMessage,
     ToldKind, number,
@@ -187,7 +187,7 @@ fn reason(model: &Model, event: &Event) -> String {
         | Outcome::Cut { why, .. }
         | Outcome::WholeIncrement { why, .. }
         | Outcome::Fallback { why, .. }
-        | Outcome::PathCorner { why, .. } => report::describe_failure(model, why),
+        | Outcome::PathCorner { why, .. } => failures::describe(model, why),
         _ => String::new(),
     }
 }

@@ -14,7 +14,7 @@ use stickslip_core::step::drive::RunEnd;
 use stickslip_core::step::event::{Event, Failure, Outcome, Position};
 use stickslip_core::step::state::{State, Status};
 use stickslip_core::step::stepper::Stepper;
-use stickslip_debugger::explain::{names, report, trail};
+use stickslip_debugger::explain::{failures, names, report, trail};
 use stickslip_debugger::history::strip::Strip;
 use stickslip_debugger::record::export::export_state::{
     COLUMNS, ExportState, PicturePart, PictureRequest,
@@ -400,7 +400,7 @@ fn drive(
 
 /// The failure of the last minor iteration in words; printed as well if requested.
 fn failed(scene: &Scene, stepper: &Stepper, failure: &Failure, prints: bool) -> String {
-    let words = report::describe_failure(&scene.model, failure);
+    let words = failures::describe(&scene.model, failure);
     if prints {
         let at = names::position(stepper.event().position);
         let name = &scene.name;

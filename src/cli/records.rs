@@ -6,7 +6,7 @@
 use serde::Serialize;
 use stickslip_core::model::Model;
 use stickslip_core::step::event::{Failure, Position};
-use stickslip_debugger::explain::report;
+use stickslip_debugger::explain::failures;
 
 /// The type of a field, as the page names it.
 trait JsonType {
@@ -428,7 +428,7 @@ records! {
 impl FailureRecord {
     /// A failure at a position; `load` is the target of its increment.
     pub fn new(model: &Model, at: Position, load: f64, failure: &Failure) -> FailureRecord {
-        let words = report::describe_failure(model, failure);
+        let words = failures::describe(model, failure);
         FailureRecord::reported(FailureKind::from_failure(failure), words, at, load)
     }
 

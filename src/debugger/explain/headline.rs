@@ -1,7 +1,7 @@
 //! What happened, in one line: the increment, its load, and the failure with at most a few node names.
 
+use super::failures;
 use super::names::slave;
-use super::report::describe_failure;
 use stickslip_core::model::Model;
 use stickslip_core::step::event::Failure;
 use stickslip_core::step::state::State;
@@ -54,7 +54,7 @@ pub fn brief(model: &Model, failure: &Failure) -> String {
             slave(model, *s),
             brief(model, last)
         ),
-        _ => describe_failure(model, failure),
+        _ => failures::describe(model, failure),
     }
 }
 

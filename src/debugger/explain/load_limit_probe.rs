@@ -1,7 +1,7 @@
 //! The largest load that smaller steps reach: repeats the failed increment from the last equilibrium in steps
 //! that are cut whenever they fail, with any strategy.
 
-use super::report;
+use super::failures;
 use std::mem::discriminant;
 use std::ops::ControlFlow;
 use stickslip_core::linear::singular::Singular;
@@ -49,7 +49,7 @@ impl LoadLimitProbe {
             Some((size, failure)) => {
                 let why = match discriminant(failure) == discriminant(first) {
                     true => "the same failure".to_owned(),
-                    false => report::describe_failure(model, failure),
+                    false => failures::describe(model, failure),
                 };
                 let far = match *load == self.from {
                     true => format!("not even a step of {size:.1e} beyond load {at} succeeds"),

@@ -32,6 +32,7 @@ pub mod cycles;
 pub mod diagnosis;
 pub mod examination;
 pub mod facts;
+pub mod failures;
 pub mod headline;
 pub mod indefinite;
 pub mod influence;

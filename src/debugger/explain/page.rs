@@ -9,6 +9,7 @@ use super::attempt::Attempt;
 use super::diagnosis::undecided;
 use super::examination::{DONE, Examination, frozen, nothing};
 use super::facts::{Fact, Part};
+use super::failures;
 use super::headline::{at, headline};
 use super::indefinite::{self, indefinite};
 use super::judged;
@@ -20,7 +21,7 @@ use super::mesh_probe::{MeshProbe, finer};
 use super::names;
 use super::remedies::{self, RemedyTrial, TrialEnd, attempt};
 use super::remedy::{Remedy, RemedyInput, RemedyKind};
-use super::report::{describe_failure, sound};
+use super::report::sound;
 use super::rigid_motion::loose;
 use super::strain::MaterialCause;
 use super::try_list::{self, TryLine, TryOutcome, helps};
@@ -442,7 +443,7 @@ impl PageBuilder {
             Part::Details,
             format!(
                 "the first strategy failed: {}",
-                describe_failure(model, first)
+                failures::describe(model, first)
             ),
         ));
     }

@@ -3,8 +3,8 @@
 use crate::explain::core::core;
 use crate::explain::diagnosis::too_many;
 use crate::explain::examination::{NotExamined, going_round};
+use crate::explain::failures;
 use crate::explain::interface_scene;
-use crate::explain::report;
 use crate::history::strip::Strip;
 use crate::record::command::ExportScope;
 use crate::record::export::export_state::{ExportError, ExportState, PictureRequest};
@@ -94,7 +94,7 @@ fn shown(
         return Err(ExportError::Finished);
     };
     let ended = match &ask.state.status {
-        Status::Failed(failure) => report::describe_failure(stepper.model(), failure),
+        Status::Failed(failure) => failures::describe(stepper.model(), failure),
         _ => String::new(),
     };
     let shown = ExportState {

@@ -3,6 +3,7 @@
 use super::background::Reported;
 use super::refusal::Refusal;
 use super::worker::Steps;
+use crate::explain::failures;
 use crate::explain::influence::PushPath;
 use crate::explain::report;
 use crate::explain::reported_pushes::Iterations;
@@ -397,7 +398,7 @@ impl Timeline {
     /// What the line shows about an attached solver up to the cursor.
     pub(super) fn reported(&self) -> Reported {
         let what = match &self.frame().state.status {
-            Status::Failed(failure) => Some(report::describe_failure(self.model(), failure)),
+            Status::Failed(failure) => Some(failures::describe(self.model(), failure)),
             _ => None,
         };
         let found = rounds(&self.strips()[..=self.cursor]);

@@ -1,0 +1,172 @@
+//! The sentence for each way in which an increment fails.
+
+use crate::explain::cycles::{cycle, major_cycle};
+use crate::explain::judged;
+use crate::explain::jumped;
+use crate::explain::names::slave;
+use crate::explain::strain;
+use stickslip_core::interface::census;
+use stickslip_core::interface::method::NotFound;
+use stickslip_core::linear::norms::Norms;
+use stickslip_core::linear::singular::{LooseMotion, RigidMotion, Singular};
+use stickslip_core::model::Model;
+use stickslip_core::step::event::Failure;
+use stickslip_scene::shown::first_of;
+
+/// Maximum number of nodes or motions named.
+const MOST_NODES: usize = 6;
+
+/// Why an increment failed.
+pub fn describe(model: &Model, failure: &Failure) -> String {
+    match failure {
+        Failure::Cycle(c) => cycle(model, c),
+        Failure::Reported { reason, .. } if reason.is_empty() => {
+            "the solver failed without giving a reason".into()
+        }
+        Failure::Reported { reason, .. } => format!("the solver failed: {reason}"),
+        Failure::MinorLimit { limit, changing } => {
+            let nodes = changing.iter().map(|&s| slave(model, s).to_owned());
+            format!(
+                "the minor iterations did not settle within {limit}; still changing: {}",
+                first_of(nodes, MOST_NODES, ", ")
+            )
+        }
+        Failure::MajorLimit {
+            limit,
+            relative,
+            interface,
+        } => format!(
+            "no convergence within {limit} major iterations; relative residual {relative:.3e}, interface {interface:.3e}"
+        ),
+        Failure::MajorCycle(round) => major_cycle(model, round),
+        Failure::NoAnswer { first, tried } => {
+            let none =
+                format!("this increment has no consistent state (all {tried} assignments tried)");
+            match first {
+                None => none,
+                Some(first) => format!("{none}; first failure: {}", describe(model, first)),
+            }
+        }
+        Failure::LadderEnded {
+            first,
+            last,
+            scales,
+        } => format!(
+            "no strategy of the ladder found a consistent state (first failure: {}; last: {}){}",
+            describe(model, first),
+            describe(model, last),
+            match scales {
+                true => "; without gaps, the problem scales with the load, so a smaller increment would not help",
+                false => "",
+            }
+        ),
+        Failure::NotFound(why) => not_found(*why),
+        Failure::Singular(Singular::Rigid { motions }) => {
+            let motions = motions.iter().map(motion);
+            format!("unrestrained rigid motion: {}", first_of(motions, MOST_NODES, "; "))
+        }
+        Failure::Singular(Singular::Unexplained) => {
+            "the equations are singular although every body is held: a limit point, or redundant constraints".into()
+        }
+        Failure::Diverged { relative } => {
+            format!("diverged, relative residual {relative:.3e}")
+        }
+        Failure::Refused(found) => {
+            format!("refused: {}", judged::finding(model, found))
+        }
+        Failure::Inverted(point) => {
+            format!("refused: {}", strain::inverted(model, point))
+        }
+        Failure::CutTooOften { slave: s, cuts, last } => format!(
+            "the increment was cut {cuts} times because of {}: {}",
+            slave(model, *s),
+            describe(model, last)
+        ),
+        Failure::NoRest { steps } => {
+            format!("the damped motion still moves after {steps} steps")
+        }
+        Failure::BranchJump {
+            motion,
+            predicted,
+            unstable,
+        } => jumped::jump(*motion, *predicted, *unstable),
+        Failure::PathReversal => {
+            "the path control would turn back along the previous increment".into()
+        }
+        Failure::ZeroMeasure => {
+            "the path measure (history.arc) does not change with the load, so the increment has no size".into()
+        }
+        Failure::RoundOff { noise } => format!(
+            "double precision is not sufficient for this scene: the round-off of its stiffest forces is {noise:.1e} of the loads; the limit is {:.0e}",
+            Norms::LOUDEST
+        ),
+        Failure::OverConstrained { slave: s, gap } => format!(
+            "{} penetrates by {:.3e}, but neither the node nor its surface can move",
+            slave(model, *s),
+            -gap
+        ),
+    }
+}
+
+/// Why pivoting or the census found no state.
+fn not_found(why: NotFound) -> String {
+    match why {
+        NotFound::Ray => {
+            "pivoting ended on a ray from every start, without a consistent state".into()
+        }
+        NotFound::Astray { pivots } => {
+            format!("pivoting stopped after {pivots} pivots; there may still be a consistent state")
+        }
+        NotFound::NoStart => {
+            "pivoting cannot start: the equations of all known starts are singular".into()
+        }
+        NotFound::Unsettled { sweeps } => {
+            format!("after {sweeps} sweeps of Gauss-Seidel the modes still change")
+        }
+        NotFound::TooMany { nodes } => format!(
+            "{nodes} nodes can touch, too many for a census (limit {})",
+            census::MOST
+        ),
+        NotFound::Loose => {
+            "no census is possible: the equations of the nodes that cannot touch are singular".into()
+        }
+        NotFound::NotCondensed => {
+            "the bodies cannot be condensed to the interface, so pivoting and census are not possible".into()
+        }
+        NotFound::Unconfirmed { states } => format!(
+            "{states} state{} found consistent, but no minor iteration confirmed {}",
+            if states == 1 { " was" } else { "s were" },
+            if states == 1 { "it" } else { "one" }
+        ),
+    }
+}
+
+fn motion(rigid: &RigidMotion) -> String {
+    let body = &rigid.body;
+    match rigid.motion {
+        LooseMotion::Translation([x, y]) => {
+            format!(
+                "body {body} can move along ({}, {})",
+                rounded(x),
+                rounded(y)
+            )
+        }
+        LooseMotion::Rotation([x, y]) => {
+            format!(
+                "body {body} can rotate about ({}, {})",
+                rounded(x),
+                rounded(y)
+            )
+        }
+    }
+}
+
+/// Four decimals without trailing zeros: coordinates for people.
+fn rounded(x: f64) -> f64 {
+    let rounded = (x * 1e4).round() / 1e4;
+    // Avoid "-0", and infinity for very large numbers.
+    match rounded.is_finite() {
+        true => rounded + 0.0,
+        false => x,
+    }
+}
