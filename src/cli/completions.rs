@@ -154,6 +154,7 @@ const FREE: &[&str] = &[
     "K/N",
     "MONITOR",
     "N",
+    "NODE",
     "PART",
     "PIXELS",
     "QUANTITY",

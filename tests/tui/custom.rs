@@ -477,20 +477,20 @@ fn colours_follow_a_light_background_and_keys_around_the_reply_are_kept() {
         };
         session.wait(&format!("colour {wanted}"), free);
     };
-    // Free nodes are cyan on a dark background and blue on a light one.
-    let (cyan, blue) = (6, 4);
+    // Warnings are yellow on a dark background and magenta on a light one.
+    let (yellow, magenta) = (3, 5);
     let mut session = started(&nothing, &[]);
     session.see(" s step");
-    tinted(&session, cyan);
+    tinted(&session, yellow);
     session.keys("s\x1b]11;rgb:ffff/ffff/dddd\x1b\\s");
     session.see("minor 2");
-    tinted(&session, blue);
+    tinted(&session, magenta);
     session.type_and_see(":colours dark\r", "colours: dark");
-    tinted(&session, cyan);
+    tinted(&session, yellow);
     session.quit();
     let mut session = started(&nothing, &[("COLORFGBG", "0;15")]);
     session.type_and_see("s", "minor 1");
-    tinted(&session, blue);
+    tinted(&session, magenta);
     session.quit();
 }
 

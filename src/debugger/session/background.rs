@@ -17,6 +17,9 @@
 
 mod attached_solver;
 
+use super::background_messages::{
+    BackgroundReply, BackgroundRequest, BetweenRuns, LinePlace, Reported,
+};
 use super::exports::{Export, is_of_problem, write, write_posed};
 use super::trials::try_remedies;
 use super::worker::Lender;
@@ -25,8 +28,7 @@ use crate::explain::examination::examine_nodes;
 use crate::explain::influence::{NodePush, PushPath, between, pushed, pushes};
 use crate::explain::page::{DiagnosisPage, page};
 use crate::explain::remedies::{self, RemedyTrial};
-use crate::explain::reported_pushes::{self, Iterations};
-use crate::explain::walk::ReportedIterations;
+use crate::explain::reported_pushes;
 use crate::record::export::export_state::ExportError;
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -48,9 +50,6 @@ const KEPT: usize = 512;
 const LARGE: f64 = 2e8;
 /// Last line of a page whose analysis was interrupted.
 const STOPPED: &str = "interrupted; :census starts it again";
-/// Position: branch, and step on its line.
-pub type LinePlace = (usize, usize);
-
 /// The remedies tried from one position so far.
 #[derive(Debug, Clone)]
 pub struct RemedyTrials {
@@ -64,57 +63,6 @@ pub struct RemedyTrials {
     pub trials: Vec<RemedyTrial>,
     /// Whether the trials were interrupted before the last one.
     pub stopped: bool,
-}
-
-pub(super) enum BackgroundRequest {
-    /// The last value is whether they may be costly.
-    Pushes(LinePlace, usize, BetweenRuns, bool),
-    WorstPoint(Arc<Vec<f64>>),
-    Examination(LinePlace, Box<State>, Vec<usize>, Reported),
-    Remedies(Box<State>),
-    Export(Export),
-}
-
-/// What a line shows about an attached solver; empty for our own.
-#[derive(Default)]
-pub(super) struct Reported {
-    /// How it failed, and whether its modes repeat.
-    pub findings: Vec<String>,
-    /// The latest minor iterations of the frozen problem.
-    pub iterations: ReportedIterations,
-}
-
-/// The two minor iterations whose difference is the push on a node.
-pub(super) enum BetweenRuns {
-    /// Steps to repeat to reach them again.
-    Path(PushPath),
-    /// Both iterations as reported by an attached solver.
-    Reported(Iterations),
-}
-
-pub(super) enum BackgroundReply {
-    Pushes(LinePlace, usize, Option<Vec<NodePush>>),
-    /// The pushes at this position need a large solver.
-    Costly(LinePlace),
-    WorstPoint(Arc<Vec<f64>>, Option<PointDeformation>),
-    /// The solver was busy.
-    NotNow,
-    /// The examination so far (`going_on`) or complete.
-    Examination {
-        place: LinePlace,
-        nodes: Vec<usize>,
-        found: Option<Box<DiagnosisPage>>,
-        going_on: bool,
-    },
-    Trying {
-        all: usize,
-        now: String,
-    },
-    Trial(Box<RemedyTrial>),
-    Done {
-        stopped: bool,
-    },
-    Exported(Result<String, ExportError>),
 }
 
 /// State of the background thread.
@@ -159,6 +107,19 @@ pub struct Background {
 }
 
 impl Background {
+    /// The worst point of the solids at displacements; `None` if there is none, or while it is being computed.
+    pub fn worst_point(&self, u: &Arc<Vec<f64>>) -> Option<PointDeformation> {
+        self.worst.find(u).flatten()
+    }
+
+    /// Requests the worst point at displacements, once.
+    pub(super) fn ask_worst_point(&mut self, u: &Arc<Vec<f64>>) {
+        if self.worst.find(u).is_none() {
+            self.worst.keep(u, None);
+            self.send(BackgroundRequest::WorstPoint(u.clone()));
+        }
+    }
+
     /// Starts the thread, idle.
     ///
     /// `spec` is the scene as written by its author, which a finer mesh may be generated from. `lender` gives

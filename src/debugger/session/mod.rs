@@ -10,6 +10,7 @@
 //! - [`journal_writer`]: the journal being written; [`replay`]: repeating a journal; [`refusal`]: the errors.
 
 pub mod background;
+pub mod background_messages;
 mod change;
 pub mod connection;
 mod current_scene;

@@ -1,6 +1,6 @@
 //! Questions about the shown state that the background thread answers, and snapshots of it.
 
-use super::background::{BetweenRuns, Reported};
+use super::background_messages::{BetweenRuns, Reported};
 use super::exports::{Export, PictureContext};
 use super::machine::Session;
 use super::refusal::Refusal;

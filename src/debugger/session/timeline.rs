@@ -1,6 +1,6 @@
 //! The history of a session as it is shown: the current line of its tree of branches, and the cursor on it.
 
-use super::background::Reported;
+use super::background_messages::Reported;
 use super::refusal::Refusal;
 use super::worker::Steps;
 use crate::explain::failures;

@@ -1,6 +1,6 @@
 //! Trials of remedies on the background thread.
 
-use super::background::BackgroundReply;
+use super::background_messages::BackgroundReply;
 use crate::explain::remedies::{self, RemedyTrial};
 use crate::explain::remedy::Remedy;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -1,6 +1,5 @@
 //! The worst point of the solids in shown states, computed on the background thread: it takes a pass over all elements.
 
-use super::background::{Background, BackgroundRequest};
 use std::collections::VecDeque;
 use std::sync::{Arc, Weak};
 use stickslip_core::fem::deformation::{PointDeformation, deformation};
@@ -20,7 +19,8 @@ pub(super) fn worst_point(model: &Model, u: &[f64]) -> Option<PointDeformation> 
 }
 
 impl WorstPoints {
-    fn find(&self, u: &Arc<Vec<f64>>) -> Option<Option<PointDeformation>> {
+    /// The point at displacements; `None` if nobody asked for it.
+    pub(super) fn find(&self, u: &Arc<Vec<f64>>) -> Option<Option<PointDeformation>> {
         let mut latest_first = self.0.iter().rev();
         let (_, found) = latest_first.find(|(of, _)| of.as_ptr() == Arc::as_ptr(u))?;
         Some(*found)
@@ -32,21 +32,6 @@ impl WorstPoints {
         self.0.push_back((Arc::downgrade(u), found));
         if self.0.len() > KEPT {
             self.0.pop_front();
-        }
-    }
-}
-
-impl Background {
-    /// The worst point of the solids at displacements; `None` if there is none, or while it is being computed.
-    pub fn worst_point(&self, u: &Arc<Vec<f64>>) -> Option<PointDeformation> {
-        self.worst.find(u).flatten()
-    }
-
-    /// Requests the worst point at displacements, once.
-    pub(super) fn ask_worst_point(&mut self, u: &Arc<Vec<f64>>) {
-        if self.worst.find(u).is_none() {
-            self.worst.keep(u, None);
-            self.send(BackgroundRequest::WorstPoint(u.clone()));
         }
     }
 }

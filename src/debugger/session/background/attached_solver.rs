@@ -1,6 +1,6 @@
 //! Analyses of an attached solver: from the interface problem that it reports, and by trials on the solver itself.
 
-use super::{BackgroundReply, Helper, Reported};
+use super::Helper;
 use crate::explain::attached;
 use crate::explain::examination::Examination;
 use crate::explain::facts::Fact;
@@ -8,6 +8,7 @@ use crate::explain::page::DiagnosisPage;
 use crate::explain::remedies;
 use crate::explain::try_list::TryLine;
 use crate::explain::walk::ReportedIterations;
+use crate::session::background_messages::{BackgroundReply, Reported};
 use crate::session::trials::try_all;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::Sender;
