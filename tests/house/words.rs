@@ -14,7 +14,7 @@ const AVOIDED: &str = "tell|tells|told|of its own|of their own|anew|goes on|go o
 /// Largest number of them per 1,000 words.
 const MOST_PER_THOUSAND: f64 = 0.5;
 /// Largest number of type names that a package, or several, define more than once.
-const MOST_DUPLICATES: usize = 15;
+const MOST_DUPLICATES: usize = 2;
 
 /// The words of the comments and strings of a Rust file, without its inline tests.
 fn text_of(source: &str) -> String {

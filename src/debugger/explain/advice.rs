@@ -7,7 +7,8 @@
 use super::remedy::{Remedy, RemedyKind};
 use stickslip_core::linear::singular::Singular;
 use stickslip_core::model::{
-    AtCycle, BoundUpdate, Geometry, InitialGaps, Jumps, Mode, Model, ResidualMethod, Strategy,
+    AtCycle, BoundUpdate, Geometry, InitialGaps, Jumps, Mode, Model, ResidualMethod, SearchMode,
+    Strategy,
 };
 use stickslip_core::step::event::Failure;
 use stickslip_core::step::state::State;
@@ -42,7 +43,7 @@ pub fn advice(model: &Model, state: &State, failure: &Failure) -> Vec<Advice> {
         .into_iter()
         .filter_map(|kind| Remedy::from_kind(kind, model, state))
         .map(Advice::Remedy);
-    let by_hand = by_hand(model, state, failure).iter().copied();
+    let by_hand = by_hand(state, failure).iter().copied();
     let by_hand = by_hand.map(Advice::ByHand);
     // A missing support or another load cannot be replaced by any setting.
     let scene_first = matches!(
@@ -99,6 +100,7 @@ fn kinds(state: &State, failure: &Failure) -> Vec<RemedyKind> {
     };
     let lags = settings.t_max == BoundUpdate::Lagged;
     let frozen = settings.geometry == Geometry::Frozen;
+    let searches = climbs && settings.search == SearchMode::Off;
     match failure {
         Failure::Cycle(_) => {
             add(!climbs, &[RemedyKind::Strategy(Strategy::Ladder)]);
@@ -112,6 +114,7 @@ fn kinds(state: &State, failure: &Failure) -> Vec<RemedyKind> {
             add(true, parts);
         }
         Failure::MajorCycle(_) => {
+            add(searches, &[RemedyKind::Search]);
             add(frozen, &[RemedyKind::ConsistentGeometry]);
             add(true, parts);
             add(true, &[RemedyKind::TouchAtStart]);
@@ -120,6 +123,7 @@ fn kinds(state: &State, failure: &Failure) -> Vec<RemedyKind> {
             add(frozen, &[RemedyKind::ConsistentGeometry]);
             let accumulates = settings.residual == ResidualMethod::Accumulate;
             add(accumulates, &[RemedyKind::OtherResidual]);
+            add(searches, &[RemedyKind::Search]);
             add(true, &[RemedyKind::MoreMajors]);
             add(true, parts);
         }
@@ -134,6 +138,7 @@ fn kinds(state: &State, failure: &Failure) -> Vec<RemedyKind> {
             add(!climbs, &[RemedyKind::Strategy(Strategy::Ladder)]);
         }
         Failure::Singular(Singular::Unexplained) | Failure::Diverged { .. } => {
+            add(searches, &[RemedyKind::Search]);
             add(true, parts);
         }
         Failure::LadderEnded { .. } | Failure::NotFound(_) => {
@@ -143,17 +148,25 @@ fn kinds(state: &State, failure: &Failure) -> Vec<RemedyKind> {
                 parts,
             );
             let others = [Strategy::Newton, Strategy::Block];
+            add(searches, &[RemedyKind::Search]);
             add(climbs, &others.map(RemedyKind::Strategy));
         }
         Failure::Refused(_) => {
+            add(searches, &[RemedyKind::Search]);
             add(true, parts);
             add(
                 true,
                 &[RemedyKind::TouchAtStart, RemedyKind::ConsistentLimit],
             );
         }
+        Failure::BranchJump { .. } => add(
+            true,
+            &[
+                RemedyKind::Jumps(Jumps::Cut),
+                RemedyKind::Jumps(Jumps::Dynamic),
+            ],
+        ),
         Failure::NoAnswer { .. }
-        | Failure::BranchJump { .. }
         | Failure::PathReversal
         | Failure::ZeroMeasure
         | Failure::NoRest { .. }
@@ -168,7 +181,7 @@ fn kinds(state: &State, failure: &Failure) -> Vec<RemedyKind> {
 }
 
 /// What the user can do in the scene's file or in the debugger.
-fn by_hand(model: &Model, state: &State, failure: &Failure) -> &'static [&'static str] {
+fn by_hand(state: &State, failure: &Failure) -> &'static [&'static str] {
     match failure {
         Failure::Cycle(_) => &["forcing a node into its third mode (m)"],
         Failure::MajorCycle(_) => &["replacing the kink by an arc, if it is a corner of the body"],
@@ -176,8 +189,8 @@ fn by_hand(model: &Model, state: &State, failure: &Failure) -> &'static [&'stati
             "other loads or friction",
             "a prescribed displacement instead of a load",
         ],
-        Failure::LadderEnded { scales: false, .. } => &["a smaller history.least"],
-        Failure::LadderEnded { scales: true, .. }
+        Failure::LadderEnded { .. }
+        | Failure::Refused(_)
         | Failure::NotFound(_)
         | Failure::MinorLimit { .. }
         | Failure::MajorLimit { .. }
@@ -202,20 +215,12 @@ fn by_hand(model: &Model, state: &State, failure: &Failure) -> &'static [&'stati
             "forcing a node that still changes (t) into another mode (m)",
             "another increment size, if the solver supports it",
         ],
-        Failure::Refused(_) => &["a smaller history.least"],
         Failure::Inverted(_) => &["a load or prescribed motion that compresses the element less"],
         Failure::NoRest { .. } => &["a support or surface that stops the motion"],
         Failure::CutTooOften { .. } => {
             &["stepping through its last attempts, to see the states it alternates between"]
         }
-        Failure::BranchJump { .. } => match model.jumps {
-            Jumps::Stop => &[
-                "history.jumps=cut, to continue on the other branch",
-                "history.jumps=dynamic, for a damped motion to the next equilibrium",
-                "a prescribed displacement instead of the load",
-            ],
-            _ => &["a prescribed displacement instead of the load"],
-        },
+        Failure::BranchJump { .. } => &["a prescribed displacement instead of the load"],
         Failure::PathReversal => &[
             "another path measure: history.arc.monitor or history.arc.slip",
             "a smaller history.arc.least",

@@ -191,7 +191,7 @@ pub fn offered(
 fn attempt_restart(
     spec: &Spec,
     state: &State,
-    (remedy, changes): (&Remedy, &[(String, &str)]),
+    (remedy, changes): (&Remedy, &[(String, String)]),
     stop: &dyn Fn() -> bool,
 ) -> Option<RemedyTrial> {
     let mut spec = spec.clone();

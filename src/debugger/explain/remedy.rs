@@ -10,8 +10,8 @@ use super::names;
 use super::strain::{self, MaterialCause};
 use stickslip_core::contact::projection::projection_at;
 use stickslip_core::model::{
-    AtCycle, BoundUpdate, Geometry, InitialGaps, Mode, Model, ResidualMethod, Settings, Sticking,
-    Strategy, Touch,
+    AtCycle, BoundUpdate, Geometry, InitialGaps, Jumps, Mode, Model, ResidualMethod, SearchMode,
+    Settings, Sticking, Strategy, Touch,
 };
 use stickslip_core::step::event::Failure;
 use stickslip_core::step::intervene::{Intervention, Start};
@@ -55,6 +55,10 @@ pub enum RemedyKind {
     Gaps(InitialGaps),
     /// The surface with this number the other way round; tried from the start of the scene.
     Reverse(usize),
+    /// Search for a way out (`settings.search=auto`).
+    Search,
+    /// Another treatment of increments that jump to another branch; tried from the start of the scene.
+    Jumps(Jumps),
     /// A material law whose range contains the state of a solid; tried from the start of the scene.
     Law,
 }
@@ -71,7 +75,7 @@ pub enum RemedyInput {
     /// Number of a consistent state in the census, from 0.
     StartFrom(usize),
     /// Values to change in the scene, by path, for a restart.
-    Restart(Vec<(String, &'static str)>),
+    Restart(Vec<(String, String)>),
     /// Available only in the list of remedies.
     Listed,
 }
@@ -86,7 +90,7 @@ impl RemedyInput {
             }
             RemedyInput::StartFrom(answer) => format!(":start-from {}", answer + 1),
             RemedyInput::Restart(changes) => {
-                let option = |(path, value): &(String, &str)| format!("--set {path}={value}");
+                let option = |(path, value): &(String, String)| format!("--set {path}={value}");
                 changes.iter().map(option).collect::<Vec<_>>().join(" ")
             }
             RemedyInput::Listed => "r, then select it and press Enter".into(),
@@ -139,8 +143,9 @@ impl Remedy {
             RemedyKind::Answer(_) | RemedyKind::Law => None,
             RemedyKind::Reverse(surface) => {
                 let name = &model.surfaces.get(surface)?.name;
-                let how = RemedyInput::Restart(vec![(format!("surfaces.{name}.reverse"), "true")]);
-                Some(remedy(&format!("reverse surface {name}"), how, Vec::new()))
+                let label = format!("reverse surface {name}");
+                let how = restarted(&format!("surfaces.{name}.reverse"), "true");
+                Some(remedy(&label, how, Vec::new()))
             }
             RemedyKind::Gaps(gaps) => {
                 // Only the first increment starts with the overlap.
@@ -152,10 +157,22 @@ impl Remedy {
                     InitialGaps::Ramp => ("ramp", "initial_gaps: ramp"),
                     InitialGaps::Keep => return None,
                 };
-                let how = RemedyInput::Restart(vec![("settings.initial_gaps".to_owned(), word)]);
+                let how = restarted("settings.initial_gaps", word);
                 let overlaps = starts && keeps && start_gaps(model).iter().any(inside);
                 // If a surface has the wrong orientation, all nodes are inside.
                 (overlaps && turned(model).is_empty()).then(|| remedy(label, how, Vec::new()))
+            }
+            RemedyKind::Jumps(jumps) => {
+                let (word, label) = match jumps {
+                    Jumps::Stop | Jumps::Accept => return None,
+                    Jumps::Cut => ("cut", "history.jumps: cut (continues on the other branch)"),
+                    Jumps::Dynamic => (
+                        "dynamic",
+                        "history.jumps: dynamic (a damped motion to the next equilibrium)",
+                    ),
+                };
+                let how = restarted("history.jumps", word);
+                (model.jumps == Jumps::Stop).then(|| remedy(label, how, Vec::new()))
             }
             RemedyKind::Hysteresis => Some(remedy(
                 "hysteresis of 1e-3",
@@ -196,13 +213,13 @@ impl Remedy {
     pub fn law(model: &Model, state: &State, failure: &Failure) -> Option<(Remedy, bool)> {
         let cause = MaterialCause::find(model, state, failure)?;
         let points = cause.before.into_iter().chain([cause.point]);
-        let mut changes: Vec<(String, &'static str)> = Vec::new();
+        let mut changes: Vec<(String, String)> = Vec::new();
         for change in points.filter_map(|point| strain::other_law(model, &point)) {
             if !changes.contains(&change) {
                 changes.push(change);
             }
         }
-        let describe = |(path, value): &(String, &str)| {
+        let describe = |(path, value): &(String, String)| {
             let (_, field) = path.rsplit_once('.').unwrap_or(("", path));
             format!("{field}: {value}")
         };
@@ -235,6 +252,11 @@ impl Remedy {
         };
         (0..count).filter_map(answer).collect()
     }
+}
+
+/// What to type for a value that is set from the start of the scene.
+fn restarted(path: &str, value: &str) -> RemedyInput {
+    RemedyInput::Restart(vec![(path.to_owned(), value.to_owned())])
 }
 
 /// Changes the settings for a kind; returns label, path and value.
@@ -295,6 +317,10 @@ fn change(
             settings.touch = Touch::Start;
             ("touch at the start", "settings.touch", "start".into())
         }
+        RemedyKind::Search => {
+            settings.search = SearchMode::Auto;
+            ("search", "settings.search", "auto".into())
+        }
         RemedyKind::Damp => {
             settings.at_cycle = AtCycle::Damp;
             ("at_cycle damp", "settings.at_cycle", "damp".into())
@@ -315,6 +341,7 @@ fn change(
         | RemedyKind::Hysteresis
         | RemedyKind::Gaps(_)
         | RemedyKind::Reverse(_)
+        | RemedyKind::Jumps(_)
         | RemedyKind::Law => return None,
     };
     Some(text)

@@ -83,11 +83,11 @@ pub fn limit(model: &Model, point: &PointDeformation) -> String {
 }
 
 /// The scene value, as path and value, that gives an element a law valid there. `None` if there is no such law.
-pub fn other_law(model: &Model, point: &PointDeformation) -> Option<(String, &'static str)> {
+pub fn other_law(model: &Model, point: &PointDeformation) -> Option<(String, String)> {
     let (elastic, name) = material(model, point)?;
     match (elastic.update, elastic.law) {
-        (Update::Total, Law::Svk) => Some((format!("materials.{name}.law"), "neohookean")),
-        (Update::Small, _) => Some((format!("materials.{name}.update"), "total")),
+        (Update::Total, Law::Svk) => Some((format!("materials.{name}.law"), "neohookean".into())),
+        (Update::Small, _) => Some((format!("materials.{name}.update"), "total".into())),
         _ => None,
     }
 }
