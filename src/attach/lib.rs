@@ -1,7 +1,7 @@
 //! External solvers, stepped by the debugger: child processes that speak the protocol of [`stickslip_exchange::attach`], used
 //! through the trait [`Solver`](stickslip_core::step::Solver).
 //!
-//! - [`link`]: the child process; [`meeting`]: its start.
+//! - [`link`]: the child process; [`started_solver`]: its start.
 //! - [`attached`]: the solver, with the tree of its states.
 //! - [`serve`]: stickslip's own solver as an attachable program; `wire`: its states and events as messages.
 //! - [`check`]: tests what a solver offers.

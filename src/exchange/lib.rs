@@ -7,7 +7,7 @@
 //!
 //! Each module depends only on those above it:
 //!
-//! - [`broken`]: errors in a file, with their position.
+//! - [`format_error`]: errors in a file, with their position.
 //! - [`seal`]: lines with a digest.
 //! - [`words`]: words of a text, with their positions.
 //! - [`mesh`]: nodes, cells and groups, the common result of all mesh readers.

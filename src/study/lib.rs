@@ -2,7 +2,7 @@
 //!
 //! - [`read`]: studies from RON or arguments; [`builtin`]: the built-in studies.
 //! - [`plan`]: all combinations of the settings, each checked before anything runs.
-//! - [`run`](mod@run): the cases as a sweep; [`one`](mod@one): one run on one thread; [`memory_pool`]: limits parallel
+//! - [`run`](mod@run): the cases as a sweep; [`solver_pool`]: one run on one thread; [`memory_pool`]: limits parallel
 //!   runs by memory; [`result`]: the result of a run; [`monitor_kind`]: the units of its numbers.
 //! - [`csv`]: all results as one table; [`figure`]: as [`curves`]; [`sheet`]: drawings as plain data, made of
 //!   [`drawn`] shapes; [`pen`]: written as SVG and PNG, with the feature `plot`; [`placing`]: positions of

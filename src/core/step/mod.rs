@@ -6,9 +6,9 @@
 //! - [`sub_increment`]: whole and cut increments; `jump`: increments that end on another branch of equilibrium; `verdict`:
 //!   handles states that the judge refuses.
 //! - [`recovery`]: retries of failed increments, one method per file.
-//! - `arc`: arc-length increments, with the load factor as an unknown; [`way`]: their data.
+//! - `arc`: arc-length increments, with the load factor as an unknown; [`arc_state`]: their data.
 //! - [`major_history`]: cycles of major iterations.
-//! - [`solver`]: the interface of everything that can be stepped; `outside`: states of attached solvers; [`places`]: the tree of
+//! - [`solver`]: the interface of everything that can be stepped; `external_state`: states of attached solvers; [`stored_states`]: the tree of
 //!   these states.
 //! - [`drive`]: the loop over minor iterations; [`intervene`]: applies an [`intervention`] of the user.
 

@@ -5,8 +5,8 @@
 //! debugger reads nothing else, so timeline, breakpoints, branches and records work for all of them.
 //!
 //! A solver whose iterations depend only on the numbers of the [`State`] goes back by restoring a state. A solver that needs more
-//! data stores them itself, in [`Places`] or in an external program: its states contain the number of the stored data
-//! ([`Outside::place`]) and the changes made by the user since ([`Outside::asked`]), which it receives when it continues from
+//! data stores them itself, in [`StoredStates`] or in an external program: its states contain the number of the stored data
+//! ([`ExternalState::place`]) and the changes made by the user since ([`ExternalState::asked`]), which it receives when it continues from
 //! there.
 //!
 //! # Example
@@ -20,7 +20,7 @@
 //! use stickslip_core::linear::norms::Norms;
 //! use stickslip_core::model::{Contact, Friction, InitialState, Mode, Model, Node, Surface};
 //! use stickslip_core::step::intervene::{Intervention, Refusal};
-//! use stickslip_core::step::solver::{GoesBack, Lost, Offers};
+//! use stickslip_core::step::solver::{RewindSupport, SolverLost, Capabilities};
 //! use stickslip_core::{Event, Outcome, Solver, State, Status};
 //!
 //! struct Pressed {
@@ -39,7 +39,7 @@
 //!     fn event(&self) -> &Event {
 //!         &self.event
 //!     }
-//!     fn step(&mut self) -> Result<bool, Lost> {
+//!     fn step(&mut self) -> Result<bool, SolverLost> {
 //!         if self.state.status == Status::Finished {
 //!             return Ok(false);
 //!         }
@@ -56,7 +56,7 @@
 //!             (_, Mode::Fixed | Mode::Sliding) if f_n < 0.0 => Mode::Free,
 //!             (_, same) => same,
 //!         };
-//!         let found = ContactRecord::of_modes(node.mode, next, &node);
+//!         let found = ContactRecord::from_modes(node.mode, next, &node);
 //!         self.event = Event {
 //!             position: self.state.next,
 //!             load_factor: load,
@@ -70,7 +70,7 @@
 //!         self.state.follow(&self.event, 0);
 //!         Ok(true)
 //!     }
-//!     fn restore(&mut self, state: &State) -> Result<(), Lost> {
+//!     fn restore(&mut self, state: &State) -> Result<(), SolverLost> {
 //!         self.state.clone_from(state);
 //!         Ok(())
 //!     }
@@ -78,8 +78,8 @@
 //!         self.capabilities().check(intervention)?;
 //!         self.state.intervene(&self.model, intervention)
 //!     }
-//!     fn capabilities(&self) -> Offers {
-//!         Offers { name: "pressed".into(), force: true, hold: true, goes_back: GoesBack::ToAny, ..Offers::default() }
+//!     fn capabilities(&self) -> Capabilities {
+//!         Capabilities { name: "pressed".into(), force: true, hold: true, goes_back: RewindSupport::ToAny, ..Capabilities::default() }
 //!     }
 //! }
 //!
@@ -87,7 +87,7 @@
 //! let nodes = vec![node("slave", [0.0, 0.1]), node("floor.1", [1.0, 0.0]), node("floor.2", [-1.0, 0.0])];
 //! let floor = Surface { name: "floor".into(), elements: vec![vec![1, 2]], rigid: true, endless: true, smooth: Vec::new(), gives: Vec::new() };
 //! let contact = Contact::new(0, vec![0], Friction { angle: 20.0, cohesion: 0.0 });
-//! let model = Arc::new(Model::of_contacts("A node pressed on a floor", nodes, vec![floor], vec![contact]));
+//! let model = Arc::new(Model::from_contacts("A node pressed on a floor", nodes, vec![floor], vec![contact]));
 //! let (state, event) = (State::outside_start(&model), Event::nothing_yet(&model));
 //! let mut solver = Pressed { model, state, event };
 //!
@@ -102,9 +102,9 @@
 //! assert_eq!((solver.state().nodes[0].mode, solver.event().nodes[0].gap), (Mode::Free, 0.1 - 0.4));
 //! ```
 //!
-//! [`Outside::place`]: super::state::Outside::place
-//! [`Outside::asked`]: super::state::Outside::asked
-//! [`Places`]: super::stored_states::Places
+//! [`ExternalState::place`]: super::state::ExternalState::place
+//! [`ExternalState::asked`]: super::state::ExternalState::asked
+//! [`StoredStates`]: super::stored_states::StoredStates
 
 use crate::model::{Friction, Model};
 use crate::step::event::Event;

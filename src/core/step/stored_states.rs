@@ -1,9 +1,9 @@
 //! Tree of the states of an attached solver, for programs that store what the solver continues from: [`StoredStates`].
 //!
-//! A place is the result of one iteration. It has a number, [`Outside::place`], the place before that iteration, and the changes
+//! A place is the result of one iteration. It has a number, [`ExternalState::place`], the place before that iteration, and the changes
 //! made there; the same changes at the same place give the same place. Place 0 is the start.
 //!
-//! [`Outside::place`]: super::state::Outside::place
+//! [`ExternalState::place`]: super::state::ExternalState::place
 
 use crate::step::intervention::Intervention;
 

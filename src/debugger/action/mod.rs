@@ -10,7 +10,7 @@
 //!   solver.
 //! - `offered`: which actions the current solver supports; `parameters`: what `set` changes in an attached one.
 //! - [`arguments`]: parsing of lines; [`complete`](mod@complete): completion, with `paths` for files;
-//!   [`misread`]: the errors.
+//!   [`parse_error`]: the errors.
 
 pub mod arguments;
 pub mod complete;

@@ -4,14 +4,14 @@
 //! - [`names`]: words for nodes, modes and positions; [`round_off`]: which numbers are round-off; [`report`]:
 //!   what happened, in sentences; [`cycles`]: cycles of modes; [`judged`]: the judge's findings.
 //! - [`influence`]: which node pushed which; [`tested`]: the quantities that Table 2 tests; [`core`]: the smallest set of nodes that still cycles;
-//!   [`diagnosis`]: the cause of a cycle; [`smaller`]: whether a smaller increment has a consistent state.
+//!   [`diagnosis`]: the cause of a cycle; [`step_size_probe`]: whether a smaller increment has a consistent state.
 //! - [`proven`]: what a matrix proves: uniqueness, and the limit of T_max while the modes repeat;
 //!   [`indefinite`]: whether a matrix is indefinite only by rounding, and the solution without that.
 //! - [`advice`]: what to do about a failure; [`remedy`]: what can be tried; [`remedies`]: trials of all
 //!   remedies.
-//! - [`attempt`]: repeats the failed attempt; [`majors`]: why its major iterations do not converge; [`loose`]:
-//!   unrestrained bodies; [`strain`]: solids outside the range of their law; [`reach`]: the load that smaller
-//!   steps reach; [`finer`]: a trial on a finer mesh; [`restart`]: trials of a changed scene.
+//! - [`attempt`]: repeats the failed attempt; [`majors`]: why its major iterations do not converge; [`rigid_motion`]:
+//!   unrestrained bodies; [`strain`]: solids outside the range of their law; [`load_limit_probe`]: the load that smaller
+//!   steps reach; [`mesh_probe`]: a trial on a finer mesh; [`restart`]: trials of a changed scene.
 //! - [`touch`]: how far the forces depend on where nodes in new contact are held.
 //! - [`examination`]: the frozen problem of a state; [`page`]: the whole diagnosis, as the debugger shows it; [`headline`]: what
 //!   happened in one line; [`facts`]: the parts of the page; [`try_list`]: what can be done, with the outcome of each trial.

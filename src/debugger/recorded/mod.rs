@@ -3,7 +3,7 @@
 //! ([`Solver`](stickslip_core::step::Solver)).
 //!
 //! - [`fault`]: errors of a solver that violates the protocol; [`log`]: its log.
-//! - [`decode`]: its messages as states and events; [`posed`]: its frozen interface problem; [`judged`]: the
+//! - [`decode`]: its messages as states and events; [`interface_problem`]: its frozen interface problem; [`judged`]: the
 //!   contact laws, checked with its numbers.
 //! - [`orders`]: interventions as requests.
 //! - [`exchange`]: a solver replayed from its stored exchange; [`story`]: such a file as text.

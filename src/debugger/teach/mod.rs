@@ -1,7 +1,7 @@
 //! Guided lessons: a script for a scene, without a terminal.
 //!
 //! - [`spec`]: the file format; [`lesson`]: lessons checked against their scene, and the built-in ones.
-//! - [`quantity`]: numbers by name, for texts and questions; [`look`]: their values in a state; [`runs`]: those
+//! - [`quantity`]: numbers by name, for texts and questions; [`frame_values`]: their values in a state; [`runs`]: those
 //!   of a chart.
 //! - [`tutor`]: a lesson in progress; [`guess`]: free mode, with decisions hidden until predicted; [`refusal`]:
 //!   errors.

@@ -4,7 +4,7 @@
 //! - [`cel`]: the contact elements of every iteration.
 //! - [`sta`]: result of every attempt at an increment.
 //! - [`cvg`]: residual and correction of every iteration.
-//! - [`past`]: these three together: a finished run.
+//! - [`files`]: these three together: a finished run.
 //! - [`stiffness`]: a stored stiffness matrix.
 
 pub mod cel;

@@ -6,7 +6,7 @@
 //! - [`written`]: the scene itself, and the frozen problem in other programs' formats; [`skeleton`]: a scene
 //!   around a mesh.
 //! - [`grid`]: a state for ParaView.
-//! - [`shown`]: the input of all of them.
+//! - [`export_state`]: the input of all of them.
 //!
 //! The film of a session is made from a journal by the terminal front end; the list only contains its
 //! extension.
