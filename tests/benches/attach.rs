@@ -204,12 +204,12 @@ fn hello() -> Hello {
 fn scene(contacts: usize) -> Scene {
     let node = |k: usize| Node {
         name: format!("node.{k}"),
-        at: [k as f64, 0.1],
+        at: [k as f64, 0.1].into(),
     };
     let mut nodes: Vec<Node> = (0..contacts).map(node).collect();
     let end = |name: &str, x| Node {
         name: name.into(),
-        at: [x, 0.0],
+        at: [x, 0.0].into(),
     };
     nodes.push(end("right", contacts as f64));
     nodes.push(end("left", -1.0));
@@ -230,11 +230,14 @@ fn scene(contacts: usize) -> Scene {
     Scene {
         title: format!("{contacts} contacts"),
         about: String::new(),
+        dimension: 2,
         nodes,
         lines: vec![(0..contacts).collect()],
+        faces: Vec::new(),
         surfaces: vec![SurfaceMessage {
             name: "floor".into(),
             nodes: vec![contacts, contacts + 1],
+            faces: Vec::new(),
             rigid: true,
         }],
         contacts: (0..contacts).map(contact).collect(),
@@ -261,9 +264,9 @@ fn state(contacts: usize, n: usize) -> State {
         next: mode(k, n + 1),
         gap: Some(number(k, 0.1)),
         f_n: Some(number(k, 0.2)),
-        f_t: Some(number(k, 0.3)),
+        f_t: Some(number(k, 0.3).into()),
         limit: Some(number(k, 0.4)),
-        slip: Some(number(k, 0.5)),
+        slip: Some(number(k, 0.5).into()),
         rule: "active set".into(),
         margin: Some(number(k, 0.6)),
         tests: Vec::new(),
@@ -271,6 +274,7 @@ fn state(contacts: usize, n: usize) -> State {
         limit_used: None,
         drift: None,
         normal: None,
+        tangent: None,
         foot: None,
         corner: None,
         carried: [false; 2],

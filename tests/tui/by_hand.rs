@@ -110,6 +110,7 @@ pub fn record(mode: Mode, gap: f64, f_n: f64, f_t: f64, t_max: f64, slip: f64) -
         spot: None,
         normal: [0.0, 1.0],
         foot: [0.0, 0.0],
+        directions: None,
         corner: None,
         carried: [false; 2],
     }

@@ -18,6 +18,7 @@ mod friction;
 mod load;
 mod mesh;
 mod settings;
+mod space;
 
 use serde::{Deserialize, Serialize};
 
@@ -34,6 +35,7 @@ pub use settings::{
     AtCycle, AtLimit, BoundUpdate, Geometry, InitialGaps, LinearSolver, PointForce, Refactor,
     ResidualMethod, SearchMode, Settings, SlipCount, Sticking, Strategy, TieRule, Touch,
 };
+pub use space::Space;
 
 /// A checked scene.
 #[derive(Debug, Clone, PartialEq)]
@@ -82,6 +84,8 @@ pub struct Model {
     pub length: f64,
     /// Data of a finished run of another program. `None` for everything that can be stepped.
     pub finished: Option<FinishedRun>,
+    /// The third coordinates. `None` in the plane.
+    pub space: Option<Space>,
 }
 
 /// A finished run of another program, with one level of iterations, whose files do not distinguish stick from slip: a
@@ -244,6 +248,7 @@ impl Model {
             budget: f64::INFINITY,
             length,
             finished: None,
+            space: None,
         }
     }
 

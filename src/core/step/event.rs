@@ -55,10 +55,24 @@ pub struct Event {
     pub nodes: Vec<ContactRecord>,
     /// Residual at the start of this major iteration, where the minor iterations are linearised.
     pub before: Norms,
+    /// In space, the frame (n, t) at each contact; empty in the plane.
+    pub frames: Arc<Vec<Frame>>,
     /// Texts of an attached solver; empty for the built-in solver.
     pub words: Arc<Words>,
     /// Result of the iteration.
     pub outcome: Outcome,
+}
+
+/// Outward normal n and tangent t at a contact in space, both of length 1.
+pub type Frame = [[f64; 3]; 2];
+
+/// The second tangent n × t of a frame.
+pub fn second_tangent(&[n, t]: &Frame) -> [f64; 3] {
+    [
+        n[1] * t[2] - n[2] * t[1],
+        n[2] * t[0] - n[0] * t[2],
+        n[0] * t[1] - n[1] * t[0],
+    ]
 }
 
 /// Texts reported by an attached solver. An empty list has no entry for any contact.
@@ -82,6 +96,7 @@ impl Event {
             drag: 0.0,
             nodes: Vec::with_capacity(model.contacts.len()),
             before: Norms::default(),
+            frames: Arc::default(),
             words: Arc::default(),
             outcome: Outcome::Minor,
         }

@@ -1,7 +1,6 @@
 //! Errors of attached solvers that fail or violate the protocol.
 
 use std::time::Duration;
-use stickslip_exchange::attach::PROTOCOL;
 use stickslip_scene::shown;
 
 /// Maximum number of characters of a solver's own words in a message.
@@ -112,9 +111,7 @@ pub enum Fault {
         expected: &'static str,
     },
     /// Unsupported protocol version.
-    #[error(
-        "the solver uses version {0} of the protocol; this program supports version {PROTOCOL}"
-    )]
+    #[error("the solver uses version {0} of the protocol; this program supports versions 1 and 2")]
     Version(u32),
     /// An answer without a request.
     #[error(
