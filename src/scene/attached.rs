@@ -219,11 +219,17 @@ fn lines(scene: &Scene) -> Result<Vec<Vec<usize>>, Fault> {
             return refused(format!("lines[{k}]: a line needs at least two nodes"));
         }
     }
-    let faces = scene.faces.iter().enumerate();
-    let faces = faces.map(|(k, face)| outline(scene, face, || format!("faces[{k}]")));
     let mut all = scene.lines.clone();
-    for outline in faces {
-        all.push(outline?);
+    // Neighbouring faces share edges.
+    let mut drawn = HashSet::new();
+    for (k, face) in scene.faces.iter().enumerate() {
+        for edge in outline(scene, face, || format!("faces[{k}]"))?.windows(2) {
+            let mut ends = edge.to_vec();
+            ends.sort_unstable();
+            if drawn.insert(ends.clone()) {
+                all.push(ends);
+            }
+        }
     }
     Ok(all)
 }

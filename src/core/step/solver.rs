@@ -447,6 +447,21 @@ pub struct ReportedProblem {
 }
 
 impl ReportedProblem {
+    /// W and q of the same problem; `None` if K is singular.
+    pub fn compliance(&self) -> Option<(DMatrix<f64>, DVector<f64>)> {
+        let size = self.q.len();
+        let matrix = DMatrix::from_fn(size, size, |i, j| self.matrix[i][j]);
+        let q = DVector::from_column_slice(&self.q);
+        match self.form {
+            ReportedForm::Compliance => Some((matrix, q)),
+            ReportedForm::Stiffness => {
+                let inverse = matrix.try_inverse()?;
+                let loaded = &inverse * DVector::from_column_slice(&self.load);
+                Some((inverse, q + loaded))
+            }
+        }
+    }
+
     /// Gap and motion u of each contact under total forces (length); `None` if K is singular.
     pub fn motion(&self, forces: &DVector<f64>) -> Option<DVector<f64>> {
         let size = self.q.len();

@@ -160,24 +160,42 @@ pub fn words(model: &Model, rounds: &Rounds, tells_since: bool) -> String {
                 false => String::new(),
             };
             let member = |(slave, phases): &(usize, Vec<Phase>)| {
-                let words: Vec<String> = phases
-                    .iter()
-                    .map(|(mode, direction)| {
-                        let at = direction.map_or(String::new(), |at| format!(" at {at}°"));
-                        names::status(model, *mode).to_owned() + &at
-                    })
-                    .collect();
-                format!("{} {}", names::slave(model, *slave), words.join(" → "))
+                let modes = phases.iter().map(|(mode, _)| names::status(model, *mode));
+                let modes: Vec<&str> = modes.collect();
+                format!("{} {}", names::slave(model, *slave), modes.join(" → "))
             };
-            let lines: Vec<String> = members.iter().take(NAMED).map(member).collect();
-            format!(
-                "cycle of period {period}{since}: {}{}{}",
-                lines.join("; "),
-                more(members.len()),
-                swing(members).map_or_else(String::new, |(slave, degrees)| format!(
-                    ". The direction of friction at {} swings by {degrees:.0} degrees per iteration",
+            let changes = |(_, phases): &&(usize, Vec<Phase>)| {
+                phases.iter().any(|(mode, _)| *mode != phases[0].0)
+            };
+            let lines: Vec<String> = members
+                .iter()
+                .filter(changes)
+                .take(NAMED)
+                .map(member)
+                .collect();
+            let swings: Vec<(usize, f64)> = swings(members).collect();
+            let most = swings
+                .iter()
+                .copied()
+                .reduce(|a, b| if b.1 > a.1 { b } else { a });
+            let swing = most.map(|(slave, degrees)| {
+                let others = match swings.len() - 1 {
+                    0 => String::new(),
+                    others => format!(" (and at {others} more nodes)"),
+                };
+                format!(
+                    "the direction of friction at {}{others} swings by up to {degrees:.0} degrees per iteration",
                     names::slave(model, slave)
-                ))
+                )
+            });
+            format!(
+                "cycle of period {period}{since}: {}{}",
+                swing
+                    .into_iter()
+                    .chain(lines)
+                    .collect::<Vec<_>>()
+                    .join("; "),
+                more(members.iter().filter(changes).count())
             )
         }
         Rounds::Irregular { members, over } => {
@@ -210,16 +228,15 @@ fn turn(a: Option<i16>, b: Option<i16>) -> f64 {
     }
 }
 
-/// The node whose direction of sliding changes most in a cycle, and its largest change per iteration (degrees).
-fn swing(members: &[(usize, Vec<Phase>)]) -> Option<(usize, f64)> {
+/// The nodes whose direction of sliding changes in a cycle, with the largest change per iteration (degrees).
+fn swings(members: &[(usize, Vec<Phase>)]) -> impl Iterator<Item = (usize, f64)> {
     let largest = members.iter().map(|(slave, phases)| {
         let next = phases.iter().cycle().skip(1);
         let turns = phases.iter().zip(next).map(|((_, a), (_, b))| turn(*a, *b));
         let finite = turns.filter(|turn| turn.is_finite());
         (*slave, finite.fold(0.0, f64::max))
     });
-    let most = largest.max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0)));
-    most.filter(|(_, degrees)| *degrees > SAME)
+    largest.filter(|(_, degrees)| *degrees > SAME)
 }
 
 fn more(count: usize) -> String {
