@@ -205,7 +205,7 @@ fn reason(model: &Model, event: &Event) -> String {
 fn of_record(k: usize, record: &ContactRecord) -> ContactResult {
     let decision = &record.decision;
     ContactResult {
-        id: id(k),
+        id: Some(id(k)),
         mode: decision.before,
         next: decision.next,
         gap: number(record.gap),

@@ -3,7 +3,8 @@
     stickslip attach -- python3 block3d.py [R] [wrong]
 
 Semi-smooth Newton method on the friction cone, one iteration per step. With R = 1 (the default) it converges; with R = 30 the
-directions of sliding swing. With `wrong`, friction always acts along -x. Python's standard library only.
+directions of sliding swing. With `wrong`, friction acts along -x from the second
+increment on, whatever the slip. Python's standard library only.
 """
 import sys
 from math import hypot, sqrt
@@ -98,7 +99,7 @@ class Block(Solver):
                 "contacts": [{"id": i, "node": i, "surface": "plane", "friction": {"mu": self.friction}} for i in self.slaves]}
 
     def step(self):
-        wrong, mu = "wrong" in sys.argv, self.friction
+        wrong, mu = "wrong" in sys.argv and self.increment > 0, self.friction
         size, r = len(self.f), 3 * self.r * len(self.slaves) / sum(self.w[k][k] for k in range(len(self.f)))
         y = [dot(row, self.f) + q for row, q in zip(self.w, self.q)]
         unit = [[float(i == j) for j in range(size)] for i in range(size)]
@@ -126,7 +127,7 @@ class Block(Solver):
         was, self.modes, error = self.modes, [], 0.0
         for n, mode in zip(range(0, size, 3), was):
             a, z = self.f[n] - r * y[n], [self.f[t] - r * y[t] for t in (n + 1, n + 2)]
-            slides = hypot(*z) > mu * a or (wrong and self.increment > 0)
+            slides = wrong or hypot(*z) > mu * a
             self.modes.append("free" if a <= 0 else "sliding" if slides else "fixed")
             part = min(1.0, mu * max(a, 0.0) / (hypot(*z) or 1.0))
             parts = [self.f[n] - max(a, 0.0)] + [self.f[t] - part * x for t, x in zip((n + 1, n + 2), z)]

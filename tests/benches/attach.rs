@@ -18,7 +18,7 @@ use stickslip_exchange::attach::message::{
     Abilities, Contact, ContactResult, EndedLevel, Friction, Hello, Id, Node, NormsMessage,
     Position, Restore, Scene, State, SurfaceMessage,
 };
-use stickslip_exchange::attach::{Answer, PROTOCOL, Request};
+use stickslip_exchange::attach::{Answer, PROTOCOLS, Request};
 
 /// The first argument of the solver; the others are the number of contacts, and where the time is written.
 const SOLVE: &str = "--solve";
@@ -186,7 +186,8 @@ fn line(state: &Answer, done: usize) -> String {
 
 fn hello() -> Hello {
     Hello {
-        protocol: PROTOCOL,
+        protocol: PROTOCOLS[0],
+        protocols: Vec::new(),
         name: "canned".into(),
         version: String::new(),
         abilities: Abilities {
@@ -259,7 +260,7 @@ fn state(contacts: usize, n: usize) -> State {
     let mode = |k: usize, n: usize| [Mode::Free, Mode::Fixed, Mode::Sliding][(k + n) % 3];
     let number = |k: usize, of: f64| ((k * STATES + n) as f64 + of).sin() / 3.0;
     let found = |k: usize| ContactResult {
-        id: Id::Number(k as i64),
+        id: Some(Id::Number(k as i64)),
         mode: mode(k, n),
         next: mode(k, n + 1),
         gap: Some(number(k, 0.1)),
@@ -300,7 +301,7 @@ fn state(contacts: usize, n: usize) -> State {
         after: None,
         displacements: Some(
             (0..contacts + 2)
-                .map(|k| [number(k, 0.7), number(k, 0.8)])
+                .map(|k| [number(k, 0.7), number(k, 0.8)].into())
                 .collect(),
         ),
         spring: None,

@@ -192,7 +192,10 @@ impl Solver for Springs {
 
 /// What is drawn, and which nodes may touch what.
 fn told() -> Scene {
-    let node = |name: String, at| Node { name, at };
+    let node = |name: String, at: [f64; 2]| Node {
+        name,
+        at: at.into(),
+    };
     let mut nodes: Vec<Node> = GAPS
         .iter()
         .zip(1..)
@@ -217,11 +220,14 @@ fn told() -> Scene {
     Scene {
         title: "Nodes on springs over a rough floor".into(),
         about: String::new(),
+        dimension: 2,
         nodes,
         lines: vec![(0..GAPS.len()).collect()],
+        faces: Vec::new(),
         surfaces: vec![SurfaceMessage {
             name: "floor".into(),
             nodes: vec![GAPS.len(), GAPS.len() + 1],
+            faces: Vec::new(),
             rigid: true,
         }],
         contacts: (0..GAPS.len()).map(contact).collect(),

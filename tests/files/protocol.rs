@@ -38,3 +38,32 @@ fn every_message_on_the_page_of_the_protocol_is_read_whole() {
     }
     assert_eq!(kinds.len(), 17, "all messages are shown: {kinds:?}");
 }
+
+#[test]
+fn the_schema_has_every_key_of_the_page_and_requires_what_the_reader_requires() {
+    let schema: serde_json::Value = serde_json::from_str(stickslip::attach::SCHEMA).expect("JSON");
+    let page = manual::page("protocol").expect("the page exists").text();
+    let answers = messages(page);
+    let answers = answers
+        .iter()
+        .filter(|value| Answer::read(&value.to_string()).is_ok());
+    let mut kinds = std::collections::BTreeSet::new();
+    for answer in answers {
+        let kind = answer["type"].as_str().expect("a text");
+        kinds.insert(kind);
+        let definition = &schema["$defs"][kind];
+        let is_required = |key: &String| {
+            let required = definition["required"].as_array();
+            required.is_some_and(|all| all.iter().any(|name| name == key))
+        };
+        for key in answer.as_object().expect("an object").keys() {
+            assert!(definition["properties"].get(key).is_some(), "{kind}.{key}");
+            let mut without = answer.clone();
+            without.as_object_mut().expect("an object").remove(key);
+            let is_read = Answer::read(&without.to_string()).is_ok();
+            assert_eq!(is_read, !is_required(key), "{kind}.{key}");
+        }
+    }
+    let defined = schema["oneOf"].as_array().expect("a list").len();
+    assert_eq!(kinds.len(), defined, "{kinds:?}");
+}

@@ -251,7 +251,7 @@ fn unfollowed(before: &State, state: &State) -> Option<(String, &'static str)> {
         (
             format!(
                 "contact {} is solved {}, but its previous `next` was {}",
-                shown::line(&now.id.to_string()),
+                shown::line(&now.label()),
                 names::mode(now.mode),
                 names::mode(then.next)
             ),
@@ -277,7 +277,7 @@ fn laws(states: &[State]) -> Outcome {
         count += 1;
         for found in &state.contacts {
             let told = |why: String| {
-                let id = found.id.to_string();
+                let id = found.label();
                 let at = state.at.increment;
                 format!("increment {at}, contact {}: {why}", shown::line(&id))
             };
@@ -418,7 +418,7 @@ fn otherwise(then: &State, now: &State) -> Option<String> {
     let modes = |found: &ContactResult| (found.mode, found.next);
     let mut pairs = then.contacts.iter().zip(&now.contacts);
     let other = pairs.find(|(then, now)| modes(then) != modes(now))?.1;
-    let id = other.id.to_string();
+    let id = other.label();
     Some(format!(
         "contact {} is {}, next {}",
         shown::line(&id),

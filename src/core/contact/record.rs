@@ -63,12 +63,12 @@ pub struct SideForce {
 }
 
 impl ContactRecord {
-    /// The angle (radians, 0 to π) between the tangential force and the slip in space; `None` in the plane, or if either is zero
-    /// or unknown.
+    /// The angle (radians, 0 to π) between the tangential force and the slip of a sliding node in space; `None` in the plane, or
+    /// if either is zero or unknown.
     pub fn deviation(&self) -> Option<f64> {
         let [force, slip] = self.directions?;
-        let is_known = self.f_t > 0.0 && self.slip > 0.0;
-        is_known.then(|| turn(force, slip).abs())
+        let slides = self.decision.before == Mode::Sliding;
+        (slides && self.f_t > 0.0 && self.slip > 0.0).then(|| turn(force, slip).abs())
     }
 
     /// Whether an attached solver selects another next mode than its declared rules give for the same numbers, without being

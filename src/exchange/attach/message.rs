@@ -450,8 +450,9 @@ pub enum EndedLevel {
 /// Result of an iteration at a contact. `None` if a number is unknown or infinite.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ContactResult {
-    /// The contact.
-    pub id: Id,
+    /// The contact; by default the one at the same position of the scene.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub id: Option<Id>,
     /// Mode used in this solve.
     pub mode: Mode,
     /// Mode of the next solve.
@@ -505,6 +506,22 @@ pub struct ContactResult {
     /// False beyond the ends of all surfaces, where no contact is possible.
     #[serde(default = "yes", skip_serializing_if = "Clone::clone")]
     pub over: bool,
+}
+
+impl State {
+    /// Enters the ids of contacts that have none.
+    pub fn fill_ids<'a>(&mut self, ids: impl Iterator<Item = &'a Id>) {
+        for (found, id) in self.contacts.iter_mut().zip(ids) {
+            found.id.get_or_insert_with(|| id.clone());
+        }
+    }
+}
+
+impl ContactResult {
+    /// The id for messages to the user.
+    pub fn label(&self) -> String {
+        self.id.as_ref().map_or_else(String::new, Id::to_string)
+    }
 }
 
 fn no(carried: &[bool; 2]) -> bool {

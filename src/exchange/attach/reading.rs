@@ -332,7 +332,7 @@ mod tests {
             in_space in any::<bool>(),
         ) -> ContactResult {
             ContactResult {
-                id,
+                id: Some(id),
                 mode: modes.0,
                 next: modes.1,
                 gap: numbers[0],

@@ -136,7 +136,8 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         .max()
         .unwrap_or(0);
     let in_space = view.model.space.is_some();
-    let spare = if in_space { ANGLE } else { 0 };
+    // The last number needs a gap after it then.
+    let spare = if in_space { ANGLE + 1 } else { 0 };
     let columns = Columns {
         angle: in_space,
         ..Columns::fit(
