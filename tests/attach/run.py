@@ -123,7 +123,7 @@ def faults(solver: Attached) -> Driven:
     for kind, reason in (("force", "faults does not offer force"), ("save", "faults does not offer restore"),
                          ("problem", "faults does not offer problem"), ("dance", "no request dance")):
         must(kind, solver.refusal(kind, contact="a.1", mode="free"), reason)
-    must("another version", solver.refusal("hello", protocol=2), "this solver supports protocol version 1, not 2")
+    must("another version", solver.refusal("hello", protocol=2), "this solver needs protocol version 1; the debugger supports [2]")
     solver.ask("set", name="fault", value="none")
     for _ in range(200):  # A signal that comes late, at any time, takes no answer away and adds none.
         solver.send({"type": "step"})
