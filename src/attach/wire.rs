@@ -53,8 +53,8 @@ pub fn scene(model: &Model) -> Scene {
     }
 }
 
-fn node(node: &stickslip_core::model::Node) -> message::Node {
-    message::Node {
+fn node(node: &stickslip_core::model::Node) -> message::NodeMessage {
+    message::NodeMessage {
         name: node.name.clone(),
         at: node.at.into(),
     }

@@ -130,7 +130,7 @@ pub(super) fn compile(spec: &Spec, text: &str) -> Result<(Model, Names), Fault> 
         ..Model::from_contacts(&shown::line(&scene.title), nodes, surfaces, contacts)
     };
     if scene.dimension == 3 {
-        let z = |node: &message::Node| node.at.in_space()[2];
+        let z = |node: &message::NodeMessage| node.at.in_space()[2];
         model.raise(scene.nodes.iter().map(z).collect());
     }
     if !model.length.is_finite() {

@@ -15,7 +15,7 @@ use stickslip::recorded::log::Log;
 use stickslip::session::Session;
 use stickslip::step::Solver;
 use stickslip_exchange::attach::message::{
-    Abilities, Contact, ContactResult, EndedLevel, Friction, Hello, Id, Node, NormsMessage,
+    Abilities, Contact, ContactResult, EndedLevel, Friction, Hello, Id, NodeMessage, NormsMessage,
     Position, Restore, Scene, State, SurfaceMessage,
 };
 use stickslip_exchange::attach::{Answer, PROTOCOLS, Request};
@@ -203,12 +203,12 @@ fn hello() -> Hello {
 }
 
 fn scene(contacts: usize) -> Scene {
-    let node = |k: usize| Node {
+    let node = |k: usize| NodeMessage {
         name: format!("node.{k}"),
         at: [k as f64, 0.1].into(),
     };
-    let mut nodes: Vec<Node> = (0..contacts).map(node).collect();
-    let end = |name: &str, x| Node {
+    let mut nodes: Vec<NodeMessage> = (0..contacts).map(node).collect();
+    let end = |name: &str, x| NodeMessage {
         name: name.into(),
         at: [x, 0.0].into(),
     };

@@ -140,6 +140,7 @@ pub fn records() -> Vec<ContactRecord> {
 pub fn event(position: (u32, u32, u32), nodes: Vec<ContactRecord>, outcome: Outcome) -> Event {
     let (increment, major, minor) = position;
     Event {
+        frames: Arc::default(),
         position: Position {
             increment,
             attempt: 1,

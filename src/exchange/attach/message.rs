@@ -268,7 +268,7 @@ pub struct Scene {
     #[serde(default = "plane", skip_serializing_if = "is_plane")]
     pub dimension: usize,
     /// Nodes for drawing, including those of the contacts.
-    pub nodes: Vec<Node>,
+    pub nodes: Vec<NodeMessage>,
     /// Curves through nodes, as indices into `nodes`.
     #[serde(default)]
     pub lines: Vec<Vec<usize>>,
@@ -304,7 +304,7 @@ fn is_plane(dimension: &usize) -> bool {
 
 /// A node in the reference configuration.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Node {
+pub struct NodeMessage {
     /// Name shown to the user; generated if it is empty.
     #[serde(default)]
     pub name: String,

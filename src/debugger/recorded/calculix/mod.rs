@@ -58,7 +58,7 @@ pub fn open(run: CalculixRun) -> Result<OpenedRun, String> {
         gives: None,
         tied: false,
     };
-    let node = |slave: usize| message::Node {
+    let node = |slave: usize| message::NodeMessage {
         name: run.slave(slave),
         at: [0.0, 0.0].into(),
     };
