@@ -1,5 +1,6 @@
 //! A solver in space, in Python where the system has it: its cycle, its states and its interface problem.
 
+use super::program::{code, err, out, program};
 use super::served::{seen, session};
 use super::side::{PATIENT, does};
 use libtest_mimic::Trial;
@@ -22,6 +23,7 @@ pub fn tests() -> Vec<Trial> {
             a_state_with_friction_across_its_slip_is_marked,
             a_solver_in_space_passes_every_check,
             a_stored_exchange_in_space_has_the_same_states,
+            remedies_are_tried_on_the_solver_itself,
         ],
         Err(_) => Vec::new(),
     }
@@ -155,4 +157,20 @@ fn a_stored_exchange_in_space_has_the_same_states() {
         };
         assert_eq!(directions(a), directions(b));
     }
+}
+
+fn remedies_are_tried_on_the_solver_itself() {
+    let folder = tempfile::tempdir().unwrap();
+    let start = start(folder.path(), &["30"]);
+    let mut arguments = vec!["remedies", "--"];
+    arguments.extend(start.command.iter().map(String::as_str));
+    let output = program(folder.path(), &arguments).output().unwrap();
+    assert_eq!(code(&output), 0, "{}", err(&output));
+    assert!(
+        out(&output).contains("start contacts fixed  converged"),
+        "{}",
+        out(&output)
+    );
+    let cause = "why: A consistent state of the interface problem was found";
+    assert!(err(&output).contains(cause), "{}", err(&output));
 }
