@@ -4,10 +4,11 @@ use super::examination::Examination;
 use super::facts::{Fact, Part};
 use super::influence::{Influence, NodePush};
 use super::names;
-use super::reported_pushes::Iterations;
+use std::sync::Arc;
 use stickslip_core::contact::record::ContactRecord;
 use stickslip_core::interface::cone::{self, ConeContact};
 use stickslip_core::model::{Mode, Model};
+use stickslip_core::step::event::Event;
 use stickslip_core::step::solver::ReportedProblem;
 
 /// Maximum number of contacts, because the matrix is dense.
@@ -66,7 +67,7 @@ fn words(model: &Model, slave: usize, contact: &ConeContact) -> String {
 /// The changes of a contact's gap and slip by the changes of the other contacts' forces between two iterations: W_ij Δf_j, with
 /// three rows per contact. `None` if forces were not reported.
 pub fn pushes(
-    iterations: &Iterations,
+    [before, after]: &[Arc<Event>; 2],
     posed: &ReportedProblem,
     slave: usize,
 ) -> Option<Vec<NodePush>> {
@@ -74,7 +75,6 @@ pub fn pushes(
         return Some(Vec::new());
     };
     let (w, _) = posed.compliance()?;
-    let [before, after] = &iterations.found;
     let [_, sliding] = after.nodes.get(slave)?.directions?;
     let mut found = Vec::new();
     for (place, &from) in posed.contacts.iter().enumerate() {

@@ -53,7 +53,7 @@ pub fn pushes(
     slave: usize,
 ) -> Option<Vec<NodePush>> {
     if posed.tangents == 2 {
-        return cone_problem::pushes(iterations, posed, slave);
+        return cone_problem::pushes(&iterations.found, posed, slave);
     }
     let Some(target) = posed.contacts.iter().position(|&known| known == slave) else {
         // Contacts outside the problem are not affected by those in it.
