@@ -12,9 +12,11 @@ use stickslip::contact::record::ContactRecord;
 use stickslip::history::frame::Frame;
 use stickslip::model::Mode;
 use stickslip::record::command::{Command, Unit};
+use stickslip::record::export::grid::grid;
 use stickslip::recorded::{exchange, log::Log};
 use stickslip::session::Session;
 use stickslip::step::event::Outcome;
+use stickslip_exchange::vtu::Values;
 
 pub fn tests() -> Vec<Trial> {
     match Process::new("python3").arg("--version").output() {
@@ -24,6 +26,7 @@ pub fn tests() -> Vec<Trial> {
             a_solver_in_space_passes_every_check,
             a_stored_exchange_in_space_has_the_same_states,
             remedies_are_tried_on_the_solver_itself,
+            a_vtu_has_three_coordinates,
         ],
         Err(_) => Vec::new(),
     }
@@ -173,4 +176,29 @@ fn remedies_are_tried_on_the_solver_itself() {
     );
     let cause = "why: A consistent state of the interface problem was found";
     assert!(err(&output).contains(cause), "{}", err(&output));
+}
+
+fn a_vtu_has_three_coordinates() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut session = session(start(folder.path(), &[]), &Log::default());
+    does(&mut session, run());
+    let scene = session.scene();
+    let (state, event) = (&session.frame().state, session.frame().event.as_deref());
+    let grid = grid(&scene.model, state, event, state.next, 3.0);
+    assert_eq!(grid.points[6], [0.0, 0.0, 2.0]);
+    let numbers = |name: &str| {
+        let array = grid.on_points.iter().find(|array| array.name == name);
+        match &array.unwrap().values {
+            Values::Numbers(all) => all.clone(),
+            other => panic!("{other:?}"),
+        }
+    };
+    assert_eq!(numbers("displacement")[18..21], [0.006, 0.008, -0.01]);
+    // The forces of the sliding nodes 3 to 6 point back along x and y, and up.
+    let force = numbers("contact_force");
+    assert!(
+        force[6] < 0.0 && force[7] < 0.0 && force[8] > 0.0,
+        "{force:?}"
+    );
+    assert!(grid.on_points.iter().all(|array| array.name != "rotation"));
 }

@@ -2,10 +2,9 @@
 //! visible extent, and clipping.
 
 use stickslip_core::contact::element::SurfaceElement;
-use stickslip_core::contact::projection::tangent;
 use stickslip_core::fem::lagrange;
 use stickslip_core::model::{Body, BodyKind, Model};
-use stickslip_core::step::event::{Event, second_tangent};
+use stickslip_core::step::event::Event;
 
 /// A point in the scene or on the sheet.
 pub type Point = [f64; 2];
@@ -58,21 +57,7 @@ impl Projection {
 
     /// The contact force on a slave node, as a vector on the sheet.
     pub fn force(self, model: &Model, event: &Event, slave: usize) -> Point {
-        let Some(found) = event.nodes.get(slave) else {
-            return [0.0; 2];
-        };
-        match (event.frames.get(slave), found.directions) {
-            (Some(frame), Some([direction, _])) => {
-                let (f_1, f_2) = (found.f_t * direction.cos(), found.f_t * direction.sin());
-                let ([n, t], b) = (frame, second_tangent(frame));
-                let force = [0, 1, 2].map(|k| found.f_n * n[k] + f_1 * t[k] + f_2 * b[k]);
-                self.flat(model, force)
-            }
-            _ => {
-                let (n, t) = (found.normal, tangent(found.normal));
-                [0, 1].map(|axis| found.f_n * n[axis] + found.f_t * t[axis])
-            }
-        }
+        self.flat(model, event.force(slave).unwrap_or_default())
     }
 }
 
