@@ -1,6 +1,5 @@
 //! A stored exchange of a solver in space in the terminal: arrows, the angle, the friction circle and the views of the shape.
 
-use crate::terminal::*;
 use serde_json::{Value as Json, json};
 use stickslip::recorded::exchange;
 use stickslip::recorded::recording::Recording;

@@ -30,7 +30,7 @@ pub struct ConeContact {
     pub motion: [f64; 3],
 }
 
-/// A state that obeys all laws, found by at most [`SWEEPS`] sweeps from zero forces; `None` if they do not converge. `w` and `q`
+/// A state that obeys all laws, found by sweeps from zero forces; `None` if 20,000 of them do not converge. `w` and `q`
 /// have three rows per contact.
 pub fn solve(
     w: &DMatrix<f64>,
