@@ -20,6 +20,8 @@ pub use link::Start;
 
 /// The Python module of the protocol.
 pub const PYTHON: &str = include_str!("clients/stickslip_attach.py");
+/// JSON schema of the solver's messages.
+pub const SCHEMA: &str = include_str!("clients/messages.schema.json");
 /// The C and C++ header for solvers that keep their loops, with its implementation.
 pub const C: &str = include_str!("clients/stickslip_attach.h");
 /// The Fortran module on top of that header.

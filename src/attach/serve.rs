@@ -15,7 +15,7 @@ use stickslip_debugger::recorded::orders::{self, COHESION, FRICTION, INCREMENT};
 use stickslip_exchange::attach::message::{
     Abilities, Hello, Id, MatrixMessage, ParameterKind, ParameterMessage, ProblemMessage, Restore,
 };
-use stickslip_exchange::attach::{Answer, Line, LineReader, MOST_BYTES, PROTOCOL, Request};
+use stickslip_exchange::attach::{Answer, Line, LineReader, MOST_BYTES, PROTOCOLS, Request};
 use stickslip_scene::Scene;
 use stickslip_scene::format::paths;
 use stickslip_scene::solver::solver;
@@ -108,7 +108,8 @@ impl<'a> Server<'a> {
 
     fn hello(&self) -> Hello {
         Hello {
-            protocol: PROTOCOL,
+            protocol: PROTOCOLS[0],
+            protocols: PROTOCOLS.to_vec(),
             name: format!("stickslip {}", self.scene.name),
             version: env!("CARGO_PKG_VERSION").into(),
             abilities: Abilities {
@@ -189,6 +190,7 @@ impl<'a> Server<'a> {
                 let friction = &self.stepper.state().controls.friction;
                 let of = |&slave: &usize| friction[slave];
                 Answer::Problem(Box::new(ProblemMessage {
+                    tangents: 1,
                     contacts: total.slaves.iter().map(|&slave| wire::id(slave)).collect(),
                     kind: ReportedForm::Compliance,
                     matrix: MatrixMessage::Rows(total.w),

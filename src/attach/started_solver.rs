@@ -9,8 +9,11 @@ use stickslip_debugger::recorded::fault::Fault;
 use stickslip_debugger::recorded::log::Log;
 use stickslip_debugger::recorded::orders::{COHESION, FRICTION, INCREMENT};
 use stickslip_exchange::attach::message::{self, Hello, ParameterKind, Restore, Scene};
-use stickslip_exchange::attach::{Answer, PROTOCOL, Request};
+use stickslip_exchange::attach::{Answer, PROTOCOLS, Request};
 use stickslip_scene::shown;
+
+/// Optional parts of the protocol that the debugger reads.
+const READS: [&str; 2] = ["progress", "space"];
 
 /// A started solver.
 pub struct StartedSolver {
@@ -31,7 +34,9 @@ pub struct StartedSolver {
 pub fn meet(start: &Start, log: &Log, asks: &Arc<AtomicUsize>) -> Result<StartedSolver, Fault> {
     let mut link = Link::start(start, log, asks.clone())?;
     let request = Request::Hello {
-        protocol: PROTOCOL,
+        protocol: PROTOCOLS[0],
+        protocols: PROTOCOLS.to_vec(),
+        reads: READS.map(String::from).to_vec(),
         name: "stickslip".into(),
         version: env!("CARGO_PKG_VERSION").into(),
     };
@@ -39,7 +44,7 @@ pub fn meet(start: &Start, log: &Log, asks: &Arc<AtomicUsize>) -> Result<Started
         Answer::Hello(hello) => *hello,
         answer => return Err(other(&request, answer, "hello")),
     };
-    if hello.protocol != PROTOCOL {
+    if !PROTOCOLS.contains(&hello.protocol) {
         return Err(Fault::Version(hello.protocol));
     }
     let offers = capabilities(&hello)?;
@@ -48,6 +53,12 @@ pub fn meet(start: &Start, log: &Log, asks: &Arc<AtomicUsize>) -> Result<Started
         Answer::Scene(scene) => *scene,
         answer => return Err(other(&Request::Scene, answer, "scene")),
     };
+    if scene.dimension != 2 && hello.protocol < 2 {
+        return Err(Fault::Unfit {
+            message: "scene",
+            why: "dimension: 3 needs version 2 of the protocol in hello".into(),
+        });
+    }
     Ok(StartedSolver {
         link,
         hello,

@@ -10,8 +10,8 @@ use stickslip_core::step::state::State;
 use stickslip_debugger::explain::failures;
 use stickslip_debugger::explain::names;
 use stickslip_exchange::attach::message::{
-    self, Contact, ContactResult, EndedLevel, Forced, Friction, Id, Monitor, Scene, SurfaceMessage,
-    ToldKind, number,
+    self, Components, Contact, ContactResult, EndedLevel, Forced, Friction, Id, Monitor, Scene,
+    SurfaceMessage, ToldKind, number,
 };
 
 /// The number of a contact in messages, from 1.
@@ -35,8 +35,10 @@ pub fn scene(model: &Model) -> Scene {
     Scene {
         title: model.title.clone(),
         about: model.about.clone(),
-        nodes: model.nodes.clone(),
+        dimension: 2,
+        nodes: model.nodes.iter().map(node).collect(),
         lines: lines.cloned().collect(),
+        faces: Vec::new(),
         surfaces: model.surfaces.iter().map(surface).collect(),
         contacts: (0..model.contacts.len())
             .map(|k| of_contact(model, k))
@@ -48,6 +50,13 @@ pub fn scene(model: &Model) -> Scene {
         monitors: model.monitors.iter().map(monitor).collect(),
         arc: model.control == Control::Arc,
         drag: model.jumps == Jumps::Dynamic,
+    }
+}
+
+fn node(node: &stickslip_core::model::Node) -> message::NodeMessage {
+    message::NodeMessage {
+        name: node.name.clone(),
+        at: node.at.into(),
     }
 }
 
@@ -63,6 +72,7 @@ fn surface(surface: &stickslip_core::model::Surface) -> SurfaceMessage {
     SurfaceMessage {
         name: surface.name.clone(),
         nodes,
+        faces: Vec::new(),
         rigid: surface.rigid,
     }
 }
@@ -133,13 +143,13 @@ pub fn state(model: &Model, state: &State, event: &Event, monitors: &[f64]) -> m
 }
 
 /// Displacements of all nodes.
-fn displacements(model: &Model, state: &State) -> Vec<[f64; 2]> {
+fn displacements(model: &Model, state: &State) -> Vec<Components> {
     let moved = |node: usize| {
         let dof = |axis: usize| match model.dofs.count.get(node) {
             Some(2..) => state.u.get(model.dofs.first[node] + axis).copied(),
             _ => None,
         };
-        [dof(0).unwrap_or(0.0), dof(1).unwrap_or(0.0)]
+        [dof(0).unwrap_or(0.0), dof(1).unwrap_or(0.0)].into()
     };
     (0..model.nodes.len()).map(moved).collect()
 }
@@ -195,14 +205,14 @@ fn reason(model: &Model, event: &Event) -> String {
 fn of_record(k: usize, record: &ContactRecord) -> ContactResult {
     let decision = &record.decision;
     ContactResult {
-        id: id(k),
+        id: Some(id(k)),
         mode: decision.before,
         next: decision.next,
         gap: number(record.gap),
         f_n: number(record.f_n),
-        f_t: number(record.f_t),
+        f_t: number(record.f_t).map(Components::from),
         limit: number(record.t_max),
-        slip: number(record.slip),
+        slip: number(record.slip).map(Components::from),
         rule: decision.rule.name().to_owned(),
         margin: None,
         tests: decision.tests.into_iter().flatten().collect(),
@@ -210,6 +220,7 @@ fn of_record(k: usize, record: &ContactRecord) -> ContactResult {
         limit_used: number(record.t_max_used),
         drift: number(record.drift),
         normal: place(record.normal),
+        tangent: None,
         foot: place(record.foot),
         corner: record.corner,
         carried: record.carried,
@@ -223,8 +234,8 @@ fn of_record(k: usize, record: &ContactRecord) -> ContactResult {
 }
 
 /// Finite coordinates; a contact without a surface has none.
-fn place(at: [f64; 2]) -> Option<[f64; 2]> {
-    at.iter().all(|x| x.is_finite()).then_some(at)
+fn place(at: [f64; 2]) -> Option<Components> {
+    at.iter().all(|x| x.is_finite()).then(|| at.into())
 }
 
 fn norms(norms: &Norms) -> message::NormsMessage {

@@ -5,7 +5,7 @@ use super::debugger::{DEBUGGER, needs_terminal};
 use super::front;
 use super::solver::SolverArgs;
 use std::path::PathBuf;
-use stickslip_attach::{C, FORTRAN, PYTHON, check};
+use stickslip_attach::{C, FORTRAN, PYTHON, SCHEMA, check};
 use stickslip_debugger::record::journal::JournalTarget;
 use stickslip_debugger::session::Session;
 
@@ -25,6 +25,9 @@ pub struct Args {
     /// Prints the Fortran module on top of the C header
     #[arg(long, conflicts_with_all = ["command", "python", "c"])]
     fortran: bool,
+    /// Prints the JSON schema of the messages that a solver sends
+    #[arg(long, conflicts_with_all = ["command", "python", "c", "fortran"])]
+    schema: bool,
     /// Writes the session's journal to a new file [default: in the user's state directory]
     #[arg(long, value_name = "FILE", conflicts_with = "no_journal")]
     journal: Option<PathBuf>,
@@ -37,7 +40,12 @@ pub struct Args {
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
-    let clients = [(args.python, PYTHON), (args.c, C), (args.fortran, FORTRAN)];
+    let clients = [
+        (args.python, PYTHON),
+        (args.c, C),
+        (args.fortran, FORTRAN),
+        (args.schema, SCHEMA),
+    ];
     if let Some((_, text)) = clients.iter().find(|(asked, _)| *asked) {
         say(text)?;
         return Ok(Exit::Good);

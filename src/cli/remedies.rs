@@ -1,32 +1,39 @@
-//! `stickslip remedies SCENE`: solves up to the first increment that fails, tries every remedy there, and prints their cost and
-//! result.
+//! `stickslip remedies SCENE`, or `-- COMMAND`: solves up to the first increment that fails, tries every remedy there, and prints
+//! their cost and result.
 
-use super::base::{Error, Exit, SceneArgs, notify, quoted, run_to_end, say};
+use super::base::{Error, Exit, notify, quoted, run_to_end, say, usage};
 use super::json::{self, JsonArgs};
 use super::records::{FailureKind, FailureRecord, RemediesRecord, RemedyRecord};
-use std::sync::Arc;
-use stickslip_debugger::explain::page;
+use super::solver::{Subject, SubjectArgs};
+use stickslip_core::step::event::Failure;
+use stickslip_core::step::solver::Solver;
+use stickslip_core::step::state::{State, Status};
+use stickslip_debugger::explain::examination::Examination;
 use stickslip_debugger::explain::remedies::{
     self, COLUMNS, RemainingViolations, RemedyTrial, TrialEnd,
 };
 use stickslip_debugger::explain::remedy::Remedy;
 use stickslip_debugger::explain::report;
+use stickslip_debugger::explain::walk::ReportedIterations;
+use stickslip_debugger::explain::{attached, page};
 use stickslip_scene::Scene;
 use stickslip_scene::shown::aligned;
-use stickslip_scene::solver::solver;
 
 #[derive(Debug, clap::Args)]
 #[command(after_help = "\
 Exit codes: 0 a remedy gets the scene past the failure, or nothing fails; 3 no remedy does.")]
 pub struct Args {
     #[command(flatten)]
-    scene: SceneArgs,
+    subject: SubjectArgs,
     #[command(flatten)]
     json: JsonArgs,
-    /// Overwrites an existing file
-    #[arg(long, requires = "json")]
+    /// Overwrites existing files
+    #[arg(long)]
     force: bool,
 }
+
+/// Maximum number of iterations of an attached solver.
+const MOST_STEPS: usize = 10_000;
 
 /// The command that tries the remedies of a scene, with its options.
 pub fn command(scene: &Scene) -> String {
@@ -40,7 +47,7 @@ pub fn command(scene: &Scene) -> String {
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
-    let scene = args.scene.open()?;
+    let Subject { scene, mut solver } = args.subject.open(args.force)?;
     let json = args.json.open(args.force)?;
     let spec = Some(&scene.spec);
     let mut record = RemediesRecord {
@@ -51,24 +58,34 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         why: Vec::new(),
         remedies: Vec::new(),
     };
-    let mut stepper = solver(Arc::new(scene.model.clone()));
-    let Some(failure) = run_to_end(&mut stepper) else {
+    let failure = match solver.stepper() {
+        Some(stepper) => run_to_end(stepper),
+        None => step_to_end(solver.as_mut())?,
+    };
+    let Some(failure) = failure else {
         notify("the scene converges; nothing to remedy");
         json::write(json, &record)?;
         return Ok(Exit::Good);
     };
-    let state = stepper.state().clone();
-    let (model, event) = (stepper.model().clone(), stepper.event());
+    let state = solver.state().clone();
+    let (model, event) = (solver.model().clone(), solver.event());
     let (at, load) = (event.position, event.load_factor);
     record.failure = Some(FailureRecord::new(&model, at, load, &failure));
     notify(&report::failure(&model, &state, at, load, &failure));
-    record.why = page::causes(&mut stepper, &state, &failure, &|| false);
+    let (why, all) = match solver.stepper() {
+        Some(stepper) => (
+            page::causes(stepper, &state, &failure, &|| false),
+            remedies::all(stepper, &state, spec, &|| false),
+        ),
+        None => offered(solver.as_mut(), &state),
+    };
+    record.why = why;
     for line in &record.why {
         notify(&format!("  why: {line}"));
     }
     let (mut trials, mut untried) = (Vec::new(), Vec::new());
-    for remedy in remedies::all(&mut stepper, &state, spec, &|| false) {
-        match remedies::attempt(&mut stepper, &state, spec, &remedy, &|| false) {
+    for remedy in all {
+        match remedies::attempt(solver.as_mut(), &state, spec, &remedy, &|| false) {
             Some(trial) => trials.push(trial),
             None => untried.push(remedy),
         }
@@ -84,6 +101,36 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     record.remedies.extend(untried.iter().map(not_tried));
     json::write(json, &record)?;
     Ok(exit)
+}
+
+/// Steps an attached solver until an increment fails; `None` if none does.
+fn step_to_end(solver: &mut dyn Solver) -> Result<Option<Failure>, Error> {
+    for _ in 0..MOST_STEPS {
+        if !solver.step().map_err(Error::usage)? {
+            return Ok(None);
+        }
+        if let Status::Failed(failure) = &solver.state().status {
+            return Ok(Some(failure.clone()));
+        }
+    }
+    Err(usage!(
+        "the solver neither failed nor ended within {MOST_STEPS} iterations"
+    ))
+}
+
+/// The causes that the interface problem of an attached solver shows, and the remedies that the solver offers.
+fn offered(solver: &mut dyn Solver, state: &State) -> (Vec<String>, Vec<Remedy>) {
+    let model = solver.model().clone();
+    let found = match solver.interface_problem(state) {
+        Ok(posed) => {
+            let reported = ReportedIterations::default();
+            attached::examine(&model, state, &posed, &reported, &[], &|| false)
+        }
+        Err(_) => Examination::default(),
+    };
+    let all = remedies::offered(&model, state, &solver.capabilities(), &found);
+    let why = Some(found.head).filter(|head| !head.is_empty());
+    (why.into_iter().collect(), all)
 }
 
 /// The trials as text.

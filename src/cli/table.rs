@@ -27,6 +27,8 @@
 //! - Scenes with a contact law, a stick stiffness or a pressure monitor: `pressure` and `shear`, F_n / A and F_t / A with the
 //!   undeformed tributary area A;
 //!   `NaN` without one.
+//! - In space: `f_t` and `slip` are lengths of vectors, followed by their components along t and n × t (`f_1`, `f_2`, `slip_1`,
+//!   `slip_2`) and by `angle` between them (degrees).
 
 use std::fmt::Write;
 use stickslip_core::contact::record::ContactRecord;
@@ -131,6 +133,9 @@ pub fn trace_header(model: &Model) -> String {
     if has_pressures(model) {
         line.push_str(",pressure,shear");
     }
+    if model.space.is_some() {
+        line.push_str(",f_1,f_2,slip_1,slip_2,angle");
+    }
     line.push('\n');
     line
 }
@@ -182,6 +187,12 @@ pub fn trace_rows(model: &Model, friction: &[Friction], event: &Event) -> String
             let found = model.contacts[slave].pressure(f_n, f_t);
             let [pressure, shear] = found.unwrap_or([f64::NAN; 2]);
             let _ = write!(lines, ",{pressure:?},{shear:?}");
+        }
+        if let Some([force, sliding]) = r.directions {
+            let [f_1, f_2] = [f_t * force.cos(), f_t * force.sin()];
+            let [slip_1, slip_2] = [r.slip * sliding.cos(), r.slip * sliding.sin()];
+            let angle = r.deviation().unwrap_or(f64::NAN).to_degrees();
+            let _ = write!(lines, ",{f_1:?},{f_2:?},{slip_1:?},{slip_2:?},{angle:?}");
         }
         lines.push('\n');
     };

@@ -77,6 +77,9 @@ pub fn told(text: &str) -> Result<Scene, Fault> {
 /// Checks a scene sent by a solver.
 pub(super) fn compile(spec: &Spec, text: &str) -> Result<(Model, Names), Fault> {
     let scene = told(text)?;
+    if !(2..=3).contains(&scene.dimension) {
+        return refused("dimension: must be 2 or 3");
+    }
     let nodes = nodes(&scene)?;
     let (surfaces, numbers) = surfaces(&scene)?;
     let contacts = contacts(&scene, &numbers)?;
@@ -99,7 +102,7 @@ pub(super) fn compile(spec: &Spec, text: &str) -> Result<(Model, Names), Fault> 
             of: MonitorQuantity::Told { number, kind },
         }
     };
-    let model = Model {
+    let mut model = Model {
         about: shown::text(&scene.about).into_owned(),
         bodies: vec![Body {
             name: SHAPE.into(),
@@ -126,6 +129,10 @@ pub(super) fn compile(spec: &Spec, text: &str) -> Result<(Model, Names), Fault> 
         monitors: scene.monitors.iter().enumerate().map(monitor).collect(),
         ..Model::from_contacts(&shown::line(&scene.title), nodes, surfaces, contacts)
     };
+    if scene.dimension == 3 {
+        let z = |node: &message::NodeMessage| node.at.in_space()[2];
+        model.raise(scene.nodes.iter().map(z).collect());
+    }
     if !model.length.is_finite() {
         return refused("nodes: they are too far apart");
     }
@@ -157,16 +164,19 @@ fn nodes(scene: &Scene) -> Result<Vec<Node>, Fault> {
     }
     let mut nodes: Vec<Node> = Vec::with_capacity(scene.nodes.len());
     for (k, node) in scene.nodes.iter().enumerate() {
-        if !node.at.iter().all(|x| x.is_finite()) {
+        let at = node.at.as_slice();
+        if at.len() != scene.dimension || !at.iter().all(|x| x.is_finite()) {
+            let count = if scene.dimension == 3 { "three" } else { "two" };
             return refused(format!(
-                "nodes[{k}].at: a position must be two finite numbers"
+                "nodes[{k}].at: a position must be {count} finite numbers"
             ));
         }
         let name = match node.name.as_str() {
             "" => format!("node.{}", k + 1),
             name => shown::cut(name, limits::NAME),
         };
-        nodes.push(Node { name, at: node.at });
+        let [x, y, _] = node.at.in_space();
+        nodes.push(Node { name, at: [x, y] });
     }
     // A contact may have a different name than its node.
     for contact in scene
@@ -209,7 +219,28 @@ fn lines(scene: &Scene) -> Result<Vec<Vec<usize>>, Fault> {
             return refused(format!("lines[{k}]: a line needs at least two nodes"));
         }
     }
-    Ok(scene.lines.clone())
+    let mut all = scene.lines.clone();
+    // Neighbouring faces share edges.
+    let mut drawn = HashSet::new();
+    for (k, face) in scene.faces.iter().enumerate() {
+        for edge in outline(scene, face, || format!("faces[{k}]"))?.windows(2) {
+            let mut ends = edge.to_vec();
+            ends.sort_unstable();
+            if drawn.insert(ends.clone()) {
+                all.push(ends);
+            }
+        }
+    }
+    Ok(all)
+}
+
+/// The closed curve around a face.
+fn outline(scene: &Scene, face: &[usize], place: impl Fn() -> String) -> Result<Vec<usize>, Fault> {
+    known(scene, face, &place)?;
+    match face {
+        [first, _, _, ..] => Ok(face.iter().chain([first]).copied().collect()),
+        _ => refused(format!("{}: a face needs at least three nodes", place())),
+    }
 }
 
 type Surfaces<'a> = (Vec<Surface>, HashMap<&'a str, usize>);
@@ -218,12 +249,7 @@ fn surfaces(scene: &Scene) -> Result<Surfaces<'_>, Fault> {
     let mut numbers = HashMap::new();
     let mut surfaces = Vec::new();
     for (k, told) in scene.surfaces.iter().enumerate() {
-        known(scene, &told.nodes, || format!("surfaces[{k}].nodes"))?;
-        if told.nodes.len() < 2 {
-            return refused(format!(
-                "surfaces[{k}].nodes: a surface needs at least two nodes"
-            ));
-        }
+        let elements = segments(scene, told, k)?;
         if numbers.insert(told.name.as_str(), k).is_some() {
             return refused(format!(
                 "surfaces[{k}].name: {:?} is already used",
@@ -232,11 +258,40 @@ fn surfaces(scene: &Scene) -> Result<Surfaces<'_>, Fault> {
         }
         surfaces.push(Surface::new(
             &shown::cut(&told.name, limits::NAME),
-            told.nodes.windows(2).map(<[usize]>::to_vec).collect(),
+            elements,
             told.rigid,
         ));
     }
     Ok((surfaces, numbers))
+}
+
+/// The segments of a surface: of its chain, or of the outlines of its faces in space.
+fn segments(
+    scene: &Scene,
+    told: &message::SurfaceMessage,
+    k: usize,
+) -> Result<Vec<Vec<usize>>, Fault> {
+    let windows = |chain: &[usize]| chain.windows(2).map(<[usize]>::to_vec).collect::<Vec<_>>();
+    known(scene, &told.nodes, || format!("surfaces[{k}].nodes"))?;
+    if scene.dimension == 2 {
+        return match told.nodes.len() {
+            2.. => Ok(windows(&told.nodes)),
+            _ => refused(format!(
+                "surfaces[{k}].nodes: a surface needs at least two nodes"
+            )),
+        };
+    }
+    if told.faces.is_empty() {
+        return refused(format!(
+            "surfaces[{k}].faces: a surface in space needs at least one face"
+        ));
+    }
+    let mut all = Vec::new();
+    for (number, face) in told.faces.iter().enumerate() {
+        let place = || format!("surfaces[{k}].faces[{number}]");
+        all.extend(windows(&outline(scene, face, place)?));
+    }
+    Ok(all)
 }
 
 fn contacts(scene: &Scene, surfaces: &HashMap<&str, usize>) -> Result<Vec<Contact>, Fault> {

@@ -46,8 +46,11 @@ fn stands(
     contacts.iter().map(stand).collect()
 }
 
-/// The initial gaps of each surface that has slave nodes above it.
+/// The initial gaps of each surface that has slave nodes above it; empty in space.
 pub fn start_gaps(model: &Model) -> Vec<StartGaps> {
+    if model.space.is_some() {
+        return Vec::new();
+    }
     let stands = stands(&model.nodes, &model.surfaces, &model.contacts);
     let of = |surface: usize| {
         let over = stands.iter().enumerate().filter_map(|(slave, stand)| {

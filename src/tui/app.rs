@@ -520,9 +520,11 @@ impl App {
             Ui::Fit => {
                 self.camera = Camera {
                     magnify: self.camera.magnify,
+                    projection: self.camera.projection,
                     ..Camera::ALL
                 }
             }
+            Ui::View => self.camera.projection = self.camera.projection.next(),
             Ui::Magnify(None) => self.camera = self.camera.magnified_next(),
             Ui::Magnify(factor) => self.camera.magnify = factor,
             Ui::Sort(sort) => self.sort = sort.unwrap_or(next(&Sort::ALL, self.sort)),

@@ -1,7 +1,7 @@
 //! Pan and zoom of the shape, and the magnification of its displacements.
 
 use crate::view::View;
-use stickslip_debugger::explain::outline;
+use stickslip_debugger::explain::outline::{self, Projection};
 
 /// Pan and zoom.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -12,6 +12,8 @@ pub struct Camera {
     pub pan: [f64; 2],
     /// Magnification of displacements; `None` chooses it.
     pub magnify: Option<f64>,
+    /// How a scene in space is drawn.
+    pub projection: Projection,
 }
 
 impl Camera {
@@ -20,6 +22,7 @@ impl Camera {
         zoom: 1.0,
         pan: [0.0; 2],
         magnify: None,
+        projection: Projection::Oblique,
     };
 
     /// The magnification of displacements: the chosen one, or a round number that makes the largest displacement of the shown and

@@ -9,7 +9,7 @@ use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::solver::Capabilities;
 use stickslip_debugger::action::Context;
 use stickslip_debugger::explain::influence::NodePush;
-use stickslip_debugger::explain::outline;
+use stickslip_debugger::explain::outline::{self, Projection};
 use stickslip_debugger::explain::page::DiagnosisPage;
 use stickslip_debugger::explain::remedies::RemedyTrial;
 use stickslip_debugger::explain::round_off::RoundOff;
@@ -277,8 +277,8 @@ impl<'a> View<'a> {
     }
 
     /// Position of a node with its displacement magnified.
-    pub fn magnified(&self, node: usize, factor: f64) -> [f64; 2] {
-        outline::magnified(self.model, &self.frame().state.u, node, factor)
+    pub fn magnified(&self, node: usize, by: (f64, Projection)) -> [f64; 2] {
+        outline::magnified(self.model, &self.frame().state.u, node, by)
     }
 }
 

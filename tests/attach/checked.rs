@@ -75,7 +75,7 @@ fn our_own_solver_passes_every_check() {
 
 /// What a solver does wrong, the check that finds it, and what it says.
 const WRONGS: &[(&str, &str, &str)] = &[
-    ("version", "start", "uses version 2"),
+    ("version", "start", "uses version 3"),
     ("same-id", "scene", "a is already used"),
     ("text-then-answer", "output", "is not a message"),
     ("nan", "step", "write null instead"),

@@ -20,7 +20,7 @@ class Attached:
         self.process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=log, env=environment)
         self.messages: list[Message] = []
         self.seconds = 0.0
-        self.hello = self.ask("hello", protocol=1, name="run.py", version="0")
+        self.hello = self.ask("hello", protocol=1, protocols=[1, 2], name="run.py", version="0")
         self.scene = self.ask("scene")
         self.ids = [contact["id"] for contact in self.scene["contacts"]]
 

@@ -339,7 +339,7 @@ const BAD_STARTS: &[(&str, &str)] = &[
     ),
     (
         "version",
-        "the solver uses version 2 of the protocol; this program supports version 1",
+        "the solver uses version 3 of the protocol; this program supports versions 1 and 2",
     ),
     ("refuses-to-talk", "the solver refuses hello: not with you"),
     (

@@ -17,6 +17,7 @@ mod loops;
 mod rude;
 mod served;
 mod side;
+mod space;
 
 use libtest_mimic::{Arguments, Trial};
 use std::process::ExitCode;
@@ -48,5 +49,6 @@ fn main() -> ExitCode {
     tests.extend(served::tests());
     tests.extend(kept::tests());
     tests.extend(checked::tests());
+    tests.extend(space::tests());
     libtest_mimic::run(&Arguments::from_args(), tests).exit_code()
 }

@@ -124,7 +124,7 @@ impl Rude {
 
     fn hello(&self) -> Value {
         let protocol = if self.is("version") {
-            json!(2)
+            json!(3)
         } else {
             json!(1)
         };

@@ -18,6 +18,7 @@ import argparse
 import csv
 import io
 import json
+import math
 import os
 import signal
 import subprocess
@@ -29,7 +30,7 @@ import venv
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Optional
+from typing import Any, Optional
 
 from driver import Attached, Message, Refusal, letters
 
@@ -122,7 +123,7 @@ def faults(solver: Attached) -> Driven:
     for kind, reason in (("force", "faults does not offer force"), ("save", "faults does not offer restore"),
                          ("problem", "faults does not offer problem"), ("dance", "no request dance")):
         must(kind, solver.refusal(kind, contact="a.1", mode="free"), reason)
-    must("another version", solver.refusal("hello", protocol=2), "this solver supports protocol version 1, not 2")
+    must("another version", solver.refusal("hello", protocol=2), "this solver needs protocol version 1; the debugger supports [2]")
     solver.ask("set", name="fault", value="none")
     for _ in range(200):  # A signal that comes late, at any time, takes no answer away and adds none.
         solver.send({"type": "step"})
@@ -132,6 +133,11 @@ def faults(solver: Attached) -> Driven:
             must("a step with a signal", answer, {"type": "refused", "reason": "interrupted"})
     solver.step()
     return Driven([state], f"{said} faults refused, prints kept off the line, interrupts", times=[solver.seconds])
+
+
+def size(value: Any) -> Any:
+    """The length of a vector; numbers stay."""
+    return math.hypot(*value) if isinstance(value, list) else value
 
 
 def springs(solver: Attached) -> Driven:
@@ -259,12 +265,31 @@ def getfem(solver: Attached) -> Driven:
     return Driven(states, f"{iterations} iterations, as in whole calls; F_x / F_y {ratio:.3f}", times=times)
 
 
+def block3d(solver: Attached) -> Driven:
+    """Friction on every sliding contact has its limit and the direction of the slip, and the problem is that of the states."""
+    problem = solver.ask("problem")
+    states, times = times_of(solver, 40)
+    must("its end", states[-1]["ended"], "done")
+    for row in states[-1]["contacts"]:
+        if row["mode"] == "sliding":
+            near("|F_t| by F_n", size(row["f_t"]) / row["f_n"], 0.4, 1e-9)
+            for f, slip in zip(row["f_t"], row["slip"]):
+                near("direction of friction", f / size(row["f_t"]), slip / size(row["slip"]), 1e-6)
+    force = [each for row in states[0]["contacts"] for each in (row["f_n"], *row["f_t"])]
+    for row, q, contact in zip(problem["matrix"][::3], problem["q"][::3], states[0]["contacts"]):
+        if abs(sum(w * f for w, f in zip(row, force)) + q - contact["gap"]) > 1e-12:
+            raise Failed("the problem is not that of the first state")
+    return Driven(states, f"{len(states)} iterations; friction along the slip", times=times)
+
+
 ADAPTERS = (
     Adapter("helper", "faults.py", (), "ctypes", faults, run_ends=None),
     Adapter("springs", "springs.py", ("numpy",), "numpy", springs, run_ends=3),
     Adapter("scikit-fem", "scikit_fem.py", ("scikit-fem==12.0.2", "scipy"), "skfem", scikit_fem),
     Adapter("Kratos", "kratos.py", ("KratosContactStructuralMechanicsApplication==10.4.4",
                                     "KratosStructuralMechanicsApplication==10.4.4"), "KratosMultiphysics", kratos),
+    # Lengths of vectors may differ in the last digit between Python and Rust.
+    Adapter("block3d", "block3d.py", (), "json", block3d, close=1e-12),
     # Its last digits depend on where its memory lies.
     Adapter("GetFEM", "getfem_blocks.py", (), "getfem", getfem, close=1e-9),
 )
@@ -322,7 +347,7 @@ def stickslip(program: str, arguments: list[str], environment: dict[str, str], e
 def same_trace(text: str, states: list[Message], close: float) -> int:
     """How many iterations were compared: those of the trace of `stickslip run` must be those that were driven here."""
     numbers = ("gap", "f_n", "f_t", "slip")
-    scale = {name: max(abs(row[name] or 0.0) for state in states for row in state["contacts"]) for name in numbers}
+    scale = {name: max(abs(size(row[name]) or 0.0) for state in states for row in state["contacts"]) for name in numbers}
     rows = list(csv.DictReader(io.StringIO(text)))
     contacts = len(states[0]["contacts"])
     iterations = [rows[start : start + contacts] for start in range(0, len(rows), contacts)]
@@ -333,7 +358,7 @@ def same_trace(text: str, states: list[Message], close: float) -> int:
             for name in ("mode", "next"):
                 must(f"{name} in the trace", row[name], contact[name])
             for name in numbers:
-                found, right = float(row[name]), contact[name]
+                found, right = float(row[name]), size(contact[name])
                 if right is not None and not abs(found - right) <= close * scale[name]:
                     raise Failed(f"{name} in the trace: {found}, and not {right}")
     if states[-1]["ended"] == "done":
@@ -353,7 +378,7 @@ def main() -> int:
         parser.error(f"{program} is no program")
     options.folder.mkdir(parents=True, exist_ok=True)
 
-    environment = {**os.environ, "PYTHONPATH": str(ROOT / "src" / "attach")}
+    environment = {**os.environ, "PYTHONPATH": str(ROOT / "src" / "attach" / "clients")}
     names = ("adapter", "version", "contacts", "steps", "ms a step", "--check", "run", "figures", "result")
     table: list[tuple[str, ...]] = [names]
     failed = False

@@ -15,10 +15,10 @@ use stickslip::recorded::log::Log;
 use stickslip::session::Session;
 use stickslip::step::Solver;
 use stickslip_exchange::attach::message::{
-    Abilities, Contact, ContactResult, EndedLevel, Friction, Hello, Id, Node, NormsMessage,
+    Abilities, Contact, ContactResult, EndedLevel, Friction, Hello, Id, NodeMessage, NormsMessage,
     Position, Restore, Scene, State, SurfaceMessage,
 };
-use stickslip_exchange::attach::{Answer, PROTOCOL, Request};
+use stickslip_exchange::attach::{Answer, PROTOCOLS, Request};
 
 /// The first argument of the solver; the others are the number of contacts, and where the time is written.
 const SOLVE: &str = "--solve";
@@ -186,7 +186,8 @@ fn line(state: &Answer, done: usize) -> String {
 
 fn hello() -> Hello {
     Hello {
-        protocol: PROTOCOL,
+        protocol: PROTOCOLS[0],
+        protocols: Vec::new(),
         name: "canned".into(),
         version: String::new(),
         abilities: Abilities {
@@ -202,14 +203,14 @@ fn hello() -> Hello {
 }
 
 fn scene(contacts: usize) -> Scene {
-    let node = |k: usize| Node {
+    let node = |k: usize| NodeMessage {
         name: format!("node.{k}"),
-        at: [k as f64, 0.1],
+        at: [k as f64, 0.1].into(),
     };
-    let mut nodes: Vec<Node> = (0..contacts).map(node).collect();
-    let end = |name: &str, x| Node {
+    let mut nodes: Vec<NodeMessage> = (0..contacts).map(node).collect();
+    let end = |name: &str, x| NodeMessage {
         name: name.into(),
-        at: [x, 0.0],
+        at: [x, 0.0].into(),
     };
     nodes.push(end("right", contacts as f64));
     nodes.push(end("left", -1.0));
@@ -230,11 +231,14 @@ fn scene(contacts: usize) -> Scene {
     Scene {
         title: format!("{contacts} contacts"),
         about: String::new(),
+        dimension: 2,
         nodes,
         lines: vec![(0..contacts).collect()],
+        faces: Vec::new(),
         surfaces: vec![SurfaceMessage {
             name: "floor".into(),
             nodes: vec![contacts, contacts + 1],
+            faces: Vec::new(),
             rigid: true,
         }],
         contacts: (0..contacts).map(contact).collect(),
@@ -256,14 +260,14 @@ fn state(contacts: usize, n: usize) -> State {
     let mode = |k: usize, n: usize| [Mode::Free, Mode::Fixed, Mode::Sliding][(k + n) % 3];
     let number = |k: usize, of: f64| ((k * STATES + n) as f64 + of).sin() / 3.0;
     let found = |k: usize| ContactResult {
-        id: Id::Number(k as i64),
+        id: Some(Id::Number(k as i64)),
         mode: mode(k, n),
         next: mode(k, n + 1),
         gap: Some(number(k, 0.1)),
         f_n: Some(number(k, 0.2)),
-        f_t: Some(number(k, 0.3)),
+        f_t: Some(number(k, 0.3).into()),
         limit: Some(number(k, 0.4)),
-        slip: Some(number(k, 0.5)),
+        slip: Some(number(k, 0.5).into()),
         rule: "active set".into(),
         margin: Some(number(k, 0.6)),
         tests: Vec::new(),
@@ -271,6 +275,7 @@ fn state(contacts: usize, n: usize) -> State {
         limit_used: None,
         drift: None,
         normal: None,
+        tangent: None,
         foot: None,
         corner: None,
         carried: [false; 2],
@@ -296,7 +301,7 @@ fn state(contacts: usize, n: usize) -> State {
         after: None,
         displacements: Some(
             (0..contacts + 2)
-                .map(|k| [number(k, 0.7), number(k, 0.8)])
+                .map(|k| [number(k, 0.7), number(k, 0.8)].into())
                 .collect(),
         ),
         spring: None,

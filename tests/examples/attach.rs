@@ -22,7 +22,9 @@ use stickslip::step::event::{Event, Failure, Outcome};
 use stickslip::step::intervene::{Intervention, Refusal};
 use stickslip::step::solver::{Capabilities, RewindSupport, SolverLost};
 use stickslip::step::{Solver, State, Status};
-use stickslip_exchange::attach::message::{Contact, Friction, Id, Node, Scene, SurfaceMessage};
+use stickslip_exchange::attach::message::{
+    Contact, Friction, Id, NodeMessage, Scene, SurfaceMessage,
+};
 
 /// Nodes, their distances from the floor, the stiffness of every spring, and the loads on a node at the load factor 1.
 const GAPS: [f64; 4] = [0.0, 0.01, 0.03, 0.08];
@@ -192,8 +194,11 @@ impl Solver for Springs {
 
 /// What is drawn, and which nodes may touch what.
 fn told() -> Scene {
-    let node = |name: String, at| Node { name, at };
-    let mut nodes: Vec<Node> = GAPS
+    let node = |name: String, at: [f64; 2]| NodeMessage {
+        name,
+        at: at.into(),
+    };
+    let mut nodes: Vec<NodeMessage> = GAPS
         .iter()
         .zip(1..)
         .map(|(gap, k)| node(format!("node.{k}"), [f64::from(k), *gap]))
@@ -217,11 +222,14 @@ fn told() -> Scene {
     Scene {
         title: "Nodes on springs over a rough floor".into(),
         about: String::new(),
+        dimension: 2,
         nodes,
         lines: vec![(0..GAPS.len()).collect()],
+        faces: Vec::new(),
         surfaces: vec![SurfaceMessage {
             name: "floor".into(),
             nodes: vec![GAPS.len(), GAPS.len() + 1],
+            faces: Vec::new(),
             rigid: true,
         }],
         contacts: (0..GAPS.len()).map(contact).collect(),

@@ -110,6 +110,7 @@ pub fn record(mode: Mode, gap: f64, f_n: f64, f_t: f64, t_max: f64, slip: f64) -
         spot: None,
         normal: [0.0, 1.0],
         foot: [0.0, 0.0],
+        directions: None,
         corner: None,
         carried: [false; 2],
     }
@@ -139,6 +140,7 @@ pub fn records() -> Vec<ContactRecord> {
 pub fn event(position: (u32, u32, u32), nodes: Vec<ContactRecord>, outcome: Outcome) -> Event {
     let (increment, major, minor) = position;
     Event {
+        frames: Arc::default(),
         position: Position {
             increment,
             attempt: 1,

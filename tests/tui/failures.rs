@@ -185,6 +185,7 @@ fn a_state_that_the_judge_refuses_has_a_page_with_the_law_the_node_and_what_is_a
         amount: 1e-3,
         allowed: 1e-9,
         numbers: JudgedNumbers {
+            deviation: None,
             gap: 0.0,
             f_n: 2.0,
             f_t: 0.7,

@@ -27,6 +27,8 @@ mod custom;
 mod walks;
 // The real program: keys in, screens out, the terminal as it was after whatever ends it.
 mod sessions;
+// Arrows, angles and views of a solver in space.
+mod space;
 // Journals that cannot be written, what is no file, what would harm the terminal.
 mod session_files;
 // A finished CalculiX run, looked at.

@@ -139,11 +139,12 @@ pub fn problem(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
 
 /// Why a matrix is not the compliance of deforming bodies.
 fn unsound(posed: &ReportedProblem, ids: &[Id]) -> Option<String> {
+    let rows = 1 + posed.tangents;
     let of = |k: usize| {
-        let contact = &ids[posed.contacts[k / 2]];
+        let contact = &ids[posed.contacts[k / rows]];
         (
             shown::line(&contact.to_string()).into_owned(),
-            if k.is_multiple_of(2) { "n" } else { "t" },
+            ["n", "t", "n × t"][k % rows],
         )
     };
     let size = posed.q.len();
@@ -157,12 +158,18 @@ fn unsound(posed: &ReportedProblem, ids: &[Id]) -> Option<String> {
 /// The largest deviation of a state's gaps from W f + q, relative to the lengths in it; `None` if the state does not report forces
 /// or gaps, or K has no inverse.
 fn apart(posed: &ReportedProblem, state: &State, stuck: &[bool]) -> Option<f64> {
-    let size = posed.q.len();
-    let mut f = DVector::zeros(size);
-    for (place, &contact) in posed.contacts.iter().enumerate() {
+    let rows = 1 + posed.tangents;
+    let mut f = Vec::with_capacity(posed.q.len());
+    for &contact in &posed.contacts {
         let found = state.contacts.get(contact)?;
-        (f[2 * place], f[2 * place + 1]) = (found.f_n?, found.f_t?);
+        f.push(found.f_n?);
+        let f_t = found.f_t?;
+        f.extend(f_t.as_slice());
     }
+    if f.len() != posed.q.len() {
+        return None;
+    }
+    let f = DVector::from_vec(f);
     let w = posed.motion(&f)?;
     let q = DVector::from_column_slice(&posed.q);
     let scale = (&w - &q).amax().max(q.amax());
@@ -173,10 +180,11 @@ fn apart(posed: &ReportedProblem, state: &State, stuck: &[bool]) -> Option<f64> 
     for (place, &contact) in posed.contacts.iter().enumerate() {
         let found = &state.contacts[contact];
         if let Some(gap) = found.gap {
-            most = most.max((gap - w[2 * place]).abs() / scale);
+            most = most.max((gap - w[rows * place]).abs() / scale);
         }
         if stuck.get(contact) == Some(&true) {
-            most = most.max(w[2 * place + 1].abs() / scale);
+            let motion = w.rows(rows * place + 1, posed.tangents);
+            most = most.max(motion.amax() / scale);
         }
     }
     Some(most)

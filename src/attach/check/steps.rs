@@ -190,9 +190,9 @@ fn told(states: &[State]) -> String {
     let names: [(&str, Number); 5] = [
         ("gap", |found| found.gap),
         ("f_n", |found| found.f_n),
-        ("f_t", |found| found.f_t),
+        ("f_t", |found| found.f_t.map(|f| f.size())),
         ("limit", |found| found.limit),
-        ("slip", |found| found.slip),
+        ("slip", |found| found.slip.map(|slip| slip.size())),
     ];
     let lacks: Vec<&str> = names
         .iter()
@@ -251,7 +251,7 @@ fn unfollowed(before: &State, state: &State) -> Option<(String, &'static str)> {
         (
             format!(
                 "contact {} is solved {}, but its previous `next` was {}",
-                shown::line(&now.id.to_string()),
+                shown::line(&now.label()),
                 names::mode(now.mode),
                 names::mode(then.next)
             ),
@@ -269,14 +269,15 @@ fn laws(states: &[State]) -> Outcome {
     let accepted = states.iter().filter(|state| is_settled(state));
     // The force scale comes from all states, since a single state may have only round-off forces.
     let all = states.iter().flat_map(|state| &state.contacts);
-    let forces = all.flat_map(|found| [found.f_n, found.f_t]).flatten();
+    let forces = all.flat_map(|found| [found.f_n, found.f_t.map(|f| f.size())]);
+    let forces = forces.flatten();
     let largest = forces.fold(0.0, |most: f64, force| most.max(force.abs()));
     let (mut count, mut nearly) = (0, String::new());
     for state in accepted {
         count += 1;
         for found in &state.contacts {
             let told = |why: String| {
-                let id = found.id.to_string();
+                let id = found.label();
                 let at = state.at.increment;
                 format!("increment {at}, contact {}: {why}", shown::line(&id))
             };
@@ -309,10 +310,15 @@ pub fn is_settled(state: &State) -> bool {
 
 /// How a settled contact violates the laws; forces below `small` count as zero.
 fn unlawful(found: &ContactResult, small: f64) -> Option<(String, &'static str)> {
-    let (f_n, f_t) = (found.f_n.unwrap_or(0.0), found.f_t.unwrap_or(0.0));
+    let size = found.f_t.map_or(0.0, |f| f.size());
+    let f_n = found.f_n.unwrap_or(0.0);
+    // The sign, in the plane.
+    let f_t = found.f_t.and_then(|f| f.scalar()).unwrap_or(size);
+    let slip = found.f_t.zip(found.slip);
+    let slip = slip.and_then(|(f, slip)| Some((f.pair()?, slip.pair()?)));
     let limit = found.limit;
     match found.mode {
-        Mode::Free if f_n.abs() > small || f_t.abs() > small => Some((
+        Mode::Free if f_n.abs() > small || size > small => Some((
             format!("free, but with forces ({f_n:?}, {f_t:?})"),
             "report zero forces for a free contact",
         )),
@@ -330,7 +336,15 @@ fn unlawful(found: &ContactResult, small: f64) -> Option<(String, &'static str)>
                 "give limit the sign of the friction force: copysign(mu * f_n + cohesion, f_t)",
             ))
         }
-        _ if limit.is_some_and(|limit| f_t.abs() > limit.abs() + small) => Some((
+        Mode::Sliding
+            if slip.is_some_and(|([a, b], [u, v])| a * u + b * v < 0.0) && size > small =>
+        {
+            Some((
+                format!("sliding with f_t = {f_t:?} against its slip"),
+                "slip is the motion of the master relative to the node, so friction on the node has its direction",
+            ))
+        }
+        _ if limit.is_some_and(|limit| size > limit.abs() + small) => Some((
             format!("f_t = {f_t:?} exceeds the limit {:?}", limit.unwrap_or(0.0)),
             "in an accepted state |f_t| <= |limit| = mu f_n + cohesion",
         )),
@@ -404,7 +418,7 @@ fn otherwise(then: &State, now: &State) -> Option<String> {
     let modes = |found: &ContactResult| (found.mode, found.next);
     let mut pairs = then.contacts.iter().zip(&now.contacts);
     let other = pairs.find(|(then, now)| modes(then) != modes(now))?.1;
-    let id = other.id.to_string();
+    let id = other.label();
     Some(format!(
         "contact {} is {}, next {}",
         shown::line(&id),

@@ -93,7 +93,10 @@ impl Trial {
     /// The fault that ended the solver.
     pub fn step(&mut self) -> Result<Option<State>, Fault> {
         match self.ask(&Request::Step)? {
-            Answer::State(state) => Ok(Some(*state)),
+            Answer::State(mut state) => {
+                state.fill_ids(self.scene.contacts.iter().map(|contact| &contact.id));
+                Ok(Some(*state))
+            }
             Answer::Refused { .. } => Ok(None),
             answer => Err(other(&Request::Step, answer, "state")),
         }
@@ -198,7 +201,10 @@ pub fn is_last(state: &State) -> bool {
 
 /// The values of a contact in a state.
 pub fn at<'a>(state: &'a State, contact: &Id) -> Option<&'a ContactResult> {
-    state.contacts.iter().find(|found| found.id == *contact)
+    state
+        .contacts
+        .iter()
+        .find(|found| found.id.as_ref() == Some(contact))
 }
 
 /// Milliseconds.

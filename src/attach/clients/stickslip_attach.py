@@ -43,7 +43,7 @@ __all__ = ["Loops", "Parameter", "Refused", "Solver", "attach"]
 Message = dict[str, Any]
 Id = Union[int, str]
 
-PROTOCOL = 1
+PROTOCOLS = (1, 2)  # Version 2 has scenes in space.
 MOST_BYTES = 64 << 20
 MODES = ("free", "sliding", "fixed")
 ENDS = ("iteration", "equilibrium", "increment", "cut", "failure", "done")
@@ -112,14 +112,17 @@ class Solver:
         return solver
 
     def scene(self) -> Message:
-        """Return the scene: `title`, `nodes`, `lines`, `surfaces`, `contacts`. Called once."""
+        """Return the scene: `title`, `nodes`, `lines`, `surfaces`, `contacts`. Called once.
+
+        In space: `dimension` 3, three coordinates per node, `faces` to draw, and `faces` instead of `nodes` in surfaces.
+        """
         raise NotImplementedError("a solver needs a method `scene`")
 
     def step(self) -> Message:
         """Make one iteration, and return its result: `ended`, `contacts`, `residual`, `load`, `displacements`.
 
         `contacts` is a list of dictionaries in the order of the scene, or a dictionary of columns: `mode` (of this
-        solve), `next`, `gap`, `f_n`, `f_t`, `limit`, `slip`. `id` and `at` are optional; without `at`, the position is
+        solve), `next`, `gap`, `f_n`, `f_t`, `limit`, `slip`; in space, `f_t` and `slip` are pairs. `id` and `at` are optional; without `at`, the position is
         counted from `ended`. After "done", `step` is called again only after a mode was forced or a parameter set.
         """
         raise NotImplementedError("a solver needs a method `step`")
@@ -131,7 +134,8 @@ class Solver:
         """Restore the state that `save` returned; the next iterations must be bit-identical. `vars(self).update(saved)` may do."""
 
     def problem(self) -> Message:
-        """Return the interface problem of the next iteration: `matrix`, `q`, `mu`; `kind`, if it is not a compliance."""
+        """Return the interface problem of the next iteration: `matrix`, `q`, `mu`; `kind`, if it is not a compliance; `tangents` 2 in
+        space."""
         raise NotImplementedError
 
     def save(self) -> Any:
@@ -352,13 +356,15 @@ class _Session:
         return getattr(type(self.solver), method) is not getattr(Solver, method)
 
     def hello(self, ask: Message) -> Message:
-        if ask.get("protocol") != PROTOCOL:
-            raise Refused(f"this solver supports protocol version {PROTOCOL}, not {ask.get('protocol')}")
+        protocol = 2 if self.scene.get("dimension") == 3 else 1
+        known = ask.get("protocols", [ask.get("protocol")])
+        if protocol not in known:
+            raise Refused(f"this solver needs protocol version {protocol}; the debugger supports {known}")
         solver, forces = self.solver, self.offers("force")
         abilities = {"force": forces, "hold": forces, "problem": self.offers("problem"), "interrupt": solver.interrupts,
                      "restore": solver.restores if self.offers("restore") else "none"}
         parameters = [{**asdict(each), "value": getattr(solver, each.name)} for each in solver.parameters]
-        return {"type": "hello", "protocol": PROTOCOL, "name": solver.name, "version": solver.version,
+        return {"type": "hello", "protocol": protocol, "protocols": PROTOCOLS, "name": solver.name, "version": solver.version,
                 "abilities": abilities, "decides": solver.decides, "parameters": parameters}
 
     def step(self, ask: Message) -> Message:

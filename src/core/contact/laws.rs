@@ -129,6 +129,9 @@ pub struct JudgedNumbers {
     pub limit: f64,
     /// Motion of the node's closest point along t since the last accepted state (length).
     pub slip: f64,
+    /// Angle between friction and slip in space (radians); `None` in the plane.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub deviation: Option<f64>,
 }
 
 /// Findings for a state; initially empty.

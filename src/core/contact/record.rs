@@ -35,11 +35,20 @@ pub struct ContactRecord {
     pub normal: [f64; 2],
     /// Position of S* at the start of this major iteration.
     pub foot: [f64; 2],
+    /// In space, the directions of the tangential force and of the slip: their angles (radians) from t towards n × t. `f_t` and
+    /// `slip` are then lengths, and not negative. `None` in the plane.
+    pub directions: Option<[f64; 2]>,
     /// Half the angle (radians) between the normals of the two sides that hold the node
     /// ([`crate::contact::state::ContactState::corner`]); `None` if a single side does.
     pub corner: Option<f64>,
     /// Whether supports carry a force component (normal, tangential), because its equation contains no unknown.
     pub carried: [bool; 2],
+}
+
+/// The turn (radians, -π to π) from one direction to another.
+pub fn turn(from: f64, to: f64) -> f64 {
+    use std::f64::consts::{PI, TAU};
+    PI - (PI - (to - from)).rem_euclid(TAU)
 }
 
 /// Force from one of two sides, in the frame (n, t) of that side.
@@ -54,6 +63,14 @@ pub struct SideForce {
 }
 
 impl ContactRecord {
+    /// The angle (radians, 0 to π) between the tangential force and the slip of a sliding node in space; `None` in the plane, or
+    /// if either is zero or unknown.
+    pub fn deviation(&self) -> Option<f64> {
+        let [force, slip] = self.directions?;
+        let slides = self.decision.before == Mode::Sliding;
+        (slides && self.f_t > 0.0 && self.slip > 0.0).then(|| turn(force, slip).abs())
+    }
+
     /// Whether an attached solver selects another next mode than its declared rules give for the same numbers, without being
     /// forced.
     pub fn differs(&self) -> bool {

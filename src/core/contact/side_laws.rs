@@ -107,6 +107,7 @@ fn numbers(force: [f64; 2], at: &TouchedSide) -> JudgedNumbers {
             SideHistory::Touched(slip) | SideHistory::Open(slip) => slip,
             SideHistory::Elsewhere => 0.0,
         },
+        deviation: None,
     }
 }
 

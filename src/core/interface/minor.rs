@@ -158,6 +158,7 @@ fn record(
         spot: node.spot,
         normal: kinematics.map_or(node.normal, |k| k.normal),
         foot: kinematics.map_or([f64::NAN; 2], |k| k.foot),
+        directions: None,
         corner: node.corner.filter(|_| node.mode == Mode::Fixed),
         carried: carried(node.mode, moves),
     };

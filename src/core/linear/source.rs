@@ -444,6 +444,7 @@ pub trait Source: Send {
                         limit: at.friction[k].coefficient() * state.f_n + at.friction[k].cohesion,
                         f_n: state.f_n,
                         f_t: state.f_t,
+                        deviation: None,
                     },
                 });
             }

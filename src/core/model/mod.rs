@@ -82,6 +82,8 @@ pub struct Model {
     pub length: f64,
     /// Data of a finished run of another program. `None` for everything that can be stepped.
     pub finished: Option<FinishedRun>,
+    /// The third coordinates. `None` in the plane.
+    pub space: Option<Space>,
 }
 
 /// A finished run of another program, with one level of iterations, whose files do not distinguish stick from slip: a
@@ -94,6 +96,13 @@ pub struct FinishedRun {
     pub cycles: Vec<std::ops::Range<usize>>,
     /// Limit of the displacement correction (relative).
     pub correction_limit: f64,
+}
+
+/// What a scene in space has beyond the plane: nodes have three coordinates and three degrees of freedom.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Space {
+    /// z of each node (length).
+    pub heights: Vec<f64>,
 }
 
 /// A node in the reference configuration.
@@ -244,6 +253,7 @@ impl Model {
             budget: f64::INFINITY,
             length,
             finished: None,
+            space: None,
         }
     }
 
@@ -300,5 +310,44 @@ impl Model {
         (0..self.nodes.len())
             .map(|node| self.place(u, node))
             .collect()
+    }
+}
+
+impl Model {
+    /// Turns a scene of contacts ([`Model::from_contacts`]) into one in space; `heights` are the z of its nodes.
+    pub fn raise(&mut self, heights: Vec<f64>) {
+        let ends = |low: f64, high: f64| {
+            heights
+                .iter()
+                .fold((low, high), |(l, h), z| (l.min(*z), h.max(*z)))
+        };
+        let (low, high) = ends(f64::INFINITY, f64::NEG_INFINITY);
+        let flat = diagonal(self.nodes.iter());
+        let length = flat.hypot(high - low);
+        self.length = if length > 0.0 { length } else { 1.0 };
+        let count = self.nodes.len();
+        self.dofs.first = (0..count).map(|node| 3 * node).collect();
+        self.dofs.count = vec![3; count];
+        self.dofs.equation = vec![None; 3 * count];
+        self.space = Some(Space { heights });
+    }
+
+    /// Reference position of a node; z is 0 in the plane.
+    pub fn at_in_space(&self, node: usize) -> [f64; 3] {
+        let [x, y] = self.nodes[node].at;
+        let heights = self.space.as_ref().map(|space| &space.heights);
+        let z = heights.and_then(|heights| heights.get(node));
+        [x, y, z.copied().unwrap_or(0.0)]
+    }
+
+    /// Current position of a node ([`Model::place`]); z is 0 in the plane.
+    pub fn place_in_space(&self, u: &[f64], node: usize) -> [f64; 3] {
+        let [x, y] = self.place(u, node);
+        let [_, _, z] = self.at_in_space(node);
+        let risen = self
+            .space
+            .as_ref()
+            .and_then(|_| u.get(self.dofs.first[node] + 2));
+        [x, y, z + risen.copied().unwrap_or(0.0)]
     }
 }

@@ -1,6 +1,7 @@
 //! Typed record of one minor iteration.
 
 use crate::contact::laws::Finding;
+use crate::contact::projection::tangent;
 use crate::contact::record::ContactRecord;
 use crate::fem::deformation::PointDeformation;
 use crate::interface::method::NotFound;
@@ -55,10 +56,24 @@ pub struct Event {
     pub nodes: Vec<ContactRecord>,
     /// Residual at the start of this major iteration, where the minor iterations are linearised.
     pub before: Norms,
+    /// In space, the frame (n, t) at each contact; empty in the plane.
+    pub frames: Arc<Vec<Frame>>,
     /// Texts of an attached solver; empty for the built-in solver.
     pub words: Arc<Words>,
     /// Result of the iteration.
     pub outcome: Outcome,
+}
+
+/// Outward normal n and tangent t at a contact in space, both of length 1.
+pub type Frame = [[f64; 3]; 2];
+
+/// The second tangent n × t of a frame.
+fn second_tangent(&[n, t]: &Frame) -> [f64; 3] {
+    [
+        n[1] * t[2] - n[2] * t[1],
+        n[2] * t[0] - n[0] * t[2],
+        n[0] * t[1] - n[1] * t[0],
+    ]
 }
 
 /// Texts reported by an attached solver. An empty list has no entry for any contact.
@@ -82,9 +97,27 @@ impl Event {
             drag: 0.0,
             nodes: Vec::with_capacity(model.contacts.len()),
             before: Norms::default(),
+            frames: Arc::default(),
             words: Arc::default(),
             outcome: Outcome::Minor,
         }
+    }
+
+    /// The contact force on a slave node along the axes; z is 0 in the plane. `None` without a record.
+    pub fn force(&self, slave: usize) -> Option<[f64; 3]> {
+        let found = self.nodes.get(slave)?;
+        Some(match (self.frames.get(slave), found.directions) {
+            (Some(frame), Some([direction, _])) => {
+                let (f_1, f_2) = (found.f_t * direction.cos(), found.f_t * direction.sin());
+                let ([n, t], b) = (frame, second_tangent(frame));
+                [0, 1, 2].map(|k| found.f_n * n[k] + f_1 * t[k] + f_2 * b[k])
+            }
+            _ => {
+                let (n, t) = (found.normal, tangent(found.normal));
+                let [x, y] = [0, 1].map(|axis| found.f_n * n[axis] + found.f_t * t[axis]);
+                [x, y, 0.0]
+            }
+        })
     }
 
     /// Contacts whose mode changed, or whose T_max changed by more than `force`.

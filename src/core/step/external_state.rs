@@ -169,6 +169,7 @@ impl ContactRecord {
             spot: node.spot,
             normal: [0.0, 1.0],
             foot: [0.0, 0.0],
+            directions: None,
             corner: None,
             carried: [false; 2],
         }

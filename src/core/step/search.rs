@@ -235,6 +235,7 @@ impl Iterate {
             spot: node.spot,
             normal: over.map_or(node.normal, |k| k.normal),
             foot: over.map_or([f64::NAN; 2], |k| k.foot),
+            directions: None,
             corner: None,
             carried: [false; 2],
         }
@@ -291,6 +292,7 @@ impl Iterate {
             spot: node.spot,
             normal: over.map_or(node.normal, |k| k.normal),
             foot: over.map_or([f64::NAN; 2], |k| k.foot),
+            directions: None,
             corner: node.corner.filter(|_| before == Mode::Fixed),
             carried: [false; 2],
         }

@@ -429,15 +429,17 @@ impl std::fmt::Display for Range {
 /// where u is the motion of the node relative to its master along t since the increment began, so that u = 0 sticks.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ReportedProblem {
-    /// Contact numbers, in the order of the pairs.
+    /// Contact numbers, in the order of the rows.
     pub contacts: Vec<usize>,
+    /// Number of tangential components: 2 in space, where u and f_t are vectors.
+    pub tangents: usize,
     /// Kind of the matrix.
     pub form: ReportedForm,
-    /// Rows: 2n rows of 2n numbers.
+    /// Rows: `1 + tangents` rows per contact.
     pub matrix: Vec<Vec<f64>>,
-    /// Gap and motion without any force (length), 2n numbers.
+    /// Gap and motion without any force (length), one number per row.
     pub q: Vec<f64>,
-    /// Load, 2n numbers (force): with a stiffness, f = K ((gap, u) − q) − load, so that the bodies may be supported by the
+    /// Load, one number per row (force): with a stiffness, f = K ((gap, u) − q) − load, so that the bodies may be supported by the
     /// contacts alone.
     pub load: Vec<f64>,
     /// Friction of each contact.
@@ -445,6 +447,21 @@ pub struct ReportedProblem {
 }
 
 impl ReportedProblem {
+    /// W and q of the same problem; `None` if K is singular.
+    pub fn compliance(&self) -> Option<(DMatrix<f64>, DVector<f64>)> {
+        let size = self.q.len();
+        let matrix = DMatrix::from_fn(size, size, |i, j| self.matrix[i][j]);
+        let q = DVector::from_column_slice(&self.q);
+        match self.form {
+            ReportedForm::Compliance => Some((matrix, q)),
+            ReportedForm::Stiffness => {
+                let inverse = matrix.try_inverse()?;
+                let loaded = &inverse * DVector::from_column_slice(&self.load);
+                Some((inverse, q + loaded))
+            }
+        }
+    }
+
     /// Gap and motion u of each contact under total forces (length); `None` if K is singular.
     pub fn motion(&self, forces: &DVector<f64>) -> Option<DVector<f64>> {
         let size = self.q.len();

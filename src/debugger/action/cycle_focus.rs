@@ -38,6 +38,7 @@ impl Action {
                     | Ui::Page(Page::Timeline | Page::Contact)
                     | Ui::Sort(_)
                     | Ui::SortBackward
+                    | Ui::View
                     | Ui::Magnify(_)
                     | Ui::Filter(_)
                     | Ui::Ask(Question::Node | Question::Break | Question::Lesson)

@@ -58,6 +58,8 @@ pub enum Ui {
     Shrink,
     /// Show the whole shape.
     Fit,
+    /// Draw a scene in space from the next side.
+    View,
     /// Magnify the displacements by a factor, or choose the next magnification.
     Magnify(Option<f64>),
     /// Sort the slave nodes in this order, or in the next one.

@@ -203,6 +203,7 @@ pub const ACTIONS: &[ActionEntry] = &[
     entry(Group::Look, "shrink", "", &["-"], "", "Shrink the shape", Verb::Do(Ui::Shrink)),
     entry(Group::Look, "fit", "", &["0"], "", "Show the whole shape", Verb::Do(Ui::Fit)),
     entry(Group::Look, "magnify", "[FACTOR]", &["*"], "", "Magnify the displacements in the shape: automatically, to scale, ×10, ×100, or by a factor", Verb::Magnify),
+    entry(Group::Look, "view", "", &["V"], "", "Draw a scene in space in the next projection: oblique, from the top, from the side", Verb::Do(Ui::View)),
     entry(Group::Look, "copy", "[WHAT]", &["Y"], "", "Copy the selection to the clipboard: a row, a value, a command; or name it: row, command, keys, gap, f_n, …", Verb::Copy),
 
     entry(Group::Learn, "lesson", "[NAME]", &["L"], "", "Start a guided lesson: a file, or a built-in one", Verb::Lesson),

@@ -4,6 +4,7 @@
 //! The problem becomes a scene of contacts ([`interface_scene`](super::interface_scene)). It is examined like a frozen problem of our own bodies; results are reported with the node
 //! numbers of the solver's scene.
 
+use super::cone_problem;
 use super::examination::{DONE, Examination, census, examine_nodes, frozen};
 use super::facts::{Fact, Part};
 use super::interface_scene::stepper;
@@ -33,6 +34,9 @@ pub fn examine(
     };
     if state.status == Status::Finished {
         return describe(DONE.into());
+    }
+    if posed.tangents == 2 {
+        return cone_problem::examine(model, posed);
     }
     let walk = walk(model, state, posed, reported);
     let mut asked = reported.problem(model, state, posed);

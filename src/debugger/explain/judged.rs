@@ -13,6 +13,7 @@ pub fn finding(model: &Model, finding: &Finding) -> String {
         f_t,
         limit,
         slip,
+        deviation,
     } = finding.numbers;
     let node = finding.slave.map_or("a node", |s| slave(model, s));
     let text = match finding.law {
@@ -25,6 +26,10 @@ pub fn finding(model: &Model, finding: &Finding) -> String {
         JudgedLaw::Cone => format!(
             "F_t at {node} exceeds the friction limit of the node or of its corner (F_t \
              {f_t:.6e}, limit {limit:.6e})"
+        ),
+        JudgedLaw::Slip if deviation.is_some() => format!(
+            "friction at {node} is not at its limit along the slip (|F_t| {f_t:.6e}, limit {limit:.6e}, {:.1} degrees off)",
+            deviation.unwrap_or_default().to_degrees()
         ),
         JudgedLaw::Slip if f_t * slip > 0.0 => format!(
             "friction drives the slip of {node} instead of opposing it (slip {slip:.6e}, F_t {f_t:.6e})"

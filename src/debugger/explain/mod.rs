@@ -27,6 +27,7 @@ pub mod attempt;
 pub mod audit;
 pub mod bond;
 pub mod conditions;
+pub mod cone_problem;
 pub mod core;
 pub mod cycles;
 pub mod diagnosis;

@@ -28,6 +28,15 @@ pub fn status(model: &Model, of: Mode) -> &'static str {
     }
 }
 
+/// Arrows by eighths of a turn, anticlockwise from the right.
+pub const ARROWS: [&str; 8] = ["→", "↗", "↑", "↖", "←", "↙", "↓", "↘"];
+
+/// The arrow of a direction in degrees.
+pub fn arrow(degrees: i16) -> &'static str {
+    let eighth = (f64::from(degrees) / 45.0).round().rem_euclid(8.0);
+    ARROWS[eighth as usize % ARROWS.len()]
+}
+
 /// Initial modes of slave nodes, in words.
 pub fn starts(model: &Model, starts: &[Start]) -> String {
     let words = starts

@@ -4,9 +4,62 @@
 use stickslip_core::contact::element::SurfaceElement;
 use stickslip_core::fem::lagrange;
 use stickslip_core::model::{Body, BodyKind, Model};
+use stickslip_core::step::event::Event;
 
 /// A point in the scene or on the sheet.
 pub type Point = [f64; 2];
+
+/// How a scene in space is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Projection {
+    /// x to the right, z upwards, y to the upper right.
+    #[default]
+    Oblique,
+    /// Along z: x to the right, y upwards.
+    Top,
+    /// Along y: x to the right, z upwards.
+    Side,
+}
+
+impl Projection {
+    /// The next projection.
+    pub fn next(self) -> Projection {
+        match self {
+            Projection::Oblique => Projection::Top,
+            Projection::Top => Projection::Side,
+            Projection::Side => Projection::Oblique,
+        }
+    }
+
+    /// The word for it.
+    pub fn word(self) -> &'static str {
+        match self {
+            Projection::Oblique => "oblique",
+            Projection::Top => "top",
+            Projection::Side => "side",
+        }
+    }
+
+    /// A point or vector on the sheet; in the plane its x and y.
+    pub fn flat(self, model: &Model, [x, y, z]: [f64; 3]) -> Point {
+        match self {
+            _ if model.space.is_none() => [x, y],
+            Projection::Oblique => [x + 0.5 * y, z + 0.35 * y],
+            Projection::Top => [x, y],
+            Projection::Side => [x, z],
+        }
+    }
+
+    /// The undeformed position of a node.
+    pub fn at(self, model: &Model, node: usize) -> Point {
+        self.flat(model, model.at_in_space(node))
+    }
+
+    /// The contact force on a slave node, as a vector on the sheet.
+    pub fn force(self, model: &Model, event: &Event, slave: usize) -> Point {
+        self.flat(model, event.force(slave).unwrap_or_default())
+    }
+}
 
 /// Number of straight pieces per element curve.
 const PIECES: usize = 12;
@@ -98,14 +151,18 @@ pub fn outer_nodes(body: &Body) -> impl Iterator<Item = usize> {
 
 /// The visible extent of a scene with nodes at `place`: the undeformed and deformed bodies, and nearby parts of
 /// surfaces. `None` if it has no size.
-pub fn extent(model: &Model, place: &dyn Fn(usize) -> Point) -> Option<Bounds> {
+pub fn extent(
+    model: &Model,
+    projection: Projection,
+    place: &dyn Fn(usize) -> Point,
+) -> Option<Bounds> {
     let mut bodies = Bounds::NOTHING;
     for node in model.bodies.iter().flat_map(outer_nodes) {
-        bodies.add(model.nodes[node].at);
+        bodies.add(projection.at(model, node));
         bodies.add(place(node));
     }
     if bodies.diagonal() <= 0.0 || !bodies.diagonal().is_finite() {
-        model.nodes.iter().for_each(|node| bodies.add(node.at));
+        (0..model.nodes.len()).for_each(|node| bodies.add(projection.at(model, node)));
     }
     let reach = 0.2 * bodies.diagonal();
     let mut all = bodies;
@@ -125,8 +182,8 @@ pub fn extent(model: &Model, place: &dyn Fn(usize) -> Point) -> Option<Bounds> {
 }
 
 /// The extent rounded to coarse steps, so that the picture does not rescale at every step.
-pub fn bounds(model: &Model, place: &dyn Fn(usize) -> Point) -> Bounds {
-    let all = extent(model, place);
+pub fn bounds(model: &Model, projection: Projection, place: &dyn Fn(usize) -> Point) -> Bounds {
+    let all = extent(model, projection, place);
     let step = all.map_or(0.0, |all| all.diagonal() / 16.0);
     let Some(all) = all.filter(|_| step > 0.0 && step.is_finite()) else {
         return Bounds::UNIT;
@@ -193,12 +250,8 @@ const MOST: f64 = 1e6;
 
 /// A round magnification that makes the largest of some displacements visible; 1 if it is visible to scale.
 pub fn magnification<'a>(model: &Model, displacements: impl Iterator<Item = &'a [f64]>) -> f64 {
-    let moved = displacements.flat_map(|u| {
-        (0..model.nodes.len()).map(move |node| {
-            let (at, now) = (model.nodes[node].at, model.place(u, node));
-            (now[0] - at[0]).hypot(now[1] - at[1])
-        })
-    });
+    let moved = displacements
+        .flat_map(|u| (0..model.nodes.len()).map(move |node| displacement(model, u, node)));
     let largest = moved.filter(|size| size.is_finite()).fold(0.0, f64::max);
     let part = largest / model.length;
     match part > 0.0 && part < TO_SCALE {
@@ -207,13 +260,25 @@ pub fn magnification<'a>(model: &Model, displacements: impl Iterator<Item = &'a 
     }
 }
 
+/// Length of a node's displacement.
+pub fn displacement(model: &Model, u: &[f64], node: usize) -> f64 {
+    let (at, now) = (model.at_in_space(node), model.place_in_space(u, node));
+    (now[0] - at[0]).hypot(now[1] - at[1]).hypot(now[2] - at[2])
+}
+
 /// Position of a node with its displacement magnified.
-pub fn magnified(model: &Model, u: &[f64], node: usize, factor: f64) -> Point {
-    let (at, now) = (model.nodes[node].at, model.place(u, node));
-    match factor == 1.0 {
+pub fn magnified(
+    model: &Model,
+    u: &[f64],
+    node: usize,
+    (factor, projection): (f64, Projection),
+) -> Point {
+    let (at, now) = (model.at_in_space(node), model.place_in_space(u, node));
+    let place = match factor == 1.0 {
         true => now,
-        false => [0, 1].map(|axis| at[axis] + factor * (now[axis] - at[axis])),
-    }
+        false => [0, 1, 2].map(|axis| at[axis] + factor * (now[axis] - at[axis])),
+    };
+    projection.flat(model, place)
 }
 
 #[cfg(test)]

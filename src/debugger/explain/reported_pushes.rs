@@ -9,6 +9,7 @@
 //! The pushes are available only if W f + q matches the gaps of both iterations, and only modes and friction
 //! bounds have changed between them.
 
+use super::cone_problem;
 use super::influence::{NodePush, left_side, spread};
 use super::interface_scene;
 use nalgebra::DVector;
@@ -51,6 +52,9 @@ pub fn pushes(
     posed: &ReportedProblem,
     slave: usize,
 ) -> Option<Vec<NodePush>> {
+    if posed.tangents == 2 {
+        return cone_problem::pushes(&iterations.found, posed, slave);
+    }
     let Some(target) = posed.contacts.iter().position(|&known| known == slave) else {
         // Contacts outside the problem are not affected by those in it.
         return Some(Vec::new());

@@ -19,6 +19,16 @@ pub struct TrailPoint {
     pub t_max: f64,
     /// T_max used in the solve.
     pub t_max_used: f64,
+    /// In space, the directions of F_t and of the slip (radians).
+    pub directions: Option<[f64; 2]>,
+}
+
+impl TrailPoint {
+    /// The components of F_t along t and n × t in space.
+    pub fn shear(&self) -> Option<[f64; 2]> {
+        let [direction, _] = self.directions?;
+        Some([self.f_t * direction.cos(), self.f_t * direction.sin()])
+    }
 }
 
 /// The iterations of a slave node in the attempt of the last event, oldest first, at most [`LONGEST`]; `events` runs backwards.
@@ -37,6 +47,7 @@ pub fn trail<'a>(events: impl Iterator<Item = &'a Event>, slave: usize) -> Vec<T
             f_t: record.f_t,
             t_max: record.t_max,
             t_max_used: record.t_max_used,
+            directions: record.directions,
         })
         .collect();
     points.retain(|point| point.f_n.is_finite() && point.f_t.is_finite());
@@ -124,6 +135,7 @@ mod tests {
             f_t: 0.2,
             t_max,
             t_max_used,
+            directions: None,
         }
     }
 

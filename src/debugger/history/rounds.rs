@@ -1,12 +1,13 @@
 //! Detects repeating contact modes on a line, for solvers that do not report cycles.
 //!
-//! Only modes are compared, over the minor and major iterations of one increment. A sequence of period 2 or
+//! Only modes and, in space, directions of sliding are compared, over the minor and major iterations of one increment. A sequence of period 2 or
 //! more that has occurred twice in a row is reported as a cycle. Without a cycle, the nodes that keep changing
 //! are reported.
 
 use super::strip::Strip;
 use crate::explain::names;
 use std::collections::VecDeque;
+use stickslip_core::contact::record;
 use stickslip_core::interface::cycle;
 use stickslip_core::model::{Mode, Model};
 
@@ -16,6 +17,8 @@ const LONGEST: usize = 12;
 const BACK: usize = 8;
 /// Number of changes among them from which a node keeps changing.
 const OFTEN: usize = 3;
+/// Largest difference of equal directions (degrees).
+const SAME: f64 = 2.0;
 /// Maximum number of nodes named.
 const NAMED: usize = 6;
 
@@ -47,6 +50,9 @@ impl CycleWatch {
     }
 }
 
+/// Mode of a node in a solve, and the direction of friction on it in degrees, if it slides in space.
+pub type Phase = (Mode, Option<i16>);
+
 /// Behaviour of the modes up to the end of a line.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Rounds {
@@ -56,8 +62,8 @@ pub enum Rounds {
         period: usize,
         /// Index on the line where the first period starts.
         since: usize,
-        /// Participating slave nodes, with their modes over the last period.
-        members: Vec<(usize, Vec<Mode>)>,
+        /// Participating slave nodes, with their modes over the last period, and in space the directions of sliding.
+        members: Vec<(usize, Vec<Phase>)>,
     },
     /// They change without a period.
     Irregular {
@@ -83,7 +89,14 @@ pub fn rounds(strips: &[Strip]) -> Option<Rounds> {
         0 => tail[0].1.next(slave),
         back => tail[back - 1].1.before(slave),
     };
-    let same = |a: usize, b: usize| (0..nodes).all(|slave| modes(a, slave) == modes(b, slave));
+    // The next solve has no direction yet.
+    let direction = |back: usize, slave: usize| tail[back.checked_sub(1)?].1.direction(slave);
+    let same = |a: usize, b: usize| {
+        let same_direction = |slave: usize| {
+            a == 0 || b == 0 || turn(direction(a, slave), direction(b, slave)) <= SAME
+        };
+        (0..nodes).all(|slave| modes(a, slave) == modes(b, slave) && same_direction(slave))
+    };
     if tail.is_empty() {
         return None;
     }
@@ -92,18 +105,27 @@ pub fn rounds(strips: &[Strip]) -> Option<Rounds> {
         let period = tail.len() - then;
         (2..=LONGEST.min(tail.len() / 2)).contains(&period)
             && (0..=period).all(|back| same(back, back + period))
-            && (1..period).any(|back| !same(0, back))
+            && (1..period).any(|back| !same(0, back) || !same(1, back + 1))
     };
-    if let Some(turn) = cycle::closed(tail.len(), 2, repeats, |_| true) {
-        let period = turn.len();
+    if let Some(round) = cycle::closed(tail.len(), 2, repeats, |_| true) {
+        let period = round.len();
         let rounds =
             (0..).take_while(|&back| back + period <= tail.len() && same(back, back + period));
         let first = rounds.count() + period - 1;
-        let pattern = |slave: usize| -> Vec<Mode> {
-            (0..period).rev().map(|back| modes(back, slave)).collect()
+        let phase = |back: usize, slave: usize| {
+            let solved = if back == 0 { period } else { back };
+            (modes(back, slave), direction(solved, slave))
+        };
+        let pattern = |slave: usize| -> Vec<Phase> {
+            (0..period).rev().map(|back| phase(back, slave)).collect()
         };
         let members = (0..nodes).map(|slave| (slave, pattern(slave)));
-        let changing = |(_, modes): &(usize, Vec<Mode>)| modes.iter().any(|m| *m != modes[0]);
+        let changing = |(_, phases): &(usize, Vec<Phase>)| {
+            let (mode, direction) = phases[0];
+            phases
+                .iter()
+                .any(|(other, way)| *other != mode || turn(*way, direction) > SAME)
+        };
         return Some(Rounds::Cycle {
             period,
             since: tail[first.saturating_sub(1).min(tail.len() - 1)].0,
@@ -137,18 +159,43 @@ pub fn words(model: &Model, rounds: &Rounds, tells_since: bool) -> String {
                 true => format!(" from step {since}"),
                 false => String::new(),
             };
-            let member = |(slave, modes): &(usize, Vec<Mode>)| {
-                let modes: Vec<&str> = modes
-                    .iter()
-                    .map(|mode| names::status(model, *mode))
-                    .collect();
+            let member = |(slave, phases): &(usize, Vec<Phase>)| {
+                let modes = phases.iter().map(|(mode, _)| names::status(model, *mode));
+                let modes: Vec<&str> = modes.collect();
                 format!("{} {}", names::slave(model, *slave), modes.join(" → "))
             };
-            let lines: Vec<String> = members.iter().take(NAMED).map(member).collect();
+            let changes = |(_, phases): &&(usize, Vec<Phase>)| {
+                phases.iter().any(|(mode, _)| *mode != phases[0].0)
+            };
+            let lines: Vec<String> = members
+                .iter()
+                .filter(changes)
+                .take(NAMED)
+                .map(member)
+                .collect();
+            let swings: Vec<(usize, f64)> = swings(members).collect();
+            let most = swings
+                .iter()
+                .copied()
+                .reduce(|a, b| if b.1 > a.1 { b } else { a });
+            let swing = most.map(|(slave, degrees)| {
+                let others = match swings.len() - 1 {
+                    0 => String::new(),
+                    others => format!(" (and at {others} more nodes)"),
+                };
+                format!(
+                    "the direction of friction at {}{others} swings by up to {degrees:.0} degrees per iteration",
+                    names::slave(model, slave)
+                )
+            });
             format!(
                 "cycle of period {period}{since}: {}{}",
-                lines.join("; "),
-                more(members.len())
+                swing
+                    .into_iter()
+                    .chain(lines)
+                    .collect::<Vec<_>>()
+                    .join("; "),
+                more(members.iter().filter(changes).count())
             )
         }
         Rounds::Irregular { members, over } => {
@@ -169,6 +216,27 @@ pub fn words(model: &Model, rounds: &Rounds, tells_since: bool) -> String {
             )
         }
     }
+}
+
+/// The angle between two directions (degrees); infinite if only one of them is known.
+fn turn(a: Option<i16>, b: Option<i16>) -> f64 {
+    let radians = |degrees: i16| f64::from(degrees).to_radians();
+    match (a, b) {
+        (None, None) => 0.0,
+        (Some(a), Some(b)) => record::turn(radians(a), radians(b)).to_degrees().abs(),
+        _ => f64::INFINITY,
+    }
+}
+
+/// The nodes whose direction of sliding changes in a cycle, with the largest change per iteration (degrees).
+fn swings(members: &[(usize, Vec<Phase>)]) -> impl Iterator<Item = (usize, f64)> {
+    let largest = members.iter().map(|(slave, phases)| {
+        let next = phases.iter().cycle().skip(1);
+        let turns = phases.iter().zip(next).map(|((_, a), (_, b))| turn(*a, *b));
+        let finite = turns.filter(|turn| turn.is_finite());
+        (*slave, finite.fold(0.0, f64::max))
+    });
+    largest.filter(|(_, degrees)| *degrees > SAME)
 }
 
 fn more(count: usize) -> String {

@@ -133,10 +133,14 @@ pub struct Strip {
     /// Interface element of each slave node for the next iteration, numbered over all surfaces; shared with the
     /// previous strip if no node moved.
     elements: Arc<[u32]>,
+    /// In space, the direction of friction on each slave node in whole degrees, or [`STILL`]; otherwise empty.
+    directions: Box<[i16]>,
     /// One letter per slave node, for solvers that do not distinguish stick from slip; otherwise empty.
     letters: Box<[u8]>,
 }
 
+/// The direction of a node that does not slide.
+const STILL: i16 = i16::MAX;
 /// No element.
 const NOWHERE: u32 = u32::MAX;
 const ONCE: u8 = 1 << 4;
@@ -189,6 +193,10 @@ impl Strip {
                 .map(|s| record(s).map_or(f32::INFINITY, |found| found.decision.margin() as f32))
                 .collect(),
             elements: elements(model, state, before),
+            directions: event.map_or_else(Box::default, |event| {
+                let frames = event.frames.iter().zip(&event.nodes);
+                frames.map(|(_, found)| direction(found)).collect()
+            }),
             letters: event.map_or_else(Box::default, |event| event.words.letters.clone().into()),
         }
     }
@@ -210,6 +218,7 @@ impl Strip {
             marks: state.nodes.iter().map(mark).collect(),
             margins: before.margins.clone(),
             elements: elements(model, state, Some(before)),
+            directions: Box::default(),
             letters: Box::default(),
         }
     }
@@ -267,6 +276,12 @@ impl Strip {
         Some(self.elements[slave]).filter(|element| *element != NOWHERE)
     }
 
+    /// In space, the direction of friction on a sliding node: degrees from t towards n × t, from -180 to 180.
+    pub fn direction(&self, slave: usize) -> Option<i16> {
+        let direction = self.directions.get(slave).copied();
+        direction.filter(|direction| *direction != STILL)
+    }
+
     /// Letter of a slave node, if the solver reports letters instead of modes.
     pub fn letter(&self, slave: usize) -> Option<u8> {
         self.letters.get(slave).copied()
@@ -283,7 +298,17 @@ impl Strip {
             && self.marks == other.marks
             && self.elements == other.elements
             && self.letters == other.letters
+            && self.directions == other.directions
             && numbers(self) == numbers(other)
+    }
+}
+
+/// The direction of friction on a sliding node in whole degrees.
+fn direction(found: &ContactRecord) -> i16 {
+    let slides = found.decision.before == Mode::Sliding && found.f_t > 0.0;
+    match found.directions {
+        Some([force, _]) if slides => force.to_degrees().round() as i16,
+        _ => STILL,
     }
 }
 

@@ -18,10 +18,12 @@ use stickslip_core::contact::table2::{
 use stickslip_core::interface::method::NodeContext;
 use stickslip_core::linear::norms::Norms;
 use stickslip_core::model::{Friction, Mode, Model, Strategy};
-use stickslip_core::step::event::{Event, Failure, Outcome, Position, Words};
+use stickslip_core::step::event::{Event, Failure, Frame, Outcome, Position, Words};
 use stickslip_core::step::state::State;
 use stickslip_core::strategy::method;
-use stickslip_exchange::attach::message::{self, ContactResult, Decides, EndedLevel, Id};
+use stickslip_exchange::attach::message::{
+    self, Components, ContactResult, Decides, EndedLevel, Id,
+};
 use stickslip_scene::Scene;
 use stickslip_scene::shown;
 
@@ -126,6 +128,7 @@ impl WireFrame<'_> {
             load_factor: load,
             arc: sent.arc,
             drag: sent.drag.unwrap_or(0.0),
+            frames: Arc::new(self.frames(sent)),
             nodes,
             before: norms(&sent.residual),
             words: Arc::new(Words {
@@ -169,16 +172,12 @@ impl WireFrame<'_> {
             ));
         }
         for (k, (found, id)) in sent.contacts.iter().zip(self.ids).enumerate() {
-            if found.id != *id {
+            if let Some(other) = found.id.as_ref().filter(|found| *found != id) {
                 return unfit(format!(
-                    "contacts[{k}].id is {}; it must be {id}, as in the scene",
-                    found.id
+                    "contacts[{k}].id is {other}; it must be {id}, as in the scene"
                 ));
             }
-            let is_unit = |n: &[f64; 2]| (n[0].hypot(n[1]) - 1.0).abs() < UNIT;
-            if !found.normal.as_ref().is_none_or(is_unit) {
-                return unfit(format!("contacts[{k}].normal: must have length 1"));
-            }
+            self.check_vectors(k, found)?;
         }
         let nodes = self.model.nodes.len();
         match &sent.displacements {
@@ -186,8 +185,65 @@ impl WireFrame<'_> {
                 "it has {} displacements; the scene has {nodes} nodes",
                 all.len()
             )),
+            Some(all)
+                if all
+                    .iter()
+                    .any(|moved| moved.as_slice().len() != self.dimension()) =>
+            {
+                unfit(format!(
+                    "displacements: each must be {} numbers",
+                    self.dimension()
+                ))
+            }
             _ => Ok(at),
         }
+    }
+
+    /// Number of coordinates.
+    fn dimension(&self) -> usize {
+        if self.model.space.is_some() { 3 } else { 2 }
+    }
+
+    /// Checks the numbers of components of a contact's vectors, and the lengths of unit vectors.
+    fn check_vectors(&self, k: usize, found: &ContactResult) -> Result<(), Fault> {
+        let space = self.dimension();
+        let vectors = [
+            ("f_t", found.f_t, space - 1),
+            ("slip", found.slip, space - 1),
+            ("normal", found.normal, space),
+            ("tangent", found.tangent, space),
+            ("foot", found.foot, space),
+        ];
+        let other = |given: &Components, wanted: usize| given.as_slice().len() != wanted;
+        for (name, given, wanted) in vectors {
+            if given.is_some_and(|given| other(&given, wanted)) {
+                let s = if wanted == 1 { "" } else { "s" };
+                return unfit(format!("contacts[{k}].{name}: must be {wanted} number{s}"));
+            }
+        }
+        for (name, given) in [("normal", found.normal), ("tangent", found.tangent)] {
+            if given.is_some_and(|given| (given.size() - 1.0).abs() >= UNIT) {
+                return unfit(format!("contacts[{k}].{name}: must have length 1"));
+            }
+        }
+        let both = found.normal.zip(found.tangent);
+        if both.is_some_and(|(n, t)| dot(n.in_space(), t.in_space()).abs() >= UNIT) {
+            return unfit(format!(
+                "contacts[{k}].tangent: must be at right angles to normal"
+            ));
+        }
+        Ok(())
+    }
+
+    /// The frames of all contacts in space; empty in the plane.
+    fn frames(&self, sent: &message::State) -> Vec<Frame> {
+        let contacts = sent.contacts.iter().filter(|_| self.model.space.is_some());
+        contacts
+            .map(|found| {
+                let n = found.normal.map_or([0.0, 0.0, 1.0], |n| n.in_space());
+                [n, found.tangent.map_or_else(|| along(n), |t| t.in_space())]
+            })
+            .collect()
     }
 
     /// Tolerances for ties, relative to the forces.
@@ -195,7 +251,7 @@ impl WireFrame<'_> {
         let forces = sent
             .contacts
             .iter()
-            .flat_map(|found| [found.f_n, found.f_t]);
+            .flat_map(|found| [found.f_n, found.f_t.map(|f| f.size())]);
         let largest = forces.flatten().fold(0.0, |most: f64, f| most.max(f.abs()));
         Ties {
             force: TIE * largest,
@@ -235,16 +291,15 @@ impl WireFrame<'_> {
             forced,
             gap: found.gap.unwrap_or(f64::INFINITY),
             f_n: known(found.f_n),
-            f_t: known(found.f_t),
+            f_t: known(length(found.f_t)),
             t_max,
             t_max_used: found.limit_used.unwrap_or(t_max),
-            slip: known(found.slip),
-            drift: known(found.drift.or(found.slip)),
+            slip: known(length(found.slip)),
+            drift: known(found.drift.or(length(found.slip))),
             spot: self.spot(k, found),
-            normal: found.normal.unwrap_or(from.nodes[k].normal),
-            foot: found
-                .foot
-                .unwrap_or(self.model.nodes[self.model.contacts[k].node].at),
+            normal: pair(found.normal).unwrap_or(from.nodes[k].normal),
+            foot: pair(found.foot).unwrap_or(self.model.nodes[self.model.contacts[k].node].at),
+            directions: (self.dimension() == 3).then(|| [found.f_t, found.slip].map(direction)),
             corner: found.corner,
             carried: found.carried,
         };
@@ -274,7 +329,8 @@ impl WireFrame<'_> {
         (named, forced): (Option<Rule>, Forced),
     ) -> Decision {
         let ours = match self.decides {
-            _ if !found.tests.is_empty() => None,
+            // The rules are those of the plane.
+            _ if !found.tests.is_empty() || self.dimension() == 3 => None,
             Some(Decides::Table2) => by_table_2(found, friction, ties),
             Some(Decides::Newton) => by_newton(found, friction, spring, ties),
             None => None,
@@ -307,7 +363,8 @@ impl WireFrame<'_> {
     fn next(&self, from: &State, sent: &message::State, event: &Event) -> State {
         let mut state = from.clone();
         if let Some(displacements) = &sent.displacements {
-            let u = displacements.iter().flatten().copied().collect();
+            let u = displacements.iter().flat_map(Components::as_slice).copied();
+            let u = u.collect();
             state.u = Arc::new(u);
         }
         state.follow(event, from.place().unwrap_or(0));
@@ -319,9 +376,36 @@ impl WireFrame<'_> {
 }
 
 /// The largest displacement (length); 0 if none are reported.
-fn largest(displacements: Option<&[[f64; 2]]>) -> f64 {
+fn largest(displacements: Option<&[Components]>) -> f64 {
     let all = displacements.unwrap_or_default().iter();
-    all.fold(0.0, |most: f64, [x, y]| most.max(x.hypot(*y)))
+    all.fold(0.0, |most: f64, moved| most.max(moved.size()))
+}
+
+/// The signed component along t; in space the length of the vector.
+fn length(given: Option<Components>) -> Option<f64> {
+    given.map(|given| given.scalar().unwrap_or_else(|| given.size()))
+}
+
+/// Angle of a tangential vector from t towards n × t (radians); 0 if it is not reported.
+fn direction(given: Option<Components>) -> f64 {
+    let [a, b] = pair(given).unwrap_or_default();
+    b.atan2(a)
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+fn pair(given: Option<Components>) -> Option<[f64; 2]> {
+    given.and_then(|given| given.pair())
+}
+
+/// The tangent of a contact in space that reports none: the x axis projected, or the y axis if n is nearly along x.
+fn along(n: [f64; 3]) -> [f64; 3] {
+    let axis = usize::from(n[0].abs() > 0.9);
+    let t = [0, 1, 2].map(|k| f64::from(u8::from(k == axis)) - n[axis] * n[k]);
+    let size = dot(t, t).sqrt();
+    t.map(|x| x / size)
 }
 
 impl RecordedStep {
@@ -355,9 +439,9 @@ fn by_table_2(found: &ContactResult, friction: &Friction, ties: &Ties) -> Option
         mode: before,
         gap: rest(found.gap, !touches)?,
         f_n: rest(found.f_n, touches)?,
-        f_t: rest(found.f_t, before == Mode::Fixed)?,
+        f_t: rest(length(found.f_t), before == Mode::Fixed)?,
         t_max: rest(found.limit, touches)?,
-        slip: rest(found.slip, before == Mode::Sliding)?,
+        slip: rest(length(found.slip), before == Mode::Sliding)?,
         entry: if friction.is_smooth() {
             Entry::Smooth
         } else {
@@ -379,9 +463,9 @@ fn by_newton(
         mode: before,
         gap: found.gap.unwrap_or(if sticks { 0.0 } else { f64::NAN }),
         f_n: found.f_n?,
-        f_t: found.f_t?,
+        f_t: length(found.f_t)?,
         t_max: found.limit?,
-        slip: found.slip?,
+        slip: length(found.slip)?,
         entry: Entry::Fixed,
     };
     if numbers.gap.is_nan() {

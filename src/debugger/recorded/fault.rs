@@ -1,11 +1,13 @@
 //! Errors of attached solvers that fail or violate the protocol.
 
 use std::time::Duration;
-use stickslip_exchange::attach::PROTOCOL;
 use stickslip_scene::shown;
 
 /// Maximum number of characters of a solver's own words in a message.
 const MOST: usize = 400;
+
+/// Where messages are described.
+const SEE: &str = "; `stickslip help protocol` describes the messages";
 
 /// A solver's words as one line of safe characters.
 fn plain(words: &str) -> String {
@@ -79,7 +81,7 @@ pub enum Fault {
     },
     /// JSON that is not a known message.
     #[error(
-        "the solver's answer to {asked} cannot be read ({}): {line:?}",
+        "the solver's answer to {asked} cannot be read ({}): {line:?}{SEE}",
         plain(why)
     )]
     Misformed {
@@ -112,9 +114,7 @@ pub enum Fault {
         expected: &'static str,
     },
     /// Unsupported protocol version.
-    #[error(
-        "the solver uses version {0} of the protocol; this program supports version {PROTOCOL}"
-    )]
+    #[error("the solver uses version {0} of the protocol; this program supports versions 1 and 2")]
     Version(u32),
     /// An answer without a request.
     #[error(
@@ -135,7 +135,7 @@ pub enum Fault {
         why: String,
     },
     /// A message that does not match the scene.
-    #[error("the solver's {message} is invalid: {}", plain(why))]
+    #[error("the solver's {message} is invalid: {}{SEE}", plain(why))]
     Unfit {
         /// Kind of the message.
         message: &'static str,

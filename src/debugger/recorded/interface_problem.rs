@@ -23,7 +23,10 @@ pub fn read_problem(problem: &ProblemMessage, ids: &[Id]) -> Result<ReportedProb
             None => return Err(unfit(format!("contact {id} does not exist"))),
         }
     }
-    let size = 2 * count;
+    if !(1..=2).contains(&problem.tangents) {
+        return Err(unfit("tangents must be 1 or 2".into()));
+    }
+    let size = (1 + problem.tangents) * count;
     let cohesion = match problem.cohesion.as_slice() {
         [] => vec![0.0; count],
         all => all.to_vec(),
@@ -90,6 +93,7 @@ pub fn read_problem(problem: &ProblemMessage, ids: &[Id]) -> Result<ReportedProb
     }
     Ok(ReportedProblem {
         contacts,
+        tangents: problem.tangents,
         form: problem.kind,
         matrix,
         q,

@@ -2,7 +2,8 @@
 //! state.
 //!
 //! Only those numbers are used: g >= 0 for rigid contact, no force across an open gap, F_n >= 0, |F_t| <=
-//! |T_max|, and friction that opposes the slip of a sliding node. Unreported quantities are not checked.
+//! |T_max|, and friction that opposes the slip of a sliding node; in space, friction at its limit along the slip. Unreported
+//! quantities are not checked.
 
 use stickslip_core::contact::laws::{Finding, JudgedLaw, JudgedNumbers};
 use stickslip_core::contact::record::ContactRecord;
@@ -55,6 +56,7 @@ pub fn broken(model: &Model, nodes: &[ContactRecord], sizes: &Sizes) -> Option<F
                     f_t: node.f_t,
                     limit: node.t_max.abs(),
                     slip: node.slip,
+                    deviation: node.deviation(),
                 },
             }
         })
@@ -74,18 +76,21 @@ fn of_node(
 ) -> [(JudgedLaw, f64); 5] {
     let (gap, f_n, f_t, limit) = (node.gap, node.f_n, node.f_t, node.t_max.abs());
     let acts = f_n.abs() > ALLOWED * force;
-    let slides = node.decision.before == Mode::Sliding && node.slip * node.t_max < 0.0;
-    let slip = node.slip.abs() / length;
+    let slides = node.decision.before == Mode::Sliding && node.slip.abs() / length > ALLOWED;
+    let wrong = match (node.directions, node.deviation()) {
+        // Friction pushes in the direction of slip: the violation is twice its force.
+        (None, _) if node.slip * node.t_max < 0.0 => 2.0 * f_t.abs(),
+        (None, _) => 0.0,
+        (Some(_), None) => limit - f_t,
+        // The distance of the force from the point of the circle that the slip demands.
+        (Some(_), Some(angle)) => (f_t * angle.cos() - limit).hypot(f_t * angle.sin()),
+    };
     let unless = |without: bool, amount: f64| if without { 0.0 } else { amount };
     [
         (JudgedLaw::Penetration, unless(!hard, -gap / length)),
         (JudgedLaw::Gap, unless(!acts || !hard, gap / length)),
         (JudgedLaw::Tension, unless(tied, -f_n / force)),
         (JudgedLaw::Cone, unless(tied, (f_t.abs() - limit) / force)),
-        // Friction pushes in the direction of slip: the violation is twice its force.
-        (
-            JudgedLaw::Slip,
-            unless(tied || !slides || slip <= ALLOWED, 2.0 * f_t.abs() / force),
-        ),
+        (JudgedLaw::Slip, unless(tied || !slides, wrong / force)),
     ]
 }

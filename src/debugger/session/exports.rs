@@ -120,6 +120,9 @@ pub(super) fn write_posed(
     posed: &ReportedProblem,
     ask: &Export,
 ) -> Result<(), ExportError> {
+    if posed.tangents == 2 {
+        return Err(ExportError::InSpace);
+    }
     let solver = || {
         let problem = interface_scene::problem(model, &ask.state, posed);
         interface_scene::stepper(problem).map_err(Box::new)

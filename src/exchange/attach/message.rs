@@ -1,9 +1,10 @@
 //! Messages between debugger and solver. Units are the solver's; forces act on the slave node, and compression is positive.
 
+pub use super::components::Components;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 pub use stickslip_core::contact::table2::Test;
-pub use stickslip_core::model::{Mode, Node, ToldKind};
+pub use stickslip_core::model::{Mode, ToldKind};
 pub use stickslip_core::step::event::Position;
 pub use stickslip_core::step::solver::ReportedForm;
 
@@ -13,8 +14,14 @@ pub use stickslip_core::step::solver::ReportedForm;
 pub enum Request {
     /// Identify yourself; answered by [`Answer::Hello`].
     Hello {
-        /// Protocol version of the debugger.
+        /// Oldest protocol version of the debugger.
         protocol: u32,
+        /// All of its protocol versions.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        protocols: Vec<u32>,
+        /// What it reads beyond version 1.
+        #[serde(default, skip_serializing_if = "Vec::is_empty")]
+        reads: Vec<String>,
         /// The debugger's name.
         name: String,
         /// Its version.
@@ -152,8 +159,11 @@ pub enum Level {
 /// Identity and abilities of the solver.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Hello {
-    /// Protocol version of the solver.
+    /// Protocol version of the solver's messages.
     pub protocol: u32,
+    /// All versions that the solver supports; may be empty.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub protocols: Vec<u32>,
     /// Its name.
     pub name: String,
     /// Its version.
@@ -254,11 +264,17 @@ pub struct Scene {
     /// Description for the reader.
     #[serde(default)]
     pub about: String,
+    /// Number of coordinates: 2 or 3.
+    #[serde(default = "plane", skip_serializing_if = "is_plane")]
+    pub dimension: usize,
     /// Nodes for drawing, including those of the contacts.
-    pub nodes: Vec<Node>,
+    pub nodes: Vec<NodeMessage>,
     /// Curves through nodes, as indices into `nodes`.
     #[serde(default)]
     pub lines: Vec<Vec<usize>>,
+    /// Faces to draw, as their corners in order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub faces: Vec<Vec<usize>>,
     /// Masters.
     #[serde(default)]
     pub surfaces: Vec<SurfaceMessage>,
@@ -276,6 +292,24 @@ pub struct Scene {
     /// Whether states report the drag of damped motions.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub drag: bool,
+}
+
+fn plane() -> usize {
+    2
+}
+
+fn is_plane(dimension: &usize) -> bool {
+    *dimension == plane()
+}
+
+/// A node in the reference configuration.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct NodeMessage {
+    /// Name shown to the user; generated if it is empty.
+    #[serde(default)]
+    pub name: String,
+    /// Position (length), two or three coordinates.
+    pub at: Components,
 }
 
 /// A number that states report.
@@ -296,13 +330,17 @@ pub enum Monitor {
     },
 }
 
-/// A master surface: a chain of nodes with the outward side on the right of the walk.
+/// A master surface: in the plane a chain of nodes with the outward side on the right of the walk, in space faces.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SurfaceMessage {
     /// Name shown to the user.
     pub name: String,
-    /// Indices into [`Scene::nodes`].
+    /// The chain, as indices into [`Scene::nodes`].
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub nodes: Vec<usize>,
+    /// The faces, each as its corners in order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub faces: Vec<Vec<usize>>,
     /// Whether the surface is fixed.
     #[serde(default)]
     pub rigid: bool,
@@ -374,9 +412,9 @@ pub struct State {
     /// Norms at the end of a major iteration.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub after: Option<NormsMessage>,
-    /// Displacements of the scene's nodes along x and y (length); unchanged if omitted.
+    /// Displacements of the scene's nodes along the axes (length); unchanged if omitted.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub displacements: Option<Vec<[f64; 2]>>,
+    pub displacements: Option<Vec<Components>>,
     /// Stiffness that relates gaps to forces, for [`Decides::Newton`] (force per length).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub spring: Option<f64>,
@@ -412,8 +450,9 @@ pub enum EndedLevel {
 /// Result of an iteration at a contact. `None` if a number is unknown or infinite.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ContactResult {
-    /// The contact.
-    pub id: Id,
+    /// The contact; by default the one at the same position of the scene.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub id: Option<Id>,
     /// Mode used in this solve.
     pub mode: Mode,
     /// Mode of the next solve.
@@ -422,12 +461,12 @@ pub struct ContactResult {
     pub gap: Option<f64>,
     /// Normal force; compression is positive.
     pub f_n: Option<f64>,
-    /// Tangential force along t.
-    pub f_t: Option<f64>,
-    /// T_max, with the sign of the friction force on a sliding node.
+    /// Tangential force along t; in space along t and n × t.
+    pub f_t: Option<Components>,
+    /// T_max, with the sign of the friction force on a sliding node; in space the radius of the friction cone at this `f_n`.
     pub limit: Option<f64>,
-    /// Motion of the surface relative to the node along t (length).
-    pub slip: Option<f64>,
+    /// Motion of the surface relative to the node along t (length); in space along t and n × t.
+    pub slip: Option<Components>,
     /// Rule that selected the next mode: the name of a row of Table 2, or the solver's own text.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub rule: String,
@@ -448,10 +487,13 @@ pub struct ContactResult {
     pub drift: Option<f64>,
     /// Outward normal of the master.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub normal: Option<[f64; 2]>,
+    pub normal: Option<Components>,
+    /// In space the unit vector t; by default the projection of the x axis, or of the y axis if n is nearly along x.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tangent: Option<Components>,
     /// The closest point on the master.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub foot: Option<[f64; 2]>,
+    pub foot: Option<Components>,
     /// Half the angle (radians) between the normals of the two sides of a corner that holds the node.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub corner: Option<f64>,
@@ -464,6 +506,22 @@ pub struct ContactResult {
     /// False beyond the ends of all surfaces, where no contact is possible.
     #[serde(default = "yes", skip_serializing_if = "Clone::clone")]
     pub over: bool,
+}
+
+impl State {
+    /// Enters the ids of contacts that have none.
+    pub fn fill_ids<'a>(&mut self, ids: impl Iterator<Item = &'a Id>) {
+        for (found, id) in self.contacts.iter_mut().zip(ids) {
+            found.id.get_or_insert_with(|| id.clone());
+        }
+    }
+}
+
+impl ContactResult {
+    /// The id for messages to the user.
+    pub fn label(&self) -> String {
+        self.id.as_ref().map_or_else(String::new, Id::to_string)
+    }
 }
 
 fn no(carried: &[bool; 2]) -> bool {
@@ -511,14 +569,18 @@ pub struct NormsMessage {
 }
 
 /// The frozen interface problem: (gap, u) = W f + q, with the total forces f = (f_n, f_t) at the end of the increment and the
-/// motion u of the node relative to its master along t since the start of the increment; u = 0 for stick.
+/// motion u of the node relative to its master along t since the start of the increment; u = 0 for stick. In space f_t and u have
+/// two components.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ProblemMessage {
-    /// The participating contacts, in the order of the pairs.
+    /// The participating contacts, in the order of the rows.
     pub contacts: Vec<Id>,
+    /// Number of tangential components: 1 or 2.
+    #[serde(default = "one", skip_serializing_if = "is_one")]
+    pub tangents: usize,
     /// Kind of matrix.
     pub kind: ReportedForm,
-    /// The matrix, of size 2n.
+    /// The matrix, with `1 + tangents` rows per contact.
     pub matrix: MatrixMessage,
     /// Gap and motion without forces (length).
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -531,6 +593,14 @@ pub struct ProblemMessage {
     /// Cohesion of each contact (force); 0 if omitted.
     #[serde(default)]
     pub cohesion: Vec<f64>,
+}
+
+fn one() -> usize {
+    1
+}
+
+fn is_one(tangents: &usize) -> bool {
+    *tangents == one()
 }
 
 /// A matrix, by rows or by entries.

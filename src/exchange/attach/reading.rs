@@ -269,6 +269,18 @@ mod tests {
     }
 
     #[test]
+    fn a_vector_has_one_to_three_components() {
+        let read = |text: &str| serde_json::from_str::<Components>(text);
+        for text in ["0.5", "[0.5,-1.0]", "[1.0,0.0,1e-300]"] {
+            assert_eq!(line(&read(text).expect(text)).trim_end(), text);
+        }
+        assert_eq!(read("[3,4]").expect("two").size(), 5.0);
+        for text in ["[]", "[1]", "[1,2,3,4]", "[1,null]", "\"1\"", "[1e999,0]"] {
+            assert!(read(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
     fn a_matrix_is_rows_or_triplets() {
         let problem = |matrix: &str| {
             Answer::read(&format!(
@@ -303,6 +315,13 @@ mod tests {
         any::<u64>().prop_map(|bits| number(f64::from_bits(bits)))
     }
 
+    fn slip(x: Option<f64>, in_space: bool) -> Option<Components> {
+        x.map(|x| match in_space {
+            true => [x, -x].into(),
+            false => x.into(),
+        })
+    }
+
     prop_compose! {
         fn contact()(
             id in prop_oneof![any::<i64>().prop_map(Id::Number), ".{0,6}".prop_map(Id::Text)],
@@ -310,16 +329,17 @@ mod tests {
             numbers in [float(), float(), float(), float(), float(), float()],
             rule in ".{0,8}",
             over in any::<bool>(),
+            in_space in any::<bool>(),
         ) -> ContactResult {
             ContactResult {
-                id,
+                id: Some(id),
                 mode: modes.0,
                 next: modes.1,
                 gap: numbers[0],
                 f_n: numbers[1],
-                f_t: numbers[2],
+                f_t: numbers[2].map(Components::from),
                 limit: numbers[3],
-                slip: numbers[4],
+                slip: slip(numbers[4], in_space),
                 rule,
                 margin: numbers[5],
                 tests: Vec::new(),
@@ -327,6 +347,7 @@ mod tests {
                 limit_used: None,
                 drift: None,
                 normal: None,
+                tangent: in_space.then_some([1.0, 0.0, 0.0].into()),
                 foot: None,
                 corner: None,
                 carried: [over, false],

@@ -135,6 +135,7 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
         budget: crate::memory::free(),
         length,
         finished: None,
+        space: None,
     };
     match Estimate::from_model(&model).too_large(model.settings.solver) {
         Some(message) => Err(Fault::new(at!["settings", "memory"], message.to_string())),

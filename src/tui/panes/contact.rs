@@ -1,5 +1,5 @@
 //! The contact of the selected node: its geometry and force in numbers, and below them as many of three pictures as fit: the force
-//! in the Coulomb cone with the trail of the last iterations, T_max over the minor iterations as a cobweb, and who pushed the node.
+//! in the Coulomb cone (in space, the friction circle with the slip) with the trail of the last iterations, T_max over the minor iterations as a cobweb, and who pushed the node.
 
 use crate::app::App;
 use crate::canvas::{Canvas, Dot};
@@ -11,6 +11,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Modifier;
 use ratatui::text::Line;
+use std::f64::consts::TAU;
 use stickslip_core::contact::projection::tangent;
 use stickslip_core::contact::record::ContactRecord;
 use stickslip_debugger::explain::influence::NodePush;
@@ -31,6 +32,7 @@ const PUSHERS: usize = 6;
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Picture {
     Cone,
+    Circle,
     Cobweb,
     Pushes,
 }
@@ -65,8 +67,12 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     };
     let friction = view.frame().state.controls.friction.get(slave).copied();
     let trail = trail(slave, view);
-    let mut pictures = vec![Picture::Cone];
-    if friction.is_some_and(|friction| !friction.is_smooth()) {
+    let mut pictures = vec![match record.directions {
+        Some(_) => Picture::Circle,
+        None => Picture::Cone,
+    }];
+    let is_rough = friction.is_some_and(|friction| !friction.is_smooth());
+    if is_rough && record.directions.is_none() {
         pictures.push(Picture::Cobweb);
     }
     if view.model.contacts.len() > 1 && !hidden {
@@ -90,6 +96,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
                 let cone = friction.and_then(|friction| Cone::new(&trail, &friction));
                 draw_cone(buffer, area, cone.as_ref(), &trail, app);
             }
+            Picture::Circle => circle(buffer, area, (&trail, record), app),
             Picture::Cobweb => cobweb(buffer, area, &trail, app, view),
             Picture::Pushes => pushes(buffer, area, (slave, record), app, view),
         }
@@ -121,7 +128,17 @@ fn words(
         let [x, y] = v.map(|x| known(x, sig4(x + 0.0)));
         format!("({x}, {y})")
     };
+    let triple = |v: [f64; 3]| {
+        let [x, y, z] = v.map(|x| known(x, sig4(x + 0.0)));
+        format!("({x}, {y}, {z})")
+    };
     let place = match record.spot {
+        Some(spot) if record.directions.is_some() => {
+            let surface = view.model.surfaces.get(spot.surface);
+            surface
+                .map_or("no surface", |surface| &surface.name)
+                .to_owned()
+        }
         None => "past the ends of every surface".to_owned(),
         Some(spot) => {
             let surface = view.model.surfaces.get(spot.surface);
@@ -133,14 +150,25 @@ fn words(
             )
         }
     };
-    let [n, t] = [record.normal, tangent(record.normal)].map(pair);
+    let frame = view.event().and_then(|event| event.frames.get(slave));
+    let [n, t] = match frame {
+        Some(frame) => frame.map(triple),
+        None => [record.normal, tangent(record.normal)].map(pair),
+    };
     let number = |value: f64| known(value, short(value));
     let [f_n, f_t, t_max] = [record.f_n, record.f_t, record.t_max].map(|f| round_off.force(f));
     let gap = round_off.length(record.gap);
     let row = |text: String| paint::wrapped(&text, width, theme.text);
     let mode = view.mode_before(slave);
+    let angle = record.deviation().map_or(String::new(), |angle| {
+        format!(
+            "  slip {}  angle {:.0}°",
+            number(round_off.length(record.slip)),
+            angle.to_degrees()
+        )
+    });
     let force = format!(
-        "g {}  F_n {}  F_t {}  T_max {}",
+        "g {}  F_n {}  F_t {}  T_max {}{angle}",
         number(gap),
         number(f_n),
         number(f_t),
@@ -218,6 +246,48 @@ fn draw_cone(
         .map_or(0, |(_, y)| y - frame.field.y);
     frame.tick(buffer, zero, "F_n 0", theme.faint);
     below(buffer, frame, [-cone.f_t, cone.f_t], "F_t", app);
+}
+
+/// In space, the friction circle of radius T_max seen along n: the trail of F_t, and the slip as a ray.
+fn circle(
+    buffer: &mut Buffer,
+    area: Rect,
+    (trail, record): (&[TrailPoint], &ContactRecord),
+    app: &App,
+) {
+    let theme = &app.theme;
+    let area = headed(buffer, area, "F_t in the friction circle", app);
+    let radius = record.t_max.abs();
+    let forces: Vec<[f64; 2]> = trail.iter().filter_map(TrailPoint::shear).collect();
+    let sizes = trail.iter().map(|point| point.f_t).chain([radius]);
+    let reach = 1.15 * sizes.filter(|size| size.is_finite()).fold(0.0, f64::max);
+    if forces.is_empty() || reach <= 0.0 {
+        return paint::lines(buffer, area, &[Line::styled(" no friction", theme.faint)]);
+    }
+    let mut canvas = Canvas::new(area);
+    let [width, height] = canvas.size();
+    let scale = 0.5 * width.min(height) / reach;
+    let dot = |[a, b]: [f64; 2]| -> Dot { [0.5 * width + scale * a, 0.5 * height - scale * b] };
+    let on_circle = |direction: f64| [radius * direction.cos(), radius * direction.sin()];
+    let steps = 48;
+    let rim = (0..=steps).map(|k| dot(on_circle(TAU * f64::from(k) / f64::from(steps))));
+    canvas.polyline(&rim.collect::<Vec<_>>(), theme.strong);
+    if let Some([_, slip]) = record.directions.filter(|_| record.slip > 0.0) {
+        canvas.line(dot([0.0; 2]), dot(on_circle(slip)), theme.good);
+    }
+    let dots: Vec<Dot> = forces.into_iter().map(dot).collect();
+    canvas.polyline(&dots, theme.faint);
+    canvas.render(buffer);
+    let last = dots.len().saturating_sub(1);
+    for (k, (point, at)) in trail.iter().zip(&dots).enumerate() {
+        let (glyph, style) = match k == last {
+            true => ("●", theme.mode(point.mode).add_modifier(Modifier::BOLD)),
+            false => ("○", theme.mode(point.mode)),
+        };
+        if let Some(cell) = canvas.cell(*at).and_then(|at| buffer.cell_mut(at)) {
+            cell.set_symbol(glyph).set_style(style);
+        }
+    }
 }
 
 /// A number at an axis.

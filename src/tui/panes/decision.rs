@@ -209,6 +209,7 @@ fn signed(value: f64) -> String {
 fn deed(push: &NodePush, view: &View) -> String {
     let name = view.slave(push.slave);
     match push.modes {
+        [a, b] if a == b && view.model.space.is_some() => format!("the new force on {name}"),
         [a, b] if a == b => format!("the new T_max of {name}"),
         [_, Mode::Free] => format!("opening {name}"),
         [Mode::Free, _] => format!("closing {name}"),

@@ -35,10 +35,14 @@ struct Columns {
     shown: usize,
     /// Whether pressure and shear are shown.
     pressures: bool,
+    /// Whether the angle between F_t and slip is shown.
+    angle: bool,
 }
 
 /// Width of the three marks: selected, changed, forced.
 const MARKS: usize = 3;
+/// Width of the angle between F_t and slip, with a blank before it.
+const ANGLE: usize = 6;
 /// Width of `sliding → sliding`.
 const WORDS: usize = 17;
 /// Width of `s→x`.
@@ -62,6 +66,7 @@ impl Columns {
             ratio: 8,
             shown: 6,
             pressures: false,
+            angle: false,
         };
         let wide = arrangements
             .map(|(words, number, ratio)| Columns {
@@ -130,7 +135,16 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         .map(|slave| view.slave(slave).width())
         .max()
         .unwrap_or(0);
-    let columns = Columns::fit(inner.width as usize, longest.clamp(4, 20));
+    let in_space = view.model.space.is_some();
+    // The last number needs a gap after it then.
+    let spare = if in_space { ANGLE + 1 } else { 0 };
+    let columns = Columns {
+        angle: in_space,
+        ..Columns::fit(
+            (inner.width as usize).saturating_sub(spare),
+            longest.clamp(4, 20),
+        )
+    };
     let columns = match view
         .model
         .contacts
@@ -223,6 +237,9 @@ fn headings(columns: &Columns, app: &App) -> Line<'static> {
     if columns.pressures {
         text += &format!(" {:<width$}{}", " F_n/A", " F_t/A", width = columns.number);
     }
+    if columns.angle {
+        text += &format!("{:>ANGLE$}", "angle");
+    }
     Line::styled(text, app.theme.heading)
 }
 
@@ -275,6 +292,13 @@ fn row<'a>(
                 message[1],
                 width = columns.number
             );
+            spans.push(Span::styled(text, theme.text));
+        }
+        if columns.angle {
+            let angle = record
+                .deviation()
+                .map(|angle| format!("{:.0}°", angle.to_degrees()));
+            let text = format!("{:>ANGLE$}", angle.unwrap_or_default());
             spans.push(Span::styled(text, theme.text));
         }
     }
@@ -428,6 +452,7 @@ mod tests {
                 ratio: 9,
                 shown: 6,
                 pressures: false,
+                angle: false,
             }
         );
         assert_eq!(Columns::fit(118, 8).number, 13);

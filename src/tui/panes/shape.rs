@@ -18,13 +18,15 @@ use ratatui::widgets::Widget;
 use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_4;
 use stickslip_core::contact::element::SurfaceElement;
-use stickslip_core::contact::projection::tangent;
 use stickslip_core::fem::deformation::PointDeformation;
 use stickslip_core::fem::lagrange;
 use stickslip_core::model::{BodyKind, Contact, Model, Solid, SolidElement};
 use stickslip_debugger::explain::conditions::{ConditionArrow, Conditions, Given, conditions};
 use stickslip_debugger::explain::examination::Examination;
-use stickslip_debugger::explain::outline::{self, Bounds, Point, bounds, curve, outer_nodes};
+use stickslip_debugger::explain::names;
+use stickslip_debugger::explain::outline::{
+    self, Bounds, Point, Projection, bounds, curve, outer_nodes,
+};
 use stickslip_debugger::explain::strain;
 use stickslip_scene::number;
 use unicode_width::UnicodeWidthStr;
@@ -45,7 +47,7 @@ const CLEAR: f64 = 4.0;
 /// Cells between two slave nodes from which on their names are written.
 const APART: u16 = 8;
 /// Arrow heads by eighths of a turn, anticlockwise from the right.
-const HEADS: [&str; 8] = ["→", "↗", "↑", "↖", "←", "↙", "↓", "↘"];
+const HEADS: [&str; 8] = names::ARROWS;
 const DOUBLE_HEADS: [&str; 8] = ["⇒", "⇗", "⇑", "⇖", "⇐", "⇙", "⇓", "⇘"];
 /// Mark of a diagnosed node, right of its letter.
 const MARK: &str = "!";
@@ -107,7 +109,7 @@ pub fn picture(buffer: &mut Buffer, inner: Rect, app: &App, view: &View) -> Opti
     for line in &motions {
         head(buffer, &canvas, line, (HEADS, app.theme.strong));
     }
-    names(buffer, &canvas, &window, app, view);
+    body_names(buffer, &canvas, &window, app, view);
     slaves(buffer, &canvas, &window, app, view);
     if let Some((x, y)) = view
         .worst_point()
@@ -128,16 +130,18 @@ fn field(inner: Rect, app: &App, view: &View) -> (Canvas, Window) {
     };
     let canvas = Canvas::new(field);
     let magnified = app.camera.magnified(view);
-    let place = |node: usize| view.magnified(node, magnified);
+    let projection = app.camera.projection;
+    let place = |node: usize| view.magnified(node, (magnified, projection));
     let selected = view.model.contacts.get(app.slave(view));
     let towards = selected.map(|slave| place(slave.node));
     let towards = towards.filter(|place| place.iter().all(|x| x.is_finite()));
-    let bounds = bounds(view.model, &place);
+    let bounds = bounds(view.model, projection, &place);
     let window = Window::new(&canvas, &bounds, &app.camera, towards);
     (
         canvas,
         Window {
             magnified,
+            projection,
             ..window
         },
     )
@@ -171,6 +175,7 @@ struct Window {
     extent: f64,
     /// Magnification of displacements.
     magnified: f64,
+    projection: Projection,
 }
 
 impl Window {
@@ -192,12 +197,13 @@ impl Window {
             size,
             extent: size[0].min(size[1]) / scale,
             magnified: 1.0,
+            projection: camera.projection,
         }
     }
 
     /// Position of a node in the picture.
     fn place(&self, view: &View, node: usize) -> Point {
-        view.magnified(node, self.magnified)
+        view.magnified(node, (self.magnified, self.projection))
     }
 
     /// Whether something at `place`, `size` dots large, can be visible.
@@ -226,7 +232,7 @@ fn bodies(canvas: &mut Canvas, window: &Window, app: &App, view: &View) {
     for element in elements() {
         let reference: Vec<Point> = element
             .iter()
-            .map(|node| view.model.nodes[*node].at)
+            .map(|node| window.projection.at(view.model, *node))
             .collect();
         draw_curve(canvas, window, &reference, app.theme.faint);
     }
@@ -286,7 +292,7 @@ fn inside(canvas: &mut Canvas, window: &Window, solid: &Solid, app: &App, view: 
 }
 
 /// Names of the bodies if there are several and they fit: in the middle of a solid, next to a beam.
-fn names(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view: &View) {
+fn body_names(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view: &View) {
     if view.model.bodies.len() < 2 {
         return;
     }
@@ -337,6 +343,9 @@ fn surfaces(canvas: &mut Canvas, window: &Window, app: &App, view: &View) {
     for element in view.model.surfaces.iter().flat_map(SurfaceElement::all) {
         let nodes = outline::element(element, |node| window.place(view, node));
         draw_curve(canvas, window, &nodes, style);
+        if view.model.space.is_some() {
+            continue;
+        }
         // Short elements share one normal.
         let (Some(first), Some(last)) = (nodes.first(), nodes.last()) else {
             continue;
@@ -402,14 +411,13 @@ fn forces(window: &Window, view: &View) -> (Vec<[Dot; 2]>, f64) {
         .filter(|f| f.is_finite())
         .fold(0.0, f64::max);
     let scale = FORCE * window.extent / largest;
-    let nodes = view.model.contacts.iter().zip(&event.nodes);
+    let nodes = view.model.contacts.iter().zip(&event.nodes).enumerate();
     let lines = nodes
-        .filter(|(_, node)| size(node.f_n, node.f_t) > 0.0)
-        .map(|(slave, node)| {
-            let (n, t) = (node.normal, tangent(node.normal));
-            let tail = window.place(view, slave.node);
-            let along = |axis: usize| node.f_n * n[axis] + node.f_t * t[axis];
-            let tip = [0, 1].map(|axis| tail[axis] + scale * along(axis));
+        .filter(|(_, (_, node))| size(node.f_n, node.f_t) > 0.0)
+        .map(|(slave, (contact, _))| {
+            let force = window.projection.force(view.model, event, slave);
+            let tail = window.place(view, contact.node);
+            let tip = [0, 1].map(|axis| tail[axis] + scale * force[axis]);
             [window.dot(tail), window.dot(tip)]
         });
     (lines.collect(), largest)
@@ -593,6 +601,10 @@ fn caption(buffer: &mut Buffer, inner: Rect, shown: Scales, moves: bool, app: &A
         let text = format!(" displacements ×{} (*)  ", number::shortest(magnified));
         spans.push(Span::styled(text, theme.strong));
     }
+    if view.model.space.is_some() {
+        let text = format!(" {} view (V)  ", app.camera.projection.word());
+        spans.push(Span::styled(text, theme.strong));
+    }
     spans.push(Span::styled(UNLOADED, theme.faint));
     if longest > 0.0 {
         spans.push(Span::styled(
@@ -652,6 +664,7 @@ mod tests {
             size: [1.0; 2],
             extent: 0.5 / NORMAL,
             magnified: 1.0,
+            projection: Projection::Oblique,
         };
         assert_eq!(
             normals(&[[0.0, 0.0], [-2.0, 0.0]], &window),

@@ -1,4 +1,5 @@
-//! The timeline: slave nodes by minor iterations, with a letter for each mode.
+//! The timeline: slave nodes by minor iterations, with a letter for each mode; in space, sliding nodes have an arrow for the
+//! direction of friction.
 //!
 //! Rules separate majors and increments, a bracket marks a cycle, and forced modes are lower-case letters. Only the columns around
 //! the cursor are computed, so that drawing does not depend on the length of the history.
@@ -259,7 +260,7 @@ fn cell(strip: &Strip, slave: usize, finished: bool, app: &App) -> (&'static str
     }
     let letter = match (mode, forced) {
         (Mode::Free, false) => "F",
-        (Mode::Sliding, false) => "S",
+        (Mode::Sliding, false) => strip.direction(slave).map_or("S", names::arrow),
         (Mode::Fixed, false) if strip.in_corner(slave) => "V",
         (Mode::Fixed, false) => "X",
         (Mode::Free, true) => "f",

@@ -88,6 +88,9 @@ pub enum ExportError {
     /// The history has ended and its last problem is not known.
     #[error("the history is complete, so there is no next problem to export")]
     Finished,
+    /// No file format has interface problems in space.
+    #[error("interface problems in space cannot be exported")]
+    InSpace,
     /// The minor iterations do not cycle.
     #[error("the minor iterations do not cycle from here, so there is no core")]
     NoCycle,

@@ -25,7 +25,6 @@
 //! three nodes are written as lines from node to node, and so are surfaces.
 
 use super::export_state::{ExportError, ExportState};
-use stickslip_core::contact::record::ContactRecord;
 use stickslip_core::fem::deformation;
 use stickslip_core::fem::recovery::{self, Configuration};
 use stickslip_core::model::{BodyKind, Component, ElementKind, Mode, Model};
@@ -51,7 +50,9 @@ pub(super) fn vtu(shown: &ExportState, _: &mut Stepper) -> Result<Vec<u8>, Expor
 /// The grid of a state; gaps come from the last minor iteration, if there is one.
 pub fn grid(model: &Model, state: &State, event: Option<&Event>, at: Position, load: f64) -> Grid {
     let mut grid = Grid {
-        points: model.nodes.iter().map(|node| node.at).collect(),
+        points: (0..model.nodes.len())
+            .map(|node| model.at_in_space(node))
+            .collect(),
         ..Grid::default()
     };
     cells(model, &mut grid);
@@ -208,11 +209,15 @@ fn motion(model: &Model, state: &State, grid: &mut Grid) {
     let nodes = 0..model.nodes.len();
     let moved = |node: usize| {
         let of = |axis| component(node, axis).unwrap_or(0.0);
-        [of(Component::X), of(Component::Y), 0.0]
+        match model.space {
+            // The third degree of freedom is a displacement.
+            Some(_) => [of(Component::X), of(Component::Y), of(Component::Rotation)],
+            None => [of(Component::X), of(Component::Y), 0.0],
+        }
     };
     let moved = nodes.clone().flat_map(moved).collect();
     let turned: Vec<Option<f64>> = nodes
-        .map(|node| component(node, Component::Rotation))
+        .map(|node| component(node, Component::Rotation).filter(|_| model.space.is_none()))
         .collect();
     let number = (1..).take(model.nodes.len()).collect();
     grid.on_points
@@ -256,7 +261,7 @@ fn stresses(model: &Model, state: &State, grid: &mut Grid) {
 }
 
 /// Contact record of a slave node: mode, force, and F_n, F_t, T_max, gap and slip.
-type ContactValues = (Mode, [f64; 2], [f64; 5]);
+type ContactValues = (Mode, [f64; 3], [f64; 5]);
 
 fn contacts(model: &Model, state: &State, event: Option<&Event>, grid: &mut Grid) {
     if model.contacts.is_empty() {
@@ -268,9 +273,11 @@ fn contacts(model: &Model, state: &State, event: Option<&Event>, grid: &mut Grid
     let names = ["F_n", "F_t", "T_max", "gap", "slip"];
     let mut numbers = names.map(|_| vec![f64::NAN; nodes]);
     for (place, contact) in model.contacts.iter().enumerate() {
-        let found = event.and_then(|event| event.nodes.get(place));
-        let record = found.map_or_else(|| at_start(state, place), of_record);
-        let Some((mode, [x, y], values)) = record else {
+        let record = match event {
+            Some(event) if place < event.nodes.len() => of_record(event, place),
+            _ => at_start(state, place),
+        };
+        let Some((mode, vector, values)) = record else {
             continue;
         };
         let node = contact.node;
@@ -279,7 +286,7 @@ fn contacts(model: &Model, state: &State, event: Option<&Event>, grid: &mut Grid
             Mode::Sliding => 1,
             Mode::Fixed => 2,
         };
-        force[VECTOR.len() * node..][..2].copy_from_slice(&[x, y]);
+        force[VECTOR.len() * node..][..3].copy_from_slice(&vector);
         for (list, value) in numbers.iter_mut().zip(values) {
             list[node] = value;
         }
@@ -304,12 +311,8 @@ fn contacts(model: &Model, state: &State, event: Option<&Event>, grid: &mut Grid
     }
 }
 
-fn of_record(record: &ContactRecord) -> Option<ContactValues> {
-    let [c, s] = record.normal;
-    let force = [
-        c * record.f_n - s * record.f_t,
-        s * record.f_n + c * record.f_t,
-    ];
+fn of_record(event: &Event, place: usize) -> Option<ContactValues> {
+    let record = event.nodes.get(place)?;
     let values = [
         record.f_n,
         record.f_t,
@@ -317,12 +320,13 @@ fn of_record(record: &ContactRecord) -> Option<ContactValues> {
         record.gap,
         record.slip,
     ];
-    Some((record.decision.before, force, values))
+    Some((record.decision.before, event.force(place)?, values))
 }
 
 /// Before the first minor iteration the gap is unknown.
 fn at_start(state: &State, place: usize) -> Option<ContactValues> {
     let node = state.nodes.get(place)?;
     let values = [node.f_n, node.f_t, node.t_max, f64::NAN, node.slip];
-    Some((node.mode, node.force(), values))
+    let [x, y] = node.force();
+    Some((node.mode, [x, y, 0.0], values))
 }

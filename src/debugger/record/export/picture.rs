@@ -11,10 +11,9 @@ use super::timeline::{self, chosen, colour};
 use super::window::{FORCE, Window};
 use crate::explain::conditions::{Given, conditions};
 use crate::explain::names;
-use crate::explain::outline::{self, Bounds, Point, curve, extent};
+use crate::explain::outline::{self, Bounds, Point, Projection, curve, extent};
 use crate::explain::round_off::RoundOff;
 use stickslip_core::contact::element::SurfaceElement;
-use stickslip_core::contact::projection::tangent;
 use stickslip_core::contact::record::ContactRecord;
 use stickslip_core::model::{BodyKind, Mode, Model, SolidElement};
 use stickslip_core::step::event::Outcome;
@@ -28,6 +27,8 @@ use stickslip_study::sheet::{
     Anchor, BLACK, Colour, GREY, LABEL, MARGIN, PALE, SMALL, Sheet, widest,
 };
 
+/// Projection of scenes in space.
+const OBLIQUE: Projection = Projection::Oblique;
 /// Width of the picture, and height of the shape or the chart.
 const WIDTH: f64 = 980.0;
 const HIGH: f64 = 400.0;
@@ -216,13 +217,13 @@ fn shape(
 ) -> Result<(), PlotError> {
     let model = &shown.scene.model;
     let magnified = outline::magnification(model, std::iter::once(&shown.state.u[..]));
-    let now = |node: usize| outline::magnified(model, &shown.state.u, node, magnified);
+    let now = |node: usize| outline::magnified(model, &shown.state.u, node, (magnified, OBLIQUE));
     let top = sheet.height;
     let patch = Patch {
         from: (MARGIN, top),
         to: (sheet.width - MARGIN, top + high),
     };
-    let seen = extent(model, &now).unwrap_or(Bounds::UNIT);
+    let seen = extent(model, OBLIQUE, &now).unwrap_or(Bounds::UNIT);
     let window = Window::new(&seen, patch, room(shown));
     let mut taken = OccupiedArea::within(patch);
     bodies(sheet, &window, model, &now, &mut taken);
@@ -259,7 +260,10 @@ fn bodies(
         ..pen(1.0, (150, 150, 150))
     };
     for element in lines() {
-        let points: Vec<Point> = element.iter().map(|&node| model.nodes[node].at).collect();
+        let points: Vec<Point> = element
+            .iter()
+            .map(|&node| OBLIQUE.at(model, node))
+            .collect();
         stroke(sheet, window, &points, &before);
     }
     for body in &model.bodies {
@@ -340,7 +344,8 @@ fn normals(
 fn gaps(sheet: &mut Sheet, window: &Window, shown: &ExportState, now: &dyn Fn(usize) -> Point) {
     let Some(event) = shown.event else { return };
     for (contact, found) in shown.scene.model.contacts.iter().zip(&event.nodes) {
-        if found.spot.is_none() || found.decision.before != Mode::Free {
+        let is_open = found.spot.is_some() && found.decision.before == Mode::Free;
+        if !is_open || found.directions.is_some() {
             continue;
         }
         let at = now(contact.node);
@@ -370,18 +375,18 @@ fn room(shown: &ExportState) -> [f64; 4] {
         };
         reach(length * arrow.along[0], length * arrow.along[1]);
     }
-    let nodes = shown
-        .event
-        .filter(|_| largest > 0.0)
-        .map(|event| &event.nodes);
-    for found in nodes
-        .into_iter()
-        .flatten()
-        .filter(|found| size(found).is_finite())
-    {
-        let (n, t) = (found.normal, tangent(found.normal));
-        let along = |axis: usize| FORCE / largest * (found.f_n * n[axis] + found.f_t * t[axis]);
-        reach(along(0), along(1));
+    if let Some(event) = shown.event.filter(|_| largest > 0.0) {
+        for (slave, _) in event
+            .nodes
+            .iter()
+            .enumerate()
+            .filter(|(_, found)| size(found).is_finite())
+        {
+            let [x, y] = OBLIQUE
+                .force(model, event, slave)
+                .map(|f| FORCE / largest * f);
+            reach(x, y);
+        }
     }
     room
 }
@@ -472,11 +477,12 @@ fn forces(
     let Some(event) = shown.event.filter(|_| largest > 0.0) else {
         return 0.0;
     };
-    for (contact, found) in shown.scene.model.contacts.iter().zip(&event.nodes) {
-        let (n, t) = (found.normal, tangent(found.normal));
+    let contacts = shown.scene.model.contacts.iter().zip(&event.nodes);
+    for (slave, (contact, found)) in contacts.enumerate() {
+        let force = OBLIQUE.force(&shown.scene.model, event, slave);
         let scale = FORCE / largest;
         let node = window.at(now(contact.node));
-        let along = |axis: usize| scale * (found.f_n * n[axis] + found.f_t * t[axis]);
+        let along = |axis: usize| scale * force[axis];
         let long = scale * size(found) >= 1.0;
         if long && window.holds(node) {
             // The arrow starts next to the node's marker.
@@ -612,10 +618,7 @@ fn plain_four(value: f64) -> String {
 /// The largest displacement of a node.
 fn moved(shown: &ExportState) -> f64 {
     let model = &shown.scene.model;
-    let far = |node: usize| {
-        let (at, now) = (model.nodes[node].at, model.place(&shown.state.u, node));
-        (now[0] - at[0]).hypot(now[1] - at[1])
-    };
+    let far = |node: usize| outline::displacement(model, &shown.state.u, node);
     let all = (0..model.nodes.len()).map(far).filter(|d| d.is_finite());
     all.fold(0.0, f64::max)
 }

@@ -58,17 +58,19 @@ pub fn open(run: CalculixRun) -> Result<OpenedRun, String> {
         gives: None,
         tied: false,
     };
-    let node = |slave: usize| message::Node {
+    let node = |slave: usize| message::NodeMessage {
         name: run.slave(slave),
-        at: [0.0, 0.0],
+        at: [0.0, 0.0].into(),
     };
     let scene = message::Scene {
         title: Path::new(&run.name)
             .file_name()
             .map_or_else(String::new, |name| name.to_string_lossy().into_owned()),
         about: words::NO_MODES_IN_FULL.into(),
+        dimension: 2,
         nodes: slaves.clone().map(node).collect(),
         lines: Vec::new(),
+        faces: Vec::new(),
         surfaces: Vec::new(),
         contacts: slaves.map(contact).collect(),
         load: None,
@@ -218,6 +220,7 @@ impl RecordedRun {
             }),
             arc: None,
             drag: 0.0,
+            frames: Arc::default(),
             nodes: slaves
                 .clone()
                 .map(|slave| self.record(iteration, slave))

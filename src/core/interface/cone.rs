@@ -1,0 +1,190 @@
+//! Interface problems in space: block Gauss-Seidel sweeps, in which each contact solves its own cone problem with the forces of all
+//! others fixed (Jourdan, Alart and Jean 1998).
+//!
+//! With (gap, u) = W f + q and three rows per contact, a contact is open (f = 0, gap >= 0), sticks (gap = 0, u = 0, |f_t| <= mu f_n
+//! + c) or slides (gap = 0, f_t = -(mu f_n + c) u / |u|).
+
+use crate::model::{Friction, Mode};
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+use std::f64::consts::TAU;
+
+/// Maximum number of sweeps.
+const SWEEPS: usize = 20_000;
+/// Relative change of the forces at which the sweeps end.
+const SETTLED: f64 = 1e-13;
+/// Relative violation of the laws at which a result counts as a solution.
+const SOUND: f64 = 1e-8;
+/// Number of directions of sliding between which the direction is bracketed.
+const DIRECTIONS: u32 = 72;
+/// Halvings of a bracket.
+const HALVINGS: u32 = 60;
+
+/// A contact in a solution.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ConeContact {
+    /// Its mode.
+    pub mode: Mode,
+    /// Forces (f_n, f_1, f_2).
+    pub force: [f64; 3],
+    /// Gap and motion of the node (gap, u_1, u_2).
+    pub motion: [f64; 3],
+}
+
+/// A state that obeys all laws, found by sweeps from zero forces; `None` if 20,000 of them do not converge. `w` and `q`
+/// have three rows per contact.
+pub fn solve(
+    w: &DMatrix<f64>,
+    q: &DVector<f64>,
+    friction: &[Friction],
+) -> Option<Vec<ConeContact>> {
+    let mut f = DVector::zeros(q.len());
+    for _ in 0..SWEEPS {
+        let mut change = 0.0_f64;
+        for (contact, friction) in friction.iter().enumerate() {
+            let at = 3 * contact;
+            let own: Matrix3<f64> = w.fixed_view::<3, 3>(at, at).into_owned();
+            let old: Vector3<f64> = f.fixed_rows::<3>(at).into_owned();
+            let moved = w.rows(at, 3) * &f + q.rows(at, 3);
+            let without = Vector3::new(moved[0], moved[1], moved[2]) - own * old;
+            let new = local(&own, &without, friction);
+            change = change.max((new - old).amax());
+            f.fixed_rows_mut::<3>(at).copy_from(&new);
+        }
+        if change <= SETTLED * f.amax() {
+            break;
+        }
+    }
+    let motion = w * &f + q;
+    let (force, length) = (f.amax(), motion.amax().max(q.amax()));
+    let contacts = friction.iter().enumerate();
+    let found = contacts.map(|(k, friction)| {
+        let of = |all: &DVector<f64>| [all[3 * k], all[3 * k + 1], all[3 * k + 2]];
+        contact(of(&f), of(&motion), friction, [force, length])
+    });
+    found.collect()
+}
+
+/// The contact with its mode; `None` if it violates a law.
+fn contact(
+    force: [f64; 3],
+    motion: [f64; 3],
+    friction: &Friction,
+    [largest, length]: [f64; 2],
+) -> Option<ConeContact> {
+    let ([f_n, f_1, f_2], [gap, u_1, u_2]) = (force, motion);
+    let (shear, slip) = (f_1.hypot(f_2), u_1.hypot(u_2));
+    let limit = friction.coefficient() * f_n + friction.cohesion;
+    let touches = f_n > 0.0;
+    let slides = slip > SOUND * length;
+    let unlawful = match (touches, slides) {
+        (false, _) => (-gap / length).max(shear / largest.max(f64::MIN_POSITIVE)),
+        (true, false) => (gap.abs() / length).max((shear - limit) / largest),
+        // The friction that the slip demands.
+        (true, true) => {
+            let off = (f_1 + limit * u_1 / slip).hypot(f_2 + limit * u_2 / slip);
+            (gap.abs() / length).max(off / largest)
+        }
+    };
+    let mode = match (touches, slides) {
+        (false, _) => Mode::Free,
+        (true, false) => Mode::Fixed,
+        (true, true) => Mode::Sliding,
+    };
+    (unlawful <= SOUND).then_some(ConeContact {
+        mode,
+        force,
+        motion,
+    })
+}
+
+/// The force of one contact, whose motion without it is `b`.
+fn local(w: &Matrix3<f64>, b: &Vector3<f64>, friction: &Friction) -> Vector3<f64> {
+    if b[0] >= 0.0 {
+        return Vector3::zeros();
+    }
+    let (mu, cohesion) = (friction.coefficient(), friction.cohesion);
+    let stick = w.lu().solve(b).map(|f| -f);
+    if let Some(f) = stick
+        && f[0] >= 0.0
+        && f[1].hypot(f[2]) <= mu * f[0] + cohesion
+    {
+        return f;
+    }
+    // In a direction: the force, and the motion along and across.
+    let slide = |angle: f64| {
+        let (sin, cos) = angle.sin_cos();
+        let along = w[(0, 1)] * cos + w[(0, 2)] * sin;
+        let f_n = (-b[0] - cohesion * along) / (w[(0, 0)] + mu * along);
+        let limit = mu * f_n + cohesion;
+        let f = Vector3::new(f_n, limit * cos, limit * sin);
+        let u = w * f + b;
+        (f, cos * u[1] + sin * u[2], cos * u[2] - sin * u[1])
+    };
+    let step = TAU / f64::from(DIRECTIONS);
+    for k in 0..DIRECTIONS {
+        let (mut low, mut high) = (step * f64::from(k), step * f64::from(k + 1));
+        let below = slide(low).2 < 0.0;
+        if (slide(high).2 < 0.0) == below {
+            continue;
+        }
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (low + high);
+            match (slide(middle).2 < 0.0) == below {
+                true => low = middle,
+                false => high = middle,
+            }
+        }
+        let (f, along, _) = slide(low);
+        if f[0] >= 0.0 && along <= 0.0 {
+            return f;
+        }
+    }
+    Vector3::new((-b[0] / w[(0, 0)]).max(0.0), 0.0, 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn one(q: [f64; 3]) -> ConeContact {
+        let w = DMatrix::from_row_slice(3, 3, &[2.0, 0.3, 0.0, 0.3, 1.0, 0.2, 0.0, 0.2, 1.5]);
+        let friction = [Friction::from_coefficient(0.5, 0.0)];
+        let found = solve(&w, &DVector::from_row_slice(&q), &friction);
+        found.expect("a single contact has a solution")[0]
+    }
+
+    #[test]
+    fn a_contact_opens_sticks_or_slides_against_its_motion() {
+        assert_eq!(one([0.1, 5.0, 5.0]).mode, Mode::Free);
+        assert_eq!(one([-1.0, 0.0, 0.0]).mode, Mode::Fixed);
+        for turn in 0..8 {
+            let (y, x) = (TAU * f64::from(turn) / 8.0).sin_cos();
+            let found = one([-1.0, 3.0 * x, 3.0 * y]);
+            assert_eq!(found.mode, Mode::Sliding);
+            let [f_n, f_1, f_2] = found.force;
+            let [_, u_1, u_2] = found.motion;
+            assert!((f_1.hypot(f_2) - 0.5 * f_n).abs() < 1e-9);
+            assert!(f_1 * u_1 + f_2 * u_2 < 0.0 && (f_1 * u_2 - f_2 * u_1).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn a_mirrored_problem_has_the_mirrored_solution() {
+        // The second contact is the mirror image of the first in the plane of n and t.
+        let block = [[2.0, 0.1, 0.2], [0.1, 1.0, 0.1], [0.2, 0.1, 1.2]];
+        let mirror = [1.0, 1.0, -1.0];
+        let w = DMatrix::from_fn(6, 6, |i, j| match (i / 3, j / 3) {
+            (0, 0) => block[i][j],
+            (1, 1) => block[i - 3][j - 3] * mirror[i - 3] * mirror[j - 3],
+            _ if i % 3 == j % 3 => 0.2 * mirror[i % 3],
+            _ => 0.0,
+        });
+        let q = DVector::from_row_slice(&[-1.0, 0.8, 1.1, -1.0, 0.8, -1.1]);
+        let friction = [Friction::from_coefficient(0.4, 0.0); 2];
+        let found = solve(&w, &q, &friction).expect("it converges");
+        for (k, sign) in mirror.into_iter().enumerate() {
+            let (a, b) = (found[0].force[k], found[1].force[k]);
+            assert!((a - sign * b).abs() < 1e-9, "{found:?}");
+        }
+    }
+}

@@ -1,0 +1,112 @@
+//! Analyses the interface problem that an attached solver in space reports: one state that obeys all laws, and who moved whom.
+
+use super::examination::Examination;
+use super::facts::{Fact, Part};
+use super::influence::{Influence, NodePush};
+use super::names;
+use std::sync::Arc;
+use stickslip_core::contact::record::ContactRecord;
+use stickslip_core::interface::cone::{self, ConeContact};
+use stickslip_core::model::{Mode, Model};
+use stickslip_core::step::event::Event;
+use stickslip_core::step::solver::ReportedProblem;
+
+/// Maximum number of contacts, because the matrix is dense.
+const MOST: usize = 500;
+
+/// Searches a consistent state of the problem that is solved next.
+pub fn examine(model: &Model, posed: &ReportedProblem) -> Examination {
+    let describe = |head: String| Examination {
+        head,
+        ..Examination::default()
+    };
+    let count = posed.contacts.len();
+    if count > MOST {
+        return describe(format!(
+            "The interface problem has {count} contacts; problems in space are examined up to {MOST}."
+        ));
+    }
+    let Some((w, q)) = posed.compliance() else {
+        return describe("The reported stiffness is singular.".into());
+    };
+    let Some(found) = cone::solve(&w, &q, &posed.friction) else {
+        return describe(
+            "Block Gauss-Seidel sweeps on the interface problem do not converge: no consistent state was found.".into(),
+        );
+    };
+    let of = |mode: Mode| found.iter().filter(|contact| contact.mode == mode).count();
+    let head = format!(
+        "A consistent state of the interface problem was found (others may exist): {} free, {} sliding, {} fixed.",
+        of(Mode::Free),
+        of(Mode::Sliding),
+        of(Mode::Fixed)
+    );
+    let lines = found.iter().zip(&posed.contacts);
+    let lines = lines.map(|(contact, &slave)| words(model, slave, contact));
+    Examination {
+        facts: Fact::all(Part::Census, lines),
+        ..describe(head)
+    }
+}
+
+/// A contact of the state in one line.
+fn words(model: &Model, slave: usize, contact: &ConeContact) -> String {
+    let [f_n, f_1, f_2] = contact.force;
+    let name = names::slave(model, slave);
+    let mode = names::mode(contact.mode);
+    match contact.mode {
+        Mode::Free => format!("{name} {mode}, gap {:.3e}", contact.motion[0]),
+        Mode::Fixed => format!("{name} {mode}, F_n {f_n:.4e}, |F_t| {:.4e}", f_1.hypot(f_2)),
+        Mode::Sliding => format!(
+            "{name} {mode} with friction at {:.0}°, F_n {f_n:.4e}",
+            f_2.atan2(f_1).to_degrees()
+        ),
+    }
+}
+
+/// The changes of a contact's gap and slip by the changes of the other contacts' forces between two iterations: W_ij Δf_j, with
+/// three rows per contact. `None` if forces were not reported.
+pub fn pushes(
+    [before, after]: &[Arc<Event>; 2],
+    posed: &ReportedProblem,
+    slave: usize,
+) -> Option<Vec<NodePush>> {
+    let Some(target) = posed.contacts.iter().position(|&known| known == slave) else {
+        return Some(Vec::new());
+    };
+    let (w, _) = posed.compliance()?;
+    let [_, sliding] = after.nodes.get(slave)?.directions?;
+    let mut found = Vec::new();
+    for (place, &from) in posed.contacts.iter().enumerate() {
+        let (then, now) = (before.nodes.get(from)?, after.nodes.get(from)?);
+        let (old, new) = (force(then)?, force(now)?);
+        let change = [0, 1, 2].map(|k| new[k] - old[k]);
+        if place == target || change == [0.0; 3] {
+            continue;
+        }
+        let moved = [0, 1, 2].map(|row| {
+            let parts = (0..3).map(|k| w[(3 * target + row, 3 * place + k)] * change[k]);
+            parts.sum::<f64>()
+        });
+        found.push(NodePush {
+            slave: from,
+            modes: [then.decision.before, now.decision.before],
+            influence: Influence {
+                from: place,
+                gap: moved[0],
+                // Slip is the motion of the surface relative to the node.
+                slip: -(moved[1] * sliding.cos() + moved[2] * sliding.sin()),
+                ..Influence::default()
+            },
+        });
+    }
+    Some(found)
+}
+
+/// The force (f_n, f_1, f_2) of a contact in space, if it is known.
+fn force(record: &ContactRecord) -> Option<[f64; 3]> {
+    let [direction, _] = record.directions?;
+    let (sin, cos) = direction.sin_cos();
+    let force = [record.f_n, record.f_t * cos, record.f_t * sin];
+    force.iter().all(|x| x.is_finite()).then_some(force)
+}

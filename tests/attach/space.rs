@@ -1,0 +1,204 @@
+//! A solver in space, in Python where the system has it: its cycle, its states and its interface problem.
+
+use super::program::{code, err, out, program};
+use super::served::{seen, session};
+use super::side::{PATIENT, does};
+use libtest_mimic::Trial;
+use std::path::Path;
+use std::process::Command as Process;
+use stickslip::attach::check::check;
+use stickslip::attach::{PYTHON, Start};
+use stickslip::contact::record::ContactRecord;
+use stickslip::history::frame::Frame;
+use stickslip::model::Mode;
+use stickslip::record::command::{Command, Unit};
+use stickslip::record::export::grid::grid;
+use stickslip::recorded::{exchange, log::Log};
+use stickslip::session::Session;
+use stickslip::step::event::Outcome;
+use stickslip_exchange::vtu::Values;
+
+pub fn tests() -> Vec<Trial> {
+    match Process::new("python3").arg("--version").output() {
+        Ok(_) => crate::tests![
+            the_swing_of_the_direction_of_friction_is_found_and_is_the_cause,
+            a_state_with_friction_across_its_slip_is_marked,
+            a_solver_in_space_passes_every_check,
+            a_stored_exchange_in_space_has_the_same_states,
+            remedies_are_tried_on_the_solver_itself,
+            a_vtu_has_three_coordinates,
+        ],
+        Err(_) => Vec::new(),
+    }
+}
+
+/// The block, in a folder with the module.
+fn start(folder: &Path, arguments: &[&str]) -> Start {
+    std::fs::write(folder.join("block3d.py"), include_str!("block3d.py")).unwrap();
+    std::fs::write(folder.join("stickslip_attach.py"), PYTHON).unwrap();
+    let script = folder.join("block3d.py").display().to_string();
+    let words = ["python3", &script]
+        .into_iter()
+        .chain(arguments.iter().copied());
+    Start {
+        start: PATIENT,
+        answer: PATIENT,
+        ..Start::new(words.map(str::to_owned).collect())
+    }
+}
+
+fn run() -> Command {
+    Command::Forward {
+        unit: Unit::Run,
+        count: 1,
+    }
+}
+
+fn last(session: &Session) -> &[ContactRecord] {
+    &session.frame().event.as_ref().unwrap().nodes
+}
+
+fn the_swing_of_the_direction_of_friction_is_found_and_is_the_cause() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut session = session(start(folder.path(), &["30"]), &Log::default());
+    // It stops where the cycle is detected, and fails later.
+    let said = does(&mut session, run());
+    assert!(
+        said.contains("cycle of period 2: the direction of friction at"),
+        "{said}"
+    );
+    assert!(
+        last(&session)
+            .iter()
+            .all(|node| node.decision.before == Mode::Sliding)
+    );
+    let [now, before] = [0, 1].map(|back| {
+        let strip = &session.timeline().strips()[session.cursor() - back];
+        f64::from(strip.direction(0).unwrap())
+    });
+    let swing = (now - before).abs();
+    assert!((100.0..180.0).contains(&swing), "{before} to {now}");
+    assert!(
+        said.contains(&format!("{swing:.0} degrees per iteration")),
+        "{said}"
+    );
+    does(&mut session, run());
+    does(&mut session, Command::Census(Vec::new()));
+    session.background_mut().wait();
+    let page = session.background().examination(session.timeline().place());
+    let page = page.flatten().unwrap().lines().join("\n");
+    assert!(page.contains("Why: cycle of period 2"), "{page}");
+    // The state that the solver reaches with r = 1 in this increment.
+    let head = "A consistent state of the interface problem was found (others may exist): 0 free, 2 sliding, 4 fixed.";
+    assert!(page.contains(head), "{page}");
+    for _ in 0..2 {
+        session.look(0);
+        session.background_mut().wait();
+    }
+    let pushes = session.background().pushes(session.timeline().place(), 0);
+    let pushes = pushes.flatten().unwrap();
+    assert_eq!(pushes.len(), 5, "{pushes:?}");
+    assert!(pushes.iter().all(|push| push.influence.gap != 0.0));
+}
+
+fn a_state_with_friction_across_its_slip_is_marked() {
+    let folder = tempfile::tempdir().unwrap();
+    for (arguments, marked) in [
+        (&["1"][..], [false; 3]),
+        (&["1", "wrong"], [false, true, true]),
+    ] {
+        let mut session = session(start(folder.path(), arguments), &Log::default());
+        for (increment, marked) in marked.into_iter().enumerate() {
+            let forward = Command::Forward {
+                unit: Unit::Increment,
+                count: 1,
+            };
+            let said = does(&mut session, forward);
+            let event = session.frame().event.clone().unwrap();
+            let Outcome::Increment { marked: found, .. } = &event.outcome else {
+                panic!("{increment}: {said}");
+            };
+            assert_eq!(found.is_some(), marked, "{increment}: {found:?}");
+            let angles = event.nodes.iter().filter_map(ContactRecord::deviation);
+            let largest = angles.fold(0.0, f64::max).to_degrees();
+            assert_eq!(largest > 60.0, marked, "{increment}: {largest}");
+        }
+    }
+}
+
+fn a_solver_in_space_passes_every_check() {
+    let folder = tempfile::tempdir().unwrap();
+    let report = check(&start(folder.path(), &[]), &Log::default());
+    assert_eq!(report.failed(), 0, "{}", report.text());
+    let text = report.text();
+    assert!(
+        text.contains("every iteration satisfies it within"),
+        "{text}"
+    );
+}
+
+fn a_stored_exchange_in_space_has_the_same_states() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("space.exchange");
+    let log = Log::default();
+    log.keep(&file, false).unwrap();
+    let mut original = session(start(folder.path(), &[]), &log);
+    does(&mut original, run());
+    let text = std::fs::read_to_string(&file).unwrap();
+    let opened = exchange::open("space", &text).unwrap();
+    let steps = opened.lines.first().unwrap().len();
+    let mut replayed = Session::attached(opened.scene, Box::new(opened.past), opened.log);
+    does(&mut replayed, run());
+    assert_eq!(steps + 1, original.frames().len());
+    assert_eq!(original.frames().len(), replayed.frames().len());
+    for (a, b) in original.frames().iter().zip(replayed.frames()) {
+        assert_eq!(seen(a), seen(b));
+        assert_eq!(a.state.u, b.state.u);
+        let directions = |frame: &Frame| -> Vec<_> {
+            let nodes = frame.event.iter().flat_map(|event| &event.nodes);
+            nodes.map(|node| node.directions).collect()
+        };
+        assert_eq!(directions(a), directions(b));
+    }
+}
+
+fn remedies_are_tried_on_the_solver_itself() {
+    let folder = tempfile::tempdir().unwrap();
+    let start = start(folder.path(), &["30"]);
+    let mut arguments = vec!["remedies", "--"];
+    arguments.extend(start.command.iter().map(String::as_str));
+    let output = program(folder.path(), &arguments).output().unwrap();
+    assert_eq!(code(&output), 0, "{}", err(&output));
+    assert!(
+        out(&output).contains("start contacts fixed  converged"),
+        "{}",
+        out(&output)
+    );
+    let cause = "why: A consistent state of the interface problem was found";
+    assert!(err(&output).contains(cause), "{}", err(&output));
+}
+
+fn a_vtu_has_three_coordinates() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut session = session(start(folder.path(), &[]), &Log::default());
+    does(&mut session, run());
+    let scene = session.scene();
+    let (state, event) = (&session.frame().state, session.frame().event.as_deref());
+    let grid = grid(&scene.model, state, event, state.next, 3.0);
+    assert_eq!(grid.points[6], [0.0, 0.0, 2.0]);
+    let numbers = |name: &str| {
+        let array = grid.on_points.iter().find(|array| array.name == name);
+        match &array.unwrap().values {
+            Values::Numbers(all) => all.clone(),
+            other => panic!("{other:?}"),
+        }
+    };
+    assert_eq!(numbers("displacement")[18..21], [0.006, 0.008, -0.01]);
+    // The forces of the sliding nodes 3 to 6 point back along x and y, and up.
+    let force = numbers("contact_force");
+    assert!(
+        force[6] < 0.0 && force[7] < 0.0 && force[8] > 0.0,
+        "{force:?}"
+    );
+    assert!(grid.on_points.iter().all(|array| array.name != "rotation"));
+}
