@@ -57,6 +57,12 @@ pub fn cell_type(kind: CellKind) -> u8 {
         CellKind::Quad4 => 9,
         CellKind::Quad8 => 23,
         CellKind::Quad9 => 28,
+        CellKind::Tetra4 => 10,
+        CellKind::Tetra10 => 24,
+        CellKind::Wedge6 => 13,
+        CellKind::Wedge15 => 26,
+        CellKind::Hexa8 => 12,
+        CellKind::Hexa20 => 25,
     }
 }
 

@@ -22,6 +22,8 @@ pub struct Reader {
     /// The step that has begun.
     pub(super) step: Option<Step>,
     pub(super) has_time: bool,
+    /// Whether the deck is only outlined: three-dimensional elements are read, and cards that cannot be read are skipped.
+    pub(super) is_outline: bool,
     /// NLGEOM stays on in later steps until it is switched off.
     pub(super) nlgeom: bool,
 }
