@@ -66,14 +66,16 @@ fn outlined(name: &str) -> Option<Deck> {
 /// What the rules find in a deck, with the cures.
 fn causes(deck: &Deck) -> Vec<String> {
     let findings = rules::examine(Some(&DeckShape::new(deck)), None);
-    let words = findings.iter().map(|found| format!("{}. Cure: {}", found.cause, found.advice()));
+    let words = findings
+        .iter()
+        .map(|found| format!("{}. Cure: {}", found.cause, found.advice()));
     words.collect()
 }
 
 /// Checks a three-dimensional deck, which only CalculiX solves.
 fn check_solid(name: &str, deck: &Deck) -> Result<Exit, Error> {
     say(&format!(
-        "{name}: three-dimensional deck for CalculiX: {} nodes, {} elements, {} contact pairs, {} ties, {} steps\n",
+        "{name}: three-dimensional deck for CalculiX\nnodes {}, elements {}, contact pairs {}, ties {}, steps {}\n",
         deck.nodes.len(),
         deck.elements.len(),
         deck.pairs.len(),
@@ -81,7 +83,12 @@ fn check_solid(name: &str, deck: &Deck) -> Result<Exit, Error> {
         deck.steps.len()
     ))?;
     for remark in &deck.remarks {
-        notify(&format!("note: {}:{}: {}", deck.file(remark.place), remark.place.line, remark.text));
+        notify(&format!(
+            "note: {}:{}: {}",
+            deck.file(remark.place),
+            remark.place.line,
+            remark.text
+        ));
     }
     for cause in causes(deck) {
         notify(&format!("warning: {cause}"));

@@ -68,7 +68,6 @@ const HEXA: [[usize; 2]; 12] = [
     [3, 7],
 ];
 
-
 impl CellKind {
     /// Number of nodes.
     pub fn nodes(self) -> usize {

@@ -1,10 +1,10 @@
 //! Reads a finished CalculiX run: its .cel file and the files next to it.
 
 pub use crate::deck::outline;
+use crate::format::SceneError;
 use std::fs::OpenOptions;
 use std::io::{self, BufReader};
 use std::path::{Path, PathBuf};
-use crate::format::SceneError;
 use stickslip_exchange::calculix::files::CalculixFiles;
 use stickslip_exchange::calculix::{cel, cvg, sta};
 use stickslip_exchange::format_error::FormatError;

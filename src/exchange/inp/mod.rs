@@ -117,6 +117,10 @@ fn whole(sources: &Sources, is_outline: bool) -> Done<Deck> {
     };
     reader.finish(cards.last().map_or(start, |card| card.place))?;
     let mut deck = reader.deck;
+    if is_outline {
+        // Notes on how the plane solver reads the deck do not apply.
+        deck.remarks = reader.skipped;
+    }
     deck.remarks
         .sort_by_key(|remark| (remark.place.file, remark.place.line));
     Ok(deck)
@@ -157,8 +161,11 @@ impl Reader {
     /// Skips a card of an outline.
     fn skip(&mut self, card: &Card<'_>, why: &str) {
         self.deck.is_incomplete |= keywords::COUPLING.contains(&card.key.as_str());
-        let what = format!("*{} is skipped: {why}", card.shown);
-        self.deck.add_note(card.place, what);
+        self.skipped.push(Remark {
+            place: card.place,
+            text: format!("*{} is skipped: {why}", card.shown),
+            times: 1,
+        });
     }
 
     fn heading(&mut self, card: &Card<'_>) -> Done {

@@ -44,7 +44,8 @@ pub fn first(run: &CalculixFiles, attempt: &Attempt) -> Option<Cycle> {
         // One return to an earlier iteration can be chance; in a cycle the second turn repeats the first.
         let again = |k: usize| {
             let next = k + turn.len();
-            next < attempt.iterations.len() && differ(run, attempt, of(k), of(next), SAME) == Some(false)
+            next < attempt.iterations.len()
+                && differ(run, attempt, of(k), of(next), SAME) == Some(false)
         };
         let closed = |k: usize| run.closed(of(k)).is_some_and(|closed| !closed.is_empty());
         let is_cycle = turn.clone().all(again) && turn.clone().any(closed);

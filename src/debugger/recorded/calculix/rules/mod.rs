@@ -35,7 +35,6 @@ const RULES: &[Rule] = &[
     Deck(supports::beyond_friction),
     Deck(pairs::overlap),
     Deck(pairs::stiff_contact),
-    Deck(pairs::stick_slope),
     Deck(steps::first_increment),
     Deck(steps::past_the_edge),
     Deck(steps::small_sliding),

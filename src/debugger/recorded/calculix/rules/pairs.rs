@@ -1,7 +1,7 @@
 //! Rules on pairs and ties as the deck defines them: faces, gaps, laws, and slave nodes.
 
 use super::shape::{DeckShape, PairShape, SurfaceFace, Vector};
-use super::supports::{plain, rounded};
+use super::supports::{plain, rounded, rounded_up};
 use std::collections::{BTreeMap, BTreeSet};
 use stickslip_core::model::Finding;
 use stickslip_exchange::inp::deck::{Direction, Faces, Value};
@@ -25,7 +25,10 @@ const NAMED: usize = 4;
 pub fn reversed_faces(shape: &DeckShape) -> Vec<Finding> {
     let mut found: Vec<Finding> = Vec::new();
     for pair in &shape.pairs {
-        let both = [(&pair.slaves, &pair.masters, 0), (&pair.masters, &pair.slaves, 1)];
+        let both = [
+            (&pair.slaves, &pair.masters, 0),
+            (&pair.masters, &pair.slaves, 1),
+        ];
         for (own, other, which) in both {
             let other: Vec<Vector> = match other.is_empty() {
                 false => other.iter().map(|face| body_centre(shape, face)).collect(),
@@ -126,7 +129,7 @@ pub fn tie_too_far(shape: &DeckShape) -> Vec<Finding> {
         let far: Vec<_> = tie.nodes.iter().filter(|node| !tie.is_closed(node)).collect();
         let most = far.iter().map(|node| node.gap.abs().hypot(node.beyond));
         let most = most.fold(0.0, f64::max);
-        let needed = rounded(1.1 * most).max(most);
+        let needed = rounded_up(most);
         (!far.is_empty()).then(|| Finding {
             rule: "tie out of reach",
             cause: format!(
@@ -149,12 +152,16 @@ pub fn overlap(shape: &DeckShape) -> Vec<Finding> {
     let mut found = Vec::new();
     for (k, pair) in shape.pairs.iter().enumerate() {
         let size = pair.sizes[0];
-        let in_front = pair.nodes.iter().filter(|node| node.beyond <= OVERLAP * size);
+        let in_front = pair
+            .nodes
+            .iter()
+            .filter(|node| node.beyond <= OVERLAP * size);
         let inside: Vec<_> = in_front.filter(|node| node.gap < -OVERLAP * size).collect();
         let Some(deepest) = inside.iter().min_by(|a, b| a.gap.total_cmp(&b.gap)) else {
             continue;
         };
-        if pair.closes.is_some() || -deepest.gap > 2.0 * pair.sizes[1] {
+        // A deeper one is a surface on the wrong side.
+        if pair.closes.is_some() || -deepest.gap > 0.5 * pair.sizes[1] {
             continue;
         }
         let deck = shape.deck;
@@ -192,7 +199,7 @@ pub fn overlap(shape: &DeckShape) -> Vec<Finding> {
     found
 }
 
-/// Contact far stiffer than the bodies.
+/// Contact far stiffer than the bodies, along the normal or along the surface.
 pub fn stiff_contact(shape: &DeckShape) -> Vec<Finding> {
     let mut found = Vec::new();
     for (k, pair) in shape.pairs.iter().enumerate() {
@@ -201,51 +208,67 @@ pub fn stiff_contact(shape: &DeckShape) -> Vec<Finding> {
         else {
             continue;
         };
-        let size = pair.sizes[0];
-        let ratio = stiffness * size / young;
-        if ratio <= STIFF {
-            continue;
-        }
-        found.push(Finding {
-            rule: "stiff contact",
-            cause: format!(
-                "the contact stiffness of {} is K = {}: K times the element size {} is {} times Young's modulus {} of \
-                 {material}; CalculiX recommends 5 to 50",
-                law.name,
-                plain(stiffness),
-                sig4(size),
-                sig4(ratio),
+        let ratio = |stiffness: f64| stiffness * pair.sizes[0] / young;
+        let compared = |stiffness: f64| {
+            format!(
+                "times the element size {} is {} times Young's modulus {} of {material}",
+                sig4(pair.sizes[0]),
+                sig4(ratio(stiffness)),
                 plain(young)
-            ),
-            cure: format!("K of {ADVISED} moduli per element size (line {})", law.normal_place.line),
-            lines: plain(rounded(ADVISED * young / size)),
-        });
-    }
-    found.dedup();
-    found
-}
-
-/// A stick slope above the contact stiffness.
-pub fn stick_slope(shape: &DeckShape) -> Vec<Finding> {
-    let mut found = Vec::new();
-    for k in 0..shape.pairs.len() {
-        let law = &shape.deck.interactions[shape.deck.pairs[k].interaction];
-        if let (Some(stiffness), Some(slope)) = (shape.stiffness(k), law.stick)
-            && slope > stiffness
-        {
-            found.push(Finding {
+            )
+        };
+        let advised = rounded(ADVISED * young / pair.sizes[0]);
+        let is_stiff = ratio(stiffness) > STIFF;
+        let normal = if is_stiff { advised } else { stiffness };
+        let slope = law
+            .stick
+            .filter(|slope| ratio(*slope) > STIFF || *slope > normal);
+        let friction = format!(
+            "{}, {}",
+            plain(law.friction),
+            plain(rounded(normal / 100.0))
+        );
+        let (line, places) = (law.normal_place.line, law.friction_place.line);
+        let why = format!(
+            "the contact stiffness of {} is K = {}",
+            law.name,
+            plain(stiffness)
+        );
+        found.extend(match (is_stiff, slope) {
+            (false, None) => None,
+            (true, None) => Some(Finding {
+                rule: "stiff contact",
+                cause: format!("{why}: K {}; CalculiX recommends 5 to 50", compared(stiffness)),
+                cure: format!("K of {ADVISED} moduli per element size (line {line})"),
+                lines: plain(advised),
+            }),
+            (true, Some(slope)) => Some(Finding {
+                rule: "stiff contact",
+                cause: format!(
+                    "{why}: K {}; CalculiX recommends 5 to 50; the stick slope is {}",
+                    compared(stiffness),
+                    plain(slope)
+                ),
+                cure: format!(
+                    "K of {ADVISED} moduli per element size, and a hundredth of it as stick slope (lines {line} and {places})"
+                ),
+                lines: format!("{}\n*FRICTION\n{friction}", plain(advised)),
+            }),
+            (false, Some(slope)) => Some(Finding {
                 rule: "stick slope",
                 cause: format!(
-                    "the stick slope of {} is {}, {} times its contact stiffness {}; it should be below, about a hundredth",
+                    "the stick slope of {} is {}, {} times its contact stiffness {}: the slope {}; it should be about a \
+                     hundredth of K",
                     law.name,
                     plain(slope),
                     sig4(slope / stiffness),
-                    plain(stiffness)
+                    plain(stiffness),
+                    compared(slope)
                 ),
-                cure: format!("a smaller slope (line {})", law.friction_place.line),
-                lines: format!("{}, {}", plain(law.friction), plain(rounded(stiffness / 100.0))),
-            });
-        }
+                cure: format!("a smaller slope (line {places})"),
+                lines: friction,
+            }),
+        });
     }
     found.dedup();
     found
@@ -258,7 +281,11 @@ pub fn constrained_slaves(shape: &DeckShape) -> Vec<Finding> {
     let supports: Vec<&Value> = deck.supports.iter().chain(motions).collect();
     let mut found = Vec::new();
     let names = |nodes: &BTreeSet<usize>| {
-        first_of(nodes.iter().map(|&node| deck.nodes[node].label), NAMED, ", ")
+        first_of(
+            nodes.iter().map(|&node| deck.nodes[node].label),
+            NAMED,
+            ", ",
+        )
     };
     for (k, pair) in shape.pairs.iter().enumerate() {
         let own: BTreeMap<usize, Vector> = pair
@@ -273,9 +300,28 @@ pub fn constrained_slaves(shape: &DeckShape) -> Vec<Finding> {
                 Direction::Z => Vector::z(),
                 Direction::Rotation => return false,
             };
-            own.get(&value.node).is_some_and(|normal| normal.dot(&axis).abs() > 0.9)
+            own.get(&value.node)
+                .is_some_and(|normal| normal.dot(&axis).abs() > 0.9)
         });
-        let held: BTreeSet<usize> = against.map(|value| value.node).collect();
+        let against: Vec<&&Value> = against.collect();
+        let held: BTreeSet<usize> = against.iter().map(|value| value.node).collect();
+        if let Some(first) = against.first() {
+            found.push(Finding {
+                rule: "constrained slave nodes",
+                cause: format!(
+                    "{} of {} slave nodes of {} are supported along the contact normal: {}",
+                    held.len(),
+                    own.len(),
+                    shape.pair_name(pair),
+                    names(&held)
+                ),
+                cure: format!(
+                    "leave these nodes out of *BOUNDARY (line {})",
+                    first.place.line
+                ),
+                lines: String::new(),
+            });
+        }
         let tied: BTreeSet<usize> = shape
             .ties
             .iter()
@@ -290,7 +336,6 @@ pub fn constrained_slaves(shape: &DeckShape) -> Vec<Finding> {
             .collect();
         let surface = &deck.surfaces[pair.surfaces[0]];
         for (nodes, why) in [
-            (held, "are supported along the contact normal"),
             (tied, "are tied, too"),
             (twice, "are slaves of another pair, too"),
         ] {

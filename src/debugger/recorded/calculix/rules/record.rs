@@ -44,13 +44,16 @@ pub fn increments_used(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<Find
             plain(step.time.period)
         ),
         cure: format!("more increments (line {})", step.place.line),
-        lines: format!("*STEP{nlgeom}, INC={}", 100 * most),
+        lines: format!("*STEP{nlgeom}, INC={}", 10 * most),
     }]
 }
 
 /// Contacts that open and close in turn: who, where, how often, and against whom.
 pub fn chatter(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<Finding> {
-    let often = run.switching.iter().filter(|found| found.most().1 >= CHATTER);
+    let often = run
+        .switching
+        .iter()
+        .filter(|found| found.most().1 >= CHATTER);
     let often: Vec<_> = often.collect();
     let Some(most) = often.first() else {
         return Vec::new();
@@ -61,7 +64,11 @@ pub fn chatter(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<Finding> {
         None => run.slave_with_corners(slave),
     };
     let named = often.iter().map(|found| name(found.slave));
-    let masters = masters(run, attempt, &often.iter().map(|found| found.slave).collect());
+    let masters = masters(
+        run,
+        attempt,
+        &often.iter().map(|found| found.slave).collect(),
+    );
     let softer = shape.and_then(|shape| {
         let pair = (0..shape.pairs.len()).find(|pair| shape.stiffness(*pair).is_some())?;
         let law = &shape.deck.interactions[shape.deck.pairs[pair].interaction];
@@ -80,7 +87,9 @@ pub fn chatter(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<Finding> {
             Some((_, line)) => format!("a contact stiffness 10 times smaller (line {line})"),
             None => "a smaller contact stiffness, or smaller increments".into(),
         },
-        lines: softer.map_or(String::new(), |(stiffness, _)| plain(rounded(stiffness / 10.0))),
+        lines: softer.map_or(String::new(), |(stiffness, _)| {
+            plain(rounded(stiffness / 10.0))
+        }),
     }]
 }
 
@@ -90,7 +99,11 @@ fn place(run: &CalculixRun, shape: &DeckShape, slave: usize) -> Option<String> {
         Slave::Node(node) => node,
         Slave::Face([first, ..]) => first,
     };
-    let node = shape.deck.nodes.iter().position(|node| node.label == u64::from(label))?;
+    let node = shape
+        .deck
+        .nodes
+        .iter()
+        .position(|node| node.label == u64::from(label))?;
     let at = shape.at(node);
     let of = |pair: &&super::shape::PairShape| pair.nodes.iter().any(|own| own.node == node);
     let pair = shape.pairs.iter().find(of)?;
@@ -109,7 +122,9 @@ fn masters(run: &CalculixRun, attempt: usize, slaves: &BTreeSet<usize>) -> Strin
     let closed = iterations.filter_map(|k| run.files.closed(k)).flatten();
     let touched = closed.filter(|closed| slaves.contains(&(closed.slave as usize)));
     let faces: BTreeSet<u32> = touched.map(|closed| closed.master).collect();
-    let names = faces.iter().map(|face| super::super::run::face(&run.files.masters[*face as usize]));
+    let names = faces
+        .iter()
+        .map(|face| super::super::run::face(&run.files.masters[*face as usize]));
     match faces.len() {
         1 => format!("the master face {}", first_of(names, NAMED, "; ")),
         count => format!("{count} master faces ({})", first_of(names, NAMED, "; ")),
@@ -118,13 +133,25 @@ fn masters(run: &CalculixRun, attempt: usize, slaves: &BTreeSet<usize>) -> Strin
 
 /// Attempts whose correction stays at its cap of 100 % while the residual grows.
 pub fn capped_correction(run: &CalculixRun, _: Option<&DeckShape>) -> Vec<Finding> {
-    let capped = run.files.attempts.iter().enumerate().filter_map(|(k, attempt)| {
-        let norms = attempt.iterations.clone().skip(1).filter_map(|k| run.norms(k));
-        let norms: Vec<_> = norms.take_while(|norms| norms.correction >= CAPPED).collect();
-        let (first, last) = (norms.first()?, norms.last()?);
-        let grows = norms.len() >= 2 && last.residual > first.residual;
-        (attempt.end == End::NotConverged && grows).then(|| (k, norms.len(), first.residual, last.residual))
-    });
+    let capped = run
+        .files
+        .attempts
+        .iter()
+        .enumerate()
+        .filter_map(|(k, attempt)| {
+            let norms = attempt
+                .iterations
+                .clone()
+                .skip(1)
+                .filter_map(|k| run.norms(k));
+            let norms: Vec<_> = norms
+                .take_while(|norms| norms.correction >= CAPPED)
+                .collect();
+            let (first, last) = (norms.first()?, norms.last()?);
+            let grows = norms.len() >= 2 && last.residual > first.residual;
+            (attempt.end == End::NotConverged && grows)
+                .then(|| (k, norms.len(), first.residual, last.residual))
+        });
     let capped: Vec<_> = capped.collect();
     let Some(&(attempt, count, from, to)) = capped.iter().max_by(|a, b| a.1.cmp(&b.1)) else {
         return Vec::new();

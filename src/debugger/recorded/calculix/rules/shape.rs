@@ -173,21 +173,30 @@ impl<'d> DeckShape<'d> {
 
     /// Whether a face lies between two elements.
     pub fn is_inner(&self, face: &SurfaceFace) -> bool {
-        self.faces.get(&sorted(&face.corners)).is_some_and(|n| *n > 1)
+        self.faces
+            .get(&sorted(&face.corners))
+            .is_some_and(|n| *n > 1)
     }
 
     /// The smallest set of exactly these nodes, or the first node.
     pub fn set_name(&self, nodes: &BTreeSet<usize>) -> String {
         let is_same = |set: &&Set| set.members.iter().eq(nodes);
         let set = self.deck.node_sets.iter().find(is_same);
-        let first = nodes.first().map(|&node| self.deck.nodes[node].label.to_string());
+        let first = nodes
+            .first()
+            .map(|&node| self.deck.nodes[node].label.to_string());
         set.map_or_else(|| first.unwrap_or_default(), |set| set.name.clone())
     }
 
     /// The material of an element, by index.
     pub fn material(&self, element: usize) -> Option<usize> {
         let sections = self.deck.sections.iter().rev();
-        let has = |set: usize| self.deck.element_sets[set].members.binary_search(&element).is_ok();
+        let has = |set: usize| {
+            self.deck.element_sets[set]
+                .members
+                .binary_search(&element)
+                .is_ok()
+        };
         sections
             .into_iter()
             .find(|section| has(section.set))
@@ -291,7 +300,11 @@ impl<'d> DeckShape<'d> {
         let group = |node: Option<usize>| node.and_then(|n| self.group(n)).unwrap_or(usize::MAX);
         let groups = [
             group(nodes.first().copied()),
-            group(masters.first().and_then(|face| face.corners.first().copied())),
+            group(
+                masters
+                    .first()
+                    .and_then(|face| face.corners.first().copied()),
+            ),
         ];
         let size = |faces: &[SurfaceFace]| {
             let sum: f64 = faces.iter().map(|face| face.size).sum();
@@ -349,7 +362,10 @@ impl<'d> DeckShape<'d> {
         };
         let points = &self.deck.amplitudes[amplitude].points;
         let after = points.partition_point(|(at, _)| *at <= time);
-        match (after.checked_sub(1).and_then(|k| points.get(k)), points.get(after)) {
+        match (
+            after.checked_sub(1).and_then(|k| points.get(k)),
+            points.get(after),
+        ) {
             (Some((a, x)), Some((b, y))) => x + (y - x) * (time - a) / (b - a),
             (Some((_, x)), None) | (None, Some((_, x))) => *x,
             (None, None) => 1.0,
@@ -364,7 +380,9 @@ fn closest(point: Vector, corners: &[Vector]) -> Vector {
         3 => &[[0, 1, 2]],
         _ => &[],
     };
-    let inside = triangles.iter().filter_map(|of| in_triangle(point, of.map(|k| corners[k])));
+    let inside = triangles
+        .iter()
+        .filter_map(|of| in_triangle(point, of.map(|k| corners[k])));
     let ends = (0..corners.len()).map(|k| {
         let (a, b) = (corners[k], corners[(k + 1) % corners.len()]);
         let along = b - a;
@@ -428,7 +446,12 @@ fn bodies(deck: &Deck) -> (Vec<Option<usize>>, Vec<String>) {
 /// Name of a body by one of its elements: the set of its section, with the element if the name is in use.
 fn name(deck: &Deck, element: usize, used: &[String]) -> String {
     let label = deck.elements[element].label;
-    let has = |set: usize| deck.element_sets[set].members.binary_search(&element).is_ok();
+    let has = |set: usize| {
+        deck.element_sets[set]
+            .members
+            .binary_search(&element)
+            .is_ok()
+    };
     match deck.sections.iter().find(|section| has(section.set)) {
         None => format!("the body of element {label}"),
         Some(section) => match deck.element_sets[section.set].name.clone() {

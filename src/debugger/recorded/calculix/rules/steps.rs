@@ -12,8 +12,8 @@ const FIRST: f64 = 0.5;
 const ADVISED: f64 = 0.1;
 /// Sliding that needs large displacements, in sizes of a slave face.
 const SLIDING: f64 = 1.0;
-/// Increments that can be cut less than this are reported.
-const CUT: f64 = 4.0;
+/// Increments that cannot be cut to this part are reported.
+const CUT: f64 = 0.5;
 
 /// Displacement that a step prescribes on a group: per axis the largest change of its nodes, at two times of the step.
 fn travel(shape: &DeckShape, step: usize, group: usize, times: [f64; 2]) -> Vector {
@@ -34,7 +34,9 @@ fn travel(shape: &DeckShape, step: usize, group: usize, times: [f64; 2]) -> Vect
         let mut earlier = earlier.flat_map(|step| step.motions.iter().map(move |m| (step, m)));
         let before = earlier.find(|(_, m)| m.target() == value.target());
         let before = before.map_or(0.0, |(step, m)| {
-            m.value * m.amplitude.map_or(1.0, |_| shape.factor(step, m.amplitude, step.time.period))
+            m.value
+                * m.amplitude
+                    .map_or(1.0, |_| shape.factor(step, m.amplitude, step.time.period))
         });
         let [from, to] = times.map(|time| match value.amplitude {
             None => before + (value.value - before) * shape.factor(this, None, time),
@@ -97,18 +99,14 @@ pub fn no_cuts(shape: &DeckShape) -> Vec<Finding> {
     let steps = shape.deck.steps.iter().enumerate();
     let fixed = steps.filter_map(|(k, step)| {
         let time = step.time;
-        let least = time.least.filter(|least| *least * CUT > time.initial)?;
+        let least = time.least.filter(|least| *least > CUT * time.initial)?;
         Some(Finding {
             rule: "no room for cuts",
             cause: format!(
-                "increments of step {} start at {} and must not fall below {}: after {} the run stops",
+                "increments of step {} start at {} and must not fall below {}: after the first failure the run stops",
                 k + 1,
                 plain(time.initial),
-                plain(least),
-                match 2.0 * least > time.initial {
-                    true => "the first failure",
-                    false => "two cuts",
-                }
+                plain(least)
             ),
             cure: format!("a smaller minimum (line {})", step.static_place.line),
             lines: [time.initial, time.period, rounded(time.initial / 1000.0)]
@@ -126,7 +124,10 @@ pub fn no_cuts(shape: &DeckShape) -> Vec<Finding> {
 pub fn small_sliding(shape: &DeckShape) -> Vec<Finding> {
     let mut found: Vec<Finding> = Vec::new();
     for (k, step, number, pair) in moves(shape) {
-        let (all, normal) = (relative(shape, k, pair, [0.0, step.time.period]), pair.normal());
+        let (all, normal) = (
+            relative(shape, k, pair, [0.0, step.time.period]),
+            pair.normal(),
+        );
         let along = (all - all.dot(&normal) * normal).norm();
         let card = &shape.deck.pairs[number];
         if along <= SLIDING * pair.sizes[0] || (step.nlgeom && !card.small_sliding) {
@@ -135,7 +136,10 @@ pub fn small_sliding(shape: &DeckShape) -> Vec<Finding> {
         let (why, cure, lines) = match step.nlgeom {
             true => (
                 "the pair has SMALL SLIDING, which keeps the first master face",
-                format!("leave SMALL SLIDING out (*CONTACT PAIR before line {})", card.place.line),
+                format!(
+                    "leave SMALL SLIDING out (*CONTACT PAIR before line {})",
+                    card.place.line
+                ),
                 String::new(),
             ),
             false => (
@@ -226,7 +230,10 @@ fn shorter(shape: &DeckShape, step: usize, pair: usize, part: f64) -> String {
         if !own || places.contains(&(value.place, value.direction)) {
             continue;
         }
-        let same = step.motions.iter().filter(|other| other.place == value.place);
+        let same = step
+            .motions
+            .iter()
+            .filter(|other| other.place == value.place);
         let set = shape.set_name(&same.map(|other| other.node).collect());
         let number = match value.direction {
             Direction::X => 1,

@@ -91,7 +91,8 @@ impl GroupMotion {
         let eigen = supports.symmetric_eigen();
         let values = eigen.eigenvalues.iter().enumerate();
         let free = values.filter(|(_, value)| **value < FREE * largest);
-        free.map(|(k, _)| eigen.eigenvectors.column(k).into_owned()).collect()
+        free.map(|(k, _)| eigen.eigenvectors.column(k).into_owned())
+            .collect()
     }
 
     /// Whether the load does work on one of the motions.
@@ -148,7 +149,9 @@ fn forces(shape: &DeckShape, step: usize) -> Vec<(usize, Vector, Vector)> {
         let (Some(&node), Some(first)) = (element.nodes.first(), faces.first()) else {
             continue;
         };
-        let parts = faces.iter().map(|face| face.area * (face.centre - first.centre).dot(&face.normal));
+        let parts = faces
+            .iter()
+            .map(|face| face.area * (face.centre - first.centre).dot(&face.normal));
         let volume = parts.sum::<f64>() / if deck.is_solid() { 3.0 } else { 2.0 };
         let per_volume = match weight.load {
             Volume::Force(force) => Vector::from(force),
@@ -158,7 +161,11 @@ fn forces(shape: &DeckShape, step: usize) -> Vec<(usize, Vector, Vector)> {
                 Vector::from(acceleration) * density.unwrap_or(0.0)
             }
         };
-        all.push((node, shape.at(node), per_volume * volume * part(weight.amplitude)));
+        all.push((
+            node,
+            shape.at(node),
+            per_volume * volume * part(weight.amplitude),
+        ));
     }
     all
 }
@@ -169,23 +176,41 @@ fn words(free: &[Motion]) -> String {
         let part: f64 = free.iter().map(|motion| motion[k] * motion[k]).sum();
         part > 1.0 - 1e-6
     };
-    let names = ["along x", "along y", "along z", "about x", "about y", "about z"];
-    let pure: Vec<&str> = (0..6).filter(|k| held(*k)).map(|k| names[k]).collect();
-    match (pure.len() == free.len(), pure.is_empty()) {
-        (true, _) => pure.join(", "),
-        (false, true) => "about a skew axis".into(),
-        (false, false) => format!("{} and about a skew axis", pure.join(", ")),
+    let axes = |from: usize| -> Vec<&str> {
+        let axes = ["x", "y", "z"].into_iter().enumerate();
+        axes.filter(|(k, _)| held(from + k))
+            .map(|(_, axis)| axis)
+            .collect()
+    };
+    let (along, about) = (axes(0), axes(3));
+    let pure = [("along", &along), ("about", &about)];
+    let pure = pure.iter().filter(|(_, axes)| !axes.is_empty());
+    let mut words: Vec<String> = pure
+        .map(|(word, axes)| format!("{word} {}", axes.join(", ")))
+        .collect();
+    if along.len() + about.len() < free.len() {
+        words.push("about a skew axis".into());
     }
+    words.join(" and ")
 }
 
 /// Numbers of a vector, shortened.
 fn vector(of: Vector) -> String {
-    let [x, y, z] = [of.x, of.y, of.z].map(|part| sig4(if part.abs() < 1e-9 * of.norm() { 0.0 } else { part }));
+    let [x, y, z] = [of.x, of.y, of.z].map(|part| {
+        sig4(if part.abs() < 1e-9 * of.norm() {
+            0.0
+        } else {
+            part
+        })
+    });
     format!("({x}, {y}, {z})")
 }
 
 /// The pairs that touch a group, with whether they have friction.
-fn pairs_of<'s>(shape: &'s DeckShape, group: usize) -> impl Iterator<Item = (usize, &'s PairShape)> {
+fn pairs_of<'s>(
+    shape: &'s DeckShape,
+    group: usize,
+) -> impl Iterator<Item = (usize, &'s PairShape)> {
     let pairs = shape.pairs.iter().enumerate();
     pairs.filter(move |(_, pair)| pair.groups.contains(&group))
 }
@@ -199,7 +224,10 @@ pub fn unconnected(shape: &DeckShape) -> Vec<Finding> {
     if shape.deck.is_incomplete {
         return Vec::new();
     }
-    let far = shape.ties.iter().filter(|tie| !tie.nodes.iter().any(|n| tie.is_closed(n)));
+    let far = shape
+        .ties
+        .iter()
+        .filter(|tie| !tie.nodes.iter().any(|n| tie.is_closed(n)));
     let far: BTreeSet<usize> = far.flat_map(|tie| tie.groups).collect();
     let alone = groups(shape).into_iter().filter(|group| {
         let free = GroupMotion::new(shape, *group).free(shape.modes());
@@ -228,8 +256,12 @@ pub fn unconnected(shape: &DeckShape) -> Vec<Finding> {
 pub fn open_at_start(shape: &DeckShape) -> Vec<Finding> {
     free_groups(shape, |shape, group, motion, free| {
         let pairs: Vec<&PairShape> = pairs_of(shape, group).map(|(_, pair)| pair).collect();
-        let closed = pairs.iter().any(|pair| pair.nodes.iter().any(|n| pair.is_closed(n)));
-        let nearest = pairs.iter().filter_map(|pair| Some((*pair, pair.nearest()?)));
+        let closed = pairs
+            .iter()
+            .any(|pair| pair.nodes.iter().any(|n| pair.is_closed(n)));
+        let nearest = pairs
+            .iter()
+            .filter_map(|pair| Some((*pair, pair.nearest()?)));
         let (pair, node) = nearest.min_by(|a, b| a.1.gap.total_cmp(&b.1.gap))?;
         if closed {
             return None;
@@ -271,7 +303,9 @@ pub fn free_to_slide(shape: &DeckShape) -> Vec<Finding> {
         let name = shape.group_name(group);
         let set = shape.set_name(&motion.loaded);
         let moving = (0..3).filter(|&k| free.iter().any(|m| m[k].abs() > 1e-3));
-        let lines: Vec<String> = moving.map(|k| format!("{set}, {0}, {0}, 0.", k + 1)).collect();
+        let lines: Vec<String> = moving
+            .map(|k| format!("{set}, {0}, {0}, 0.", k + 1))
+            .collect();
         Some(Finding {
             rule: "free to slide",
             cause: format!(
@@ -306,7 +340,9 @@ fn free_groups(
         }
         let free = motion.free(shape.modes());
         let moves = !free.is_empty() && motion.is_loaded(&free);
-        moves.then(|| finding(shape, group, &motion, &free)).flatten()
+        moves
+            .then(|| finding(shape, group, &motion, &free))
+            .flatten()
     };
     groups(shape).into_iter().filter_map(of).collect()
 }
@@ -339,7 +375,9 @@ pub fn beyond_friction(shape: &DeckShape) -> Vec<Finding> {
                 continue;
             }
             let needed = rounded_up(along.norm() / pressed);
-            let stick = law.stick.map_or(String::new(), |slope| format!(", {}", plain(slope)));
+            let stick = law
+                .stick
+                .map_or(String::new(), |slope| format!(", {}", plain(slope)));
             let line = law.friction_place.line;
             found.push(Finding {
                 rule: "load above friction",
@@ -383,7 +421,9 @@ fn add_forces(
     for (node, force) in here {
         // A step replaces the components that it gives.
         let before = total.entry(node).or_insert_with(Vector::zeros);
-        (0..3).filter(|k| force[*k] != 0.0).for_each(|k| before[k] = force[k]);
+        (0..3)
+            .filter(|k| force[*k] != 0.0)
+            .for_each(|k| before[k] = force[k]);
     }
 }
 
@@ -393,7 +433,7 @@ pub fn rounded(value: f64) -> f64 {
 }
 
 /// The next larger number with two significant digits.
-fn rounded_up(value: f64) -> f64 {
+pub fn rounded_up(value: f64) -> f64 {
     format!("{:.1e}", 1.05 * value).parse().unwrap_or(value)
 }
 
