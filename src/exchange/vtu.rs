@@ -31,11 +31,11 @@ pub struct Array {
     pub values: Values,
 }
 
-/// A grid in the plane z = 0 with data.
+/// A grid with data.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Grid {
     /// Positions of the points.
-    pub points: Vec<[f64; 2]>,
+    pub points: Vec<[f64; 3]>,
     /// Lines and elements between the points.
     pub cells: Vec<Cell>,
     /// Arrays with one entry per point.
@@ -77,11 +77,10 @@ pub fn write(grid: &Grid) -> String {
         "    <Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">"
     );
     text.push_str("      <Points>\n");
-    let places = grid.points.iter().flat_map(|&[x, y]| [x, y, 0.0]);
     data(
         &mut text,
         "type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\"",
-        floats(places),
+        floats(grid.points.iter().flatten().copied()),
     );
     text.push_str("      </Points>\n      <Cells>\n");
     let corners = grid.cells.iter().flat_map(|cell| &cell.nodes);
@@ -228,7 +227,7 @@ mod tests {
             (CellKind::Quad9, 28),
         ];
         let grid = Grid {
-            points: vec![[0.5, -1.0]; 9],
+            points: vec![[0.5, -1.0, 0.0]; 9],
             cells: kinds
                 .map(|(kind, _)| Cell {
                     kind,

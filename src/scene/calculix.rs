@@ -6,7 +6,7 @@ use std::fs::OpenOptions;
 use std::io::{self, BufReader};
 use std::path::{Path, PathBuf};
 use stickslip_exchange::calculix::files::CalculixFiles;
-use stickslip_exchange::calculix::{cel, cvg, sta};
+use stickslip_exchange::calculix::{cel, cvg, frd, sta};
 use stickslip_exchange::format_error::FormatError;
 use stickslip_exchange::inp::Deck;
 use stickslip_platform::input::{self, Unreadable};
@@ -58,6 +58,14 @@ pub fn read(path: &Path) -> Result<CalculixFiles, String> {
     let sta = beside(path, ENDS[1], sta::read)?;
     let cvg = beside(path, ENDS[2], cvg::read)?;
     Ok(CalculixFiles::new(cel, sta, cvg))
+}
+
+/// The contact pressures of the last result of a run, from its .frd; empty without one.
+///
+/// # Errors
+/// If the file cannot be read.
+pub fn pressures(cel: &Path) -> Result<Vec<(u32, f64)>, String> {
+    beside(cel, "frd", frd::pressures).map(Option::unwrap_or_default)
 }
 
 type Reader = BufReader<std::fs::File>;

@@ -173,9 +173,9 @@ def main():
     for name, *_ in plane_cases(folder):
         for end in ("inp", "cel", "cvg", "sta"):
             os.remove(os.path.join(folder, f"{name}.{end}"))
-    spooles = os.path.join(folder, "spooles.out")
-    if os.path.exists(spooles):
-        os.remove(spooles)
+    for file in os.listdir(folder):
+        if file.endswith(".nam") or file == "spooles.out":
+            os.remove(os.path.join(folder, file))
     with open(os.path.join(folder, "causes.csv"), "w", newline="") as file:
         csv.writer(file, lineterminator="\n").writerows(rows)
 

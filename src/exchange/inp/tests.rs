@@ -360,8 +360,8 @@ fn loads_on_sides_and_volumes_and_adjusted_gaps_are_read() {
     assert_eq!(
         weights,
         [
-            (1, Volume::Gravity([0.0, -9.81])),
-            (0, Volume::Force([3.0, 0.0]))
+            (1, Volume::Gravity([0.0, -9.81, 0.0])),
+            (0, Volume::Force([3.0, 0.0, 0.0]))
         ]
     );
 }

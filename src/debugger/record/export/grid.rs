@@ -51,7 +51,11 @@ pub(super) fn vtu(shown: &ExportState, _: &mut Stepper) -> Result<Vec<u8>, Expor
 /// The grid of a state; gaps come from the last minor iteration, if there is one.
 pub fn grid(model: &Model, state: &State, event: Option<&Event>, at: Position, load: f64) -> Grid {
     let mut grid = Grid {
-        points: model.nodes.iter().map(|node| node.at).collect(),
+        points: model
+            .nodes
+            .iter()
+            .map(|node| [node.at[0], node.at[1], 0.0])
+            .collect(),
         ..Grid::default()
     };
     cells(model, &mut grid);

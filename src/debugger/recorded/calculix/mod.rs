@@ -1,11 +1,12 @@
 //! A finished CalculiX run as a read-only solver: each iteration in its files is one minor iteration.
 //!
 //! - [`run`]: the iterations; `cycle`: detection of cycles; [`words`]: descriptions, and the whole run as text; [`rules`]: why it
-//!   did not converge.
+//!   did not converge; [`switches`]: its mesh for ParaView.
 
 mod cycle;
 pub mod rules;
 pub mod run;
+pub mod switches;
 pub mod words;
 
 use super::log::Log;

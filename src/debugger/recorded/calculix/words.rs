@@ -11,7 +11,7 @@ use stickslip_scene::shown::{aligned, first_of};
 /// Kind of the recording.
 pub const READ_ONLY: &str = "finished CalculiX run (read-only)";
 /// Hint shown when a run is opened.
-pub const GREETING: &str = "d explains the run; O shows it as text; ? lists the keys";
+pub const GREETING: &str = "d explains it; O: as text; ?: all keys";
 /// What the files do not contain, in short.
 pub const NO_MODES: &str = "stick and slip are not in the file";
 /// What the files do not contain, in full.
