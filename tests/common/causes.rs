@@ -1,4 +1,5 @@
 //! The decks of `tests/calculix/causes`, which `.ci/decks` makes: each fails in CalculiX for one cause.
+#![allow(dead_code)]
 
 use std::path::Path;
 use stickslip::recorded::calculix::run::CalculixRun;

@@ -95,12 +95,12 @@ pub struct FinishedRun {
     /// Limit of the displacement correction (relative).
     pub correction_limit: f64,
     /// Why it did not converge, most likely causes first.
-    pub findings: Vec<Finding>,
+    pub findings: Vec<RunFinding>,
 }
 
 /// A cause of a failed run, found by a rule.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Finding {
+pub struct RunFinding {
     /// Name of the rule.
     pub rule: &'static str,
     /// The cause with its numbers.
@@ -111,7 +111,7 @@ pub struct Finding {
     pub lines: String,
 }
 
-impl Finding {
+impl RunFinding {
     /// The new lines of the input in one line, shortened.
     pub fn shown_lines(&self) -> String {
         const MOST: usize = 4;

@@ -2,7 +2,7 @@
 
 use super::remedies::{self, BUDGET, RemedyTrial, TrialEnd, compare};
 use super::remedy::{Remedy, RemedyInput};
-use stickslip_core::model::Finding;
+use stickslip_core::model::RunFinding;
 
 /// Outcome of a line of the list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -86,7 +86,7 @@ impl TryLine {
     }
 
     /// The cure of a finding, as lines of the input.
-    pub fn from_finding(found: &Finding) -> TryLine {
+    pub fn from_finding(found: &RunFinding) -> TryLine {
         TryLine {
             typed: found.shown_lines(),
             ..TryLine::by_hand(&found.cure)

@@ -87,14 +87,10 @@ impl Reader {
                 bail!(at, "node {number} is at z = {z:?}; only z = 0 is supported");
             }
             let place = label.place();
-            if self
-                .names
-                .nodes
-                .insert(number, self.deck.nodes.len())
-                .is_some()
-            {
+            if self.names.nodes.contains_key(&number) {
                 bail!(place, "node {number} is defined twice");
             }
+            self.names.nodes.insert(number, self.deck.nodes.len());
             self.deck.nodes.push(Node {
                 label: number,
                 at: [x, y, z],
@@ -160,14 +156,10 @@ impl Reader {
                 );
             }
             let place = label.place();
-            if self
-                .names
-                .elements
-                .insert(number, self.deck.elements.len())
-                .is_some()
-            {
+            if self.names.elements.contains_key(&number) {
                 bail!(place, "element {number} is defined twice");
             }
+            self.names.elements.insert(number, self.deck.elements.len());
             self.deck.elements.push(Element {
                 label: number,
                 kind,
@@ -329,14 +321,19 @@ impl Reader {
             bail!(card, "the surface {} is empty", short(&name));
         }
         self.names.count(count, card.place)?;
-        if self
-            .names
-            .surfaces
-            .insert(name.clone(), self.deck.surfaces.len())
-            .is_some()
-        {
-            bail!(card, "the surface {} is defined twice", short(&name));
+        match self.names.surfaces.get(&name) {
+            None => {}
+            // CalculiX has surfaces of nodes and of faces with the same name; the faces also serve as slaves.
+            Some(&known) if self.is_outline && !matches!(of, Faces::Nodes(_)) => {
+                self.deck.surfaces[known].of = of;
+                return Ok(());
+            }
+            Some(_) if self.is_outline => return Ok(()),
+            Some(_) => bail!(card, "the surface {} is defined twice", short(&name)),
         }
+        self.names
+            .surfaces
+            .insert(name.clone(), self.deck.surfaces.len());
         self.deck.surfaces.push(Surface {
             name,
             of,

@@ -348,7 +348,8 @@ impl Reader {
             self.deck.add_note(
                 card.place_of("TYPE"),
                 "SURFACE TO SURFACE is treated as node to surface: the law holds at each slave node with \
-                 its tributary area, not at points of the sides",
+                 its tributary area, not at points of the sides, so forces differ from CalculiX's: by up to 58 % with one \
+                 element per side, less on finer meshes; TYPE=NODE TO SURFACE gives the same model in both",
             );
         }
         let adjust = match card.value("ADJUST")? {

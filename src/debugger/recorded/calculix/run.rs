@@ -2,7 +2,7 @@
 
 use super::cycle::{self, Cycle};
 use std::fmt::Write;
-use stickslip_core::model::Finding;
+use stickslip_core::model::RunFinding;
 use stickslip_exchange::calculix::cel::{ClosedContact, Slave};
 use stickslip_exchange::calculix::cvg::Norms;
 use stickslip_exchange::calculix::files::{CalculixFiles, End};
@@ -22,7 +22,7 @@ pub struct CalculixRun {
     /// The deck next to the files.
     pub deck: Option<Deck>,
     /// Why the run did not converge, by the rules.
-    pub findings: Vec<Finding>,
+    pub findings: Vec<RunFinding>,
     /// The attempt of each iteration.
     attempts: Vec<usize>,
     /// The largest number of contact elements of each slave.

@@ -13,14 +13,14 @@ mod supports;
 
 use super::run::CalculixRun;
 use shape::DeckShape;
-use stickslip_core::model::Finding;
+use stickslip_core::model::RunFinding;
 
 /// What a rule looks at.
 enum Rule {
     /// The deck, before or after a run.
-    Deck(fn(&DeckShape) -> Vec<Finding>),
+    Deck(fn(&DeckShape) -> Vec<RunFinding>),
     /// The record of a run, with its deck if there is one.
-    Record(fn(&CalculixRun, Option<&DeckShape>) -> Vec<Finding>),
+    Record(fn(&CalculixRun, Option<&DeckShape>) -> Vec<RunFinding>),
 }
 
 use Rule::{Deck, Record};
@@ -47,7 +47,7 @@ const RULES: &[Rule] = &[
 ];
 
 /// The findings of all rules, in the order of the rules.
-pub fn examine(deck: Option<&DeckShape>, run: Option<&CalculixRun>) -> Vec<Finding> {
+pub fn examine(deck: Option<&DeckShape>, run: Option<&CalculixRun>) -> Vec<RunFinding> {
     let findings = RULES.iter().flat_map(|rule| match (rule, deck, run) {
         (Deck(rule), Some(deck), _) => rule(deck),
         (Record(rule), _, Some(run)) => rule(run, deck),

@@ -1,9 +1,9 @@
 //! Rules on pairs and ties as the deck defines them: faces, gaps, laws, and slave nodes.
 
 use super::shape::{DeckShape, PairShape, SurfaceFace, Vector};
-use super::supports::{plain, rounded, rounded_up};
+use super::supports::{is_free, plain, rounded, rounded_up};
 use std::collections::{BTreeMap, BTreeSet};
-use stickslip_core::model::Finding;
+use stickslip_core::model::RunFinding;
 use stickslip_exchange::inp::deck::{Direction, Faces, Value};
 use stickslip_scene::number::sig4;
 use stickslip_scene::shown::first_of;
@@ -14,6 +14,8 @@ const STIFF: f64 = 100.0;
 const ADVISED: f64 = 20.0;
 /// Overlap at the start that is reported, in sizes of a slave face.
 const OVERLAP: f64 = 0.01;
+/// Overlap at the start that is reported if supports hold both bodies, in sizes of a slave face.
+const DEEP: f64 = 0.1;
 /// Slave faces this much larger than master faces are reported.
 const COARSE: f64 = 2.0;
 /// Cosine between a face and the direction to the other surface, above which it looks away.
@@ -22,8 +24,8 @@ const AWAY: f64 = 0.5;
 const NAMED: usize = 4;
 
 /// Surfaces whose faces look away from the other surface of their pair, or lie between two elements.
-pub fn reversed_faces(shape: &DeckShape) -> Vec<Finding> {
-    let mut found: Vec<Finding> = Vec::new();
+pub fn reversed_faces(shape: &DeckShape) -> Vec<RunFinding> {
+    let mut found: Vec<RunFinding> = Vec::new();
     for pair in &shape.pairs {
         let both = [
             (&pair.slaves, &pair.masters, 0),
@@ -65,7 +67,7 @@ fn reversed(
     count: usize,
     bad: &[&SurfaceFace],
     others: &[Vector],
-) -> Option<Finding> {
+) -> Option<RunFinding> {
     let deck = shape.deck;
     let surface = &deck.surfaces[pair.surfaces[which]];
     let first = bad.first()?;
@@ -106,7 +108,7 @@ fn reversed(
             surface.place.line
         ),
     };
-    Some(Finding {
+    Some(RunFinding {
         rule: "reversed faces",
         cause: format!(
             "{} of {count} faces of {} look away from {other}, such as {} of element {}{between}",
@@ -124,13 +126,13 @@ fn reversed(
 }
 
 /// Ties of which nodes are beyond the position tolerance, so that they are not tied.
-pub fn tie_too_far(shape: &DeckShape) -> Vec<Finding> {
+pub fn tie_too_far(shape: &DeckShape) -> Vec<RunFinding> {
     let too_far = shape.ties.iter().zip(&shape.deck.ties).filter_map(|(tie, card)| {
         let far: Vec<_> = tie.nodes.iter().filter(|node| !tie.is_closed(node)).collect();
         let most = far.iter().map(|node| node.gap.abs().hypot(node.beyond));
         let most = most.fold(0.0, f64::max);
         let needed = rounded_up(most);
-        (!far.is_empty()).then(|| Finding {
+        (!far.is_empty()).then(|| RunFinding {
             rule: "tie out of reach",
             cause: format!(
                 "the tie {} leaves {} of {} nodes untied: they are up to {} from the master, beyond its position tolerance of {}",
@@ -148,7 +150,7 @@ pub fn tie_too_far(shape: &DeckShape) -> Vec<Finding> {
 }
 
 /// Slave nodes that start inside the master.
-pub fn overlap(shape: &DeckShape) -> Vec<Finding> {
+pub fn overlap(shape: &DeckShape) -> Vec<RunFinding> {
     let mut found = Vec::new();
     for (k, pair) in shape.pairs.iter().enumerate() {
         let size = pair.sizes[0];
@@ -160,8 +162,12 @@ pub fn overlap(shape: &DeckShape) -> Vec<Finding> {
         let Some(deepest) = inside.iter().min_by(|a, b| a.gap.total_cmp(&b.gap)) else {
             continue;
         };
-        // A deeper one is a surface on the wrong side.
-        if pair.closes.is_some() || -deepest.gap > 0.5 * pair.sizes[1] {
+        // A press fit of bodies that supports hold is meant so, and a very deep overlap is a surface on the wrong side.
+        let is_expelled = pair.groups.iter().any(|group| is_free(shape, *group));
+        if (-deepest.gap < DEEP * size && !is_expelled)
+            || pair.closes.is_some()
+            || -deepest.gap > 0.5 * pair.sizes[1]
+        {
             continue;
         }
         let deck = shape.deck;
@@ -174,7 +180,7 @@ pub fn overlap(shape: &DeckShape) -> Vec<Finding> {
         };
         let card = &deck.pairs[k];
         let kind = if card.faces { "SURFACE" } else { "NODE" };
-        found.push(Finding {
+        found.push(RunFinding {
             rule: "overlap at the start",
             cause: format!(
                 "{} of {} slave nodes of {} start inside the master, at most {} (node {}), which is {} % of a \
@@ -200,7 +206,7 @@ pub fn overlap(shape: &DeckShape) -> Vec<Finding> {
 }
 
 /// Contact far stiffer than the bodies, along the normal or along the surface.
-pub fn stiff_contact(shape: &DeckShape) -> Vec<Finding> {
+pub fn stiff_contact(shape: &DeckShape) -> Vec<RunFinding> {
     let mut found = Vec::new();
     for (k, pair) in shape.pairs.iter().enumerate() {
         let law = &shape.deck.interactions[shape.deck.pairs[k].interaction];
@@ -236,13 +242,13 @@ pub fn stiff_contact(shape: &DeckShape) -> Vec<Finding> {
         );
         found.extend(match (is_stiff, slope) {
             (false, None) => None,
-            (true, None) => Some(Finding {
+            (true, None) => Some(RunFinding {
                 rule: "stiff contact",
                 cause: format!("{why}: K {}; CalculiX recommends 5 to 50", compared(stiffness)),
                 cure: format!("K of {ADVISED} moduli per element size (line {line})"),
                 lines: plain(advised),
             }),
-            (true, Some(slope)) => Some(Finding {
+            (true, Some(slope)) => Some(RunFinding {
                 rule: "stiff contact",
                 cause: format!(
                     "{why}: K {}; CalculiX recommends 5 to 50; the stick slope is {}",
@@ -254,7 +260,7 @@ pub fn stiff_contact(shape: &DeckShape) -> Vec<Finding> {
                 ),
                 lines: format!("{}\n*FRICTION\n{friction}", plain(advised)),
             }),
-            (false, Some(slope)) => Some(Finding {
+            (false, Some(slope)) => Some(RunFinding {
                 rule: "stick slope",
                 cause: format!(
                     "the stick slope of {} is {}, {} times its contact stiffness {}: the slope {}; it should be about a \
@@ -275,7 +281,7 @@ pub fn stiff_contact(shape: &DeckShape) -> Vec<Finding> {
 }
 
 /// Slave nodes that are supported against their contact, tied, or slaves of two pairs.
-pub fn constrained_slaves(shape: &DeckShape) -> Vec<Finding> {
+pub fn constrained_slaves(shape: &DeckShape) -> Vec<RunFinding> {
     let deck = shape.deck;
     let motions = deck.steps.iter().flat_map(|step| &step.motions);
     let supports: Vec<&Value> = deck.supports.iter().chain(motions).collect();
@@ -306,7 +312,7 @@ pub fn constrained_slaves(shape: &DeckShape) -> Vec<Finding> {
         let against: Vec<&&Value> = against.collect();
         let held: BTreeSet<usize> = against.iter().map(|value| value.node).collect();
         if let Some(first) = against.first() {
-            found.push(Finding {
+            found.push(RunFinding {
                 rule: "constrained slave nodes",
                 cause: format!(
                     "{} of {} slave nodes of {} are supported along the contact normal: {}",
@@ -343,7 +349,7 @@ pub fn constrained_slaves(shape: &DeckShape) -> Vec<Finding> {
                 continue;
             }
             let count = nodes.len();
-            found.push(Finding {
+            found.push(RunFinding {
                 rule: "constrained slave nodes",
                 cause: format!(
                     "{count} of {} slave nodes of {} {why}: {}",
@@ -380,7 +386,7 @@ fn remaining(
 }
 
 /// Slave surfaces coarser than their master.
-pub fn coarse_slave(shape: &DeckShape) -> Vec<Finding> {
+pub fn coarse_slave(shape: &DeckShape) -> Vec<RunFinding> {
     let coarse = shape.pairs.iter().filter(|pair| !pair.slaves.is_empty());
     let coarse = coarse.filter(|pair| pair.sizes[0] > COARSE * pair.sizes[1]);
     coarse
@@ -389,7 +395,7 @@ pub fn coarse_slave(shape: &DeckShape) -> Vec<Finding> {
             let [slave, master] = pair.surfaces.map(|k| deck.surfaces[k].name.as_str());
             let card = deck.pairs.iter().find(|card| [card.slave, card.master] == pair.surfaces);
             let swaps = matches!(deck.surfaces[pair.surfaces[1]].of, Faces::Elements(_));
-            Finding {
+            RunFinding {
                 rule: "coarse slave",
                 cause: format!(
                     "the slave {slave} is {} times coarser than its master {master} (faces of {} and {}), so master nodes \

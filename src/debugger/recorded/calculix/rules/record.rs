@@ -4,7 +4,7 @@ use super::super::run::CalculixRun;
 use super::shape::DeckShape;
 use super::supports::{plain, rounded};
 use std::collections::BTreeSet;
-use stickslip_core::model::Finding;
+use stickslip_core::model::RunFinding;
 use stickslip_exchange::calculix::cel::Slave;
 use stickslip_exchange::calculix::files::End;
 use stickslip_scene::number::{shortest, sig4};
@@ -20,7 +20,7 @@ const NAMED: usize = 3;
 const CAPPED: f64 = 99.9;
 
 /// A run that ended because the step had no increments left.
-pub fn increments_used(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<Finding> {
+pub fn increments_used(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunFinding> {
     let (Some(last), Some(shape)) = (run.files.attempts.last(), shape) else {
         return Vec::new();
     };
@@ -35,7 +35,7 @@ pub fn increments_used(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<Find
         return Vec::new();
     }
     let nlgeom = if step.nlgeom { ", NLGEOM" } else { "" };
-    vec![Finding {
+    vec![RunFinding {
         rule: "increments used up",
         cause: format!(
             "step {} stopped at its time {} of {} because INC allows {most} increments; the last one converged",
@@ -49,7 +49,7 @@ pub fn increments_used(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<Find
 }
 
 /// Contacts that open and close in turn: who, where, how often, and against whom.
-pub fn chatter(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<Finding> {
+pub fn chatter(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunFinding> {
     let often = run
         .switching
         .iter()
@@ -74,7 +74,7 @@ pub fn chatter(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<Finding> {
         let law = &shape.deck.interactions[shape.deck.pairs[pair].interaction];
         Some((shape.stiffness(pair)?, law.normal_place.line))
     });
-    vec![Finding {
+    vec![RunFinding {
         rule: "chattering",
         cause: format!(
             "{} of {} contacts switch {CHATTER} times or more within an attempt, up to {count} times in {}: {}; against {masters}",
@@ -132,7 +132,7 @@ fn masters(run: &CalculixRun, attempt: usize, slaves: &BTreeSet<usize>) -> Strin
 }
 
 /// Attempts whose correction stays at its cap of 100 % while the residual grows.
-pub fn capped_correction(run: &CalculixRun, _: Option<&DeckShape>) -> Vec<Finding> {
+pub fn capped_correction(run: &CalculixRun, _: Option<&DeckShape>) -> Vec<RunFinding> {
     let capped = run
         .files
         .attempts
@@ -149,14 +149,18 @@ pub fn capped_correction(run: &CalculixRun, _: Option<&DeckShape>) -> Vec<Findin
                 .collect();
             let (first, last) = (norms.first()?, norms.last()?);
             let grows = norms.len() >= 2 && last.residual > first.residual;
-            (attempt.end == End::NotConverged && grows)
-                .then(|| (k, norms.len(), first.residual, last.residual))
+            (attempt.end == End::NotConverged && grows).then_some((
+                k,
+                norms.len(),
+                first.residual,
+                last.residual,
+            ))
         });
     let capped: Vec<_> = capped.collect();
     let Some(&(attempt, count, from, to)) = capped.iter().max_by(|a, b| a.1.cmp(&b.1)) else {
         return Vec::new();
     };
-    vec![Finding {
+    vec![RunFinding {
         rule: "capped correction",
         cause: format!(
             "the correction of attempt {} stays at 100 % for {count} iterations while the residual grows from {} % to {} %: \

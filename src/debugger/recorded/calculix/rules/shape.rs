@@ -3,7 +3,7 @@
 use nalgebra::Vector3;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 use stickslip_exchange::inp::Deck;
-use stickslip_exchange::inp::deck::{Adjust, Faces, Family, Normal, Set, Step};
+use stickslip_exchange::inp::deck::{Adjust, Element, Faces, Family, Normal, Set, Step};
 
 /// A position or direction.
 pub type Vector = Vector3<f64>;
@@ -223,13 +223,31 @@ impl<'d> DeckShape<'d> {
         }
     }
 
-    /// Directions in which bodies can move: translations, then rotations.
-    pub fn modes(&self) -> [bool; 6] {
-        let mut families = self.deck.elements.iter().map(|e| e.kind.family);
-        match families.next() {
-            _ if self.deck.is_solid() => [true; 6],
-            Some(Family::Axisymmetric) => [false, true, false, false, false, false],
-            _ => [true, true, false, false, false, true],
+    /// Directions in which a group can move: translations, then rotations. None for beams in 3-D, whose rotations the rules do
+    /// not consider.
+    pub fn modes(&self, group: usize) -> [bool; 6] {
+        let own = |element: &&Element| {
+            let first = element.nodes.first();
+            first.and_then(|node| self.group(*node)) == Some(group)
+        };
+        let families: BTreeSet<Family> = self
+            .deck
+            .elements
+            .iter()
+            .filter(own)
+            .map(|element| element.kind.family)
+            .collect();
+        let is_plane = [Family::PlaneStrain, Family::PlaneStress];
+        match () {
+            () if families.contains(&Family::Solid) => [true; 6],
+            () if families.contains(&Family::Axisymmetric) => {
+                [false, true, false, false, false, false]
+            }
+            () if is_plane.iter().any(|family| families.contains(family)) => {
+                [true, true, false, false, false, true]
+            }
+            () if self.deck.is_solid() => [false; 6],
+            () => [true, true, false, false, false, true],
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::shape::{DeckShape, PairShape, Vector};
 use super::supports::{plain, rounded};
-use stickslip_core::model::Finding;
+use stickslip_core::model::RunFinding;
 use stickslip_exchange::inp::deck::{Direction, Step};
 use stickslip_scene::number::sig4;
 
@@ -67,17 +67,17 @@ fn moves<'s>(
 }
 
 /// First increments that move a contact by much of an element.
-pub fn first_increment(shape: &DeckShape) -> Vec<Finding> {
+pub fn first_increment(shape: &DeckShape) -> Vec<RunFinding> {
     let large = moves(shape).filter_map(|(k, step, _, pair)| {
         let time = step.time;
         let first = relative(shape, k, pair, [0.0, time.initial]).norm();
         let size = pair.sizes[0];
-        if first <= FIRST * size || time.period == 0.0 {
+        if first <= FIRST * size * (1.0 + 1e-9) || time.period == 0.0 {
             return None;
         }
         let initial = rounded(time.initial * ADVISED * size / first);
         let least = initial / 100.0;
-        Some(Finding {
+        Some(RunFinding {
             rule: "large first increment",
             cause: format!(
                 "the first increment of step {} moves {} by {}, {} times the size {} of a slave face",
@@ -95,12 +95,12 @@ pub fn first_increment(shape: &DeckShape) -> Vec<Finding> {
 }
 
 /// Steps whose increments can hardly be cut.
-pub fn no_cuts(shape: &DeckShape) -> Vec<Finding> {
+pub fn no_cuts(shape: &DeckShape) -> Vec<RunFinding> {
     let steps = shape.deck.steps.iter().enumerate();
     let fixed = steps.filter_map(|(k, step)| {
         let time = step.time;
         let least = time.least.filter(|least| *least > CUT * time.initial)?;
-        Some(Finding {
+        Some(RunFinding {
             rule: "no room for cuts",
             cause: format!(
                 "increments of step {} start at {} and must not fall below {}: after the first failure the run stops",
@@ -121,8 +121,8 @@ pub fn no_cuts(shape: &DeckShape) -> Vec<Finding> {
 }
 
 /// Sliding over elements in steps, or pairs, with small displacements.
-pub fn small_sliding(shape: &DeckShape) -> Vec<Finding> {
-    let mut found: Vec<Finding> = Vec::new();
+pub fn small_sliding(shape: &DeckShape) -> Vec<RunFinding> {
+    let mut found: Vec<RunFinding> = Vec::new();
     for (k, step, number, pair) in moves(shape) {
         let (all, normal) = (
             relative(shape, k, pair, [0.0, step.time.period]),
@@ -148,7 +148,7 @@ pub fn small_sliding(shape: &DeckShape) -> Vec<Finding> {
                 "*STEP, NLGEOM".to_owned(),
             ),
         };
-        found.push(Finding {
+        found.push(RunFinding {
             rule: "small displacements",
             cause: format!(
                 "step {} slides {} by {}, {} slave faces, but {why}",
@@ -165,7 +165,7 @@ pub fn small_sliding(shape: &DeckShape) -> Vec<Finding> {
 }
 
 /// Prescribed displacements that move slave nodes past the edge of their master.
-pub fn past_the_edge(shape: &DeckShape) -> Vec<Finding> {
+pub fn past_the_edge(shape: &DeckShape) -> Vec<RunFinding> {
     let mut found = Vec::new();
     for (number, pair) in shape.pairs.iter().enumerate() {
         let mut moved = Vector::zeros();
@@ -174,7 +174,7 @@ pub fn past_the_edge(shape: &DeckShape) -> Vec<Finding> {
             let normal = pair.normal();
             let along = moved - moved.dot(&normal) * normal;
             let limit = 0.1 * pair.sizes[0];
-            let beyond = |part: f64| {
+            let past = |part: f64, limit: f64| {
                 let of = pair.nodes.iter().filter(|node| node.beyond <= limit);
                 let of = of.filter(|node| {
                     let at = shape.at(node.node) + part * along;
@@ -183,7 +183,8 @@ pub fn past_the_edge(shape: &DeckShape) -> Vec<Finding> {
                 });
                 of.count()
             };
-            let lost = beyond(1.0);
+            let beyond = |part: f64| past(part, limit);
+            let lost = past(1.0, 5.0 * limit);
             if along.norm() <= limit || lost == 0 {
                 continue;
             }
@@ -197,7 +198,7 @@ pub fn past_the_edge(shape: &DeckShape) -> Vec<Finding> {
                 }
             }
             let master = &shape.deck.surfaces[pair.surfaces[1]];
-            found.push(Finding {
+            found.push(RunFinding {
                 rule: "past the edge",
                 cause: format!(
                     "step {} moves {lost} of {} slave nodes of {} past the edge of the master: they slide {}, and the \

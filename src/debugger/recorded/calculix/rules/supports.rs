@@ -3,7 +3,7 @@
 use super::shape::{DeckShape, PairShape, Vector};
 use nalgebra::{SMatrix, SVector};
 use std::collections::{BTreeSet, HashMap};
-use stickslip_core::model::Finding;
+use stickslip_core::model::RunFinding;
 use stickslip_exchange::inp::deck::{Direction, Step, Value, Volume};
 use stickslip_scene::number::sig4;
 
@@ -219,8 +219,15 @@ fn groups(shape: &DeckShape) -> BTreeSet<usize> {
     shape.group_of.iter().copied().collect()
 }
 
+/// Whether supports alone leave a group free.
+pub fn is_free(shape: &DeckShape, group: usize) -> bool {
+    !GroupMotion::new(shape, group)
+        .free(shape.modes(group))
+        .is_empty()
+}
+
 /// A body that no support, tie or contact holds.
-pub fn unconnected(shape: &DeckShape) -> Vec<Finding> {
+pub fn unconnected(shape: &DeckShape) -> Vec<RunFinding> {
     if shape.deck.is_incomplete {
         return Vec::new();
     }
@@ -230,16 +237,16 @@ pub fn unconnected(shape: &DeckShape) -> Vec<Finding> {
         .filter(|tie| !tie.nodes.iter().any(|n| tie.is_closed(n)));
     let far: BTreeSet<usize> = far.flat_map(|tie| tie.groups).collect();
     let alone = groups(shape).into_iter().filter(|group| {
-        let free = GroupMotion::new(shape, *group).free(shape.modes());
+        let free = GroupMotion::new(shape, *group).free(shape.modes(*group));
         !free.is_empty() && pairs_of(shape, *group).next().is_none() && !far.contains(group)
     });
     alone
         .map(|group| {
             let name = shape.group_name(group);
-            let free = GroupMotion::new(shape, group).free(shape.modes());
+            let free = GroupMotion::new(shape, group).free(shape.modes(group));
             let nodes = (0..shape.deck.nodes.len()).filter(|n| shape.group(*n) == Some(group));
             let first = nodes.map(|node| shape.deck.nodes[node].label).min();
-            Finding {
+            RunFinding {
                 rule: "unconnected body",
                 cause: format!(
                     "{name} is in no contact pair and no tie, and its supports leave it free {}",
@@ -253,7 +260,7 @@ pub fn unconnected(shape: &DeckShape) -> Vec<Finding> {
 }
 
 /// A loaded body that only contact holds, and all of it is open at the start.
-pub fn open_at_start(shape: &DeckShape) -> Vec<Finding> {
+pub fn open_at_start(shape: &DeckShape) -> Vec<RunFinding> {
     free_groups(shape, |shape, group, motion, free| {
         let pairs: Vec<&PairShape> = pairs_of(shape, group).map(|(_, pair)| pair).collect();
         let closed = pairs
@@ -271,12 +278,12 @@ pub fn open_at_start(shape: &DeckShape) -> Vec<Finding> {
         let set = shape.set_name(&motion.loaded);
         let along = force.iamax();
         let travel = rounded(1.5 * node.gap).copysign(force[along]);
-        let modes = shape.modes();
+        let modes = shape.modes(group);
         let others = (0..3).filter(|k| modes[*k] && *k != along);
         let others: String = others
             .map(|k| format!("{set}, {0}, {0}, 0.\n", k + 1))
             .collect();
-        Some(Finding {
+        Some(RunFinding {
             rule: "held by open contact",
             cause: format!(
                 "{name} is free {} until it touches: all its contact is open at the start (smallest gap {}, \
@@ -296,7 +303,7 @@ pub fn open_at_start(shape: &DeckShape) -> Vec<Finding> {
 }
 
 /// A loaded body that can slide along its closed contact, because it has no friction.
-pub fn free_to_slide(shape: &DeckShape) -> Vec<Finding> {
+pub fn free_to_slide(shape: &DeckShape) -> Vec<RunFinding> {
     free_groups(shape, |shape, group, motion, free| {
         let closed = |pair: &PairShape| pair.nodes.iter().any(|n| pair.is_closed(n));
         let (_, pair) = pairs_of(shape, group).find(|(_, pair)| closed(pair))?;
@@ -306,7 +313,7 @@ pub fn free_to_slide(shape: &DeckShape) -> Vec<Finding> {
         let lines: Vec<String> = moving
             .map(|k| format!("{set}, {0}, {0}, 0.", k + 1))
             .collect();
-        Some(Finding {
+        Some(RunFinding {
             rule: "free to slide",
             cause: format!(
                 "{name} is free {}: {} touches without friction, no support acts that way, and step 1 \
@@ -327,8 +334,8 @@ pub fn free_to_slide(shape: &DeckShape) -> Vec<Finding> {
 /// The findings on groups that closed contacts and supports leave free, and that the first step moves.
 fn free_groups(
     shape: &DeckShape,
-    finding: impl Fn(&DeckShape, usize, &GroupMotion, &[Motion]) -> Option<Finding>,
-) -> Vec<Finding> {
+    finding: impl Fn(&DeckShape, usize, &GroupMotion, &[Motion]) -> Option<RunFinding>,
+) -> Vec<RunFinding> {
     if shape.deck.is_incomplete {
         return Vec::new();
     }
@@ -338,7 +345,7 @@ fn free_groups(
             let law = &shape.deck.interactions[shape.deck.pairs[k].interaction];
             motion.hold_contacts(shape, pair, law.friction > 0.0);
         }
-        let free = motion.free(shape.modes());
+        let free = motion.free(shape.modes(group));
         let moves = !free.is_empty() && motion.is_loaded(&free);
         moves
             .then(|| finding(shape, group, &motion, &free))
@@ -348,7 +355,7 @@ fn free_groups(
 }
 
 /// A body that only contact holds, with a tangential load above what friction can bear.
-pub fn beyond_friction(shape: &DeckShape) -> Vec<Finding> {
+pub fn beyond_friction(shape: &DeckShape) -> Vec<RunFinding> {
     if shape.deck.is_incomplete {
         return Vec::new();
     }
@@ -361,7 +368,7 @@ pub fn beyond_friction(shape: &DeckShape) -> Vec<Finding> {
         if !alone || law.friction == 0.0 || normal == Vector::zeros() {
             continue;
         }
-        let free = motion.free(shape.modes());
+        let free = motion.free(shape.modes(group));
         let mut total: HashMap<usize, Vector> = HashMap::new();
         for (number, step) in shape.deck.steps.iter().enumerate() {
             add_forces(shape, group, (number, step), &mut total);
@@ -379,7 +386,7 @@ pub fn beyond_friction(shape: &DeckShape) -> Vec<Finding> {
                 .stick
                 .map_or(String::new(), |slope| format!(", {}", plain(slope)));
             let line = law.friction_place.line;
-            found.push(Finding {
+            found.push(RunFinding {
                 rule: "load above friction",
                 cause: format!(
                     "step {} pushes {} along {} with {}, but friction holds at most {} x {} = {}: it slides away",
