@@ -206,7 +206,7 @@ fn causes() -> String {
         let found = &run.findings[0];
         let ccx = format!("{} → {}", row.outcome, row.cured);
         format!(
-            "- `{}` ({ccx}). {}: {}. Cure: {}.\n",
+            "- `{}` ({ccx}). {}: {}. Cure: {}\n",
             row.deck,
             found.rule,
             found.cause,
