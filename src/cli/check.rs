@@ -31,7 +31,11 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     let deck = outlined(&args.scene.scene);
     let scene = match (args.scene.open(), &deck) {
         (Err(_), Some(deck)) if deck.is_solid() => return check_solid(&args.scene.scene, deck),
-        (opened, _) => opened?,
+        (Ok(scene), _) => scene,
+        (Err(why), deck) => {
+            warn(&deck.iter().flat_map(causes).collect::<Vec<_>>());
+            return Err(why.into());
+        }
     };
     if args.paths {
         say(&all_paths(&scene))?;
@@ -50,9 +54,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     let mut warnings = gaps::warnings(&scene.model);
     warnings.extend(precision::warning(&scene.model));
     warnings.extend(deck.iter().flat_map(causes));
-    for warning in &warnings {
-        notify(&format!("warning: {warning}"));
-    }
+    warn(&warnings);
     json::write(json, &record(&scene, cost, notes, warnings))?;
     Ok(Exit::Good)
 }
@@ -61,6 +63,12 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
 fn outlined(name: &str) -> Option<Deck> {
     let is_deck = Path::new(name).extension()?.eq_ignore_ascii_case("inp");
     is_deck.then(|| calculix::outline(name).ok()).flatten()
+}
+
+fn warn(warnings: &[String]) {
+    for warning in warnings {
+        notify(&format!("warning: {warning}"));
+    }
 }
 
 /// What the rules find in a deck, with the cures.
@@ -90,9 +98,7 @@ fn check_solid(name: &str, deck: &Deck) -> Result<Exit, Error> {
             remark.text
         ));
     }
-    for cause in causes(deck) {
-        notify(&format!("warning: {cause}"));
-    }
+    warn(&causes(deck));
     Ok(Exit::Good)
 }
 

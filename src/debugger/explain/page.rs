@@ -195,7 +195,7 @@ impl DiagnosisPage {
     /// The page of a finished run of another program: what its rules found.
     pub fn finished(run: &FinishedRun) -> DiagnosisPage {
         let what = match &run.findings[..] {
-            [] => "Run: no rule explains it".into(),
+            [] => "Run: no rule applies to it".into(),
             [only] => format!("Run: {}", only.rule),
             [first, others @ ..] => format!("Run: {} (and {} more)", first.rule, others.len()),
         };

@@ -234,7 +234,7 @@ fn causes(run: &CalculixRun) -> String {
         format!("{number}. {rule}: {cause}\n   Cure: {advice}\n")
     });
     match run.findings.is_empty() {
-        true => "\nNo rule explains this run.\n".into(),
+        true => "\nNo rule applies to this run.\n".into(),
         false => format!("\nCauses\n{}", causes.collect::<String>()),
     }
 }

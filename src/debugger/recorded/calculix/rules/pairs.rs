@@ -1,6 +1,6 @@
 //! Rules on pairs and ties as the deck defines them: faces, gaps, laws, and slave nodes.
 
-use super::shape::{DeckShape, PairShape, SurfaceFace, Vector};
+use super::shape::{DeckShape, PairShape, SortedPoints, SurfaceFace, Vector};
 use super::supports::{is_free, plain, rounded, rounded_up};
 use std::collections::{BTreeMap, BTreeSet};
 use stickslip_core::model::RunFinding;
@@ -36,6 +36,8 @@ pub fn reversed_faces(shape: &DeckShape) -> Vec<RunFinding> {
                 false => other.iter().map(|face| body_centre(shape, face)).collect(),
                 true => pair.nodes.iter().map(|node| shape.at(node.node)).collect(),
             };
+            let sorted = SortedPoints::new(&other);
+            let other = (other, sorted);
             let wrong = |face: &&SurfaceFace| shape.is_inner(face) || looks_away(face, &other);
             let bad: Vec<&SurfaceFace> = own.iter().filter(wrong).collect();
             if 2 * bad.len() > own.len() {
@@ -52,12 +54,25 @@ fn body_centre(shape: &DeckShape, face: &SurfaceFace) -> Vector {
     nodes.iter().map(|&node| shape.at(node)).sum::<Vector>() / nodes.len() as f64
 }
 
+/// Cosine between a face's normal and the direction to the nearest of some points.
+fn facing(face: &SurfaceFace, (points, sorted): &(Vec<Vector>, SortedPoints)) -> Option<f64> {
+    let mut best: Option<(f64, Vector)> = None;
+    for (along, k) in sorted.from(face.centre) {
+        if best.is_some_and(|(known, _)| along >= known) {
+            break;
+        }
+        let to = points[k] - face.centre;
+        if best.is_none_or(|(known, _)| to.norm() < known) {
+            best = Some((to.norm(), to));
+        }
+    }
+    let to = best?.1.try_normalize(0.0)?;
+    Some(to.dot(&face.normal))
+}
+
 /// Whether a face looks away from the nearest of some points.
-fn looks_away(face: &SurfaceFace, others: &[Vector]) -> bool {
-    let to = others.iter().map(|point| point - face.centre);
-    let nearest = to.min_by(|a, b| a.norm().total_cmp(&b.norm()));
-    let nearest = nearest.and_then(|to| to.try_normalize(0.0));
-    nearest.is_some_and(|to| to.dot(&face.normal) < -AWAY)
+fn looks_away(face: &SurfaceFace, others: &(Vec<Vector>, SortedPoints)) -> bool {
+    facing(face, others).is_some_and(|cosine| cosine < -AWAY)
 }
 
 fn reversed(
@@ -66,7 +81,7 @@ fn reversed(
     which: usize,
     count: usize,
     bad: &[&SurfaceFace],
-    others: &[Vector],
+    others: &(Vec<Vector>, SortedPoints),
 ) -> Option<RunFinding> {
     let deck = shape.deck;
     let surface = &deck.surfaces[pair.surfaces[which]];
@@ -78,12 +93,7 @@ fn reversed(
         let sides = 0..deck.elements[face.element].kind.cell.sides().len();
         let faces = sides.filter_map(|side| shape.face(face.element, side));
         let faces = faces.filter(|face| !shape.is_inner(face) && !looks_away(face, others));
-        let to = |face: &SurfaceFace| {
-            let all = others.iter().map(|point| point - face.centre);
-            let nearest = all.min_by(|a, b| a.norm().total_cmp(&b.norm()));
-            let nearest = nearest.and_then(|to| to.try_normalize(0.0));
-            nearest.map_or(-1.0, |to| to.dot(&face.normal))
-        };
+        let to = |face: &SurfaceFace| facing(face, others).unwrap_or(-1.0);
         faces.max_by(|a, b| to(a).total_cmp(&to(b)))
     };
     let right: BTreeMap<String, Vec<u64>> = bad.iter().fold(BTreeMap::new(), |mut all, face| {

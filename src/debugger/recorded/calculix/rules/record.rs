@@ -63,7 +63,12 @@ pub fn chatter(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunFinding> 
         Some(at) => format!("{} {at}", run.slave_with_corners(slave)),
         None => run.slave_with_corners(slave),
     };
-    let named = often.iter().map(|found| name(found.slave));
+    let named = often.iter().take(NAMED).map(|found| name(found.slave));
+    let named = named.collect::<Vec<_>>().join(", ");
+    let more = match often.len().saturating_sub(NAMED) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
     let masters = masters(
         run,
         attempt,
@@ -81,7 +86,7 @@ pub fn chatter(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunFinding> 
             often.len(),
             run.files.slaves.len(),
             run.attempt_name(attempt),
-            first_of(named, NAMED, ", ")
+            named + &more
         ),
         cure: match softer {
             Some((_, line)) => format!("a contact stiffness 10 times smaller (line {line})"),

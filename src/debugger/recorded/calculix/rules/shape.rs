@@ -34,6 +34,61 @@ pub struct SurfaceFace {
     radius: f64,
 }
 
+/// Points sorted along the axis of their largest extent, to find near ones without a look at all of them.
+#[derive(Debug, Clone)]
+pub struct SortedPoints {
+    axis: usize,
+    /// Coordinate and index of each point, ascending.
+    keys: Vec<(f64, usize)>,
+}
+
+impl SortedPoints {
+    /// Sorts points.
+    pub fn new(points: &[Vector]) -> SortedPoints {
+        let extent = |axis: usize| {
+            let along = points.iter().map(|point| point[axis]);
+            let (least, most) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
+                (a.min(x), b.max(x))
+            });
+            most - least
+        };
+        let axis = (0..3)
+            .max_by(|a, b| extent(*a).total_cmp(&extent(*b)))
+            .unwrap_or(0);
+        let mut keys: Vec<(f64, usize)> = points
+            .iter()
+            .enumerate()
+            .map(|(k, point)| (point[axis], k))
+            .collect();
+        keys.sort_by(|a, b| a.0.total_cmp(&b.0));
+        SortedPoints { axis, keys }
+    }
+
+    /// The points by their distance along the axis, nearest first: this distance and the index.
+    pub fn from(&self, point: Vector) -> impl Iterator<Item = (f64, usize)> {
+        let at = point[self.axis];
+        let start = self.keys.partition_point(|(key, _)| *key < at);
+        let (mut below, mut above) = (start, start);
+        std::iter::from_fn(move || {
+            let down = below
+                .checked_sub(1)
+                .and_then(|k| self.keys.get(k))
+                .map(|key| (at - key.0, key.1));
+            let up = self.keys.get(above).map(|key| (key.0 - at, key.1));
+            match (down, up) {
+                (Some(down), up) if up.is_none_or(|up| down.0 <= up.0) => {
+                    below -= 1;
+                    Some(down)
+                }
+                (_, up) => {
+                    above += 1;
+                    up
+                }
+            }
+        })
+    }
+}
+
 /// A slave node and the nearest master face.
 #[derive(Debug, Clone, Copy)]
 pub struct SlaveGap {
@@ -56,6 +111,8 @@ pub struct PairShape {
     pub slaves: Vec<SurfaceFace>,
     /// Faces of the master surface.
     pub masters: Vec<SurfaceFace>,
+    /// The centres of these faces.
+    pub centres: SortedPoints,
     /// The slave nodes with their gaps, by node.
     pub nodes: Vec<SlaveGap>,
     /// Groups of the slave and of the master.
@@ -329,9 +386,14 @@ impl<'d> DeckShape<'d> {
             (!faces.is_empty()).then(|| sum / faces.len() as f64)
         };
         let master = size(&masters).unwrap_or(0.0);
-        let gaps = nodes.iter().filter_map(|&node| self.gap(node, &masters));
+        let centres: Vec<Vector> = masters.iter().map(|face| face.centre).collect();
+        let centres = SortedPoints::new(&centres);
+        let gaps = nodes
+            .iter()
+            .filter_map(|&node| self.gap(node, (&masters, &centres)));
         PairShape {
             nodes: gaps.collect(),
+            centres,
             sizes: [size(&slaves).unwrap_or(master), master],
             surfaces,
             slaves,
@@ -341,7 +403,7 @@ impl<'d> DeckShape<'d> {
         }
     }
 
-    fn gap(&self, node: usize, masters: &[SurfaceFace]) -> Option<SlaveGap> {
+    fn gap(&self, node: usize, masters: (&[SurfaceFace], &SortedPoints)) -> Option<SlaveGap> {
         let (face, gap, beyond) = self.nearest(self.at(node), masters)?;
         Some(SlaveGap {
             node,
@@ -352,11 +414,20 @@ impl<'d> DeckShape<'d> {
     }
 
     /// The face nearest to a point, the distance along its normal, and the distance beyond its edge.
-    pub fn nearest(&self, point: Vector, faces: &[SurfaceFace]) -> Option<(usize, f64, f64)> {
+    pub fn nearest(
+        &self,
+        point: Vector,
+        (faces, centres): (&[SurfaceFace], &SortedPoints),
+    ) -> Option<(usize, f64, f64)> {
+        let largest = faces.iter().map(|face| face.radius).fold(0.0, f64::max);
         let mut best: Option<(f64, usize, Vector)> = None;
-        for (k, face) in faces.iter().enumerate() {
-            let least = (point - face.centre).norm() - face.radius;
-            if best.is_some_and(|(distance, ..)| least >= distance) {
+        for (along, k) in centres.from(point) {
+            let is_farther = |least: f64| best.is_some_and(|(distance, ..)| least >= distance);
+            if is_farther(along - largest) {
+                break;
+            }
+            let face = &faces[k];
+            if is_farther((point - face.centre).norm() - face.radius) {
                 continue;
             }
             let at: Vec<Vector> = face.corners.iter().map(|&node| self.at(node)).collect();
@@ -376,7 +447,10 @@ impl<'d> DeckShape<'d> {
     pub fn factor(&self, step: &Step, amplitude: Option<usize>, time: f64) -> f64 {
         let Some(amplitude) = amplitude else {
             let ramp = time / step.time.period.max(f64::MIN_POSITIVE);
-            return if step.at_once { 1.0 } else { ramp.min(1.0) };
+            return match step.at_once {
+                true => f64::from(time > 0.0),
+                false => ramp.min(1.0),
+            };
         };
         let points = &self.deck.amplitudes[amplitude].points;
         let after = points.partition_point(|(at, _)| *at <= time);

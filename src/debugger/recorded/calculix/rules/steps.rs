@@ -2,6 +2,7 @@
 
 use super::shape::{DeckShape, PairShape, Vector};
 use super::supports::{plain, rounded};
+use std::collections::HashMap;
 use stickslip_core::model::RunFinding;
 use stickslip_exchange::inp::deck::{Direction, Step};
 use stickslip_scene::number::sig4;
@@ -20,6 +21,16 @@ fn travel(shape: &DeckShape, step: usize, group: usize, times: [f64; 2]) -> Vect
     let deck = shape.deck;
     let mut travel = Vector::zeros();
     let this = &deck.steps[step];
+    let mut before: HashMap<(usize, Direction), f64> = HashMap::new();
+    for earlier in &deck.steps[..step] {
+        let end = earlier.time.period;
+        for value in &earlier.motions {
+            let part = value
+                .amplitude
+                .map_or(1.0, |_| shape.factor(earlier, value.amplitude, end));
+            before.insert(value.target(), value.value * part);
+        }
+    }
     for value in &this.motions {
         let axis = match value.direction {
             Direction::X => 0,
@@ -30,14 +41,7 @@ fn travel(shape: &DeckShape, step: usize, group: usize, times: [f64; 2]) -> Vect
         if shape.group(value.node) != Some(group) {
             continue;
         }
-        let earlier = deck.steps[..step].iter().rev();
-        let mut earlier = earlier.flat_map(|step| step.motions.iter().map(move |m| (step, m)));
-        let before = earlier.find(|(_, m)| m.target() == value.target());
-        let before = before.map_or(0.0, |(step, m)| {
-            m.value
-                * m.amplitude
-                    .map_or(1.0, |_| shape.factor(step, m.amplitude, step.time.period))
-        });
+        let before = before.get(&value.target()).copied().unwrap_or(0.0);
         let [from, to] = times.map(|time| match value.amplitude {
             None => before + (value.value - before) * shape.factor(this, None, time),
             amplitude => value.value * shape.factor(this, amplitude, time),
@@ -178,7 +182,7 @@ pub fn past_the_edge(shape: &DeckShape) -> Vec<RunFinding> {
                 let of = pair.nodes.iter().filter(|node| node.beyond <= limit);
                 let of = of.filter(|node| {
                     let at = shape.at(node.node) + part * along;
-                    let off = shape.nearest(at, &pair.masters);
+                    let off = shape.nearest(at, (&pair.masters, &pair.centres));
                     off.is_some_and(|(_, _, beyond)| beyond > limit)
                 });
                 of.count()
