@@ -3,7 +3,11 @@
 use super::base::{Error, Exit, SceneArgs, notify, say};
 use super::json::{self, JsonArgs};
 use super::records::CheckRecord;
+use std::path::Path;
+use stickslip_debugger::recorded::calculix::rules::{self, shape::DeckShape};
+use stickslip_exchange::inp::Deck;
 use stickslip_scene::Scene;
+use stickslip_scene::calculix;
 use stickslip_scene::cost::Cost;
 use stickslip_scene::format::paths;
 use stickslip_scene::gaps;
@@ -24,7 +28,15 @@ pub struct Args {
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
-    let scene = args.scene.open()?;
+    let deck = outlined(&args.scene.scene);
+    let scene = match (args.scene.open(), &deck) {
+        (Err(_), Some(deck)) if deck.is_solid() => return check_solid(&args.scene.scene, deck),
+        (Ok(scene), _) => scene,
+        (Err(why), deck) => {
+            warn(&deck.iter().flat_map(causes).collect::<Vec<_>>());
+            return Err(why.into());
+        }
+    };
     if args.paths {
         say(&all_paths(&scene))?;
         return Ok(Exit::Good);
@@ -41,10 +53,52 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     }
     let mut warnings = gaps::warnings(&scene.model);
     warnings.extend(precision::warning(&scene.model));
-    for warning in &warnings {
+    warnings.extend(deck.iter().flat_map(causes));
+    warn(&warnings);
+    json::write(json, &record(&scene, cost, notes, warnings))?;
+    Ok(Exit::Good)
+}
+
+/// The outline of a deck; `None` for other files.
+fn outlined(name: &str) -> Option<Deck> {
+    let is_deck = Path::new(name).extension()?.eq_ignore_ascii_case("inp");
+    is_deck.then(|| calculix::outline(name).ok()).flatten()
+}
+
+fn warn(warnings: &[String]) {
+    for warning in warnings {
         notify(&format!("warning: {warning}"));
     }
-    json::write(json, &record(&scene, cost, notes, warnings))?;
+}
+
+/// What the rules find in a deck, with the cures.
+fn causes(deck: &Deck) -> Vec<String> {
+    let findings = rules::examine(Some(&DeckShape::new(deck)), None);
+    let words = findings
+        .iter()
+        .map(|found| format!("{}. Cure: {}", found.cause, found.advice()));
+    words.collect()
+}
+
+/// Checks a three-dimensional deck, which only CalculiX solves.
+fn check_solid(name: &str, deck: &Deck) -> Result<Exit, Error> {
+    say(&format!(
+        "{name}: three-dimensional deck for CalculiX\nnodes {}, elements {}, contact pairs {}, ties {}, steps {}\n",
+        deck.nodes.len(),
+        deck.elements.len(),
+        deck.pairs.len(),
+        deck.ties.len(),
+        deck.steps.len()
+    ))?;
+    for remark in &deck.remarks {
+        notify(&format!(
+            "note: {}:{}: {}",
+            deck.file(remark.place),
+            remark.place.line,
+            remark.text
+        ));
+    }
+    warn(&causes(deck));
     Ok(Exit::Good)
 }
 

@@ -23,8 +23,11 @@ use stickslip_debugger::record::export::skeleton::skeleton;
 use stickslip_debugger::record::export::{self, ExportKind, ExportSource, Origin};
 use stickslip_debugger::record::journal::Record;
 use stickslip_debugger::record::snapshot::Snapshot;
+use stickslip_debugger::recorded::calculix::{self as recorded, switches};
 use stickslip_exchange::fclib;
+use stickslip_exchange::vtu;
 use stickslip_platform::files::{self, Output};
+use stickslip_scene::calculix;
 use stickslip_scene::format::kind::FileKind;
 use stickslip_scene::solver::solver;
 use stickslip_scene::{Scene, import, shown};
@@ -38,14 +41,15 @@ shape, the timeline, the load over a monitor (chart), or the force of a contact 
 problem that is solved next, as a separate scene.
 .dat, .mtx, .h5: the same interface problem for other solvers: for Siconos, as Matrix Market files
 (NAME_W.mtx, NAME_q.mtx, NAME_mu.mtx), for fclib.
-.vtu: the state for ParaView (stickslip run --vtu writes all states).
+.vtu: the state for ParaView (stickslip run --vtu writes all states); of a CalculiX run (.cel) the mesh of its deck, with
+the switches, last status and pressure of each slave node.
 .cast: a journal as a film for asciinema.
 
 A scene is exported at its end, or where it fails. Exit codes: 0 the file was written, even if the scene failed;
 2 bad input or usage; 3 --at is not reached, or the state cannot be written in this format.")]
 pub struct Args {
-    /// A scene file, the name of a built-in scene, a snapshot, a journal or a mesh
-    #[arg(value_name = "SCENE|SNAPSHOT|JOURNAL|MESH")]
+    /// A scene file, the name of a built-in scene, a snapshot, a journal, a mesh, or the .cel file of a CalculiX run
+    #[arg(value_name = "SCENE|SNAPSHOT|JOURNAL|MESH|CEL")]
     input: String,
     #[command(flatten)]
     set: SetArgs,
@@ -118,6 +122,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         drop(Output::create(name, args.force)?);
     }
     let contents = match kind.made_of {
+        _ if calculix::is_cel(&args.input) => vec![switches(args, kind)?],
         _ if import::is_mesh(&args.input) => vec![around_mesh(args, kind)?],
         ExportSource::Journal => vec![film(args)?],
         ExportSource::State(_) | ExportSource::Parts(_) => match state(args, kind, &interrupt)? {
@@ -208,6 +213,30 @@ fn around_mesh(args: &Args, kind: &ExportKind) -> Result<Vec<u8>, Error> {
     let scene = args.output.to_string_lossy();
     let parts = import::bodies(file)?;
     Ok(skeleton(&scene, &below.to_string_lossy(), &parts)?.into_bytes())
+}
+
+/// The mesh of a CalculiX run with the switches of its contacts.
+fn switches(args: &Args, kind: &ExportKind) -> Result<Vec<u8>, Error> {
+    let file = &args.input;
+    if kind.extension != "vtu" {
+        return Err(usage!(
+            "{file}: a CalculiX run can only be exported for ParaView: -o FILE.vtu"
+        ));
+    }
+    scene_only(args, "a finished run is exported as recorded")?;
+    let pressures = calculix::pressures(Path::new(file)).map_err(Error::Usage)?;
+    let Some(opened) = recorded::file(file) else {
+        return Err(usage!("{file}: not the .cel of a CalculiX run"));
+    };
+    let run = opened.map_err(Error::Usage)?.run;
+    let (grid, lost) = switches::grid(&run, &pressures).map_err(Error::Usage)?;
+    if lost > 0 {
+        notify(&format!(
+            "note: {lost} of {} slaves are not in the deck, because CalculiX makes plane elements three-dimensional; they are left out",
+            run.files.slaves.len()
+        ));
+    }
+    Ok(vtu::write(&grid).into_bytes())
 }
 
 /// The film of a journal.

@@ -2,24 +2,29 @@
 
 use super::base::{Error, Exit, say};
 use std::path::PathBuf;
-use stickslip_debugger::record::journal::Record;
+use stickslip_debugger::record::journal::{self, Record};
 use stickslip_debugger::record::story::story;
 use stickslip_debugger::recorded::recording::Recording;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// A journal, the .cel file of a finished CalculiX run, or the recorded exchange of an attached solver
-    journal: PathBuf,
+    /// A journal, the .cel file of a finished CalculiX run, or the recorded exchange of an attached solver [default: the newest
+    /// journal]
+    journal: Option<PathBuf>,
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
-    if let Some(name) = args.journal.to_str()
+    let journal = match &args.journal {
+        Some(journal) => journal.clone(),
+        None => journal::newest()?,
+    };
+    if let Some(name) = journal.to_str()
         && let Some(mut recording) = Recording::open(name).map_err(Error::Usage)?
     {
         say(&recording.text(name))?;
         return Ok(Exit::Good);
     }
-    let record = Record::read(&args.journal)?;
+    let record = Record::read(&journal)?;
     say(&story(&record)?)?;
     Ok(Exit::Good)
 }

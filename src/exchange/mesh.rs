@@ -1,7 +1,7 @@
-//! A plane mesh of another program: nodes, cells, and named groups of cells.
+//! Cells of other programs' meshes, and a plane mesh: nodes, cells, and named groups of cells.
 
-/// Kind of a cell. Nodes are ordered: the corners, anticlockwise; then the midside nodes, starting on the side after the first
-/// corner; then the centre.
+/// Kind of a cell. Nodes are ordered: the corners, anticlockwise (of a solid: of its bottom, then of its top); then the midside
+/// nodes in the order of [`CellKind::edges`]; then the centre.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum CellKind {
     /// One node.
@@ -20,7 +20,53 @@ pub enum CellKind {
     Quad8,
     /// 9-node quadrilateral.
     Quad9,
+    /// 4-node tetrahedron.
+    Tetra4,
+    /// 10-node tetrahedron.
+    Tetra10,
+    /// 6-node wedge.
+    Wedge6,
+    /// 15-node wedge.
+    Wedge15,
+    /// 8-node brick.
+    Hexa8,
+    /// 20-node brick.
+    Hexa20,
 }
+
+/// Sides of a triangle, from corner to corner.
+const TRIANGLE: [[usize; 2]; 3] = [[0, 1], [1, 2], [2, 0]];
+/// Sides of a quadrilateral.
+const QUAD: [[usize; 2]; 4] = [[0, 1], [1, 2], [2, 3], [3, 0]];
+/// Edges of a tetrahedron.
+const TETRA: [[usize; 2]; 6] = [[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]];
+/// Edges of a wedge: bottom, top, upright.
+const WEDGE: [[usize; 2]; 9] = [
+    [0, 1],
+    [1, 2],
+    [2, 0],
+    [3, 4],
+    [4, 5],
+    [5, 3],
+    [0, 3],
+    [1, 4],
+    [2, 5],
+];
+/// Edges of a brick: bottom, top, upright.
+const HEXA: [[usize; 2]; 12] = [
+    [0, 1],
+    [1, 2],
+    [2, 3],
+    [3, 0],
+    [4, 5],
+    [5, 6],
+    [6, 7],
+    [7, 4],
+    [0, 4],
+    [1, 5],
+    [2, 6],
+    [3, 7],
+];
 
 impl CellKind {
     /// Number of nodes.
@@ -29,19 +75,78 @@ impl CellKind {
             CellKind::Point => 1,
             CellKind::Line2 => 2,
             CellKind::Line3 | CellKind::Triangle3 => 3,
-            CellKind::Quad4 => 4,
-            CellKind::Triangle6 => 6,
-            CellKind::Quad8 => 8,
+            CellKind::Quad4 | CellKind::Tetra4 => 4,
+            CellKind::Triangle6 | CellKind::Wedge6 => 6,
+            CellKind::Quad8 | CellKind::Hexa8 => 8,
             CellKind::Quad9 => 9,
+            CellKind::Tetra10 => 10,
+            CellKind::Wedge15 => 15,
+            CellKind::Hexa20 => 20,
         }
     }
 
-    /// 0 for points, 1 for lines, 2 for areas.
+    /// 0 for points, 1 for lines, 2 for areas, 3 for solids.
     pub fn dimension(self) -> u8 {
         match self {
             CellKind::Point => 0,
             CellKind::Line2 | CellKind::Line3 => 1,
+            CellKind::Tetra4
+            | CellKind::Tetra10
+            | CellKind::Wedge6
+            | CellKind::Wedge15
+            | CellKind::Hexa8
+            | CellKind::Hexa20 => 3,
             _ => 2,
+        }
+    }
+
+    /// Number of corners.
+    pub fn corners(self) -> usize {
+        match self {
+            CellKind::Point => 1,
+            CellKind::Line2 | CellKind::Line3 => 2,
+            CellKind::Triangle3 | CellKind::Triangle6 => 3,
+            CellKind::Quad4 | CellKind::Quad8 | CellKind::Quad9 => 4,
+            CellKind::Tetra4 | CellKind::Tetra10 => 4,
+            CellKind::Wedge6 | CellKind::Wedge15 => 6,
+            CellKind::Hexa8 | CellKind::Hexa20 => 8,
+        }
+    }
+
+    /// Edges of an area or a solid as pairs of corners; the midside node of edge k follows the corners at place k.
+    pub fn edges(self) -> &'static [[usize; 2]] {
+        match self {
+            CellKind::Point | CellKind::Line2 | CellKind::Line3 => &[],
+            CellKind::Triangle3 | CellKind::Triangle6 => &TRIANGLE,
+            CellKind::Quad4 | CellKind::Quad8 | CellKind::Quad9 => &QUAD,
+            CellKind::Tetra4 | CellKind::Tetra10 => &TETRA,
+            CellKind::Wedge6 | CellKind::Wedge15 => &WEDGE,
+            CellKind::Hexa8 | CellKind::Hexa20 => &HEXA,
+        }
+    }
+
+    /// Faces of a solid, or sides of an area, by their corners, in the order S1, S2, ... of CalculiX and Abaqus.
+    pub fn sides(self) -> Vec<&'static [usize]> {
+        match self {
+            CellKind::Tetra4 | CellKind::Tetra10 => {
+                vec![&[0, 1, 2], &[0, 3, 1], &[1, 3, 2], &[2, 3, 0]]
+            }
+            CellKind::Wedge6 | CellKind::Wedge15 => vec![
+                &[0, 1, 2],
+                &[3, 4, 5],
+                &[0, 1, 4, 3],
+                &[1, 2, 5, 4],
+                &[2, 0, 3, 5],
+            ],
+            CellKind::Hexa8 | CellKind::Hexa20 => vec![
+                &[0, 1, 2, 3],
+                &[4, 7, 6, 5],
+                &[0, 4, 5, 1],
+                &[1, 5, 6, 2],
+                &[2, 6, 7, 3],
+                &[3, 7, 4, 0],
+            ],
+            _ => self.edges().iter().map(|edge| &edge[..]).collect(),
         }
     }
 }

@@ -57,6 +57,12 @@ pub fn cell_type(kind: CellKind) -> u8 {
         CellKind::Quad4 => 9,
         CellKind::Quad8 => 23,
         CellKind::Quad9 => 28,
+        CellKind::Tetra4 => 10,
+        CellKind::Tetra10 => 24,
+        CellKind::Wedge6 => 13,
+        CellKind::Wedge15 => 26,
+        CellKind::Hexa8 => 12,
+        CellKind::Hexa20 => 25,
     }
 }
 
@@ -71,11 +77,10 @@ pub fn write(grid: &Grid) -> String {
         "    <Piece NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\">"
     );
     text.push_str("      <Points>\n");
-    let places = grid.points.iter().flatten().copied();
     data(
         &mut text,
         "type=\"Float64\" Name=\"Points\" NumberOfComponents=\"3\"",
-        floats(places),
+        floats(grid.points.iter().flatten().copied()),
     );
     text.push_str("      </Points>\n      <Cells>\n");
     let corners = grid.cells.iter().flat_map(|cell| &cell.nodes);

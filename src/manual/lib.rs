@@ -54,7 +54,7 @@ pages! {
     settings "settings" "pages/settings.md" "Options and limits of the method";
     strategies "strategies" "pages/strategies.md" "Strategies for the next modes; the ladder; jumps";
     decks "decks" "pages/decks.md" "CalculiX and Abaqus decks: what is read, and how it is interpreted";
-    past_runs "past-runs" "pages/past-runs.md" "A finished CalculiX run: its cycles, and contacts that chatter";
+    past_runs "past-runs" "pages/past-runs.md" "A finished CalculiX run: why it failed, and the cure";
     attaching "attaching" "pages/attaching.md" "Stepping another program's solver in this debugger";
     protocol "protocol" "pages/protocol.md" "The messages between an attached solver and the debugger";
     adapters "adapters" "pages/adapters.md" "Attaching a solver with Python: an example and three adapters";

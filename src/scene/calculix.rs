@@ -1,11 +1,14 @@
 //! Reads a finished CalculiX run: its .cel file and the files next to it.
 
+pub use crate::deck::outline;
+use crate::format::SceneError;
 use std::fs::OpenOptions;
 use std::io::{self, BufReader};
 use std::path::{Path, PathBuf};
 use stickslip_exchange::calculix::files::CalculixFiles;
-use stickslip_exchange::calculix::{cel, cvg, sta};
+use stickslip_exchange::calculix::{cel, cvg, frd, sta};
 use stickslip_exchange::format_error::FormatError;
+use stickslip_exchange::inp::Deck;
 use stickslip_platform::input::{self, Unreadable};
 
 /// Extensions of a run's files: contact elements, attempts, residuals.
@@ -27,14 +30,26 @@ fn ends(name: &str, end: &str) -> bool {
     found.is_some_and(|found| found.eq_ignore_ascii_case(end))
 }
 
+/// The outline of the deck next to a .cel file; `None` if there is none.
+///
+/// # Errors
+/// If it cannot be read.
+pub fn deck_of(cel: &Path) -> Result<Option<Deck>, SceneError> {
+    let deck = cel.with_extension("inp");
+    match deck.is_file() {
+        true => outline(&deck.to_string_lossy()).map(Some),
+        false => Ok(None),
+    }
+}
+
 /// Reads a run from its .cel file; the .sta and .cvg files are optional.
 ///
 /// # Errors
-/// If a file cannot be read or has errors, or if the .cel contains no contact element.
+/// If a file cannot be read or has errors, or if the .cel contains no contact element and there is no .cvg.
 pub fn read(path: &Path) -> Result<CalculixFiles, String> {
     let cel = open(path).map_err(|why| why.of(&path.display().to_string()))?;
     let cel = cel::read(cel).map_err(|why| broken(path, &why))?;
-    if cel.slaves.is_empty() {
+    if cel.slaves.is_empty() && !path.with_extension(ENDS[2]).is_file() {
         let path = path.display();
         return Err(format!(
             "{path}: no contact elements in this file, so there is nothing to show"
@@ -43,6 +58,14 @@ pub fn read(path: &Path) -> Result<CalculixFiles, String> {
     let sta = beside(path, ENDS[1], sta::read)?;
     let cvg = beside(path, ENDS[2], cvg::read)?;
     Ok(CalculixFiles::new(cel, sta, cvg))
+}
+
+/// The contact pressures of the last result of a run, from its .frd; empty without one.
+///
+/// # Errors
+/// If the file cannot be read.
+pub fn pressures(cel: &Path) -> Result<Vec<(u32, f64)>, String> {
+    beside(cel, "frd", frd::pressures).map(Option::unwrap_or_default)
 }
 
 type Reader = BufReader<std::fs::File>;

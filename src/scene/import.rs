@@ -231,12 +231,12 @@ fn elements(mesh: &Mesh) -> Result<Vec<Cells>, (&'static str, String)> {
 
 fn kind(kind: CellKind) -> Option<ElementKind> {
     match kind {
-        CellKind::Point | CellKind::Line2 | CellKind::Line3 => None,
         CellKind::Triangle3 => Some(ElementKind::Triangle3),
         CellKind::Triangle6 => Some(ElementKind::Triangle6),
         CellKind::Quad4 => Some(ElementKind::Quad4),
         CellKind::Quad8 => Some(ElementKind::Quad8),
         CellKind::Quad9 => Some(ElementKind::Quad9),
+        _ => None,
     }
 }
 

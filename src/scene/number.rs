@@ -90,7 +90,10 @@ pub fn sig4(value: f64) -> String {
         _ => {
             let decimals = (3 - size.log10().floor() as i32).max(0) as usize;
             let text = format!("{value:.decimals$}");
-            text.trim_end_matches('0').trim_end_matches('.').to_owned()
+            match decimals {
+                0 => text,
+                _ => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+            }
         }
     };
     text.replace('-', "−")

@@ -85,6 +85,13 @@ fn selected_text(app: &App, view: &View) -> Result<NamedText, String> {
             cells.extend(remedies::row(trial));
             Ok(("the remedy".into(), cells.join("\t")))
         }
+        Pane::Diagnosis if view.model.finished.is_some() => {
+            let findings = view.model.finished.iter().flat_map(|run| &run.findings);
+            let cure = findings.filter(|found| !found.lines.is_empty());
+            let cure = cure.take(app.answer + 1).last();
+            let cure = cure.ok_or("no cure with lines for the deck")?;
+            Ok(("the lines for the deck".into(), cure.lines.clone()))
+        }
         Pane::Diagnosis => {
             let found = view.examination().flatten();
             let found = found.ok_or("no diagnosis yet; press d")?;

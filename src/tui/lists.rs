@@ -99,6 +99,9 @@ impl App {
                     line.typed
                 ));
             }
+            _ if view.is_some_and(|view| view.model.finished.is_some()) => {
+                self.say("change the deck and run CalculiX again");
+            }
             _ if line.typed.is_empty() => {
                 self.say(format!("{label}: nothing can try this for you"))
             }

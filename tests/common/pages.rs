@@ -62,6 +62,7 @@ fn made(marker: &str) -> Option<String> {
         "reference" => list(markdown::types().unwrap()),
         "settings" => list(markdown::settings().unwrap()),
         "keywords" => list(keywords()),
+        "causes" => list(causes()),
         "packages" => list(packages()),
         "modules" => list(modules(what)),
         "topics" => {
@@ -195,6 +196,24 @@ fn keywords() -> String {
         Treatment::Refused(why) => format!("- `{name}`: refused: {why}\n"),
     };
     KEYWORDS.iter().map(line).collect()
+}
+
+/// The decks that fail in CalculiX: what happened, the diagnosis, the cure, and what happens with it.
+fn causes() -> String {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/calculix");
+    let rows = super::causes::rows().into_iter().map(|row| {
+        let run = super::causes::run(&root, &row.deck);
+        let found = &run.findings[0];
+        let ccx = format!("{} → {}", row.outcome, row.cured);
+        format!(
+            "- `{}` ({ccx}). {}: {}. Cure: {}\n",
+            row.deck,
+            found.rule,
+            found.cause,
+            found.advice()
+        )
+    });
+    rows.collect()
 }
 
 /// `WIDTHxHEIGHT NAME: KEYS`.

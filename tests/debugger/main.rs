@@ -7,6 +7,8 @@ mod common;
 mod branches;
 // A run stops where it should, forward and backward, and says why.
 mod breakpoints;
+// Decks that fail in CalculiX are explained by the rule for their cause, with the cure that helps there.
+mod causes;
 // Scenes that cycle are diagnosed as their notes say.
 mod diagnosis;
 // A cycle's core, and whole frozen problems, are scenes of their own that take the same way.

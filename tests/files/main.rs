@@ -1,5 +1,7 @@
 //! Files and names that come from outside, and what the program and its README are made of.
 
+#[path = "../common/causes.rs"]
+mod causes;
 #[path = "../common/pages.rs"]
 mod pages;
 #[path = "../common/program.rs"]

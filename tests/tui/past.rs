@@ -256,7 +256,9 @@ fn faces_show_how_much_of_them_touches() {
         notes.contains("step 1, increment 1, attempt 1, iteration 4"),
         "{notes}"
     );
-    let mut debugger = on(Recording::Calculix(Box::new(calculix::open(run).unwrap())));
+    let mut debugger = on(Recording::Calculix(Box::new(
+        calculix::open(run, None).unwrap(),
+    )));
     debugger.type_keys("1 0 s");
     insta::assert_snapshot!("faces-80x24", debugger.text(80, 24));
     debugger.type_keys("O");

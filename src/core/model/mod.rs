@@ -96,6 +96,42 @@ pub struct FinishedRun {
     pub cycles: Vec<std::ops::Range<usize>>,
     /// Limit of the displacement correction (relative).
     pub correction_limit: f64,
+    /// Why it did not converge, most likely causes first.
+    pub findings: Vec<RunFinding>,
+}
+
+/// A cause of a failed run, found by a rule.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RunFinding {
+    /// Name of the rule.
+    pub rule: &'static str,
+    /// The cause with its numbers.
+    pub cause: String,
+    /// What to change, and in which line of the input.
+    pub cure: String,
+    /// The new lines of the input; empty if there are none.
+    pub lines: String,
+}
+
+impl RunFinding {
+    /// The new lines of the input in one line, shortened.
+    pub fn shown_lines(&self) -> String {
+        const MOST: usize = 4;
+        let lines: Vec<&str> = self.lines.lines().collect();
+        let shown = lines[..lines.len().min(MOST)].join(" ↵ ");
+        match lines.len().saturating_sub(MOST) {
+            0 => shown,
+            more => format!("{shown} ↵ ... ({more} more)"),
+        }
+    }
+
+    /// The cure with its lines.
+    pub fn advice(&self) -> String {
+        match self.lines.is_empty() {
+            true => self.cure.clone(),
+            false => format!("{}: {}", self.cure, self.shown_lines()),
+        }
+    }
 }
 
 /// What a scene in space has beyond the plane: nodes have three coordinates and three degrees of freedom.

@@ -27,7 +27,7 @@ use super::strain::MaterialCause;
 use super::try_list::{self, TryLine, TryOutcome, helps};
 use stickslip_core::linear::norms::Norms;
 use stickslip_core::linear::singular::Singular;
-use stickslip_core::model::{Body, BodyKind, InitialGaps, Model};
+use stickslip_core::model::{Body, BodyKind, FinishedRun, InitialGaps, Model};
 use stickslip_core::step::event::Failure;
 use stickslip_core::step::state::{State, Status};
 use stickslip_core::step::stepper::Stepper;
@@ -189,6 +189,24 @@ impl DiagnosisPage {
         DiagnosisPage {
             tries,
             ..DiagnosisPage::with_facts(what, facts, found)
+        }
+    }
+
+    /// The page of a finished run of another program: what its rules found.
+    pub fn finished(run: &FinishedRun) -> DiagnosisPage {
+        let what = match &run.findings[..] {
+            [] => "Run: no rule applies to it".into(),
+            [only] => format!("Run: {}", only.rule),
+            [first, others @ ..] => format!("Run: {} (and {} more)", first.rule, others.len()),
+        };
+        let facts = run.findings.iter().map(|found| Fact::why(&found.cause));
+        let found = Examination {
+            fails: true,
+            ..Examination::default()
+        };
+        DiagnosisPage {
+            tries: run.findings.iter().map(TryLine::from_finding).collect(),
+            ..DiagnosisPage::with_facts(what, facts.collect(), found)
         }
     }
 

@@ -2,6 +2,7 @@
 
 use super::remedies::{self, BUDGET, RemedyTrial, TrialEnd, compare};
 use super::remedy::{Remedy, RemedyInput};
+use stickslip_core::model::RunFinding;
 
 /// Outcome of a line of the list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -81,6 +82,14 @@ impl TryLine {
             outcome: TryOutcome::Untried,
             end: "not tried".to_owned(),
             trial: None,
+        }
+    }
+
+    /// The cure of a finding, as lines of the input.
+    pub fn from_finding(found: &RunFinding) -> TryLine {
+        TryLine {
+            typed: found.shown_lines(),
+            ..TryLine::by_hand(&found.cure)
         }
     }
 

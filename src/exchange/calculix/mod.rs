@@ -5,11 +5,13 @@
 //! - [`sta`]: result of every attempt at an increment.
 //! - [`cvg`]: residual and correction of every iteration.
 //! - [`files`]: these three together: a finished run.
+//! - [`frd`]: contact pressures of the last result.
 //! - [`stiffness`]: a stored stiffness matrix.
 
 pub mod cel;
 pub mod cvg;
 pub mod files;
+pub mod frd;
 mod lines;
 pub mod sta;
 pub mod stiffness;

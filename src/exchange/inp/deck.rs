@@ -40,6 +40,8 @@ pub struct Deck {
     pub printed: Vec<usize>,
     /// Warnings about ignored or reinterpreted input, in deck order, each once.
     pub remarks: Vec<Remark>,
+    /// Whether cards that may support or couple nodes were skipped; only in outlines.
+    pub is_incomplete: bool,
 }
 
 /// A node.
@@ -47,10 +49,18 @@ pub struct Deck {
 pub struct Node {
     /// Number in the deck.
     pub label: u64,
-    /// Position.
-    pub at: [f64; 2],
+    /// Position; z is 0 except in outlines.
+    pub at: [f64; 3],
     /// Where it is defined.
     pub place: DeckLocation,
+}
+
+impl Node {
+    /// Position in the plane.
+    pub fn plane(&self) -> [f64; 2] {
+        let [x, y, _] = self.at;
+        [x, y]
+    }
 }
 
 /// Family of elements.
@@ -64,6 +74,8 @@ pub enum Family {
     Axisymmetric,
     /// B21, B22 and similar: plane beams.
     Beam,
+    /// C3D: solids; only in outlines.
+    Solid,
 }
 
 /// A kind of element.
@@ -267,6 +279,8 @@ pub struct Step {
     pub nlgeom: bool,
     /// Whether loads without an amplitude apply at once instead of in proportion to time.
     pub at_once: bool,
+    /// Maximum number of increments.
+    pub increments: Option<u64>,
     /// Its increments.
     pub time: Time,
     /// Whether prescribed displacements of earlier steps are removed.
@@ -307,8 +321,23 @@ pub enum Direction {
     X,
     /// 2.
     Y,
+    /// 3; only in outlines.
+    Z,
     /// 6, about the out-of-plane axis.
     Rotation,
+}
+
+impl Direction {
+    /// The direction with a number in a deck, if it is one of these.
+    pub fn from_number(number: u64) -> Option<Direction> {
+        Some(match number {
+            1 => Direction::X,
+            2 => Direction::Y,
+            3 => Direction::Z,
+            6 => Direction::Rotation,
+            _ => return None,
+        })
+    }
 }
 
 /// A value for one component of one node.
@@ -358,9 +387,9 @@ pub struct Weight {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Volume {
     /// Acceleration, multiplied by the density.
-    Gravity([f64; 2]),
+    Gravity([f64; 3]),
     /// Force per volume.
-    Force([f64; 2]),
+    Force([f64; 3]),
 }
 
 /// A warning for the user.

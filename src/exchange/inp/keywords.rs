@@ -370,6 +370,27 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
     ("VISCO", Refused(OTHER)),
 ];
 
+/// Keywords, without spaces, that support or couple nodes: an outline without them is incomplete.
+pub(super) const COUPLING: &[&str] = &[
+    "BOUNDARY",
+    "COUPLING",
+    "CYCLICSYMMETRYMODEL",
+    "DISTRIBUTINGCOUPLING",
+    "ELEMENT",
+    "EQUATION",
+    "GAP",
+    "INSTANCE",
+    "KINEMATIC",
+    "KINEMATICCOUPLING",
+    "MPC",
+    "PRE-TENSIONSECTION",
+    "RIGIDBODY",
+    "SPRING",
+    "SUBMODEL",
+    "TIE",
+    "TRANSFORM",
+];
+
 /// Treatment of a keyword, by its name in uppercase without spaces.
 pub(super) fn treatment(key: &str) -> Option<Treatment> {
     let plain = |name: &str| name.chars().filter(|c| !c.is_whitespace()).eq(key.chars());

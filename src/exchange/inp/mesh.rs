@@ -82,22 +82,18 @@ impl Reader {
                     "the text after a node's three coordinates is ignored",
                 );
             }
-            if z != 0.0 {
+            if z != 0.0 && !self.is_outline {
                 let at = cells.get(3).map_or(label.place(), CardCell::place);
                 bail!(at, "node {number} is at z = {z:?}; only z = 0 is supported");
             }
             let place = label.place();
-            if self
-                .names
-                .nodes
-                .insert(number, self.deck.nodes.len())
-                .is_some()
-            {
+            if self.names.nodes.contains_key(&number) {
                 bail!(place, "node {number} is defined twice");
             }
+            self.names.nodes.insert(number, self.deck.nodes.len());
             self.deck.nodes.push(Node {
                 label: number,
-                at: [x, y],
+                at: [x, y, z],
                 place,
             });
         }
@@ -110,7 +106,7 @@ impl Reader {
     }
 
     pub(super) fn elements(&mut self, card: &Card<'_>) -> Done {
-        let kind = element_type(card)?;
+        let kind = element_type(card, self.is_outline)?;
         let count = kind.cell.nodes();
         if matches!(kind.cell, CellKind::Triangle3 | CellKind::Quad4) {
             self.deck.add_note(
@@ -153,21 +149,17 @@ impl Reader {
             }
             let mut sorted = of.clone();
             sorted.sort_unstable();
-            if sorted.windows(2).any(|pair| pair[0] == pair[1]) {
+            if sorted.windows(2).any(|pair| pair[0] == pair[1]) && !self.is_outline {
                 bail!(
                     label,
                     "element {number} has a repeated node; use a type with fewer nodes"
                 );
             }
             let place = label.place();
-            if self
-                .names
-                .elements
-                .insert(number, self.deck.elements.len())
-                .is_some()
-            {
+            if self.names.elements.contains_key(&number) {
                 bail!(place, "element {number} is defined twice");
             }
+            self.names.elements.insert(number, self.deck.elements.len());
             self.deck.elements.push(Element {
                 label: number,
                 kind,
@@ -329,14 +321,19 @@ impl Reader {
             bail!(card, "the surface {} is empty", short(&name));
         }
         self.names.count(count, card.place)?;
-        if self
-            .names
-            .surfaces
-            .insert(name.clone(), self.deck.surfaces.len())
-            .is_some()
-        {
-            bail!(card, "the surface {} is defined twice", short(&name));
+        match self.names.surfaces.get(&name) {
+            None => {}
+            // CalculiX has surfaces of nodes and of faces with the same name; the faces also serve as slaves.
+            Some(&known) if self.is_outline && !matches!(of, Faces::Nodes(_)) => {
+                self.deck.surfaces[known].of = of;
+                return Ok(());
+            }
+            Some(_) if self.is_outline => return Ok(()),
+            Some(_) => bail!(card, "the surface {} is defined twice", short(&name)),
         }
+        self.names
+            .surfaces
+            .insert(name.clone(), self.deck.surfaces.len());
         self.deck.surfaces.push(Surface {
             name,
             of,
@@ -384,9 +381,29 @@ impl MeshKind {
 }
 
 /// The element type of a card, if it is supported.
-pub(super) fn element_type(card: &Card<'_>) -> Done<ElementType> {
+pub(super) fn element_type(card: &Card<'_>, solids: bool) -> Done<ElementType> {
     let name = card.required("TYPE")?;
+    if solids && let Some(cell) = solid(name) {
+        return Ok(ElementType {
+            family: Family::Solid,
+            cell,
+            reduced: name.ends_with('R'),
+        });
+    }
     kind_of(name).map_err(|why| Fault::new(card.place_of("TYPE"), why))
+}
+
+/// The cell of a three-dimensional element type.
+fn solid(name: &str) -> Option<CellKind> {
+    Some(match name {
+        "C3D4" => CellKind::Tetra4,
+        "C3D6" => CellKind::Wedge6,
+        "C3D8" | "C3D8R" | "C3D8I" => CellKind::Hexa8,
+        "C3D10" | "C3D10T" | "C3D10M" => CellKind::Tetra10,
+        "C3D15" => CellKind::Wedge15,
+        "C3D20" | "C3D20R" => CellKind::Hexa20,
+        _ => return None,
+    })
 }
 
 fn kind_of(name: &str) -> Result<ElementType, String> {
@@ -443,7 +460,12 @@ fn kind_of(name: &str) -> Result<ElementType, String> {
         }
     }
     let why = match name {
-        _ if name.starts_with("C3D") => "is a three-dimensional element",
+        _ if solid(name).is_some() => {
+            return Err(format!(
+                "{name} is a three-dimensional element, which only CalculiX solves: `stickslip check` applies the rules \
+                 for decks, and `stickslip JOB.cel` shows the run and why it failed; {RIGHT}"
+            ));
+        }
         _ if name.starts_with('S') && name[1..].starts_with(|c: char| c.is_ascii_digit()) => {
             "is a shell element"
         }
@@ -471,17 +493,14 @@ fn once<T: Copy + Eq + std::hash::Hash>(members: Vec<T>) -> Vec<T> {
 
 /// Index of a side of an element, given by a letter and its number from 1.
 pub(super) fn side_of(cell: &CardCell<'_>, letter: char, element: &Element) -> Done<usize> {
-    let most = match element.kind.cell {
-        CellKind::Triangle3 | CellKind::Triangle6 => 3,
-        CellKind::Quad4 | CellKind::Quad8 => 4,
-        _ => {
-            bail!(
-                cell,
-                "element {} is a beam and has no sides; use its nodes instead, with TYPE=NODE",
-                element.label
-            );
-        }
-    };
+    let most = element.kind.cell.sides().len();
+    if most == 0 {
+        bail!(
+            cell,
+            "element {} is a beam and has no sides; use its nodes instead, with TYPE=NODE",
+            element.label
+        );
+    }
     let number = plain(cell.text)
         .strip_prefix(letter)
         .and_then(|rest| rest.parse::<usize>().ok());

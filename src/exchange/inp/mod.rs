@@ -49,8 +49,25 @@ pub fn is_one(text: &str) -> bool {
 /// # Errors
 /// The first error or unsupported input, with what is expected.
 pub fn read(name: &str, text: &str, include: &mut Include<'_>) -> Result<Deck, DeckError> {
+    deck(name, text, include, false)
+}
+
+/// Outlines a deck for the rules that explain why it fails: reads three-dimensional elements too, and skips what it cannot read.
+///
+/// # Errors
+/// If the text is not a list of keywords, or an include file is missing.
+pub fn outline(name: &str, text: &str, include: &mut Include<'_>) -> Result<Deck, DeckError> {
+    deck(name, text, include, true)
+}
+
+fn deck(
+    name: &str,
+    text: &str,
+    include: &mut Include<'_>,
+    is_outline: bool,
+) -> Result<Deck, DeckError> {
     let (sources, gathered) = Sources::gather(name, text, include);
-    let deck = gathered.and_then(|()| whole(&sources));
+    let deck = gathered.and_then(|()| whole(&sources, is_outline));
     deck.map_err(|fault| DeckError {
         file: sources
             .names
@@ -62,9 +79,12 @@ pub fn read(name: &str, text: &str, include: &mut Include<'_>) -> Result<Deck, D
     })
 }
 
-fn whole(sources: &Sources) -> Done<Deck> {
+fn whole(sources: &Sources, is_outline: bool) -> Done<Deck> {
     let cards = cards::cards(sources.lines())?;
-    let mut reader = Reader::default();
+    let mut reader = Reader {
+        is_outline,
+        ..Reader::default()
+    };
     reader.deck.files = sources.names.clone();
     let mut readings = Vec::with_capacity(cards.len());
     for card in &cards {
@@ -75,6 +95,11 @@ fn whole(sources: &Sources) -> Done<Deck> {
             let Some(reading) = reading.filter(|own| passes.contains(&own.pass)) else {
                 continue;
             };
+            if is_outline {
+                let read = (reading.read)(&mut reader, card);
+                read.unwrap_or_else(|fault| reader.skip(card, &fault.message));
+                continue;
+            }
             card.only(reading.parameters)?;
             (reading.read)(&mut reader, card)?;
             if reading.pass == Pass::Model && reader.step.is_some() {
@@ -92,6 +117,10 @@ fn whole(sources: &Sources) -> Done<Deck> {
     };
     reader.finish(cards.last().map_or(start, |card| card.place))?;
     let mut deck = reader.deck;
+    if is_outline {
+        // Notes on how the plane solver reads the deck do not apply.
+        deck.remarks = reader.skipped;
+    }
     deck.remarks
         .sort_by_key(|remark| (remark.place.file, remark.place.line));
     Ok(deck)
@@ -101,7 +130,8 @@ impl Reader {
     /// Rejects unsupported keywords, and adds warnings about ignored ones.
     fn known(&mut self, card: &Card<'_>) -> Done<Option<Reading>> {
         match card.key.as_str() {
-            "ELEMENT" => drop(mesh::element_type(card)?),
+            _ if self.is_outline => {}
+            "ELEMENT" => drop(mesh::element_type(card, false)?),
             "INITIALCONDITIONS" => {
                 card.choice("TYPE", &["TEMPERATURE"])?;
                 card.required("TYPE")?;
@@ -109,6 +139,10 @@ impl Reader {
             _ => {}
         }
         match treatment(&card.key) {
+            None | Some(Treatment::Refused(_)) if self.is_outline => {
+                self.skip(card, "it is not considered");
+                Ok(None)
+            }
             Some(Treatment::Refused(why)) => bail!(card, "{why}"),
             None => {
                 let like = nearest(&card.key)
@@ -122,6 +156,16 @@ impl Reader {
                 Ok(None)
             }
         }
+    }
+
+    /// Skips a card of an outline.
+    fn skip(&mut self, card: &Card<'_>, why: &str) {
+        self.deck.is_incomplete |= keywords::COUPLING.contains(&card.key.as_str());
+        self.skipped.push(Remark {
+            place: card.place,
+            text: format!("*{} is skipped: {why}", card.shown),
+            times: 1,
+        });
     }
 
     fn heading(&mut self, card: &Card<'_>) -> Done {
@@ -149,17 +193,34 @@ impl Deck {
         self.files.get(place.file).map_or("", String::as_str)
     }
 
-    /// The nodes of a side of an element, anticlockwise around it: start, end, and the midside node between them, if any.
+    /// The nodes of a side of a plane element, anticlockwise around it: start, end, and the midside node between them, if any.
     pub fn side(&self, element: usize, side: usize) -> Vec<usize> {
         let element = &self.elements[element];
-        let corners = match element.kind.cell {
-            crate::mesh::CellKind::Triangle3 | crate::mesh::CellKind::Triangle6 => 3,
-            _ => 4,
-        };
+        let corners = element.kind.cell.corners();
         let mut nodes = vec![element.nodes[side]];
         nodes.extend(element.nodes.get(corners + side));
         nodes.push(element.nodes[(side + 1) % corners]);
         nodes
+    }
+
+    /// The nodes of a side of a plane element or of a face of a solid: the corners in order, then the midside nodes. Empty if the
+    /// element has no such side.
+    pub fn face(&self, element: usize, side: usize) -> (Vec<usize>, Vec<usize>) {
+        let element = &self.elements[element];
+        let cell = element.kind.cell;
+        let sides = cell.sides();
+        let of = sides.get(side).copied().unwrap_or_default();
+        let corners = of.iter().map(|&k| element.nodes[k]).collect();
+        let edges = cell.edges().iter().enumerate();
+        let on_it = edges.filter(|(_, edge)| edge.iter().all(|end| of.contains(end)));
+        let middles = on_it.filter_map(|(k, _)| element.nodes.get(cell.corners() + k).copied());
+        (corners, middles.collect())
+    }
+
+    /// Whether the deck has three-dimensional elements.
+    pub fn is_solid(&self) -> bool {
+        let mut families = self.elements.iter().map(|element| element.kind.family);
+        families.any(|family| family == deck::Family::Solid)
     }
 }
 

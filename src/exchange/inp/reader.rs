@@ -1,6 +1,6 @@
 //! The state of reading a deck.
 
-use super::deck::{Deck, Step};
+use super::deck::{Deck, Remark, Step};
 use std::collections::{BTreeMap, HashMap};
 
 /// Lookup tables for labels and names of a deck.
@@ -22,6 +22,9 @@ pub struct Reader {
     /// The step that has begun.
     pub(super) step: Option<Step>,
     pub(super) has_time: bool,
+    /// Whether the deck is only outlined: three-dimensional elements are read, and cards that cannot be read are skipped.
+    pub(super) is_outline: bool,
+    pub(super) skipped: Vec<Remark>,
     /// NLGEOM stays on in later steps until it is switched off.
     pub(super) nlgeom: bool,
 }

@@ -12,7 +12,7 @@ impl Reader {
     pub(super) fn finish(&self, last: DeckLocation) -> Done {
         match &self.step {
             Some(step) => bail!(step.place, "the step has no end; *END STEP is missing"),
-            None if self.deck.steps.is_empty() => bail!(
+            None if self.deck.steps.is_empty() && !self.is_outline => bail!(
                 last,
                 "the deck has no step; it needs at least one, with *STEP, *STATIC and *END STEP"
             ),
@@ -30,6 +30,8 @@ impl Reader {
                 Some(_) => card.choice("NLGEOM", &["YES", "NO"])? == 0,
             };
         }
+        let increments = card.value("INC").ok().flatten();
+        let increments = increments.and_then(|count| count.parse().ok());
         if card.has("INC") {
             self.deck.add_note(
                 card.place_of("INC"),
@@ -41,6 +43,7 @@ impl Reader {
             place: card.place,
             static_place: card.place,
             nlgeom: self.nlgeom,
+            increments,
             at_once: card.choice("AMPLITUDE", &["RAMP", "STEP"])? == 1,
             ..Step::default()
         });
@@ -50,7 +53,7 @@ impl Reader {
     pub(super) fn end(&mut self, card: &Card<'_>) -> Done {
         card.no_lines()?;
         match self.step.take() {
-            Some(_) if !self.has_time => {
+            Some(_) if !self.has_time && !self.is_outline => {
                 bail!(card, "the step has no procedure; *STATIC is missing")
             }
             Some(step) => self.deck.steps.push(step),
@@ -176,6 +179,7 @@ impl Reader {
             let mut read = Vec::new();
             for number in from..=to {
                 match number {
+                    _ if self.is_outline => read.push(Direction::from_number(number)),
                     3..=5 if value == 0.0 => self.deck.add_note(
                         place,
                         "directions 3, 4 and 5 are always fixed in plane problems",
@@ -184,11 +188,11 @@ impl Reader {
                         last,
                         "a displacement of {value:?} along direction {number} leaves the plane"
                     ),
-                    _ => read.push(direction(words.get(1).unwrap_or(first), number)?),
+                    _ => read.push(Some(direction(words.get(1).unwrap_or(first), number)?)),
                 }
             }
             self.names.count(nodes.len() * read.len(), place)?;
-            for direction in read {
+            for direction in read.into_iter().flatten() {
                 let values = nodes.iter().map(|&node| Value {
                     node,
                     direction,
@@ -223,6 +227,7 @@ impl Reader {
             let place = first.place();
             let value = third.number("a force")?;
             let direction = match second.whole("a direction")? {
+                3 if self.is_outline => Direction::Z,
                 3 if value == 0.0 => continue,
                 number => direction(second, number)?,
             };
@@ -255,7 +260,7 @@ impl Reader {
             let elements = self.members_of(first, MeshKind::Elements)?;
             self.names.count(elements.len(), place)?;
             let kind = plain(label.text);
-            if let Some(load) = volume(&kind, label, rest)? {
+            if let Some(load) = volume(&kind, label, rest, self.is_outline)? {
                 let weights = elements.into_iter().map(|element| Weight {
                     element,
                     load,
@@ -318,10 +323,8 @@ impl Reader {
 
 /// A direction in the plane, by its number.
 fn direction(cell: &CardCell<'_>, number: u64) -> Done<Direction> {
-    match number {
-        1 => Ok(Direction::X),
-        2 => Ok(Direction::Y),
-        6 => Ok(Direction::Rotation),
+    match Direction::from_number(number) {
+        Some(direction) if direction != Direction::Z => Ok(direction),
         _ => bail!(
             cell,
             "direction {number} is not supported; it must be 1 or 2, or 6 on beams"
@@ -390,11 +393,17 @@ fn one(before: &CardCell<'_>, rest: &[CardCell<'_>], what: &str) -> Done<f64> {
     }
 }
 
-fn volume(kind: &str, label: &CardCell<'_>, rest: &[CardCell<'_>]) -> Done<Option<Volume>> {
+fn volume(
+    kind: &str,
+    label: &CardCell<'_>,
+    rest: &[CardCell<'_>],
+    solids: bool,
+) -> Done<Option<Volume>> {
     let force = || one(label, rest, "the force per volume");
     Ok(Some(match kind {
-        "BX" => Volume::Force([force()?, 0.0]),
-        "BY" => Volume::Force([0.0, force()?]),
+        "BX" => Volume::Force([force()?, 0.0, 0.0]),
+        "BY" => Volume::Force([0.0, force()?, 0.0]),
+        "BZ" if solids => Volume::Force([0.0, 0.0, force()?]),
         "GRAV" => {
             let [size, x, y, z @ ..] = rest else {
                 bail!(
@@ -405,14 +414,14 @@ fn volume(kind: &str, label: &CardCell<'_>, rest: &[CardCell<'_>]) -> Done<Optio
             let size = size.number("the acceleration")?;
             let (x, y) = (x.number("a direction")?, y.number("a direction")?);
             let z = number_or_zero(z, 0, "a direction")?;
-            let length = x.hypot(y);
-            if z != 0.0 || length == 0.0 || !length.is_finite() {
+            let length = x.hypot(y).hypot(z);
+            if (z != 0.0 && !solids) || length == 0.0 || !length.is_finite() {
                 bail!(
                     label,
                     "the direction of the acceleration must lie in the plane and not be zero"
                 );
             }
-            Volume::Gravity([size * x / length, size * y / length])
+            Volume::Gravity([x, y, z].map(|part| size * part / length))
         }
         _ => return Ok(None),
     }))

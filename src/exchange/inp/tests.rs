@@ -41,7 +41,10 @@ fn nodes_elements_sections_and_laws_match_the_deck() {
         "Two plates of one CPS8R each, pressed together: linear penalty, point loads"
     );
     assert_eq!(deck.nodes.len(), 16);
-    assert_eq!((deck.nodes[8].label, deck.nodes[8].at), (11, [0.0, 2.0]));
+    assert_eq!(
+        (deck.nodes[8].label, deck.nodes[8].at),
+        (11, [0.0, 2.0, 0.0])
+    );
     let kind = deck.elements[1].kind;
     assert_eq!(
         (kind.family, kind.cell, kind.reduced),
@@ -357,8 +360,8 @@ fn loads_on_sides_and_volumes_and_adjusted_gaps_are_read() {
     assert_eq!(
         weights,
         [
-            (1, Volume::Gravity([0.0, -9.81])),
-            (0, Volume::Force([3.0, 0.0]))
+            (1, Volume::Gravity([0.0, -9.81, 0.0])),
+            (0, Volume::Force([3.0, 0.0, 0.0]))
         ]
     );
 }

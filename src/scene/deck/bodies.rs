@@ -177,7 +177,7 @@ impl DeckObjects<'_> {
         let plane = match family {
             Family::PlaneStress => Plane::Stress,
             Family::Axisymmetric => Plane::Axisymmetric,
-            Family::PlaneStrain | Family::Beam => Plane::Strain,
+            Family::PlaneStrain | Family::Beam | Family::Solid => Plane::Strain,
         };
         let update = if nlgeom { Update::Total } else { Update::Small };
         let wanted = |id: String| Material::Elastic {

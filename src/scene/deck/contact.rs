@@ -187,7 +187,7 @@ impl DeckObjects<'_> {
         let turns = || {
             sides.iter().filter_map(|side| {
                 let next = starts.get(side.last()?)?;
-                Some(corners::turn(side, next, |node| deck.nodes[node].at))
+                Some(corners::turn(side, next, |node| deck.nodes[node].plane()))
             })
         };
         let (mut left, mut right) = (turns(), turns());
@@ -405,7 +405,7 @@ impl DeckObjects<'_> {
 
     /// The nodes of a tie that are close enough to the master.
     fn near(&mut self, tie: &Tie) -> Result<Vec<usize>, Fault> {
-        let at = |node: &usize| self.deck.nodes[*node].at;
+        let at = |node: &usize| self.deck.nodes[*node].plane();
         let Faces::Elements(sides) = &self.deck.surfaces[tie.master].of else {
             return Ok(Vec::new());
         };

@@ -526,6 +526,7 @@ fn component(direction: Direction) -> Component {
     match direction {
         Direction::X => Component::X,
         Direction::Y => Component::Y,
-        Direction::Rotation => Component::Rotation,
+        // Only outlines have z, and they do not become scenes.
+        Direction::Z | Direction::Rotation => Component::Rotation,
     }
 }

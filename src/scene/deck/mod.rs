@@ -123,6 +123,17 @@ impl UsedNames {
     }
 }
 
+/// Outlines a deck and its include files for the rules that explain failures; solids are read, too.
+///
+/// # Errors
+/// If a file cannot be read, or the deck is not a list of keywords.
+pub fn outline(name: &str) -> Result<Deck, SceneError> {
+    let path = FilePath::new(name);
+    let text = text(path).map_err(|why| SceneError::whole(name, why.to_string()))?;
+    let mut include = |wanted: &str| included(path, wanted);
+    inp::outline(name, &text, &mut include).map_err(|wrong| unread(name, wrong))
+}
+
 /// Reads a deck and its include files, which must be in its folder.
 pub(super) fn read(name: &str, text: &str) -> Result<DeckScene, SceneError> {
     let mut include = |wanted: &str| included(FilePath::new(name), wanted);

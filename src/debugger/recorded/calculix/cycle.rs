@@ -31,7 +31,7 @@ impl Cycle {
     }
 }
 
-/// The first cycle in an attempt. Without residuals, only contact elements are compared, and only in attempts
+/// The first cycle in an attempt: two whole turns, with a contact closed in each. Without residuals, only contact elements are compared, and only in attempts
 /// that did not converge, because contact elements can also recur on the way to convergence.
 pub fn first(run: &CalculixFiles, attempt: &Attempt) -> Option<Cycle> {
     let of = |k: usize| attempt.iterations.start + k;
@@ -40,7 +40,16 @@ pub fn first(run: &CalculixFiles, attempt: &Attempt) -> Option<Cycle> {
             |then: usize| differ(run, attempt, of(then), of(here), SAME) == Some(false),
             |then: usize| differ(run, attempt, of(then), of(here), DIFFERENT) == Some(true),
         );
-        cycle::closed(here, 2, same, elsewhere)
+        let turn = cycle::closed(here, 2, same, elsewhere)?;
+        // One return to an earlier iteration can be chance; in a cycle the second turn repeats the first.
+        let again = |k: usize| {
+            let next = k + turn.len();
+            next < attempt.iterations.len()
+                && differ(run, attempt, of(k), of(next), SAME) == Some(false)
+        };
+        let closed = |k: usize| run.closed(of(k)).is_some_and(|closed| !closed.is_empty());
+        let is_cycle = turn.clone().all(again) && turn.clone().any(closed);
+        is_cycle.then_some(turn)
     })?;
     let iterations = of(found.start)..of(found.end);
     let mut members: Vec<usize> = iterations

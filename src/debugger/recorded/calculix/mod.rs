@@ -1,13 +1,18 @@
 //! A finished CalculiX run as a read-only solver: each iteration in its files is one minor iteration.
 //!
-//! - [`run`]: the iterations; `cycle`: detection of cycles; [`words`]: descriptions, and the whole run as text.
+//! - [`run`]: the iterations; `cycle`: detection of cycles; [`words`]: descriptions, and the whole run as text; [`rules`]: why it
+//!   did not converge; [`switches`]: its mesh for ParaView.
 
 mod cycle;
+pub mod rules;
 pub mod run;
+pub mod switches;
 pub mod words;
 
 use super::log::Log;
+use rules::shape::DeckShape;
 use run::CalculixRun;
+use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
 use stickslip_core::contact::projection::SurfacePoint;
@@ -19,7 +24,9 @@ use stickslip_core::step::intervene::{Intervention, Refusal};
 use stickslip_core::step::solver::{Capabilities, RewindSupport, Solver, SolverLost};
 use stickslip_core::step::state::{State, Status};
 use stickslip_exchange::attach::message::{self, Friction, Id, Level};
+use stickslip_exchange::calculix::cel::Slave;
 use stickslip_exchange::calculix::files::End;
+use stickslip_exchange::inp::Deck;
 use stickslip_scene::Scene;
 use stickslip_scene::calculix;
 
@@ -36,16 +43,25 @@ pub struct OpenedRun {
 /// Opens a run, given the name of its .cel; `None` for other names.
 pub fn file(name: &str) -> Option<Result<OpenedRun, String>> {
     calculix::is_cel(name).then(|| {
-        let files = calculix::read(Path::new(name))?;
-        open(CalculixRun::new(name, files))
+        let path = Path::new(name);
+        let run = CalculixRun::new(name, calculix::read(path)?);
+        match calculix::deck_of(path) {
+            Ok(deck) => open(run, deck),
+            Err(unread) => {
+                let opened = open(run, None)?;
+                opened.log.message(Level::Warning, &unread.to_string());
+                Ok(opened)
+            }
+        }
     })
 }
 
-/// Opens a run.
+/// Opens a run; the rules explain it with its deck, if there is one.
 ///
 /// # Errors
-/// If it has too many contacts.
-pub fn open(run: CalculixRun) -> Result<OpenedRun, String> {
+/// If it has no contacts, or too many.
+pub fn open(run: CalculixRun, deck: Option<Deck>) -> Result<OpenedRun, String> {
+    let run = explained(run, deck)?;
     let slaves = 0..run.files.slaves.len();
     let contact = |slave: usize| message::Contact {
         id: Id::Number(slave as i64),
@@ -90,6 +106,7 @@ pub fn open(run: CalculixRun) -> Result<OpenedRun, String> {
             .map(|cycle| cycle.iterations.clone())
             .collect(),
         correction_limit: run::CORRECTION_LIMIT / 100.0,
+        findings: run.findings.clone(),
     });
     let log = Log::default();
     // The status line already shows the first line.
@@ -104,6 +121,28 @@ pub fn open(run: CalculixRun) -> Result<OpenedRun, String> {
         run: Arc::new(run),
         log,
     })
+}
+
+/// Applies the rules to a run. If nothing was ever in contact, the slave nodes of the deck are its contacts.
+fn explained(mut run: CalculixRun, deck: Option<Deck>) -> Result<CalculixRun, String> {
+    let shape = deck.as_ref().map(DeckShape::new);
+    if let Some(shape) = shape.as_ref().filter(|_| run.files.slaves.is_empty()) {
+        let label = |node: usize| shape.deck.nodes[node].label.try_into().ok();
+        let nodes = shape.pairs.iter().flat_map(|pair| &pair.nodes);
+        let labels: BTreeSet<u32> = nodes.filter_map(|node| label(node.node)).collect();
+        run.files.slaves = labels.into_iter().map(Slave::Node).collect();
+        run = CalculixRun::new(run.name, run.files);
+    }
+    if run.files.slaves.is_empty() {
+        return Err(format!(
+            "{}: no contact element in this file, and no deck with contact pairs next to it, so there is nothing to show",
+            run.name
+        ));
+    }
+    run.findings = rules::examine(shape.as_ref(), Some(&run));
+    drop(shape);
+    run.deck = deck;
+    Ok(run)
 }
 
 /// Step and increment numbers of all increments, in order.

@@ -2,9 +2,11 @@
 
 use super::cycle::{self, Cycle};
 use std::fmt::Write;
+use stickslip_core::model::RunFinding;
 use stickslip_exchange::calculix::cel::{ClosedContact, Slave};
 use stickslip_exchange::calculix::cvg::Norms;
 use stickslip_exchange::calculix::files::{CalculixFiles, End};
+use stickslip_exchange::inp::Deck;
 
 /// A finished run.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,6 +19,10 @@ pub struct CalculixRun {
     pub cycles: Vec<Option<Cycle>>,
     /// The contacts that switch, those with the most switches in one attempt first.
     pub switching: Vec<Switching>,
+    /// The deck next to the files.
+    pub deck: Option<Deck>,
+    /// Why the run did not converge, by the rules.
+    pub findings: Vec<RunFinding>,
     /// The attempt of each iteration.
     attempts: Vec<usize>,
     /// The largest number of contact elements of each slave.
@@ -96,6 +102,8 @@ impl CalculixRun {
         }
         CalculixRun {
             name: name.into(),
+            deck: None,
+            findings: Vec::new(),
             cycles: files.attempts.iter().map(cycle).collect(),
             switching,
             files,

@@ -11,7 +11,7 @@ use stickslip_scene::shown::{aligned, first_of};
 /// Kind of the recording.
 pub const READ_ONLY: &str = "finished CalculiX run (read-only)";
 /// Hint shown when a run is opened.
-pub const GREETING: &str = "O shows the run as text; ? lists the keys";
+pub const GREETING: &str = "d explains it; O: as text; ?: all keys";
 /// What the files do not contain, in short.
 pub const NO_MODES: &str = "stick and slip are not in the file";
 /// What the files do not contain, in full.
@@ -224,7 +224,19 @@ pub fn text(run: &CalculixRun) -> String {
         true => "\nNo cycles.\n".into(),
         false => format!("\nCycles\n{}", cycles.concat()),
     };
-    text + &switching(run)
+    text + &switching(run) + &causes(run)
+}
+
+/// The causes that the rules find, with their cures.
+fn causes(run: &CalculixRun) -> String {
+    let causes = run.findings.iter().enumerate().map(|(k, found)| {
+        let (number, rule, cause, advice) = (k + 1, found.rule, &found.cause, found.advice());
+        format!("{number}. {rule}: {cause}\n   Cure: {advice}\n")
+    });
+    match run.findings.is_empty() {
+        true => "\nNo rule applies to this run.\n".into(),
+        false => format!("\nCauses\n{}", causes.collect::<String>()),
+    }
 }
 
 /// One row per attempt.

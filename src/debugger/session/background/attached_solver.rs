@@ -61,6 +61,9 @@ impl Helper {
         reported: Reported,
         stop: &AtomicBool,
     ) -> DiagnosisPage {
+        if let Some(run) = &self.model.finished {
+            return DiagnosisPage::finished(run);
+        }
         let mut found = self.examine_problem(state, nodes, &reported.iterations, stop);
         let known = reported.findings;
         found.fails |= matches!(state.status, Status::Failed(_));

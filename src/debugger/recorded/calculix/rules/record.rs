@@ -1,0 +1,180 @@
+//! Rules on the record of a run: increments that ran out, contacts that chatter, corrections at their cap.
+
+use super::super::run::CalculixRun;
+use super::shape::DeckShape;
+use super::supports::{plain, rounded};
+use std::collections::BTreeSet;
+use stickslip_core::model::RunFinding;
+use stickslip_exchange::calculix::cel::Slave;
+use stickslip_exchange::calculix::files::End;
+use stickslip_scene::number::{shortest, sig4};
+use stickslip_scene::shown::first_of;
+
+/// Increments of a step without INC (CalculiX).
+const INCREMENTS: u64 = 100;
+/// Switches in one attempt above which a contact chatters.
+const CHATTER: usize = 4;
+/// Maximum number of contacts named.
+const NAMED: usize = 3;
+/// Correction in percent that counts as capped.
+const CAPPED: f64 = 99.9;
+
+/// A run that ended because the step had no increments left.
+pub fn increments_used(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunFinding> {
+    let (Some(last), Some(shape)) = (run.files.attempts.last(), shape) else {
+        return Vec::new();
+    };
+    let step = (last.step as usize).checked_sub(1);
+    let Some(step) = step.and_then(|k| shape.deck.steps.get(k)) else {
+        return Vec::new();
+    };
+    let most = step.increments.unwrap_or(INCREMENTS);
+    let reached = last.row.map_or(f64::INFINITY, |row| row.step_time);
+    let left = step.time.period - reached;
+    if last.end != End::Converged || u64::from(last.increment) < most || left <= 1e-6 {
+        return Vec::new();
+    }
+    let nlgeom = if step.nlgeom { ", NLGEOM" } else { "" };
+    vec![RunFinding {
+        rule: "increments used up",
+        cause: format!(
+            "step {} stopped at its time {} of {} because INC allows {most} increments; the last one converged",
+            last.step,
+            shortest(reached),
+            plain(step.time.period)
+        ),
+        cure: format!("more increments (line {})", step.place.line),
+        lines: format!("*STEP{nlgeom}, INC={}", 10 * most),
+    }]
+}
+
+/// Contacts that open and close in turn: who, where, how often, and against whom.
+pub fn chatter(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunFinding> {
+    let often = run
+        .switching
+        .iter()
+        .filter(|found| found.most().1 >= CHATTER);
+    let often: Vec<_> = often.collect();
+    let Some(most) = often.first() else {
+        return Vec::new();
+    };
+    let (attempt, count) = most.most();
+    let name = |slave: usize| match shape.and_then(|shape| place(run, shape, slave)) {
+        Some(at) => format!("{} {at}", run.slave_with_corners(slave)),
+        None => run.slave_with_corners(slave),
+    };
+    let named = often.iter().take(NAMED).map(|found| name(found.slave));
+    let named = named.collect::<Vec<_>>().join(", ");
+    let more = match often.len().saturating_sub(NAMED) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    let masters = masters(
+        run,
+        attempt,
+        &often.iter().map(|found| found.slave).collect(),
+    );
+    let softer = shape.and_then(|shape| {
+        let pair = (0..shape.pairs.len()).find(|pair| shape.stiffness(*pair).is_some())?;
+        let law = &shape.deck.interactions[shape.deck.pairs[pair].interaction];
+        Some((shape.stiffness(pair)?, law.normal_place.line))
+    });
+    vec![RunFinding {
+        rule: "chattering",
+        cause: format!(
+            "{} of {} contacts switch {CHATTER} times or more within an attempt, up to {count} times in {}: {}; against {masters}",
+            often.len(),
+            run.files.slaves.len(),
+            run.attempt_name(attempt),
+            named + &more
+        ),
+        cure: match softer {
+            Some((_, line)) => format!("a contact stiffness 10 times smaller (line {line})"),
+            None => "a smaller contact stiffness, or smaller increments".into(),
+        },
+        lines: softer.map_or(String::new(), |(stiffness, _)| {
+            plain(rounded(stiffness / 10.0))
+        }),
+    }]
+}
+
+/// Where a slave is: its coordinates and its surface.
+fn place(run: &CalculixRun, shape: &DeckShape, slave: usize) -> Option<String> {
+    let label = match run.files.slaves[slave] {
+        Slave::Node(node) => node,
+        Slave::Face([first, ..]) => first,
+    };
+    let node = shape
+        .deck
+        .nodes
+        .iter()
+        .position(|node| node.label == u64::from(label))?;
+    let at = shape.at(node);
+    let of = |pair: &&super::shape::PairShape| pair.nodes.iter().any(|own| own.node == node);
+    let pair = shape.pairs.iter().find(of)?;
+    Some(format!(
+        "at ({}, {}, {}) of {}",
+        sig4(at.x),
+        sig4(at.y),
+        sig4(at.z),
+        shape.pair_name(pair)
+    ))
+}
+
+/// The master faces that some slaves touch in an attempt.
+fn masters(run: &CalculixRun, attempt: usize, slaves: &BTreeSet<usize>) -> String {
+    let iterations = run.files.attempts[attempt].iterations.clone();
+    let closed = iterations.filter_map(|k| run.files.closed(k)).flatten();
+    let touched = closed.filter(|closed| slaves.contains(&(closed.slave as usize)));
+    let faces: BTreeSet<u32> = touched.map(|closed| closed.master).collect();
+    let names = faces
+        .iter()
+        .map(|face| super::super::run::face(&run.files.masters[*face as usize]));
+    match faces.len() {
+        1 => format!("the master face {}", first_of(names, NAMED, "; ")),
+        count => format!("{count} master faces ({})", first_of(names, NAMED, "; ")),
+    }
+}
+
+/// Attempts whose correction stays at its cap of 100 % while the residual grows.
+pub fn capped_correction(run: &CalculixRun, _: Option<&DeckShape>) -> Vec<RunFinding> {
+    let capped = run
+        .files
+        .attempts
+        .iter()
+        .enumerate()
+        .filter_map(|(k, attempt)| {
+            let norms = attempt
+                .iterations
+                .clone()
+                .skip(1)
+                .filter_map(|k| run.norms(k));
+            let norms: Vec<_> = norms
+                .take_while(|norms| norms.correction >= CAPPED)
+                .collect();
+            let (first, last) = (norms.first()?, norms.last()?);
+            let grows = norms.len() >= 2 && last.residual > first.residual;
+            (attempt.end == End::NotConverged && grows).then_some((
+                k,
+                norms.len(),
+                first.residual,
+                last.residual,
+            ))
+        });
+    let capped: Vec<_> = capped.collect();
+    let Some(&(attempt, count, from, to)) = capped.iter().max_by(|a, b| a.1.cmp(&b.1)) else {
+        return Vec::new();
+    };
+    vec![RunFinding {
+        rule: "capped correction",
+        cause: format!(
+            "the correction of attempt {} stays at 100 % for {count} iterations while the residual grows from {} % to {} %: \
+             it is relative to the increment, which consists of the correction alone, so 100 % means divergence",
+            run.attempt_name(attempt),
+            sig4(from),
+            sig4(to)
+        ),
+        cure: "the first cure above; smaller increments alone do not stop it".into(),
+        lines: String::new(),
+    }]
+}

@@ -1,0 +1,554 @@
+//! Geometry of a deck for the rules: bodies, faces of surfaces, and the gap of each slave node of a pair.
+
+use nalgebra::Vector3;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use stickslip_exchange::inp::Deck;
+use stickslip_exchange::inp::deck::{Adjust, Element, Faces, Family, Normal, Set, Step};
+
+/// A position or direction.
+pub type Vector = Vector3<f64>;
+
+/// Position tolerance of a tie without one, in sizes of a master face (CalculiX: 2.5 %).
+const TIE_TOLERANCE: f64 = 0.025;
+/// Gaps below this count as closed, in sizes of a slave face.
+const CLOSED: f64 = 1e-3;
+
+/// A face of an element on a surface.
+#[derive(Debug, Clone)]
+pub struct SurfaceFace {
+    /// Index of the element.
+    pub element: usize,
+    /// Index of its side.
+    pub side: usize,
+    /// Indices of the corners.
+    pub corners: Vec<usize>,
+    /// Mean of the corners.
+    pub centre: Vector,
+    /// Outward unit normal.
+    pub normal: Vector,
+    /// Area; in plane decks the length.
+    pub area: f64,
+    /// Length of an edge, as the root of the area.
+    pub size: f64,
+    /// Largest distance of a corner from the centre.
+    radius: f64,
+}
+
+/// Points sorted along the axis of their largest extent, to find near ones without a look at all of them.
+#[derive(Debug, Clone)]
+pub struct SortedPoints {
+    axis: usize,
+    /// Coordinate and index of each point, ascending.
+    keys: Vec<(f64, usize)>,
+}
+
+impl SortedPoints {
+    /// Sorts points.
+    pub fn new(points: &[Vector]) -> SortedPoints {
+        let extent = |axis: usize| {
+            let along = points.iter().map(|point| point[axis]);
+            let (least, most) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
+                (a.min(x), b.max(x))
+            });
+            most - least
+        };
+        let axis = (0..3)
+            .max_by(|a, b| extent(*a).total_cmp(&extent(*b)))
+            .unwrap_or(0);
+        let mut keys: Vec<(f64, usize)> = points
+            .iter()
+            .enumerate()
+            .map(|(k, point)| (point[axis], k))
+            .collect();
+        keys.sort_by(|a, b| a.0.total_cmp(&b.0));
+        SortedPoints { axis, keys }
+    }
+
+    /// The points by their distance along the axis, nearest first: this distance and the index.
+    pub fn from(&self, point: Vector) -> impl Iterator<Item = (f64, usize)> {
+        let at = point[self.axis];
+        let start = self.keys.partition_point(|(key, _)| *key < at);
+        let (mut below, mut above) = (start, start);
+        std::iter::from_fn(move || {
+            let down = below
+                .checked_sub(1)
+                .and_then(|k| self.keys.get(k))
+                .map(|key| (at - key.0, key.1));
+            let up = self.keys.get(above).map(|key| (key.0 - at, key.1));
+            match (down, up) {
+                (Some(down), up) if up.is_none_or(|up| down.0 <= up.0) => {
+                    below -= 1;
+                    Some(down)
+                }
+                (_, up) => {
+                    above += 1;
+                    up
+                }
+            }
+        })
+    }
+}
+
+/// A slave node and the nearest master face.
+#[derive(Debug, Clone, Copy)]
+pub struct SlaveGap {
+    /// Index of the node.
+    pub node: usize,
+    /// Distance along the face's normal, negative inside.
+    pub gap: f64,
+    /// Distance beyond the face's edge; 0 in front of the face.
+    pub beyond: f64,
+    /// Index of the face in [`PairShape::masters`].
+    pub face: usize,
+}
+
+/// A contact pair or a tie.
+#[derive(Debug, Clone)]
+pub struct PairShape {
+    /// Indices of the slave and the master surface.
+    pub surfaces: [usize; 2],
+    /// Faces of the slave surface; empty for a surface of nodes.
+    pub slaves: Vec<SurfaceFace>,
+    /// Faces of the master surface.
+    pub masters: Vec<SurfaceFace>,
+    /// The centres of these faces.
+    pub centres: SortedPoints,
+    /// The slave nodes with their gaps, by node.
+    pub nodes: Vec<SlaveGap>,
+    /// Groups of the slave and of the master.
+    pub groups: [usize; 2],
+    /// Mean size of the slave's and of the master's faces; a slave of nodes has the master's.
+    pub sizes: [f64; 2],
+    /// Gaps up to this are moved onto the master at the start, or tied.
+    pub closes: Option<f64>,
+}
+
+impl PairShape {
+    /// Whether a slave node touches at the start.
+    pub fn is_closed(&self, node: &SlaveGap) -> bool {
+        let limit = self.closes.unwrap_or(0.0).max(CLOSED * self.sizes[0]);
+        node.gap <= limit && node.beyond <= limit
+    }
+
+    /// Normal of the master, averaged over the faces that slave nodes are nearest to.
+    pub fn normal(&self) -> Vector {
+        let sum: Vector = self.nodes.iter().map(|n| self.masters[n.face].normal).sum();
+        sum.try_normalize(1e-12).unwrap_or_else(Vector::zeros)
+    }
+
+    /// The slave node with the smallest gap in front of the master.
+    pub fn nearest(&self) -> Option<&SlaveGap> {
+        let in_front = self.nodes.iter().filter(|n| n.beyond <= self.sizes[1]);
+        in_front.min_by(|a, b| a.gap.total_cmp(&b.gap))
+    }
+}
+
+/// A deck with its geometry.
+pub struct DeckShape<'d> {
+    /// The deck.
+    pub deck: &'d Deck,
+    /// Body of each node; `None` if no element has it.
+    pub body_of: Vec<Option<usize>>,
+    /// Name of each body: the set of its section.
+    pub bodies: Vec<String>,
+    /// Group of each body: bodies that ties hold together.
+    pub group_of: Vec<usize>,
+    /// The contact pairs in deck order.
+    pub pairs: Vec<PairShape>,
+    /// The ties in deck order.
+    pub ties: Vec<PairShape>,
+    /// How many elements have each face, by its sorted corners.
+    faces: HashMap<Vec<usize>, u32>,
+}
+
+impl<'d> DeckShape<'d> {
+    /// Computes the geometry of a deck.
+    pub fn new(deck: &'d Deck) -> DeckShape<'d> {
+        let (body_of, bodies) = bodies(deck);
+        let mut shape = DeckShape {
+            deck,
+            group_of: (0..bodies.len()).collect(),
+            body_of,
+            bodies,
+            pairs: Vec::new(),
+            ties: Vec::new(),
+            faces: HashMap::new(),
+        };
+        shape.count_faces();
+        shape.ties = deck
+            .ties
+            .iter()
+            .map(|tie| shape.pair([tie.slave, tie.master], tie.tolerance))
+            .collect();
+        for tie in &mut shape.ties {
+            tie.closes.get_or_insert(TIE_TOLERANCE * tie.sizes[1]);
+            if tie.nodes.iter().any(|node| tie.is_closed(node)) {
+                let [one, other] = tie.groups.map(|group| shape.group_of[group]);
+                let groups = shape.group_of.iter_mut();
+                groups
+                    .filter(|group| **group == one)
+                    .for_each(|group| *group = other);
+            }
+        }
+        shape.pairs = deck
+            .pairs
+            .iter()
+            .map(|pair| {
+                let closes = match &pair.adjust {
+                    Some(Adjust::Within(length)) => Some(*length),
+                    Some(Adjust::Set(_)) => Some(f64::INFINITY),
+                    None => None,
+                };
+                shape.pair([pair.slave, pair.master], closes)
+            })
+            .collect();
+        shape
+    }
+
+    /// Position of a node.
+    pub fn at(&self, node: usize) -> Vector {
+        Vector::from(self.deck.nodes[node].at)
+    }
+
+    /// Group of a node, if it belongs to an element.
+    pub fn group(&self, node: usize) -> Option<usize> {
+        self.body_of[node].map(|body| self.group_of[body])
+    }
+
+    /// Name of a group: its bodies.
+    pub fn group_name(&self, group: usize) -> String {
+        let own = (0..self.bodies.len()).filter(|body| self.group_of[*body] == group);
+        let names: Vec<&str> = own.map(|body| self.bodies[body].as_str()).collect();
+        names.join(" with ")
+    }
+
+    /// Name of a pair: `SLAVE on MASTER`.
+    pub fn pair_name(&self, pair: &PairShape) -> String {
+        let [slave, master] = pair.surfaces.map(|k| &self.deck.surfaces[k].name);
+        format!("{slave} on {master}")
+    }
+
+    /// Whether a face lies between two elements.
+    pub fn is_inner(&self, face: &SurfaceFace) -> bool {
+        self.faces
+            .get(&sorted(&face.corners))
+            .is_some_and(|n| *n > 1)
+    }
+
+    /// The smallest set of exactly these nodes, or the first node.
+    pub fn set_name(&self, nodes: &BTreeSet<usize>) -> String {
+        let is_same = |set: &&Set| set.members.iter().eq(nodes);
+        let set = self.deck.node_sets.iter().find(is_same);
+        let first = nodes
+            .first()
+            .map(|&node| self.deck.nodes[node].label.to_string());
+        set.map_or_else(|| first.unwrap_or_default(), |set| set.name.clone())
+    }
+
+    /// The material of an element, by index.
+    pub fn material(&self, element: usize) -> Option<usize> {
+        let sections = self.deck.sections.iter().rev();
+        let has = |set: usize| {
+            self.deck.element_sets[set]
+                .members
+                .binary_search(&element)
+                .is_ok()
+        };
+        sections
+            .into_iter()
+            .find(|section| has(section.set))
+            .map(|section| section.material)
+    }
+
+    /// Young's modulus of the softer of the materials on both sides of a pair, with the material's name.
+    pub fn young(&self, pair: &PairShape) -> Option<(f64, &str)> {
+        let faces = pair.slaves.first().into_iter().chain(pair.masters.first());
+        let materials = faces.filter_map(|face| self.material(face.element));
+        let moduli = materials.filter_map(|k| {
+            let material = &self.deck.materials[k];
+            Some((material.elastic?.0, material.name.as_str()))
+        });
+        moduli.min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// Stiffness of a pair's law: pressure per length.
+    pub fn stiffness(&self, pair: usize) -> Option<f64> {
+        let law = &self.deck.interactions[self.deck.pairs[pair].interaction];
+        match law.normal {
+            Normal::Linear { stiffness } | Normal::Tied { stiffness } => Some(stiffness),
+            Normal::Hard => None,
+        }
+    }
+
+    /// Directions in which a group can move: translations, then rotations. None for beams in 3-D, whose rotations the rules do
+    /// not consider.
+    pub fn modes(&self, group: usize) -> [bool; 6] {
+        let own = |element: &&Element| {
+            let first = element.nodes.first();
+            first.and_then(|node| self.group(*node)) == Some(group)
+        };
+        let families: BTreeSet<Family> = self
+            .deck
+            .elements
+            .iter()
+            .filter(own)
+            .map(|element| element.kind.family)
+            .collect();
+        let is_plane = [Family::PlaneStrain, Family::PlaneStress];
+        match () {
+            () if families.contains(&Family::Solid) => [true; 6],
+            () if families.contains(&Family::Axisymmetric) => {
+                [false, true, false, false, false, false]
+            }
+            () if is_plane.iter().any(|family| families.contains(family)) => {
+                [true, true, false, false, false, true]
+            }
+            () if self.deck.is_solid() => [false; 6],
+            () => [true, true, false, false, false, true],
+        }
+    }
+
+    /// The faces of a surface.
+    pub fn faces(&self, surface: usize) -> Vec<SurfaceFace> {
+        match &self.deck.surfaces[surface].of {
+            Faces::Nodes(_) => Vec::new(),
+            Faces::Elements(sides) => {
+                let faces = sides.iter();
+                faces.filter_map(|&(e, side)| self.face(e, side)).collect()
+            }
+        }
+    }
+
+    /// A side of an element; `None` if it has no area.
+    pub fn face(&self, element: usize, side: usize) -> Option<SurfaceFace> {
+        let (corners, _) = self.deck.face(element, side);
+        let at: Vec<Vector> = corners.iter().map(|&node| self.at(node)).collect();
+        let centre = mean(&at)?;
+        let across = match at[..] {
+            [a, b] => (b - a).cross(&Vector::z()),
+            [a, b, c] => (b - a).cross(&(c - a)) / 2.0,
+            [a, b, c, d] => (c - a).cross(&(d - b)) / 2.0,
+            _ => return None,
+        };
+        let own = &self.deck.elements[element].nodes;
+        let body = mean(&own.iter().map(|&node| self.at(node)).collect::<Vec<_>>())?;
+        let normal = across.try_normalize(0.0)?;
+        let outward = normal * (centre - body).dot(&normal).signum();
+        let area = across.norm();
+        let radius = at.iter().map(|corner| (corner - centre).norm());
+        Some(SurfaceFace {
+            element,
+            side,
+            centre,
+            normal: outward,
+            area,
+            size: if at.len() == 2 { area } else { area.sqrt() },
+            radius: radius.fold(0.0, f64::max),
+            corners,
+        })
+    }
+
+    fn count_faces(&mut self) {
+        for (k, element) in self.deck.elements.iter().enumerate() {
+            for side in 0..element.kind.cell.sides().len() {
+                let (corners, _) = self.deck.face(k, side);
+                *self.faces.entry(sorted(&corners)).or_default() += 1;
+            }
+        }
+    }
+
+    /// The nodes of a surface, midside nodes included.
+    pub fn surface_nodes(&self, surface: usize) -> BTreeSet<usize> {
+        match &self.deck.surfaces[surface].of {
+            Faces::Nodes(nodes) => nodes.iter().copied().collect(),
+            Faces::Elements(sides) => {
+                let of = sides.iter().map(|&(e, side)| self.deck.face(e, side));
+                of.flat_map(|(corners, middles)| [corners, middles].concat())
+                    .collect()
+            }
+        }
+    }
+
+    fn pair(&self, surfaces: [usize; 2], closes: Option<f64>) -> PairShape {
+        let [slaves, masters] = surfaces.map(|surface| self.faces(surface));
+        let nodes = self.surface_nodes(surfaces[0]);
+        let group = |node: Option<usize>| node.and_then(|n| self.group(n)).unwrap_or(usize::MAX);
+        let groups = [
+            group(nodes.first().copied()),
+            group(
+                masters
+                    .first()
+                    .and_then(|face| face.corners.first().copied()),
+            ),
+        ];
+        let size = |faces: &[SurfaceFace]| {
+            let sum: f64 = faces.iter().map(|face| face.size).sum();
+            (!faces.is_empty()).then(|| sum / faces.len() as f64)
+        };
+        let master = size(&masters).unwrap_or(0.0);
+        let centres: Vec<Vector> = masters.iter().map(|face| face.centre).collect();
+        let centres = SortedPoints::new(&centres);
+        let gaps = nodes
+            .iter()
+            .filter_map(|&node| self.gap(node, (&masters, &centres)));
+        PairShape {
+            nodes: gaps.collect(),
+            centres,
+            sizes: [size(&slaves).unwrap_or(master), master],
+            surfaces,
+            slaves,
+            masters,
+            groups,
+            closes,
+        }
+    }
+
+    fn gap(&self, node: usize, masters: (&[SurfaceFace], &SortedPoints)) -> Option<SlaveGap> {
+        let (face, gap, beyond) = self.nearest(self.at(node), masters)?;
+        Some(SlaveGap {
+            node,
+            gap,
+            beyond,
+            face,
+        })
+    }
+
+    /// The face nearest to a point, the distance along its normal, and the distance beyond its edge.
+    pub fn nearest(
+        &self,
+        point: Vector,
+        (faces, centres): (&[SurfaceFace], &SortedPoints),
+    ) -> Option<(usize, f64, f64)> {
+        let largest = faces.iter().map(|face| face.radius).fold(0.0, f64::max);
+        let mut best: Option<(f64, usize, Vector)> = None;
+        for (along, k) in centres.from(point) {
+            let is_farther = |least: f64| best.is_some_and(|(distance, ..)| least >= distance);
+            if is_farther(along - largest) {
+                break;
+            }
+            let face = &faces[k];
+            if is_farther((point - face.centre).norm() - face.radius) {
+                continue;
+            }
+            let at: Vec<Vector> = face.corners.iter().map(|&node| self.at(node)).collect();
+            let closest = closest(point, &at);
+            let distance = (point - closest).norm();
+            if best.is_none_or(|(known, ..)| distance < known) {
+                best = Some((distance, k, closest));
+            }
+        }
+        let (_, k, closest) = best?;
+        let off = point - closest;
+        let gap = off.dot(&faces[k].normal);
+        Some((k, gap, (off - gap * faces[k].normal).norm()))
+    }
+
+    /// Factor of a load or displacement of a step at a time of the step.
+    pub fn factor(&self, step: &Step, amplitude: Option<usize>, time: f64) -> f64 {
+        let Some(amplitude) = amplitude else {
+            let ramp = time / step.time.period.max(f64::MIN_POSITIVE);
+            return match step.at_once {
+                true => f64::from(time > 0.0),
+                false => ramp.min(1.0),
+            };
+        };
+        let points = &self.deck.amplitudes[amplitude].points;
+        let after = points.partition_point(|(at, _)| *at <= time);
+        match (
+            after.checked_sub(1).and_then(|k| points.get(k)),
+            points.get(after),
+        ) {
+            (Some((a, x)), Some((b, y))) => x + (y - x) * (time - a) / (b - a),
+            (Some((_, x)), None) | (None, Some((_, x))) => *x,
+            (None, None) => 1.0,
+        }
+    }
+}
+
+/// The point of a segment, triangle or quadrilateral that is closest to a point.
+fn closest(point: Vector, corners: &[Vector]) -> Vector {
+    let triangles: &[[usize; 3]] = match corners.len() {
+        4 => &[[0, 1, 2], [0, 2, 3]],
+        3 => &[[0, 1, 2]],
+        _ => &[],
+    };
+    let inside = triangles
+        .iter()
+        .filter_map(|of| in_triangle(point, of.map(|k| corners[k])));
+    let ends = (0..corners.len()).map(|k| {
+        let (a, b) = (corners[k], corners[(k + 1) % corners.len()]);
+        let along = b - a;
+        let part = (point - a).dot(&along) / along.norm_squared().max(f64::MIN_POSITIVE);
+        a + along * part.clamp(0.0, 1.0)
+    });
+    let all = inside.chain(ends);
+    let nearest = all.min_by(|a, b| (a - point).norm().total_cmp(&(b - point).norm()));
+    nearest.unwrap_or(point)
+}
+
+/// The projection of a point onto the plane of a triangle, if it is inside.
+fn in_triangle(point: Vector, [a, b, c]: [Vector; 3]) -> Option<Vector> {
+    let normal = (b - a).cross(&(c - a)).try_normalize(0.0)?;
+    let foot = point - normal * (point - a).dot(&normal);
+    let is_left = |p: Vector, q: Vector| (q - p).cross(&(foot - p)).dot(&normal) >= 0.0;
+    (is_left(a, b) && is_left(b, c) && is_left(c, a)).then_some(foot)
+}
+
+fn mean(points: &[Vector]) -> Option<Vector> {
+    let sum: Vector = points.iter().sum();
+    (!points.is_empty()).then(|| sum / points.len() as f64)
+}
+
+fn sorted(corners: &[usize]) -> Vec<usize> {
+    let mut sorted = corners.to_vec();
+    sorted.sort_unstable();
+    sorted
+}
+
+/// Connected elements: the body of each node, and the names of the bodies.
+fn bodies(deck: &Deck) -> (Vec<Option<usize>>, Vec<String>) {
+    let mut root: Vec<usize> = (0..deck.nodes.len()).collect();
+    fn find(root: &mut [usize], mut node: usize) -> usize {
+        while root[node] != node {
+            root[node] = root[root[node]];
+            node = root[node];
+        }
+        node
+    }
+    for element in &deck.elements {
+        for ends in element.nodes.windows(2) {
+            let (a, b) = (find(&mut root, ends[0]), find(&mut root, ends[1]));
+            root[a.max(b)] = a.min(b);
+        }
+    }
+    let mut body_of = vec![None; deck.nodes.len()];
+    let (mut known, mut names) = (BTreeMap::new(), Vec::new());
+    for (k, element) in deck.elements.iter().enumerate() {
+        for &node in &element.nodes {
+            let at = find(&mut root, node);
+            body_of[node] = Some(*known.entry(at).or_insert_with(|| {
+                names.push(name(deck, k, &names));
+                names.len() - 1
+            }));
+        }
+    }
+    (body_of, names)
+}
+
+/// Name of a body by one of its elements: the set of its section, with the element if the name is in use.
+fn name(deck: &Deck, element: usize, used: &[String]) -> String {
+    let label = deck.elements[element].label;
+    let has = |set: usize| {
+        deck.element_sets[set]
+            .members
+            .binary_search(&element)
+            .is_ok()
+    };
+    match deck.sections.iter().find(|section| has(section.set)) {
+        None => format!("the body of element {label}"),
+        Some(section) => match deck.element_sets[section.set].name.clone() {
+            name if used.contains(&name) => format!("{name} (element {label})"),
+            name => name,
+        },
+    }
+}

@@ -1,0 +1,258 @@
+//! Rules on steps: how far prescribed displacements move contacts per increment and in all, and whether increments can be cut.
+
+use super::shape::{DeckShape, PairShape, Vector};
+use super::supports::{plain, rounded};
+use std::collections::HashMap;
+use stickslip_core::model::RunFinding;
+use stickslip_exchange::inp::deck::{Direction, Step};
+use stickslip_scene::number::sig4;
+
+/// Motion of the first increment that is reported, in sizes of a slave face.
+const FIRST: f64 = 0.5;
+/// Motion of an increment that is advised, in sizes of a slave face.
+const ADVISED: f64 = 0.1;
+/// Sliding that needs large displacements, in sizes of a slave face.
+const SLIDING: f64 = 1.0;
+/// Increments that cannot be cut to this part are reported.
+const CUT: f64 = 0.5;
+
+/// Displacement that a step prescribes on a group: per axis the largest change of its nodes, at two times of the step.
+fn travel(shape: &DeckShape, step: usize, group: usize, times: [f64; 2]) -> Vector {
+    let deck = shape.deck;
+    let mut travel = Vector::zeros();
+    let this = &deck.steps[step];
+    let mut before: HashMap<(usize, Direction), f64> = HashMap::new();
+    for earlier in &deck.steps[..step] {
+        let end = earlier.time.period;
+        for value in &earlier.motions {
+            let part = value
+                .amplitude
+                .map_or(1.0, |_| shape.factor(earlier, value.amplitude, end));
+            before.insert(value.target(), value.value * part);
+        }
+    }
+    for value in &this.motions {
+        let axis = match value.direction {
+            Direction::X => 0,
+            Direction::Y => 1,
+            Direction::Z => 2,
+            Direction::Rotation => continue,
+        };
+        if shape.group(value.node) != Some(group) {
+            continue;
+        }
+        let before = before.get(&value.target()).copied().unwrap_or(0.0);
+        let [from, to] = times.map(|time| match value.amplitude {
+            None => before + (value.value - before) * shape.factor(this, None, time),
+            amplitude => value.value * shape.factor(this, amplitude, time),
+        });
+        if (to - from).abs() > travel[axis].abs() {
+            travel[axis] = to - from;
+        }
+    }
+    travel
+}
+
+/// Motion of the slave of a pair relative to its master in a part of a step.
+fn relative(shape: &DeckShape, step: usize, pair: &PairShape, times: [f64; 2]) -> Vector {
+    let [slave, master] = pair.groups.map(|group| travel(shape, step, group, times));
+    slave - master
+}
+
+/// Steps and pairs, with the number of the step.
+fn moves<'s>(
+    shape: &'s DeckShape,
+) -> impl Iterator<Item = (usize, &'s Step, usize, &'s PairShape)> {
+    let steps = shape.deck.steps.iter().enumerate();
+    steps.flat_map(|(k, step)| {
+        let pairs = shape.pairs.iter().enumerate();
+        pairs.map(move |(number, pair)| (k, step, number, pair))
+    })
+}
+
+/// First increments that move a contact by much of an element.
+pub fn first_increment(shape: &DeckShape) -> Vec<RunFinding> {
+    let large = moves(shape).filter_map(|(k, step, _, pair)| {
+        let time = step.time;
+        let first = relative(shape, k, pair, [0.0, time.initial]).norm();
+        let size = pair.sizes[0];
+        if first <= FIRST * size * (1.0 + 1e-9) || time.period == 0.0 {
+            return None;
+        }
+        let initial = rounded(time.initial * ADVISED * size / first);
+        let least = initial / 100.0;
+        Some(RunFinding {
+            rule: "large first increment",
+            cause: format!(
+                "the first increment of step {} moves {} by {}, {} times the size {} of a slave face",
+                k + 1,
+                shape.pair_name(pair),
+                sig4(first),
+                sig4(first / size),
+                sig4(size)
+            ),
+            cure: format!("smaller increments (line {})", step.static_place.line),
+            lines: [initial, time.period, least, initial].map(plain).join(", "),
+        })
+    });
+    large.collect()
+}
+
+/// Steps whose increments can hardly be cut.
+pub fn no_cuts(shape: &DeckShape) -> Vec<RunFinding> {
+    let steps = shape.deck.steps.iter().enumerate();
+    let fixed = steps.filter_map(|(k, step)| {
+        let time = step.time;
+        let least = time.least.filter(|least| *least > CUT * time.initial)?;
+        Some(RunFinding {
+            rule: "no room for cuts",
+            cause: format!(
+                "increments of step {} start at {} and must not fall below {}: after the first failure the run stops",
+                k + 1,
+                plain(time.initial),
+                plain(least)
+            ),
+            cure: format!("a smaller minimum (line {})", step.static_place.line),
+            lines: [time.initial, time.period, rounded(time.initial / 1000.0)]
+                .into_iter()
+                .chain(time.most)
+                .map(plain)
+                .collect::<Vec<_>>()
+                .join(", "),
+        })
+    });
+    fixed.collect()
+}
+
+/// Sliding over elements in steps, or pairs, with small displacements.
+pub fn small_sliding(shape: &DeckShape) -> Vec<RunFinding> {
+    let mut found: Vec<RunFinding> = Vec::new();
+    for (k, step, number, pair) in moves(shape) {
+        let (all, normal) = (
+            relative(shape, k, pair, [0.0, step.time.period]),
+            pair.normal(),
+        );
+        let along = (all - all.dot(&normal) * normal).norm();
+        let card = &shape.deck.pairs[number];
+        if along <= SLIDING * pair.sizes[0] || (step.nlgeom && !card.small_sliding) {
+            continue;
+        }
+        let (why, cure, lines) = match step.nlgeom {
+            true => (
+                "the pair has SMALL SLIDING, which keeps the first master face",
+                format!(
+                    "leave SMALL SLIDING out (*CONTACT PAIR before line {})",
+                    card.place.line
+                ),
+                String::new(),
+            ),
+            false => (
+                "the step has no NLGEOM",
+                format!("large displacements (line {})", step.place.line),
+                "*STEP, NLGEOM".to_owned(),
+            ),
+        };
+        found.push(RunFinding {
+            rule: "small displacements",
+            cause: format!(
+                "step {} slides {} by {}, {} slave faces, but {why}",
+                k + 1,
+                shape.pair_name(pair),
+                sig4(along),
+                sig4(along / pair.sizes[0])
+            ),
+            cure,
+            lines,
+        });
+    }
+    found
+}
+
+/// Prescribed displacements that move slave nodes past the edge of their master.
+pub fn past_the_edge(shape: &DeckShape) -> Vec<RunFinding> {
+    let mut found = Vec::new();
+    for (number, pair) in shape.pairs.iter().enumerate() {
+        let mut moved = Vector::zeros();
+        for (k, step) in shape.deck.steps.iter().enumerate() {
+            moved += relative(shape, k, pair, [0.0, step.time.period]);
+            let normal = pair.normal();
+            let along = moved - moved.dot(&normal) * normal;
+            let limit = 0.1 * pair.sizes[0];
+            let past = |part: f64, limit: f64| {
+                let of = pair.nodes.iter().filter(|node| node.beyond <= limit);
+                let of = of.filter(|node| {
+                    let at = shape.at(node.node) + part * along;
+                    let off = shape.nearest(at, (&pair.masters, &pair.centres));
+                    off.is_some_and(|(_, _, beyond)| beyond > limit)
+                });
+                of.count()
+            };
+            let beyond = |part: f64| past(part, limit);
+            let lost = past(1.0, 5.0 * limit);
+            if along.norm() <= limit || lost == 0 {
+                continue;
+            }
+            // The part of the way on which all nodes stay on the master.
+            let (mut stays, mut leaves) = (0.0, 1.0);
+            for _ in 0..20 {
+                let half = (stays + leaves) / 2.0;
+                match beyond(half) {
+                    0 => stays = half,
+                    _ => leaves = half,
+                }
+            }
+            let master = &shape.deck.surfaces[pair.surfaces[1]];
+            found.push(RunFinding {
+                rule: "past the edge",
+                cause: format!(
+                    "step {} moves {lost} of {} slave nodes of {} past the edge of the master: they slide {}, and the \
+                     first leaves it after {}",
+                    k + 1,
+                    pair.nodes.len(),
+                    shape.pair_name(pair),
+                    sig4(along.norm()),
+                    sig4(along.norm() * stays)
+                ),
+                cure: format!(
+                    "add the faces that the slave reaches to {} (line {}), or slide less",
+                    master.name, master.place.line
+                ),
+                lines: shorter(shape, k, number, stays),
+            });
+            break;
+        }
+    }
+    found
+}
+
+/// The lines of a step's displacements of a slave, scaled.
+fn shorter(shape: &DeckShape, step: usize, pair: usize, part: f64) -> String {
+    let mut lines: Vec<String> = Vec::new();
+    let step = &shape.deck.steps[step];
+    let mut places: Vec<_> = Vec::new();
+    for value in step.motions.iter().filter(|value| value.value != 0.0) {
+        let own = shape.group(value.node) == Some(shape.pairs[pair].groups[0]);
+        if !own || places.contains(&(value.place, value.direction)) {
+            continue;
+        }
+        let same = step
+            .motions
+            .iter()
+            .filter(|other| other.place == value.place);
+        let set = shape.set_name(&same.map(|other| other.node).collect());
+        let number = match value.direction {
+            Direction::X => 1,
+            Direction::Y => 2,
+            Direction::Z => 3,
+            Direction::Rotation => continue,
+        };
+        let size = 0.95 * part * value.value;
+        let size: f64 = format!("{size:.1e}").parse().unwrap_or(size);
+        lines.push(format!("{set}, {number}, {number}, {}", plain(size)));
+        places.push((value.place, value.direction));
+    }
+    match lines.is_empty() {
+        true => String::new(),
+        false => format!("*BOUNDARY\n{}", lines.join("\n")),
+    }
+}

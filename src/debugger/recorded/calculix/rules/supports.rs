@@ -1,0 +1,453 @@
+//! Rigid motions that supports and closed contacts leave to a body, and the loads that act along them.
+
+use super::shape::{DeckShape, PairShape, Vector};
+use nalgebra::{SMatrix, SVector};
+use std::collections::{BTreeSet, HashMap};
+use stickslip_core::model::RunFinding;
+use stickslip_exchange::inp::deck::{Direction, Step, Value, Volume};
+use stickslip_scene::number::sig4;
+
+/// Translations along x, y, z, then rotations about them, scaled by the body's size.
+type Motion = SVector<f64, 6>;
+
+/// Stiffness of the supports, relative to the largest, below which a motion is free.
+const FREE: f64 = 1e-9;
+/// Part of a load along a free motion, relative to the load, above which it moves the body.
+const LOADED: f64 = 1e-6;
+
+/// A group of bodies with what supports and loads it in the first step.
+struct GroupMotion {
+    centre: Vector,
+    size: f64,
+    supports: SMatrix<f64, 6, 6>,
+    load: Motion,
+    /// Nodes with loads, and the sum of the forces.
+    loaded: BTreeSet<usize>,
+    force: Vector,
+}
+
+impl GroupMotion {
+    fn new(shape: &DeckShape, group: usize) -> GroupMotion {
+        let nodes = (0..shape.deck.nodes.len()).filter(|n| shape.group(*n) == Some(group));
+        let at: Vec<Vector> = nodes.map(|node| shape.at(node)).collect();
+        let centre = at.iter().sum::<Vector>() / at.len().max(1) as f64;
+        let size = at.iter().map(|p| (p - centre).norm()).fold(0.0, f64::max);
+        let mut this = GroupMotion {
+            centre,
+            size: size.max(f64::MIN_POSITIVE),
+            supports: SMatrix::zeros(),
+            load: Motion::zeros(),
+            loaded: BTreeSet::new(),
+            force: Vector::zeros(),
+        };
+        for value in supports(shape) {
+            if shape.group(value.node) == Some(group)
+                && let Some(along) = axis(value.direction)
+            {
+                this.hold(shape.at(value.node), along);
+            }
+        }
+        for (node, at, force) in forces(shape, 0) {
+            if shape.group(node) == Some(group) {
+                this.load += this.motion(at, force);
+                this.force += force;
+                this.loaded.insert(node);
+            }
+        }
+        this
+    }
+
+    /// The rigid motion that moves a point along a direction.
+    fn motion(&self, at: Vector, along: Vector) -> Motion {
+        let turn = (at - self.centre).cross(&along) / self.size;
+        Motion::from_iterator(along.iter().chain(turn.iter()).copied())
+    }
+
+    fn hold(&mut self, at: Vector, along: Vector) {
+        let row = self.motion(at, along);
+        self.supports += row * row.transpose();
+    }
+
+    /// Holds the nodes of a pair that touch at the start: along the normal, and along the surface with friction.
+    fn hold_contacts(&mut self, shape: &DeckShape, pair: &PairShape, friction: bool) {
+        for node in pair.nodes.iter().filter(|node| pair.is_closed(node)) {
+            let at = shape.at(node.node);
+            match friction {
+                true => [Vector::x(), Vector::y(), Vector::z()]
+                    .into_iter()
+                    .for_each(|along| self.hold(at, along)),
+                false => self.hold(at, pair.masters[node.face].normal),
+            }
+        }
+    }
+
+    /// The free motions as columns of unit length.
+    fn free(&self, modes: [bool; 6]) -> Vec<Motion> {
+        let mut supports = self.supports;
+        let largest = supports.trace().max(1.0);
+        for (k, _) in modes.iter().enumerate().filter(|(_, moves)| !**moves) {
+            supports[(k, k)] += largest;
+        }
+        let eigen = supports.symmetric_eigen();
+        let values = eigen.eigenvalues.iter().enumerate();
+        let free = values.filter(|(_, value)| **value < FREE * largest);
+        free.map(|(k, _)| eigen.eigenvectors.column(k).into_owned())
+            .collect()
+    }
+
+    /// Whether the load does work on one of the motions.
+    fn is_loaded(&self, free: &[Motion]) -> bool {
+        let work = free.iter().map(|motion| motion.dot(&self.load).abs());
+        work.fold(0.0, f64::max) > LOADED * self.load.norm()
+    }
+}
+
+fn axis(direction: Direction) -> Option<Vector> {
+    match direction {
+        Direction::X => Some(Vector::x()),
+        Direction::Y => Some(Vector::y()),
+        Direction::Z => Some(Vector::z()),
+        Direction::Rotation => None,
+    }
+}
+
+/// Supports and prescribed displacements of the first step.
+fn supports<'s>(shape: &'s DeckShape) -> impl Iterator<Item = &'s Value> {
+    let first = shape.deck.steps.first();
+    let motions = first.into_iter().flat_map(|step| &step.motions);
+    shape.deck.supports.iter().chain(motions)
+}
+
+/// The forces at the end of a step: a node, the point, and the force.
+fn forces(shape: &DeckShape, step: usize) -> Vec<(usize, Vector, Vector)> {
+    let deck = shape.deck;
+    let Some(step) = deck.steps.get(step) else {
+        return Vec::new();
+    };
+    let part = |amplitude: Option<usize>| match amplitude {
+        None => 1.0,
+        Some(_) => shape.factor(step, amplitude, step.time.period),
+    };
+    let mut all = Vec::new();
+    for force in &step.forces {
+        let along = axis(force.direction).map(|along| along * force.value * part(force.amplitude));
+        all.extend(along.map(|along| (force.node, shape.at(force.node), along)));
+    }
+    for pressure in &step.pressures {
+        if let Some(face) = shape.face(pressure.element, pressure.side)
+            && let Some(&node) = face.corners.first()
+        {
+            let size = -pressure.value * face.area * part(pressure.amplitude);
+            all.push((node, face.centre, face.normal * size));
+        }
+    }
+    for weight in &step.weights {
+        let element = &deck.elements[weight.element];
+        let faces = (0..element.kind.cell.sides().len())
+            .filter_map(|side| shape.face(weight.element, side));
+        let faces: Vec<_> = faces.collect();
+        let (Some(&node), Some(first)) = (element.nodes.first(), faces.first()) else {
+            continue;
+        };
+        let parts = faces
+            .iter()
+            .map(|face| face.area * (face.centre - first.centre).dot(&face.normal));
+        let volume = parts.sum::<f64>() / if deck.is_solid() { 3.0 } else { 2.0 };
+        let per_volume = match weight.load {
+            Volume::Force(force) => Vector::from(force),
+            Volume::Gravity(acceleration) => {
+                let material = shape.material(weight.element);
+                let density = material.and_then(|k| deck.materials[k].density);
+                Vector::from(acceleration) * density.unwrap_or(0.0)
+            }
+        };
+        all.push((
+            node,
+            shape.at(node),
+            per_volume * volume * part(weight.amplitude),
+        ));
+    }
+    all
+}
+
+/// Free motions in words.
+fn words(free: &[Motion]) -> String {
+    let held = |k: usize| {
+        let part: f64 = free.iter().map(|motion| motion[k] * motion[k]).sum();
+        part > 1.0 - 1e-6
+    };
+    let axes = |from: usize| -> Vec<&str> {
+        let axes = ["x", "y", "z"].into_iter().enumerate();
+        axes.filter(|(k, _)| held(from + k))
+            .map(|(_, axis)| axis)
+            .collect()
+    };
+    let (along, about) = (axes(0), axes(3));
+    let pure = [("along", &along), ("about", &about)];
+    let pure = pure.iter().filter(|(_, axes)| !axes.is_empty());
+    let mut words: Vec<String> = pure
+        .map(|(word, axes)| format!("{word} {}", axes.join(", ")))
+        .collect();
+    if along.len() + about.len() < free.len() {
+        words.push("about a skew axis".into());
+    }
+    words.join(" and ")
+}
+
+/// Numbers of a vector, shortened.
+fn vector(of: Vector) -> String {
+    let [x, y, z] = [of.x, of.y, of.z].map(|part| {
+        sig4(if part.abs() < 1e-9 * of.norm() {
+            0.0
+        } else {
+            part
+        })
+    });
+    format!("({x}, {y}, {z})")
+}
+
+/// The pairs that touch a group, with whether they have friction.
+fn pairs_of<'s>(
+    shape: &'s DeckShape,
+    group: usize,
+) -> impl Iterator<Item = (usize, &'s PairShape)> {
+    let pairs = shape.pairs.iter().enumerate();
+    pairs.filter(move |(_, pair)| pair.groups.contains(&group))
+}
+
+fn groups(shape: &DeckShape) -> BTreeSet<usize> {
+    shape.group_of.iter().copied().collect()
+}
+
+/// Whether supports alone leave a group free.
+pub fn is_free(shape: &DeckShape, group: usize) -> bool {
+    !GroupMotion::new(shape, group)
+        .free(shape.modes(group))
+        .is_empty()
+}
+
+/// A body that no support, tie or contact holds.
+pub fn unconnected(shape: &DeckShape) -> Vec<RunFinding> {
+    if shape.deck.is_incomplete {
+        return Vec::new();
+    }
+    let far = shape
+        .ties
+        .iter()
+        .filter(|tie| !tie.nodes.iter().any(|n| tie.is_closed(n)));
+    let far: BTreeSet<usize> = far.flat_map(|tie| tie.groups).collect();
+    let alone = groups(shape).into_iter().filter(|group| {
+        let free = GroupMotion::new(shape, *group).free(shape.modes(*group));
+        !free.is_empty() && pairs_of(shape, *group).next().is_none() && !far.contains(group)
+    });
+    alone
+        .map(|group| {
+            let name = shape.group_name(group);
+            let free = GroupMotion::new(shape, group).free(shape.modes(group));
+            let nodes = (0..shape.deck.nodes.len()).filter(|n| shape.group(*n) == Some(group));
+            let first = nodes.map(|node| shape.deck.nodes[node].label).min();
+            RunFinding {
+                rule: "unconnected body",
+                cause: format!(
+                    "{name} is in no contact pair and no tie, and its supports leave it free {}",
+                    words(&free)
+                ),
+                cure: format!("support {name}, or put it into a *CONTACT PAIR or *TIE"),
+                lines: format!("*BOUNDARY\n{}, 1, 3", first.unwrap_or_default()),
+            }
+        })
+        .collect()
+}
+
+/// A loaded body that only contact holds, and all of it is open at the start.
+pub fn open_at_start(shape: &DeckShape) -> Vec<RunFinding> {
+    free_groups(shape, |shape, group, motion, free| {
+        let pairs: Vec<&PairShape> = pairs_of(shape, group).map(|(_, pair)| pair).collect();
+        let closed = pairs
+            .iter()
+            .any(|pair| pair.nodes.iter().any(|n| pair.is_closed(n)));
+        let nearest = pairs
+            .iter()
+            .filter_map(|pair| Some((*pair, pair.nearest()?)));
+        let (pair, node) = nearest.min_by(|a, b| a.1.gap.total_cmp(&b.1.gap))?;
+        if closed {
+            return None;
+        }
+        let name = shape.group_name(group);
+        let force = motion.force;
+        let set = shape.set_name(&motion.loaded);
+        let along = force.iamax();
+        let travel = rounded(1.5 * node.gap).copysign(force[along]);
+        let modes = shape.modes(group);
+        let others = (0..3).filter(|k| modes[*k] && *k != along);
+        let others: String = others
+            .map(|k| format!("{set}, {0}, {0}, 0.\n", k + 1))
+            .collect();
+        Some(RunFinding {
+            rule: "held by open contact",
+            cause: format!(
+                "{name} is free {} until it touches: all its contact is open at the start (smallest gap {}, \
+                 node {} of {}), and step 1 loads it with the force {}",
+                words(free),
+                sig4(node.gap),
+                shape.deck.nodes[node.node].label,
+                shape.pair_name(pair),
+                vector(force)
+            ),
+            cure: format!(
+                "close the gap first: a step before the load with a displacement of {set} by more than the gap"
+            ),
+            lines: format!("*BOUNDARY\n{others}{set}, {0}, {0}, {travel}", along + 1),
+        })
+    })
+}
+
+/// A loaded body that can slide along its closed contact, because it has no friction.
+pub fn free_to_slide(shape: &DeckShape) -> Vec<RunFinding> {
+    free_groups(shape, |shape, group, motion, free| {
+        let closed = |pair: &PairShape| pair.nodes.iter().any(|n| pair.is_closed(n));
+        let (_, pair) = pairs_of(shape, group).find(|(_, pair)| closed(pair))?;
+        let name = shape.group_name(group);
+        let set = shape.set_name(&motion.loaded);
+        let moving = (0..3).filter(|&k| free.iter().any(|m| m[k].abs() > 1e-3));
+        let lines: Vec<String> = moving
+            .map(|k| format!("{set}, {0}, {0}, 0.", k + 1))
+            .collect();
+        Some(RunFinding {
+            rule: "free to slide",
+            cause: format!(
+                "{name} is free {}: {} touches without friction, no support acts that way, and step 1 \
+                 loads it with the force {}",
+                words(free),
+                shape.pair_name(pair),
+                vector(motion.force)
+            ),
+            cure: format!("hold {name} in these directions, or give the pair *FRICTION"),
+            lines: match lines.is_empty() {
+                true => "*FRICTION\n0.1, 1e4".into(),
+                false => format!("*BOUNDARY\n{}", lines.join("\n")),
+            },
+        })
+    })
+}
+
+/// The findings on groups that closed contacts and supports leave free, and that the first step moves.
+fn free_groups(
+    shape: &DeckShape,
+    finding: impl Fn(&DeckShape, usize, &GroupMotion, &[Motion]) -> Option<RunFinding>,
+) -> Vec<RunFinding> {
+    if shape.deck.is_incomplete {
+        return Vec::new();
+    }
+    let of = |group: usize| {
+        let mut motion = GroupMotion::new(shape, group);
+        for (k, pair) in pairs_of(shape, group) {
+            let law = &shape.deck.interactions[shape.deck.pairs[k].interaction];
+            motion.hold_contacts(shape, pair, law.friction > 0.0);
+        }
+        let free = motion.free(shape.modes(group));
+        let moves = !free.is_empty() && motion.is_loaded(&free);
+        moves
+            .then(|| finding(shape, group, &motion, &free))
+            .flatten()
+    };
+    groups(shape).into_iter().filter_map(of).collect()
+}
+
+/// A body that only contact holds, with a tangential load above what friction can bear.
+pub fn beyond_friction(shape: &DeckShape) -> Vec<RunFinding> {
+    if shape.deck.is_incomplete {
+        return Vec::new();
+    }
+    let mut found = Vec::new();
+    for (k, pair) in shape.pairs.iter().enumerate() {
+        let group = pair.groups[0];
+        let law = &shape.deck.interactions[shape.deck.pairs[k].interaction];
+        let (normal, motion) = (pair.normal(), GroupMotion::new(shape, group));
+        let alone = pairs_of(shape, group).count() == 1;
+        if !alone || law.friction == 0.0 || normal == Vector::zeros() {
+            continue;
+        }
+        let free = motion.free(shape.modes(group));
+        let mut total: HashMap<usize, Vector> = HashMap::new();
+        for (number, step) in shape.deck.steps.iter().enumerate() {
+            add_forces(shape, group, (number, step), &mut total);
+            let sum: Vector = total.values().sum();
+            let pressed = -sum.dot(&normal);
+            let along = sum + pressed * normal;
+            let limit = law.friction * pressed.max(0.0);
+            let slide = motion.motion(motion.centre, along).normalize();
+            let slides: f64 = free.iter().map(|m| m.dot(&slide).powi(2)).sum();
+            if along.norm() <= limit * (1.0 + 1e-6) || pressed <= 0.0 || slides < 1.0 - 1e-6 {
+                continue;
+            }
+            let needed = rounded_up(along.norm() / pressed);
+            let stick = law
+                .stick
+                .map_or(String::new(), |slope| format!(", {}", plain(slope)));
+            let line = law.friction_place.line;
+            found.push(RunFinding {
+                rule: "load above friction",
+                cause: format!(
+                    "step {} pushes {} along {} with {}, but friction holds at most {} x {} = {}: it slides away",
+                    number + 1,
+                    shape.group_name(group),
+                    shape.pair_name(pair),
+                    sig4(along.norm()),
+                    sig4(law.friction),
+                    sig4(pressed),
+                    sig4(limit)
+                ),
+                cure: format!(
+                    "prescribe the displacement instead of the force, or a friction of at least {needed} (line {line})"
+                ),
+                lines: format!("{needed}{stick}"),
+            });
+            break;
+        }
+    }
+    found
+}
+
+/// Adds the forces of a step to those of the steps before.
+fn add_forces(
+    shape: &DeckShape,
+    group: usize,
+    (number, step): (usize, &Step),
+    total: &mut HashMap<usize, Vector>,
+) {
+    if step.new_forces {
+        total.clear();
+    }
+    let mut here: HashMap<usize, Vector> = HashMap::new();
+    for (node, _, force) in forces(shape, number) {
+        if shape.group(node) == Some(group) {
+            *here.entry(node).or_insert_with(Vector::zeros) += force;
+        }
+    }
+    for (node, force) in here {
+        // A step replaces the components that it gives.
+        let before = total.entry(node).or_insert_with(Vector::zeros);
+        (0..3)
+            .filter(|k| force[*k] != 0.0)
+            .for_each(|k| before[k] = force[k]);
+    }
+}
+
+/// A number with one significant digit, as a deck has it.
+pub fn rounded(value: f64) -> f64 {
+    format!("{value:.0e}").parse().unwrap_or(value)
+}
+
+/// The next larger number with two significant digits.
+pub fn rounded_up(value: f64) -> f64 {
+    format!("{:.1e}", 1.05 * value).parse().unwrap_or(value)
+}
+
+/// A number as a deck has it.
+pub fn plain(value: f64) -> String {
+    match (1e-3..1e5).contains(&value.abs()) {
+        true => format!("{value}"),
+        false => format!("{value:e}"),
+    }
+}

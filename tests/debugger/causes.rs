@@ -1,0 +1,207 @@
+//! The rules for decks and records, each on a deck that CalculiX gives up for that cause and solves with the cure.
+
+#[path = "../common/causes.rs"]
+mod stored;
+
+use std::path::{Path, PathBuf};
+use stickslip::recorded::calculix::rules::{examine, shape::DeckShape};
+use stickslip_exchange::inp::{self, Deck};
+use stored::{opened, rows, run};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/calculix")
+}
+
+fn deck(text: &str) -> Deck {
+    let mut none = |_: &str| Err("no other file".to_owned());
+    inp::outline("job.inp", text, &mut none).unwrap()
+}
+
+fn causes(text: &str) -> Vec<&'static str> {
+    let deck = deck(text);
+    let found = examine(Some(&DeckShape::new(&deck)), None);
+    found.iter().map(|found| found.rule).collect()
+}
+
+fn text(name: &str) -> String {
+    std::fs::read_to_string(root().join(format!("causes/{name}.inp"))).unwrap()
+}
+
+#[test]
+fn each_deck_is_explained_by_its_cause_and_the_advised_lines_help_in_calculix() {
+    let rows = rows();
+    assert!(rows.len() >= 17);
+    for row in rows {
+        let run = run(&root(), &row.deck);
+        let first = &run.findings[0];
+        assert_eq!(first.rule, row.rule, "{}: {first:?}", row.deck);
+        assert_eq!(first.lines, row.cure, "{}", row.deck);
+        assert!(row.outcome.starts_with("failed"), "{}", row.deck);
+        assert!(row.cured.starts_with("converged"), "{}", row.deck);
+    }
+}
+
+#[test]
+fn rules_are_silent_on_the_cured_decks() {
+    for row in rows()
+        .iter()
+        .filter(|row| root().join(format!("causes/{}.inp", row.deck)).is_file())
+    {
+        let failing = causes(&text(&row.deck));
+        let record_only = row.rule == "increments used up";
+        assert_eq!(
+            failing.contains(&row.rule.as_str()),
+            !record_only,
+            "{}",
+            row.deck
+        );
+    }
+    let stick = text("stick");
+    assert_eq!(causes(&stick.replace("0.3, 1e12", "0.3, 1e5")), [""; 0]);
+    assert_eq!(
+        causes(&text("stiff").replace("\n1e11\n", "\n4e6\n")),
+        [""; 0]
+    );
+    let overlap = text("overlap").replace("NODE TO SURFACE", "NODE TO SURFACE, ADJUST=0.");
+    assert_eq!(causes(&overlap), [""; 0]);
+    let tied = text("tie").replace("TOLERANCE=0.1", "TOLERANCE=0.21");
+    assert_eq!(causes(&tied), ["constrained slave nodes"]);
+}
+
+#[test]
+fn cards_that_couple_nodes_silence_the_rules_on_supports() {
+    let open = text("open");
+    assert_eq!(causes(&open), ["held by open contact"]);
+    let coupled = open.replace("*MATERIAL", "*EQUATION\n1\n1, 1, 1.\n*MATERIAL");
+    assert_eq!(causes(&coupled), [""; 0]);
+}
+
+#[test]
+fn a_run_without_contact_elements_shows_the_slave_nodes_of_its_deck() {
+    let opened = opened(&root(), "open");
+    assert_eq!(opened.run.files.slaves.len(), 9);
+    assert_eq!(opened.run.slave(0), "node 49");
+    assert!(opened.run.cycles.iter().all(Option::is_none));
+}
+
+/// Two elements of a kind, one on the other; the faces of the pair are the right ones.
+#[test]
+fn faces_of_all_kinds_of_solids_are_read() {
+    let brick = [
+        [0., 0., 0.],
+        [1., 0., 0.],
+        [1., 1., 0.],
+        [0., 1., 0.],
+        [0., 0., 1.],
+        [1., 0., 1.],
+        [1., 1., 1.],
+        [0., 1., 1.],
+    ];
+    let wedge = [0, 1, 3, 4, 5, 7].map(|k| brick[k]);
+    let tetra = [0, 1, 3, 4].map(|k| brick[k]);
+    let kinds: [(&str, &[[f64; 3]], &str, &str); 10] = [
+        ("C3D8", &brick, "S2", "S1"),
+        ("C3D8R", &brick, "S2", "S1"),
+        ("C3D8I", &brick, "S2", "S1"),
+        ("C3D20", &brick, "S2", "S1"),
+        ("C3D20R", &brick, "S2", "S1"),
+        ("C3D6", &wedge, "S2", "S1"),
+        ("C3D15", &wedge, "S2", "S1"),
+        ("C3D4", &tetra, "S1", "S1"),
+        ("C3D10", &tetra, "S1", "S1"),
+        ("C3D10T", &tetra, "S1", "S1"),
+    ];
+    for (kind, corners, low, high) in kinds {
+        let deck = deck(&stacked(kind, corners, low, high));
+        assert_eq!(
+            (deck.remarks.len(), deck.elements.len()),
+            (0, 2),
+            "{kind}: {:?}",
+            deck.remarks
+        );
+        let shape = DeckShape::new(&deck);
+        let pair = &shape.pairs[0];
+        let quadratic = deck.elements[0].nodes.len() > corners.len();
+        let of_face = pair.slaves[0].corners.len() * if quadratic { 2 } else { 1 };
+        assert_eq!(pair.nodes.len(), of_face, "{kind}");
+        assert!(
+            pair.nodes.iter().all(|node| (node.gap - 0.5).abs() < 1e-12),
+            "{kind}"
+        );
+        assert!((pair.normal().z - 1.0).abs() < 1e-12, "{kind}");
+        assert!(
+            examine(Some(&shape), None)
+                .iter()
+                .all(|f| f.rule != "reversed faces"),
+            "{kind}"
+        );
+        if low == "S2" {
+            let below = stacked(kind, corners, low, high).replace("\n1, S2\n", "\n1, S1\n");
+            assert!(causes(&below).contains(&"reversed faces"), "{kind}");
+        }
+    }
+}
+
+/// The deck of two such elements, the second half a unit above the first, which is mirrored if its face S1 is the master.
+fn stacked(kind: &str, corners: &[[f64; 3]], low: &str, high: &str) -> String {
+    let edges: &[[usize; 2]] = match corners.len() {
+        8 => &[
+            [0, 1],
+            [1, 2],
+            [2, 3],
+            [3, 0],
+            [4, 5],
+            [5, 6],
+            [6, 7],
+            [7, 4],
+            [0, 4],
+            [1, 5],
+            [2, 6],
+            [3, 7],
+        ],
+        6 => &[
+            [0, 1],
+            [1, 2],
+            [2, 0],
+            [3, 4],
+            [4, 5],
+            [5, 3],
+            [0, 3],
+            [1, 4],
+            [2, 5],
+        ],
+        _ => &[[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]],
+    };
+    let wanted = match kind {
+        "C3D20" | "C3D20R" | "C3D15" | "C3D10" | "C3D10T" => edges,
+        _ => &[],
+    };
+    let place = |k: usize, at: [f64; 3]| match (k, low) {
+        (0, "S1") => [at[0], at[1], -at[2]],
+        (0, _) => [at[0], at[1], at[2] - 1.0],
+        _ => [at[0], at[1], at[2] + 0.5],
+    };
+    let (mut nodes, mut elements) = (String::from("*NODE\n"), String::new());
+    let count = corners.len() + wanted.len();
+    for body in 0..2 {
+        let at: Vec<[f64; 3]> = corners.iter().map(|at| place(body, *at)).collect();
+        let middles = wanted
+            .iter()
+            .map(|[a, b]| [0, 1, 2].map(|k| (at[*a][k] + at[*b][k]) / 2.0));
+        for (k, [x, y, z]) in at.iter().copied().chain(middles).enumerate() {
+            nodes += &format!("{}, {x}, {y}, {z}\n", body * count + k + 1);
+        }
+        let labels: Vec<String> = (1..=count)
+            .map(|k| (body * count + k).to_string())
+            .collect();
+        let lines: Vec<String> = labels.chunks(10).map(|part| part.join(", ")).collect();
+        elements += &format!(
+            "*ELEMENT, TYPE={kind}, ELSET=B{body}\n{}, {}\n",
+            body + 1,
+            lines.join(",\n")
+        );
+    }
+    format!(
+        "{nodes}{elements}*SURFACE, NAME=LOW\n1, {low}\n*SURFACE, NAME=HIGH\n2, {high}\n*SURFACE INTERACTION, NAME=I\n*CONTACT PAIR, INTERACTION=I\nHIGH, LOW\n*STEP\n*STATIC\n1., 1.\n*END STEP\n"
+    )
+}
