@@ -232,7 +232,7 @@ fn replies(name: &str, step: usize) -> (String, String) {
 #[test]
 fn hints_have_the_numbers_of_the_shown_iteration_and_not_the_answer() {
     // The residual that is shown, and not the next one.
-    let (then, hint) = replies("majors", 6);
+    let (then, hint) = replies("majors", 7);
     assert_eq!(hint, "No. 7.570e−8 times 0.37.");
     assert!(then.starts_with("Right: 2.770e−8."), "{then}");
     // Of a decision that is still to come not even the numbers are shown.

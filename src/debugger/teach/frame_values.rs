@@ -13,6 +13,7 @@ use stickslip_core::contact::state::ContactState;
 use stickslip_core::interface::census::census;
 use stickslip_core::interface::minor_history::Cycle;
 use stickslip_core::interface::trials::Trials;
+use stickslip_core::linear::stability::Stability;
 use stickslip_core::model::{Mode, Model};
 use stickslip_core::step::drive::{RunEnd, Until};
 use stickslip_core::step::event::{Event, Failure, Outcome};
@@ -190,6 +191,11 @@ impl FrameValues {
             .map_err(LessonError::NoCensus)?
             .answers
             .len())
+    }
+
+    /// Stability of the shown equilibrium under a constant load.
+    pub fn stability(&self) -> Stability {
+        self.stepper().stability()
     }
 
     /// The condensed problem of the next minor iteration at a slave node.

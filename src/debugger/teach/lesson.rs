@@ -109,6 +109,8 @@ pub enum Truth {
     Becomes(usize, Mode),
     /// Convergence of the residuals: quadratic, or linear if false.
     Quadratic(bool),
+    /// The shown equilibrium is stable under a constant load; unstable if false.
+    Stable(bool),
     /// All laws are satisfied.
     Obeys,
     /// This law is violated.
@@ -139,15 +141,21 @@ const LESSONS: &[EmbeddedFile] = embedded_all![
     "table-2",
     "majors",
     "by-hand",
+    "condensed",
     "t-max",
     "increment",
     "oscillation",
+    "two-nodes",
     "several-answers",
     "no-answer",
+    "remedies",
     "slip",
     "judge",
     "two-sides",
+    "edge",
+    "limit-point",
     "chart",
+    "cure",
 ];
 
 /// All built-in lessons, in teaching order.
@@ -423,7 +431,7 @@ impl LessonReader<'_> {
                     text: text(words)?,
                     goal,
                     without: without.clone(),
-                    hint: hint.split_whitespace().collect::<Vec<_>>().join(" "),
+                    hint: self.template(path.then("hint"), hint, LONGEST_REMARK)?,
                     then: self.template(path.then("then"), then, LONGEST_REMARK)?,
                     solution: solution.collect::<Result<_, Fault>>()?,
                 }))
@@ -496,6 +504,8 @@ impl LessonReader<'_> {
             }
             When::Linear => Truth::Quadratic(false),
             When::Quadratic => Truth::Quadratic(true),
+            When::Stable => Truth::Stable(true),
+            When::Unstable => Truth::Stable(false),
             When::Obeys => Truth::Obeys,
             When::Breaks(name) => {
                 let all = || JudgedLaw::ALL.into_iter().chain(JudgedLaw::OF_BONDS);

@@ -90,6 +90,7 @@ fn advance(
                 continue;
             }
             LessonStep::Reach(task) => {
+                let answer = tutor.todo();
                 for action in &task.solution {
                     perform(action, session).map_err(fault)?;
                     tutor.settled(session.shown_frames());
@@ -97,9 +98,9 @@ fn advance(
                 answered.push(AnsweredQuestion {
                     step: at,
                     question: tutor.text().to_owned(),
-                    answer: tutor.todo(),
+                    answer,
                     then: tutor.last_reply(),
-                    hint: task.hint(),
+                    hint: tutor.task_hint(),
                 });
                 if !tutor.is_read() {
                     return Err(fault(PlaybackError::NotReached(tutor.last_reply())));

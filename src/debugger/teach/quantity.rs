@@ -6,7 +6,7 @@
 //! the next one), `reason` (the decision in a sentence). Of the solve: `load`, `increment` (its size), `angle`,
 //! `tan` and `cohesion` (of the first slave node), `answers` (number of consistent states in the census),
 //! `minors` (minor iterations to the end of this increment), `majors` (all its major iterations), `residual`
-//! (the latest, relative), `period` (of the cycle that ends the increment), `verdict` (the judge's finding in
+//! (the latest, relative), `sliding` (number of nodes that slide next), `period` (of the cycle that ends the increment), `verdict` (the judge's finding in
 //! the last accepted increment, in a sentence). Of a run in the lesson's chart, `NAME PATH=VALUE …`: `error`
 //! (relative) and `factorizations`. In addition, `right` is the right answer of the previous question, and `key
 //! ACTION` the key of an action.
@@ -18,6 +18,7 @@ use crate::explain::judged;
 use crate::explain::names;
 use crate::explain::report;
 use crate::explain::round_off::RoundOff;
+use stickslip_core::model::Mode;
 use stickslip_scene::number::sig4;
 
 /// A quantity that the solver can provide.
@@ -97,6 +98,8 @@ pub enum SolveQuantity {
     Majors,
     /// The latest relative residual.
     Residual,
+    /// Number of sliding slave nodes.
+    Sliding,
     /// The judge's finding, in a sentence.
     Verdict,
 }
@@ -148,6 +151,7 @@ stickslip_core::words! {
     Period "period",
     Majors "majors",
     Residual "residual",
+    Sliding "sliding",
     Verdict "verdict",
 }
 
@@ -331,6 +335,10 @@ fn whole_number(whole: SolveQuantity, look: &FrameValues) -> Result<f64, LessonE
         },
         SolveQuantity::Majors => f64::from(look.end()?.majors),
         SolveQuantity::Residual => look.residual()?,
+        SolveQuantity::Sliding => {
+            let nodes = look.frame.state.nodes.iter();
+            nodes.filter(|node| node.mode == Mode::Sliding).count() as f64
+        }
         SolveQuantity::Verdict => return Err(LessonError::NoNumber),
     })
 }

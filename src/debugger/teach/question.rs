@@ -9,6 +9,7 @@ use crate::explain::names::{self, MODES, TABLE_2};
 use crate::explain::report;
 use crate::explain::tested;
 use stickslip_core::contact::table2::{Decision, Rule, Test};
+use stickslip_core::linear::stability::Stability;
 use stickslip_core::model::Mode;
 use stickslip_scene::number::sig4;
 
@@ -262,6 +263,10 @@ fn chosen(choices: &[(Template, Truth)], look: &FrameValues) -> Result<usize, Le
             Truth::Quadratic(wanted) => look.end()?.is_quadratic()? == *wanted,
             Truth::Obeys => look.verdict()?.broken().next().is_none(),
             Truth::Breaks(law) => look.verdict()?.broken().any(|found| found.law == *law),
+            Truth::Stable(wanted) => match look.stability() {
+                Stability::NotKnown => return Err(LessonError::NoStability),
+                found => found.is_unstable() != *wanted,
+            },
             Truth::Less(a, b) => a.number(look)? < (1.0 - CLOSE) * b.number(look)?,
             Truth::Close(a, b) => {
                 let (a, b) = (a.number(look)?, b.number(look)?);

@@ -87,6 +87,9 @@ pub enum LessonError {
     /// The node does not slide, or T_max does not lag.
     #[error("no T_max lags here")]
     NoLag,
+    /// Neither stability nor instability is proven.
+    #[error("the stability of this state is not known")]
+    NoStability,
     /// There are too few major iterations near the solution.
     #[error("the residuals of the increment do not show a rate of convergence")]
     NoRate,

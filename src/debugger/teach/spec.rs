@@ -97,8 +97,7 @@ pub enum StepSpec {
         /// What must not be used on the way.
         #[serde(default)]
         without: Vec<Aid>,
-        /// Shown on request.
-        #[serde(default)]
+        /// Shown on request; its numbers are those of the start of the task.
         hint: String,
         /// Reply, with the numbers of the reached state.
         #[serde(default)]
@@ -206,6 +205,10 @@ pub enum When {
     Linear,
     /// Quadratic convergence: the number of correct digits doubles at the end.
     Quadratic,
+    /// The shown equilibrium is stable under a constant load.
+    Stable,
+    /// It is unstable.
+    Unstable,
     /// The judge found no violation in the last accepted increment.
     Obeys,
     /// The judge found a violation of this law there: penetration, gap, tension, cone, slip, touch, balance or

@@ -24,7 +24,7 @@ pub struct Task {
     /// What must not be used on the way.
     pub without: Vec<Aid>,
     /// Shown on request.
-    pub hint: String,
+    pub hint: Template,
     /// Shown when the goal is reached.
     pub then: Template,
     /// Actions that reach it; used to play lessons automatically.
@@ -73,19 +73,7 @@ impl Task {
             Goal::End => "reach the end of the history".into(),
             Goal::Failure => "run until an increment fails".into(),
         };
-        let hint = match self.hint.is_empty() {
-            true => String::new(),
-            false => "; H hint".into(),
-        };
-        format!("your turn: {goal}{}{hint}", without(&self.without))
-    }
-
-    /// The hint.
-    pub(super) fn hint(&self) -> String {
-        match self.hint.is_empty() {
-            true => "This task has no hint.".into(),
-            false => self.hint.clone(),
-        }
+        format!("your turn: {goal}{}; H hint", without(&self.without))
     }
 }
 

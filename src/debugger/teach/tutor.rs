@@ -10,7 +10,6 @@ use super::guess::Guess;
 use super::lesson::{self, Answer, Ask, Lesson, LessonStep, Truth};
 use super::question::{AnswerKind, TutorQuestion};
 use super::refusal::LessonRefusal;
-use super::task::Task;
 use crate::action::{Action, HiddenDecisions};
 use crate::history::frame::Frame;
 use crate::record::command::Command;
@@ -42,6 +41,8 @@ pub struct Tutor {
     /// A fault in the lesson itself.
     fault: Option<String>,
     guess: Option<Guess>,
+    /// The hint of the current task.
+    task_hint: String,
     /// Seconds since the start of the lesson, as set by its owner.
     clock: u32,
     /// All answers so far.
@@ -102,6 +103,7 @@ impl Tutor {
             pending: false,
             fault: None,
             guess: None,
+            task_hint: String::new(),
             clock: 0,
             given: Vec::new(),
         };
@@ -117,6 +119,11 @@ impl Tutor {
     /// The lesson, to keep.
     pub(super) fn shared_lesson(&self) -> Arc<Lesson> {
         self.lesson.clone()
+    }
+
+    /// The hint of the current task.
+    pub(super) fn task_hint(&self) -> String {
+        self.task_hint.clone()
     }
 
     /// The last reply in this step; empty if there is none.
@@ -205,7 +212,10 @@ impl Tutor {
         let (text, question) = match lesson.steps.get(self.at) {
             None => return self.text = self.farewell(),
             Some(LessonStep::Text(text) | LessonStep::Press { text, .. }) => (text, None),
-            Some(LessonStep::Reach(Task { text, .. })) => (text, None),
+            Some(LessonStep::Reach(task)) => {
+                self.task_hint = task.hint.fill(&look, "").unwrap_or_default();
+                (&task.text, None)
+            }
             Some(LessonStep::Predict { text, .. }) => {
                 self.guess = Some(Guess::new(HiddenDecisions::Selected, cursor));
                 (text, None)
@@ -400,7 +410,7 @@ impl Tutor {
                 question.tries += 1;
                 question.help()
             }
-            (Some(LessonStep::Reach(task)), None) => task.hint(),
+            (Some(LessonStep::Reach(_)), None) => self.task_hint.clone(),
             _ => return Err(LessonRefusal::NothingAsked),
         };
         self.remark = Some(Remark { text, good: false });
