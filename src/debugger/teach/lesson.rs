@@ -153,8 +153,12 @@ const LESSONS: &[EmbeddedFile] = embedded_all![
     "judge",
     "two-sides",
     "edge",
+    "laws",
+    "bodies",
     "limit-point",
+    "stability",
     "chart",
+    "point-force",
     "cure",
 ];
 

@@ -267,7 +267,10 @@ fn chosen(choices: &[(Template, Truth)], look: &FrameValues) -> Result<usize, Le
                 Stability::NotKnown => return Err(LessonError::NoStability),
                 found => found.is_unstable() != *wanted,
             },
-            Truth::Less(a, b) => a.number(look)? < (1.0 - CLOSE) * b.number(look)?,
+            Truth::Less(a, b) => {
+                let (a, b) = (a.number(look)?, b.number(look)?);
+                a < b - CLOSE * b.abs()
+            }
             Truth::Close(a, b) => {
                 let (a, b) = (a.number(look)?, b.number(look)?);
                 (a - b).abs() <= CLOSE * a.abs().max(b.abs())
