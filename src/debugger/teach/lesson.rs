@@ -7,6 +7,7 @@ use super::spec::{AnswerSpec, LessonSpec, SceneSpec, StepSpec, When};
 use super::task::{Goal, Task};
 use crate::action::{self, Action, Context};
 use crate::record::command::Command;
+use crate::recorded::exchange;
 use std::sync::Arc;
 use stickslip_core::contact::laws::JudgedLaw;
 use stickslip_core::model::{Mode, Model};
@@ -33,6 +34,8 @@ pub struct Lesson {
     pub model: Arc<Model>,
     /// The steps in order.
     pub steps: Vec<LessonStep>,
+    /// The recorded exchange that it walks through, if it has no solver: name and text.
+    pub(super) recorded: Option<Arc<(String, String)>>,
     /// The runs of its chart, if it has one.
     pub runs: Option<Arc<Runs>>,
     /// The text of its file, for line numbers in errors.
@@ -159,8 +162,13 @@ const LESSONS: &[EmbeddedFile] = embedded_all![
     "stability",
     "chart",
     "point-force",
+    "attached",
     "cure",
 ];
+
+/// The built-in recorded exchanges.
+const EXCHANGES: &[EmbeddedFile] =
+    embedded_all!["../../problems/lessons/", ".exchange", "kratos-walk"];
 
 /// All built-in lessons, in teaching order.
 pub fn list() -> &'static [EmbeddedFile] {
@@ -239,7 +247,11 @@ impl Lesson {
     pub fn from_text(name: &str, text: &str) -> Result<Lesson, SceneError> {
         let spec: LessonSpec = read::value(name, text, "lesson")
             .map_err(|error| read::or_mistaken(error, name, text, FileKind::Lesson))?;
-        let scene = scene(name, text, &spec)?;
+        let recorded = recorded(name, text, &spec)?;
+        let scene = match &recorded {
+            Some(exchange) => exchange::open(&exchange.0, &exchange.1)?.scene,
+            None => scene(name, text, &spec)?,
+        };
         let reader = LessonReader { scene: &scene };
         let steps = reader
             .steps(&spec)
@@ -250,6 +262,7 @@ impl Lesson {
             title: spec.title,
             about: spec.about,
             model: Arc::new(scene.model.clone()),
+            recorded,
             runs,
             scene,
             steps,
@@ -264,12 +277,30 @@ impl Lesson {
     }
 }
 
+/// The recorded exchange of a lesson, by name and text.
+fn recorded(
+    name: &str,
+    text: &str,
+    spec: &LessonSpec,
+) -> Result<Option<Arc<(String, String)>>, SceneError> {
+    let SceneSpec::Recorded(named) = &spec.scene else {
+        return Ok(None);
+    };
+    if let Some(own) = EXCHANGES.iter().find(|own| own.name == named) {
+        return Ok(Some(Arc::new((own.name.into(), own.text.into()))));
+    }
+    let file = Scene::named_in(name, named)
+        .map_err(|why| placed(name, text, &[], Fault::new(at!["scene"], why)))?;
+    let read = read::text(&file)?;
+    Ok(Some(Arc::new((file, read))))
+}
+
 /// The scene of a lesson.
 fn scene(name: &str, text: &str, spec: &LessonSpec) -> Result<Scene, SceneError> {
     let at = |path: Path, message: String| placed(name, text, &[], Fault::new(path, message));
     let mut scene = match &spec.scene {
         SceneSpec::Scene(spec) => Scene::within(name, text, &at!["scene"], (**spec).clone())?,
-        SceneSpec::Name(scene) => {
+        SceneSpec::Name(scene) | SceneSpec::Recorded(scene) => {
             let scene = Scene::named_in(name, scene).map_err(|why| at(at!["scene"], why))?;
             Scene::open(&scene, &[]).map_err(|error| at(at!["scene"], error.to_string()))?
         }

@@ -8,6 +8,8 @@ use super::tutor::Tutor;
 use crate::action::Action;
 use crate::explain::names;
 use crate::record::command::{Command, Unit};
+use crate::recorded::exchange;
+use crate::recorded::recording::Recording;
 use crate::session::Session;
 use std::sync::Arc;
 use stickslip_scene::format::SceneError;
@@ -35,7 +37,7 @@ pub struct AnsweredQuestion {
 ///
 /// # Errors For the first step that cannot be completed, with its line and column.
 pub fn play(lesson: &Arc<Lesson>) -> Result<Vec<AnsweredQuestion>, SceneError> {
-    let mut session = Session::new(lesson.scene.clone());
+    let mut session = session(lesson);
     let mut tutor = Tutor::new(lesson.clone(), session.cursor(), session.frame());
     advance(&mut tutor, &mut session, lesson.steps.len())
 }
@@ -50,7 +52,7 @@ pub fn begin(lesson: Lesson, step: Option<usize>, progress: &ProgressStore) -> (
     let at = step.unwrap_or_else(|| reached.resumes_at(lesson.steps.len()));
     let lesson = Arc::new(lesson);
     let fresh = || {
-        let session = Session::new(lesson.scene.clone());
+        let session = session(&lesson);
         let tutor = Tutor::new(lesson.clone(), session.cursor(), session.frame());
         (tutor, session)
     };
@@ -62,6 +64,16 @@ pub fn begin(lesson: Lesson, step: Option<usize>, progress: &ProgressStore) -> (
         tutor.resume(reached.given);
     }
     (tutor, session)
+}
+
+/// A session at the start of a lesson's scene, or of its recorded exchange.
+fn session(lesson: &Lesson) -> Session {
+    let recorded = lesson.recorded.as_deref();
+    let opened = recorded.and_then(|(name, text)| exchange::open(name, text).ok());
+    match opened {
+        Some(opened) => Session::recorded(Recording::Exchange(Box::new(opened))),
+        None => Session::new(lesson.scene.clone()),
+    }
 }
 
 /// Plays the steps before `to`.

@@ -52,6 +52,8 @@ pub enum SceneSpec {
     Name(String),
     /// A scene in the lesson's file.
     Scene(Box<Spec>),
+    /// The recorded exchange with an attached solver: a built-in one, or a file (relative to the lesson's folder).
+    Recorded(String),
 }
 
 /// A step of a lesson.
