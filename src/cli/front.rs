@@ -25,9 +25,9 @@ pub fn resume(session: Session, words: &str) -> Result<(), Error> {
     tui::resume(session, words).map_err(Error::usage)
 }
 
-/// Starts a guided lesson.
-pub fn lesson(lesson: Lesson) -> Result<(), Error> {
-    tui::run_lesson(lesson).map_err(Error::usage)
+/// Starts a guided lesson at a step (from 0), or else where the user left it.
+pub fn lesson(lesson: Lesson, step: Option<usize>) -> Result<(), Error> {
+    tui::run_lesson(lesson, step).map_err(Error::usage)
 }
 
 /// Converts a journal to a film.

@@ -7,13 +7,13 @@ use std::fmt::Write;
 use std::sync::Arc;
 use stickslip_debugger::teach::play::play;
 use stickslip_debugger::teach::progress::{self, Progress};
-use stickslip_debugger::teach::{self, Lesson};
+use stickslip_debugger::teach::{self, Lesson, lesson};
 use stickslip_scene::shown;
 use unicode_width::UnicodeWidthStr;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
-    /// A lesson file, or a built-in lesson by name or number; without one, lists them
+    /// A lesson file, or a built-in lesson by name or number; NAME@STEP starts at a step. Without one, lists the lessons
     lesson: Option<String>,
     /// Plays the lesson with the right keys and answers, and prints its questions, answers, replies and hints
     #[arg(long, requires = "lesson")]
@@ -25,6 +25,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
         say(&list()?)?;
         return Ok(Exit::Good);
     };
+    let (name, step) = lesson::split_step(name);
     let lesson = Lesson::open(name)?;
     if args.check {
         say(&check(lesson)?)?;
@@ -33,7 +34,7 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     front::ready()?;
     let instead = format!("lesson --check {name}` plays it without one");
     needs_terminal("a lesson", &instead)?;
-    front::lesson(lesson)?;
+    front::lesson(lesson, step)?;
     Ok(Exit::Good)
 }
 
@@ -55,15 +56,15 @@ fn list() -> Result<String, Error> {
     let names = lessons.iter().map(|lesson| lesson.name.width());
     let width = names.max().unwrap_or(0);
     let column = lessons.iter().map(|lesson| done(lesson).width()).max();
-    let line = |lesson: &Lesson| {
-        let mut line = shown::padded(&lesson.name, width) + "  ";
+    let line = |(index, lesson): (usize, &Lesson)| {
+        let mut line = format!("{:>2}  {}  ", index + 1, shown::padded(&lesson.name, width));
         // Without any progress there is no column for it.
         if let Some(column @ 1..) = column {
             line += &(shown::padded(&done(lesson), column) + "  ");
         }
         format!("{line}{}: {}\n", lesson.title, lesson.about)
     };
-    Ok(lessons.iter().map(line).collect())
+    Ok(lessons.iter().enumerate().map(line).collect())
 }
 
 fn check(lesson: Lesson) -> Result<String, Error> {

@@ -460,7 +460,7 @@ impl App {
             (Ok(wanted), Action::Ui(ui)) => {
                 let effect = self.ui(ui, count, view);
                 if let (true, Some(tutor), Some(view)) = (wanted, &mut self.learning.lesson, view) {
-                    tutor.settled(view.cursor, view.frame());
+                    tutor.settled(&view.frames[..=view.cursor]);
                     // The lesson asked for this action, so its failure is no error of the user.
                     if self.message.tone == Tone::Error {
                         self.say("");
@@ -497,7 +497,7 @@ impl App {
             Ui::Interrupt => return self.interrupt(view),
             Ui::Open(scene) => return Some(Effect::Open(scene)),
             Ui::Repeat if self.learning.lesson.as_ref().is_some_and(Tutor::is_read) => {
-                self.continue_lesson(view)
+                return self.continue_lesson(view);
             }
             Ui::Repeat if self.panes.focus == Pane::Branches => return self.go_to_branch(view),
             Ui::Repeat if self.panes.focus == Pane::Remedies => return self.take_remedy(view),
@@ -533,7 +533,8 @@ impl App {
             Ui::Monitor(monitor) => self.watch(monitor, view),
             Ui::Chart(of) => return Some(Effect::Chart(of)),
             Ui::Lesson(lesson) => return Some(Effect::Lesson(lesson)),
-            Ui::On => self.continue_lesson(view),
+            Ui::On => return self.continue_lesson(view),
+            Ui::Hint => self.hint(view),
             Ui::Reread => self.reread(),
             Ui::Answer(word) => self.answer(&word, view),
             Ui::Predict(whose) => self.predict(whose, view),

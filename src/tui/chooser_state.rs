@@ -299,7 +299,7 @@ mod tests {
             left.iter().map(|offer| offer.name.clone()).collect()
         };
         assert_eq!(left("").len(), offers.len());
-        assert!(left("TABLE 2").contains(&"2-table-2".to_owned()));
+        assert!(left("TABLE 2").contains(&"table-2".to_owned()));
         let lessons = teach::list().iter().map(|lesson| lesson.name);
         assert_eq!(left("lessons"), lessons.collect::<Vec<_>>());
         assert_eq!(left("hertz block"), ["hertz-cylinder-on-block"]);

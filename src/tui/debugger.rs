@@ -14,7 +14,6 @@ use crossterm::event::{Event, KeyEvent};
 use std::collections::VecDeque;
 use std::io::{self, Write};
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 use stickslip_core::step::state::Status;
 use stickslip_debugger::action::{self, ChartOf};
@@ -23,7 +22,7 @@ use stickslip_debugger::record::command::Command;
 use stickslip_debugger::recorded::calculix::words::GREETING;
 use stickslip_debugger::session::{Reply, Session};
 use stickslip_debugger::teach::progress::{self, Progress, ProgressStore};
-use stickslip_debugger::teach::{Lesson, Tutor};
+use stickslip_debugger::teach::{Lesson, Tutor, play};
 use stickslip_scene::{gaps, shown};
 use stickslip_study::measuring::ChartMeasurement;
 
@@ -73,6 +72,8 @@ pub struct Debugger {
     pub(super) looking: PreviewLoader,
     /// Stores the progress in lessons.
     progress: ProgressStore,
+    /// When the lesson was started, less the time that earlier sessions spent on it.
+    taught: Instant,
     /// Whether the chooser's entries are listed again, with the files of the folder, each time it opens.
     lists: bool,
 }
@@ -96,6 +97,7 @@ impl Debugger {
             loading: None,
             looking: PreviewLoader::default(),
             progress: ProgressStore::default(),
+            taught: Instant::now(),
             lists: false,
         }
     }
@@ -188,6 +190,15 @@ impl Debugger {
     pub fn key(&mut self, key: &KeyEvent) -> Option<TerminalRequest> {
         let view = self.session.as_ref().map(View::new);
         let chose = matches!(self.app.overlay, Overlay::Chooser(_));
+        if let Some(tutor) = &mut self.app.learning.lesson {
+            tutor.set_clock(
+                self.taught
+                    .elapsed()
+                    .as_secs()
+                    .try_into()
+                    .unwrap_or(u32::MAX),
+            );
+        }
         let effect = self.app.key(key, view.as_ref());
         self.keep_progress();
         if self.lists && !chose && matches!(self.app.overlay, Overlay::Chooser(_)) {
@@ -208,7 +219,10 @@ impl Debugger {
             Effect::Interrupt => self.interrupt(),
             Effect::Open(scene) => self.load(Loading::scene(&scene), LoadTarget::Scene, &scene),
             Effect::Chart(of) => self.chart(of),
-            Effect::Lesson(name) => self.load(Loading::lesson(&name), LoadTarget::Scene, &name),
+            Effect::Lesson(name) => {
+                let loading = Loading::lesson(&name, self.progress.clone());
+                self.load(loading, LoadTarget::Scene, &name);
+            }
         }
         None
     }
@@ -390,7 +404,7 @@ impl Debugger {
             .as_ref()
             .filter(|session| !session.is_running());
         if let (Some(tutor), Some(session)) = (&mut self.app.learning.lesson, idle) {
-            tutor.settled(session.cursor(), session.frame());
+            tutor.settled(session.shown_frames());
         }
         self.keep_progress();
         self.app.say(said);
@@ -503,18 +517,27 @@ impl Debugger {
         (self.measuring, self.app.measuring) = (None, None);
     }
 
-    /// Starts a lesson at the start of its scene.
-    pub fn teach(&mut self, lesson: Lesson) {
-        let session = Session::new(lesson.scene.clone());
-        self.take_lesson(lesson, session);
+    /// Starts a lesson at a step (from 0), or else where the user left it.
+    pub fn teach(&mut self, lesson: Lesson, step: Option<usize>) {
+        let (tutor, session) = play::begin(lesson, step, &self.progress);
+        self.take_lesson(tutor, session);
     }
 
-    fn take_lesson(&mut self, lesson: Lesson, session: Session) {
-        let tutor = Tutor::new(Arc::new(lesson), session.cursor(), session.frame());
+    fn take_lesson(&mut self, tutor: Tutor, session: Session) {
+        let step = tutor.at() + 1;
+        let message = match step {
+            1 => String::new(),
+            _ => {
+                let name = &tutor.lesson().name;
+                format!("the lesson continues at step {step}; :lesson {name}@1 starts it again")
+            }
+        };
+        let before = Duration::from_secs(tutor.clock().into());
+        self.taught = Instant::now().checked_sub(before).unwrap_or(self.taught);
         self.app.opened();
         self.app.learning = Learning::new(tutor);
         self.replace_session(session);
-        self.app.say("");
+        self.app.say(message);
     }
 
     /// Whether the solver has results that have not been collected.

@@ -1,18 +1,19 @@
 //! The lesson on the screen: paging through text that does not fit, and answering its questions.
 
-use crate::app::{App, Overlay};
+use crate::app::{App, Effect, Overlay};
 use crate::layout::Pane;
 use crate::learning::VisibleLines;
 use crate::panes::lesson;
 use crate::screen;
 use crate::view::View;
 use stickslip_debugger::action::HiddenDecisions;
-
-const NO_LESSON: &str = "no lesson is open; press L to start one";
+use stickslip_debugger::teach::Tutor;
+use stickslip_debugger::teach::refusal::LessonRefusal;
 
 impl App {
-    /// Shows the next part of the lesson's text, or continues the lesson if all of it has been shown.
-    pub(super) fn continue_lesson(&mut self, view: Option<&View>) {
+    /// Shows the next part of the lesson's text, or continues if all of it has been shown: with the next step, or after the last one
+    /// with the next lesson.
+    pub(super) fn continue_lesson(&mut self, view: Option<&View>) -> Option<Effect> {
         let visible = self.lesson_lines(view);
         self.learning.note(visible);
         if let Some(lines) = visible.filter(|_| self.learning.is_unread(visible)) {
@@ -26,20 +27,38 @@ impl App {
             }
             let visible = self.lesson_lines(view);
             self.learning.note(visible);
-            return self.say("");
+            self.say("");
+            return None;
+        }
+        let next = self.learning.lesson.as_ref().and_then(Tutor::next_lesson);
+        if let Some(next) = next {
+            return Some(Effect::Lesson(next.into()));
         }
         let continued = match (&mut self.learning.lesson, view) {
             (Some(tutor), Some(view)) => tutor.on(view.cursor, view.frame()),
-            _ => return self.complain(NO_LESSON),
+            _ => Err(LessonRefusal::NoLesson),
         };
         self.report(continued.map(|()| String::new()));
+        None
+    }
+
+    /// Shows the hint of the lesson's question or task.
+    pub(super) fn hint(&mut self, view: Option<&View>) {
+        if let Err(why) = self.learning.check_read(self.lesson_lines(view)) {
+            return self.complain(why);
+        }
+        let hint = match &mut self.learning.lesson {
+            Some(tutor) => tutor.hint(),
+            None => Err(LessonRefusal::NoLesson),
+        };
+        self.report(hint.map(|()| String::new()));
     }
 
     /// Shows the lesson text from the top.
     pub(super) fn reread(&mut self) {
         match &self.learning.lesson {
             Some(_) => self.learning.reading.top = 0,
-            None => self.complain(NO_LESSON),
+            None => self.complain(LessonRefusal::NoLesson),
         }
     }
 

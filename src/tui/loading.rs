@@ -6,15 +6,16 @@ use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::thread;
 use stickslip_debugger::record::journal::{Journal, JournalError, Record};
 use stickslip_debugger::session::Session;
-use stickslip_debugger::teach::Lesson;
+use stickslip_debugger::teach::progress::ProgressStore;
+use stickslip_debugger::teach::{Lesson, Tutor, lesson, play};
 use stickslip_scene::format::kind::FileKind;
 
 /// A loaded file, or why it cannot be loaded.
 pub enum LoadedFile {
     /// A session on a scene.
     Scene(Result<Box<Session>, String>),
-    /// A lesson and a session on its scene.
-    Lesson(Result<Box<(Lesson, Session)>, String>),
+    /// A lesson and the session on its scene.
+    Lesson(Result<Box<(Tutor, Session)>, String>),
     /// A chart, loaded or measured.
     Chart(Result<Box<ChartPage>, NoPage>),
 }
@@ -38,18 +39,18 @@ impl Loading {
         })
     }
 
-    /// Loads a lesson, by file or built-in name, and a session on its scene.
-    pub fn lesson(name: &str) -> Loading {
+    /// Loads a lesson, by file or built-in name, and a session on its scene, at the step where the user left it.
+    pub fn lesson(name: &str, progress: ProgressStore) -> Loading {
         let name = name.to_owned();
         Loading::start(move || {
-            let lesson = Lesson::open(&name).map_err(|why| why.to_string());
+            let (name, step) = lesson::split_step(&name);
+            let lesson = Lesson::open(name).map_err(|why| why.to_string());
             LoadedFile::Lesson(lesson.map(|lesson| {
                 if let Some(runs) = &lesson.runs {
                     // Measured in the background, so that keys need not wait for it; an error is shown where the result is used.
                     let _ = runs.measure();
                 }
-                let session = Session::new(lesson.scene.clone());
-                Box::new((lesson, session))
+                Box::new(play::begin(lesson, step, &progress))
             }))
         })
     }

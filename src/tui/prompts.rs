@@ -14,7 +14,7 @@ use stickslip_core::model::Mode;
 use stickslip_debugger::action::{self, Action, Context, Question};
 use stickslip_debugger::record::command::Command;
 use stickslip_debugger::teach::Tutor;
-use stickslip_debugger::teach::tutor::AnswerKind;
+use stickslip_debugger::teach::question::AnswerKind;
 
 impl App {
     pub(super) fn ask(&mut self, question: Question, view: Option<&View>) {

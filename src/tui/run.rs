@@ -77,17 +77,17 @@ fn go(session: Option<Session>, keeps: bool, text: Option<&str>) -> Result<(), E
     run_on(debugger)
 }
 
-/// Runs a lesson. Lessons are not recorded, since they can be repeated.
+/// Runs a lesson from a step (from 0), or else from where the user left it. Lessons are not recorded, since they can be repeated.
 ///
 /// # Errors
 /// If there is no terminal, or it fails.
-pub fn run_lesson(lesson: Lesson) -> Result<(), Error> {
+pub fn run_lesson(lesson: Lesson, step: Option<usize>) -> Result<(), Error> {
     let mut debugger = in_terminal(None)?;
     if let Some(runs) = lesson.runs.clone() {
         // Measured in the background, so that keys need not wait for it; an error is shown where the result is used.
         std::thread::spawn(move || runs.measure().is_ok());
     }
-    debugger.teach(lesson);
+    debugger.teach(lesson, step);
     run_on(debugger)
 }
 

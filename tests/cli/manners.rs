@@ -22,7 +22,7 @@ fn a_file_of_another_kind_is_told_with_the_command_that_reads_it() {
     let copy = |from: &str, to: &str| std::fs::copy(top(from), here.join(to)).unwrap();
     copy("snapshots/02-rough-at-the-end.ron", "snapshot.ron");
     copy("tests/journals/up-the-ladder.journal", "a.journal");
-    copy("problems/lessons/1-modes.ron", "lesson.ron");
+    copy("problems/lessons/modes.ron", "lesson.ron");
     copy("problems/studies/geometry-01.ron", "study.ron");
     copy("problems/osc-snap.ron", "scene.ron");
     std::fs::write(

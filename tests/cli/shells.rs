@@ -64,7 +64,7 @@ fn bash_completes_what_the_program_knows() {
         ("stickslip osc-sn", &["osc-snap"][..]),
         ("stickslip rem", &["remedies"]),
         ("stickslip study fig-08", &["fig-08-increment"]),
-        ("stickslip lesson 2-", &["2-table-2"]),
+        ("stickslip lesson tab", &["table-2"]),
         ("stickslip help limit", &["limit-points"]),
         ("stickslip chart osc-snap --cost m", &["minors"]),
         (

@@ -234,7 +234,7 @@ fn screen(what: &str) -> String {
 fn lesson(what: &str) -> String {
     let (width, height, name, keys) = parts(what);
     let mut debugger = Debugger::new(Theme::mono(), Vec::new(), None);
-    debugger.teach(Lesson::open(name).unwrap());
+    debugger.teach(Lesson::open(name).unwrap(), None);
     debugger.type_keys(keys);
     fenced(&debugger.text(width, height))
 }

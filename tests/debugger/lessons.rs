@@ -9,7 +9,9 @@ use stickslip::action::{self, Action, Context, HiddenDecisions};
 use stickslip::model::Mode;
 use stickslip::session::Session;
 use stickslip::teach::play::play;
-use stickslip::teach::tutor::{AnswerKind, Paragraph};
+use stickslip::teach::progress::Progress;
+use stickslip::teach::question::AnswerKind;
+use stickslip::teach::tutor::Paragraph;
 use stickslip::teach::{self, Guess, Lesson, Tutor};
 use stickslip::tui::Debugger;
 use stickslip::tui::theme::Theme;
@@ -17,7 +19,7 @@ use stickslip::tui::theme::Theme;
 /// The debugger at the beginning of a built-in lesson.
 fn taught(name: &str) -> Debugger {
     let mut debugger = Debugger::new(Theme::mono(), Vec::new(), None);
-    debugger.teach(Lesson::open(name).unwrap());
+    debugger.teach(Lesson::open(name).unwrap(), None);
     debugger
 }
 
@@ -61,7 +63,7 @@ fn what_the_lessons_teach_is_what_the_solver_does() {
     };
     assert_eq!(answers("modes"), ["free", "fixed", "sliding", "fixed"]);
     // By hand: 0.04 − 0.3/3; 0.3 − 3·0.04; 0.2·(1 − 0.4); 0.18 tan 30°.
-    let by_hand = answers("3");
+    let by_hand = answers("by-hand");
     assert_eq!(by_hand[..4], ["−0.06", "fixed", "0.18", "0.12"]);
     assert_eq!(by_hand[5..], ["0.1039", "sliding"]);
     assert_eq!(answers("no-answer"), ["0", "free", "1"]);
@@ -83,8 +85,29 @@ fn what_the_lessons_teach_is_what_the_solver_does() {
 }
 
 #[test]
+fn lessons_are_found_by_number_and_by_their_earlier_names() {
+    assert_eq!(teach::find("4").unwrap().name, "by-hand");
+    assert_eq!(teach::find("4-oscillation").unwrap().name, "oscillation");
+    assert_eq!(teach::find("2-table-2.ron").unwrap().name, "table-2");
+    for none in ["0", "99", "4-table", "oscillation-4"] {
+        assert!(teach::find(none).is_none(), "{none}");
+    }
+    let home = tempfile::tempdir().unwrap();
+    let file = home.path().join("lessons.ron");
+    let done = "(steps: 12, of: 12, ended: 1, right: 4, asked: 5)";
+    let text =
+        format!("(format: 1, lessons: {{ \"4-oscillation\": {done}, \"my-4.ron\": {done} }})");
+    std::fs::write(&file, text).unwrap();
+    let progress = Progress::read(&file).unwrap();
+    for name in ["oscillation", "my-4.ron"] {
+        let reached = progress.of(name).unwrap();
+        assert_eq!(reached.words(), "done, 4/5 right");
+    }
+}
+
+#[test]
 fn right_answers_follow_the_scene_and_stand_in_no_file() {
-    let text = teach::find("3-by-hand").unwrap().text.to_owned();
+    let text = teach::find("by-hand").unwrap().text.to_owned();
     let rough = text.replace("friction: (angle: 30.0)", "friction: (angle: 40.0)");
     assert_ne!(text, rough);
     let rule = |text: &str| {
@@ -97,7 +120,7 @@ fn right_answers_follow_the_scene_and_stand_in_no_file() {
 
 #[test]
 fn a_wrong_answer_is_told_with_the_numbers_of_the_decision() {
-    let mut debugger = taught("4-oscillation");
+    let mut debugger = taught("oscillation");
     debugger.type_keys("Space s");
     assert_eq!(tutor(&debugger).question().unwrap().kind, AnswerKind::Mode);
     let last = |debugger: &Debugger| tutor(debugger).page().last().cloned().unwrap();
@@ -122,7 +145,7 @@ fn a_wrong_answer_is_told_with_the_numbers_of_the_decision() {
 #[test]
 fn a_decision_that_is_asked_about_is_nowhere_on_the_screen() {
     for (width, height) in [(80, 24), (120, 40), (200, 60)] {
-        let mut debugger = taught("4-oscillation");
+        let mut debugger = taught("oscillation");
         debugger.type_keys("Space s");
         let asked = debugger.text(width, height);
         assert!(
@@ -173,12 +196,12 @@ fn at_step(name: &str, step: usize) -> Debugger {
 #[test]
 fn a_verdict_that_is_asked_about_is_nowhere_on_the_screen() {
     let asked = [
-        ("10-slip", 10, "1", "load 0.05 accepted"),
-        ("10-slip", 17, "2", "but beam.5 slipped"),
-        ("11-judge", 4, "1", "load 0.5 accepted"),
-        ("11-judge", 7, "3", "exceeds the friction limit"),
-        ("11-judge", 13, "1", "friction drives the slip"),
-        ("11-judge", 17, "2", "exceeds the friction limit"),
+        ("slip", 10, "1", "load 0.05 accepted"),
+        ("slip", 17, "2", "but beam.5 slipped"),
+        ("judge", 4, "1", "load 0.5 accepted"),
+        ("judge", 7, "3", "exceeds the friction limit"),
+        ("judge", 13, "1", "friction drives the slip"),
+        ("judge", 17, "2", "exceeds the friction limit"),
     ];
     for (name, step, right, told) in asked {
         let mut debugger = at_step(name, step);
@@ -209,16 +232,16 @@ fn replies(name: &str, step: usize) -> (String, String) {
 #[test]
 fn hints_have_the_numbers_of_the_shown_iteration_and_not_the_answer() {
     // The residual that is shown, and not the next one.
-    let (then, hint) = replies("9-majors", 6);
+    let (then, hint) = replies("majors", 7);
     assert_eq!(hint, "No. 7.570e−8 times 0.37.");
     assert!(then.starts_with("Right: 2.770e−8."), "{then}");
     // Of a decision that is still to come not even the numbers are shown.
     for (name, step) in [
-        ("1-modes", 12),
-        ("4-oscillation", 4),
-        ("5-increment", 3),
-        ("5-increment", 8),
-        ("13-two-sides", 12),
+        ("modes", 12),
+        ("oscillation", 4),
+        ("increment", 3),
+        ("increment", 8),
+        ("two-sides", 12),
     ] {
         let (then, hint) = replies(name, step);
         assert!(
@@ -227,12 +250,12 @@ fn hints_have_the_numbers_of_the_shown_iteration_and_not_the_answer() {
         );
         assert!(then.starts_with("Right: "), "{then}");
     }
-    let (_, hint) = replies("8-t-max", 4);
+    let (_, hint) = replies("t-max", 4);
     assert!(
         !hint.contains("0.2588") && !hint.contains("0.3312"),
         "{hint}"
     );
-    let (_, hint) = replies("5-increment", 3);
+    let (_, hint) = replies("increment", 3);
     assert!(
         hint.ends_with("by as much as the load falls: by 0.05."),
         "{hint}"
@@ -289,7 +312,7 @@ fn hints_that_look_ahead_or_contain_the_answer_are_refused() {
 
 #[test]
 fn predictions_end_with_the_history_however_few_were_right() {
-    let mut debugger = at_step("2-table-2", 14);
+    let mut debugger = at_step("table-2", 14);
     let last = |debugger: &Debugger| tutor(debugger).page().last().cloned().unwrap();
     for _ in 0..200 {
         debugger.type_keys("f");
@@ -314,7 +337,7 @@ fn predictions_end_with_the_history_however_few_were_right() {
 
 #[test]
 fn a_lesson_waits_for_what_it_wants_and_lets_one_look_around() {
-    let mut debugger = taught("4-oscillation");
+    let mut debugger = taught("oscillation");
     debugger.type_keys("s");
     assert!(
         debugger
@@ -340,7 +363,7 @@ fn a_lesson_waits_for_what_it_wants_and_lets_one_look_around() {
 #[test]
 fn keys_and_typed_lines_are_the_same_to_a_lesson() {
     for keys in ["m s", ": f o r c e Space s l i d Enter"] {
-        let mut debugger = taught("4-oscillation");
+        let mut debugger = taught("oscillation");
         debugger.type_keys("Space s a x Space a f Space a 2 Space c a 1 Enter Space");
         assert_eq!(tutor(&debugger).at(), 7);
         debugger.type_keys(keys);
@@ -357,7 +380,7 @@ fn keys_and_typed_lines_are_the_same_to_a_lesson() {
 #[test]
 fn lesson_screens() {
     for (width, height) in [(80, 24), (120, 40), (200, 60)] {
-        let mut debugger = taught("2-table-2");
+        let mut debugger = taught("table-2");
         debugger.type_keys("Space e e f s");
         insta::assert_snapshot!(
             format!("lesson-asks-{width}x{height}"),
@@ -369,7 +392,7 @@ fn lesson_screens() {
             debugger.text(width, height)
         );
     }
-    let mut debugger = taught("2-table-2");
+    let mut debugger = taught("table-2");
     debugger.type_keys("Space e");
     insta::assert_snapshot!("lesson-zoomed-80x24", debugger.text(80, 24));
 }
@@ -377,7 +400,7 @@ fn lesson_screens() {
 #[test]
 fn any_size_shows_what_to_do() {
     for (width, height) in [(40, 10), (60, 20), (80, 24), (100, 30), (130, 36)] {
-        let mut debugger = taught("3-by-hand");
+        let mut debugger = taught("by-hand");
         debugger.app.area = Rect::new(0, 0, width, height);
         // As often as its pages must be turned.
         let mut turns = 0;
@@ -480,7 +503,7 @@ fn the_scene_of_a_lesson_is_checked_like_any_other() {
         "{}",
         fault(&text)
     );
-    let by_hand = teach::find("3-by-hand").unwrap().text.to_owned();
+    let by_hand = teach::find("by-hand").unwrap().text.to_owned();
     let broken = by_hand.replace(
         "(nodes: [\"beam.end\"], on: [\"floor\"]",
         "(nodes: [\"beam.end\"], on: [\"flor\"]",
@@ -593,7 +616,7 @@ fn the_command_line_lists_and_checks_lessons() {
     assert_eq!((code, out.lines().count()), (Some(0), teach::list().len()));
     let (code, out, _) = run(&["lesson", "--check", "by-hand"]);
     assert!(
-        code == Some(0) && out.contains("3-by-hand: sound; 13 steps, 7 questions"),
+        code == Some(0) && out.contains("by-hand: sound; 13 steps, 7 questions"),
         "{out}"
     );
     assert_eq!(out.matches("\n    ✓ Right: ").count(), 7, "{out}");
@@ -602,7 +625,7 @@ fn the_command_line_lists_and_checks_lessons() {
         out.contains("✗ No. Look at row fixed of Table 2: F_n = 0.18 > 0"),
         "{out}"
     );
-    let (code, _, err) = run(&["lesson", "4"]);
+    let (code, _, err) = run(&["lesson", "oscillation"]);
     assert!(code == Some(2) && err.contains("needs a terminal"), "{err}");
     let (code, _, err) = run(&["lesson", "4-osilation"]);
     assert!(

@@ -19,7 +19,7 @@ pub fn resume(_: Session, _: &str) -> Result<(), Error> {
     ready()
 }
 
-pub fn lesson(_: Lesson) -> Result<(), Error> {
+pub fn lesson(_: Lesson, _: Option<usize>) -> Result<(), Error> {
     ready()
 }
 

@@ -18,6 +18,7 @@ impl Action {
                     | Ui::Open(_)
                     | Ui::Lesson(_)
                     | Ui::On
+                    | Ui::Hint
                     | Ui::Answer(_)
                     | Ui::Predict(_)
                     | Ui::Ask(Question::Mode | Question::Increment | Question::Answer)

@@ -70,12 +70,14 @@ pub enum Ui {
     Filter(Option<Filter>),
     /// Show this monitor, or the next.
     Monitor(Option<usize>),
-    /// Start a lesson, by file or built-in name.
+    /// Start a lesson, by file or built-in name, optionally at a step: `NAME@STEP`.
     Lesson(String),
     /// Continue the lesson.
     On,
     /// Show the lesson text again from the top.
     Reread,
+    /// Show the hint of the lesson's question or task.
+    Hint,
     /// Answer the lesson's question, or predict a mode.
     Answer(String),
     /// Free mode: choose whose decisions are hidden until predicted; `None` switches it on or off.

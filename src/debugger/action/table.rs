@@ -206,9 +206,10 @@ pub const ACTIONS: &[ActionEntry] = &[
     entry(Group::Look, "view", "", &["V"], "", "Draw a scene in space in the next projection: oblique, from the top, from the side", Verb::Do(Ui::View)),
     entry(Group::Look, "copy", "[WHAT]", &["Y"], "", "Copy the selection to the clipboard: a row, a value, a command; or name it: row, command, keys, gap, f_n, …", Verb::Copy),
 
-    entry(Group::Learn, "lesson", "[NAME]", &["L"], "", "Start a guided lesson: a file, or a built-in one", Verb::Lesson),
-    entry(Group::Learn, "on", "", &["Space"], "more", "Continue the lesson: more of its text, then the next step", Verb::Do(Ui::On)),
+    entry(Group::Learn, "lesson", "[NAME]", &["L"], "", "Start a guided lesson, or continue it: a file, or a built-in one; `NAME@STEP` starts at a step", Verb::Lesson),
+    entry(Group::Learn, "on", "", &["Space"], "more", "Continue the lesson: more of its text, then the next step; at the end, the next lesson", Verb::Do(Ui::On)),
     entry(Group::Learn, "reread", "", &["Backspace"], "", "Show the lesson text again from the top", Verb::Do(Ui::Reread)),
+    entry(Group::Learn, "hint", "", &["H"], "", "Show the hint of the lesson's question or task; it counts as a wrong answer", Verb::Do(Ui::Hint)),
     entry(Group::Learn, "answer", "[WORD]", &["a"], "answer", "Answer the lesson's question, or predict the selected node's next mode", Verb::Answer),
     entry(Group::Learn, "predict", "[WHOSE]", &["p"], "", "Hide decisions until predicted: any one (selected), every changed one, or off", Verb::Predict),
 

@@ -162,6 +162,11 @@ impl Session {
         self.timeline.frames()
     }
 
+    /// The frames of the current line up to the shown one.
+    pub fn shown_frames(&self) -> &[Frame] {
+        &self.frames()[..=self.cursor()]
+    }
+
     /// Index of the shown frame.
     pub fn cursor(&self) -> usize {
         self.timeline.cursor()

@@ -9,12 +9,19 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use stickslip_core::contact::laws::Verdict;
 use stickslip_core::contact::record::ContactRecord;
+use stickslip_core::contact::state::ContactState;
 use stickslip_core::interface::census::census;
 use stickslip_core::interface::minor_history::Cycle;
+use stickslip_core::interface::trials::Trials;
+use stickslip_core::linear::stability::Stability;
 use stickslip_core::model::{Mode, Model};
 use stickslip_core::step::drive::{RunEnd, Until};
 use stickslip_core::step::event::{Event, Failure, Outcome};
+use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::stepper::Stepper;
+
+/// Decimal digits of an increment to which the load of a change of mode is found.
+const DIGITS: u32 = 4;
 
 /// Number of minor iterations after which an increment counts as endless.
 const ENDLESS: u32 = 20_000;
@@ -43,6 +50,16 @@ pub struct IncrementEnd {
     pub majors: u32,
     /// Relative residuals: the latest one here, and those at the end of each later major iteration.
     pub residuals: Vec<f64>,
+}
+
+/// The condensed problem at a slave node while all others are free: with the forces F on the node, S* moves relative to
+/// it by v = free − W F along n and t.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CondensedNode {
+    /// Motion without forces (length).
+    pub free: [f64; 2],
+    /// Compliance W (length per force), by rows.
+    pub compliance: [[f64; 2]; 2],
 }
 
 /// Only residuals below this are used for a rate of convergence; larger ones are far from the solution.
@@ -174,6 +191,71 @@ impl FrameValues {
             .map_err(LessonError::NoCensus)?
             .answers
             .len())
+    }
+
+    /// Stability of the shown equilibrium under a constant load.
+    pub fn stability(&self) -> Stability {
+        self.stepper().stability()
+    }
+
+    /// The condensed problem of the next minor iteration at a slave node.
+    ///
+    /// # Errors If the bodies cannot be condensed, or a body is loose without contact.
+    pub fn interface(&self, slave: usize) -> Result<CondensedNode, LessonError> {
+        let frozen = self.stepper().interface_problem();
+        let frozen = frozen.ok_or(LessonError::NotCondensed)?;
+        let condensed = || {
+            let at = frozen.nodes.iter().position(|node| node.slave == slave)?;
+            let mut trials = Trials::new(&frozen)?;
+            let free: Vec<_> = frozen.nodes.iter().map(|node| node.state.clone()).collect();
+            let free = free.into_iter().map(|state| ContactState {
+                mode: Mode::Free,
+                ..state
+            });
+            let free = trials.given(&free.collect::<Vec<_>>())?.get(at)?.motion;
+            let along_n = trials.answers_to(at, 0)?.get(at)?.motion;
+            let along_t = trials.answers_to(at, 1)?.get(at)?.motion;
+            Some(CondensedNode {
+                free,
+                compliance: [[-along_n[0], -along_t[0]], [-along_n[1], -along_t[1]]],
+            })
+        };
+        condensed().ok_or(LessonError::NotCondensed)
+    }
+
+    /// The load factor at which a slave node leaves its mode, by shorter and shorter increments: within a 10000th of the
+    /// increment.
+    ///
+    /// # Errors If the node keeps its mode to the end of the history, or an increment fails.
+    pub fn leaves(&self, slave: usize) -> Result<f64, LessonError> {
+        let mut stepper = self.stepper();
+        let mut state = self.frame.state.clone();
+        let before = self.next(slave);
+        let mut load = state.start.load_factor;
+        let mut size = state.controls.increment;
+        for _ in 0..=DIGITS {
+            stepper.restore(&state);
+            stepper
+                .intervene(&Intervention::Increment(size))
+                .map_err(|_| LessonError::Done)?;
+            let end = stepper.drive(Until::end().minors(ENDLESS.into()), |stepper| {
+                if !matches!(stepper.event().outcome, Outcome::Increment { .. }) {
+                    return ControlFlow::Continue(());
+                }
+                let accepted = stepper.state();
+                load = accepted.start.load_factor;
+                if accepted.nodes[slave].mode != before {
+                    return ControlFlow::Break(());
+                }
+                state = accepted.clone();
+                ControlFlow::Continue(())
+            });
+            if !matches!(end, RunEnd::Stopped(())) {
+                return Err(LessonError::Done);
+            }
+            size /= 10.0;
+        }
+        Ok(load)
     }
 
     fn stepper(&self) -> Stepper {

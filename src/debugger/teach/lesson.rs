@@ -4,8 +4,10 @@ use super::quantity::{self, LessonQuantity, Template};
 use super::refusal::PressError;
 use super::runs::Runs;
 use super::spec::{AnswerSpec, LessonSpec, SceneSpec, StepSpec, When};
+use super::task::{Goal, Task};
 use crate::action::{self, Action, Context};
 use crate::record::command::Command;
+use crate::recorded::exchange;
 use std::sync::Arc;
 use stickslip_core::contact::laws::JudgedLaw;
 use stickslip_core::model::{Mode, Model};
@@ -32,6 +34,8 @@ pub struct Lesson {
     pub model: Arc<Model>,
     /// The steps in order.
     pub steps: Vec<LessonStep>,
+    /// The recorded exchange that it walks through, if it has no solver: name and text.
+    pub(super) recorded: Option<Arc<(String, String)>>,
     /// The runs of its chart, if it has one.
     pub runs: Option<Arc<Runs>>,
     /// The text of its file, for line numbers in errors.
@@ -54,6 +58,8 @@ pub enum LessonStep {
     },
     /// A question.
     Ask(Ask),
+    /// A state to reach.
+    Reach(Task),
     /// Decisions to predict.
     Predict {
         /// Text before the predictions.
@@ -70,6 +76,8 @@ pub struct Ask {
     pub text: Template,
     /// The right answer.
     pub answer: Answer,
+    /// Whether every action is allowed, to find the answer.
+    pub explores: bool,
     /// Number of minor iterations that it looks ahead.
     pub ahead: u32,
     /// Reply to a wrong answer.
@@ -104,6 +112,8 @@ pub enum Truth {
     Becomes(usize, Mode),
     /// Convergence of the residuals: quadratic, or linear if false.
     Quadratic(bool),
+    /// The shown equilibrium is stable under a constant load; unstable if false.
+    Stable(bool),
     /// All laws are satisfied.
     Obeys,
     /// This law is violated.
@@ -130,20 +140,35 @@ const FARTHEST: u32 = 100;
 const LESSONS: &[EmbeddedFile] = embedded_all![
     "../../problems/lessons/",
     ".ron",
-    "1-modes",
-    "2-table-2",
-    "3-by-hand",
-    "4-oscillation",
-    "5-increment",
-    "6-no-answer",
-    "7-several-answers",
-    "8-t-max",
-    "9-majors",
-    "10-slip",
-    "11-judge",
-    "12-chart",
-    "13-two-sides",
+    "modes",
+    "table-2",
+    "majors",
+    "by-hand",
+    "condensed",
+    "t-max",
+    "increment",
+    "oscillation",
+    "two-nodes",
+    "several-answers",
+    "no-answer",
+    "remedies",
+    "slip",
+    "judge",
+    "two-sides",
+    "edge",
+    "laws",
+    "bodies",
+    "limit-point",
+    "stability",
+    "chart",
+    "point-force",
+    "attached",
+    "cure",
 ];
+
+/// The built-in recorded exchanges.
+const EXCHANGES: &[EmbeddedFile] =
+    embedded_all!["../../problems/lessons/", ".exchange", "kratos-walk"];
 
 /// All built-in lessons, in teaching order.
 pub fn list() -> &'static [EmbeddedFile] {
@@ -156,14 +181,39 @@ pub fn title(lesson: &EmbeddedFile) -> String {
     spec.map(|spec| spec.title).unwrap_or_default()
 }
 
-/// Finds a built-in lesson by name, with or without `.ron`, or by the number or the word of its name alone.
+/// Finds a built-in lesson by its name, with or without `.ron`, or by its number in teaching order.
 pub fn find(name: &str) -> Option<&'static EmbeddedFile> {
     let name = name.strip_suffix(".ron").unwrap_or(name);
-    let called = |lesson: &&EmbeddedFile| {
-        let (number, word) = lesson.name.split_once('-').unwrap_or((lesson.name, ""));
-        [lesson.name, number, word].contains(&name)
-    };
-    LESSONS.iter().find(called)
+    match name.parse::<usize>() {
+        Ok(number) => LESSONS.get(number.checked_sub(1)?),
+        Err(_) => {
+            let name = current_name(name);
+            LESSONS.iter().find(|lesson| lesson.name == name)
+        }
+    }
+}
+
+/// Splits `NAME@STEP`, with steps from 1, into the name and the step from 0.
+pub fn split_step(name: &str) -> (&str, Option<usize>) {
+    match name.rsplit_once('@') {
+        Some((own, step)) => match step.parse::<usize>().ok().and_then(|n| n.checked_sub(1)) {
+            Some(step) => (own, Some(step)),
+            None => (name, None),
+        },
+        None => (name, None),
+    }
+}
+
+/// The current name of a built-in lesson. Names of earlier versions began with a number (`2-modes`).
+pub fn current_name(name: &str) -> &str {
+    match name.split_once('-') {
+        Some((number, word))
+            if number.parse::<u32>().is_ok() && LESSONS.iter().any(|own| own.name == word) =>
+        {
+            word
+        }
+        _ => name,
+    }
 }
 
 impl Lesson {
@@ -197,7 +247,11 @@ impl Lesson {
     pub fn from_text(name: &str, text: &str) -> Result<Lesson, SceneError> {
         let spec: LessonSpec = read::value(name, text, "lesson")
             .map_err(|error| read::or_mistaken(error, name, text, FileKind::Lesson))?;
-        let scene = scene(name, text, &spec)?;
+        let recorded = recorded(name, text, &spec)?;
+        let scene = match &recorded {
+            Some(exchange) => exchange::open(&exchange.0, &exchange.1)?.scene,
+            None => scene(name, text, &spec)?,
+        };
         let reader = LessonReader { scene: &scene };
         let steps = reader
             .steps(&spec)
@@ -208,6 +262,7 @@ impl Lesson {
             title: spec.title,
             about: spec.about,
             model: Arc::new(scene.model.clone()),
+            recorded,
             runs,
             scene,
             steps,
@@ -222,12 +277,30 @@ impl Lesson {
     }
 }
 
+/// The recorded exchange of a lesson, by name and text.
+fn recorded(
+    name: &str,
+    text: &str,
+    spec: &LessonSpec,
+) -> Result<Option<Arc<(String, String)>>, SceneError> {
+    let SceneSpec::Recorded(named) = &spec.scene else {
+        return Ok(None);
+    };
+    if let Some(own) = EXCHANGES.iter().find(|own| own.name == named) {
+        return Ok(Some(Arc::new((own.name.into(), own.text.into()))));
+    }
+    let file = Scene::named_in(name, named)
+        .map_err(|why| placed(name, text, &[], Fault::new(at!["scene"], why)))?;
+    let read = read::text(&file)?;
+    Ok(Some(Arc::new((file, read))))
+}
+
 /// The scene of a lesson.
 fn scene(name: &str, text: &str, spec: &LessonSpec) -> Result<Scene, SceneError> {
     let at = |path: Path, message: String| placed(name, text, &[], Fault::new(path, message));
     let mut scene = match &spec.scene {
         SceneSpec::Scene(spec) => Scene::within(name, text, &at!["scene"], (**spec).clone())?,
-        SceneSpec::Name(scene) => {
+        SceneSpec::Name(scene) | SceneSpec::Recorded(scene) => {
             let scene = Scene::named_in(name, scene).map_err(|why| at(at!["scene"], why))?;
             Scene::open(&scene, &[]).map_err(|error| at(at!["scene"], error.to_string()))?
         }
@@ -279,9 +352,22 @@ impl LessonReader<'_> {
         if spec.steps.is_empty() {
             bail!(at!["steps"], "a lesson needs at least one step");
         }
+        let is_task =
+            |step: &StepSpec| matches!(step, StepSpec::Reach { .. } | StepSpec::Find { .. });
+        let first = spec.steps.iter().position(is_task);
+        let after = |k: usize| first.is_some_and(|first| k > first);
         let steps = spec.steps.iter().enumerate();
         steps
-            .map(|(k, step)| self.step(at!["steps", k], step))
+            .map(|(k, step)| match step {
+                StepSpec::Text(_) | StepSpec::Reach { .. } | StepSpec::Find { .. } => {
+                    self.step(at!["steps", k], step)
+                }
+                _ if after(k) => Err(fault!(
+                    at!["steps", k],
+                    "only texts and tasks can follow a task, because the state is then the user's"
+                )),
+                _ => self.step(at!["steps", k], step),
+            })
             .collect()
     }
 
@@ -327,9 +413,62 @@ impl LessonReader<'_> {
                 Ok(LessonStep::Ask(Ask {
                     text: text(words)?,
                     answer,
+                    explores: false,
                     ahead: *ahead,
                     hint,
                     then: self.template(path.then("then"), then, LONGEST_REMARK)?,
+                }))
+            }
+            StepSpec::Find {
+                text: words,
+                of,
+                tolerance,
+                hint,
+                then,
+            } => {
+                let (of, tolerance) = (of.clone(), *tolerance);
+                let answer = self.answer(path.clone(), &AnswerSpec::Number { of, tolerance })?;
+                Ok(LessonStep::Ask(Ask {
+                    text: text(words)?,
+                    answer,
+                    explores: true,
+                    ahead: 0,
+                    hint: self.template(path.then("hint"), hint, LONGEST_REMARK)?,
+                    then: self.template(path.then("then"), then, LONGEST_REMARK)?,
+                }))
+            }
+            StepSpec::Reach {
+                text: words,
+                load,
+                failure,
+                without,
+                hint,
+                then,
+                solution,
+            } => {
+                let goal = match (load, failure) {
+                    (Some(_), true) => {
+                        bail!(
+                            path.then("failure"),
+                            "a task has either a load or a failure"
+                        )
+                    }
+                    (Some(load), false) => Goal::Load(*load),
+                    (None, true) => Goal::Failure,
+                    (None, false) => Goal::End,
+                };
+                let lines = solution.iter().enumerate();
+                let solution = lines.map(|(k, line)| {
+                    let path = path.then("solution").then(k);
+                    Ok(press_of(line, &self.context()).at(path)?.0)
+                });
+                Ok(LessonStep::Reach(Task {
+                    text: text(words)?,
+                    goal,
+                    without: without.clone(),
+                    hint: self.template(path.then("hint"), hint, LONGEST_REMARK)?,
+                    then: self.template(path.then("then"), then, LONGEST_REMARK)?,
+                    solution: solution.collect::<Result<_, Fault>>()?,
                 }))
             }
         }
@@ -400,6 +539,8 @@ impl LessonReader<'_> {
             }
             When::Linear => Truth::Quadratic(false),
             When::Quadratic => Truth::Quadratic(true),
+            When::Stable => Truth::Stable(true),
+            When::Unstable => Truth::Stable(false),
             When::Obeys => Truth::Obeys,
             When::Breaks(name) => {
                 let all = || JudgedLaw::ALL.into_iter().chain(JudgedLaw::OF_BONDS);

@@ -3,7 +3,7 @@
 //! - [`spec`]: the file format; [`lesson`]: lessons checked against their scene, and the built-in ones.
 //! - [`quantity`]: numbers by name, for texts and questions; [`frame_values`]: their values in a state; [`runs`]: those
 //!   of a chart.
-//! - [`tutor`]: a lesson in progress; [`guess`]: free mode, with decisions hidden until predicted; [`refusal`]:
+//! - [`tutor`]: a lesson in progress; [`question`]: its questions; [`guess`]: free mode, with decisions hidden until predicted; [`refusal`]:
 //!   errors.
 //! - [`play`]: plays a lesson automatically, to check it; [`progress`]: saves the user's progress.
 
@@ -13,9 +13,11 @@ pub mod lesson;
 pub mod play;
 pub mod progress;
 pub mod quantity;
+pub mod question;
 pub mod refusal;
 pub mod runs;
 pub mod spec;
+pub mod task;
 pub mod tutor;
 
 pub use frame_values::FrameValues;

@@ -1,11 +1,15 @@
 //! Plays a lesson automatically, to check that every step can be reached and every question has one answer.
 
 use super::lesson::{Lesson, LessonStep};
+use super::progress::{LessonProgress, ProgressStore};
+use super::question::{AnswerKind, TutorQuestion};
 use super::refusal::{LessonRefusal, PlaybackError};
-use super::tutor::{AnswerKind, Tutor, TutorQuestion};
+use super::tutor::Tutor;
 use crate::action::Action;
 use crate::explain::names;
 use crate::record::command::{Command, Unit};
+use crate::recorded::exchange;
+use crate::recorded::recording::Recording;
 use crate::session::Session;
 use std::sync::Arc;
 use stickslip_scene::format::SceneError;
@@ -33,10 +37,54 @@ pub struct AnsweredQuestion {
 ///
 /// # Errors For the first step that cannot be completed, with its line and column.
 pub fn play(lesson: &Arc<Lesson>) -> Result<Vec<AnsweredQuestion>, SceneError> {
-    let mut session = Session::new(lesson.scene.clone());
+    let mut session = session(lesson);
     let mut tutor = Tutor::new(lesson.clone(), session.cursor(), session.frame());
+    advance(&mut tutor, &mut session, lesson.steps.len())
+}
+
+/// Starts a lesson at a step (from 0), or else where the user left it. The steps before it are played with the right
+/// answers; if one of them cannot be played, the lesson starts at its beginning.
+pub fn begin(lesson: Lesson, step: Option<usize>, progress: &ProgressStore) -> (Tutor, Session) {
+    let reached = match step {
+        Some(_) => LessonProgress::default(),
+        None => progress.of(&lesson.name).unwrap_or_default(),
+    };
+    let at = step.unwrap_or_else(|| reached.resumes_at(lesson.steps.len()));
+    let lesson = Arc::new(lesson);
+    let fresh = || {
+        let session = session(&lesson);
+        let tutor = Tutor::new(lesson.clone(), session.cursor(), session.frame());
+        (tutor, session)
+    };
+    let (mut tutor, mut session) = fresh();
+    if at > 0 {
+        if advance(&mut tutor, &mut session, at).is_err() {
+            return fresh();
+        }
+        tutor.resume(reached.given);
+    }
+    (tutor, session)
+}
+
+/// A session at the start of a lesson's scene, or of its recorded exchange.
+fn session(lesson: &Lesson) -> Session {
+    let recorded = lesson.recorded.as_deref();
+    let opened = recorded.and_then(|(name, text)| exchange::open(name, text).ok());
+    match opened {
+        Some(opened) => Session::recorded(Recording::Exchange(Box::new(opened))),
+        None => Session::new(lesson.scene.clone()),
+    }
+}
+
+/// Plays the steps before `to`.
+fn advance(
+    tutor: &mut Tutor,
+    session: &mut Session,
+    to: usize,
+) -> Result<Vec<AnsweredQuestion>, SceneError> {
+    let lesson = tutor.shared_lesson();
     let mut answered = Vec::new();
-    while let Some(step) = lesson.steps.get(tutor.at()) {
+    while let Some(step) = lesson.steps.get(tutor.at()).filter(|_| tutor.at() < to) {
         let at = tutor.at();
         let fault = |why: PlaybackError| lesson.fault(at, why.to_string());
         let refused = |why: LessonRefusal| fault(why.into());
@@ -49,9 +97,26 @@ pub fn play(lesson: &Arc<Lesson>) -> Result<Vec<AnsweredQuestion>, SceneError> {
                 tutor
                     .permits(action, session.cursor(), session.frame())
                     .map_err(refused)?;
-                perform(action, &mut session).map_err(fault)?;
-                tutor.settled(session.cursor(), session.frame());
+                perform(action, session).map_err(fault)?;
+                tutor.settled(session.shown_frames());
                 continue;
+            }
+            LessonStep::Reach(task) => {
+                let answer = tutor.todo();
+                for action in &task.solution {
+                    perform(action, session).map_err(fault)?;
+                    tutor.settled(session.shown_frames());
+                }
+                answered.push(AnsweredQuestion {
+                    step: at,
+                    question: tutor.text().to_owned(),
+                    answer,
+                    then: tutor.last_reply(),
+                    hint: tutor.task_hint(),
+                });
+                if !tutor.is_read() {
+                    return Err(fault(PlaybackError::NotReached(tutor.last_reply())));
+                }
             }
             LessonStep::Ask(_) => {
                 let word = tutor.solution().unwrap_or_default();
@@ -59,16 +124,16 @@ pub fn play(lesson: &Arc<Lesson>) -> Result<Vec<AnsweredQuestion>, SceneError> {
                 answered.push(AnsweredQuestion {
                     step: at,
                     question: tutor.text().to_owned(),
-                    answer: readable(&tutor, &word),
+                    answer: readable(tutor, &word),
                     then: question.map_or(String::new(), TutorQuestion::reply_to_right),
-                    hint: question.map_or(String::new(), TutorQuestion::reply_to_wrong),
+                    hint: question.map_or(String::new(), |question| question.reply_to_wrong("")),
                 });
                 tutor
                     .answer(&word, 0, session.cursor(), session.frame())
                     .map_err(refused)?;
             }
             LessonStep::Predict { right, .. } => {
-                predict(*right, &mut tutor, &mut session).map_err(fault)?
+                predict(*right, tutor, session).map_err(fault)?;
             }
         }
         tutor

@@ -1,6 +1,7 @@
 //! The user's progress in the lessons, saved in a small RON file next to the journals.
 
-use super::tutor::Tutor;
+use super::lesson;
+use super::tutor::{GivenAnswer, Tutor};
 use crate::record::journal;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -15,7 +16,7 @@ pub const FORMAT: u32 = 1;
 const BYTES: u64 = 1 << 20;
 
 /// Progress in a lesson.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct LessonProgress {
     /// The largest number of steps completed so far.
@@ -28,6 +29,12 @@ pub struct LessonProgress {
     pub right: u32,
     /// Number of questions in that run.
     pub asked: u32,
+    /// The answers of the best finished run, or of the current one while there is none.
+    #[serde(default)]
+    pub given: Vec<GivenAnswer>,
+    /// Seconds that this run took.
+    #[serde(default)]
+    pub seconds: u32,
 }
 
 /// Progress in all lessons, by name.
@@ -103,7 +110,7 @@ impl Progress {
             message: e.code.to_string(),
         })?;
         match read.format {
-            FORMAT => Ok(read),
+            FORMAT => Ok(read.renamed()),
             found => Err(ProgressError::Format {
                 file: file.to_owned(),
                 found,
@@ -111,29 +118,44 @@ impl Progress {
         }
     }
 
+    /// The progress with the current names of lessons. If a file has both names, the finished lesson counts.
+    fn renamed(mut self) -> Progress {
+        for (name, reached) in std::mem::take(&mut self.lessons) {
+            let name = lesson::current_name(&name).to_owned();
+            let kept = self.lessons.entry(name).or_default();
+            if (reached.ended, reached.right) >= (kept.ended, kept.right) {
+                *kept = reached;
+            }
+        }
+        self
+    }
+
     /// Progress in a lesson.
     pub fn of(&self, lesson: &str) -> Option<LessonProgress> {
-        self.lessons.get(lesson).copied()
+        self.lessons.get(lesson).cloned()
     }
 
     /// Updates the progress from the state of a lesson. Returns whether anything improved.
     fn take(&mut self, tutor: &Tutor) -> bool {
         let (lesson, (right, asked)) = (tutor.lesson(), tutor.score());
         let reached = self.lessons.entry(lesson.name.clone()).or_default();
-        let before = *reached;
-        // If the number of steps has changed, the current one counts.
+        let before = reached.clone();
+        // If the number of steps has changed, only whether the lesson was finished still counts.
         if reached.of != lesson.steps.len() {
-            *reached = LessonProgress::default();
+            reached.steps = 0;
         }
         reached.of = lesson.steps.len();
         reached.steps = reached.steps.max(tutor.at());
-        if tutor.step().is_none() {
-            reached.ended += 1;
-            // The first result is always the best one.
-            if reached.ended == 1 || right > reached.right {
+        let has_ended = tutor.step().is_none();
+        // The first result is always the best one.
+        if reached.ended == 0 || (has_ended && right > reached.right) {
+            reached.given = tutor.given().to_vec();
+            reached.seconds = tutor.clock();
+            if has_ended {
                 (reached.right, reached.asked) = (right, asked);
             }
         }
+        reached.ended += u32::from(has_ended);
         *reached != before
     }
 }
@@ -142,6 +164,14 @@ impl LessonProgress {
     /// Whether the lesson has been finished.
     pub fn is_done(&self) -> bool {
         self.ended > 0
+    }
+
+    /// The step (from 0) at which a lesson with this number of steps resumes: 0 if it was finished or has changed.
+    pub fn resumes_at(&self, steps: usize) -> usize {
+        match self.ended == 0 && self.of == steps {
+            true => self.steps.min(steps.saturating_sub(1)),
+            false => 0,
+        }
     }
 
     /// A short description: `done, 4/4 right`, or `step 3 of 13` for the next step.
@@ -167,6 +197,11 @@ impl ProgressStore {
     /// Saves to this file.
     pub fn new(file: Option<PathBuf>) -> ProgressStore {
         ProgressStore { file, kept: None }
+    }
+
+    /// The progress in a lesson; `None` if there is none, or if it cannot be read.
+    pub fn of(&self, lesson: &str) -> Option<LessonProgress> {
+        Progress::read(self.file.as_deref()?).ok()?.of(lesson)
     }
 
     /// Saves the state of a lesson if its step has changed.

@@ -1,11 +1,12 @@
 //! Quantities by name, for a lesson's questions and, in braces, its texts.
 //!
 //! At a slave node, `NAME NODE`: `gap`, `F_n`, `F_t`, `T_max`, `slip` (of the minor iteration), `lag` (the
-//! factor by which the error of a lagged T_max changes in the next one), `mode` (of this iteration), `next` (of
+//! factor by which the error of a lagged T_max changes in the next one), `v_n`, `v_t`, `W_nn`, `W_nt`, `W_tt` and `rho` (of
+//! the condensed problem, see [`super::frame_values::CondensedNode`]), `leaves` (load at which it leaves its mode), `mode` (of this iteration), `next` (of
 //! the next one), `reason` (the decision in a sentence). Of the solve: `load`, `increment` (its size), `angle`,
 //! `tan` and `cohesion` (of the first slave node), `answers` (number of consistent states in the census),
 //! `minors` (minor iterations to the end of this increment), `majors` (all its major iterations), `residual`
-//! (the latest, relative), `period` (of the cycle that ends the increment), `verdict` (the judge's finding in
+//! (the latest, relative), `sliding` (number of nodes that slide next), `period` (of the cycle that ends the increment), `verdict` (the judge's finding in
 //! the last accepted increment, in a sentence). Of a run in the lesson's chart, `NAME PATH=VALUE …`: `error`
 //! (relative) and `factorizations`. In addition, `right` is the right answer of the previous question, and `key
 //! ACTION` the key of an action.
@@ -17,6 +18,7 @@ use crate::explain::judged;
 use crate::explain::names;
 use crate::explain::report;
 use crate::explain::round_off::RoundOff;
+use stickslip_core::model::Mode;
 use stickslip_scene::number::sig4;
 
 /// A quantity that the solver can provide.
@@ -51,6 +53,20 @@ pub enum NodeQuantity {
     Slip,
     /// Factor by which the error of a lagged T_max changes in the next solve.
     Lag,
+    /// Motion of S* relative to the node along n if all nodes were free, length.
+    FreeN,
+    /// The same along t.
+    FreeT,
+    /// Compliance: motion along n per F_n on the node, length per force.
+    Wnn,
+    /// Motion along n per F_t, and along t per F_n.
+    Wnt,
+    /// Motion along t per F_t.
+    Wtt,
+    /// ρ, the ratio of tangential to normal travel of a node that touches.
+    Ratio,
+    /// Load factor at which the node leaves its mode.
+    Leaves,
     /// Mode of the shown iteration.
     Mode,
     /// Mode of the next iteration.
@@ -82,6 +98,8 @@ pub enum SolveQuantity {
     Majors,
     /// The latest relative residual.
     Residual,
+    /// Number of sliding slave nodes.
+    Sliding,
     /// The judge's finding, in a sentence.
     Verdict,
 }
@@ -103,6 +121,13 @@ stickslip_core::words! {
     TMax "T_max",
     Slip "slip",
     Lag "lag",
+    FreeN "v_n",
+    FreeT "v_t",
+    Wnn "W_nn",
+    Wnt "W_nt",
+    Wtt "W_tt",
+    Ratio "rho",
+    Leaves "leaves",
     Mode "mode",
     Next "next",
     Reason "reason",
@@ -126,7 +151,22 @@ stickslip_core::words! {
     Period "period",
     Majors "majors",
     Residual "residual",
+    Sliding "sliding",
     Verdict "verdict",
+}
+
+impl NodeQuantity {
+    /// Whether it belongs to the frozen interface problem.
+    fn is_frozen(self) -> bool {
+        matches!(
+            self,
+            NodeQuantity::FreeN
+                | NodeQuantity::FreeT
+                | NodeQuantity::Wnn
+                | NodeQuantity::Wnt
+                | NodeQuantity::Wtt
+        )
+    }
 }
 
 impl LessonQuantity {
@@ -165,6 +205,20 @@ impl LessonQuantity {
     /// # Errors If it is not a number or not known.
     pub fn number(&self, look: &FrameValues) -> Result<f64, LessonError> {
         match self {
+            LessonQuantity::Of(nodal, slave) if nodal.is_frozen() => {
+                let of = look.interface(*slave)?;
+                Ok(match nodal {
+                    NodeQuantity::FreeN => of.free[0],
+                    NodeQuantity::FreeT => of.free[1],
+                    NodeQuantity::Wnn => of.compliance[0][0],
+                    NodeQuantity::Wtt => of.compliance[1][1],
+                    _ => of.compliance[0][1],
+                })
+            }
+            LessonQuantity::Of(NodeQuantity::Ratio, slave) => {
+                Ok(look.frame.state.nodes[*slave].ratio)
+            }
+            LessonQuantity::Of(NodeQuantity::Leaves, slave) => look.leaves(*slave),
             LessonQuantity::Of(nodal, slave) => {
                 let record = look.record(*slave)?;
                 let round_off = RoundOff::new(&look.model, &look.event()?.before);
@@ -175,9 +229,7 @@ impl LessonQuantity {
                     NodeQuantity::TMax => Ok(round_off.force(record.t_max)),
                     NodeQuantity::Slip => Ok(round_off.length(record.slip)),
                     NodeQuantity::Lag => look.lag(*slave),
-                    NodeQuantity::Mode | NodeQuantity::Next | NodeQuantity::Reason => {
-                        Err(LessonError::NoNumber)
-                    }
+                    _ => Err(LessonError::NoNumber),
                 }
             }
             LessonQuantity::Solve(whole) => whole_number(*whole, look),
@@ -213,7 +265,10 @@ impl LessonQuantity {
             LessonQuantity::Right => true,
             LessonQuantity::Of(of, _) => matches!(
                 of,
-                NodeQuantity::Lag | NodeQuantity::Next | NodeQuantity::Reason
+                NodeQuantity::Lag
+                    | NodeQuantity::Leaves
+                    | NodeQuantity::Next
+                    | NodeQuantity::Reason
             ),
             LessonQuantity::Solve(whole) => matches!(
                 whole,
@@ -280,6 +335,10 @@ fn whole_number(whole: SolveQuantity, look: &FrameValues) -> Result<f64, LessonE
         },
         SolveQuantity::Majors => f64::from(look.end()?.majors),
         SolveQuantity::Residual => look.residual()?,
+        SolveQuantity::Sliding => {
+            let nodes = look.frame.state.nodes.iter();
+            nodes.filter(|node| node.mode == Mode::Sliding).count() as f64
+        }
         SolveQuantity::Verdict => return Err(LessonError::NoNumber),
     })
 }

@@ -7,6 +7,9 @@ use stickslip_scene::format::error::did_you_mean;
 /// Why an action is not allowed now.
 #[derive(Debug, thiserror::Error)]
 pub enum LessonRefusal {
+    /// No lesson is open.
+    #[error("no lesson is open; press L to start one")]
+    NoLesson,
     /// The lesson waits for another action.
     #[error("the lesson waits: {0}")]
     Waits(String),
@@ -84,6 +87,9 @@ pub enum LessonError {
     /// The node does not slide, or T_max does not lag.
     #[error("no T_max lags here")]
     NoLag,
+    /// Neither stability nor instability is proven.
+    #[error("the stability of this state is not known")]
+    NoStability,
     /// There are too few major iterations near the solution.
     #[error("the residuals of the increment do not show a rate of convergence")]
     NoRate,
@@ -151,6 +157,8 @@ pub(super) enum PlaybackError {
     NotNow(#[from] LessonRefusal),
     #[error(transparent)]
     Refused(#[from] Refusal),
+    #[error("the solution does not reach the goal: {0}")]
+    NotReached(String),
     #[error("the history has fewer than {0} iterations to predict")]
     FewIterations(u32),
 }

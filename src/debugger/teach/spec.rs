@@ -11,6 +11,7 @@
 //!         Press(text: "Solve once.", press: "s"),
 //!         Ask(text: "Which mode comes next?", answer: Mode(node: "beam.end"), hint: "…", then: "…"),
 //!         Predict(text: "Now you alone.", right: 3),
+//!         Reach(text: "Reach the end.", without: [ladder], solution: ["set settings.t_max consistent", "c"]),
 //!     ],
 //! )
 //! ```
@@ -51,6 +52,8 @@ pub enum SceneSpec {
     Name(String),
     /// A scene in the lesson's file.
     Scene(Box<Spec>),
+    /// The recorded exchange with an attached solver: a built-in one, or a file (relative to the lesson's folder).
+    Recorded(String),
 }
 
 /// A step of a lesson.
@@ -83,6 +86,42 @@ pub enum StepSpec {
         #[serde(default)]
         then: String,
     },
+    /// A state to reach with any keys. After a task only texts and tasks may follow.
+    Reach {
+        /// The task.
+        text: String,
+        /// The load factor of an accepted increment; without it, the end of the history.
+        #[serde(default)]
+        load: Option<f64>,
+        /// Reach a failed increment instead.
+        #[serde(default)]
+        failure: bool,
+        /// What must not be used on the way.
+        #[serde(default)]
+        without: Vec<Aid>,
+        /// Shown on request; its numbers are those of the start of the task.
+        hint: String,
+        /// Reply, with the numbers of the reached state.
+        #[serde(default)]
+        then: String,
+        /// Keys and typed lines that reach the state from the start of the task.
+        solution: Vec<String>,
+    },
+    /// A number to find with any keys: a quantity of the state at the start of the task.
+    Find {
+        /// The task.
+        text: String,
+        /// The quantity, as in braces.
+        of: String,
+        /// Relative tolerance.
+        tolerance: f64,
+        /// Shown on request and after a wrong answer.
+        #[serde(default)]
+        hint: String,
+        /// Reply to the right answer.
+        #[serde(default)]
+        then: String,
+    },
     /// Free mode, until enough predictions were right.
     Predict {
         /// Text before the predictions.
@@ -90,6 +129,35 @@ pub enum StepSpec {
         /// Number of consecutive right predictions required.
         right: u32,
     },
+}
+
+/// What a task can exclude.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Aid {
+    /// The strategy `ladder`.
+    Ladder,
+    /// Forced modes, and starts from a consistent state.
+    Force,
+    /// Another friction or cohesion.
+    Friction,
+    /// Another size of the increment.
+    Increment,
+    /// Any other change of the settings.
+    Settings,
+}
+
+impl Aid {
+    /// The aid in words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Aid::Ladder => "the strategy ladder",
+            Aid::Force => "forced modes",
+            Aid::Friction => "another friction",
+            Aid::Increment => "another increment size",
+            Aid::Settings => "other settings",
+        }
+    }
 }
 
 /// What is asked; the solver provides the right answer.
@@ -139,6 +207,10 @@ pub enum When {
     Linear,
     /// Quadratic convergence: the number of correct digits doubles at the end.
     Quadratic,
+    /// The shown equilibrium is stable under a constant load.
+    Stable,
+    /// It is unstable.
+    Unstable,
     /// The judge found no violation in the last accepted increment.
     Obeys,
     /// The judge found a violation of this law there: penetration, gap, tension, cone, slip, touch, balance or

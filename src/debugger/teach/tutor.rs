@@ -8,25 +8,20 @@
 use super::frame_values::FrameValues;
 use super::guess::Guess;
 use super::lesson::{self, Answer, Ask, Lesson, LessonStep, Truth};
-use super::quantity::Template;
-use super::refusal::{LessonError, LessonRefusal};
-use crate::action::{self, Action, HiddenDecisions};
-use crate::explain::names::{self, MODES, TABLE_2};
-use crate::explain::report;
-use crate::explain::tested;
+use super::question::{AnswerKind, TutorQuestion};
+use super::refusal::LessonRefusal;
+use crate::action::{Action, HiddenDecisions};
 use crate::history::frame::Frame;
 use crate::record::command::Command;
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
-use stickslip_core::contact::table2::{Decision, Rule, Test};
-use stickslip_core::model::Mode;
 use stickslip_core::step::state::Status;
-use stickslip_scene::number::sig4;
+
+/// What is recorded for a hint.
+const HINT: &str = "?";
 
 /// Number of wrong answers after which the right one is shown.
 const TRIES: u32 = 2;
-
-/// Relative difference below which numbers count as about the same.
-const CLOSE: f64 = 0.05;
 
 /// A lesson in progress.
 #[derive(Debug, Clone)]
@@ -37,8 +32,8 @@ pub struct Tutor {
     text: String,
     question: Option<TutorQuestion>,
     remark: Option<Remark>,
-    /// Number of answers and predictions in this step.
-    given: u32,
+    /// Number of replies in this step.
+    answers: u32,
     /// Whether the step is done and waits for the user to continue.
     done: bool,
     /// Whether the action of the step is being executed.
@@ -46,44 +41,28 @@ pub struct Tutor {
     /// A fault in the lesson itself.
     fault: Option<String>,
     guess: Option<Guess>,
-    /// Number of answers and predictions right at the first attempt, and of all.
-    right: u32,
-    asked: u32,
+    /// The hint of the current task.
+    task_hint: String,
+    /// Seconds since the start of the lesson, as set by its owner.
+    clock: u32,
+    /// All answers so far.
+    given: Vec<GivenAnswer>,
 }
 
-/// An open question, with its answer.
-#[derive(Debug, Clone)]
-pub struct TutorQuestion {
-    /// How it is answered.
-    pub kind: AnswerKind,
-    /// The choices, if there are any.
-    pub options: Vec<String>,
-    right: RightAnswer,
-    /// The decision at the node in question, if any, and whether there is friction.
-    node: Option<(usize, Decision, bool)>,
-    /// Whether the decision is in a later iteration.
-    is_ahead: bool,
-    hint: String,
-    then: String,
-    tries: u32,
-}
-
-/// How a question is answered.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum AnswerKind {
-    /// By a mode.
-    Mode,
-    /// By the number of an option.
-    Choice,
-    /// By a number.
-    Number,
-}
-
-#[derive(Debug, Clone, PartialEq)]
-enum RightAnswer {
-    Mode(Mode),
-    Choice(usize),
-    Number { value: f64, tolerance: f64 },
+/// An answer, a prediction, a task or a request for a hint.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GivenAnswer {
+    /// Step of the lesson, from 0.
+    pub step: usize,
+    /// The answer as typed; `?` for a hint.
+    pub word: String,
+    /// Whether it is right.
+    pub right: bool,
+    /// Whether it counts for the score: predictions, and the first answer to a question.
+    pub counts: bool,
+    /// Seconds since the start of the lesson.
+    pub seconds: u32,
 }
 
 /// The reply to the last answer.
@@ -100,6 +79,8 @@ pub struct Remark {
 pub enum Paragraph {
     /// Something to read.
     Text(String),
+    /// An equation, between dollar signs in the text.
+    Equation(String),
     /// A choice, with its number.
     Option(usize, String),
     /// Reply to a right answer.
@@ -117,13 +98,14 @@ impl Tutor {
             text: String::new(),
             question: None,
             remark: None,
-            given: 0,
+            answers: 0,
             done: false,
             pending: false,
             fault: None,
             guess: None,
-            right: 0,
-            asked: 0,
+            task_hint: String::new(),
+            clock: 0,
+            given: Vec::new(),
         };
         tutor.enter(cursor, frame);
         tutor
@@ -132,6 +114,23 @@ impl Tutor {
     /// The lesson.
     pub fn lesson(&self) -> &Lesson {
         &self.lesson
+    }
+
+    /// The lesson, to keep.
+    pub(super) fn shared_lesson(&self) -> Arc<Lesson> {
+        self.lesson.clone()
+    }
+
+    /// The hint of the current task.
+    pub(super) fn task_hint(&self) -> String {
+        self.task_hint.clone()
+    }
+
+    /// The last reply in this step; empty if there is none.
+    pub(super) fn last_reply(&self) -> String {
+        self.remark
+            .as_ref()
+            .map_or(String::new(), |remark| remark.text.clone())
     }
 
     /// Index of the current step, from 0; the number of steps when the lesson has ended.
@@ -146,7 +145,44 @@ impl Tutor {
 
     /// Number of questions answered right at the first attempt, and of all.
     pub fn score(&self) -> (u32, u32) {
-        (self.right, self.asked)
+        let counted = self.given.iter().filter(|given| given.counts);
+        counted.fold((0, 0), |(right, asked), given| {
+            (right + u32::from(given.right), asked + 1)
+        })
+    }
+
+    /// All answers so far.
+    pub fn given(&self) -> &[GivenAnswer] {
+        &self.given
+    }
+
+    /// Continues with the answers of an earlier session in place of those given so far.
+    pub(super) fn resume(&mut self, given: Vec<GivenAnswer>) {
+        self.clock = given.last().map_or(0, |given| given.seconds);
+        self.given = given;
+    }
+
+    /// Sets the number of seconds since the start of the lesson.
+    pub fn set_clock(&mut self, seconds: u32) {
+        self.clock = seconds;
+    }
+
+    /// Seconds since the start of the lesson.
+    pub fn clock(&self) -> u32 {
+        self.clock
+    }
+
+    /// Records an answer; the first one in a step counts for the score, and every prediction does.
+    fn note(&mut self, word: &str, right: bool) {
+        let is_first = !self.given.iter().any(|given| given.step == self.at);
+        self.given.push(GivenAnswer {
+            step: self.at,
+            word: word.to_owned(),
+            right,
+            counts: is_first || self.guess.is_some(),
+            seconds: self.clock,
+        });
+        self.answers += 1;
     }
 
     /// The open question.
@@ -167,19 +203,19 @@ impl Tutor {
     fn enter(&mut self, cursor: usize, frame: &Frame) {
         self.question = None;
         self.remark = None;
-        self.given = 0;
+        self.answers = 0;
         self.guess = None;
         self.fault = None;
         self.done = false;
         let lesson = self.lesson.clone();
-        let look = FrameValues {
-            model: lesson.model.clone(),
-            frame: frame.clone(),
-            runs: lesson.runs.clone(),
-        };
+        let look = self.values(frame);
         let (text, question) = match lesson.steps.get(self.at) {
             None => return self.text = self.farewell(),
             Some(LessonStep::Text(text) | LessonStep::Press { text, .. }) => (text, None),
+            Some(LessonStep::Reach(task)) => {
+                self.task_hint = task.hint.fill(&look, "").unwrap_or_default();
+                (&task.text, None)
+            }
             Some(LessonStep::Predict { text, .. }) => {
                 self.guess = Some(Guess::new(HiddenDecisions::Selected, cursor));
                 (text, None)
@@ -188,7 +224,7 @@ impl Tutor {
         };
         let filled = text.fill(&look, "…");
         let question = question
-            .map(|ask| TutorQuestion::ask(ask, &look))
+            .map(|ask| TutorQuestion::new(ask, &look))
             .transpose();
         match (filled, question) {
             (Ok(text), Ok(question)) => (self.text, self.question) = (text, question),
@@ -202,7 +238,7 @@ impl Tutor {
     }
 
     fn farewell(&self) -> String {
-        let score = match (self.right, self.asked) {
+        let score = match self.score() {
             (_, 0) => String::new(),
             (right, asked) if right == asked => {
                 format!(" All {asked} answers were right at the first attempt.")
@@ -211,14 +247,14 @@ impl Tutor {
                 format!(" {right} of {asked} answers were right at the first attempt.")
             }
         };
+        format!("This is the end of the lesson.{score} You can continue to explore the scene.")
+    }
+
+    /// The lesson after this one, when it has ended.
+    pub fn next_lesson(&self) -> Option<&'static str> {
         let names = lesson::list().iter().map(|lesson| lesson.name);
-        let next = match names.skip_while(|name| *name != self.lesson.name).nth(1) {
-            Some(next) => format!(" The next lesson is {next} (:lesson {next})."),
-            None => String::new(),
-        };
-        format!(
-            "This is the end of the lesson.{score} You can continue to explore the scene.{next}"
-        )
+        let mut next = names.skip_while(|name| *name != self.lesson.name).skip(1);
+        next.next().filter(|_| self.step().is_none())
     }
 
     /// Checks whether an action is allowed now. Returns whether it is the one that the lesson waits for; then
@@ -236,6 +272,9 @@ impl Tutor {
             Some(LessonStep::Press { action: wanted, .. }) if action == wanted && !self.pending => {
                 self.pending = true;
                 return Ok(true);
+            }
+            Some(LessonStep::Reach(_) | LessonStep::Ask(Ask { explores: true, .. })) => {
+                return Ok(false);
             }
             _ => {}
         }
@@ -255,11 +294,38 @@ impl Tutor {
         }
     }
 
-    /// Reports that the permitted action is done; `frame` is now shown.
-    pub fn settled(&mut self, cursor: usize, frame: &Frame) {
+    /// Reports that an action is done; `frames` are those up to the shown one.
+    pub fn settled(&mut self, frames: &[Frame]) {
+        let Some((frame, cursor)) = frames.last().zip(frames.len().checked_sub(1)) else {
+            return;
+        };
         if std::mem::take(&mut self.pending) {
             self.at += 1;
             self.enter(cursor, frame);
+            return;
+        }
+        let lesson = self.lesson.clone();
+        let Some(LessonStep::Reach(task)) = lesson.steps.get(self.at).filter(|_| !self.done) else {
+            return;
+        };
+        let (text, good) = match task.check(frames, &self.values(frame)) {
+            Ok(None) => return,
+            Ok(Some(text)) => (text, true),
+            Err(why) => (why, false),
+        };
+        self.remark = Some(Remark { text, good });
+        self.done = good;
+        match good {
+            true => self.note("done", true),
+            false => self.answers += 1,
+        }
+    }
+
+    fn values(&self, frame: &Frame) -> FrameValues {
+        FrameValues {
+            model: self.lesson.model.clone(),
+            frame: frame.clone(),
+            runs: self.lesson.runs.clone(),
         }
     }
 
@@ -301,8 +367,6 @@ impl Tutor {
         if let (Some(guess), false) = (&mut self.guess, self.done) {
             let model = &self.lesson.model;
             let (good, text) = guess.predict(model, cursor, frame, selected, word)?;
-            self.asked += 1;
-            self.right += u32::from(good);
             let wanted = match self.lesson.steps.get(self.at) {
                 Some(LessonStep::Predict { right, .. }) => *right,
                 _ => 0,
@@ -316,7 +380,7 @@ impl Tutor {
                 text += " The history ends here, so there are no more predictions.";
             }
             self.remark = Some(Remark { text, good });
-            self.given += 1;
+            self.note(word, good);
             return Ok(());
         }
         if self.done {
@@ -326,15 +390,31 @@ impl Tutor {
         let good = question.is_right(word)?;
         question.tries += 1;
         self.done = good || question.tries >= TRIES;
-        self.asked += u32::from(question.tries == 1);
-        self.right += u32::from(good && question.tries == 1);
         let text = match (good, self.done) {
             (true, _) => question.reply_to_right(),
             (false, true) => format!("No. It is {}", question.explained()),
-            (false, false) => question.reply_to_wrong(),
+            (false, false) => question.reply_to_wrong(word),
         };
         self.remark = Some(Remark { text, good });
-        self.given += 1;
+        self.note(word, good);
+        Ok(())
+    }
+
+    /// Shows the hint of the question or task. It counts as a wrong answer.
+    ///
+    /// # Errors If there is none.
+    pub fn hint(&mut self) -> Result<(), LessonRefusal> {
+        let text = match (self.lesson.steps.get(self.at), &mut self.question) {
+            _ if self.done => return Err(LessonRefusal::Answered),
+            (_, Some(question)) => {
+                question.tries += 1;
+                question.help()
+            }
+            (Some(LessonStep::Reach(_)), None) => self.task_hint.clone(),
+            _ => return Err(LessonRefusal::NothingAsked),
+        };
+        self.remark = Some(Remark { text, good: false });
+        self.note(HINT, false);
         Ok(())
     }
 
@@ -345,7 +425,7 @@ impl Tutor {
 
     /// Identifies the page: the step, and the number of answers given in it. The text changes with either.
     pub fn edition(&self) -> (usize, u32) {
-        (self.at, self.given)
+        (self.at, self.answers)
     }
 
     /// Whether decisions must be hidden at all nodes: a question about them is open, or comes before the next
@@ -394,7 +474,14 @@ impl Tutor {
 
     /// The contents of the page.
     pub fn page(&self) -> Vec<Paragraph> {
-        let mut page = vec![Paragraph::Text(self.text.clone())];
+        let parts = self.text.split('$').map(str::trim).enumerate();
+        let mut page: Vec<Paragraph> = parts
+            .filter(|(_, part)| !part.is_empty())
+            .map(|(index, part)| match index % 2 {
+                0 => Paragraph::Text(part.to_owned()),
+                _ => Paragraph::Equation(part.to_owned()),
+            })
+            .collect();
         if let Some(question) = &self.question {
             let options = question.options.iter().enumerate();
             page.extend(options.map(|(k, text)| Paragraph::Option(k + 1, text.clone())));
@@ -415,10 +502,14 @@ impl Tutor {
             self.step(),
             self.question.as_ref().map(|question| question.kind),
         ) {
-            (None, _) => "the lesson has ended".into(),
+            (None, _) => match self.next_lesson() {
+                Some(next) => format!("Space opens the next lesson, {next}"),
+                None => "the lesson has ended".into(),
+            },
             (Some(_), _) if self.done => on,
             (Some(LessonStep::Text(_)), _) => on,
             (Some(LessonStep::Press { how, .. }), _) => how.clone(),
+            (Some(LessonStep::Reach(task)), _) => task.todo(),
             (Some(LessonStep::Predict { .. }), _) => {
                 "s steps; then a, and f free, s sliding, x fixed".into()
             }
@@ -428,232 +519,17 @@ impl Tutor {
             (Some(LessonStep::Ask(_)), Some(AnswerKind::Choice)) => {
                 "answer: a, then the number".into()
             }
+            (Some(LessonStep::Ask(Ask { explores: true, .. })), _) => {
+                "find it with any keys, then a, the number and Enter; H hint".into()
+            }
             (Some(LessonStep::Ask(_)), _) => "answer: a, then a number and Enter".into(),
         }
     }
 
     /// The right answer, as typed; used to play lessons automatically.
     pub fn solution(&self) -> Option<String> {
-        self.question().map(|question| match question.right {
-            RightAnswer::Mode(mode) => names::mode(mode).into(),
-            RightAnswer::Choice(index) => (index + 1).to_string(),
-            RightAnswer::Number { value, .. } => value.to_string(),
-        })
+        self.question().map(TutorQuestion::solution)
     }
-}
-
-impl TutorQuestion {
-    /// Gets the right answer from the solver. Texts shown before the answer are filled from the current state
-    /// `now`.
-    fn ask(ask: &Ask, now: &FrameValues) -> Result<TutorQuestion, LessonError> {
-        let look = now.ahead(ask.ahead)?;
-        let found = |slave: usize| -> Result<_, LessonError> {
-            let record = look.record(slave)?;
-            Ok((slave, record.decision, record.t_max != 0.0))
-        };
-        let (kind, options, right, node) = match &ask.answer {
-            Answer::Mode(slave) => {
-                let node = found(*slave)?;
-                (
-                    AnswerKind::Mode,
-                    Vec::new(),
-                    RightAnswer::Mode(node.1.next),
-                    Some(node),
-                )
-            }
-            Answer::Rule(slave) => {
-                let node = found(*slave)?;
-                let (options, right) = cells(&node.1)?;
-                (
-                    AnswerKind::Choice,
-                    options,
-                    RightAnswer::Choice(right),
-                    Some(node),
-                )
-            }
-            Answer::Number(quantity, tolerance) => {
-                let value = quantity.number(&look)?;
-                if !value.is_finite() {
-                    return Err(LessonError::NotFinite);
-                }
-                let tolerance = *tolerance;
-                (
-                    AnswerKind::Number,
-                    Vec::new(),
-                    RightAnswer::Number { value, tolerance },
-                    None,
-                )
-            }
-            Answer::Choice(choices) => {
-                let texts = choices.iter().map(|(text, _)| text.fill(now, "…"));
-                let options = texts.collect::<Result<_, _>>()?;
-                (
-                    AnswerKind::Choice,
-                    options,
-                    RightAnswer::Choice(chosen(choices, &look)?),
-                    None,
-                )
-            }
-        };
-        let mut question = TutorQuestion {
-            kind,
-            options,
-            right,
-            node,
-            is_ahead: ask.ahead > 0,
-            hint: ask.hint.fill(now, "…")?,
-            then: String::new(),
-            tries: 0,
-        };
-        let words = question.words();
-        question.then = ask.then.fill(&look, &words)?;
-        Ok(question)
-    }
-
-    fn is_right(&self, word: &str) -> Result<bool, LessonRefusal> {
-        let word = word.trim();
-        match &self.right {
-            RightAnswer::Mode(right) => match action::mode(word) {
-                Some(mode) => Ok(mode == *right),
-                None => Err(LessonRefusal::NoMode(word.into())),
-            },
-            RightAnswer::Choice(right) => match word.parse::<usize>() {
-                Ok(number) if (1..=self.options.len()).contains(&number) => {
-                    Ok(number - 1 == *right)
-                }
-                _ => Err(LessonRefusal::NoOption(word.into(), self.options.len())),
-            },
-            RightAnswer::Number { value, tolerance } => {
-                // Accept typographic minus signs and decimal commas.
-                let plain = word.replace('−', "-").replace(',', ".");
-                let given: f64 = plain
-                    .parse()
-                    .map_err(|_| LessonRefusal::NoNumber(word.into()))?;
-                Ok((given - value).abs() <= tolerance * value.abs())
-            }
-        }
-    }
-
-    /// The right answer in words.
-    fn words(&self) -> String {
-        match &self.right {
-            RightAnswer::Mode(mode) => names::mode(*mode).into(),
-            RightAnswer::Choice(index) => format!("{}", index + 1),
-            RightAnswer::Number { value, .. } => sig4(*value),
-        }
-    }
-
-    /// The reply to the right answer.
-    pub(super) fn reply_to_right(&self) -> String {
-        format!("Right: {}", self.explained())
-    }
-
-    /// The reply to a wrong answer that allows another attempt.
-    pub(super) fn reply_to_wrong(&self) -> String {
-        format!("No. {}", self.help())
-    }
-
-    /// The right answer with the reason.
-    fn explained(&self) -> String {
-        let mut text = self.words() + ".";
-        if let Some((_, decision, friction)) = &self.node {
-            text += &format!(
-                " {}. {}",
-                compared(decision),
-                report::reason(decision, *friction)
-            );
-        }
-        if !self.then.is_empty() {
-            text += &format!(" {}", self.then);
-        }
-        text
-    }
-
-    /// A hint without the answer: the row of Table 2, and the numbers of the decision.
-    fn help(&self) -> String {
-        let mut text = match &self.node {
-            Some((_, decision, _)) if !self.is_ahead => format!(
-                "Look at row {} of Table 2: {}.",
-                names::mode(decision.before),
-                compared(decision)
-            ),
-            _ => String::new(),
-        };
-        text += if text.is_empty() || self.hint.is_empty() {
-            ""
-        } else {
-            " "
-        };
-        text += &self.hint;
-        if text.is_empty() {
-            "Try again.".into()
-        } else {
-            text
-        }
-    }
-}
-
-/// Cells of Table 2 in the row of the node's mode, and the index of the one that applied.
-fn cells(decision: &Decision) -> Result<(Vec<String>, usize), LessonError> {
-    if matches!(decision.rule, Rule::Held | Rule::OffSurface) {
-        return Err(LessonError::NoCell);
-    }
-    let place = |mode: Mode| MODES.iter().position(|m| *m == mode).unwrap_or(0);
-    let cell = |(column, mode): (usize, &Mode)| {
-        let [first, second] = TABLE_2[place(decision.before)][column];
-        let and = if second.is_empty() { "" } else { " and " };
-        format!("{first}{and}{second}: {}", names::mode(*mode))
-    };
-    let options = MODES.iter().enumerate().map(cell).collect();
-    Ok((options, place(decision.next)))
-}
-
-/// The only right choice.
-fn chosen(choices: &[(Template, Truth)], look: &FrameValues) -> Result<usize, LessonError> {
-    let mut right = Vec::new();
-    for (index, (_, truth)) in choices.iter().enumerate() {
-        let holds = match truth {
-            Truth::Known(known) => *known,
-            Truth::Cycles => look.end()?.cycle.is_some(),
-            Truth::Accepted => look.end()?.accepted,
-            Truth::Answers(count) => look.answers()? == *count,
-            Truth::Becomes(slave, mode) => look.record(*slave)?.decision.next == *mode,
-            Truth::Quadratic(wanted) => look.end()?.is_quadratic()? == *wanted,
-            Truth::Obeys => look.verdict()?.broken().next().is_none(),
-            Truth::Breaks(law) => look.verdict()?.broken().any(|found| found.law == *law),
-            Truth::Less(a, b) => a.number(look)? < (1.0 - CLOSE) * b.number(look)?,
-            Truth::Close(a, b) => {
-                let (a, b) = (a.number(look)?, b.number(look)?);
-                (a - b).abs() <= CLOSE * a.abs().max(b.abs())
-            }
-            Truth::Cheapest(settings, error) => look.runs()?.is_cheapest(settings, *error)?,
-        };
-        right.extend(holds.then_some(index));
-    }
-    match right[..] {
-        [index] => Ok(index),
-        [] => Err(LessonError::NoneTrue),
-        _ => Err(LessonError::SeveralTrue),
-    }
-}
-
-/// The inequalities tested, with their numbers.
-fn compared(decision: &Decision) -> String {
-    let side = |test: &Test| {
-        let sign = match test.value.partial_cmp(&test.bound) {
-            _ if test.tie => "ties with",
-            Some(std::cmp::Ordering::Less) => "<",
-            Some(std::cmp::Ordering::Greater) => ">",
-            _ => "=",
-        };
-        let (name, bound) = tested::sides(test.tested);
-        let bound = bound.map_or("0".into(), |bound| {
-            format!("{bound} = {}", sig4(test.bound))
-        });
-        format!("{name} = {} {sign} {bound}", sig4(test.value))
-    };
-    let tests: Vec<String> = decision.tests.iter().flatten().map(side).collect();
-    tests.join(", and ")
 }
 
 fn capital(text: &str) -> String {

@@ -84,7 +84,7 @@ fn width(offers: &[Offer]) -> u16 {
 
 /// The user's progress in a lesson.
 fn done(offer: &Offer) -> String {
-    match offer.reached {
+    match &offer.reached {
         None => String::new(),
         Some(reached) if reached.is_done() => format!("✓ {}  ", reached.words()),
         Some(reached) => format!("{}  ", reached.words()),

@@ -11,7 +11,7 @@ use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 use stickslip_debugger::action::{ACTIONS, ActionEntry, Group, by_name};
 use stickslip_debugger::teach::Tutor;
-use stickslip_debugger::teach::tutor::AnswerKind;
+use stickslip_debugger::teach::question::AnswerKind;
 use stickslip_scene::number;
 use unicode_width::UnicodeWidthStr;
 

@@ -118,6 +118,7 @@ fn result_lines(tutor: &Tutor, width: usize, theme: &Theme) -> paint::Lines {
 fn paragraph(part: &Paragraph, width: usize, theme: &Theme) -> paint::Lines {
     match part {
         Paragraph::Text(text) => wrapped("", text, width, theme.text),
+        Paragraph::Equation(text) => wrapped("  ", text, width, theme.heading),
         Paragraph::Option(number, text) => wrapped(&format!("{number} "), text, width, theme.text),
         Paragraph::Right(text) => wrapped("✓ ", text, width, theme.good),
         Paragraph::Wrong(text) => wrapped("✗ ", text, width, theme.warning),
