@@ -207,7 +207,7 @@ impl FrameValues {
         let condensed = || {
             let at = frozen.nodes.iter().position(|node| node.slave == slave)?;
             let mut trials = Trials::new(&frozen)?;
-            let free: Vec<_> = frozen.nodes.iter().map(|node| node.state.clone()).collect();
+            let free: Vec<_> = frozen.nodes.iter().map(|node| node.state).collect();
             let free = free.into_iter().map(|state| ContactState {
                 mode: Mode::Free,
                 ..state
