@@ -127,7 +127,7 @@ fn kind(arg: &clap::Arg) -> Option<Kind> {
         (_, "topic") => Kind::Words(|begun| of(begun, topics())),
         (_, "name") => Kind::Words(|begun| of(begun, shown())),
         ("SCENE|STUDY", _) => Kind::Words(|begun| with_files(begun, with_studies())),
-        ("SCENE" | "SCENE|SNAPSHOT" | "SCENE|SNAPSHOT|JOURNAL|MESH", _) => {
+        ("SCENE" | "SCENE|SNAPSHOT" | "SCENE|SNAPSHOT|JOURNAL|MESH|CEL", _) => {
             Kind::Words(|begun| with_files(begun, scenes()))
         }
         ("PATH=VALUE" | "PATH=A,B,C", _) => Kind::Words(settings),

@@ -536,3 +536,28 @@ fn the_exercise_on_the_judge_finds_a_broken_law_that_shrinks_with_the_increment(
     let ratio = amount("") / amount(finer.unwrap());
     assert!((3.5..4.5).contains(&ratio), "{ratio}");
 }
+
+#[test]
+fn each_topic_of_the_theory_has_a_lesson_and_each_lesson_a_session() {
+    let text = |name: &str| stickslip::manual::page(name).unwrap().text();
+    let (teaching, theory) = (text("teaching"), text("theory"));
+    let rows: Vec<(&str, &str)> = teaching
+        .lines()
+        .filter_map(|line| {
+            line.strip_prefix("| ")?
+                .strip_suffix("` |")?
+                .split_once(" | `")
+        })
+        .collect();
+    let headings = theory.lines().filter_map(|line| line.strip_prefix("## "));
+    for heading in headings.filter(|heading| *heading != "Symbols") {
+        let found = rows.iter().find(|(topic, _)| heading.starts_with(topic));
+        let (_, lesson) = found.unwrap_or_else(|| panic!("no lesson for {heading}"));
+        assert!(stickslip::teach::lesson::find(lesson).is_some(), "{lesson}");
+    }
+    let (sessions, _) = teaching.split_once("## Prepare").unwrap();
+    for lesson in stickslip::teach::lesson::list() {
+        let named = format!("`{}`", lesson.name);
+        assert!(sessions.contains(&named), "{named}");
+    }
+}
