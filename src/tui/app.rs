@@ -534,7 +534,10 @@ impl App {
             Ui::Chart(of) => return Some(Effect::Chart(of)),
             Ui::Lesson(lesson) => return Some(Effect::Lesson(lesson)),
             Ui::On => return self.continue_lesson(view),
-            Ui::Hint => self.hint(view),
+            Ui::Hint => {
+                let hint = self.learning.hint(self.lesson_lines(view));
+                self.report(hint);
+            }
             Ui::Reread => self.reread(),
             Ui::Answer(word) => self.answer(&word, view),
             Ui::Predict(whose) => self.predict(whose, view),

@@ -55,6 +55,13 @@ impl Learning {
         }
     }
 
+    /// Shows the hint of the lesson's question or task.
+    pub(super) fn hint(&mut self, visible: Option<VisibleLines>) -> Result<String, LessonRefusal> {
+        self.check_read(visible)?;
+        let tutor = self.lesson.as_mut().ok_or(LessonRefusal::NoLesson)?;
+        tutor.hint().map(|()| String::new())
+    }
+
     /// Answers the lesson's question, or checks a prediction.
     pub(super) fn answer(
         &mut self,

@@ -42,18 +42,6 @@ impl App {
         None
     }
 
-    /// Shows the hint of the lesson's question or task.
-    pub(super) fn hint(&mut self, view: Option<&View>) {
-        if let Err(why) = self.learning.check_read(self.lesson_lines(view)) {
-            return self.complain(why);
-        }
-        let hint = match &mut self.learning.lesson {
-            Some(tutor) => tutor.hint(),
-            None => Err(LessonRefusal::NoLesson),
-        };
-        self.report(hint.map(|()| String::new()));
-    }
-
     /// Shows the lesson text from the top.
     pub(super) fn reread(&mut self) {
         match &self.learning.lesson {

@@ -378,6 +378,88 @@ fn keys_and_typed_lines_are_the_same_to_a_lesson() {
 }
 
 #[test]
+fn a_wrong_sign_is_recognised_and_a_hint_costs_the_point() {
+    let mut debugger = taught("by-hand");
+    let last = |debugger: &Debugger| tutor(debugger).page().last().cloned().unwrap();
+    debugger.type_keys("Space a 0 . 0 6 Enter");
+    let Paragraph::Wrong(told) = last(&debugger) else {
+        panic!("0.06 is wrong")
+    };
+    assert!(
+        told.starts_with("No: the amount is right, but the sign is wrong."),
+        "{told}"
+    );
+    debugger.type_keys("a - 0 . 0 6 Enter Space s H");
+    let Paragraph::Wrong(told) = last(&debugger) else {
+        panic!("a hint is no answer")
+    };
+    assert!(told.starts_with("Look at row free"), "{told}");
+    debugger.type_keys("a x");
+    assert_eq!(tutor(&debugger).score(), (0, 2));
+}
+
+#[test]
+fn the_state_decides_a_task_and_space_opens_the_next_lesson() {
+    let task = r#"Reach(text: "x", load: 1.0, without: [ladder], hint: "h", then: "{load}", solution: ["set settings.strategy lemke", "c"])"#;
+    let lesson = Lesson::from_text("test.ron", &lesson_of(task)).unwrap();
+    assert_eq!(play(&Arc::new(lesson.clone())).unwrap()[0].then, "Done. 1");
+    let mut debugger = Debugger::new(Theme::mono(), Vec::new(), None);
+    debugger.teach(lesson, None);
+    let line = |debugger: &mut Debugger, line: &str| {
+        debugger.type_keys(":");
+        debugger.type_text(line);
+        debugger.type_keys("Enter");
+    };
+    let last = |debugger: &Debugger| tutor(debugger).page().last().cloned().unwrap();
+    debugger.type_keys("c");
+    assert!(!tutor(&debugger).is_read());
+    line(&mut debugger, "set settings.strategy ladder");
+    debugger.type_keys("c");
+    let told =
+        "You are there, but with the strategy ladder. Go back to before that and try without it.";
+    assert_eq!(last(&debugger), Paragraph::Wrong(told.into()));
+    line(&mut debugger, "goto 0");
+    line(&mut debugger, "set settings.strategy lemke");
+    debugger.type_keys("c");
+    assert_eq!(last(&debugger), Paragraph::Right("Done. 1".into()));
+    assert_eq!(tutor(&debugger).score(), (1, 1));
+    let after = "Ask(text: \"x\", answer: Number(of: \"load\", tolerance: 0.1))";
+    let told = fault(&lesson_of(&format!("{task}, {after}")));
+    assert!(
+        told.contains("only texts and tasks can follow a task"),
+        "{told}"
+    );
+    let mut debugger = at_step("oscillation", 13);
+    while tutor(&debugger).step().is_some() {
+        debugger.type_keys("Space");
+    }
+    debugger.type_keys("Space");
+    debugger.settle();
+    assert_eq!(tutor(&debugger).lesson().name, "two-nodes");
+}
+
+#[test]
+fn a_lesson_resumes_at_its_step_in_the_same_state() {
+    let home = tempfile::tempdir().unwrap();
+    let begin = |step| {
+        let mut debugger = Debugger::new(Theme::mono(), Vec::new(), None);
+        debugger.keep_progress_in(home.path().join("lessons.ron"));
+        debugger.teach(Lesson::open("oscillation").unwrap(), step);
+        debugger
+    };
+    let state = |debugger: &Debugger| debugger.session.as_ref().unwrap().frame().state.clone();
+    let mut before = begin(None);
+    before.type_keys("Space s a s a x Space a f Space a 2 Space c");
+    let after = begin(None);
+    assert_eq!(tutor(&after).at(), tutor(&before).at());
+    assert_eq!(tutor(&after).score(), (2, 3));
+    assert_eq!(state(&after), state(&before));
+    assert_eq!(tutor(&begin(Some(0))).at(), 0);
+    assert_eq!(teach::lesson::split_step("modes@3"), ("modes", Some(2)));
+    assert_eq!(teach::lesson::split_step("a@b"), ("a@b", None));
+}
+
+#[test]
 fn lesson_screens() {
     for (width, height) in [(80, 24), (120, 40), (200, 60)] {
         let mut debugger = taught("table-2");

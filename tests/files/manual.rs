@@ -182,7 +182,7 @@ fn the_lesson_in_the_manual_plays_through() {
     let examples = examples("lessons");
     let lesson = Lesson::from_text("lessons.md", examples[0]).unwrap_or_else(|e| panic!("{e}"));
     let answers = play(&Arc::new(lesson)).unwrap_or_else(|e| panic!("{e}"));
-    assert_eq!(answers.len(), 3);
+    assert_eq!(answers.len(), 4);
 }
 
 #[test]

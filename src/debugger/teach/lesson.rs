@@ -4,7 +4,7 @@ use super::quantity::{self, LessonQuantity, Template};
 use super::refusal::PressError;
 use super::runs::Runs;
 use super::spec::{AnswerSpec, LessonSpec, SceneSpec, StepSpec, When};
-use super::task::{Goal, Task};
+use super::task::{Goal, LessonTask};
 use crate::action::{self, Action, Context};
 use crate::record::command::Command;
 use crate::recorded::exchange;
@@ -59,7 +59,7 @@ pub enum LessonStep {
     /// A question.
     Ask(Ask),
     /// A state to reach.
-    Reach(Task),
+    Reach(LessonTask),
     /// Decisions to predict.
     Predict {
         /// Text before the predictions.
@@ -462,7 +462,7 @@ impl LessonReader<'_> {
                     let path = path.then("solution").then(k);
                     Ok(press_of(line, &self.context()).at(path)?.0)
                 });
-                Ok(LessonStep::Reach(Task {
+                Ok(LessonStep::Reach(LessonTask {
                     text: text(words)?,
                     goal,
                     without: without.clone(),

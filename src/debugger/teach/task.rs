@@ -16,7 +16,7 @@ const SAME_LOAD: f64 = 1e-9;
 
 /// A task.
 #[derive(Debug, Clone)]
-pub struct Task {
+pub struct LessonTask {
     /// The task, in words.
     pub text: Template,
     /// What to reach.
@@ -42,7 +42,7 @@ pub enum Goal {
     Failure,
 }
 
-impl Task {
+impl LessonTask {
     /// Checks the frames up to the shown one. Returns the reply if the goal is reached.
     ///
     /// # Errors If it is reached with a forbidden aid, or the reply has an unknown number.
