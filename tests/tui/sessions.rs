@@ -651,7 +651,7 @@ fn without_a_terminal_it_names_run_and_ends_with_2() {
 
 #[test]
 fn a_lesson_is_taken_in_the_terminal() {
-    let mut session = Start::debugger(&["lesson", "4"])
+    let mut session = Start::debugger(&["lesson", "4-oscillation"])
         .size(80, 24)
         .variable("NO_COLOR", "1")
         .go();
