@@ -205,7 +205,7 @@ fn errors_have_a_location_and_the_expected_input() {
         (
             "TYPE=CPE4, ELSET=BLOCK",
             "TYPE=C3D8, ELSET=BLOCK",
-            "job.inp:14:11: C3D8 is a three-dimensional element; supported are CPE, CPS and CAX with 3, 4, 6, 8 and 8R, and B21, B22, B31, B31R, B32, B32R",
+            "job.inp:14:11: C3D8 is a three-dimensional element, which only CalculiX solves: `stickslip check` applies the rules for decks, and `stickslip JOB.cel` shows the run and why it failed; supported are CPE, CPS and CAX with 3, 4, 6, 8 and 8R, and B21, B22, B31, B31R, B32, B32R",
         ),
         (
             "PRESSURE-OVERCLOSURE=HARD",
