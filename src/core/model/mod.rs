@@ -21,6 +21,7 @@ mod settings;
 
 use serde::{Deserialize, Serialize};
 
+pub use crate::fem::kinds::ElementKind;
 pub use body::{
     Beam, Body, BodyKind, Elastic, Form, Law, Linear, Plane, Solid, SolidElement, Truss, Update,
 };
@@ -29,7 +30,7 @@ pub use control::{ArcLength, ArcMeasure, Bound, Control};
 pub use dofs::{Axis, Component, Dofs};
 pub use friction::{Friction, InitialState, Mode};
 pub use load::{Factor, Jumps, Load, Prescribed, PressedFace, Pressure, least, on_leg};
-pub use mesh::{ElementKind, boundary};
+pub use mesh::boundary;
 pub use settings::{
     AtCycle, AtLimit, BoundUpdate, Geometry, InitialGaps, LinearSolver, PointForce, Refactor,
     ResidualMethod, SearchMode, Settings, SlipCount, Sticking, Strategy, TieRule, Touch,

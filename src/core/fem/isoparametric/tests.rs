@@ -47,7 +47,12 @@ const AT: [[f64; 2]; NODES] = [
 ];
 
 fn element(elastic: &Elastic) -> Quad {
-    ContinuumElement::new(&quad8::RULE, AT, Material::new(elastic), elastic.update)
+    ContinuumElement::new(
+        &quad8::KIND.rule,
+        AT,
+        Material::new(elastic),
+        elastic.update,
+    )
 }
 
 fn noise(k: usize, size: f64) -> f64 {

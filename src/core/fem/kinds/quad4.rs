@@ -2,22 +2,25 @@
 //!
 //! Stiff in bending, and locks with nearly incompressible materials.
 
-use super::{Parent, Shape, parents};
+use super::{ContinuumKind, Shape, parents};
 use crate::fem::quadrature::square;
 use std::sync::LazyLock;
 
 /// Positions of the nodes in the parent square.
-pub const PLACES: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+const PLACES: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
 
-/// Shape functions at the nodes.
-pub static NODES: LazyLock<[Parent<4>; 4]> =
-    LazyLock::new(|| parents(PLACES.map(|at| (at, 0.0)), shape));
-
-/// Integration rule.
-pub static RULE: LazyLock<[Parent<4>; 4]> = LazyLock::new(|| parents(square(2), shape));
+/// The kind.
+pub static KIND: ContinuumKind<4, 4> = ContinuumKind {
+    vtk: 9,
+    faces: &[&[0, 1], &[1, 2], &[2, 3], &[3, 0]],
+    places: PLACES,
+    shape,
+    rule: LazyLock::new(|| parents(square(2), shape)),
+    nodes: LazyLock::new(|| parents(PLACES.map(|at| (at, 0.0)), shape)),
+};
 
 /// N_i = ¼ (1 + ξ_i ξ) (1 + η_i η).
-pub fn shape(xi: f64, eta: f64) -> Shape<4> {
+fn shape(xi: f64, eta: f64) -> Shape<4> {
     let (mut n, mut d) = ([0.0; 4], [[0.0; 2]; 4]);
     for (i, [a, b]) in PLACES.into_iter().enumerate() {
         let (p, q) = (1.0 + a * xi, 1.0 + b * eta);
