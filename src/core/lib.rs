@@ -88,7 +88,7 @@
 
 #![forbid(unsafe_code)]
 
-mod words;
+pub mod words;
 
 pub mod builder;
 pub mod contact;

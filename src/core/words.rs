@@ -29,3 +29,8 @@ macro_rules! words {
         }
     };
 }
+
+/// Whether a value is the default, which files may omit.
+pub fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}

@@ -1,6 +1,7 @@
 //! Continuum elements of each kind ([`super::kinds`]).
 
 use crate::fem::element::{Element, PreviousState};
+use crate::fem::isoparametric::ContinuumElement;
 use crate::fem::isoparametric::{self, PointState};
 use crate::fem::kinds::{ContinuumKind, Parent, with_kind};
 use crate::fem::material::Material;
@@ -31,11 +32,11 @@ fn made<const N: usize, const P: usize>(
         });
     };
     let made: Box<dyn Element> = if material.plane == Plane::Axisymmetric {
-        Box::new(isoparametric::ContinuumElement::<N, P, true>::new(
+        Box::new(ContinuumElement::<N, P, true>::new(
             &kind.rule, at, material, update,
         ))
     } else {
-        Box::new(isoparametric::ContinuumElement::<N, P, false>::new(
+        Box::new(ContinuumElement::<N, P, false>::new(
             &kind.rule, at, material, update,
         ))
     };
@@ -87,19 +88,13 @@ fn states_by<const N: usize, const P: usize>(
     let Ok(at) = <[[f64; 2]; N]>::try_from(at) else {
         return Vec::new();
     };
-    let points = kind.rule.iter().enumerate();
-    if material.plane == Plane::Axisymmetric {
-        let element =
-            isoparametric::ContinuumElement::<N, P, true>::new(&kind.rule, at, material, update);
-        points
-            .map(|(p, parent)| (parent.at, element.point_state(past, u, p)))
-            .collect()
-    } else {
-        let element =
-            isoparametric::ContinuumElement::<N, P, false>::new(&kind.rule, at, material, update);
-        points
-            .map(|(p, parent)| (parent.at, element.point_state(past, u, p)))
-            .collect()
+    match material.plane {
+        Plane::Axisymmetric => {
+            ContinuumElement::<N, P, true>::new(&kind.rule, at, material, update)
+                .point_states(past, u)
+        }
+        _ => ContinuumElement::<N, P, false>::new(&kind.rule, at, material, update)
+            .point_states(past, u),
     }
 }
 

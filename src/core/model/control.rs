@@ -16,13 +16,6 @@ documented! {
     }
 }
 
-impl Control {
-    /// Whether this is the default, which scenes may omit.
-    pub fn is_default(&self) -> bool {
-        *self == Control::default()
-    }
-}
-
 /// Parameters of arc-length control.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ArcLength {

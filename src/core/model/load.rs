@@ -103,13 +103,6 @@ documented! {
     }
 }
 
-impl Jumps {
-    /// Whether this is the default, which scenes may omit.
-    pub fn is_default(&self) -> bool {
-        *self == Jumps::default()
-    }
-}
-
 /// Increment size on a leg of the path: the entry of the list, or `increment` beyond its end.
 pub fn on_leg(increments: &[f64], increment: f64, leg: usize) -> f64 {
     increments.get(leg).copied().unwrap_or(increment)

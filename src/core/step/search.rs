@@ -4,6 +4,7 @@ use crate::contact::record::{ContactRecord, Forced};
 use crate::contact::state::ContactState;
 use crate::contact::table1::t_max;
 use crate::contact::table2::{Decision, Rule, Test};
+use crate::interface::kinematics::NodeKinematics;
 use crate::interface::method::{NoProposal, NotFound, Proposal, SearchInput, SearchProgress};
 use crate::interface::minor_history::Input;
 use crate::interface::problem::AssumedMode;
@@ -222,24 +223,7 @@ impl Iterate {
 
     /// Records a tied contact, which searches ignore: its forces follow from the next solve.
     fn stay_tied(&self, contact: usize) -> ContactRecord {
-        let (node, over) = (&self.state.nodes[contact], self.source.kinematics(contact));
-        ContactRecord {
-            decision: Decision::tied(),
-            forced: node.forced,
-            gap: over.map_or(f64::INFINITY, |k| k.gap),
-            f_n: node.f_n,
-            f_t: node.f_t,
-            t_max: 0.0,
-            t_max_used: 0.0,
-            slip: node.drift,
-            drift: node.drift,
-            spot: node.spot,
-            normal: over.map_or(node.normal, |k| k.normal),
-            foot: over.map_or([f64::NAN; 2], |k| k.foot),
-            directions: None,
-            corner: None,
-            carried: [false; 2],
-        }
+        tied_record(&self.state.nodes[contact], self.source.kinematics(contact))
     }
 
     /// Gives a contact the mode that a search assumes, and records it with the search's forces, gap and slip.
@@ -279,7 +263,6 @@ impl Iterate {
                 tests: [over.map(|_| test), None],
                 wanted: node.mode,
             },
-            forced: node.forced,
             gap: match give {
                 0.0 => gap,
                 give => gap - give * f_n,
@@ -289,14 +272,30 @@ impl Iterate {
             t_max: node.t_max,
             t_max_used: node.t_max,
             slip,
-            drift: node.drift,
-            spot: node.spot,
-            normal: over.map_or(node.normal, |k| k.normal),
-            foot: over.map_or([f64::NAN; 2], |k| k.foot),
-            directions: None,
             corner: node.corner.filter(|_| before == Mode::Fixed),
-            carried: [false; 2],
+            ..tied_record(node, over)
         }
+    }
+}
+
+/// The record of a tied contact.
+fn tied_record(node: &ContactState, over: Option<NodeKinematics>) -> ContactRecord {
+    ContactRecord {
+        decision: Decision::tied(),
+        forced: node.forced,
+        gap: over.map_or(f64::INFINITY, |k| k.gap),
+        f_n: node.f_n,
+        f_t: node.f_t,
+        t_max: 0.0,
+        t_max_used: 0.0,
+        slip: node.drift,
+        drift: node.drift,
+        spot: node.spot,
+        normal: over.map_or(node.normal, |k| k.normal),
+        foot: over.map_or([f64::NAN; 2], |k| k.foot),
+        directions: None,
+        corner: None,
+        carried: [false; 2],
     }
 }
 

@@ -283,6 +283,18 @@ impl<const N: usize, const P: usize, const HOOP: bool> ContinuumElement<N, P, HO
         })
     }
 
+    /// States of all Gauss points, with their positions in the parent element.
+    pub fn point_states(
+        &self,
+        past: &PreviousState<'_>,
+        u: &[f64],
+    ) -> Vec<([f64; 2], Option<PointState>)> {
+        let points = self.rule.iter().enumerate();
+        points
+            .map(|(p, parent)| (parent.at, self.point_state(past, u, p)))
+            .collect()
+    }
+
     /// State of Gauss point p; `None` if the material has no response.
     pub fn point_state(&self, past: &PreviousState<'_>, u: &[f64], p: usize) -> Option<PointState> {
         let mut at = [0.0; 2];

@@ -77,11 +77,6 @@ pub struct ContinuumKind<const N: usize, const P: usize> {
 const QUADRATIC_SIDES: &[&[usize]] = &[&[0, 4, 1], &[1, 5, 2], &[2, 6, 3], &[3, 7, 0]];
 
 impl ElementKind {
-    /// Whether this is the default, which scenes may omit.
-    pub fn is_default(&self) -> bool {
-        *self == ElementKind::default()
-    }
-
     /// Number of nodes per element.
     pub fn nodes(self) -> usize {
         fn nodes<const N: usize, const P: usize>(_: &ContinuumKind<N, P>) -> usize {
