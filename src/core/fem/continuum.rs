@@ -66,15 +66,15 @@ impl Element for Malformed {
     }
 }
 
-/// States of an element's integration points, in the order of its rule, with their positions in the parent element. Empty if the
-/// number of nodes is wrong; points where the material has no response are left out.
+/// States of an element's integration points, in the order of its rule; `None` where the material has no response. Empty if the
+/// number of nodes is wrong.
 pub fn states(
     kind: ElementKind,
     at: &[[f64; 2]],
     (material, update): (Material, Update),
     past: &PreviousState<'_>,
     u: &[f64],
-) -> Vec<([f64; 2], Option<PointState>)> {
+) -> Vec<Option<PointState>> {
     with_kind!(kind, states_by(at, (material, update), past, u))
 }
 
@@ -84,7 +84,7 @@ fn states_by<const N: usize, const P: usize>(
     (material, update): (Material, Update),
     past: &PreviousState<'_>,
     u: &[f64],
-) -> Vec<([f64; 2], Option<PointState>)> {
+) -> Vec<Option<PointState>> {
     let Ok(at) = <[[f64; 2]; N]>::try_from(at) else {
         return Vec::new();
     };
