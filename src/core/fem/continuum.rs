@@ -1,9 +1,10 @@
 //! Continuum elements of each kind ([`super::kinds`]).
 
+use crate::elements::kinds::continuum_kind::{ContinuumKind, Parent};
+use crate::elements::kinds::with_kind;
 use crate::fem::element::{Element, PreviousState};
 use crate::fem::isoparametric::ContinuumElement;
 use crate::fem::isoparametric::{self, PointState};
-use crate::fem::kinds::{ContinuumKind, Parent, with_kind};
 use crate::fem::material::Material;
 use crate::fem::small;
 use crate::model::{ElementKind, Plane, Update};

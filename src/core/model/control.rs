@@ -1,6 +1,6 @@
 //! Control of the history: by the load factor or by arc length along the equilibrium path.
 
-use super::documented::documented;
+use crate::documented::documented;
 use serde::{Deserialize, Serialize};
 
 documented! {

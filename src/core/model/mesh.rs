@@ -1,6 +1,6 @@
 //! Boundary of a mesh of continuum elements.
 
-use crate::fem::kinds::ElementKind;
+use crate::elements::kinds::ElementKind;
 use std::collections::HashMap;
 
 /// The faces that belong to exactly one of these elements, as node numbers: the boundary of the body. Connected faces are

@@ -8,8 +8,6 @@
 //! all have the unit length. `equation[d]` is the number of the unknown for degree of freedom d, or `None` if d is restrained or
 //! prescribed.
 
-pub mod documented;
-
 mod body;
 mod contact;
 mod control;
@@ -21,7 +19,8 @@ mod settings;
 
 use serde::{Deserialize, Serialize};
 
-pub use crate::fem::kinds::ElementKind;
+pub use crate::documented;
+pub use crate::elements::kinds::ElementKind;
 pub use body::{
     Beam, Body, BodyKind, Elastic, Form, Law, Linear, Plane, Solid, SolidElement, Truss, Update,
 };

@@ -1,6 +1,6 @@
 //! Options and limits of the method: which of the paper's variants is used where it offers several.
 
-use super::documented::documented;
+use crate::documented::documented;
 use crate::words::is_default;
 use serde::{Deserialize, Serialize};
 

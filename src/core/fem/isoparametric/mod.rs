@@ -21,8 +21,8 @@
 //!
 //! In both cases force and tangent are pure functions of (shape, [`PreviousState`], current displacements), and the tangent is exact.
 
+use crate::elements::kinds::continuum_kind::Parent;
 use crate::fem::element::{self, PreviousState};
-use crate::fem::kinds::Parent;
 use crate::fem::material::{Material, Response};
 use crate::model::{Law, Update};
 use nalgebra::{Matrix2, Vector3};

@@ -2,8 +2,8 @@
 //! of all kinds.
 
 use super::*;
+use crate::elements::kinds::quad8;
 use crate::fem::element::Element as _;
-use crate::fem::kinds::quad8;
 use crate::model::Elastic;
 use crate::model::Plane;
 

@@ -1,18 +1,19 @@
 //! The kinds of continuum elements, one file each: nodes, faces, shape functions, integration rule and VTK cell type. To add one,
-//! add its file and a line in the list below. [`super::isoparametric`] uses them all in the same way.
+//! add its file and a line in the list below. [`crate::fem::isoparametric`] uses them all in the same way.
 //!
 //! The parent triangle is ξ, η >= 0, ξ + η <= 1, the parent square −1 <= ξ, η <= 1. Nodes are ordered: the corners,
 //! anticlockwise; then the midside nodes, starting on the side after the first corner; then the centre.
 
+pub mod continuum_kind;
 pub mod quad4;
 pub mod quad8;
 pub mod quad9;
 pub mod triangle3;
 pub mod triangle6;
 
-use crate::model::documented::documented;
+use crate::documented::documented;
+use continuum_kind::ContinuumKind;
 use serde::{Deserialize, Serialize};
-use std::sync::LazyLock;
 
 /// Defines [`ElementKind`], and a macro that calls a function with the data of a kind; the function is generic over the numbers of
 /// nodes and points. `$d` is a dollar sign.
@@ -33,7 +34,7 @@ macro_rules! kinds {
         macro_rules! with_kind {
             ($d kind:expr, $d function:ident($d($d argument:expr),*)) => {
                 match $d kind {
-                    $($crate::fem::kinds::ElementKind::$kind => $d function(&$crate::fem::kinds::$module::$data, $d($d argument),*),)*
+                    $($crate::elements::kinds::ElementKind::$kind => $d function(&$crate::elements::kinds::$module::$data, $d($d argument),*),)*
                 }
             };
         }
@@ -56,25 +57,6 @@ kinds! { $
     /// 9-node quadrilateral, 3 x 3 points.
     Quad9 "quad9" quad9::KIND,
 }
-
-/// A kind with N nodes and P integration points.
-pub struct ContinuumKind<const N: usize, const P: usize> {
-    /// Number of the cell type in VTK files.
-    vtk: u8,
-    /// The faces as local node indices, anticlockwise.
-    faces: &'static [&'static [usize]],
-    /// Positions of the nodes in the parent element.
-    pub(super) places: [[f64; 2]; N],
-    /// The shape functions at ξ and η.
-    pub(super) shape: fn(f64, f64) -> Shape<N>,
-    /// Integration rule.
-    pub(super) rule: LazyLock<[Parent<N>; P]>,
-    /// Shape functions at the nodes.
-    pub(super) nodes: LazyLock<[Parent<N>; N]>,
-}
-
-/// Faces of a quadrilateral with midside nodes.
-const QUADRATIC_SIDES: &[&[usize]] = &[&[0, 4, 1], &[1, 5, 2], &[2, 6, 3], &[3, 7, 0]];
 
 impl ElementKind {
     /// Number of nodes per element.
@@ -132,31 +114,4 @@ impl ElementKind {
         let faces = self.faces().iter();
         faces.map(|face| face.iter().map(|&place| nodes[place]).collect())
     }
-}
-
-/// Values of N shape functions at a point of the parent element, and their derivatives with respect to ξ and η.
-pub type Shape<const N: usize> = ([f64; N], [[f64; 2]; N]);
-
-/// Data of a kind with N nodes at an integration point.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Parent<const N: usize> {
-    /// ξ and η.
-    pub at: [f64; 2],
-    /// The shape functions.
-    pub n: [f64; N],
-    /// ∂N/∂ξ, ∂N/∂η.
-    pub d: [[f64; 2]; N],
-    /// Weight of the point.
-    pub weight: f64,
-}
-
-/// The shape functions at points with weights.
-fn parents<const N: usize, const P: usize>(
-    rule: [([f64; 2], f64); P],
-    shape: fn(f64, f64) -> Shape<N>,
-) -> [Parent<N>; P] {
-    rule.map(|(at, weight)| {
-        let (n, d) = shape(at[0], at[1]);
-        Parent { at, n, d, weight }
-    })
 }

@@ -1,7 +1,7 @@
 //! 6-node triangle: quadratic displacements; three interior integration points.
 
-use super::{ContinuumKind, Shape, parents};
-use crate::fem::quadrature::TRIANGLE_3;
+use super::continuum_kind::{ContinuumKind, Shape, parents};
+use crate::elements::quadrature::TRIANGLE_3;
 use std::sync::LazyLock;
 
 /// Positions of the nodes in the parent triangle.

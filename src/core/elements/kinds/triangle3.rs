@@ -2,8 +2,8 @@
 //!
 //! Stiff in bending, and locks with nearly incompressible materials.
 
-use super::{ContinuumKind, Shape, parents};
-use crate::fem::quadrature::TRIANGLE_1;
+use super::continuum_kind::{ContinuumKind, Shape, parents};
+use crate::elements::quadrature::TRIANGLE_1;
 use std::sync::LazyLock;
 
 /// Positions of the nodes in the parent triangle.

@@ -1,7 +1,7 @@
 //! 9-node Lagrange quadrilateral: biquadratic displacements; 3 × 3 Gauss points.
 
-use super::{ContinuumKind, QUADRATIC_SIDES, Shape, parents};
-use crate::fem::quadrature::square;
+use super::continuum_kind::{ContinuumKind, QUADRATIC_SIDES, Shape, parents};
+use crate::elements::quadrature::square;
 use std::sync::LazyLock;
 
 /// Positions of the nodes in the parent square: corners, midside nodes, centre.

@@ -4,8 +4,8 @@
 //! hourglass mode, which strains no point but cannot propagate to a neighbouring element. Nodes are the corners anticlockwise,
 //! then the midside nodes of the sides 1-2, 2-3, 3-4, 4-1.
 
-use super::{ContinuumKind, QUADRATIC_SIDES, Shape, parents};
-use crate::fem::quadrature::square;
+use super::continuum_kind::{ContinuumKind, QUADRATIC_SIDES, Shape, parents};
+use crate::elements::quadrature::square;
 use std::sync::LazyLock;
 
 /// Positions of the nodes in the parent square: those of the 9-node quadrilateral without its centre.
