@@ -28,7 +28,6 @@ mod minor;
 pub mod pace;
 pub mod recovery;
 mod search;
-mod serialized_state;
 pub mod solver;
 pub mod state;
 pub mod stepper;

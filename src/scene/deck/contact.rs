@@ -191,7 +191,9 @@ impl DeckObjects<'_> {
         let turns = || {
             sides.iter().filter_map(|side| {
                 let next = starts.get(side.last()?)?;
-                Some(corners::turn(side, next, |node| self.deck.nodes[node].plane()))
+                Some(corners::turn(side, next, |node| {
+                    self.deck.nodes[node].plane()
+                }))
             })
         };
         let (mut left, mut right) = (turns(), turns());
