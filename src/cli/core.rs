@@ -87,7 +87,7 @@ fn text(scene: &Scene) -> Result<String, NoCore> {
     if scene.model.settings.at_cycle != AtCycle::Stop {
         notify("note: settings.at_cycle was ignored; with it the scene may escape this cycle");
     }
-    let (at, load) = (stepper.event().position, stepper.state().target);
+    let (at, load) = (stepper.event().position, stepper.state().major.target);
     let problem = stepper
         .interface_problem()
         .and_then(|problem| cycling(problem, &cycle))

@@ -386,7 +386,7 @@ fn state(
 }
 
 fn origin(course: &Course, at: Position, state: &State) -> Origin {
-    let mut origin = Origin::new(&course.scene, at, state.target);
+    let mut origin = Origin::new(&course.scene, at, state.major.target);
     let model = &course.scene.model;
     let words = course.applied.iter();
     let words = words.map(|a| report::intervention(model, &a.intervention));

@@ -103,7 +103,7 @@ impl Grids {
     ) -> Result<(), Error> {
         let at = event.map_or_else(Default::default, |event| event.position);
         let name = format!("{}-{:06}.vtu", self.stem, self.written.len());
-        let grid = grid(stepper.model(), state, event, at, load);
+        let grid = grid(stepper.model(), state, event, at, load).map_err(Error::usage)?;
         files::write(&self.folder.join(&name), vtu::write(&grid), self.overwrite)?;
         self.written.push((load, name));
         Ok(())

@@ -446,55 +446,49 @@ impl FailureRecord {
     }
 }
 
-/// Kinds of failure.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum FailureKind {
-    Cycle,
-    MinorLimit,
-    MajorLimit,
-    MajorCycle,
-    Singular,
-    RoundOff,
-    PathReversal,
-    ZeroMeasure,
-    BranchJump,
-    NoRest,
-    Diverged,
-    NoConsistentState,
-    LadderEnded,
-    NotFound,
-    LawViolated,
-    InvertedElement,
-    CutTooOften,
-    OverConstrained,
-    Reported,
-    IterationLimit,
-    SolverLost,
+/// Defines the kinds of failure, each with its word and what it means.
+macro_rules! failure_kinds {
+    ($($kind:ident $word:literal $meaning:literal,)*) => {
+        stickslip_core::words! {
+            /// Kinds of failure.
+            #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+            pub enum FailureKind, ALL, word {
+                $($kind $word,)*
+            }
+        }
+
+        impl FailureKind {
+            fn meaning(self) -> &'static str {
+                match self {
+                    $(FailureKind::$kind => $meaning),*
+                }
+            }
+        }
+    };
 }
 
-stickslip_core::words! {
-    FailureKind, ALL, word:
-    Cycle "cycle",
-    MinorLimit "minor-limit",
-    MajorLimit "major-limit",
-    MajorCycle "major-cycle",
-    Singular "singular",
-    RoundOff "round-off",
-    PathReversal "path-reversal",
-    ZeroMeasure "zero-measure",
-    BranchJump "branch-jump",
-    NoRest "no-rest",
-    Diverged "diverged",
-    NoConsistentState "no-consistent-state",
-    LadderEnded "ladder-ended",
-    NotFound "not-found",
-    LawViolated "law-violated",
-    InvertedElement "inverted-element",
-    CutTooOften "cut-too-often",
-    OverConstrained "over-constrained",
-    Reported "reported",
-    IterationLimit "iteration-limit",
-    SolverLost "solver-lost",
+failure_kinds! {
+    Cycle "cycle" "the minor iterations cycle",
+    MinorLimit "minor-limit" "the minor iterations reached their limit",
+    MajorLimit "major-limit" "the major iterations reached their limit",
+    MajorCycle "major-cycle" "the major iterations cycle",
+    Singular "singular" "the equations have no unique solution",
+    RoundOff "round-off" "round-off exceeds the loads",
+    PathReversal "path-reversal" "the path would return to where it came from",
+    ZeroMeasure "zero-measure" "the measure of the path does not change",
+    BranchJump "branch-jump" "the increment may have jumped to another branch",
+    NoRest "no-rest" "a damped motion does not settle",
+    Diverged "diverged" "residual or displacements grew without bound",
+    NoConsistentState "no-consistent-state" "no combination of modes is consistent",
+    LadderEnded "ladder-ended" "no strategy of the ladder succeeded",
+    NotFound "not-found" "a search found no consistent state",
+    LawViolated "law-violated" "the converged state violates a law",
+    InvertedElement "inverted-element" "an element is inverted",
+    CutTooOften "cut-too-often" "the increment was cut too often at one node",
+    OverConstrained "over-constrained" "node and surface cannot move apart",
+    Reported "reported" "an attached solver reported the failure",
+    IterationLimit "iteration-limit" "an attached solver reached `--most` in an increment",
+    SolverLost "solver-lost" "an attached solver cannot continue",
 }
 
 impl FailureKind {
@@ -520,33 +514,6 @@ impl FailureKind {
             Failure::CutTooOften { .. } => FailureKind::CutTooOften,
             Failure::OverConstrained { .. } => FailureKind::OverConstrained,
             Failure::Reported { .. } => FailureKind::Reported,
-        }
-    }
-
-    /// What it means.
-    fn meaning(self) -> &'static str {
-        match self {
-            FailureKind::Cycle => "the minor iterations cycle",
-            FailureKind::MinorLimit => "the minor iterations reached their limit",
-            FailureKind::MajorLimit => "the major iterations reached their limit",
-            FailureKind::MajorCycle => "the major iterations cycle",
-            FailureKind::Singular => "the equations have no unique solution",
-            FailureKind::RoundOff => "round-off exceeds the loads",
-            FailureKind::PathReversal => "the path would return to where it came from",
-            FailureKind::ZeroMeasure => "the measure of the path does not change",
-            FailureKind::BranchJump => "the increment may have jumped to another branch",
-            FailureKind::NoRest => "a damped motion does not settle",
-            FailureKind::Diverged => "residual or displacements grew without bound",
-            FailureKind::NoConsistentState => "no combination of modes is consistent",
-            FailureKind::LadderEnded => "no strategy of the ladder succeeded",
-            FailureKind::NotFound => "a search found no consistent state",
-            FailureKind::LawViolated => "the converged state violates a law",
-            FailureKind::InvertedElement => "an element is inverted",
-            FailureKind::CutTooOften => "the increment was cut too often at one node",
-            FailureKind::OverConstrained => "node and surface cannot move apart",
-            FailureKind::Reported => "an attached solver reported the failure",
-            FailureKind::IterationLimit => "an attached solver reached `--most` in an increment",
-            FailureKind::SolverLost => "an attached solver cannot continue",
         }
     }
 }

@@ -62,11 +62,12 @@
 //! - [`words`](macro@words): names of the variants of an enum, each written once.
 //! - [`executor`]: parallel work on bodies, on threads that the caller provides.
 //! - [`linalg`]: sparsity patterns, factors, checked solves; a separate package.
+//! - [`documented`]: types whose doc comments the program shows.
+//! - [`elements`]: shape functions and integration rules; the kinds of continuum elements, one small file each.
 //! - [`model`]: the problem as plain data: nodes, bodies, surfaces, contacts, loads, settings.
 //! - [`builder`]: builds a model in code.
-//! - [`fem`]: finite elements, one small file per kind. A continuum element defines its nodes, shape functions and integration
-//!   rule ([`fem::kinds`]), and [`fem::isoparametric`] the formulation they share; other elements return internal forces and
-//!   their tangent themselves ([`fem::element`]). [`fem::assembly`] assembles the elements of all bodies, [`fem::recovery`]
+//! - [`fem`]: finite elements, one small file per kind. [`fem::isoparametric`] is the formulation that all continuum elements
+//!   share; other elements return internal forces and their tangent themselves ([`fem::element`]). [`fem::assembly`] assembles the elements of all bodies, [`fem::recovery`]
 //!   computes stresses for output.
 //! - [`contact`]: one slave node: projection on its surface, the equations of Table 1, the decision of Table 2, and the judge,
 //!   which checks every accepted state against the contact laws.
@@ -88,10 +89,12 @@
 
 #![forbid(unsafe_code)]
 
-mod words;
+pub mod words;
 
 pub mod builder;
 pub mod contact;
+pub mod documented;
+pub mod elements;
 pub mod executor;
 pub mod fem;
 pub mod interface;

@@ -1,8 +1,19 @@
 //! Words for the variants of an enum, each written once.
 
-/// Gives an enum without fields a word for each variant, and a list of all variants where one is asked for.
+/// Gives an enum without fields a word for each variant, and a list of all variants where one is asked for. The enum may be defined
+/// here, with each word after its variant.
 #[macro_export]
 macro_rules! words {
+    ($(#[$meta:meta])* $vis:vis enum $type:ident, $($name:ident),+ {
+        $($(#[$part:meta])* $variant:ident $text:literal),* $(,)?
+    }) => {
+        $(#[$meta])*
+        $vis enum $type {
+            $($(#[$part])* $variant),*
+        }
+
+        $crate::words!($type, $($name),+: $($variant $text),*);
+    };
     ($type:ident, $all:ident, $word:ident: $($variant:ident $text:literal),* $(,)?) => {
         $crate::words!($type, $word: $($variant $text),*);
         impl $type {
@@ -28,4 +39,9 @@ macro_rules! words {
             }
         }
     };
+}
+
+/// Whether a value is the default, which files may omit.
+pub fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
 }

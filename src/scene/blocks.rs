@@ -37,6 +37,28 @@ enum Row {
     All,
 }
 
+/// Where a cell of one or two elements has nodes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Cell {
+    Corners,
+    /// Corners and midsides.
+    Sides,
+    /// Corners, midsides, and the centre.
+    Inside,
+}
+
+impl Cell {
+    /// `None` for an element with nodes elsewhere, which a block cannot place.
+    fn of(kind: ElementKind) -> Option<Cell> {
+        match (kind.corners().count(), kind.nodes()) {
+            (3, 3) | (4, 4) => Some(Cell::Corners),
+            (4, 8) => Some(Cell::Sides),
+            (3, 6) | (4, 9) => Some(Cell::Inside),
+            _ => None,
+        }
+    }
+}
+
 /// Corners and midside nodes of a cell, in half cells to the right and up; then its centre.
 const AROUND: [(usize, usize); 9] = [
     (0, 0),
@@ -53,11 +75,10 @@ const AROUND: [(usize, usize); 9] = [
 impl Grid {
     /// Kind of the row at j half cells.
     fn row(self, j: usize) -> Row {
-        let even = j.is_multiple_of(2);
-        match self.kind {
-            ElementKind::Triangle3 | ElementKind::Quad4 if even => Row::Corners,
-            ElementKind::Triangle3 | ElementKind::Quad4 => Row::None,
-            ElementKind::Quad8 | ElementKind::Quad8Reduced if !even => Row::Corners,
+        match (Cell::of(self.kind), j.is_multiple_of(2)) {
+            (Some(Cell::Corners), true) => Row::Corners,
+            (Some(Cell::Corners), false) => Row::None,
+            (Some(Cell::Sides), false) => Row::Corners,
             _ => Row::All,
         }
     }
@@ -87,10 +108,10 @@ impl Grid {
 
     /// Approximate number of nodes added per cell.
     pub fn nodes_per_cell(kind: ElementKind) -> f64 {
-        match kind {
-            ElementKind::Triangle3 | ElementKind::Quad4 => 1.0,
-            ElementKind::Quad8 | ElementKind::Quad8Reduced => 3.0,
-            ElementKind::Triangle6 | ElementKind::Quad9 => 4.0,
+        match Cell::of(kind) {
+            Some(Cell::Corners) => 1.0,
+            Some(Cell::Sides) => 3.0,
+            Some(Cell::Inside) | None => 4.0,
         }
     }
 
@@ -210,6 +231,13 @@ pub(crate) fn block(
     refine: usize,
     chain: &dyn Fn(&str) -> Result<ChainPoints, String>,
 ) -> Result<(Grid, Vec<Point>), Fault> {
+    if Cell::of(shape.kind).is_none() {
+        bail!(
+            here.then("element"),
+            "a block cannot be meshed with elements of kind {}; use Given or Import for its elements",
+            shape.kind.word()
+        );
+    }
     let (columns, rows) = shape.elements;
     for (k, count) in [columns, rows].into_iter().enumerate() {
         let path = here.then("elements").then(k);

@@ -11,6 +11,7 @@ use stickslip_core::model::{
     Beam, Body, BodyKind, Elastic, ElementKind, Form, Linear, Model, Solid, Surface,
 };
 use stickslip_core::model::{LinearSolver, Update};
+use stickslip_core::words::is_default;
 
 /// Size and cost of a scene. Displayed as a table, so that users can check whether the scene is what they meant.
 #[derive(Debug, Clone, PartialEq)]
@@ -201,7 +202,7 @@ fn elements_of(solid: &Solid) -> String {
         let count = solid.elements.iter().filter(|e| e.kind == *kind).count();
         (count > 0).then(|| {
             let elements = plural(count, "element");
-            let word = if kind.is_default() {
+            let word = if is_default(kind) {
                 String::new()
             } else {
                 format!(" ({})", kind.word())

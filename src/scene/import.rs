@@ -14,6 +14,7 @@ use std::collections::HashMap;
 use stickslip_core::model::ElementKind;
 use stickslip_exchange::gmsh;
 use stickslip_exchange::mesh::{Cell, CellKind, Mesh};
+use stickslip_exchange::vtu::cell_type;
 use stickslip_platform::input;
 
 /// Maximum size of a mesh file in bytes.
@@ -200,7 +201,7 @@ fn elements(mesh: &Mesh) -> Result<Vec<Cells>, (&'static str, String)> {
     let mut place_of = HashMap::new();
     let mut last: Option<(ElementKind, &[usize], usize)> = None;
     for (cell, groups) in mesh.cells.iter().zip(&groups_of) {
-        let Some(kind) = kind(cell.kind) else {
+        let Some(kind) = element_kind(cell.kind) else {
             continue;
         };
         // Elements of a group are usually consecutive.
@@ -229,15 +230,10 @@ fn elements(mesh: &Mesh) -> Result<Vec<Cells>, (&'static str, String)> {
     Ok(lists)
 }
 
-fn kind(kind: CellKind) -> Option<ElementKind> {
-    match kind {
-        CellKind::Triangle3 => Some(ElementKind::Triangle3),
-        CellKind::Triangle6 => Some(ElementKind::Triangle6),
-        CellKind::Quad4 => Some(ElementKind::Quad4),
-        CellKind::Quad8 => Some(ElementKind::Quad8),
-        CellKind::Quad9 => Some(ElementKind::Quad9),
-        _ => None,
-    }
+/// The kind of element with full integration for a cell; `None` for points and lines.
+pub(crate) fn element_kind(cell: CellKind) -> Option<ElementKind> {
+    let mut kinds = ElementKind::ALL.into_iter();
+    kinds.find(|kind| kind.vtk() == cell_type(cell))
 }
 
 /// The name of a group, changed so that a scene can use it.

@@ -88,23 +88,18 @@ impl Point {
     }
 }
 
-/// Kind of cost.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Cost {
-    /// Processor time, seconds.
-    #[default]
-    Time,
-    /// Factorizations of the bodies.
-    Factorizations,
-    /// Minor iterations.
-    Minors,
-}
-
 stickslip_core::words! {
-    Cost, ALL, word:
-    Time "time",
-    Factorizations "factorizations",
-    Minors "minors",
+    /// Kind of cost.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+    pub enum Cost, ALL, word {
+        /// Processor time, seconds.
+        #[default]
+        Time "time",
+        /// Factorizations of the bodies.
+        Factorizations "factorizations",
+        /// Minor iterations.
+        Minors "minors",
+    }
 }
 
 stickslip_core::words! {

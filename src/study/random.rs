@@ -47,22 +47,17 @@ pub struct RandomProblem {
     pub cohesive: bool,
 }
 
-/// Form of the body behind the contacts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Form {
-    /// A stiffness.
-    Stiffness,
-    /// A compliance.
-    Compliance,
-    /// A compliance with a force that causes no motion.
-    Singular,
-}
-
 stickslip_core::words! {
-    Form, name:
-    Stiffness "stiffness",
-    Compliance "compliance",
-    Singular "singular",
+    /// Form of the body behind the contacts.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum Form, name {
+        /// A stiffness.
+        Stiffness "stiffness",
+        /// A compliance.
+        Compliance "compliance",
+        /// A compliance with a force that causes no motion.
+        Singular "singular",
+    }
 }
 
 /// The random numbers of one stream.

@@ -4,59 +4,42 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use stickslip_core::step::event::Failure;
 
-/// Why an increment failed, in a word.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
-pub enum Reason {
-    /// The minor iterations cycle.
-    MinorCycle,
-    /// The minor iterations reached their limit.
-    MinorLimit,
-    /// The major iterations reached their limit.
-    MajorLimit,
-    /// The major iterations cycle.
-    MajorCycle,
-    /// The system of equations is singular.
-    Singular,
-    /// The residual or the displacements diverged.
-    Diverged,
-    /// A slave node is held where it penetrates.
-    OverConstrained,
-    /// The judge refused the state.
-    Refused,
-    /// All assignments were tried; none is consistent.
-    NoAnswer,
-    /// The search found no consistent state, but could not try all assignments.
-    NotFound,
-    /// Round-off leaves no accuracy.
-    RoundOff,
-    /// A damped motion did not settle.
-    #[serde(rename = "Restless")]
-    NoRest,
-    /// The increment jumped to a state far from the predicted one.
-    Jump,
-    /// The path control turned back, or its measure did not change.
-    OffPath,
-    /// An element of a solid is inverted.
-    Inverted,
-}
-
 stickslip_core::words! {
-    Reason, word:
-    MinorCycle "minor-cycle",
-    MinorLimit "minor-limit",
-    MajorLimit "major-limit",
-    MajorCycle "major-cycle",
-    Singular "singular",
-    Diverged "diverged",
-    OverConstrained "jammed",
-    Refused "refused",
-    NoAnswer "no-answer",
-    NotFound "not-found",
-    RoundOff "round-off",
-    NoRest "restless",
-    Jump "jump",
-    OffPath "off-path",
-    Inverted "inverted",
+    /// Why an increment failed, in a word.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+    pub enum Reason, word {
+        /// The minor iterations cycle.
+        MinorCycle "minor-cycle",
+        /// The minor iterations reached their limit.
+        MinorLimit "minor-limit",
+        /// The major iterations reached their limit.
+        MajorLimit "major-limit",
+        /// The major iterations cycle.
+        MajorCycle "major-cycle",
+        /// The system of equations is singular.
+        Singular "singular",
+        /// The residual or the displacements diverged.
+        Diverged "diverged",
+        /// A slave node is held where it penetrates.
+        OverConstrained "jammed",
+        /// The judge refused the state.
+        Refused "refused",
+        /// All assignments were tried; none is consistent.
+        NoAnswer "no-answer",
+        /// The search found no consistent state, but could not try all assignments.
+        NotFound "not-found",
+        /// Round-off leaves no accuracy.
+        RoundOff "round-off",
+        /// A damped motion did not settle.
+        #[serde(rename = "Restless")]
+        NoRest "restless",
+        /// The increment jumped to a state far from the predicted one.
+        Jump "jump",
+        /// The path control turned back, or its measure did not change.
+        OffPath "off-path",
+        /// An element of a solid is inverted.
+        Inverted "inverted",
+    }
 }
 
 impl Reason {

@@ -94,7 +94,7 @@ pub fn one(increments: u64, model: Arc<Model>, spare: &SolverPool, watch: &Watch
                 load: event.load_factor,
                 major: event.position.major,
                 minors,
-                unsettled: stepper.state().unsettled,
+                unsettled: stepper.state().attempt.unsettled,
             })
         }
         RunEnd::Interrupted if run.rows.is_empty() && minors == 0 => CaseEnd::NotRun,

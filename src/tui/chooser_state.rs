@@ -18,28 +18,21 @@ use stickslip_scene::{Scene, builtin};
 const MOST: usize = 200;
 const LOOKED_AT: usize = 5000;
 
-/// Groups in display order.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Group {
-    /// Guided lessons.
-    Lessons,
-    /// The paper's problems and closed-form solutions that verify its theory.
-    Paper,
-    /// Scenes whose iterations cycle, jump, or have no solution.
-    Oscillations,
-    /// Scenes with published reference solutions.
-    Benchmarks,
-    /// Scenes in the working directory.
-    Files,
-}
-
 stickslip_core::words! {
-    Group, title:
-    Lessons "Lessons",
-    Paper "The paper",
-    Oscillations "Oscillations",
-    Benchmarks "Benchmarks",
-    Files "Your files in this folder",
+    /// Groups in display order.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum Group, title {
+        /// Guided lessons.
+        Lessons "Lessons",
+        /// The paper's problems and closed-form solutions that verify its theory.
+        Paper "The paper",
+        /// Scenes whose iterations cycle, jump, or have no solution.
+        Oscillations "Oscillations",
+        /// Scenes with published reference solutions.
+        Benchmarks "Benchmarks",
+        /// Scenes in the working directory.
+        Files "Your files in this folder",
+    }
 }
 
 /// An entry of the chooser.

@@ -22,25 +22,19 @@ pub enum QueuedInput {
     Paste(String),
 }
 
-/// What the queue waits for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum WaitReason {
-    /// The end of a run.
-    Run,
-    /// A file to be loaded.
-    Reading,
-    /// The diagnosis of the shown state.
-    Finding,
-    /// The trials of all remedies.
-    Trying,
-}
-
 stickslip_core::words! {
-    WaitReason, until:
-    Run "until the run stops; Ctrl-C interrupts it",
-    Reading "until the file is loaded; Ctrl-C cancels",
-    Finding "until the diagnosis is ready; Ctrl-C cancels",
-    Trying "until all remedies are tried; Ctrl-C stops them",
+    /// What the queue waits for.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum WaitReason, until {
+        /// The end of a run.
+        Run "until the run stops; Ctrl-C interrupts it",
+        /// A file to be loaded.
+        Reading "until the file is loaded; Ctrl-C cancels",
+        /// The diagnosis of the shown state.
+        Finding "until the diagnosis is ready; Ctrl-C cancels",
+        /// The trials of all remedies.
+        Trying "until all remedies are tried; Ctrl-C stops them",
+    }
 }
 
 /// The queue, oldest input first.

@@ -13,46 +13,33 @@
 
 use ratatui::layout::{Constraint, Layout, Rect};
 
-/// A pane; all but [`Pane::Lesson`] can have the focus.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Pane {
-    /// The table of slave nodes.
-    Nodes,
-    /// The decision on the selected node.
-    Decision,
-    /// The residual by major iteration.
-    Residual,
-    /// The bodies and surfaces.
-    Shape,
-    /// The load-displacement curve of a monitor.
-    Curve,
-    /// Slave nodes by minor iterations.
-    Timeline,
-    /// The cause of a cycle, and the consistent states.
-    Diagnosis,
-    /// The branches of the history.
-    Branches,
-    /// The remedies that were tried, with their cost.
-    Remedies,
-    /// The contact of the selected node: its force in the friction cone, T_max by iteration, and who pushed it.
-    Contact,
-    /// The current lesson; never has the focus.
-    Lesson,
-}
-
 stickslip_core::words! {
-    Pane, title:
-    Nodes "slave nodes",
-    Decision "decision",
-    Residual "residual",
-    Shape "shape",
-    Curve "load",
-    Timeline "timeline",
-    Diagnosis "diagnosis",
-    Branches "branches",
-    Remedies "remedies",
-    Contact "contact",
-    Lesson "lesson",
+    /// A pane; all but [`Pane::Lesson`] can have the focus.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum Pane, title {
+        /// The table of slave nodes.
+        Nodes "slave nodes",
+        /// The decision on the selected node.
+        Decision "decision",
+        /// The residual by major iteration.
+        Residual "residual",
+        /// The bodies and surfaces.
+        Shape "shape",
+        /// The load-displacement curve of a monitor.
+        Curve "load",
+        /// Slave nodes by minor iterations.
+        Timeline "timeline",
+        /// The cause of a cycle, and the consistent states.
+        Diagnosis "diagnosis",
+        /// The branches of the history.
+        Branches "branches",
+        /// The remedies that were tried, with their cost.
+        Remedies "remedies",
+        /// The contact of the selected node: its force in the friction cone, T_max by iteration, and who pushed it.
+        Contact "contact",
+        /// The current lesson; never has the focus.
+        Lesson "lesson",
+    }
 }
 
 impl Pane {

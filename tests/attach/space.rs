@@ -184,7 +184,7 @@ fn a_vtu_has_three_coordinates() {
     does(&mut session, run());
     let scene = session.scene();
     let (state, event) = (&session.frame().state, session.frame().event.as_deref());
-    let grid = grid(&scene.model, state, event, state.next, 3.0);
+    let grid = grid(&scene.model, state, event, state.next, 3.0).unwrap();
     assert_eq!(grid.points[6], [0.0, 0.0, 2.0]);
     let numbers = |name: &str| {
         let array = grid.on_points.iter().find(|array| array.name == name);

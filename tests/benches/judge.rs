@@ -88,7 +88,7 @@ fn row(name: &str, set: &[(&str, &str)]) {
         strained += began.elapsed().as_secs_f64();
         before = now;
         majors += f64::from(stepper.event().position.major);
-        looks += u32::from(stepper.state().watch.majors == 0);
+        looks += u32::from(stepper.state().record.watch.majors == 0);
         // Linearised, which the next increment asks for all the same.
         let began = Instant::now();
         std::hint::black_box(stepper.norms());

@@ -81,7 +81,8 @@ fn the_smallest_stretch_of_the_cells_is_the_last_column_of_the_table() {
             Some(event),
             event.position,
             event.load_factor,
-        );
+        )
+        .unwrap();
         let least = |name: &str| {
             let array = grid
                 .on_cells
@@ -275,7 +276,8 @@ fn at_the_end(name: &str, set: &[(&str, &str)]) -> (Stepper, Grid, Vec<ContactRe
         Some(&event),
         event.position,
         event.load_factor,
-    );
+    )
+    .unwrap();
     (stepper, grid, event.nodes)
 }
 

@@ -190,7 +190,8 @@ fn whole_frozen_problems_step_alone_as_in_their_scenes() {
         for step in 0..60 {
             if step % 6 == 1 {
                 let problem = stepper.interface_problem().unwrap();
-                let origin = Origin::new(&scene, stepper.state().next, stepper.state().target);
+                let origin =
+                    Origin::new(&scene, stepper.state().next, stepper.state().major.target);
                 let text = export::whole(&scene.model, &origin, &problem)
                     .unwrap_or_else(|why| panic!("{name}, step {step}: {why}"));
                 let off = compared(&plain(&problem), &text).unwrap();

@@ -86,7 +86,7 @@ fn counted(stepper: &mut Stepper, mut look: impl FnMut(&Event)) -> (usize, usize
             look(event);
         });
         // Where stability was looked at, small dense matrices were allocated for that.
-        let looked = ended && stepper.state().watch.majors == 0;
+        let looked = ended && stepper.state().record.watch.majors == 0;
         made += if looked { 0 } else { more };
     }
     (made, majors, increments)

@@ -57,8 +57,8 @@ fn an_increment_that_is_cut_again_and_again_for_one_node_ends_and_names_it() {
             break (before, slave);
         }
     };
-    assert_eq!(stepper.state().cuts[&culprit], 1);
-    before.cuts.insert(culprit, 300);
+    assert_eq!(stepper.state().recovery.cuts[&culprit], 1);
+    before.recovery.cuts.insert(culprit, 300);
     stepper.restore(&before);
     let Outcome::Failed(Failure::CutTooOften { slave, cuts, last }) =
         stepper.step().unwrap().outcome.clone()

@@ -94,7 +94,7 @@ fn balanced(run: &Run) {
     let mut stepper = stickslip::step::stepper::Stepper::new(std::sync::Arc::new(model));
     // The end of the history as the start of nothing more: its memory is that of its own displacements.
     let mut state = run.accepted.last().unwrap().state.clone();
-    state.target = state.load_factor;
+    state.major.target = state.load_factor;
     stepper.restore(&state);
     let mut reactions = Vec::new();
     stepper.monitors(&mut reactions);

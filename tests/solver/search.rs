@@ -37,7 +37,7 @@ fn run(name: &str, set: &[(&str, &str)]) -> Run {
             _ => {}
         }
     }
-    let spent = stepper.state().searched.spent;
+    let spent = stepper.state().record.searched.spent;
     Run {
         failure,
         found,

@@ -243,7 +243,7 @@ fn add(a: [f64; 2], b: [f64; 2], times: f64) -> [f64; 2] {
     [a[0] + times * b[0], a[1] + times * b[1]]
 }
 
-pub(super) fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+pub(crate) fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
 

@@ -35,36 +35,38 @@ impl Scales {
     }
 }
 
-/// A law.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum JudgedLaw {
-    /// g >= 0: no slave node is inside a master (length).
-    Penetration,
-    /// A force acts only where nodes touch: F = 0 or g = 0 (length).
-    Gap,
-    /// F_n >= 0 (force).
-    Tension,
-    /// |F_t| <= tan φ F_n + c (force).
-    Cone,
-    /// Friction opposes a net slip at its limit. The amount is the force missing to that limit.
-    Slip,
-    /// Friction opposes the slip of a node that was open before, wherever it touched (force).
-    Touch,
-    /// The forces on every node sum to zero (force).
-    Balance,
-    /// Forces and moments on the bodies as a whole, including reactions, sum to zero (force; moments are divided by the length).
-    Moments,
-    /// Friction dissipates: mean tangential force of both states times slip <= 0 (force times length). Reported but not required,
-    /// because a node that reverses within an increment may violate it.
-    Work,
-    /// The penetration of a bond is proportional to the normal force: g + c_n F_n = 0 if a force acts (length).
-    Penalty,
-    /// A tied node stays at its point of the surface (length).
-    Tied,
-    /// Friction at its limit opposes slip beyond the elastic slip of the bond, c_t times the change of −F_t. The amount is the
-    /// force missing to that limit.
-    Stick,
+crate::words! {
+    /// A law.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum JudgedLaw, name {
+        /// g >= 0: no slave node is inside a master (length).
+        Penetration "penetration",
+        /// A force acts only where nodes touch: F = 0 or g = 0 (length).
+        Gap "gap",
+        /// F_n >= 0 (force).
+        Tension "tension",
+        /// |F_t| <= tan φ F_n + c (force).
+        Cone "cone",
+        /// Friction opposes a net slip at its limit. The amount is the force missing to that limit.
+        Slip "slip",
+        /// Friction opposes the slip of a node that was open before, wherever it touched (force).
+        Touch "touch",
+        /// The forces on every node sum to zero (force).
+        Balance "balance",
+        /// Forces and moments on the bodies as a whole, including reactions, sum to zero (force; moments are divided by the length).
+        Moments "moments",
+        /// Friction dissipates: mean tangential force of both states times slip <= 0 (force times length). Reported but not required,
+        /// because a node that reverses within an increment may violate it.
+        Work "work",
+        /// The penetration of a bond is proportional to the normal force: g + c_n F_n = 0 if a force acts (length).
+        Penalty "penalty",
+        /// A tied node stays at its point of the surface (length).
+        Tied "tied",
+        /// Friction at its limit opposes slip beyond the elastic slip of the bond, c_t times the change of −F_t. The amount is the
+        /// force missing to that limit.
+        Stick "stick",
+    }
 }
 
 impl JudgedLaw {
@@ -82,22 +84,6 @@ impl JudgedLaw {
 
     /// The laws of bonds other than hard contact.
     pub const OF_BONDS: [JudgedLaw; 3] = [JudgedLaw::Penalty, JudgedLaw::Tied, JudgedLaw::Stick];
-}
-
-crate::words! {
-    JudgedLaw, name:
-    Penetration "penetration",
-    Gap "gap",
-    Tension "tension",
-    Cone "cone",
-    Slip "slip",
-    Touch "touch",
-    Balance "balance",
-    Moments "moments",
-    Work "work",
-    Penalty "penalty",
-    Tied "tied",
-    Stick "stick",
 }
 
 /// Violation of one law at its worst place.

@@ -40,6 +40,26 @@ pub struct Ground<'a> {
 }
 
 impl Ground<'_> {
+    /// Finds the positions of all nodes.
+    pub fn follow(
+        &self,
+        nodes: &mut [ContactState],
+        slaves: &[Contact],
+        friction: &[Friction],
+        anew: bool,
+    ) {
+        for ((node, slave), friction) in nodes.iter_mut().zip(slaves).zip(friction) {
+            self.stand(node, slave, friction, anew);
+        }
+    }
+
+    /// Anchors all nodes with an initial slip.
+    pub fn place_anchors(&self, nodes: &mut [ContactState], slaves: &[Contact]) {
+        for (node, slave) in nodes.iter_mut().zip(slaves) {
+            self.place_anchor(node, slave);
+        }
+    }
+
     /// Finds the position of a node. Forces keep their components in the frame (n, t), which rotates with the surface. When a
     /// node enters or leaves a corner, the frame jumps, and the force keeps its direction instead. With `anew`, a sliding node is
     /// anchored at its new position.

@@ -318,13 +318,8 @@ impl Assembly {
             let room = &mut self.room;
             let (u, before) = (&mut room.u[..n], &mut room.before[..n]);
             let (own, tangent) = (&mut room.force[..n], &mut room.tangent[..n * n]);
-            placed.gather(moved.u, u);
+            let past = placed.gather_all(&moved, u, before);
             own.fill(0.0);
-            let history = &moved.history[placed.history.clone()];
-            if !history.is_empty() {
-                placed.gather(moved.before, before);
-            }
-            let past = PreviousState { u: before, history };
             let answers = placed.element.resist(&past, u, own, tangent);
             for (&d, own) in placed.dofs.iter().zip(&*own) {
                 // No finite force is in balance if an element has no response.
@@ -345,14 +340,9 @@ impl Assembly {
             let room = &mut self.room;
             let (u, before) = (&mut room.u[..n], &mut room.before[..n]);
             let (force, tangent) = (&mut room.force[..n], &mut room.tangent[..n * n]);
-            placed.gather(moved.u, u);
+            let past = placed.gather_all(&moved, u, before);
             force.fill(0.0);
             tangent.fill(0.0);
-            let history = &moved.history[placed.history.clone()];
-            if !history.is_empty() {
-                placed.gather(moved.before, before);
-            }
-            let past = PreviousState { u: before, history };
             if placed.element.add(&past, u, force, tangent) {
                 placed.element.mirror(tangent);
                 placed.couple(dofs, tangent, moved.step, coupling, 0);
@@ -535,6 +525,21 @@ impl AssembledElement {
                 self.slots.extend(pair.zip(slot));
             }
         }
+    }
+
+    /// Gathers the element's displacements, and its data at the last accepted increment.
+    fn gather_all<'a>(
+        &self,
+        moved: &AssemblyMotion<'a>,
+        u: &mut [f64],
+        before: &'a mut [f64],
+    ) -> PreviousState<'a> {
+        self.gather(moved.u, u);
+        let history = &moved.history[self.history.clone()];
+        if !history.is_empty() {
+            self.gather(moved.before, before);
+        }
+        PreviousState { u: before, history }
     }
 
     fn gather(&self, from: &[f64], to: &mut [f64]) {

@@ -1,26 +1,13 @@
-//! The kinds of continuum elements by name. To add one, add a file in [`super::kinds`], a kind in [`ElementKind`], and a line in
-//! each of the tables here.
+//! Continuum elements of each kind ([`super::kinds`]).
 
+use crate::elements::kinds::continuum_kind::{ContinuumKind, Parent};
+use crate::elements::kinds::with_kind;
 use crate::fem::element::{Element, PreviousState};
+use crate::fem::isoparametric::ContinuumElement;
 use crate::fem::isoparametric::{self, PointState};
-use crate::fem::kinds::{Parent, Shape, quad4, quad8, quad9, triangle3, triangle6};
 use crate::fem::material::Material;
 use crate::fem::small;
 use crate::model::{ElementKind, Plane, Update};
-
-/// Calls a function with the rule of a kind; the function is generic over the numbers of nodes and points.
-macro_rules! with_rule {
-    ($kind:expr, $function:ident($($argument:expr),*)) => {
-        match $kind {
-            ElementKind::Triangle3 => $function(&*triangle3::RULE, $($argument),*),
-            ElementKind::Triangle6 => $function(&*triangle6::RULE, $($argument),*),
-            ElementKind::Quad4 => $function(&*quad4::RULE, $($argument),*),
-            ElementKind::Quad8 => $function(&*quad8::RULE, $($argument),*),
-            ElementKind::Quad8Reduced => $function(&*quad8::REDUCED, $($argument),*),
-            ElementKind::Quad9 => $function(&*quad9::RULE, $($argument),*),
-        }
-    };
-}
 
 /// Creates an element of a kind at these undeformed positions. With the wrong number of positions it never has a response, so no state of
 /// it can be accepted.
@@ -30,11 +17,11 @@ pub fn element(
     material: Material,
     update: Update,
 ) -> Box<dyn Element> {
-    with_rule!(kind, made(at, material, update))
+    with_kind!(kind, made(at, material, update))
 }
 
 fn made<const N: usize, const P: usize>(
-    rule: &'static [Parent<N>; P],
+    kind: &'static ContinuumKind<N, P>,
     at: &[[f64; 2]],
     material: Material,
     update: Update,
@@ -46,12 +33,12 @@ fn made<const N: usize, const P: usize>(
         });
     };
     let made: Box<dyn Element> = if material.plane == Plane::Axisymmetric {
-        Box::new(isoparametric::ContinuumElement::<N, P, true>::new(
-            rule, at, material, update,
+        Box::new(ContinuumElement::<N, P, true>::new(
+            &kind.rule, at, material, update,
         ))
     } else {
-        Box::new(isoparametric::ContinuumElement::<N, P, false>::new(
-            rule, at, material, update,
+        Box::new(ContinuumElement::<N, P, false>::new(
+            &kind.rule, at, material, update,
         ))
     };
     match update {
@@ -80,41 +67,35 @@ impl Element for Malformed {
     }
 }
 
-/// States of an element's integration points, in the order of its rule, with their positions in the parent element. Empty if the
-/// number of nodes is wrong; points where the material has no response are left out.
+/// States of an element's integration points, in the order of its rule; `None` where the material has no response. Empty if the
+/// number of nodes is wrong.
 pub fn states(
     kind: ElementKind,
     at: &[[f64; 2]],
     (material, update): (Material, Update),
     past: &PreviousState<'_>,
     u: &[f64],
-) -> Vec<([f64; 2], Option<PointState>)> {
-    with_rule!(kind, states_by(at, (material, update), past, u))
+) -> Vec<Option<PointState>> {
+    with_kind!(kind, states_by(at, (material, update), past, u))
 }
 
 fn states_by<const N: usize, const P: usize>(
-    rule: &'static [Parent<N>; P],
+    kind: &'static ContinuumKind<N, P>,
     at: &[[f64; 2]],
     (material, update): (Material, Update),
     past: &PreviousState<'_>,
     u: &[f64],
-) -> Vec<([f64; 2], Option<PointState>)> {
+) -> Vec<Option<PointState>> {
     let Ok(at) = <[[f64; 2]; N]>::try_from(at) else {
         return Vec::new();
     };
-    let points = rule.iter().enumerate();
-    if material.plane == Plane::Axisymmetric {
-        let element =
-            isoparametric::ContinuumElement::<N, P, true>::new(rule, at, material, update);
-        points
-            .map(|(p, parent)| (parent.at, element.point_state(past, u, p)))
-            .collect()
-    } else {
-        let element =
-            isoparametric::ContinuumElement::<N, P, false>::new(rule, at, material, update);
-        points
-            .map(|(p, parent)| (parent.at, element.point_state(past, u, p)))
-            .collect()
+    match material.plane {
+        Plane::Axisymmetric => {
+            ContinuumElement::<N, P, true>::new(&kind.rule, at, material, update)
+                .point_states(past, u)
+        }
+        _ => ContinuumElement::<N, P, false>::new(&kind.rule, at, material, update)
+            .point_states(past, u),
     }
 }
 
@@ -140,19 +121,11 @@ pub fn sample(
     node: impl Fn(usize) -> ([f64; 2], [f64; 2]),
     see: impl FnMut(PointGradient),
 ) {
-    match kind {
-        ElementKind::Triangle3 => sample_by(&*triangle3::RULE, &triangle3::NODES, count, node, see),
-        ElementKind::Triangle6 => sample_by(&*triangle6::RULE, &triangle6::NODES, count, node, see),
-        ElementKind::Quad4 => sample_by(&*quad4::RULE, &quad4::NODES, count, node, see),
-        ElementKind::Quad8 => sample_by(&*quad8::RULE, &quad8::NODES, count, node, see),
-        ElementKind::Quad8Reduced => sample_by(&*quad8::REDUCED, &quad8::NODES, count, node, see),
-        ElementKind::Quad9 => sample_by(&*quad9::RULE, &quad9::NODES, count, node, see),
-    }
+    with_kind!(kind, sample_by(count, node, see))
 }
 
-fn sample_by<const N: usize>(
-    rule: &[Parent<N>],
-    nodes: &[Parent<N>; N],
+fn sample_by<const N: usize, const P: usize>(
+    kind: &ContinuumKind<N, P>,
     count: usize,
     node: impl Fn(usize) -> ([f64; 2], [f64; 2]),
     mut see: impl FnMut(PointGradient),
@@ -164,8 +137,8 @@ fn sample_by<const N: usize>(
     for (k, (at, u)) in at.iter_mut().zip(&mut u).enumerate() {
         (*at, *u) = node(k);
     }
-    let points = rule.iter().zip(std::iter::repeat(true));
-    for (parent, integrates) in points.chain(nodes.iter().zip(std::iter::repeat(false))) {
+    let points = kind.rule.iter().map(|parent| (parent, true));
+    for (parent, integrates) in points.chain(kind.nodes.iter().map(|parent| (parent, false))) {
         if let Some(h) = isoparametric::slope_at(parent, &at, &u) {
             let mean = |of: &[[f64; 2]; N], k: usize| -> f64 {
                 parent.n.iter().zip(of).map(|(n, x)| n * x[k]).sum()
@@ -183,31 +156,22 @@ fn sample_by<const N: usize>(
 
 /// Number of history variables of an element of this kind.
 pub fn history_len(kind: ElementKind, update: Update) -> usize {
-    isoparametric::history_len(update, points(kind))
-}
-
-/// Number of integration points of a kind.
-pub fn points(kind: ElementKind) -> usize {
-    with_rule!(kind, count())
-}
-
-fn count<const N: usize, const P: usize>(_: &[Parent<N>; P]) -> usize {
-    P
+    isoparametric::history_len(update, kind.points())
 }
 
 /// Integration points and weights of a kind in its parent element, with the shape functions and their derivatives.
 pub fn rule(kind: ElementKind) -> Vec<Sample> {
-    with_rule!(kind, samples())
+    with_kind!(kind, samples())
 }
 
-fn samples<const N: usize, const P: usize>(rule: &[Parent<N>; P]) -> Vec<Sample> {
+fn samples<const N: usize, const P: usize>(kind: &ContinuumKind<N, P>) -> Vec<Sample> {
     let sample = |parent: &Parent<N>| Sample {
         at: parent.at,
         n: parent.n.to_vec(),
         d: parent.d.to_vec(),
         weight: parent.weight,
     };
-    rule.iter().map(sample).collect()
+    kind.rule.iter().map(sample).collect()
 }
 
 /// An integration point.
@@ -225,26 +189,22 @@ pub struct Sample {
 
 /// Shape functions of a kind and their derivatives with respect to ξ and η, at a point of the parent element.
 pub fn shape(kind: ElementKind, xi: f64, eta: f64) -> (Vec<f64>, Vec<[f64; 2]>) {
-    match kind {
-        ElementKind::Triangle3 => listed(triangle3::shape(xi, eta)),
-        ElementKind::Triangle6 => listed(triangle6::shape(xi, eta)),
-        ElementKind::Quad4 => listed(quad4::shape(xi, eta)),
-        ElementKind::Quad8 | ElementKind::Quad8Reduced => listed(quad8::shape(xi, eta)),
-        ElementKind::Quad9 => listed(quad9::shape(xi, eta)),
-    }
+    with_kind!(kind, shape_at(xi, eta))
 }
 
-fn listed<const N: usize>((n, d): Shape<N>) -> (Vec<f64>, Vec<[f64; 2]>) {
+fn shape_at<const N: usize, const P: usize>(
+    kind: &ContinuumKind<N, P>,
+    xi: f64,
+    eta: f64,
+) -> (Vec<f64>, Vec<[f64; 2]>) {
+    let (n, d) = (kind.shape)(xi, eta);
     (n.to_vec(), d.to_vec())
 }
 
 /// Positions of a kind's nodes in its parent element.
 pub fn places(kind: ElementKind) -> Vec<[f64; 2]> {
-    match kind {
-        ElementKind::Triangle3 => triangle3::PLACES.to_vec(),
-        ElementKind::Triangle6 => triangle6::PLACES.to_vec(),
-        ElementKind::Quad4 => quad4::PLACES.to_vec(),
-        ElementKind::Quad8 | ElementKind::Quad8Reduced => quad8::PLACES.to_vec(),
-        ElementKind::Quad9 => quad9::PLACES.to_vec(),
+    fn places<const N: usize, const P: usize>(kind: &ContinuumKind<N, P>) -> Vec<[f64; 2]> {
+        kind.places.to_vec()
     }
+    with_kind!(kind, places())
 }

@@ -1,7 +1,6 @@
-//! The bodies: shape functions, quadrature, materials, elements and assembly.
+//! The bodies: materials, elements and assembly.
 //!
-//! - [`lagrange`]: interpolation on curves, and Gauss points; [`quadrature`]: integration rules for triangles and squares.
-//! - [`kinds`]: the continuum elements, one file each: node positions, shape functions, rule; [`continuum`]: access by name.
+//! - [`continuum`]: continuum elements of each kind ([`kinds`]).
 //! - [`isoparametric`]: their common formulation for finite strains; [`small`]: linear elasticity.
 //! - [`material`]: stress-strain laws; [`deformation`]: det F and stretches of elements, and the range of each law.
 //! - [`beam`]: beams; [`truss`]: bars; [`matrix`]: bodies given by a sparse matrix.
@@ -14,15 +13,14 @@ pub mod continuum;
 pub mod deformation;
 pub mod element;
 pub mod isoparametric;
-pub mod kinds;
-pub mod lagrange;
 pub mod material;
 pub mod matrix;
 pub mod pressure;
-pub mod quadrature;
 pub mod recovery;
 pub mod small;
 pub mod truss;
+
+pub use crate::elements::{kinds, lagrange, quadrature};
 
 #[cfg(test)]
 mod tests;

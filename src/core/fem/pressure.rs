@@ -11,7 +11,7 @@
 //! Ramm 1984). The integration rule is exact for it. The functions here compute the load, which is on the opposite side of the
 //! equilibrium equation from internal forces.
 
-use super::lagrange::{self, MAX_NODES};
+use crate::elements::lagrange::{self, MAX_NODES};
 use crate::linalg::Pattern;
 use crate::model::{Dofs, Factor, Model, PressedFace};
 use std::f64::consts::TAU;

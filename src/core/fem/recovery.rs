@@ -1,4 +1,4 @@
-//! Stresses for output: Cauchy stress at the integration points of every solid element, and at nodes.
+//! Stresses for output: Cauchy stress at the nodes of solid elements.
 //!
 //! Stresses are `[σ11, σ22, σ33, σ12]`. They are extrapolated from the integration points of an element to its nodes by a
 //! least-squares polynomial: constant for one point, linear for three, bilinear (1, ξ, η, ξη) for four or nine. A node gets the
@@ -8,7 +8,8 @@
 use super::continuum;
 use super::element::PreviousState;
 use super::material::Material;
-use crate::model::{Body, BodyKind, ElementKind, Model, Solid};
+use crate::fem::isoparametric::PointState;
+use crate::model::{Body, BodyKind, ElementKind, Model, SolidElement};
 use nalgebra::DMatrix;
 
 /// σ11, σ22, σ33, σ12.
@@ -23,35 +24,6 @@ pub struct Configuration<'a> {
     pub before: &'a [f64],
     /// History variables at that increment ([`super::assembly::history_len`] numbers).
     pub history: &'a [f64],
-}
-
-/// Stress at an integration point.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct PointStress {
-    /// Number of the body.
-    pub body: usize,
-    /// Number of the element in its solid.
-    pub element: usize,
-    /// Undeformed position of the point.
-    pub at: [f64; 2],
-    /// The stress.
-    pub stress: Stress,
-}
-
-/// Stresses at the integration points of all solid elements, ordered by body, element and point; points where the material has no
-/// response are left out.
-pub fn point_stresses(model: &Model, at: Configuration<'_>) -> Vec<PointStress> {
-    let mut all = Vec::new();
-    each_element(model, at, |body, element, _, points| {
-        let known = points.iter().filter_map(|(_, state)| *state);
-        all.extend(known.map(|(at, stress)| PointStress {
-            body,
-            element,
-            at,
-            stress,
-        }));
-    });
-    all
 }
 
 /// Stresses at the nodes of each body, in the order of [`Body::nodes`]; `None` if no adjacent solid element has a response, and
@@ -70,16 +42,11 @@ pub fn nodal_stresses(model: &Model, at: Configuration<'_>) -> Vec<Vec<Option<St
         };
         found.push(body.nodes.iter().map(of).collect());
     };
-    each_element(model, at, |body, element, solid, points| {
+    each_element(model, at, |body, element, stresses| {
         while body_of < body {
             finish(&model.bodies[body_of], &mut sums);
             body_of += 1;
         }
-        let element = &solid.elements[element];
-        let stresses: Option<Vec<Stress>> = points
-            .iter()
-            .map(|(_, state)| state.map(|(_, stress)| stress))
-            .collect();
         let place = ElementKind::ALL
             .iter()
             .position(|kind| *kind == element.kind);
@@ -103,21 +70,19 @@ pub fn nodal_stresses(model: &Model, at: Configuration<'_>) -> Vec<Vec<Option<St
     found
 }
 
-/// A point's position in the parent element, then its undeformed position and stress; `None` if the material has no response.
-type ParentPoint = ([f64; 2], Option<([f64; 2], Stress)>);
-
-/// Calls a function with body, element, solid, and the element's points.
+/// Calls a function with each solid element, the number of its body, and the stresses at its integration points; `None` if the
+/// material has no response at one of them.
 fn each_element(
     model: &Model,
     at: Configuration<'_>,
-    mut with: impl FnMut(usize, usize, &Solid, &[ParentPoint]),
+    mut with: impl FnMut(usize, &SolidElement, Option<Vec<Stress>>),
 ) {
     let mut remembered = 0;
     for (b, body) in model.bodies.iter().enumerate() {
         let BodyKind::Solid(solid) = &body.kind else {
             continue;
         };
-        for (e, element) in solid.elements.iter().enumerate() {
+        for element in &solid.elements {
             let elastic = &solid.materials[element.material];
             let places: Vec<[f64; 2]> = element.nodes.iter().map(|&n| model.nodes[n].at).collect();
             let own = |u: &[f64]| -> Vec<f64> {
@@ -133,15 +98,9 @@ fn each_element(
             remembered += count;
             let made_of = (Material::new(elastic), elastic.update);
             let states = continuum::states(element.kind, &places, made_of, &past, &u);
-            let points: Vec<ParentPoint> = states
-                .into_iter()
-                .map(|(parent, state)| {
-                    let stress =
-                        state.map(|s| (s.at, [s.cauchy.x, s.cauchy.y, s.across, s.cauchy.z]));
-                    (parent, stress)
-                })
-                .collect();
-            with(b, e, solid, &points);
+            let stress =
+                |s: Option<PointState>| s.map(|s| [s.cauchy.x, s.cauchy.y, s.across, s.cauchy.z]);
+            with(b, element, states.into_iter().map(stress).collect());
         }
     }
 }

@@ -3,9 +3,9 @@
 use super::beam::{self, Section};
 use super::continuum;
 use super::element::{Element, PreviousState};
-use super::lagrange::MAX_NODES;
 use super::material::Material;
 use super::{small, truss};
+use crate::elements::lagrange::MAX_NODES;
 use crate::model::{Elastic, ElementKind, Law, Plane, Update};
 
 /// An element with a generic shape.

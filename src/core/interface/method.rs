@@ -101,6 +101,17 @@ pub trait Search {
     fn propose(&self, asked: SearchInput<'_>) -> Result<Proposal, NoProposal>;
 }
 
+/// A search updates T_max consistently with F_n; Table 2 decides when it has ended.
+impl<S: Search + Send + Sync> Method for S {
+    fn bound(&self, _wanted: BoundUpdate) -> BoundUpdate {
+        BoundUpdate::Consistent
+    }
+
+    fn search(&self) -> Option<&dyn Search> {
+        Some(self)
+    }
+}
+
 /// Input of a search.
 pub struct SearchInput<'a> {
     /// Current start of the search, from 0.
@@ -117,6 +128,13 @@ pub struct SearchInput<'a> {
     pub sweep: &'a mut dyn FnMut() -> Result<Sweep, NotFound>,
     /// Data cached between proposals. They may be lost and must then be rebuilt.
     pub kept: &'a mut Option<Box<dyn Any + Send>>,
+}
+
+impl SearchInput<'_> {
+    /// Takes the cached data, if they have this type.
+    pub fn take_kept<T: 'static>(&mut self) -> Option<Box<T>> {
+        self.kept.take()?.downcast().ok()
+    }
 }
 
 /// Modes proposed by a search.

@@ -7,6 +7,7 @@
 //! all sufficiently small ones; the path is then that of the shifted rows, but the reported values are those of the original
 //! rows.
 
+use crate::interface::method::SearchProgress;
 use crate::interface::response::InterfaceResponse;
 use crate::linalg::DenseFactors;
 
@@ -116,6 +117,20 @@ pub enum PathEnd {
     Ray,
     /// It reached the maximum number of pivots.
     Astray,
+}
+
+impl PathEnd {
+    /// Where a search continues from this step of a path: after a path without a solution, at the next start.
+    pub fn next(ended: Option<PathEnd>, start: usize, step: usize) -> SearchProgress {
+        match ended {
+            None => SearchProgress::At { start, step },
+            Some(PathEnd::Solved) => SearchProgress::Found { start },
+            Some(PathEnd::Ray | PathEnd::Astray) => SearchProgress::At {
+                start: start + 1,
+                step: 0,
+            },
+        }
+    }
 }
 
 impl Tableau {

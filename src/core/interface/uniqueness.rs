@@ -271,13 +271,10 @@ impl CompliancePart {
     /// The largest value of ½ Σ tan φ (x_n² / α + α (W x)_t²) over x·W x, by power iteration, and its x (x·W x = 1).
     fn first_to_fail(&self, alphas: &[f64], factors: &mut DenseFactors) -> (f64, Vec<f64>) {
         let size = self.size;
-        let mut x: Vec<f64> = (0..size)
-            .map(|k| 1.0 + (0.618 * k as f64).fract())
-            .collect();
+        let mut x = power_start(size);
         let mut value = 0.0;
         for _ in 0..60 {
-            let wx = times(&self.matrix, size, &x);
-            let norm = x.iter().zip(&wx).map(|(a, b)| a * b).sum::<f64>().sqrt();
+            let (wx, norm) = self.norm(&x);
             // W⁻¹ N x, with N = ½ Σ tan φ (n nᵀ / α + α W t tᵀ W): the first part is solved for, the second is t.
             let (mut first, mut second) = (vec![0.0; size], vec![0.0; size]);
             for (&(n, t, tangent), alpha) in self.pairs.iter().zip(alphas) {
@@ -293,10 +290,16 @@ impl CompliancePart {
                 .sum();
             x = first.iter().zip(&second).map(|(a, b)| a + b).collect();
         }
-        let wx = times(&self.matrix, size, &x);
-        let norm = x.iter().zip(&wx).map(|(a, b)| a * b).sum::<f64>().sqrt();
+        let (_, norm) = self.norm(&x);
         x.iter_mut().for_each(|x| *x /= norm);
         (value, x)
+    }
+
+    /// W x and √(x·W x).
+    fn norm(&self, x: &[f64]) -> (Vec<f64>, f64) {
+        let wx = times(&self.matrix, self.size, x);
+        let norm = x.iter().zip(&wx).map(|(a, b)| a * b).sum::<f64>().sqrt();
+        (wx, norm)
     }
 
     /// M for these α, with all coefficients multiplied by `spare`.
@@ -355,11 +358,16 @@ fn times(matrix: &[f64], size: usize, x: &[f64]) -> Vec<f64> {
     y
 }
 
+/// Start of a power iteration.
+fn power_start(size: usize) -> Vec<f64> {
+    (0..size)
+        .map(|k| 1.0 + (0.618 * k as f64).fract())
+        .collect()
+}
+
 /// The largest eigenvalue of a definite operator.
 fn power(size: usize, mut apply: impl FnMut(&[f64]) -> Vec<f64>) -> f64 {
-    let mut x: Vec<f64> = (0..size)
-        .map(|k| 1.0 + (0.618 * k as f64).fract())
-        .collect();
+    let mut x = power_start(size);
     let mut value = 0.0;
     for _ in 0..200 {
         let norm = x.iter().map(|x| x * x).sum::<f64>().sqrt();

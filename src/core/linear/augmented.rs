@@ -2,7 +2,8 @@
 
 use super::partners::{partners_motion, place_partners};
 use super::source::{LinearisationPoint, SolveResult};
-use super::system::{System, dot};
+use super::system::System;
+use crate::contact::corner::dot;
 use crate::contact::state::ContactState;
 use crate::contact::table1::{Equation, RelativeMotion};
 use crate::interface::kinematics::through;

@@ -219,11 +219,8 @@ impl Source for Bodies {
         anew: bool,
     ) {
         self.system.place(&self.model, u);
-        let ground = self.ground();
-        let all = contacts.iter_mut().zip(&self.model.contacts).zip(friction);
-        for ((state, contact), friction) in all {
-            ground.stand(state, contact, friction, anew);
-        }
+        let slaves = &self.model.contacts;
+        self.ground().follow(contacts, slaves, friction, anew);
         self.turn_normals(contacts);
     }
 
@@ -242,10 +239,7 @@ impl Source for Bodies {
     }
 
     fn place_stick_points(&mut self, contacts: &mut [ContactState]) {
-        let ground = self.ground();
-        for (state, contact) in contacts.iter_mut().zip(&self.model.contacts) {
-            ground.place_anchor(state, contact);
-        }
+        self.ground().place_anchors(contacts, &self.model.contacts);
     }
 
     fn renew(&mut self, model: &Arc<Model>) -> bool {

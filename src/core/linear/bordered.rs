@@ -19,7 +19,8 @@
 //! check is whether the bordered inverse is bounded ([`System::bordered_norm`]), not that of the bodies.
 
 use super::source::{LinearisationPoint, LoadEquation};
-use super::system::{System, dot};
+use super::system::System;
+use crate::contact::corner::dot;
 use crate::linalg::SolveError;
 use crate::model::{Factor, Model};
 

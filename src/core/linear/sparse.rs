@@ -303,18 +303,12 @@ impl Source for SparseInterface {
         anew: bool,
     ) {
         self.place(u);
-        let ground = self.ground();
-        let all = contacts.iter_mut().zip(&self.model.contacts).zip(friction);
-        for ((state, contact), friction) in all {
-            ground.stand(state, contact, friction, anew);
-        }
+        let slaves = &self.model.contacts;
+        self.ground().follow(contacts, slaves, friction, anew);
     }
 
     fn place_stick_points(&mut self, contacts: &mut [ContactState]) {
-        let ground = self.ground();
-        for (state, contact) in contacts.iter_mut().zip(&self.model.contacts) {
-            ground.place_anchor(state, contact);
-        }
+        self.ground().place_anchors(contacts, &self.model.contacts);
     }
 
     fn linearise(&mut self, at: &LinearisationPoint<'_>) -> Result<(), SolveError> {

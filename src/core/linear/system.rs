@@ -614,7 +614,3 @@ fn pairing(model: &Model, node: &ContactState) -> Option<(usize, usize)> {
         .filter(|s| !model.surfaces[s.surface].rigid)
         .map(|s| (s.surface, s.element))
 }
-
-pub(super) fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
-}

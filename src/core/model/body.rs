@@ -1,7 +1,7 @@
 //! Deformable bodies: beams, continua, trusses, and bodies given by a matrix.
 
-use super::documented::documented;
-use super::mesh::ElementKind;
+use crate::documented::documented;
+use crate::elements::kinds::ElementKind;
 use serde::{Deserialize, Serialize};
 
 /// A deformable body.

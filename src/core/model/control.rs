@@ -1,6 +1,6 @@
 //! Control of the history: by the load factor or by arc length along the equilibrium path.
 
-use super::documented::documented;
+use crate::documented::documented;
 use serde::{Deserialize, Serialize};
 
 documented! {
@@ -13,13 +13,6 @@ documented! {
         Load,
         /// The arc length along the equilibrium path; the load factor is an unknown and may fall and rise again.
         Arc,
-    }
-}
-
-impl Control {
-    /// Whether this is the default, which scenes may omit.
-    pub fn is_default(&self) -> bool {
-        *self == Control::default()
     }
 }
 

@@ -1,7 +1,7 @@
 //! Numbering of the degrees of freedom and of the unknowns among them.
 
 use super::body::{Body, BodyKind, Form};
-use super::documented::documented;
+use crate::documented::documented;
 use serde::{Deserialize, Serialize};
 
 /// Numbering of the degrees of freedom and of the unknowns among them.

@@ -1,6 +1,6 @@
 //! Modes of interaction (Table 1) and Coulomb friction (eqn 20).
 
-use super::documented::documented;
+use crate::documented::documented;
 use serde::{Deserialize, Serialize};
 
 documented! {

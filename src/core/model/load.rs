@@ -1,6 +1,6 @@
 //! Loads, prescribed displacements, and the path of the load factor.
 
-use super::documented::documented;
+use crate::documented::documented;
 use serde::{Deserialize, Serialize};
 
 /// A dead load (force or moment) on one degree of freedom.
@@ -100,13 +100,6 @@ documented! {
         /// Find the limit load by bisection, to the tolerance `settings.limit_load`. A damped motion then leads from the last
         /// equilibrium to the next stable one, which is marked.
         Dynamic,
-    }
-}
-
-impl Jumps {
-    /// Whether this is the default, which scenes may omit.
-    pub fn is_default(&self) -> bool {
-        *self == Jumps::default()
     }
 }
 

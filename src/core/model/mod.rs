@@ -8,8 +8,6 @@
 //! all have the unit length. `equation[d]` is the number of the unknown for degree of freedom d, or `None` if d is restrained or
 //! prescribed.
 
-pub mod documented;
-
 mod body;
 mod contact;
 mod control;
@@ -21,6 +19,8 @@ mod settings;
 
 use serde::{Deserialize, Serialize};
 
+pub use crate::documented;
+pub use crate::elements::kinds::ElementKind;
 pub use body::{
     Beam, Body, BodyKind, Elastic, Form, Law, Linear, Plane, Solid, SolidElement, Truss, Update,
 };
@@ -29,7 +29,7 @@ pub use control::{ArcLength, ArcMeasure, Bound, Control};
 pub use dofs::{Axis, Component, Dofs};
 pub use friction::{Friction, InitialState, Mode};
 pub use load::{Factor, Jumps, Load, Prescribed, PressedFace, Pressure, least, on_leg};
-pub use mesh::{ElementKind, boundary};
+pub use mesh::boundary;
 pub use settings::{
     AtCycle, AtLimit, BoundUpdate, Geometry, InitialGaps, LinearSolver, PointForce, Refactor,
     ResidualMethod, SearchMode, Settings, SlipCount, Sticking, Strategy, TieRule, Touch,

@@ -1,6 +1,7 @@
 //! Options and limits of the method: which of the paper's variants is used where it offers several.
 
-use super::documented::documented;
+use crate::documented::documented;
+use crate::words::is_default;
 use serde::{Deserialize, Serialize};
 
 documented! {
@@ -15,12 +16,12 @@ documented! {
         /// The system that the minor iterations solve. Default: auto.
         pub solver: LinearSolver,
         /// How often the stiffness of the bodies is computed and factored. Default: each.
-        #[serde(skip_serializing_if = "Refactor::is_default")]
+        #[serde(skip_serializing_if = "is_default")]
         pub factor: Refactor,
         /// Whether the tangent includes the change of the contact geometry. Default: consistent.
         pub geometry: Geometry,
         /// Local deformation of a beam with a shear stiffness under the point force of a slave node. Default: exact.
-        #[serde(skip_serializing_if = "PointForce::is_default")]
+        #[serde(skip_serializing_if = "is_default")]
         pub point_force: PointForce,
         /// How T_max of a sliding node enters the equations. Default: lagged.
         pub t_max: BoundUpdate,
@@ -49,14 +50,14 @@ documented! {
         #[serde(skip_serializing_if = "is_default_limit_load")]
         pub limit_load: f64,
         /// Whether the strategy `ladder` searches for other solutions where an increment fails. Default: auto.
-        #[serde(skip_serializing_if = "SearchMode::is_default")]
+        #[serde(skip_serializing_if = "is_default")]
         pub search: SearchMode,
         /// Maximum number of factorizations that a run spends on such searches; a minor iteration counts as one, a major iteration
         /// as one more. 0 means 4 times those of the rest of the run. Default: 0.
-        #[serde(skip_serializing_if = "is_default_limit")]
+        #[serde(skip_serializing_if = "is_default")]
         pub search_limit: u32,
         /// How gaps before the first increment are treated. Default: keep.
-        #[serde(skip_serializing_if = "InitialGaps::is_default")]
+        #[serde(skip_serializing_if = "is_default")]
         pub initial_gaps: InitialGaps,
         /// With `initial_gaps: adjust`, nodes with a gap up to this value are moved onto their surface too (length). Default: 0.
         #[serde(skip_serializing_if = "is_zero")]
@@ -102,10 +103,6 @@ const LIMIT_LOAD: f64 = 1e-6;
 
 fn is_default_limit_load(value: &f64) -> bool {
     *value == LIMIT_LOAD
-}
-
-fn is_default_limit(value: &u32) -> bool {
-    *value == 0
 }
 
 fn is_zero(value: &f64) -> bool {
@@ -179,13 +176,6 @@ documented! {
     }
 }
 
-impl InitialGaps {
-    /// Whether this is the default, which scenes may omit.
-    pub fn is_default(&self) -> bool {
-        *self == InitialGaps::default()
-    }
-}
-
 documented! {
     /// Stick point of a node that touches within an increment.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -245,13 +235,6 @@ documented! {
     }
 }
 
-impl SearchMode {
-    /// Whether it is the default.
-    pub fn is_default(&self) -> bool {
-        *self == SearchMode::default()
-    }
-}
-
 documented! {
     /// How often the bodies' stiffness is taken and factored.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
@@ -265,13 +248,6 @@ documented! {
         /// result is the same within the tolerance; there are more major iterations, but each costs less. Acts like `each` with
         /// `history.control: arc`, in damped motions and under a following pressure.
         Needed,
-    }
-}
-
-impl Refactor {
-    /// Whether this is the default, which scenes may omit.
-    pub fn is_default(&self) -> bool {
-        *self == Refactor::default()
     }
 }
 
@@ -302,13 +278,6 @@ documented! {
         Shear,
         /// Plain element, as in the paper.
         Plain,
-    }
-}
-
-impl PointForce {
-    /// Whether this is the default, which scenes may omit.
-    pub fn is_default(&self) -> bool {
-        *self == PointForce::default()
     }
 }
 

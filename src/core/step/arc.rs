@@ -54,7 +54,7 @@ impl Stepper {
             .now
             .source
             .moved(&self.now.state.u, &self.now.state.start.u);
-        let predicted = self.now.state.pace.predicted;
+        let predicted = self.now.state.record.pace.predicted;
         let moves = motion > NOTHING * self.now.model.length;
         let leaps = moves && motion > RATIO * predicted;
         let why = if self.now.state.doubles_back() {
@@ -173,10 +173,14 @@ impl Iterate {
         let Some(way) = &mut state.way else { return };
         let reached = match way.aim {
             ArcConstraint::Load(to) => to,
-            _ => state.target + self.source.load_step(),
+            _ => state.major.target + self.source.load_step(),
         };
         way.left = way.remaining(&state.u, &state.start.u);
-        (state.last_target, state.target, state.load_factor) = (reached, reached, reached);
+        (
+            state.major.last_target,
+            state.major.target,
+            state.load_factor,
+        ) = (reached, reached, reached);
     }
 
     /// Continues from a converged state beyond the end of the increment, with that end as the constraint. `None` if it is not
@@ -311,7 +315,7 @@ impl State {
         way.known = way.known && !way.turned;
         way.begin(&start.u, self.controls.increment);
         self.load_factor = start.load_factor;
-        (self.target, self.last_target) = (start.load_factor, start.load_factor);
+        (self.major.target, self.major.last_target) = (start.load_factor, start.load_factor);
         self.change_modes();
     }
 

@@ -56,12 +56,12 @@ impl State {
     /// Moves to the result of an event, at the place with this number: updates modes and numbers of the contacts, the next
     /// iteration, and the start of the increment if one was accepted. The caller sets the displacements (`u`) first.
     pub fn follow(&mut self, event: &Event, place: u64) {
-        self.minors = self.minors.saturating_add(1);
+        self.attempt.minors = self.attempt.minors.saturating_add(1);
         for (node, record) in self.nodes.iter_mut().zip(&event.nodes) {
             node.renew(record);
         }
         self.load_factor = event.load_factor;
-        (self.last_target, self.target) = (event.load_factor, event.load_factor);
+        (self.major.last_target, self.major.target) = (event.load_factor, event.load_factor);
         self.next = after(event.position, &event.outcome);
         self.status = match &event.outcome {
             Outcome::Failed(failure) => Status::Failed(failure.clone()),
@@ -73,7 +73,7 @@ impl State {
                 Arc::make_mut(&mut self.controls).increment = size;
             }
             Outcome::Increment { .. } => {
-                self.minors = 0;
+                self.attempt.minors = 0;
                 self.start = Arc::new(IncrementStart {
                     load_factor: event.load_factor,
                     leg: self.start.leg,

@@ -29,12 +29,12 @@ impl Iterate {
         if self.state.way.is_some() {
             return false;
         }
-        let left = self.state.target - self.state.last_target;
+        let left = self.state.major.target - self.state.major.last_target;
         let whole = self.state.load_factor - self.state.start.load_factor;
         if left.abs() < SMALLEST_PART * whole.abs() {
             return false;
         }
-        self.state.target = self.state.last_target + left / 2.0;
+        self.state.major.target = self.state.major.last_target + left / 2.0;
         self.linearised = false;
         self.state.begin_again();
         true
@@ -47,12 +47,12 @@ impl Iterate {
         verdict: Verdict,
         landing: AcceptanceNotes,
     ) -> Outcome {
-        let unsettled = self.state.unsettled;
+        let unsettled = self.state.attempt.unsettled;
         let leg = self.leg_reached();
         let bounded = self.go_along(leg);
         self.settle_contacts();
-        let motion = self.state.motion.take();
-        let found = self.state.fallback.map(|fallback| fallback.by);
+        let motion = self.state.recovery.motion.take();
+        let found = self.state.recovery.fallback.map(|fallback| fallback.by);
         let found = found.filter(|by| *by != Fallback::Back);
         let left_range = range_left(&*self.source, &self.state);
         let start = Arc::make_mut(&mut self.state.start);
@@ -132,16 +132,21 @@ impl Iterate {
             let (start, increment) = (&self.state.start, self.state.controls.increment);
             SubIncrement::whole(&self.model, start.place(), increment)
         };
-        let helped = self.state.fallback.take().map(|fallback| fallback.by);
+        let helped = self
+            .state
+            .recovery
+            .fallback
+            .take()
+            .map(|fallback| fallback.by);
         let repeated = |by: &Fallback| matches!(by, Fallback::Deeper | Fallback::Release);
         if let Some(by) = helped.filter(repeated) {
-            self.state.searched.adopted = Some(by);
+            self.state.record.searched.adopted = Some(by);
         }
-        self.state.searched.origin = None;
+        self.state.record.searched.origin = None;
         let rest = self.state.sub_increment.next();
         self.state.sub_increment = rest.unwrap_or_else(whole);
         if rest.is_none() {
-            self.state.cuts.clear();
+            self.state.recovery.cuts.clear();
         }
         self.state.begin();
         self.linearised = self.linearised && taken_here && self.source.aim(&self.state.at());

@@ -53,7 +53,7 @@ impl State {
             }
             outside.asked.push(intervention.clone());
         }
-        self.search = Progress::default();
+        self.attempt.search = Progress::default();
         self.forget_minors();
         self.forget_majors();
         Ok(())
@@ -61,27 +61,31 @@ impl State {
 
     /// Clears the record of the minor iterations.
     pub(super) fn forget_minors(&mut self) {
-        self.line = None;
-        if !self.minor_history.is_empty() {
-            Arc::make_mut(&mut self.minor_history).clear();
+        self.major.line = None;
+        if !self.major.minor_history.is_empty() {
+            Arc::make_mut(&mut self.major.minor_history).clear();
         }
     }
 
     /// Clears the record of the major iterations.
     pub(super) fn forget_majors(&mut self) {
-        if !self.major_history.is_empty() {
-            Arc::make_mut(&mut self.major_history).clear();
+        if !self.attempt.major_history.is_empty() {
+            Arc::make_mut(&mut self.attempt.major_history).clear();
         }
     }
 
     /// Starts the increment that follows `start`.
     pub(super) fn begin(&mut self) {
         (self.next.major, self.next.minor) = (1, 1);
-        (self.minors, self.unsettled, self.correction) = (0, 0, 0.0);
-        (self.net, self.brake, self.factored) = (false, None, None);
+        (
+            self.attempt.minors,
+            self.attempt.unsettled,
+            self.major.correction,
+        ) = (0, 0, 0.0);
+        (self.attempt.net, self.recovery.brake, self.major.factored) = (false, None, None);
         self.load_factor = self.sub_increment.target();
-        self.search = Progress::default();
-        (self.target, self.last_target) = (self.load_factor, self.start.load_factor);
+        self.attempt.search = Progress::default();
+        (self.major.target, self.major.last_target) = (self.load_factor, self.start.load_factor);
         self.set_out();
         self.forget_minors();
         self.forget_majors();
@@ -189,9 +193,9 @@ impl State {
         }
         controls.increment = increment;
         controls.least = least(model.least, increment).min(increment);
-        self.motion = None;
+        self.recovery.motion = None;
         self.sub_increment = SubIncrement::whole(model, self.start.place(), increment);
-        self.fallback = None;
+        self.recovery.fallback = None;
         self.start_again();
         Ok(())
     }
@@ -201,7 +205,10 @@ impl State {
     pub fn attempt_again(&self) -> State {
         let mut again = self.clone();
         again.start_again();
-        again.brake = self.brake.map(|brake| SlipStiffness::new(brake.spring));
+        again.recovery.brake = self
+            .recovery
+            .brake
+            .map(|brake| SlipStiffness::new(brake.spring));
         again
     }
 

@@ -90,7 +90,7 @@ impl Stepper {
         }
         let (mut trip, why) = self.now.trip();
         let mut landing = AcceptanceNotes {
-            unstable: self.now.state.watch.loss(trip.found),
+            unstable: self.now.state.record.watch.loss(trip.found),
             ..AcceptanceNotes::marked(marked)
         };
         let cuts = matches!(self.now.model.jumps, Jumps::Cut | Jumps::Stop);
@@ -101,10 +101,10 @@ impl Stepper {
             {
                 return tried;
             }
-            landing.jumped = trip.exceeds && (self.now.state.pace.over || !trip.follows());
+            landing.jumped = trip.exceeds && (self.now.state.record.pace.over || !trip.follows());
             let found = trip.found.unwrap_or_else(|| self.now.look());
             trip.found = Some(found);
-            landing.unstable = self.now.state.watch.loss(trip.found);
+            landing.unstable = self.now.state.record.watch.loss(trip.found);
         }
         self.now.touch_down(after, verdict, landing, &trip)
     }
@@ -117,15 +117,15 @@ impl Stepper {
             return None;
         }
         let round = |route: FallbackState| !matches!(route.by, Fallback::Held | Fallback::Back);
-        if jumps != Jumps::Accept && self.now.state.fallback.is_some_and(round) {
+        if jumps != Jumps::Accept && self.now.state.recovery.fallback.is_some_and(round) {
             self.now.state.next_major();
             return Some(self.fail(why.clone()));
         }
-        if jumps == Jumps::Accept || self.now.state.pace.over {
+        if jumps == Jumps::Accept || self.now.state.record.pace.over {
             return None;
         }
         if let Some(cut) = self.cut(why) {
-            self.now.state.pace.suspect = Some(trip.suspect);
+            self.now.state.record.pace.suspect = Some(trip.suspect);
             return Some(cut);
         }
         let ends = matches!(jumps, Jumps::Stop | Jumps::Dynamic);
@@ -143,7 +143,7 @@ impl Iterate {
         let state = &self.state;
         let span = [state.start.load_factor, state.load_factor];
         let motion = self.source.moved(&state.u, &state.start.u);
-        let expected = state.pace.expected(&self.model, span);
+        let expected = state.record.pace.expected(&self.model, span);
         let length = self.model.length;
         let cuts = !strategy::rungs(state.controls.settings.strategy).is_empty()
             && self.model.jumps != Jumps::Accept;
@@ -151,15 +151,20 @@ impl Iterate {
         let sudden = motion > NOTHING * length && expected.is_exceeded(motion, cuts);
         let exceeds = sudden || far && self.stalled().can_move();
         let (majors, cost) = (state.next.major, self.source.stability_cost());
-        let looks = !exceeds && (far || state.watch.is_due(majors, cost));
+        let looks = !exceeds && (far || state.record.watch.is_due(majors, cost));
         let here = SuspectIncrement {
             motion,
             size: (span[1] - span[0]).abs(),
             sub_increment: state.sub_increment,
         };
-        let suspect = state.pace.suspect.unwrap_or(here);
+        let suspect = state.record.pace.suspect.unwrap_or(here);
         let found = looks.then(|| self.look());
-        let unstable = self.state.watch.loss(found).map(|loss| loss.stability);
+        let unstable = self
+            .state
+            .record
+            .watch
+            .loss(found)
+            .map(|loss| loss.stability);
         let why = Failure::BranchJump {
             motion,
             predicted: expected.least(),
@@ -189,12 +194,15 @@ impl Iterate {
         trip: &IncrementMotion,
     ) -> Outcome {
         let (state, model) = (&mut self.state, &self.model);
-        state.watch.take(trip.span[1], state.next.major, trip.found);
+        state
+            .record
+            .watch
+            .take(trip.span[1], state.next.major, trip.found);
         if landing.jumped {
             // The pace of the previous branch does not apply to the new branch.
-            state.pace = Pace::default();
+            state.record.pace = Pace::default();
         } else if trip.size() > 0.0 {
-            state.pace.take(model, trip.motion, trip.span);
+            state.record.pace.take(model, trip.motion, trip.span);
         }
         landing.jumped |= landing.unstable.is_some();
         #[cfg(mutants)]

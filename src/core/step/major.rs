@@ -34,7 +34,7 @@ impl Stepper {
     /// if the limit of minor iterations was accepted instead.
     pub(super) fn end_major(&mut self, settled: bool) -> Outcome {
         let held = self.now.hold(&self.event.nodes);
-        let before = self.now.state.correction;
+        let before = self.now.state.major.correction;
         let asked = match self.now.keeps_factors() {
             true => self.now.source.asked(),
             false => f64::INFINITY,
@@ -44,11 +44,11 @@ impl Stepper {
             return self.fail(Failure::Singular(singular));
         }
         self.now.update(&self.event.nodes);
-        let search = &mut self.now.state.search;
+        let search = &mut self.now.state.attempt.search;
         (search.first, search.fewest, search.rounds) = (None, None, 0);
         let frozen = std::mem::take(&mut search.frozen);
         search.searched = SearchProgress::Not;
-        self.now.state.searched.frozen |= frozen;
+        self.now.state.record.searched.frozen |= frozen;
         self.now.kept = None;
         let norms = self.norms();
         if let Some(again) = held.and_then(|held| self.now.hold_back(held)) {
@@ -60,7 +60,7 @@ impl Stepper {
             &state.nodes,
             &state.controls.friction,
         );
-        self.now.state.unsettled += u32::from(!settled);
+        self.now.state.attempt.unsettled += u32::from(!settled);
         let Some(after) = norms else {
             return self.fail(Failure::Singular(Singular::Unexplained));
         };
@@ -68,7 +68,7 @@ impl Stepper {
         let size = self.now.source.largest_motion(&self.now.state.u);
         let bounded = after.relative.is_finite() && size < DIVERGED * self.now.model.length;
         let balanced = self.now.state.is_balanced(&after) && self.now.is_near(before);
-        let braked = self.now.state.brake.is_some();
+        let braked = self.now.state.recovery.brake.is_some();
         let most = self.now.most_majors(braked);
         let at_limit = self.now.state.next.major.is_multiple_of(most);
         let drowned = after.noise > Norms::LOUDEST;
@@ -79,7 +79,7 @@ impl Stepper {
         }
         let accepts = settings.at_major_limit == AtLimit::Accept && !drowned;
         if at_limit && bounded && accepts {
-            self.now.state.unsettled += 1;
+            self.now.state.attempt.unsettled += 1;
             return self.finish(after);
         }
         if bounded
@@ -120,7 +120,7 @@ impl Iterate {
     /// Whether the settings keep old factors where they help: under load control, without damping.
     fn keeps_factors(&self) -> bool {
         let state = &self.state;
-        let loaded = state.way.is_none() && state.motion.is_none();
+        let loaded = state.way.is_none() && state.recovery.motion.is_none();
         // The stiffness of a pressure that follows its faces changes with the load.
         let dead = self.model.pressures.is_empty();
         loaded && dead && state.controls.settings.factor == Refactor::Needed
@@ -130,16 +130,16 @@ impl Iterate {
     fn keep_factors(&mut self) {
         if !self.keeps_factors() {
             self.drop_factors();
-        } else if self.state.factored.is_none() {
+        } else if self.state.major.factored.is_none() {
             let mut about = self.room.take().unwrap_or_default();
             Arc::make_mut(&mut about).clone_from(&self.state.u);
-            self.state.factored = Some(about);
+            self.state.major.factored = Some(about);
         }
     }
 
     /// Has the stiffness recomputed; returns whether the current one was that of the current displacements.
     pub(super) fn drop_factors(&mut self) -> bool {
-        match self.state.factored.take() {
+        match self.state.major.factored.take() {
             Some(about) => {
                 self.room = Some(about);
                 false
@@ -152,8 +152,8 @@ impl Iterate {
     /// factors the displacements converge linearly, and in soft directions small forces do not bound the error; the ratio of the
     /// last correction to the one `before` does.
     fn is_near(&self, before: f64) -> bool {
-        let (state, last) = (&self.state, self.state.correction);
-        if state.factored.is_none() || last == 0.0 {
+        let (state, last) = (&self.state, self.state.major.correction);
+        if state.major.factored.is_none() || last == 0.0 {
             return true;
         }
         // Slow convergence shows late in this ratio.
@@ -193,7 +193,7 @@ impl Iterate {
         let (major, contacts) = (self.state.next.major, self.state.nodes.len());
         let source = &self.source;
         let places = (0..contacts).map(|contact| source.position(contact));
-        let history = Arc::make_mut(&mut self.state.major_history);
+        let history = Arc::make_mut(&mut self.state.attempt.major_history);
         history.push(&self.state.nodes, places);
         history.cycle(contacts, major, scales)
     }
@@ -201,15 +201,15 @@ impl Iterate {
     /// Updates the state with displacements and forces of the last minor iteration, and linearises there.
     fn update(&mut self, records: &[ContactRecord]) {
         self.measured = false;
-        self.state.last_target = self.state.target;
-        self.state.target = self.state.load_factor;
+        self.state.major.last_target = self.state.major.target;
+        self.state.major.target = self.state.load_factor;
         self.keep_factors();
         let largest = self
             .source
             .advance(Arc::make_mut(&mut self.state.u).as_mut_slice());
-        self.state.correction = largest / self.model.length;
-        let (whole, part) = (self.state.load_factor, self.state.last_target);
-        let pace = &mut self.state.pace;
+        self.state.major.correction = largest / self.model.length;
+        let (whole, part) = (self.state.load_factor, self.state.major.last_target);
+        let pace = &mut self.state.record.pace;
         if self.state.next.major == 1 {
             // A damped iteration covers only part of the increment.
             let from = self.state.start.load_factor;
@@ -280,7 +280,7 @@ impl State {
     fn is_balanced(&self, after: &Norms) -> bool {
         let tolerance = self.controls.settings.tolerance;
         let exact = after.relative <= tolerance;
-        self.last_target == self.load_factor
+        self.major.last_target == self.load_factor
             && (exact || (after.relative <= after.limit && after.correction <= STILL))
             && after.interface <= after.limit.max(tolerance)
     }

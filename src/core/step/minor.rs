@@ -50,7 +50,7 @@ impl Stepper {
             },
         };
         let mut settled = step_on_line(&mut self.now, check.stiffness) == 1.0;
-        let line = self.now.state.line.clone();
+        let line = self.now.state.major.line.clone();
         let controls = self.now.state.controls.clone();
         let singly = method.is_single(self.now.state.is_stalled());
         if singly {
@@ -88,18 +88,23 @@ impl Stepper {
             return self.now.state.begin_search();
         }
         let accept = settings.at_minor_limit == AtLimit::Accept;
-        let tried = self.now.state.minor_history.len(self.now.state.nodes.len()) as u32;
+        let tried = self
+            .now
+            .state
+            .major
+            .minor_history
+            .len(self.now.state.nodes.len()) as u32;
         let at_limit = tried > 0 && tried.is_multiple_of(settings.minors);
         if at_limit && accept {
             return self.end_major(false);
         }
         let moves_on = method.counts_changes() && !self.now.state.is_stalled();
-        if at_limit && let Some(line) = self.now.state.line.take() {
+        if at_limit && let Some(line) = self.now.state.major.line.take() {
             return self.escalate(Failure::Cycle(line.cycle.clone()));
         }
         if !accept
             && !moves_on
-            && self.now.state.line.is_none()
+            && self.now.state.major.line.is_none()
             && let Some(cycle) = self
                 .now
                 .find_cycle()
@@ -109,13 +114,13 @@ impl Stepper {
                 self.now.state.next.minor += 1;
                 return Outcome::Damped {
                     cycle,
-                    target: self.now.state.target,
+                    target: self.now.state.major.target,
                 };
             }
             // With the literal reading of Table 2's slip, the judge forgives states that a step may lead to.
             if method.searches_line() && settings.slip == SlipCount::Increment {
                 self.now.state.begin_again();
-                self.now.state.line = Some(Arc::new(LineSearch::new(cycle)));
+                self.now.state.major.line = Some(Arc::new(LineSearch::new(cycle)));
                 self.now.state.next.minor += 1;
                 return Outcome::Minor;
             }
@@ -182,7 +187,7 @@ impl Iterate {
     /// Failure before a ladder found a state without contact pressure: if the equations were singular, such a state does not
     /// support the loose bodies.
     pub(super) fn unsupported(&self, records: &[ContactRecord]) -> Option<Failure> {
-        let first = self.state.search.first.as_deref()?;
+        let first = self.state.attempt.search.first.as_deref()?;
         let force = self.ties().force;
         let pressed = |record: &ContactRecord| record.f_n > force;
         let loose = matches!(first, Failure::Singular(_)) && !records.iter().any(pressed);
@@ -223,6 +228,7 @@ impl Iterate {
         let force = REPEATED * self.force_scale();
         let (state, minor) = (&self.state, self.state.next.minor);
         state
+            .major
             .minor_history
             .cycle(&state.nodes, minor, force, REPEATED)
     }
@@ -236,7 +242,7 @@ impl Iterate {
         let problem = self.source.problem(&self.state.at()).ok()?;
         let found = spiral(&problem, method, AHEAD)?;
         let period = found.period as usize;
-        let history = &self.state.minor_history;
+        let history = &self.state.major.minor_history;
         // Phase in the cycle of the iteration `back` before the next one: rounds end `start` iterations from now.
         let phase = |back: usize| (2 * period - back - found.start as usize % period) % period;
         let patterns = || problem.nodes.iter().zip(&found.modes);
@@ -272,7 +278,7 @@ impl Iterate {
 /// A step of the line search towards the solution of this minor iteration, with the interface's stiffness (force per length);
 /// returns its length, 1 without a line search.
 fn step_on_line(now: &mut Iterate, stiffness: f64) -> f64 {
-    let Some(mut line) = now.state.line.take() else {
+    let Some(mut line) = now.state.major.line.take() else {
         return 1.0;
     };
     let (state, source) = (&now.state, &now.source);
@@ -291,19 +297,19 @@ fn step_on_line(now: &mut Iterate, stiffness: f64) -> f64 {
     let to = (0..state.nodes.len()).map(|contact| source.increment(contact));
     let part =
         Arc::make_mut(&mut line).step(to.collect(), |at| at.iter().enumerate().map(error).sum());
-    now.state.line = Some(line);
+    now.state.major.line = Some(line);
     part
 }
 
 impl State {
     /// Records the start of this minor iteration, to detect a cycle.
     pub(super) fn remember(&mut self) {
-        Arc::make_mut(&mut self.minor_history).push(&self.nodes);
+        Arc::make_mut(&mut self.major.minor_history).push(&self.nodes);
     }
 
     /// Whether simultaneous changes have continued for long without becoming fewer.
     fn is_stalled(&self) -> bool {
-        self.search.rounds > PATIENCE
+        self.attempt.search.rounds > PATIENCE
     }
 
     /// Counts the rounds since the minimum number of changing nodes in this major iteration. Rounds before a change of pace do
@@ -314,7 +320,7 @@ impl State {
             .filter(|record| record.decision.changes())
             .count();
         let stalled = self.is_stalled();
-        let search = &mut self.search;
+        let search = &mut self.attempt.search;
         if search.fewest.is_none_or(|fewest| changing < fewest) {
             (search.fewest, search.rounds) = (Some(changing), 0);
         } else {

@@ -4,6 +4,7 @@ use crate::contact::record::{ContactRecord, Forced};
 use crate::contact::state::ContactState;
 use crate::contact::table1::t_max;
 use crate::contact::table2::{Decision, Rule, Test};
+use crate::interface::kinematics::NodeKinematics;
 use crate::interface::method::{NoProposal, NotFound, Proposal, SearchInput, SearchProgress};
 use crate::interface::minor_history::Input;
 use crate::interface::problem::AssumedMode;
@@ -26,7 +27,8 @@ impl Stepper {
         let searches = self.method().search().is_some();
         // Forces that are not unique have no solve that confirms them, but sweeps find them.
         let sweeps_on = matches!(why, Failure::Singular(_)) && self.now.source.takes_forces();
-        if searches && (self.now.state.search.searched == SearchProgress::Not || sweeps_on) {
+        if searches && (self.now.state.attempt.search.searched == SearchProgress::Not || sweeps_on)
+        {
             return self.now.state.begin_search();
         }
         let chosen = self.now.state.controls.settings.strategy;
@@ -38,7 +40,7 @@ impl Stepper {
             return self.fail(why);
         }
         self.now.state.begin_again();
-        let search = &mut self.now.state.search;
+        let search = &mut self.now.state.attempt.search;
         let first = search.first.get_or_insert_with(|| Box::new(why.clone()));
         // A census that has tried every combination leaves nothing to find.
         let proven = matches!(why, Failure::NoAnswer { .. });
@@ -53,9 +55,9 @@ impl Stepper {
         if let Some(again) = self.freeze(&why, &first) {
             return again;
         }
-        let search = &mut self.now.state.search;
+        let search = &mut self.now.state.attempt.search;
         // The searches do not support held-back sliding.
-        let braked = self.now.state.brake.is_some();
+        let braked = self.now.state.recovery.brake.is_some();
         let next = next.filter(|(_, to)| !(braked && strategy::method(*to).search().is_some()));
         if let Some((rung, to)) = next
             && !proven
@@ -72,7 +74,7 @@ impl Stepper {
         if let Some(again) = self.now.state.hold_harder(&why) {
             return again;
         }
-        self.now.state.search = Progress::default();
+        self.now.state.attempt.search = Progress::default();
         self.fail(ended(*first, why))
     }
 
@@ -82,10 +84,10 @@ impl Stepper {
     /// behind the second once this has helped in a run, and those behind a census that is too large.
     fn freeze(&mut self, why: &Failure, first: &Failure) -> Option<Outcome> {
         let state = &self.now.state;
-        let (chosen, search) = (&state.controls.settings, &state.search);
+        let (chosen, search) = (&state.controls.settings, &state.attempt.search);
         let last = strategy::next_rung(chosen.strategy, search.rung, state.nodes.len()).is_none()
             || matches!(why, Failure::NoAnswer { .. });
-        let early = search.rung > 0 && state.searched.frozen
+        let early = search.rung > 0 && state.record.searched.frozen
             || matches!(why, Failure::NotFound(NotFound::TooMany { .. }));
         let held = matches!(
             first,
@@ -95,7 +97,7 @@ impl Stepper {
             || search.frozen
             || !(last || early)
             || chosen.geometry == Geometry::Frozen
-            || state.brake.is_some()
+            || state.recovery.brake.is_some()
             || state.way.is_some()
             || self.left_out == Some(OmittedStep::Recovery(FROZEN))
             || self.now.stalled().is_given()
@@ -103,7 +105,7 @@ impl Stepper {
             return None;
         }
         let (rung, to) = strategy::next_rung(chosen.strategy, 0, state.nodes.len())?;
-        self.now.state.search = Progress {
+        self.now.state.attempt.search = Progress {
             rung,
             first: Some(Box::new(first.clone())),
             frozen: true,
@@ -121,7 +123,7 @@ impl Stepper {
     /// Start and step of the search over all nodes to which this minor iteration belongs.
     pub(super) fn searching(&self) -> Option<(usize, usize)> {
         self.method().search()?;
-        match self.now.state.search.searched {
+        match self.now.state.attempt.search.searched {
             SearchProgress::At { start, step } => Some((start, step)),
             SearchProgress::Not | SearchProgress::Found { .. } => None,
         }
@@ -130,7 +132,7 @@ impl Stepper {
     /// One proposal of a search over all nodes.
     pub(super) fn propose(&mut self, start: usize, step: usize) -> Outcome {
         let method = self.method();
-        self.now.state.minors += 1;
+        self.now.state.attempt.minors += 1;
         let brought = self.now.brought();
         let Iterate {
             state,
@@ -142,7 +144,7 @@ impl Stepper {
         let asked = SearchInput {
             start,
             step,
-            unconfirmed: state.search.unconfirmed,
+            unconfirmed: state.attempt.search.unconfirmed,
             brought: &brought,
             problem: &mut || source.borrow_mut().problem(&state.at()).ok(),
             sweep: &mut || source.borrow_mut().sweep(&state.at()),
@@ -157,7 +159,7 @@ impl Stepper {
             Ok(proposal) => self.take(&proposal),
             Err(NoProposal::NotFound(why)) => self.escalate(Failure::NotFound(why)),
             Err(NoProposal::NoAnswer { tried }) => {
-                let first = self.now.state.search.first.clone();
+                let first = self.now.state.attempt.search.first.clone();
                 self.escalate(Failure::NoAnswer { first, tried })
             }
         }
@@ -165,7 +167,7 @@ impl Stepper {
 
     /// Records the modes that a search proposes for the contacts, and stores them in the state.
     fn take(&mut self, proposal: &Proposal) -> Outcome {
-        self.now.state.search.searched = proposal.next;
+        self.now.state.attempt.search.searched = proposal.next;
         let (model, mut nodes) = (self.now.model.clone(), proposal.nodes.iter());
         for (contact, slave) in model.contacts.iter().enumerate() {
             if slave.bond.is_tied() {
@@ -208,7 +210,7 @@ impl Stepper {
 impl Iterate {
     /// Modes and T_max of the contacts that are not tied, at the start of the current major iteration.
     fn brought(&self) -> Vec<AssumedMode> {
-        let first = self.state.minor_history.first(self.state.nodes.len());
+        let first = self.state.major.minor_history.first(self.state.nodes.len());
         let of = |(input, slave): (&Input, &Contact)| {
             (!slave.bond.is_tied()).then(|| AssumedMode::from_mode(input.mode, input.t_max))
         };
@@ -221,24 +223,7 @@ impl Iterate {
 
     /// Records a tied contact, which searches ignore: its forces follow from the next solve.
     fn stay_tied(&self, contact: usize) -> ContactRecord {
-        let (node, over) = (&self.state.nodes[contact], self.source.kinematics(contact));
-        ContactRecord {
-            decision: Decision::tied(),
-            forced: node.forced,
-            gap: over.map_or(f64::INFINITY, |k| k.gap),
-            f_n: node.f_n,
-            f_t: node.f_t,
-            t_max: 0.0,
-            t_max_used: 0.0,
-            slip: node.drift,
-            drift: node.drift,
-            spot: node.spot,
-            normal: over.map_or(node.normal, |k| k.normal),
-            foot: over.map_or([f64::NAN; 2], |k| k.foot),
-            directions: None,
-            corner: None,
-            carried: [false; 2],
-        }
+        tied_record(&self.state.nodes[contact], self.source.kinematics(contact))
     }
 
     /// Gives a contact the mode that a search assumes, and records it with the search's forces, gap and slip.
@@ -278,7 +263,6 @@ impl Iterate {
                 tests: [over.map(|_| test), None],
                 wanted: node.mode,
             },
-            forced: node.forced,
             gap: match give {
                 0.0 => gap,
                 give => gap - give * f_n,
@@ -288,14 +272,30 @@ impl Iterate {
             t_max: node.t_max,
             t_max_used: node.t_max,
             slip,
-            drift: node.drift,
-            spot: node.spot,
-            normal: over.map_or(node.normal, |k| k.normal),
-            foot: over.map_or([f64::NAN; 2], |k| k.foot),
-            directions: None,
             corner: node.corner.filter(|_| before == Mode::Fixed),
-            carried: [false; 2],
+            ..tied_record(node, over)
         }
+    }
+}
+
+/// The record of a tied contact.
+fn tied_record(node: &ContactState, over: Option<NodeKinematics>) -> ContactRecord {
+    ContactRecord {
+        decision: Decision::tied(),
+        forced: node.forced,
+        gap: over.map_or(f64::INFINITY, |k| k.gap),
+        f_n: node.f_n,
+        f_t: node.f_t,
+        t_max: 0.0,
+        t_max_used: 0.0,
+        slip: node.drift,
+        drift: node.drift,
+        spot: node.spot,
+        normal: over.map_or(node.normal, |k| k.normal),
+        foot: over.map_or([f64::NAN; 2], |k| k.foot),
+        directions: None,
+        corner: None,
+        carried: [false; 2],
     }
 }
 
@@ -307,7 +307,7 @@ impl State {
     }
 
     fn take_back(&mut self) {
-        let first = self.minor_history.first(self.nodes.len());
+        let first = self.major.minor_history.first(self.nodes.len());
         for (node, input) in self.nodes.iter_mut().zip(first) {
             (node.mode, node.ratio) = (input.mode, input.ratio);
             if input.mode == Mode::Sliding {
@@ -318,7 +318,7 @@ impl State {
 
     /// The modes that were tried are not consistent: the next start of a search over all nodes, or its next solution.
     pub(super) fn begin_search(&mut self) -> Outcome {
-        let search = &mut self.search;
+        let search = &mut self.attempt.search;
         let start = match search.searched {
             SearchProgress::Not => {
                 search.unconfirmed = 0;

@@ -29,6 +29,7 @@ use std::sync::Arc;
 
 /// State of the solver between two minor iterations.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(into = "SerializedState", from = "SerializedState")]
 pub struct State {
     /// Position of the next minor iteration.
     pub next: Position,
@@ -42,69 +43,80 @@ pub struct State {
     pub start: Arc<IncrementStart>,
     /// Values that the user can change during a run.
     pub controls: Arc<Controls>,
-    /// Starts of the minor iterations of the current major iteration, to detect a cycle.
-    #[serde(rename = "trail")]
+    /// The part of an increment that is being solved.
+    pub sub_increment: SubIncrement,
+    /// The current major iteration.
+    pub major: MajorState,
+    /// The current attempt at the increment.
+    pub attempt: AttemptState,
+    /// The recoveries in progress.
+    pub recovery: RecoveryState,
+    /// Records of the whole run.
+    pub record: RunRecord,
+    /// Arc-length data of the path. `None` under load control.
+    pub way: Option<Box<ArcState>>,
+    /// Position of an attached solver, which stores its own data. `None` for the built-in solver.
+    pub outside: Option<Box<ExternalState>>,
+    /// Whether and how the solver can continue.
+    pub status: Status,
+}
+
+/// State of a major iteration.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MajorState {
+    /// Starts of its minor iterations, to detect a cycle.
     pub minor_history: Arc<MinorHistory>,
-    /// Starts of the major iterations of the current increment, to detect a cycle.
-    #[serde(rename = "rounds")]
-    pub major_history: Arc<MajorHistory>,
-    /// Line search of the current major iteration. `None` with full steps.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    /// Its line search. `None` with full steps.
     pub line: Option<Arc<LineSearch>>,
-    /// Target load factor of the current major iteration: `load_factor`, unless it was damped.
-    #[serde(rename = "aim")]
+    /// Its target load factor: [`State::load_factor`], unless it was damped.
     pub target: f64,
     /// Target load factor of the last major iteration; initially the one at the start of the increment.
-    #[serde(rename = "reached")]
     pub last_target: f64,
-    /// Progress of the strategy in the current increment.
-    pub search: Progress,
-    /// The part of an increment that is being solved.
-    #[serde(rename = "piece")]
-    pub sub_increment: SubIncrement,
-    /// Number of cuts of the current whole increment because of a slave node, by node; empty before the first such cut.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub cuts: BTreeMap<usize, u32>,
-    /// Minor iterations done in the current attempt at the increment.
-    pub minors: u32,
-    /// Loops of the current attempt whose limit was reached and accepted.
-    pub unsettled: u32,
-    /// Whether nodes that touched when the increment started keep their anchors from there: the judge has refused a state of the
-    /// current attempt ([`crate::contact::judge`]).
-    #[serde(default)]
-    pub net: bool,
     /// Largest displacement change in the last major iteration over the length scale.
     pub correction: f64,
     /// Displacements at which the current stiffness of the bodies was computed; `None` for those of the current major iteration
     /// ([`crate::model::Refactor`]).
-    #[serde(skip_serializing_if = "Option::is_none")]
     pub factored: Option<Arc<Vec<f64>>>,
-    /// Record of how fast the scene moves.
-    #[serde(default)]
-    pub pace: Pace,
-    /// Stability of the accepted states that were checked.
-    #[serde(default, skip_serializing_if = "StabilityWatch::is_new")]
-    pub watch: StabilityWatch,
-    /// How sliding is held back in the current attempt ([`crate::step::recovery::proximal`]). `None` if it is not.
-    #[serde(skip_serializing_if = "Option::is_none")]
+}
+
+/// State of an attempt at an increment.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct AttemptState {
+    /// Starts of its major iterations, to detect a cycle.
+    pub major_history: Arc<MajorHistory>,
+    /// Progress of the strategy.
+    pub search: Progress,
+    /// Minor iterations done.
+    pub minors: u32,
+    /// Loops whose limit was reached and accepted.
+    pub unsettled: u32,
+    /// Whether nodes that touched when the increment started keep their anchors from there: the judge has refused a state of the
+    /// attempt ([`crate::contact::judge`]).
+    pub net: bool,
+}
+
+/// States of the recoveries. `None` where a recovery is not in progress.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct RecoveryState {
+    /// Number of cuts of the current whole increment because of a slave node, by node; empty before the first such cut.
+    pub cuts: BTreeMap<usize, u32>,
+    /// How sliding is held back in the current attempt ([`crate::step::recovery::proximal`]).
     pub brake: Option<SlipStiffness>,
-    /// Arc-length data of the path. `None` under load control.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub way: Option<Box<ArcState>>,
-    /// Damped motion past a limit point that is in progress; each of its steps is an attempt at the increment.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    /// Damped motion past a limit point; each of its steps is an attempt at the increment.
     pub motion: Option<Motion>,
     /// The fallback that is tried if the halves of the increment have failed.
-    #[serde(rename = "detour", default, skip_serializing_if = "Option::is_none")]
     pub fallback: Option<FallbackState>,
-    /// Record of the searches done so far.
-    #[serde(default, skip_serializing_if = "SearchRecord::is_new")]
+}
+
+/// Records of a run.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct RunRecord {
+    /// How fast the scene moves.
+    pub pace: Pace,
+    /// Stability of the accepted states that were checked.
+    pub watch: StabilityWatch,
+    /// The searches done so far.
     pub searched: SearchRecord,
-    /// Position of an attached solver, which stores its own data. `None` for the built-in solver.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub outside: Option<Box<ExternalState>>,
-    /// Whether and how the solver can continue.
-    pub status: Status,
 }
 
 /// Position of an attached solver, and the changes to send before its next iteration.
@@ -281,26 +293,19 @@ impl State {
             nodes,
             start: Arc::new(start),
             controls: Arc::new(controls),
-            minor_history: Arc::default(),
-            line: None,
-            major_history: Arc::default(),
-            target,
-            last_target: load_factor,
-            search: Progress::default(),
             sub_increment,
-            minors: 0,
-            unsettled: 0,
-            net: false,
-            correction: 0.0,
-            factored: None,
-            pace: Pace::default(),
-            watch: StabilityWatch::default(),
-            brake: None,
+            major: MajorState {
+                minor_history: Arc::default(),
+                line: None,
+                target,
+                last_target: load_factor,
+                correction: 0.0,
+                factored: None,
+            },
+            attempt: AttemptState::default(),
+            recovery: RecoveryState::default(),
+            record: RunRecord::default(),
             way: (model.control == Control::Arc).then(|| Box::new(ArcState::new(model))),
-            motion: None,
-            fallback: None,
-            searched: SearchRecord::default(),
-            cuts: BTreeMap::new(),
             outside: None,
             status: Status::Running,
         };
@@ -310,14 +315,14 @@ impl State {
 
     /// The settings in force: with the strategy of the current rung, its update of T_max, and the changes of a fallback.
     pub fn settings(&self) -> Settings {
-        let mut settings = strategy::in_force(&self.controls.settings, self.search.rung);
-        if let Some(route) = self.fallback {
+        let mut settings = strategy::in_force(&self.controls.settings, self.attempt.search.rung);
+        if let Some(route) = self.recovery.fallback {
             settings = route.by.in_force(settings);
         }
-        if self.brake.is_some() && !self.net {
+        if self.recovery.brake.is_some() && !self.attempt.net {
             settings.slip = SlipCount::Major;
         }
-        if self.search.frozen {
+        if self.attempt.search.frozen {
             settings.geometry = Geometry::Frozen;
         }
         settings
@@ -326,21 +331,24 @@ impl State {
     /// The part of the state that digests cover: fields added after the first journals are excluded, so that the digests of those
     /// journals remain valid.
     pub fn digested(&self) -> State {
-        State {
-            pace: self.pace.digested(),
+        let record = RunRecord {
+            pace: self.record.pace.digested(),
             watch: StabilityWatch::default(),
             searched: SearchRecord {
                 run: 0,
-                ..self.searched.clone()
+                ..self.record.searched.clone()
             },
+        };
+        State {
+            record,
             ..self.clone()
         }
     }
 
     /// Adds factorizations to the cost of the run, or of the search that is in progress.
     pub(super) fn count_cost(&mut self, factorizations: u32) {
-        let searched = &mut self.searched;
-        let cost = match self.fallback {
+        let searched = &mut self.record.searched;
+        let cost = match self.recovery.fallback {
             Some(fallback) if fallback.by.searches() => &mut searched.spent,
             _ => &mut searched.run,
         };
@@ -367,7 +375,7 @@ impl State {
             };
             *node == minor
         };
-        let factored = match (&self.factored, &other.factored) {
+        let factored = match (&self.major.factored, &other.major.factored) {
             (Some(a), Some(b)) => same(a, b),
             (None, None) => true,
             _ => false,
@@ -376,10 +384,18 @@ impl State {
             && same(&self.u, &other.u)
             && (Arc::ptr_eq(&self.start, &other.start) || self.start == other.start)
             && (Arc::ptr_eq(&self.controls, &other.controls) || self.controls == other.controls)
-            && [self.target, self.last_target, self.correction]
-                == [other.target, other.last_target, other.correction]
-            && self.search.frozen == other.search.frozen
-            && (self.brake, &self.way, &self.motion) == (other.brake, &other.way, &other.motion)
+            && [
+                self.major.target,
+                self.major.last_target,
+                self.major.correction,
+            ] == [
+                other.major.target,
+                other.major.last_target,
+                other.major.correction,
+            ]
+            && self.attempt.search.frozen == other.attempt.search.frozen
+            && (self.recovery.brake, &self.way, &self.recovery.motion)
+                == (other.recovery.brake, &other.way, &other.recovery.motion)
             && self.nodes.len() == other.nodes.len()
             && self.nodes.iter().zip(&other.nodes).all(stands)
     }
@@ -395,19 +411,145 @@ impl State {
             },
             leg: self.start.leg,
             start_load: self.start.load_factor,
-            target: self.target,
-            last_target: self.last_target,
+            target: self.major.target,
+            last_target: self.major.last_target,
             contacts: &self.nodes,
             friction: &self.controls.friction,
-            entered: self.minor_history.first(self.nodes.len()),
-            correction: self.correction,
-            factored: self.factored.as_deref().map(Vec::as_slice),
-            brake: self.brake.map_or(0.0, |brake| brake.stiffness),
-            drag: self.motion.and_then(|motion| motion.drag()),
+            entered: self.major.minor_history.first(self.nodes.len()),
+            correction: self.major.correction,
+            factored: self.major.factored.as_deref().map(Vec::as_slice),
+            brake: self.recovery.brake.map_or(0.0, |brake| brake.stiffness),
+            drag: self.recovery.motion.and_then(|motion| motion.drag()),
             chosen: &self.controls.settings,
             settings: self.settings(),
             along: self.way.as_ref().map(|way| way.along()),
             arc: self.arc().unwrap_or(0.0),
+        }
+    }
+}
+
+/// A [`State`] as data: one flat record, whose field names and order the digests of journals rely on.
+#[derive(Serialize, Deserialize)]
+#[serde(rename = "State")]
+struct SerializedState {
+    next: Position,
+    load_factor: f64,
+    u: Arc<Vec<f64>>,
+    nodes: Vec<ContactState>,
+    start: Arc<IncrementStart>,
+    controls: Arc<Controls>,
+    trail: Arc<MinorHistory>,
+    rounds: Arc<MajorHistory>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    line: Option<Arc<LineSearch>>,
+    aim: f64,
+    reached: f64,
+    search: Progress,
+    piece: SubIncrement,
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    cuts: BTreeMap<usize, u32>,
+    minors: u32,
+    unsettled: u32,
+    #[serde(default)]
+    net: bool,
+    correction: f64,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    factored: Option<Arc<Vec<f64>>>,
+    #[serde(default)]
+    pace: Pace,
+    #[serde(default, skip_serializing_if = "StabilityWatch::is_new")]
+    watch: StabilityWatch,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    brake: Option<SlipStiffness>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    way: Option<Box<ArcState>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    motion: Option<Motion>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    detour: Option<FallbackState>,
+    #[serde(default, skip_serializing_if = "SearchRecord::is_new")]
+    searched: SearchRecord,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    outside: Option<Box<ExternalState>>,
+    status: Status,
+}
+
+impl From<State> for SerializedState {
+    fn from(state: State) -> Self {
+        let (major, attempt) = (state.major, state.attempt);
+        let (recovery, record) = (state.recovery, state.record);
+        SerializedState {
+            next: state.next,
+            load_factor: state.load_factor,
+            u: state.u,
+            nodes: state.nodes,
+            start: state.start,
+            controls: state.controls,
+            trail: major.minor_history,
+            rounds: attempt.major_history,
+            line: major.line,
+            aim: major.target,
+            reached: major.last_target,
+            search: attempt.search,
+            piece: state.sub_increment,
+            cuts: recovery.cuts,
+            minors: attempt.minors,
+            unsettled: attempt.unsettled,
+            net: attempt.net,
+            correction: major.correction,
+            factored: major.factored,
+            pace: record.pace,
+            watch: record.watch,
+            brake: recovery.brake,
+            way: state.way,
+            motion: recovery.motion,
+            detour: recovery.fallback,
+            searched: record.searched,
+            outside: state.outside,
+            status: state.status,
+        }
+    }
+}
+
+impl From<SerializedState> for State {
+    fn from(state: SerializedState) -> Self {
+        State {
+            next: state.next,
+            load_factor: state.load_factor,
+            u: state.u,
+            nodes: state.nodes,
+            start: state.start,
+            controls: state.controls,
+            sub_increment: state.piece,
+            major: MajorState {
+                minor_history: state.trail,
+                line: state.line,
+                target: state.aim,
+                last_target: state.reached,
+                correction: state.correction,
+                factored: state.factored,
+            },
+            attempt: AttemptState {
+                major_history: state.rounds,
+                search: state.search,
+                minors: state.minors,
+                unsettled: state.unsettled,
+                net: state.net,
+            },
+            recovery: RecoveryState {
+                cuts: state.cuts,
+                brake: state.brake,
+                motion: state.motion,
+                fallback: state.detour,
+            },
+            record: RunRecord {
+                pace: state.pace,
+                watch: state.watch,
+                searched: state.searched,
+            },
+            way: state.way,
+            outside: state.outside,
+            status: state.status,
         }
     }
 }

@@ -129,7 +129,7 @@ impl Stepper {
         self.event.outcome = self.iterate();
         self.event.arc = self.now.state.arc();
         if self.now.state.way.is_some() && self.event.outcome.ends_major() {
-            self.event.load_factor = self.now.state.last_target;
+            self.event.load_factor = self.now.state.major.last_target;
         }
         if let Outcome::Failed(failure) = &self.event.outcome {
             self.now.state.status = Status::Failed(failure.clone());
@@ -163,7 +163,7 @@ impl Stepper {
         if let Some(why) = self.now.unsolvable(solved) {
             return Some(self.escalate(why));
         }
-        self.now.state.minors += 1;
+        self.now.state.attempt.minors += 1;
         let settled = self.check();
         self.now.state.note_changes(&self.event.nodes);
         if !settled {

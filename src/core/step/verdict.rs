@@ -34,9 +34,9 @@ impl Stepper {
         #[cfg(mutants)]
         let verdict =
             crate::mutants::pick("accepted-without-the-judge", verdict, Verdict::default());
-        if self.now.state.motion.is_some() {
+        if self.now.state.recovery.motion.is_some() {
             let worst = worst_of(&verdict);
-            return match worst.filter(|found| is_slip(found.law) && !self.now.state.net) {
+            return match worst.filter(|found| is_slip(found.law) && !self.now.state.attempt.net) {
                 Some(why) => {
                     self.now.count_net_slip();
                     Outcome::Refused { why, after }
@@ -50,7 +50,7 @@ impl Stepper {
         if self.now.state.only_marks() {
             return self.land(after, verdict, Some(worst));
         }
-        if is_slip(worst.law) && !self.now.state.net {
+        if is_slip(worst.law) && !self.now.state.attempt.net {
             self.now.count_net_slip();
             return Outcome::Refused { why: worst, after };
         }
@@ -93,7 +93,7 @@ impl Iterate {
         let tolerance = self.state.controls.settings.tolerance;
         self.source
             .count_net_slip(tolerance, &start.nodes, &mut self.state.nodes);
-        self.state.net = true;
+        self.state.attempt.net = true;
         self.state.next_major();
         self.state.forget_minors();
         self.state.forget_majors();
@@ -106,7 +106,7 @@ impl State {
     fn only_marks(&self) -> bool {
         let settings = &self.controls.settings;
         let held = |node: &ContactState| matches!(node.forced, Forced::Held(_));
-        self.unsettled > 0
+        self.attempt.unsettled > 0
             || settings.slip == SlipCount::Major
             || settings.sticking == Sticking::Increments
             || settings.ties == TieRule::Printed

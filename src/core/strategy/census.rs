@@ -4,23 +4,12 @@
 use crate::contact::table2::{Rule, TestedQuantity};
 use crate::interface::census;
 use crate::interface::method::{
-    Method, NoProposal, NotFound, Proposal, Search, SearchInput, SearchProgress,
+    NoProposal, NotFound, Proposal, Search, SearchInput, SearchProgress,
 };
 use crate::interface::problem::{AssumedMode, NodeAnswer};
-use crate::model::BoundUpdate;
 
 /// All combinations of modes of the nodes that can touch.
 pub struct CensusStrategy;
-
-impl Method for CensusStrategy {
-    fn bound(&self, _wanted: BoundUpdate) -> BoundUpdate {
-        BoundUpdate::Consistent
-    }
-
-    fn search(&self) -> Option<&dyn Search> {
-        Some(self)
-    }
-}
 
 impl Search for CensusStrategy {
     /// Proposes solution number `asked.start`.

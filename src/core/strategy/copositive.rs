@@ -6,12 +6,9 @@
 
 use crate::contact::table2::{Rule, TestedQuantity};
 use crate::interface::copositive::{Copositive as Pivoting, STARTS};
-use crate::interface::method::{
-    Method, NoProposal, NotFound, Proposal, Search, SearchInput, SearchProgress,
-};
+use crate::interface::method::{NoProposal, NotFound, Proposal, Search, SearchInput};
 use crate::interface::tableau::PathEnd;
 use crate::interface::vertex::vertices;
-use crate::model::BoundUpdate;
 
 /// Pivoting from all nodes free, with the friction force split into two parts.
 pub struct CopositiveStrategy;
@@ -38,16 +35,6 @@ impl CopositivePath {
     }
 }
 
-impl Method for CopositiveStrategy {
-    fn bound(&self, _wanted: BoundUpdate) -> BoundUpdate {
-        BoundUpdate::Consistent
-    }
-
-    fn search(&self) -> Option<&dyn Search> {
-        Some(self)
-    }
-}
-
 impl Search for CopositiveStrategy {
     /// One step of the path; if it has ended on a ray, continues with the next start.
     fn propose(&self, mut asked: SearchInput<'_>) -> Result<Proposal, NoProposal> {
@@ -57,8 +44,7 @@ impl Search for CopositiveStrategy {
                 states => NotFound::Unconfirmed { states }.into(),
             });
         }
-        let kept = asked.kept.take().and_then(|kept| kept.downcast().ok());
-        let mut path: Box<CopositivePath> = match kept {
+        let mut path: Box<CopositivePath> = match asked.take_kept() {
             Some(path) if path_is_at(&path, &asked) => path,
             _ => Box::new(path(&mut asked)?),
         };
@@ -82,17 +68,7 @@ impl Search for CopositiveStrategy {
             cover: pivoting.cover(),
             covers: TestedQuantity::Cover,
             bound: pivoting.bound(),
-            next: match ended {
-                None => SearchProgress::At {
-                    start: path.start,
-                    step: path.step,
-                },
-                Some(PathEnd::Solved) => SearchProgress::Found { start: path.start },
-                Some(PathEnd::Ray | PathEnd::Astray) => SearchProgress::At {
-                    start: path.start + 1,
-                    step: 0,
-                },
-            },
+            next: PathEnd::next(ended, path.start, path.step),
         };
         *asked.kept = Some(path);
         Ok(proposal)

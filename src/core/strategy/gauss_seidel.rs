@@ -11,12 +11,11 @@
 
 use crate::contact::table2::{Rule, TestedQuantity};
 use crate::interface::method::{
-    Method, NoProposal, NotFound, Proposal, Search, SearchInput, SearchProgress,
+    NoProposal, NotFound, Proposal, Search, SearchInput, SearchProgress,
 };
 use crate::interface::problem::AssumedMode;
 use crate::interface::sweep::Sweep;
 use crate::interface::vertex::vertices;
-use crate::model::BoundUpdate;
 
 /// Sweeps, with a solve when the modes are stable.
 pub struct GaussSeidel;
@@ -144,22 +143,11 @@ impl SweepState {
     }
 }
 
-impl Method for GaussSeidel {
-    fn bound(&self, _wanted: BoundUpdate) -> BoundUpdate {
-        BoundUpdate::Consistent
-    }
-
-    fn search(&self) -> Option<&dyn Search> {
-        Some(self)
-    }
-}
-
 impl Search for GaussSeidel {
     /// Several sweeps over all nodes.
     fn propose(&self, mut asked: SearchInput<'_>) -> Result<Proposal, NoProposal> {
         let nodes = asked.brought.len();
-        let kept = asked.kept.take().and_then(|kept| kept.downcast().ok());
-        let mut going: Box<SweepState> = match kept {
+        let mut going: Box<SweepState> = match asked.take_kept() {
             Some(going) if is_at(&going, &asked) => going,
             _ => Box::new(going(&mut asked)?),
         };

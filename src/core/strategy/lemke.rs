@@ -3,10 +3,7 @@
 
 use crate::contact::table2::{Rule, TestedQuantity};
 use crate::interface::lemke::{Lemke as Tableau, PathEnd, STARTS};
-use crate::interface::method::{
-    Method, NoProposal, NotFound, Proposal, Search, SearchInput, SearchProgress,
-};
-use crate::model::BoundUpdate;
+use crate::interface::method::{NoProposal, NotFound, Proposal, Search, SearchInput};
 
 /// Pivoting from several starts.
 pub struct LemkeStrategy;
@@ -18,21 +15,10 @@ struct LemkePath {
     step: usize,
 }
 
-impl Method for LemkeStrategy {
-    fn bound(&self, _wanted: BoundUpdate) -> BoundUpdate {
-        BoundUpdate::Consistent
-    }
-
-    fn search(&self) -> Option<&dyn Search> {
-        Some(self)
-    }
-}
-
 impl Search for LemkeStrategy {
     /// One pivot; if a path has ended on a ray, continues with the next start.
     fn propose(&self, mut asked: SearchInput<'_>) -> Result<Proposal, NoProposal> {
-        let kept = asked.kept.take().and_then(|kept| kept.downcast().ok());
-        let mut path: Box<LemkePath> = match kept {
+        let mut path: Box<LemkePath> = match asked.take_kept() {
             Some(path) if is_at(&path, &asked) => path,
             _ => Box::new(path(&mut asked)?),
         };
@@ -41,7 +27,6 @@ impl Search for LemkeStrategy {
             path.step += 1;
         }
         let tableau = &path.tableau;
-        let start = path.start;
         let ended = tableau.ended();
         let nodes = (0..asked.brought.len()).map(|k| (tableau.assumed(k), tableau.numbers(k)));
         let proposal = Proposal {
@@ -53,17 +38,7 @@ impl Search for LemkeStrategy {
             cover: tableau.cover(),
             covers: TestedQuantity::Cover,
             bound: tableau.bound(),
-            next: match ended {
-                None => SearchProgress::At {
-                    start,
-                    step: path.step,
-                },
-                Some(PathEnd::Solved) => SearchProgress::Found { start },
-                Some(PathEnd::Ray | PathEnd::Astray) => SearchProgress::At {
-                    start: start + 1,
-                    step: 0,
-                },
-            },
+            next: PathEnd::next(ended, path.start, path.step),
         };
         *asked.kept = Some(path);
         Ok(proposal)

@@ -150,79 +150,57 @@ pub enum Page {
     Contact,
 }
 
-/// Sort order of the slave nodes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Sort {
-    /// The order of the scene.
-    Scene,
-    /// Closest to switching first.
-    Margin,
-    /// Deepest penetration first.
-    Gap,
-    /// Nodes that change first: their mode, then T_max.
-    Change,
-    /// Closest to the friction limit first.
-    Ratio,
-    /// Largest contact force first.
-    Force,
+stickslip_core::words! {
+    /// Sort order of the slave nodes.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum Sort, ALL, word {
+        /// The order of the scene.
+        Scene "scene",
+        /// Closest to switching first.
+        Margin "margin",
+        /// Deepest penetration first.
+        Gap "gap",
+        /// Nodes that change first: their mode, then T_max.
+        Change "change",
+        /// Closest to the friction limit first.
+        Ratio "ratio",
+        /// Largest contact force first.
+        Force "force",
+    }
 }
 
 stickslip_core::words! {
-    Sort, ALL, word:
-    Scene "scene",
-    Margin "margin",
-    Gap "gap",
-    Change "change",
-    Ratio "ratio",
-    Force "force",
-}
-
-/// Which slave nodes the table shows, in addition to the selected one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Filter {
-    /// All.
-    All,
-    /// Those in contact, and those whose mode changes.
-    Active,
-    /// Those on the same surface as the selected one.
-    Surface,
-    /// Those whose mode changes.
-    Changing,
-    /// The free ones.
-    Free,
-    /// The sliding ones.
-    Sliding,
-    /// The fixed ones.
-    Fixed,
+    /// Which slave nodes the table shows, in addition to the selected one.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum Filter, ALL, word {
+        /// All.
+        All "all",
+        /// Those in contact, and those whose mode changes.
+        Active "active",
+        /// Those on the same surface as the selected one.
+        Surface "surface",
+        /// Those whose mode changes.
+        Changing "changing",
+        /// The free ones.
+        Free "free",
+        /// The sliding ones.
+        Sliding "sliding",
+        /// The fixed ones.
+        Fixed "fixed",
+    }
 }
 
 stickslip_core::words! {
-    Filter, ALL, word:
-    All "all",
-    Active "active",
-    Surface "surface",
-    Changing "changing",
-    Free "free",
-    Sliding "sliding",
-    Fixed "fixed",
-}
-
-/// Whose decisions are hidden, in free mode, until they are predicted.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum HiddenDecisions {
-    /// All, until any one node is predicted, such as the selected one.
-    Selected,
-    /// Those of all nodes whose mode changes.
-    Changed,
-    /// None.
-    Off,
-}
-
-stickslip_core::words! {
-    HiddenDecisions, ALL, word:
-    Selected "selected",
-    Changed "changed",
-    Off "off",
+    /// Whose decisions are hidden, in free mode, until they are predicted.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum HiddenDecisions, ALL, word {
+        /// All, until any one node is predicted, such as the selected one.
+        Selected "selected",
+        /// Those of all nodes whose mode changes.
+        Changed "changed",
+        /// None.
+        Off "off",
+    }
 }
 
 /// A missing argument that an action asks for.
@@ -277,18 +255,20 @@ impl CopyTarget {
     }
 }
 
-/// The colours of the screen.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Colours {
-    /// The terminal's own colours, for dark backgrounds and most light ones.
-    #[default]
-    Dark,
-    /// The terminal's own colours that stand out on light backgrounds.
-    Light,
-    /// White and bright colours on black; nothing dim.
-    HighContrast,
-    /// Only bold, dim, underlined and reversed.
-    None,
+stickslip_core::words! {
+    /// The colours of the screen.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+    pub enum Colours, ALL, word {
+        /// The terminal's own colours, for dark backgrounds and most light ones.
+        #[default]
+        Dark "dark",
+        /// The terminal's own colours that stand out on light backgrounds.
+        Light "light",
+        /// White and bright colours on black; nothing dim.
+        HighContrast "high contrast",
+        /// Only bold, dim, underlined and reversed.
+        None "none",
+    }
 }
 
 impl Colours {
@@ -299,12 +279,4 @@ impl Colours {
             false => Colours::Dark,
         }
     }
-}
-
-stickslip_core::words! {
-    Colours, ALL, word:
-    Dark "dark",
-    Light "light",
-    HighContrast "high contrast",
-    None "none",
 }

@@ -6,34 +6,25 @@ use super::meaning::{Page, Step, Ui};
 use super::parse_error::ParseError;
 use crate::record::command::{BranchTarget, Command, ExportScope, Unit};
 
-/// Heading under which help lists an action.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Group {
-    /// Moving through the iterations.
-    Go,
-    /// Changing the solve.
-    Change,
-    /// Branches of the history.
-    Branches,
-    /// Breakpoints and watches.
-    Breakpoints,
-    /// Views and analyses.
-    Look,
-    /// Lessons and predictions.
-    Learn,
-    /// The program itself.
-    Program,
-}
-
 stickslip_core::words! {
-    Group, ALL, title:
-    Go "Move through the iterations",
-    Change "Interfere",
-    Branches "Branches",
-    Breakpoints "Breakpoints and watches",
-    Look "Views and analyses",
-    Learn "Learn",
-    Program "Program",
+    /// Heading under which help lists an action.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum Group, ALL, title {
+        /// Moving through the iterations.
+        Go "Move through the iterations",
+        /// Changing the solve.
+        Change "Interfere",
+        /// Branches of the history.
+        Branches "Branches",
+        /// Breakpoints and watches.
+        Breakpoints "Breakpoints and watches",
+        /// Views and analyses.
+        Look "Views and analyses",
+        /// Lessons and predictions.
+        Learn "Learn",
+        /// The program itself.
+        Program "Program",
+    }
 }
 
 /// An action: its name, its keys and its help.

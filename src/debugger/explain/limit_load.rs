@@ -35,7 +35,7 @@ pub fn limit_load(
     stop: &dyn Fn() -> bool,
 ) -> Option<String> {
     let motion = rigid(failure)?.first()?;
-    if state.way.is_some() || state.motion.is_some() {
+    if state.way.is_some() || state.recovery.motion.is_some() {
         return None;
     }
     let found = reach(stepper, state, stop)?;

@@ -417,8 +417,14 @@ fn copy(frame: &mut Frame, before: &Frame) {
     state.nodes = state.nodes.clone();
     part(&mut state.u, &before.state.u);
     part(&mut state.start, &before.state.start);
-    part(&mut state.minor_history, &before.state.minor_history);
-    part(&mut state.major_history, &before.state.major_history);
+    part(
+        &mut state.major.minor_history,
+        &before.state.major.minor_history,
+    );
+    part(
+        &mut state.attempt.major_history,
+        &before.state.attempt.major_history,
+    );
     if let Some(event) = &mut frame.event {
         *event = Arc::new(Event::clone(event));
     }
@@ -493,7 +499,10 @@ fn each_shared(frame: &Frame, tell: &mut impl FnMut(usize, usize)) {
         + size_of_val(&start.nodes[..])
         + size_of_val(&start.history[..]);
     tell(address(start), own);
-    tell(address(&state.minor_history), state.minor_history.bytes());
+    tell(
+        address(&state.major.minor_history),
+        state.major.minor_history.bytes(),
+    );
     if let Some(event) = &frame.event {
         let bytes = size_of::<Event>() + event.nodes.capacity() * size_of::<ContactRecord>();
         tell(address(event), bytes);

@@ -5,39 +5,29 @@ use crate::history::frame::Frame;
 use serde::{Deserialize, Serialize};
 use stickslip_core::model::Model;
 
-/// A quantity of the last minor iteration. Forces and lengths are those of
-/// [`stickslip_core::contact::record::ContactRecord`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename = "Quantity")]
-pub enum WatchQuantity {
-    /// Gap (length), negative for penetration.
-    Gap,
-    /// Normal force; compression is positive.
-    NormalForce,
-    /// Tangential force.
-    TangentialForce,
-    /// The friction bound T_max, force.
-    BoundUpdate,
-    /// Slip, length.
-    Slip,
-    /// Distance from switching (force or length).
-    Margin,
-    /// Relative residual at the start of the current major iteration.
-    Residual,
-    /// Violation of the interface conditions at the same time.
-    Interface,
-}
-
 stickslip_core::words! {
-    WatchQuantity, ALL, word:
-    Gap "gap",
-    NormalForce "f_n",
-    TangentialForce "f_t",
-    BoundUpdate "t_max",
-    Slip "slip",
-    Margin "margin",
-    Residual "residual",
-    Interface "interface",
+    /// A quantity of the last minor iteration. Forces and lengths are those of
+    /// [`stickslip_core::contact::record::ContactRecord`].
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+    #[serde(rename = "Quantity")]
+    pub enum WatchQuantity, ALL, word {
+        /// Gap (length), negative for penetration.
+        Gap "gap",
+        /// Normal force; compression is positive.
+        NormalForce "f_n",
+        /// Tangential force.
+        TangentialForce "f_t",
+        /// The friction bound T_max, force.
+        BoundUpdate "t_max",
+        /// Slip, length.
+        Slip "slip",
+        /// Distance from switching (force or length).
+        Margin "margin",
+        /// Relative residual at the start of the current major iteration.
+        Residual "residual",
+        /// Violation of the interface conditions at the same time.
+        Interface "interface",
+    }
 }
 
 impl WatchQuantity {

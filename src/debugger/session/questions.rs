@@ -131,7 +131,7 @@ impl Session {
             Some(event) if matches!(frame.state.status, Status::Failed(_)) => event.position,
             _ => frame.state.next,
         };
-        let mut origin = Origin::new(&self.scene, at, frame.state.target);
+        let mut origin = Origin::new(&self.scene, at, frame.state.major.target);
         let changed = self.timeline.applied().1;
         let words = changed
             .iter()

@@ -5,6 +5,7 @@ use crate::format::error::at;
 use crate::format::error::bail;
 use crate::format::given::Cells;
 use crate::format::spec::{BodySpec, Material, Nodes};
+use crate::import::element_kind;
 use std::collections::BTreeMap;
 use stickslip_core::model::{ElementKind, Law, Plane, Update};
 use stickslip_exchange::inp::deck::{Element, ElementType, Family, Form, Section};
@@ -288,12 +289,8 @@ impl DeckObjects<'_> {
 
 fn kind_of(kind: ElementType) -> ElementKind {
     match (kind.cell, kind.reduced) {
-        (CellKind::Triangle3, _) => ElementKind::Triangle3,
-        (CellKind::Triangle6, _) => ElementKind::Triangle6,
-        (CellKind::Quad4, _) => ElementKind::Quad4,
         (CellKind::Quad8, true) => ElementKind::Quad8Reduced,
-        (CellKind::Quad9, _) => ElementKind::Quad9,
-        _ => ElementKind::Quad8,
+        (cell, _) => element_kind(cell).unwrap_or_default(),
     }
 }
 

@@ -166,6 +166,12 @@ impl DeckObjects<'_> {
         made
     }
 
+    /// The nodes of sides of elements.
+    fn node_lists(&self, sides: &[(usize, usize)]) -> Vec<Vec<usize>> {
+        let nodes = |&(element, side): &(usize, usize)| self.deck.side(element, side);
+        sides.iter().map(nodes).collect()
+    }
+
     /// Whether to smooth a master surface without real corners: its slave nodes have a compliant law, and it can deform.
     fn is_made_smooth(&self, master: usize, sides: &[(usize, usize)], all: &[DeckContact]) -> bool {
         let gives = |touching: &DeckContact| {
@@ -173,21 +179,21 @@ impl DeckObjects<'_> {
             touching.master == master && (penalty || touching.laws.stick.is_some())
         };
         let moves = |node: &usize| self.still[*node] != [true; 2];
-        let deck = self.deck;
-        let sides: Vec<Vec<usize>> = sides.iter().map(|&(e, side)| deck.side(e, side)).collect();
+        let sides = self.node_lists(sides);
         all.iter().any(gives) && sides.len() > 1 && sides.iter().flatten().any(moves)
     }
 
     /// Whether these sides have a real convex corner, and a real concave one.
     fn corners(&self, sides: &[(usize, usize)]) -> [bool; 2] {
-        let deck = self.deck;
-        let sides: Vec<Vec<usize>> = sides.iter().map(|&(e, side)| deck.side(e, side)).collect();
+        let sides = self.node_lists(sides);
         let starts: HashMap<usize, &Vec<usize>> =
             sides.iter().map(|side| (side[0], side)).collect();
         let turns = || {
             sides.iter().filter_map(|side| {
                 let next = starts.get(side.last()?)?;
-                Some(corners::turn(side, next, |node| deck.nodes[node].plane()))
+                Some(corners::turn(side, next, |node| {
+                    self.deck.nodes[node].plane()
+                }))
             })
         };
         let (mut left, mut right) = (turns(), turns());
@@ -213,8 +219,7 @@ impl DeckObjects<'_> {
         name: &str,
         place: DeckLocation,
     ) -> Vec<String> {
-        let deck = self.deck;
-        let sides: Vec<Vec<usize>> = sides.iter().map(|&(e, side)| deck.side(e, side)).collect();
+        let sides = self.node_lists(sides);
         let mut number = HashMap::new();
         for node in sides.iter().flatten() {
             let next = number.len();
@@ -229,7 +234,7 @@ impl DeckObjects<'_> {
         for side in sides {
             let labels = side
                 .iter()
-                .map(|&node| deck.nodes[node].label as usize)
+                .map(|&node| self.deck.nodes[node].label as usize)
                 .collect();
             pieces
                 .entry(groups.root(number[&side[0]]))

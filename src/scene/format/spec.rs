@@ -14,6 +14,7 @@ use stickslip_core::model::{
     Component, Control, ElementKind, InitialState, Jumps, Law, Mode, Plane, Settings, Update,
     least, on_leg,
 };
+use stickslip_core::words::is_default;
 
 /// A point or a vector in the plane, `(x, y)`, in the scene's unit of length.
 pub type Point = (f64, f64);
@@ -163,7 +164,7 @@ described! {
             /// Number of elements along the bottom and along the left edge, before refinement.
             elements: (usize, usize),
             /// Kind of element; for a triangle, each cell is cut into two. Default: quad8.
-            #[serde(default, skip_serializing_if = "ElementKind::is_default")]
+            #[serde(default, skip_serializing_if = "is_default")]
             element: ElementKind,
             /// Ratio of the last to the first element length, along bottom and top (left to right) and along left and right
             /// (upwards); lengths grow by a constant factor. Refinement divides each element evenly. Default: (1, 1).
@@ -588,10 +589,10 @@ described! {
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub least: Option<f64> => given,
         /// What to do with an increment that jumps to another equilibrium branch (`strategy: ladder`). Default: cut.
-        #[serde(default, skip_serializing_if = "Jumps::is_default")]
+        #[serde(default, skip_serializing_if = "is_default")]
         pub jumps: Jumps,
         /// What controls the history from one increment to the next. Default: load.
-        #[serde(default, skip_serializing_if = "Control::is_default")]
+        #[serde(default, skip_serializing_if = "is_default")]
         pub control: Control,
         /// Parameters of arc-length control, with `control: arc`. Default: along all displacements.
         #[serde(default, skip_serializing_if = "ArcSpec::is_default")]

@@ -54,14 +54,11 @@ pub fn condensed(
     };
     solver.solve(f, &mut x)?;
     let q = onto(&x);
-    let mut right = vec![0.0; m.rows];
     let mut entries = Vec::new();
-    for (j, column) in columns.iter().enumerate() {
-        column.iter().for_each(|&(i, v)| right[i] += v);
-        solver.solve(&right, &mut x)?;
-        column.iter().for_each(|&(i, _)| right[i] = 0.0);
-        for (i, value) in onto(&x).into_iter().enumerate() {
-            match (value == 0.0, solver.symmetric) {
+    let symmetric = solver.symmetric;
+    solver.solve_each(&columns, |j, x| {
+        for (i, value) in onto(x).into_iter().enumerate() {
+            match (value == 0.0, symmetric) {
                 (true, _) => {}
                 (false, true) => entries.extend([(i, j, 0.5 * value), (j, i, 0.5 * value)]),
                 (false, false) => entries.push((i, j, value)),
@@ -70,7 +67,8 @@ pub fn condensed(
         if entries.len() as f64 > most {
             return Err(NotEliminated::Memory);
         }
-    }
+        Ok(())
+    })?;
     let w = Matrix {
         rows: columns.len(),
         columns: columns.len(),
@@ -126,7 +124,7 @@ pub fn reduced(
     let mut solver = Inverse::new(&ii)?;
     let rows = by_column(&ci);
     let mut x = vec![0.0; count];
-    let mut right: Vec<f64> = (0..k.rows)
+    let right: Vec<f64> = (0..k.rows)
         .filter(|&old| place[old].is_none())
         .map(|old| f[old])
         .collect();
@@ -136,15 +134,12 @@ pub fn reduced(
     for (load, row) in load.iter_mut().zip(&rows) {
         *load -= onto(&x, row);
     }
-    right.fill(0.0);
-    for (j, column) in by_column(&ic).iter().enumerate() {
-        column.iter().for_each(|&(i, v)| right[i] += v);
-        solver.solve(&right, &mut x)?;
-        column.iter().for_each(|&(i, _)| right[i] = 0.0);
+    solver.solve_each(&by_column(&ic), |j, x| {
         for (whole, row) in whole.iter_mut().zip(&rows) {
-            whole[j] -= onto(&x, row);
+            whole[j] -= onto(x, row);
         }
-    }
+        Ok(())
+    })?;
     let symmetric = is_symmetric(k);
     Ok((turned(turned(whole, false), symmetric), load))
 }
@@ -195,6 +190,7 @@ fn is_symmetric(matrix: &Matrix) -> bool {
 
 /// A factored matrix.
 struct Inverse {
+    rows: usize,
     factors: Factors,
     symmetric: bool,
 }
@@ -218,6 +214,7 @@ impl Inverse {
             return Err(NotEliminated::Singular);
         }
         Ok(Inverse {
+            rows: n,
             factors,
             symmetric: is_symmetric(matrix),
         })
@@ -225,6 +222,23 @@ impl Inverse {
 
     fn solve(&mut self, right: &[f64], x: &mut [f64]) -> Result<(), NotEliminated> {
         Ok(self.factors.solve(right, x)?)
+    }
+
+    /// Solves for each of these sparse right-hand sides, and hands on its number and its solution.
+    fn solve_each(
+        &mut self,
+        columns: &[Vec<(usize, f64)>],
+        mut hand_on: impl FnMut(usize, &[f64]) -> Result<(), NotEliminated>,
+    ) -> Result<(), NotEliminated> {
+        let mut right = vec![0.0; self.rows];
+        let mut x = vec![0.0; self.rows];
+        for (j, column) in columns.iter().enumerate() {
+            column.iter().for_each(|&(i, v)| right[i] += v);
+            self.solve(&right, &mut x)?;
+            column.iter().for_each(|&(i, _)| right[i] = 0.0);
+            hand_on(j, &x)?;
+        }
+        Ok(())
     }
 }
 

@@ -21,8 +21,8 @@
 //!
 //! In both cases force and tangent are pure functions of (shape, [`PreviousState`], current displacements), and the tangent is exact.
 
+use crate::elements::kinds::continuum_kind::Parent;
 use crate::fem::element::{self, PreviousState};
-use crate::fem::kinds::Parent;
 use crate::fem::material::{Material, Response};
 use crate::model::{Law, Update};
 use nalgebra::{Matrix2, Vector3};
@@ -61,8 +61,6 @@ struct Gradients<const N: usize> {
 /// State of a Gauss point, for output.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PointState {
-    /// Position in the undeformed shape.
-    pub at: [f64; 2],
     /// F, in the plane.
     pub gradient: Matrix2<f64>,
     /// Cauchy stress σ11, σ22, σ12.
@@ -283,12 +281,13 @@ impl<const N: usize, const P: usize, const HOOP: bool> ContinuumElement<N, P, HO
         })
     }
 
+    /// States of all Gauss points.
+    pub fn point_states(&self, past: &PreviousState<'_>, u: &[f64]) -> Vec<Option<PointState>> {
+        (0..P).map(|p| self.point_state(past, u, p)).collect()
+    }
+
     /// State of Gauss point p; `None` if the material has no response.
     pub fn point_state(&self, past: &PreviousState<'_>, u: &[f64], p: usize) -> Option<PointState> {
-        let mut at = [0.0; 2];
-        for (n, x) in self.rule[p].n.iter().zip(&self.at) {
-            at = [at[0] + n * x[0], at[1] + n * x[1]];
-        }
         let h = slope(&self.points[p].grad, &pairs(u));
         let gradient = plus_identity(&h);
         let (cauchy, across) = if self.update == Update::Small {
@@ -298,7 +297,6 @@ impl<const N: usize, const P: usize, const HOOP: bool> ContinuumElement<N, P, HO
             (point.cauchy(), self.across(&point))
         };
         Some(PointState {
-            at,
             gradient,
             cauchy,
             across,

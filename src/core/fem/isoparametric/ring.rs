@@ -9,7 +9,7 @@
 //!
 //! are added to the tangent, which remains symmetric.
 
-use crate::fem::kinds::Parent;
+use crate::elements::kinds::continuum_kind::Parent;
 use crate::fem::material::Hoop;
 
 /// The hoop direction of a Gauss point.

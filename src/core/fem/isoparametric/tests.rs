@@ -2,8 +2,8 @@
 //! of all kinds.
 
 use super::*;
+use crate::elements::kinds::quad8;
 use crate::fem::element::Element as _;
-use crate::fem::kinds::quad8;
 use crate::model::Elastic;
 use crate::model::Plane;
 
@@ -47,7 +47,12 @@ const AT: [[f64; 2]; NODES] = [
 ];
 
 fn element(elastic: &Elastic) -> Quad {
-    ContinuumElement::new(&quad8::RULE, AT, Material::new(elastic), elastic.update)
+    ContinuumElement::new(
+        &quad8::KIND.rule,
+        AT,
+        Material::new(elastic),
+        elastic.update,
+    )
 }
 
 fn noise(k: usize, size: f64) -> f64 {

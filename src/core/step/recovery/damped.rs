@@ -89,10 +89,10 @@ impl Recovery for SlowerMotion {
 
 /// Repeats the step with more drag, or continues the motion after a premature attempt at rest.
 fn slower(slow: SmallerStepReason, stalled: &FailedIncrement<'_>) -> Option<Retry> {
-    if stalled.state.fallback.is_some() && !stalled.searches(Fallback::Release) {
+    if stalled.state.recovery.fallback.is_some() && !stalled.searches(Fallback::Release) {
         return None;
     }
-    let mut motion = stalled.state.motion?;
+    let mut motion = stalled.state.recovery.motion?;
     if motion.coming_to_rest {
         motion.coming_to_rest = false;
     } else if motion.drag < STIFFEST * motion.stiffness {
@@ -121,7 +121,7 @@ impl Stepper {
         verdict: Verdict,
         worst: Option<Finding>,
     ) -> Outcome {
-        let Some(motion) = self.now.state.motion else {
+        let Some(motion) = self.now.state.recovery.motion else {
             return self
                 .now
                 .accept(after, verdict, AcceptanceNotes::marked(worst));
@@ -160,17 +160,17 @@ impl Stepper {
                 return self.end_motion(Failure::Refused(found));
             }
             // The other branch has a different pace.
-            self.now.state.pace = Pace::default();
+            self.now.state.record.pace = Pace::default();
             let jumped = motion.travelled + moved > JUMP * self.now.model.length;
-            self.now.state.watch = StabilityWatch::default();
+            self.now.state.record.watch = StabilityWatch::default();
             let landing = AcceptanceNotes {
                 jumped,
                 ..AcceptanceNotes::marked(worst)
             };
             return self.now.accept(after, verdict, landing);
         }
-        let spent =
-            self.now.state.fallback.is_some() && !self.now.stalled().searches(Fallback::Release);
+        let spent = self.now.state.recovery.fallback.is_some()
+            && !self.now.stalled().searches(Fallback::Release);
         if spent || motion.steps + 1 >= MOST_STEPS || motion.drag < SOFTEST * motion.stiffness {
             self.now.state.next_major();
             return self.end_motion(Failure::NoRest {
@@ -191,7 +191,7 @@ impl Iterate {
     /// The law that the state violates over the whole damped motion of a search: its start and end are accepted states. `None` if
     /// it violates none, or if the scene requests damped motions.
     fn violated_since_origin(&mut self, after: &Norms) -> Option<Finding> {
-        let origin = self.state.searched.origin.clone()?;
+        let origin = self.state.record.searched.origin.clone()?;
         let at = LinearisationPoint {
             accepted: AcceptedState {
                 u: &origin.u,
@@ -211,7 +211,7 @@ impl Iterate {
             return None;
         }
         let (from, stiffness) = (self.state.start.load_factor, self.source.spring());
-        self.state.motion = Some(Motion::new(from, stiffness));
+        self.state.recovery.motion = Some(Motion::new(from, stiffness));
         Arc::make_mut(&mut self.state.start).load_factor = self.state.load_factor;
         Some(())
     }
@@ -235,7 +235,7 @@ impl Iterate {
         if slow && motion.drag * AGAIN <= motion.tried {
             (motion.coming_to_rest, motion.tried) = (true, motion.drag);
         }
-        self.state.motion = Some(motion);
+        self.state.recovery.motion = Some(motion);
         self.settle_contacts();
         self.renew_start(verdict);
         self.state.next.attempt += 1;

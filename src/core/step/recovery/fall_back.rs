@@ -26,15 +26,15 @@ impl Recovery for Fallback {
     fn propose(&self, why: &Failure, stalled: &FailedIncrement<'_>) -> Option<Retry> {
         let state = stalled.state;
         let chosen = &state.controls.settings;
-        let tried = state.fallback.map(|route| route.by);
-        let out_of_turn = match (state.searched.adopted, tried) {
+        let tried = state.recovery.fallback.map(|route| route.by);
+        let out_of_turn = match (state.record.searched.adopted, tried) {
             // The one that helped last came first; the others follow in their order.
             (Some(adopted), Some(by)) if adopted == by => adopted == *self,
             (_, tried) => tried.is_some_and(|by| by >= *self),
         };
         if out_of_turn
             || strategy::rungs(chosen.strategy).is_empty()
-            || matches!(why, Failure::BranchJump { .. }) && state.fallback.is_none()
+            || matches!(why, Failure::BranchJump { .. }) && state.recovery.fallback.is_none()
             || !(matches!(self, Fallback::Touching | Fallback::Back)
                 || stalled.size_helps(why)
                 || stalled.drowned(why))
@@ -66,6 +66,7 @@ impl Recovery for Fallback {
 /// The last half of the increment that failed before any fallback.
 fn last_half(state: &State) -> SubIncrement {
     state
+        .recovery
         .fallback
         .map_or(state.sub_increment, |route| route.from)
 }
@@ -76,7 +77,7 @@ impl Fallback {
     fn helps(self, why: &Failure, stalled: &FailedIncrement<'_>) -> bool {
         let state = stalled.state;
         if self == Fallback::Back {
-            return state.fallback.is_some();
+            return state.recovery.fallback.is_some();
         }
         if self.searches() && !stalled.searches(self) {
             return false;

@@ -27,26 +27,28 @@ use serde::{Deserialize, Serialize};
 /// Factor by which the search cuts below the least increment.
 pub(super) const DEEPER: f64 = 4096.0;
 
-/// A fallback.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Fallback {
-    /// Nodes that touch at the start of the history, without a gap, start fixed.
-    Touching,
-    /// The smaller part of the golden section first.
-    Section,
-    /// T_max in the equations from the first strategy on.
-    Consistent,
-    /// Touching nodes are held at the projections of their start positions.
-    Start,
-    /// Sliding is held back ([`super::proximal`]).
-    Held,
-    /// Parts smaller than the least increment.
-    Deeper,
-    /// A damped motion from the last equilibrium.
-    Release,
-    /// The last half without a fallback: nothing else helped.
-    Back,
+crate::words! {
+    /// A fallback.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+    #[serde(rename_all = "kebab-case")]
+    pub enum Fallback, words {
+        /// Nodes that touch at the start of the history, without a gap, start fixed.
+        Touching "nodes that touch at the start fixed",
+        /// The smaller part of the golden section first.
+        Section "unequal parts",
+        /// T_max in the equations from the first strategy on.
+        Consistent "t_max: consistent",
+        /// Touching nodes are held at the projections of their start positions.
+        Start "touch: start",
+        /// Sliding is held back ([`super::proximal`]).
+        Held "held-back sliding",
+        /// Parts smaller than the least increment.
+        Deeper "parts below the least increment",
+        /// A damped motion from the last equilibrium.
+        Release "a damped motion from the last equilibrium",
+        /// The last half without a fallback: nothing else helped.
+        Back "the last part without a fallback, since none has helped",
+    }
 }
 
 /// The fallback that is in force.
@@ -56,18 +58,6 @@ pub struct FallbackState {
     pub by: Fallback,
     /// The last half that failed without a fallback.
     pub from: SubIncrement,
-}
-
-crate::words! {
-    Fallback, words:
-    Touching "nodes that touch at the start fixed",
-    Section "unequal parts",
-    Consistent "t_max: consistent",
-    Start "touch: start",
-    Held "held-back sliding",
-    Deeper "parts below the least increment",
-    Release "a damped motion from the last equilibrium",
-    Back "the last part without a fallback, since none has helped",
 }
 
 impl Fallback {

@@ -98,20 +98,19 @@ impl Stepper {
 
     /// Restarts the increment with another size. `None` if no recovery applies.
     pub(super) fn cut(&mut self, why: &Failure) -> Option<Outcome> {
-        let recoveries: &[&dyn Recovery] = match &self.now.state {
-            State {
-                motion: Some(_), ..
-            } => &MOVING,
-            State { way: Some(_), .. } => &ALONG,
-            _ => &LOADED,
+        let state = &self.now.state;
+        let recoveries: &[&dyn Recovery] = match (&state.recovery.motion, &state.way) {
+            (Some(_), _) => &MOVING,
+            (None, Some(_)) => &ALONG,
+            (None, None) => &LOADED,
         };
         self.recover(recoveries, why)
     }
 
     /// Restarts the increment with the next fallback: first the one of the search that helped last. `None` if none applies.
     pub(super) fn fall_back(&mut self, why: &Failure) -> Option<Outcome> {
-        let adopted = self.now.state.searched.adopted;
-        let first = adopted.filter(|_| self.now.state.fallback.is_none());
+        let adopted = self.now.state.record.searched.adopted;
+        let first = adopted.filter(|_| self.now.state.recovery.fallback.is_none());
         let again = first.and_then(|by| self.recover(&[&by], why));
         again.or_else(|| self.recover(&FALLBACKS, why))
     }
@@ -151,21 +150,22 @@ impl Iterate {
         match effect {
             Effect::Cut(slave) => {
                 if let Some(slave) = slave {
-                    *state.cuts.entry(slave).or_default() += 1;
+                    *state.recovery.cuts.entry(slave).or_default() += 1;
                 }
             }
             Effect::Path(way) => state.way = Some(way),
-            Effect::Whole => (state.pace.suspect, state.pace.over) = (None, true),
+            Effect::Whole => (state.record.pace.suspect, state.record.pace.over) = (None, true),
             Effect::Release => self.release(part)?,
-            Effect::Motion(motion) => state.motion = Some(motion),
+            Effect::Motion(motion) => state.recovery.motion = Some(motion),
             Effect::Fallback(fallback) => {
                 by = Some(fallback.by);
-                state.fallback = Some(fallback);
+                state.recovery.fallback = Some(fallback);
             }
         }
         if let Some(by) = by {
             self.state.leave_motion();
             self.state
+                .record
                 .searched
                 .adopted
                 .take_if(|adopted| *adopted != by);
@@ -174,14 +174,14 @@ impl Iterate {
             self.hold_touching();
         }
         if by == Some(Fallback::Release) {
-            self.state.searched.released = Some(self.state.start.load_factor);
-            self.state.searched.origin = Some(self.state.start.clone());
+            self.state.record.searched.released = Some(self.state.start.load_factor);
+            self.state.record.searched.origin = Some(self.state.start.clone());
             self.release(part)?;
         } else {
             self.restart(part);
         }
         if by == Some(Fallback::Held) {
-            self.state.brake = Some(SlipStiffness::new(self.source.spring()));
+            self.state.recovery.brake = Some(SlipStiffness::new(self.source.spring()));
         }
         Some(outcome)
     }
@@ -201,7 +201,7 @@ impl State {
     /// fails at the same node.
     pub(super) fn cut_too_often(&self, why: &Failure) -> Option<Failure> {
         let slave = why.culprit()?;
-        let cuts = *self.cuts.get(&slave)?;
+        let cuts = *self.recovery.cuts.get(&slave)?;
         (cuts >= MOST_CUTS).then(|| Failure::CutTooOften {
             slave,
             cuts,
@@ -211,8 +211,8 @@ impl State {
 
     /// Returns from a damped motion of the search to its start.
     fn leave_motion(&mut self) {
-        if let Some(origin) = self.searched.origin.take() {
-            (self.start, self.motion) = (origin, None);
+        if let Some(origin) = self.record.searched.origin.take() {
+            (self.start, self.recovery.motion) = (origin, None);
         }
     }
 }

@@ -32,7 +32,7 @@ pub(in crate::step) struct UndoableMajor {
 impl Iterate {
     /// Records a major iteration before it is done, if sliding is held back.
     pub(in crate::step) fn hold(&self, records: &[ContactRecord]) -> Option<UndoableMajor> {
-        self.state.brake.map(|brake| {
+        self.state.recovery.brake.map(|brake| {
             let (mut work, mut slips) = (0.0, Vec::new());
             for (contact, node) in self.state.nodes.iter().enumerate() {
                 let record = &records[contact];
@@ -74,11 +74,11 @@ impl Iterate {
         let wrong = slips.iter().any(|slip| slip.abs() > far) || turned && !loads;
         if !wrong || !brake.tighten() {
             brake.loosen();
-            self.state.brake = Some(brake);
+            self.state.recovery.brake = Some(brake);
             return None;
         }
         self.state = *state;
-        self.state.brake = Some(brake);
+        self.state.recovery.brake = Some(brake);
         self.linearised = false;
         self.state.begin_again();
         self.state.next.minor += 1;
@@ -93,12 +93,12 @@ impl State {
     /// The modes of a major iteration do not converge: restarts it with a larger κ, with which they converge eventually. `None`
     /// if sliding is not held back, or if a larger κ no longer helps.
     pub(in crate::step) fn hold_harder(&mut self, why: &Failure) -> Option<Outcome> {
-        let brake = self.brake.as_mut()?;
+        let brake = self.recovery.brake.as_mut()?;
         if !brake.tighten() {
             return None;
         }
         let stiffness = brake.stiffness;
-        self.search = Progress::default();
+        self.attempt.search = Progress::default();
         self.next.minor += 1;
         Some(Outcome::HeldBack {
             why: Some(why.clone()),
@@ -109,6 +109,6 @@ impl State {
     /// Whether the brake still carries a part of the friction, which the judge would report as missing.
     pub(in crate::step) fn is_carried(&self, after: &Norms) -> bool {
         let holds = |brake: SlipStiffness| brake.stiffness > 0.0;
-        self.brake.is_some_and(holds) && after.interface > EXACT
+        self.recovery.brake.is_some_and(holds) && after.interface > EXACT
     }
 }

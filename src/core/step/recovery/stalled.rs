@@ -34,7 +34,7 @@ impl FailedIncrement<'_> {
     /// Size below which an increment is not cut; before a damped motion, the accuracy of the limit load.
     pub fn least(&self) -> f64 {
         let controls = &self.state.controls;
-        let fallback = self.state.fallback.map(|route| route.by);
+        let fallback = self.state.recovery.fallback.map(|route| route.by);
         if fallback == Some(Fallback::Deeper) && self.searches(Fallback::Deeper) {
             return controls.least / DEEPER;
         }
@@ -58,7 +58,11 @@ impl FailedIncrement<'_> {
     pub fn searches(&self, by: Fallback) -> bool {
         let settings = &self.state.controls.settings;
         settings.search == SearchMode::Auto
-            && self.state.searched.can_afford(by, settings.search_limit)
+            && self
+                .state
+                .record
+                .searched
+                .can_afford(by, settings.search_limit)
             && self.model.jumps != Jumps::Stop
             && !self.is_given()
     }
@@ -91,7 +95,7 @@ impl FailedIncrement<'_> {
         let start = self.state.start.load_factor;
         self.source.damps()
             && self.state.start.verdict.is_some()
-            && self.state.searched.released != Some(start)
+            && self.state.record.searched.released != Some(start)
     }
 
     /// Whether an increment with this failure may succeed if sliding is held back.

@@ -22,7 +22,7 @@ impl Recovery for WholeIncrement {
             return None;
         }
         let from = state.start.load_factor;
-        let part = state.pace.suspect?.sub_increment.remaining(from);
+        let part = state.record.pace.suspect?.sub_increment.remaining(from);
         let (why, size) = (why.clone(), (part.target() - from).abs());
         Some(Retry {
             part,

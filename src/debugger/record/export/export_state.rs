@@ -43,25 +43,19 @@ pub struct ExportState<'a> {
     pub accepted: &'a [(f64, Vec<f64>)],
 }
 
-/// A part of a picture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum PicturePart {
-    /// The deformed shape.
-    Shape,
-    /// The modes by minor iteration.
-    Timeline,
-    /// The load over a monitor.
-    Chart,
-    /// The force of a contact in its friction cone, and T_max by iteration.
-    Cone,
-}
-
 stickslip_core::words! {
-    PicturePart, ALL, word:
-    Shape "shape",
-    Timeline "timeline",
-    Chart "chart",
-    Cone "cone",
+    /// A part of a picture.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+    pub enum PicturePart, ALL, word {
+        /// The deformed shape.
+        Shape "shape",
+        /// The modes by minor iteration.
+        Timeline "timeline",
+        /// The load over a monitor.
+        Chart "chart",
+        /// The force of a contact in its friction cone, and T_max by iteration.
+        Cone "cone",
+    }
 }
 
 /// What a picture contains, and its size.

@@ -43,19 +43,28 @@ pub(super) fn vtu(shown: &ExportState, _: &mut Stepper) -> Result<Vec<u8>, Expor
         Some(event) => (event.position, event.load_factor),
         None => (shown.origin.at, shown.state.start.load_factor),
     };
-    let grid = grid(&shown.scene.model, shown.state, shown.event, at, load);
+    let grid = grid(&shown.scene.model, shown.state, shown.event, at, load)?;
     Ok(vtu::write(&grid).into_bytes())
 }
 
 /// The grid of a state; gaps come from the last minor iteration, if there is one.
-pub fn grid(model: &Model, state: &State, event: Option<&Event>, at: Position, load: f64) -> Grid {
+///
+/// # Errors
+/// If VTK has no cell for a kind of element.
+pub fn grid(
+    model: &Model,
+    state: &State,
+    event: Option<&Event>,
+    at: Position,
+    load: f64,
+) -> Result<Grid, ExportError> {
     let mut grid = Grid {
         points: (0..model.nodes.len())
             .map(|node| model.at_in_space(node))
             .collect(),
         ..Grid::default()
     };
-    cells(model, &mut grid);
+    cells(model, &mut grid)?;
     deformations(model, state, &mut grid);
     motion(model, state, &mut grid);
     stresses(model, state, &mut grid);
@@ -84,7 +93,7 @@ pub fn grid(model: &Model, state: &State, event: Option<&Event>, at: Position, l
             lines(model.surfaces.iter().map(|s| &*s.name).collect()),
         ),
     ];
-    grid
+    Ok(grid)
 }
 
 fn array(name: &str, components: &'static [&'static str], values: Values) -> Array {
@@ -96,7 +105,7 @@ fn array(name: &str, components: &'static [&'static str], values: Values) -> Arr
 }
 
 /// The cells of all bodies and surfaces, with their owners.
-fn cells(model: &Model, grid: &mut Grid) {
+fn cells(model: &Model, grid: &mut Grid) -> Result<(), ExportError> {
     let (mut body, mut surface, mut rigid) = (Vec::new(), Vec::new(), Vec::new());
     let mut add = |grid: &mut Grid, cell: Cell, of: [i32; 3]| {
         grid.cells.push(cell);
@@ -108,7 +117,7 @@ fn cells(model: &Model, grid: &mut Grid) {
         match &one.kind {
             BodyKind::Solid(solid) => {
                 for element in &solid.elements {
-                    let kind = cell_kind(element.kind);
+                    let kind = cell_kind(element.kind)?;
                     let nodes = element.nodes.clone();
                     add(grid, Cell { kind, nodes }, [number, 0, 0]);
                 }
@@ -147,6 +156,7 @@ fn cells(model: &Model, grid: &mut Grid) {
         array("surface", &[], Values::Wholes(surface)),
         array("rigid", &[], Values::Wholes(rigid)),
     ];
+    Ok(())
 }
 
 /// Deformation of solid elements, one value per cell; the cells of bodies come first, in order.
@@ -175,14 +185,20 @@ fn deformations(model: &Model, state: &State, grid: &mut Grid) {
     }
 }
 
-fn cell_kind(kind: ElementKind) -> CellKind {
-    match kind {
-        ElementKind::Triangle3 => CellKind::Triangle3,
-        ElementKind::Triangle6 => CellKind::Triangle6,
-        ElementKind::Quad4 => CellKind::Quad4,
-        ElementKind::Quad8 | ElementKind::Quad8Reduced => CellKind::Quad8,
-        ElementKind::Quad9 => CellKind::Quad9,
-    }
+/// The cell with the VTK type of a kind of element.
+fn cell_kind(kind: ElementKind) -> Result<CellKind, ExportError> {
+    let mut cells = [
+        CellKind::Triangle3,
+        CellKind::Triangle6,
+        CellKind::Quad4,
+        CellKind::Quad8,
+        CellKind::Quad9,
+    ]
+    .into_iter();
+    let cell = cells.find(|&cell| vtu::cell_type(cell) == kind.vtk());
+    cell.ok_or_else(|| {
+        ExportError::NoFile(format!(".vtu files have no cell for a {}", kind.word()))
+    })
 }
 
 /// The cells of a line through nodes in order.

@@ -56,58 +56,62 @@ macro_rules! described {
             $($(#[$($part_meta)*])* $part_vis $part: $type),*
         }
 
-        #[allow(non_snake_case)]
-        impl $crate::format::described::Described for $name {
-            fn walk(
-                &mut self,
-                place: &$crate::format::described::ScalarPlace<'_>,
-                visit: &mut $crate::format::described::Visit<'_>,
-            ) {
-                let $name { $($part),* } = self;
-                $($crate::format::described::macros::walk_field!($part, place, visit $(, $mark)?);)*
-            }
-            fn called(&self) -> Option<&str> {
-                let $name { $($part),* } = self;
-                [$($crate::format::described::macros::name_field!($part $(, $mark)?)),*].into_iter().flatten().next()
-            }
-            fn kind() -> String {
-                $crate::format::described::link(stringify!($name))
-            }
-            fn blank() -> String {
-                let every = false $(|| $crate::format::described::macros::has_default!($($meta)*))*;
-                $crate::format::described::blank_form("", &[$((
-                    stringify!($part),
-                    every $(|| $crate::format::described::macros::has_default!($($part_meta)*))*,
-                    <$type as $crate::format::described::Described>::blank(),
-                )),*])
-            }
-            fn shown(&self) -> String {
-                $crate::format::described::OWN_DEFAULTS.to_owned()
-            }
-            fn types(into: &mut Vec<$crate::format::described::Type>) -> Result<(), String> {
-                if $crate::format::described::known(into, stringify!($name)) {
-                    return Ok(());
+        const _: () = {
+            use $crate::format::described;
+
+            #[allow(non_snake_case)]
+            impl described::Described for $name {
+                fn walk(
+                    &mut self,
+                    place: &described::ScalarPlace<'_>,
+                    visit: &mut described::Visit<'_>,
+                ) {
+                    let $name { $($part),* } = self;
+                    $(described::macros::walk_field!($part, place, visit $(, $mark)?);)*
                 }
-                let every = false $(|| $crate::format::described::macros::has_default!($($meta)*))*;
-                let $name { $($part),* } = &$crate::format::described::read_blank(&Self::blank())?;
-                into.push($crate::format::described::Type {
-                    name: stringify!($name),
-                    docs: stickslip_core::model::documented::text(&[$(stickslip_core::doc_line!($($meta)*)),*]),
-                    forms: vec![$crate::format::described::Form {
-                        name: None,
-                        docs: String::new(),
-                        fields: vec![$($crate::format::described::field_of(
-                            stringify!($part),
-                            &[$(stickslip_core::doc_line!($($part_meta)*)),*],
-                            $part,
-                            every $(|| $crate::format::described::macros::has_default!($($part_meta)*))*,
-                        )),*],
-                    }],
-                });
-                $(<$type as $crate::format::described::Described>::types(into)?;)*
-                Ok(())
+                fn called(&self) -> Option<&str> {
+                    let $name { $($part),* } = self;
+                    [$(described::macros::name_field!($part $(, $mark)?)),*].into_iter().flatten().next()
+                }
+                fn kind() -> String {
+                    described::link(stringify!($name))
+                }
+                fn blank() -> String {
+                    let every = false $(|| described::macros::has_default!($($meta)*))*;
+                    described::blank_form("", &[$((
+                        stringify!($part),
+                        every $(|| described::macros::has_default!($($part_meta)*))*,
+                        <$type as described::Described>::blank(),
+                    )),*])
+                }
+                fn shown(&self) -> String {
+                    described::OWN_DEFAULTS.to_owned()
+                }
+                fn types(into: &mut Vec<described::Type>) -> Result<(), String> {
+                    if described::known(into, stringify!($name)) {
+                        return Ok(());
+                    }
+                    let every = false $(|| described::macros::has_default!($($meta)*))*;
+                    let $name { $($part),* } = &described::read_blank(&Self::blank())?;
+                    into.push(described::Type {
+                        name: stringify!($name),
+                        docs: stickslip_core::model::documented::text(&[$(stickslip_core::doc_line!($($meta)*)),*]),
+                        forms: vec![described::Form {
+                            name: None,
+                            docs: String::new(),
+                            fields: vec![$(described::field_of(
+                                stringify!($part),
+                                &[$(stickslip_core::doc_line!($($part_meta)*)),*],
+                                $part,
+                                every $(|| described::macros::has_default!($($part_meta)*))*,
+                            )),*],
+                        }],
+                    });
+                    $(<$type as described::Described>::types(into)?;)*
+                    Ok(())
+                }
             }
-        }
+        };
     };
     ($(#[$($meta:tt)*])* $vis:vis enum $name:ident {
         $($(#[$($form_meta:tt)*])* $form:ident $({
@@ -121,85 +125,89 @@ macro_rules! described {
             })?),*
         }
 
-        #[allow(non_snake_case)]
-        impl $crate::format::described::Described for $name {
-            fn walk(
-                &mut self,
-                place: &$crate::format::described::ScalarPlace<'_>,
-                visit: &mut $crate::format::described::Visit<'_>,
-            ) {
-                match self {
-                    $($name::$form $({ $($part),* })? => {
-                        $($($crate::format::described::macros::walk_field!($part, place, visit $(, $mark)?);)*)?
-                    })*
+        const _: () = {
+            use $crate::format::described;
+
+            #[allow(non_snake_case)]
+            impl described::Described for $name {
+                fn walk(
+                    &mut self,
+                    place: &described::ScalarPlace<'_>,
+                    visit: &mut described::Visit<'_>,
+                ) {
+                    match self {
+                        $($name::$form $({ $($part),* })? => {
+                            $($(described::macros::walk_field!($part, place, visit $(, $mark)?);)*)?
+                        })*
+                    }
                 }
-            }
-            fn called(&self) -> Option<&str> {
-                match self {
-                    $($name::$form $({ $($part),* })? => {
-                        let called: &[Option<&str>] =
-                            &[$($($crate::format::described::macros::name_field!($part $(, $mark)?)),*)?];
-                        called.iter().copied().flatten().next()
-                    })*
+                fn called(&self) -> Option<&str> {
+                    match self {
+                        $($name::$form $({ $($part),* })? => {
+                            let called: &[Option<&str>] =
+                                &[$($(described::macros::name_field!($part $(, $mark)?)),*)?];
+                            called.iter().copied().flatten().next()
+                        })*
+                    }
                 }
-            }
-            fn kind() -> String {
-                $crate::format::described::link(stringify!($name))
-            }
-            fn blank() -> String {
-                let all = [$($crate::format::described::macros::blank_variant!($form $({
-                    $((
-                        stringify!($part),
-                        false $(|| $crate::format::described::macros::has_default!($($part_meta)*))*,
-                        <$type as $crate::format::described::Described>::blank(),
-                    )),*
-                })?)),*];
-                all[0].clone()
-            }
-            fn shown(&self) -> String {
-                let name = match self {
-                    $($name::$form { .. } => stringify!($form)),*
-                };
-                name.to_owned()
-            }
-            fn types(into: &mut Vec<$crate::format::described::Type>) -> Result<(), String> {
-                if $crate::format::described::known(into, stringify!($name)) {
-                    return Ok(());
+                fn kind() -> String {
+                    described::link(stringify!($name))
                 }
-                let mut forms = Vec::new();
-                $(
-                    let blank = $crate::format::described::macros::blank_variant!($form $({
+                fn blank() -> String {
+                    let all = [$(described::macros::blank_variant!($form $({
                         $((
                             stringify!($part),
-                            false $(|| $crate::format::described::macros::has_default!($($part_meta)*))*,
-                            <$type as $crate::format::described::Described>::blank(),
+                            false $(|| described::macros::has_default!($($part_meta)*))*,
+                            <$type as described::Described>::blank(),
                         )),*
-                    })?);
-                    let $name::$form $({ $($part),* })? = &$crate::format::described::read_blank(&blank)? else {
-                        return Err(format!("{blank}: read as another form"));
+                    })?)),*];
+                    all[0].clone()
+                }
+                fn shown(&self) -> String {
+                    let name = match self {
+                        $($name::$form { .. } => stringify!($form)),*
                     };
-                    forms.push($crate::format::described::Form {
-                        name: Some(stringify!($form)),
-                        docs: stickslip_core::model::documented::text(
-                            &[$(stickslip_core::doc_line!($($form_meta)*)),*],
-                        ),
-                        fields: vec![$($($crate::format::described::field_of(
-                            stringify!($part),
-                            &[$(stickslip_core::doc_line!($($part_meta)*)),*],
-                            $part,
-                            false $(|| $crate::format::described::macros::has_default!($($part_meta)*))*,
-                        )),*)?],
+                    name.to_owned()
+                }
+                fn types(into: &mut Vec<described::Type>) -> Result<(), String> {
+                    if described::known(into, stringify!($name)) {
+                        return Ok(());
+                    }
+                    let mut forms = Vec::new();
+                    $(
+                        let blank = described::macros::blank_variant!($form $({
+                            $((
+                                stringify!($part),
+                                false $(|| described::macros::has_default!($($part_meta)*))*,
+                                <$type as described::Described>::blank(),
+                            )),*
+                        })?);
+                        let $name::$form $({ $($part),* })? = &described::read_blank(&blank)? else {
+                            return Err(format!("{blank}: read as another form"));
+                        };
+                        forms.push(described::Form {
+                            name: Some(stringify!($form)),
+                            docs: stickslip_core::model::documented::text(
+                                &[$(stickslip_core::doc_line!($($form_meta)*)),*],
+                            ),
+                            fields: vec![$($(described::field_of(
+                                stringify!($part),
+                                &[$(stickslip_core::doc_line!($($part_meta)*)),*],
+                                $part,
+                                false $(|| described::macros::has_default!($($part_meta)*))*,
+                            )),*)?],
+                        });
+                    )*
+                    into.push(described::Type {
+                        name: stringify!($name),
+                        docs: stickslip_core::model::documented::text(&[$(stickslip_core::doc_line!($($meta)*)),*]),
+                        forms,
                     });
-                )*
-                into.push($crate::format::described::Type {
-                    name: stringify!($name),
-                    docs: stickslip_core::model::documented::text(&[$(stickslip_core::doc_line!($($meta)*)),*]),
-                    forms,
-                });
-                $($($(<$type as $crate::format::described::Described>::types(into)?;)*)?)*
-                Ok(())
+                    $($($(<$type as described::Described>::types(into)?;)*)?)*
+                    Ok(())
+                }
             }
-        }
+        };
     };
 }
 

@@ -52,7 +52,7 @@ macro_rules! documented {
         $vis struct $name {
             $($(#[$($part_meta)*])* $part_vis $part: $type),*
         }
-        $crate::model::documented::documented!(@docs $name [$([$($meta)*])*] $($part [$([$($part_meta)*])*])*);
+        $crate::documented::documented!(@docs $name [$([$($meta)*])*] $($part [$([$($part_meta)*])*])*);
     };
     ($(#[$($meta:tt)*])* $vis:vis enum $name:ident {
         $($(#[$($part_meta:tt)*])* $part:ident),* $(,)?
@@ -61,15 +61,15 @@ macro_rules! documented {
         $vis enum $name {
             $($(#[$($part_meta)*])* $part),*
         }
-        $crate::model::documented::documented!(@docs $name [$([$($meta)*])*] $($part [$([$($part_meta)*])*])*);
+        $crate::documented::documented!(@docs $name [$([$($meta)*])*] $($part [$([$($part_meta)*])*])*);
     };
     (@docs $name:ident [$([$($meta:tt)*])*] $($part:ident [$([$($part_meta:tt)*])*])*) => {
         impl $name {
             /// Doc comments of the type and its parts.
-            pub const DOCS: $crate::model::documented::Docs = $crate::model::documented::Docs {
+            pub const DOCS: $crate::documented::Docs = $crate::documented::Docs {
                 name: stringify!($name),
-                lines: &[$($crate::model::documented::doc_line!($($meta)*)),*],
-                parts: &[$((stringify!($part), &[$($crate::model::documented::doc_line!($($part_meta)*)),*])),*],
+                lines: &[$($crate::documented::doc_line!($($meta)*)),*],
+                parts: &[$((stringify!($part), &[$($crate::documented::doc_line!($($part_meta)*)),*])),*],
             };
         }
     };

@@ -1,11 +1,11 @@
 //! 6-node triangle: quadratic displacements; three interior integration points.
 
-use super::{Parent, Shape, parents};
-use crate::fem::quadrature::TRIANGLE_3;
+use super::continuum_kind::{ContinuumKind, Shape, parents};
+use crate::elements::quadrature::TRIANGLE_3;
 use std::sync::LazyLock;
 
 /// Positions of the nodes in the parent triangle.
-pub const PLACES: [[f64; 2]; 6] = [
+const PLACES: [[f64; 2]; 6] = [
     [0.0, 0.0],
     [1.0, 0.0],
     [0.0, 1.0],
@@ -14,15 +14,18 @@ pub const PLACES: [[f64; 2]; 6] = [
     [0.0, 0.5],
 ];
 
-/// Shape functions at the nodes.
-pub static NODES: LazyLock<[Parent<6>; 6]> =
-    LazyLock::new(|| parents(PLACES.map(|at| (at, 0.0)), shape));
-
-/// Integration rule, exact for the stiffness with straight sides: nine strains for the nine deformation modes.
-pub static RULE: LazyLock<[Parent<6>; 3]> = LazyLock::new(|| parents(TRIANGLE_3, shape));
+/// The kind.
+pub static KIND: ContinuumKind<6, 3> = ContinuumKind {
+    vtk: 22,
+    faces: &[&[0, 3, 1], &[1, 4, 2], &[2, 5, 0]],
+    places: PLACES,
+    shape,
+    rule: LazyLock::new(|| parents(TRIANGLE_3, shape)),
+    nodes: LazyLock::new(|| parents(PLACES.map(|at| (at, 0.0)), shape)),
+};
 
 /// With L = (1 − ξ − η, ξ, η): N = L (2 L − 1) at a corner, 4 L_a L_b between the corners a and b.
-pub fn shape(xi: f64, eta: f64) -> Shape<6> {
+fn shape(xi: f64, eta: f64) -> Shape<6> {
     const SLOPES: [[f64; 2]; 3] = [[-1.0, -1.0], [1.0, 0.0], [0.0, 1.0]];
     let l = [1.0 - xi - eta, xi, eta];
     let (mut n, mut d) = ([0.0; 6], [[0.0; 2]; 6]);

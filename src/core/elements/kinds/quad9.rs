@@ -1,11 +1,11 @@
 //! 9-node Lagrange quadrilateral: biquadratic displacements; 3 × 3 Gauss points.
 
-use super::{Parent, Shape, parents};
-use crate::fem::quadrature::square;
+use super::continuum_kind::{ContinuumKind, QUADRATIC_SIDES, Shape, parents};
+use crate::elements::quadrature::square;
 use std::sync::LazyLock;
 
 /// Positions of the nodes in the parent square: corners, midside nodes, centre.
-pub const PLACES: [[f64; 2]; 9] = [
+pub(super) const PLACES: [[f64; 2]; 9] = [
     [-1.0, -1.0],
     [1.0, -1.0],
     [1.0, 1.0],
@@ -17,15 +17,18 @@ pub const PLACES: [[f64; 2]; 9] = [
     [0.0, 0.0],
 ];
 
-/// Shape functions at the nodes.
-pub static NODES: LazyLock<[Parent<9>; 9]> =
-    LazyLock::new(|| parents(PLACES.map(|at| (at, 0.0)), shape));
-
-/// Integration rule.
-pub static RULE: LazyLock<[Parent<9>; 9]> = LazyLock::new(|| parents(square(3), shape));
+/// The kind.
+pub static KIND: ContinuumKind<9, 9> = ContinuumKind {
+    vtk: 28,
+    faces: QUADRATIC_SIDES,
+    places: PLACES,
+    shape,
+    rule: LazyLock::new(|| parents(square(3), shape)),
+    nodes: LazyLock::new(|| parents(PLACES.map(|at| (at, 0.0)), shape)),
+};
 
 /// Products of two parabolas: N_i = L(ξ; ξ_i) L(η; η_i).
-pub fn shape(xi: f64, eta: f64) -> Shape<9> {
+fn shape(xi: f64, eta: f64) -> Shape<9> {
     let (mut n, mut d) = ([0.0; 9], [[0.0; 2]; 9]);
     for (i, [a, b]) in PLACES.into_iter().enumerate() {
         let ((p, dp), (q, dq)) = (parabola(a, xi), parabola(b, eta));

@@ -4,28 +4,38 @@
 //! hourglass mode, which strains no point but cannot propagate to a neighbouring element. Nodes are the corners anticlockwise,
 //! then the midside nodes of the sides 1-2, 2-3, 3-4, 4-1.
 
-use super::{Parent, Shape, parents};
-use crate::fem::quadrature::square;
+use super::continuum_kind::{ContinuumKind, QUADRATIC_SIDES, Shape, parents};
+use crate::elements::quadrature::square;
 use std::sync::LazyLock;
 
 /// Positions of the nodes in the parent square: those of the 9-node quadrilateral without its centre.
-pub const PLACES: [[f64; 2]; 8] = {
+const PLACES: [[f64; 2]; 8] = {
     let [a, b, c, d, e, f, g, h, _] = super::quad9::PLACES;
     [a, b, c, d, e, f, g, h]
 };
 
-/// Shape functions at the nodes.
-pub static NODES: LazyLock<[Parent<8>; 8]> =
-    LazyLock::new(|| parents(PLACES.map(|at| (at, 0.0)), shape));
+/// The kind with full integration.
+pub static KIND: ContinuumKind<8, 9> = ContinuumKind {
+    vtk: 23,
+    faces: QUADRATIC_SIDES,
+    places: PLACES,
+    shape,
+    rule: LazyLock::new(|| parents(square(3), shape)),
+    nodes: LazyLock::new(|| parents(PLACES.map(|at| (at, 0.0)), shape)),
+};
 
-/// Full integration rule.
-pub static RULE: LazyLock<[Parent<8>; 9]> = LazyLock::new(|| parents(square(3), shape));
-
-/// Reduced integration rule.
-pub static REDUCED: LazyLock<[Parent<8>; 4]> = LazyLock::new(|| parents(square(2), shape));
+/// The kind with reduced integration.
+pub static REDUCED: ContinuumKind<8, 4> = ContinuumKind {
+    vtk: 23,
+    faces: QUADRATIC_SIDES,
+    places: PLACES,
+    shape,
+    rule: LazyLock::new(|| parents(square(2), shape)),
+    nodes: LazyLock::new(|| parents(PLACES.map(|at| (at, 0.0)), shape)),
+};
 
 /// The shape functions and their derivatives with respect to ξ and η.
-pub fn shape(xi: f64, eta: f64) -> Shape<8> {
+fn shape(xi: f64, eta: f64) -> Shape<8> {
     let (mut n, mut d) = ([0.0; 8], [[0.0; 2]; 8]);
     for (i, [a, b]) in PLACES.into_iter().enumerate() {
         let (p, q) = (1.0 + a * xi, 1.0 + b * eta);

@@ -1,6 +1,6 @@
 //! Integration rules for the parent triangle and the parent square.
 
-use super::lagrange::gauss;
+use crate::elements::lagrange::gauss;
 
 /// A point of the parent element, and its weight.
 pub type Point = ([f64; 2], f64);

@@ -1,0 +1,31 @@
+//! 4-node quadrilateral: bilinear displacements; 2 × 2 Gauss points.
+//!
+//! Stiff in bending, and locks with nearly incompressible materials.
+
+use super::continuum_kind::{ContinuumKind, Shape, parents};
+use crate::elements::quadrature::square;
+use std::sync::LazyLock;
+
+/// Positions of the nodes in the parent square.
+const PLACES: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+
+/// The kind.
+pub static KIND: ContinuumKind<4, 4> = ContinuumKind {
+    vtk: 9,
+    faces: &[&[0, 1], &[1, 2], &[2, 3], &[3, 0]],
+    places: PLACES,
+    shape,
+    rule: LazyLock::new(|| parents(square(2), shape)),
+    nodes: LazyLock::new(|| parents(PLACES.map(|at| (at, 0.0)), shape)),
+};
+
+/// N_i = ¼ (1 + ξ_i ξ) (1 + η_i η).
+fn shape(xi: f64, eta: f64) -> Shape<4> {
+    let (mut n, mut d) = ([0.0; 4], [[0.0; 2]; 4]);
+    for (i, [a, b]) in PLACES.into_iter().enumerate() {
+        let (p, q) = (1.0 + a * xi, 1.0 + b * eta);
+        n[i] = 0.25 * p * q;
+        d[i] = [0.25 * a * q, 0.25 * b * p];
+    }
+    (n, d)
+}
