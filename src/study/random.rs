@@ -49,7 +49,6 @@ pub struct RandomProblem {
 
 stickslip_core::words! {
     /// Form of the body behind the contacts.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum Form, name {
         /// A stiffness.
         Stiffness "stiffness",

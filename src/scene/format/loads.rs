@@ -6,8 +6,6 @@ use stickslip_core::model::Component;
 
 described! {
     /// A reference load; the applied load is its value times the load factor (or times the factor that `scale` assigns to it).
-    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-    #[serde(deny_unknown_fields)]
     pub enum LoadSpec {
         /// A dead point load.
         Force {

@@ -6,8 +6,6 @@ use stickslip_core::model::{Axis, Component, Mode};
 
 described! {
     /// A quantity to report after every converged increment.
-    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-    #[serde(deny_unknown_fields)]
     pub struct MonitorSpec {
         /// Column name in `--csv`.
         pub name: String => name,
@@ -18,8 +16,6 @@ described! {
 
 described! {
     /// The quantity that a monitor reports.
-    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-    #[serde(deny_unknown_fields)]
     pub enum Quantity {
         /// A displacement (or rotation) of a node.
         Displacement {

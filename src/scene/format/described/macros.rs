@@ -51,6 +51,8 @@ macro_rules! described {
     ($(#[$($meta:tt)*])* $vis:vis struct $name:ident {
         $($(#[$($part_meta:tt)*])* $part_vis:vis $part:ident : $type:ty $(=> $mark:ident)?),* $(,)?
     }) => {
+        #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+        #[serde(deny_unknown_fields)]
         $(#[$($meta)*])*
         $vis struct $name {
             $($(#[$($part_meta)*])* $part_vis $part: $type),*
@@ -118,6 +120,8 @@ macro_rules! described {
             $($(#[$($part_meta:tt)*])* $part:ident : $type:ty $(=> $mark:ident)?),* $(,)?
         })?),* $(,)?
     }) => {
+        #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+        #[serde(deny_unknown_fields)]
         $(#[$($meta)*])*
         $vis enum $name {
             $($(#[$($form_meta)*])* $form $({
