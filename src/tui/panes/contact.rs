@@ -204,7 +204,7 @@ fn draw_cone(
 ) {
     let theme = &app.theme;
     let area = headed(buffer, area, "Coulomb cone", app);
-    let (Some(cone), Some(now)) = (cone, trail.last()) else {
+    let (Some(cone), false) = (cone, trail.is_empty()) else {
         return paint::lines(buffer, area, &[Line::styled(" no force", theme.faint)]);
     };
     let frame = ChartFrame::within(area, LABELS);
@@ -228,17 +228,7 @@ fn draw_cone(
         .iter()
         .map(|point| dot([point.f_t, point.f_n]))
         .collect();
-    canvas.polyline(&dots, theme.faint);
-    canvas.render(buffer);
-    for (point, at) in trail.iter().zip(&dots) {
-        let (glyph, style) = match point == now {
-            true => ("●", theme.mode(point.mode).add_modifier(Modifier::BOLD)),
-            false => ("○", theme.mode(point.mode)),
-        };
-        if let Some(cell) = canvas.cell(*at).and_then(|at| buffer.cell_mut(at)) {
-            cell.set_symbol(glyph).set_style(style);
-        }
-    }
+    draw_trail(buffer, &mut canvas, trail, &dots, theme);
     frame.axis(buffer, theme.faint);
     frame.tick(buffer, 0, &tick(cone.f_n), theme.faint);
     let zero = canvas
@@ -246,6 +236,28 @@ fn draw_cone(
         .map_or(0, |(_, y)| y - frame.field.y);
     frame.tick(buffer, zero, "F_n 0", theme.faint);
     below(buffer, frame, [-cone.f_t, cone.f_t], "F_t", app);
+}
+
+/// Draws the canvas with a trail: a dot for each minor iteration, the last one filled.
+fn draw_trail(
+    buffer: &mut Buffer,
+    canvas: &mut Canvas,
+    trail: &[TrailPoint],
+    dots: &[Dot],
+    theme: &Theme,
+) {
+    canvas.polyline(dots, theme.faint);
+    canvas.render(buffer);
+    let last = dots.len().saturating_sub(1);
+    for (k, (point, at)) in trail.iter().zip(dots).enumerate() {
+        let (glyph, style) = match k == last {
+            true => ("●", theme.mode(point.mode).add_modifier(Modifier::BOLD)),
+            false => ("○", theme.mode(point.mode)),
+        };
+        if let Some(cell) = canvas.cell(*at).and_then(|at| buffer.cell_mut(at)) {
+            cell.set_symbol(glyph).set_style(style);
+        }
+    }
 }
 
 /// In space, the friction circle of radius T_max seen along n: the trail of F_t, and the slip as a ray.
@@ -276,18 +288,7 @@ fn circle(
         canvas.line(dot([0.0; 2]), dot(on_circle(slip)), theme.good);
     }
     let dots: Vec<Dot> = forces.into_iter().map(dot).collect();
-    canvas.polyline(&dots, theme.faint);
-    canvas.render(buffer);
-    let last = dots.len().saturating_sub(1);
-    for (k, (point, at)) in trail.iter().zip(&dots).enumerate() {
-        let (glyph, style) = match k == last {
-            true => ("●", theme.mode(point.mode).add_modifier(Modifier::BOLD)),
-            false => ("○", theme.mode(point.mode)),
-        };
-        if let Some(cell) = canvas.cell(*at).and_then(|at| buffer.cell_mut(at)) {
-            cell.set_symbol(glyph).set_style(style);
-        }
-    }
+    draw_trail(buffer, &mut canvas, trail, &dots, theme);
 }
 
 /// A number at an axis.
