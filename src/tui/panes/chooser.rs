@@ -60,7 +60,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, chooser: &Chooser, app: &App) -> Re
     match left.is_empty() {
         true => {
             let text = " no name or title contains these words; Esc clears them";
-            paint::lines(buffer, list, &[Line::styled(text, app.theme.faint)]);
+            paint::note(buffer, list, text, &app.theme);
         }
         false => paint::lines(buffer, list, &lines),
     }

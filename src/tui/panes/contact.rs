@@ -1,6 +1,7 @@
 //! The contact of the selected node: its geometry and force in numbers, and below them as many of three pictures as fit: the force
 //! in the Coulomb cone (in space, the friction circle with the slip) with the trail of the last iterations, T_max over the minor iterations as a cobweb, and who pushed the node.
 
+use super::frame;
 use crate::app::App;
 use crate::canvas::{Canvas, Dot};
 use crate::chartframe::ChartFrame;
@@ -42,8 +43,13 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let theme = &app.theme;
     let slave = app.slave(view);
     let name = view.slave(slave);
-    let focused = app.panes.focus == Pane::Contact;
-    let inner = paint::frame(buffer, area, &format!("Contact  {name}"), focused, theme);
+    let inner = frame(
+        buffer,
+        area,
+        Pane::Contact,
+        &format!("Contact  {name}"),
+        app,
+    );
     let say = |buffer: &mut Buffer, text: &str| {
         paint::lines(
             buffer,
@@ -205,7 +211,7 @@ fn draw_cone(
     let theme = &app.theme;
     let area = headed(buffer, area, "Coulomb cone", app);
     let (Some(cone), false) = (cone, trail.is_empty()) else {
-        return paint::lines(buffer, area, &[Line::styled(" no force", theme.faint)]);
+        return paint::note(buffer, area, " no force", theme);
     };
     let frame = ChartFrame::within(area, LABELS);
     let mut canvas = Canvas::new(frame.field);
@@ -274,7 +280,7 @@ fn circle(
     let sizes = trail.iter().map(|point| point.f_t).chain([radius]);
     let reach = 1.15 * sizes.filter(|size| size.is_finite()).fold(0.0, f64::max);
     if forces.is_empty() || reach <= 0.0 {
-        return paint::lines(buffer, area, &[Line::styled(" no friction", theme.faint)]);
+        return paint::note(buffer, area, " no friction", theme);
     }
     let mut canvas = Canvas::new(area);
     let [width, height] = canvas.size();

@@ -3,6 +3,7 @@
 //! nodes, and slave nodes by the letters of their modes. Solids show the boundaries between materials, and their elements if these
 //! are large enough. Small displacements are magnified.
 
+use super::frame;
 use crate::app::App;
 use crate::camera::Camera;
 use crate::canvas::{Canvas, Dot};
@@ -59,7 +60,7 @@ const SPACING: f64 = 16.0;
 /// Draws the shape.
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let theme = &app.theme;
-    let inner = paint::frame(buffer, area, "Shape", app.panes.focus == Pane::Shape, theme);
+    let inner = frame(buffer, area, Pane::Shape, "Shape", app);
     if view.model.finished.is_some() {
         let none = "The files of this run contain no coordinates.";
         let lines = paint::wrapped(none, inner.width.into(), theme.faint);
