@@ -1,6 +1,7 @@
 //! Positions of the slave nodes relative to their surfaces before the first solve: initial gaps, warnings about them, and the
 //! effect of `settings.initial_gaps`.
 
+use crate::geometry::distance_to_segment;
 use crate::pressed;
 use std::collections::HashSet;
 use stickslip_core::contact::element::SurfaceElement;
@@ -307,14 +308,11 @@ fn outline(model: &Model, edges: &[Vec<usize>]) -> Vec<[[f64; 2]; 2]> {
 fn is_inside(at: [f64; 2], sides: &[[[f64; 2]; 2]], near: f64) -> bool {
     let mut inside = false;
     for [a, b] in sides {
-        let (along, to) = ([b[0] - a[0], b[1] - a[1]], [at[0] - a[0], at[1] - a[1]]);
-        let size = along[0] * along[0] + along[1] * along[1];
-        let part =
-            ((along[0] * to[0] + along[1] * to[1]) / size.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-        if (to[0] - part * along[0]).hypot(to[1] - part * along[1]) <= near {
+        if distance_to_segment(at, *a, *b) <= near {
             return false;
         }
-        if (a[1] > at[1]) != (b[1] > at[1]) && at[0] < a[0] + (at[1] - a[1]) / along[1] * along[0] {
+        let crossing = |y: f64| a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
+        if (a[1] > at[1]) != (b[1] > at[1]) && at[0] < crossing(at[1]) {
             inside = !inside;
         }
     }

@@ -11,7 +11,7 @@ use crate::recorded::exchange;
 use std::sync::Arc;
 use stickslip_core::contact::laws::JudgedLaw;
 use stickslip_core::model::{Mode, Model};
-use stickslip_scene::embedded::EmbeddedFile;
+use stickslip_scene::embedded::{self, EmbeddedFile};
 use stickslip_scene::embedded_all;
 use stickslip_scene::format::error::{AtPath, Path, SceneError, at, bail, did_you_mean, fault};
 use stickslip_scene::format::kind::FileKind;
@@ -186,10 +186,7 @@ pub fn find(name: &str) -> Option<&'static EmbeddedFile> {
     let name = name.strip_suffix(".ron").unwrap_or(name);
     match name.parse::<usize>() {
         Ok(number) => LESSONS.get(number.checked_sub(1)?),
-        Err(_) => {
-            let name = current_name(name);
-            LESSONS.iter().find(|lesson| lesson.name == name)
-        }
+        Err(_) => embedded::find(LESSONS, current_name(name)),
     }
 }
 
