@@ -126,7 +126,7 @@ fn solid(kind: ElementKind, law: Law, plane: Plane, update: Update) -> Specimen 
     }
 }
 
-fn elastic(law: Law, plane: Plane, update: Update) -> Elastic {
+pub(super) fn elastic(law: Law, plane: Plane, update: Update) -> Elastic {
     Elastic {
         young: 100.0,
         poisson: 0.3,
@@ -260,33 +260,25 @@ fn the_shape_functions_of_every_kind_are_one_at_their_node_and_sum_to_one() {
 
 #[test]
 fn the_shape_functions_of_every_kind_reproduce_its_polynomials() {
+    const QUAD9: [(i32, i32); 9] = [
+        (0, 0),
+        (1, 0),
+        (0, 1),
+        (1, 1),
+        (2, 0),
+        (0, 2),
+        (2, 1),
+        (1, 2),
+        (2, 2),
+    ];
     for kind in ElementKind::ALL {
         // Powers of ξ and η in the kind's shape functions.
         let powers: &[(i32, i32)] = match kind {
             ElementKind::Triangle3 => &[(0, 0), (1, 0), (0, 1)],
             ElementKind::Quad4 => &[(0, 0), (1, 0), (0, 1), (1, 1)],
             ElementKind::Triangle6 => &[(0, 0), (1, 0), (0, 1), (1, 1), (2, 0), (0, 2)],
-            ElementKind::Quad8 | ElementKind::Quad8Reduced => &[
-                (0, 0),
-                (1, 0),
-                (0, 1),
-                (1, 1),
-                (2, 0),
-                (0, 2),
-                (2, 1),
-                (1, 2),
-            ],
-            ElementKind::Quad9 => &[
-                (0, 0),
-                (1, 0),
-                (0, 1),
-                (1, 1),
-                (2, 0),
-                (0, 2),
-                (2, 1),
-                (1, 2),
-                (2, 2),
-            ],
+            ElementKind::Quad8 | ElementKind::Quad8Reduced => &QUAD9[..8],
+            ElementKind::Quad9 => &QUAD9,
         };
         assert_eq!(powers.len(), kind.nodes());
         let places = continuum::places(kind);

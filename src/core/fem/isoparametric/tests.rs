@@ -4,6 +4,7 @@
 use super::*;
 use crate::elements::kinds::quad8;
 use crate::fem::element::Element as _;
+use crate::fem::tests::elastic;
 use crate::model::Elastic;
 use crate::model::Plane;
 
@@ -11,17 +12,6 @@ const NODES: usize = 8;
 const DOFS: usize = 2 * NODES;
 const POINTS: usize = 9;
 type Quad = ContinuumElement<NODES, POINTS, false>;
-
-fn elastic(law: Law, plane: Plane, update: Update) -> Elastic {
-    Elastic {
-        young: 100.0,
-        poisson: 0.3,
-        law,
-        plane,
-        thickness: 0.7,
-        update,
-    }
-}
 
 /// All combinations of options.
 fn kinds() -> Vec<Elastic> {
