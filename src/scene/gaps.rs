@@ -9,6 +9,7 @@ use stickslip_core::contact::facing::{MOST as MOST_SURFACES, faced};
 use stickslip_core::contact::projection::{SurfacePoint, project, projection_at};
 use stickslip_core::fem::lagrange;
 use stickslip_core::model::{Body, BodyKind, Contact, InitialGaps, Model, Node, Surface};
+use stickslip_core::plane::dot;
 
 /// Gaps below this fraction of the scene's length count as zero.
 const NONE: f64 = 1e-9;
@@ -174,7 +175,7 @@ pub fn turned(model: &Model) -> Vec<TurnedSurface> {
                         SurfaceElement::from_surface(&model.surfaces[surface], spot.element);
                     let slopes = element.shape(spot.xi).d;
                     let n = normal(element.nodes, &model.nodes, &slopes);
-                    own[0] * n[0] + own[1] * n[1]
+                    dot(own, n)
                 })
             });
         let over: Vec<f64> = over.collect();

@@ -24,6 +24,7 @@ use crate::contact::stick_point::distance;
 use crate::contact::table1::t_max;
 use crate::model::Mode;
 use crate::model::{Bond, Contact, Friction, Surface};
+use crate::plane::{cross, dot};
 
 /// A node is at a corner or vertex if its distance is below this fraction of the element's size.
 const AT_VERTEX: f64 = 1e-9;
@@ -231,7 +232,7 @@ impl Ground<'_> {
         let [own, across] =
             [on, other].map(|at| normal(&self.surfaces[at.surface], at, self.positions));
         // Motion along t on the first side of the walk, or against t on the second side, is motion into a concave corner.
-        (corner::cross(own, across) * way < 0.0).then_some((on, -way.signum()))
+        (cross(own, across) * way < 0.0).then_some((on, -way.signum()))
     }
 
     /// dx/dξ of the two sides of a border, rotated by F_n where they have local flexibility ([`point_force`]).
@@ -337,7 +338,7 @@ impl Ground<'_> {
         let out = held.map(|spot| {
             let surface = &self.surfaces[spot.surface];
             let n = normal(surface, spot, self.positions);
-            -node.sign * (t[0] * n[0] + t[1] * n[1])
+            -node.sign * dot(t, n)
         });
         // It leaves the side from which its motion points away.
         node.spot = Some(if out[0] < out[1] { held[0] } else { held[1] });

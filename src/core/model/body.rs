@@ -2,7 +2,6 @@
 
 use crate::documented::documented;
 use crate::elements::kinds::ElementKind;
-use serde::{Deserialize, Serialize};
 
 /// A deformable body.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,7 +1,6 @@
 //! Loads, prescribed displacements, and the path of the load factor.
 
 use crate::documented::documented;
-use serde::{Deserialize, Serialize};
 
 /// A dead load (force or moment) on one degree of freedom.
 #[derive(Debug, Clone, PartialEq)]

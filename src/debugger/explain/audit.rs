@@ -11,6 +11,7 @@ use stickslip_core::contact::laws::{Finding, JudgedLaw};
 use stickslip_core::fem::deformation::{PointDeformation, deformation};
 use stickslip_core::model::Model;
 use stickslip_core::model::{BodyKind, Solid};
+use stickslip_core::plane::{dot, minus};
 use stickslip_core::step::event::Outcome;
 use stickslip_core::step::stepper::Stepper;
 
@@ -224,13 +225,13 @@ fn depth(outline: &[[[f64; 2]; 2]], point: [f64; 2]) -> f64 {
 
 /// Distance of a point from a segment.
 fn distance(a: [f64; 2], b: [f64; 2], point: [f64; 2]) -> f64 {
-    let along = [b[0] - a[0], b[1] - a[1]];
-    let to = [point[0] - a[0], point[1] - a[1]];
-    let squared = along[0] * along[0] + along[1] * along[1];
-    let part = (to[0] * along[0] + to[1] * along[1]) / squared.max(f64::MIN_POSITIVE);
+    let along = minus(b, a);
+    let to = minus(point, a);
+    let squared = dot(along, along);
+    let part = dot(to, along) / squared.max(f64::MIN_POSITIVE);
     let part = part.clamp(0.0, 1.0);
     let off = [to[0] - part * along[0], to[1] - part * along[1]];
-    (off[0] * off[0] + off[1] * off[1]).sqrt()
+    dot(off, off).sqrt()
 }
 
 #[cfg(test)]
