@@ -194,7 +194,7 @@ pub(crate) fn straight(nodes: &[Node], elements: &[Vec<usize>], length: f64) -> 
     let whole = distance(start, end);
     let along = [(end[0] - start[0]) / whole, (end[1] - start[1]) / whole];
     let off = |at: &[f64; 2]| {
-        let to = minus(at, start);
+        let to = minus(*at, start);
         cross(to, along).abs()
     };
     let place = |at: &[f64; 2]| (at[0] - start[0]) * along[0] + (at[1] - start[1]) * along[1];

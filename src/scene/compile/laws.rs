@@ -208,8 +208,8 @@ fn cross(nodes: &[Node], surfaces: [&Surface; 2]) -> bool {
         surface.endless || (-TOUCHES..=1.0 + TOUCHES).contains(&part)
     };
     let [one, other] = surfaces.map(sides);
-    one.iter().any(|[a, b]| {
-        other.iter().any(|[c, d]| {
+    one.iter().any(|&[a, b]| {
+        other.iter().any(|&[c, d]| {
             let (r, u) = (minus(b, a), minus(d, c));
             let to = minus(c, a);
             let turn = plane::cross(r, u);

@@ -1,7 +1,6 @@
 //! `history.arc`: arc-length control.
 
 use super::described::macros::described;
-use serde::{Deserialize, Serialize};
 use stickslip_core::model::ArcLength;
 
 described! {

@@ -1,7 +1,6 @@
 //! The interaction between slave nodes and surfaces: contact law and friction.
 
 use super::described::macros::described;
-use serde::{Deserialize, Serialize};
 use stickslip_core::model::Friction;
 
 described! {

@@ -1,7 +1,6 @@
 //! Parts of a mesh that is given node by node: elements, node sets and side sets.
 
 use super::described::macros::described;
-use serde::{Deserialize, Serialize};
 use stickslip_core::model::ElementKind;
 
 described! {

@@ -1,7 +1,6 @@
 //! The loads of a scene file and their amplitudes.
 
 use super::described::macros::described;
-use serde::{Deserialize, Serialize};
 use stickslip_core::model::Component;
 
 described! {

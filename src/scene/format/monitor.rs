@@ -1,7 +1,6 @@
 //! `monitors`: the quantities that a scene reports.
 
 use super::described::macros::described;
-use serde::{Deserialize, Serialize};
 use stickslip_core::model::{Axis, Component, Mode};
 
 described! {

@@ -9,7 +9,6 @@ use super::described::macros::described;
 use super::given::{Cells, NodeSet, SideSet};
 pub use super::loads::{LoadSpec, Scale};
 pub use super::monitor::{MonitorSpec, Quantity};
-use serde::{Deserialize, Serialize};
 use stickslip_core::model::{
     Component, Control, ElementKind, InitialState, Jumps, Law, Mode, Plane, Settings, Update,
     least, on_leg,
