@@ -3,7 +3,6 @@
 use crate::app::{App, Overlay};
 use crate::chooser_state::Preview;
 use crate::layout::{self, Choice, Pane, ScreenAreas};
-use crate::paint;
 use crate::panes::branches;
 use crate::panes::chooser;
 use crate::panes::contact;

@@ -7,6 +7,7 @@ use crate::canvas::{Canvas, Dot};
 use crate::chartframe::ChartFrame;
 use crate::layout::Pane;
 use crate::paint;
+use crate::theme::Theme;
 use crate::view::View;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
