@@ -231,7 +231,7 @@ fn shape(
     gaps(sheet, &window, shown, &now);
     let pressure = pressures(sheet, &window, shown, &now);
     let marked = radius(&window, model, &now);
-    given(sheet, &window, shown, &now, marked, &mut taken);
+    draw_conditions(sheet, &window, shown, &now, marked, &mut taken);
     let largest = forces(sheet, &window, shown, &now, marked, &mut taken);
     slaves(sheet, &window, shown, &now, rows, marked, &mut taken)?;
     sheet.height = top + high + 0.5 * MARGIN;
@@ -404,7 +404,7 @@ fn largest(shown: &ExportState) -> f64 {
 }
 
 /// Supports, loads and prescribed motions.
-fn given(
+fn draw_conditions(
     sheet: &mut Sheet,
     window: &Window,
     shown: &ExportState,
@@ -440,9 +440,9 @@ fn given(
         sheet.arrow(from, to, 1.6, GREEN);
         if arrow.given == Given::Motion {
             let (side, length) = ([-y, x], x.hypot(y).max(1e-300));
-            let beside =
+            let parallel =
                 |p: (f64, f64)| (p.0 + 3.0 * side[0] / length, p.1 - 3.0 * side[1] / length);
-            sheet.line(&[beside(from), beside(to)], 1.2, GREEN);
+            sheet.line(&[parallel(from), parallel(to)], 1.2, GREEN);
         }
         taken.take_line(from, to);
     }
