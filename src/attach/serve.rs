@@ -138,8 +138,8 @@ impl<'a> Server<'a> {
             self.stepper.monitors(&mut monitors);
         }
         let (state, event) = (self.stepper.state(), self.stepper.event());
-        let told = wire::state(self.stepper.model(), state, event, &monitors);
-        Answer::State(Box::new(told))
+        let state = wire::state(self.stepper.model(), state, event, &monitors);
+        Answer::State(Box::new(state))
     }
 
     fn on_contact(&mut self, id: &Id, what: impl FnOnce(usize) -> Intervention) -> Answer {

@@ -68,7 +68,7 @@ impl Course {
             Ok(())
         };
         intervene(stepper, 0)?;
-        let came = || interrupt.came();
+        let came = || interrupt.has_arrived();
         let until = Until::end().interrupted_by(&came);
         // A snapshot continues after a failure if its user did.
         let until = match self.steps {

@@ -163,7 +163,7 @@ impl<'a> Run<'a> {
         if let Some((grids, stepper)) = outputs.grids.as_mut().zip(solver.stepper()) {
             grids.start(stepper)?;
         }
-        let came = || interrupt.came();
+        let came = || interrupt.has_arrived();
         let until = Until::end().interrupted_by(&came);
         let end = drive(solver, until, |solver| match tally.see(solver, outputs) {
             Ok(OutputState::Well) => match tally.endless(solver) {
@@ -194,7 +194,11 @@ impl<'a> Run<'a> {
                 self.tally.report_slaves();
             }
         }
-        if let Some(touch) = self.tally.touch.as_ref().filter(|_| !interrupt.came())
+        if let Some(touch) = self
+            .tally
+            .touch
+            .as_ref()
+            .filter(|_| !interrupt.has_arrived())
             && let Some(difference) = touch.measure(self.solver.model())
         {
             self.tally.messages.note(difference.words());
@@ -260,7 +264,7 @@ impl<'a> Run<'a> {
         notify(&format!(
             "  `{remedies}` tries every remedy; in the debugger, d shows the cause"
         ));
-        let stop = || interrupt.came();
+        let stop = || interrupt.has_arrived();
         let most = (&self.tally.scene.spec, self.tally.steps);
         result.why = page::causes(&mut scratch, state, failure, &stop);
         for line in &result.why {
@@ -309,6 +313,7 @@ impl<'a> Run<'a> {
             found,
             jumps,
             losses,
+            without_friction,
             ..
         } = &self.tally;
         let name = &scene.name;
@@ -325,6 +330,14 @@ impl<'a> Run<'a> {
             let at = loads(jumps);
             notify(&format!(
                 "{name}: jumped to another equilibrium branch at load {at}"
+            ));
+        }
+        if let Some((body, load)) = without_friction
+            && !(jumps.is_empty() && losses.is_empty())
+        {
+            let at = sig4(*load);
+            notify(&format!(
+                "{name}: limit load: friction is used up at load {at}: all contacts of body {body} slide"
             ));
         }
         if !losses.is_empty() {

@@ -97,9 +97,9 @@ pub fn ask() -> io::Result<Option<Answers>> {
     let mut out = stdout().lock();
     out.write_all(questions().as_bytes())?;
     out.flush()?;
-    let mut told = Vec::new();
+    let mut bytes = Vec::new();
     let until = Instant::now() + PATIENCE;
-    while !Answers::read(&told).1 {
+    while !Answers::read(&bytes).1 {
         let left = until.saturating_duration_since(Instant::now());
         let stdin = stdin();
         let mut from = [PollFd::new(&stdin, PollFlags::IN)];
@@ -110,12 +110,12 @@ pub fn ask() -> io::Result<Option<Answers>> {
         let mut some = [0; 256];
         match rustix::io::read(&stdin, &mut some)? {
             0 => break,
-            n => told.extend_from_slice(&some[..n]),
+            n => bytes.extend_from_slice(&some[..n]),
         }
     }
     out.write_all(b"\r\x1b[K")?;
     out.flush()?;
-    Ok(Some(Answers::read(&told).0))
+    Ok(Some(Answers::read(&bytes).0))
 }
 
 fn questions() -> String {
@@ -131,9 +131,9 @@ fn questions() -> String {
 
 impl Answers {
     /// The answers so far, and whether the last one has arrived. Key presses in between are ignored.
-    fn read(told: &[u8]) -> (Answers, bool) {
+    fn read(bytes: &[u8]) -> (Answers, bool) {
         let mut answers = Answers::default();
-        let text = String::from_utf8_lossy(told);
+        let text = String::from_utf8_lossy(bytes);
         for answer in text.split("\x1b[").skip(1) {
             let end = answer.find(|c: char| c.is_ascii_alphabetic());
             let Some((numbers, end)) = end.map(|at| (&answer[..at], &answer[at..])) else {

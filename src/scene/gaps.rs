@@ -85,13 +85,13 @@ pub fn words(model: &Model) -> Vec<String> {
                 false => gap,
             });
         // Distinguishes an exact 0 from a gap that rounds to it.
-        let told = |gap: f64| match gap {
+        let text = |gap: f64| match gap {
             0.0 => "0".to_owned(),
             gap => format!("{gap:.4}"),
         };
         let range = match least == largest {
-            true => told(least),
-            false => format!("{} to {}", told(least), told(largest)),
+            true => text(least),
+            false => format!("{} to {}", text(least), text(largest)),
         };
         let inside = match found.inside.len() {
             0 => String::new(),

@@ -113,7 +113,7 @@ impl Scene {
     /// A message with the reason.
     pub fn named_in(own: &str, named: &str) -> Result<String, String> {
         let own = std::path::Path::new(own);
-        let found = match input::beside(own, named.trim_start_matches("./")) {
+        let found = match input::path_in_folder(own, named.trim_start_matches("./")) {
             Ok(path) if path.is_file() => return Ok(path.to_string_lossy().into_owned()),
             Ok(_) => "not a file".to_owned(),
             Err(why) => why,
@@ -122,9 +122,9 @@ impl Scene {
             return Ok(named.to_owned());
         }
         let names = builtin::list().iter().map(|scene| scene.name);
-        let (quoted, meant) = (error::quoted(named), error::did_you_mean(named, names));
+        let (quoted, similar) = (error::quoted(named), error::did_you_mean(named, names));
         Err(format!(
-            "no scene {quoted} in the folder of this file or below, and no built-in scene of that name{meant}: {found}"
+            "no scene {quoted} in the folder of this file or below, and no built-in scene of that name{similar}: {found}"
         ))
     }
 

@@ -215,11 +215,15 @@ fn a_missing_file_gets_a_suggestion_from_its_folder() {
     let here = directory.path();
     std::fs::copy(top("problems/osc-two6.ron"), here.join("clip.ron")).unwrap();
     for arguments in [
-        ["run", "cilp.ron"],
-        ["replay", "cilp.ron"],
-        ["cilp.ron", "--no-journal"],
+        &["run", "cilp.ron"][..],
+        &["replay", "cilp.ron"],
+        &["resume", "--check", "cilp.ron"],
+        &["story", "cilp.ron"],
+        &["chart", "--from", "cilp.ron"],
+        &["chart", "osc-two6", "--reference", "cilp.ron"],
+        &["cilp.ron", "--no-journal"],
     ] {
-        let wrong = ran(here, &arguments);
+        let wrong = ran(here, arguments);
         let told = err(&wrong);
         assert!(told.contains("; did you mean \"clip.ron\"?"), "{told}");
         assert_eq!(code(&wrong), 2);

@@ -355,7 +355,7 @@ pub fn mean_normal(one: [f64; 2], other: [f64; 2]) -> [f64; 2] {
 }
 
 /// The last point that has the side's own normal, on the side ahead of a border (along the walk) or on the one behind it.
-pub fn beside(surface: &Surface, border: SurfacePoint, ahead: bool) -> SurfacePoint {
+pub fn point_on_side(surface: &Surface, border: SurfacePoint, ahead: bool) -> SurfacePoint {
     let own = (border.xi < 0.0) == ahead;
     let across = || neighbour(surface, border).filter(|_| !own);
     let (element, xi) = across().unwrap_or((border.element, border.xi));

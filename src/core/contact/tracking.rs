@@ -16,8 +16,8 @@ use crate::contact::crossing;
 use crate::contact::facing::{MOST, faced, is_piece};
 use crate::contact::point_force;
 use crate::contact::projection::{
-    Projection, STRAIGHT, SurfacePoint, beside, border, element_size, mean_normal, neighbour,
-    normal, project, projection_at, sharpen, slopes_at_border, tangent,
+    Projection, STRAIGHT, SurfacePoint, border, element_size, mean_normal, neighbour, normal,
+    point_on_side, project, projection_at, sharpen, slopes_at_border, tangent,
 };
 use crate::contact::state::ContactState;
 use crate::contact::stick_point::distance;
@@ -226,7 +226,7 @@ impl Ground<'_> {
             return None;
         }
         let Some(second) = node.second else {
-            return Some((beside(surface, on, way < 0.0), -way.signum()));
+            return Some((point_on_side(surface, on, way < 0.0), -way.signum()));
         };
         let other = if on == second { spot } else { second };
         let [own, across] =
@@ -325,7 +325,11 @@ impl Ground<'_> {
             && held.surface == spot.surface
         {
             // Slip is the motion of S* relative to the node, which itself moves in the opposite direction.
-            node.spot = Some(beside(&self.surfaces[held.surface], held, node.sign < 0.0));
+            node.spot = Some(point_on_side(
+                &self.surfaces[held.surface],
+                held,
+                node.sign < 0.0,
+            ));
         }
     }
 
@@ -410,7 +414,7 @@ impl Ground<'_> {
             let size = element_size(&self.surfaces[spot.surface], spot, self.positions);
             if here.gap.abs() <= AT_VERTEX * size {
                 let surface = &self.surfaces[spot.surface];
-                node.spot = Some(beside(surface, spot, spot.xi < 0.0));
+                node.spot = Some(point_on_side(surface, spot, spot.xi < 0.0));
                 if node.mode == Mode::Fixed && !node.is_forced() {
                     // Friction points back to the vertex, which is ahead along t at ξ = 1.
                     (node.mode, node.sign) = (Mode::Sliding, spot.xi);
@@ -506,7 +510,7 @@ pub fn leave_border(surfaces: &[Surface], node: &mut ContactState) {
     let Some(spot) = spot else { return };
     let surface = &surfaces[spot.surface];
     if neighbour(surface, spot).is_some() {
-        node.spot = Some(beside(surface, spot, node.sign < 0.0));
+        node.spot = Some(point_on_side(surface, spot, node.sign < 0.0));
     }
 }
 

@@ -201,11 +201,11 @@ pub enum MonitorQuantity {
         shear: bool,
     },
     /// A number reported by an attached solver.
-    Told {
+    Reported {
         /// Index among the numbers that it reports.
         number: usize,
         /// Kind of number.
-        kind: ToldKind,
+        kind: ReportedKind,
     },
     /// Arc along the equilibrium path from the start of the history, in the quantity that [`ArcLength::along`] measures.
     Arc,
@@ -214,7 +214,7 @@ pub enum MonitorQuantity {
 /// Kind of a number reported by an attached solver.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum ToldKind {
+pub enum ReportedKind {
     /// A length.
     Length,
     /// A force.

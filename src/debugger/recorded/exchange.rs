@@ -94,7 +94,7 @@ pub fn open(name: &str, text: &str) -> Result<OpenedExchange, SceneError> {
                 log.noted(&line.text);
             }
             Side::Logged => log.printed(&line.text),
-            Side::Asked => reader.asked(Request::read(&line.text).map_err(broken)?),
+            Side::Asked => reader.take_request(Request::read(&line.text).map_err(broken)?),
             // An invalid message ended the original session.
             Side::Answered => match Answer::read(&line.text) {
                 Ok(Answer::Message { level, text }) => log.message(level, &text),
@@ -181,7 +181,7 @@ impl ExchangeReader {
         self.pending = None;
     }
 
-    fn asked(&mut self, request: Request) {
+    fn take_request(&mut self, request: Request) {
         if !matches!(request, Request::Interrupt | Request::Bye) {
             self.pending = Some(request);
         }
@@ -266,7 +266,7 @@ impl RecordedSolver {
     fn next(&self) -> Option<&RecordedStep> {
         let place = self
             .places
-            .follows(self.now.state.place()?, self.now.state.asked())?;
+            .follows(self.now.state.place()?, self.now.state.changes())?;
         self.places.get(place)?.as_ref()
     }
 }

@@ -124,7 +124,7 @@ pub enum Truth {
     Close(LessonQuantity, LessonQuantity),
     /// The run with these settings is the cheapest of those with an error of at most this.
     Cheapest(Vec<(String, String)>, f64),
-    /// Right or wrong, as the author says.
+    /// Whether the author marked it as right.
     Known(bool),
 }
 

@@ -4,7 +4,7 @@ pub use super::components::Components;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 pub use stickslip_core::contact::table2::Test;
-pub use stickslip_core::model::{Mode, ToldKind};
+pub use stickslip_core::model::{Mode, ReportedKind};
 pub use stickslip_core::step::event::Position;
 pub use stickslip_core::step::solver::ReportedForm;
 
@@ -326,7 +326,7 @@ pub enum Monitor {
         /// Name shown to the user.
         name: String,
         /// Kind of number.
-        kind: ToldKind,
+        kind: ReportedKind,
     },
 }
 

@@ -85,9 +85,13 @@ fn body<'a, T: Deserialize<'a>>(line: &'a str) -> Result<T, FormatError> {
 
 /// Converts a serde error to one with the message path and the column.
 fn broken(line: &str, path: &str, error: &serde_json::Error) -> FormatError {
-    let told = error.to_string();
+    let message = error.to_string();
     // The position is reported separately.
-    let mut told = told.split(" at line ").next().unwrap_or(&told).to_owned();
+    let mut message = message
+        .split(" at line ")
+        .next()
+        .unwrap_or(&message)
+        .to_owned();
     // serde_json counts columns in bytes.
     let at = error.column().saturating_sub(1).min(line.len());
     let mut at = (0..=at)
@@ -100,18 +104,18 @@ fn broken(line: &str, path: &str, error: &serde_json::Error) -> FormatError {
         .iter()
         .any(|none| line[letters.len()..].starts_with(none))
     {
-        told = "JSON has no NaN and infinity; write null instead".to_owned();
+        message = "JSON has no NaN and infinity; write null instead".to_owned();
         at = letters.len();
     }
     let mut letters = path.chars();
     let path: String = letters.by_ref().take(MOST_PATH).collect();
     let cut = if letters.next().is_some() { "…" } else { "" };
     if !path.is_empty() && path != "." {
-        told = format!("{path}{cut}: {told}");
+        message = format!("{path}{cut}: {message}");
     }
     match error.column() {
-        0 => FormatError::whole(told),
-        _ => FormatError::at(error.line().max(1), line[..at].chars().count() + 1, told),
+        0 => FormatError::whole(message),
+        _ => FormatError::at(error.line().max(1), line[..at].chars().count() + 1, message),
     }
 }
 

@@ -115,8 +115,8 @@ fn column(names: &MarketNames, part: &str, size: usize) -> Result<Option<Vec<f64
     }
     let file = path.display().to_string();
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let path =
-        input::beside(&names.part("W"), &name).map_err(|why| SceneError::whole(&file, why))?;
+    let path = input::path_in_folder(&names.part("W"), &name)
+        .map_err(|why| SceneError::whole(&file, why))?;
     let text = super::text(&path)?;
     let read = matrix_market::read(&text).map_err(|broken| read::of_file(&file, broken))?;
     if (read.rows, read.columns) != (size, 1) && (read.rows, read.columns) != (1, size) {

@@ -30,9 +30,9 @@ pub fn read(file: &str, text: &str, memory: Option<f64>) -> Result<Problem, Scen
     let spec: Stored = read::value(file, text, "stored stiffness")?;
     let place = |fault: Fault| placed(file, text, &[], fault);
     let named = |key: &str, name: &str| {
-        input::beside(std::path::Path::new(file), name).map_err(|why| {
-            let told = format!("{}: {why}", quoted(name));
-            place(Fault::new(at![key], told))
+        input::path_in_folder(std::path::Path::new(file), name).map_err(|why| {
+            let message = format!("{}: {why}", quoted(name));
+            place(Fault::new(at![key], message))
         })
     };
     let unknowns = match &spec.unknowns {

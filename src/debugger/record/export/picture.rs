@@ -227,7 +227,7 @@ fn shape(
     shape.surfaces();
     shape.gaps();
     let pressure = shape.pressures();
-    shape.given();
+    shape.conditions();
     let largest = shape.forces();
     shape.slaves(rows)?;
     shape.sheet.height = top + high + 0.5 * MARGIN;
@@ -368,7 +368,7 @@ impl ShapeDrawing<'_> {
     }
 
     /// Supports, loads and prescribed motions.
-    fn given(&mut self) {
+    fn conditions(&mut self) {
         let load_factor = self.shown.event.map_or(0.0, |event| event.load_factor);
         let found = conditions(&self.shown.scene.model, load_factor, self.now);
         for (node, held) in found.supports {

@@ -90,7 +90,7 @@ macro_rules! described {
                     described::OWN_DEFAULTS.to_owned()
                 }
                 fn types(into: &mut Vec<described::Type>) -> Result<(), String> {
-                    if described::known(into, stringify!($name)) {
+                    if described::contains(into, stringify!($name)) {
                         return Ok(());
                     }
                     let every = false $(|| described::macros::has_default!($($meta)*))*;
@@ -174,7 +174,7 @@ macro_rules! described {
                     name.to_owned()
                 }
                 fn types(into: &mut Vec<described::Type>) -> Result<(), String> {
-                    if described::known(into, stringify!($name)) {
+                    if described::contains(into, stringify!($name)) {
                         return Ok(());
                     }
                     let mut forms = Vec::new();
