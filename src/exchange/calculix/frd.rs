@@ -73,7 +73,9 @@ mod tests {
     #[test]
     fn the_last_contact_data_set_counts() {
         assert_eq!(pressures(FRD.as_bytes()).unwrap(), [(57, 1131.92)]);
-        let twice = FRD.replace(" 57", "  8").replace("1.13192E+03", "2.00000E+00");
+        let twice = FRD
+            .replace(" 57", "  8")
+            .replace("1.13192E+03", "2.00000E+00");
         assert_eq!(
             pressures(format!("{FRD}{twice}").as_bytes()).unwrap(),
             [(8, 2.0)]
