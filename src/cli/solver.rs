@@ -13,7 +13,7 @@ use stickslip_debugger::record::journal::Record;
 use stickslip_debugger::recorded::log::Log;
 use stickslip_debugger::session::Session;
 use stickslip_scene::Scene;
-use stickslip_scene::solver::solver;
+use stickslip_scene::solver::any_solver;
 
 /// An attached solver and its time limits.
 #[derive(Debug, clap::Args)]
@@ -150,8 +150,9 @@ impl SubjectArgs {
                 solver: Box::new(attached),
             });
         }
-        let scene = self.scene()?;
-        let solver = Box::new(solver(Arc::new(scene.model.clone())));
+        let name = self.scene.as_deref().unwrap_or_default();
+        let scene = Scene::open_any(name, &self.set.set)?;
+        let solver = any_solver(Arc::new(scene.model.clone()));
         Ok(Subject { scene, solver })
     }
 

@@ -5,7 +5,6 @@
 //! master surfaces cannot show: nodes of a master inside a slave's body, and increments in which friction
 //! produced work.
 
-use crate::recorded::judged::{self, Sizes};
 use stickslip_core::contact::closest_points::place;
 use stickslip_core::contact::element::SurfaceElement;
 use stickslip_core::contact::laws::{Finding, JudgedLaw, Verdict};
@@ -13,6 +12,7 @@ use stickslip_core::fem::deformation::{PointDeformation, deformation};
 use stickslip_core::model::Model;
 use stickslip_core::model::{BodyKind, Solid};
 use stickslip_core::step::event::{Event, Outcome};
+use stickslip_core::step::judged::{self, Sizes};
 use stickslip_core::step::solver::Solver;
 use stickslip_core::step::stepper::Stepper;
 

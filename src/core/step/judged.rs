@@ -1,15 +1,14 @@
-//! Checks the laws of contact and friction with the numbers that an attached solver reports for an accepted
-//! state.
+//! Checks the laws of contact and friction with the numbers that another solver reports for an accepted state.
 //!
 //! Only those numbers are used: g >= 0 for rigid contact, no force across an open gap, F_n >= 0, |F_t| <=
 //! |T_max|, and friction that opposes the slip of a sliding node; in space, friction at its limit along the slip. Unreported
 //! quantities are not checked.
 
-use stickslip_core::contact::laws::{Finding, JudgedLaw, JudgedNumbers, Verdict};
-use stickslip_core::contact::record::ContactRecord;
-use stickslip_core::model::{Mode, Model};
-use stickslip_core::step::event::Event;
-use stickslip_core::step::state::State;
+use crate::contact::laws::{Finding, JudgedLaw, JudgedNumbers, Verdict};
+use crate::contact::record::ContactRecord;
+use crate::model::{Mode, Model};
+use crate::step::event::Event;
+use crate::step::state::State;
 
 /// Violations below this limit are accepted silently, relative to the largest force and the largest motion.
 /// Other solvers stop at their own criterion, often a thousandth, or satisfy the laws only on average over an
@@ -17,7 +16,7 @@ use stickslip_core::step::state::State;
 pub const ALLOWED: f64 = 1e-2;
 
 /// Forces below this fraction of the solver's residual scale are round-off or negligible.
-pub(super) const ROUND_OFF: f64 = 1e-6;
+pub const ROUND_OFF: f64 = 1e-6;
 
 /// Reference sizes for relative amounts.
 pub struct Sizes {
