@@ -47,13 +47,13 @@ pub fn solve(
     let contacts = friction.iter().enumerate();
     let found = contacts.map(|(k, friction)| {
         let of = |all: &DVector<f64>| [all[3 * k], all[3 * k + 1], all[3 * k + 2]];
-        contact(of(&f), of(&motion), friction, [force, length])
+        lawful(of(&f), of(&motion), friction, [force, length])
     });
     found.collect()
 }
 
 /// The contact with its mode; `None` if it violates a law.
-fn contact(
+pub(super) fn lawful(
     force: [f64; 3],
     motion: [f64; 3],
     friction: &Friction,
