@@ -22,7 +22,7 @@ use stickslip_debugger::recorded::fault::Fault;
 use stickslip_debugger::recorded::interface_problem::read_problem;
 use stickslip_debugger::recorded::log::Log;
 use stickslip_debugger::recorded::orders::requests;
-use stickslip_exchange::attach::message::{self, EndedLevel, Hello, Id, Restore};
+use stickslip_exchange::attach::message::{self, ContactResult, EndedLevel, Hello, Id, Restore};
 use stickslip_exchange::attach::{Answer, Request};
 use stickslip_scene::Scene;
 
@@ -55,14 +55,24 @@ struct StoredState {
     token: Option<serde_json::Value>,
     /// Position, outcome and modes of the iteration that produced it; `None` at the start.
     led: Option<(Position, EndedLevel, Vec<Mode>)>,
+    /// Its contacts, if the next state may leave some out.
+    contacts: Vec<ContactResult>,
+}
+
+/// A state with all contacts, and those that the next one may leave out.
+struct ReportedState {
+    state: message::State,
+    contacts: Vec<ContactResult>,
 }
 
 impl StoredState {
-    fn from_message(state: &message::State, position: Position) -> StoredState {
+    fn from_message(reported: ReportedState, position: Position) -> StoredState {
+        let ReportedState { state, contacts } = reported;
         let next = state.contacts.iter().map(|found| found.next);
         StoredState {
             token: None,
             led: Some((position, state.ended, next.collect())),
+            contacts,
         }
     }
 
@@ -246,14 +256,14 @@ impl Attached {
 
     /// Repeats the iteration that leads to a node, from its predecessor.
     fn do_again(&mut self, place: u64) -> Result<(), Fault> {
-        let asked = match self.places.from(place) {
-            Some((_, asked)) => asked.to_vec(),
+        let (from, asked) = match self.places.from(place) {
+            Some((from, asked)) => (from, asked.to_vec()),
             None => return Err(Fault::Unknown),
         };
         self.change(&asked)?;
-        let state = self.step_there()?;
-        let position = self.frame().check(&state)?;
-        self.same(place, &StoredState::from_message(&state, position))?;
+        let reported = self.step_there(from)?;
+        let position = self.frame().check(&reported.state)?;
+        self.same(place, &StoredState::from_message(reported, position))?;
         self.at = Some(place);
         self.save(place)
     }
@@ -281,12 +291,25 @@ impl Attached {
         Ok(())
     }
 
-    /// Makes one iteration from the solver's current state.
-    fn step_there(&mut self) -> Result<message::State, Fault> {
+    /// Makes one iteration from the solver's current state, which is that of a node.
+    fn step_there(&mut self, from: u64) -> Result<ReportedState, Fault> {
         // Unknown until the answer is evaluated.
         self.at = None;
         match self.ask(&Request::Step)? {
-            Answer::State(state) => Ok(*state),
+            Answer::State(mut state) => {
+                let before = self
+                    .places
+                    .get(from)
+                    .filter(|_| self.hello.abilities.partial);
+                let contacts = before.map(|before| state.complete(&self.ids, &before.contacts));
+                let contacts = contacts.unwrap_or_else(|| Ok(Vec::new()));
+                let contacts = contacts.map_err(|why| Fault::Unfit {
+                    message: "state",
+                    why,
+                })?;
+                let state = *state;
+                Ok(ReportedState { state, contacts })
+            }
             other => Err(self.other(&Request::Step, other, "state")),
         }
     }
@@ -337,9 +360,11 @@ impl Attached {
         self.go()?;
         let (from, asked) = (self.place()?, self.now.state.changes().to_vec());
         self.change(&asked)?;
-        let message = self.step_there()?;
-        let mut led = self.frame().recorded_step(&self.now.state, &message)?;
-        let kept = StoredState::from_message(&message, led.event.position);
+        let reported = self.step_there(from)?;
+        let mut led = self
+            .frame()
+            .recorded_step(&self.now.state, &reported.state)?;
+        let kept = StoredState::from_message(reported, led.event.position);
         let place = match self.places.follows(from, &asked) {
             Some(place) => {
                 self.same(place, &kept)?;

@@ -118,6 +118,7 @@ impl<'a> Server<'a> {
                 restore: Restore::Any,
                 problem: true,
                 interrupt: false,
+                partial: false,
             },
             decides: None,
             parameters: parameters(self.scene),

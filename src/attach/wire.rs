@@ -56,7 +56,7 @@ pub fn scene(model: &Model) -> Scene {
 fn node(node: &stickslip_core::model::Node) -> message::NodeMessage {
     message::NodeMessage {
         name: node.name.clone(),
-        at: node.at.into(),
+        at: Some(node.at.into()),
     }
 }
 

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use stickslip_core::step::drive::{RunEnd, Until};
 use stickslip_core::step::stepper::Stepper;
 use stickslip_debugger::record::snapshot::{AppliedIntervention, Snapshot, SnapshotError};
-use stickslip_scene::Scene;
+use stickslip_scene::{IN_SPACE, Scene};
 
 /// A scene, with the interventions and the number of steps of a snapshot.
 pub struct Course {
@@ -39,6 +39,9 @@ impl Course {
         if snapshot.scene.attached.is_some() {
             let name = snapshot.name;
             return Err(SnapshotError::Attached { name }.into());
+        }
+        if snapshot.scene.in_space.is_some() {
+            return Err(usage!("{name}: {IN_SPACE}"));
         }
         Ok(Course {
             scene: Scene::from_spec(name, snapshot.scene)?,

@@ -1,6 +1,6 @@
 //! `stickslip run`: solves a scene from start to end.
 
-use super::base::{Error, Exit, OutputState, notify, usage};
+use super::base::{Error, Exit, OutputState, notify, quoted, usage};
 use super::interrupt::Interrupt;
 use super::json;
 use super::records::{FailureKind, FailureRecord, RunRecord};
@@ -141,6 +141,7 @@ impl<'a> Run<'a> {
         let (model, spec) = (&scene.model, &scene.spec);
         let chosen = spec.settings.touch == Touch::Auto && model.settings.touch == Touch::Ratio;
         let watched = chosen && model.control != Control::Arc && !args.quiet;
+        let is_own = solver.stepper().is_some();
         let stepper = solver.stepper().filter(|_| watched);
         let touch = stepper.map(|stepper| TouchWatch::new(stepper.state()));
         let most = args.subject.solver.is_named().then_some(args.most);
@@ -148,7 +149,7 @@ impl<'a> Run<'a> {
         tally.touch = touch;
         Run {
             solver,
-            is_own: most.is_none(),
+            is_own,
             tally,
         }
     }
@@ -256,7 +257,13 @@ impl<'a> Run<'a> {
         let mut result = self.with_message(result, text);
         if !self.is_own {
             // Only an attached solver knows the cause.
-            notify("  `stickslip attach` opens it in the debugger; d shows the cause");
+            let how = match self.tally.scene.spec.in_space {
+                None => "`stickslip attach`".to_owned(),
+                Some(_) => format!("`stickslip {}`", quoted(&self.tally.scene.name)),
+            };
+            notify(&format!(
+                "  {how} opens it in the debugger; d shows the cause"
+            ));
             return result;
         }
         let mut scratch = solver(self.solver.model().clone());

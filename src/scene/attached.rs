@@ -130,7 +130,7 @@ pub(super) fn compile(spec: &Spec, text: &str) -> Result<(Model, Names), Fault> 
         ..Model::from_contacts(&shown::line(&scene.title), nodes, surfaces, contacts)
     };
     if scene.dimension == 3 {
-        let z = |node: &message::NodeMessage| node.at.in_space()[2];
+        let z = |node: &message::NodeMessage| node.at.map_or(0.0, |at| at.in_space()[2]);
         model.raise(scene.nodes.iter().map(z).collect());
     }
     if !model.length.is_finite() {
@@ -163,9 +163,24 @@ fn nodes(scene: &Scene) -> Result<Vec<Node>, Fault> {
         ));
     }
     let mut nodes: Vec<Node> = Vec::with_capacity(scene.nodes.len());
+    // Nodes without a position are drawn in a row to the right of the others.
+    let known = scene
+        .nodes
+        .iter()
+        .filter_map(|node| Some(node.at?.in_space()[0]));
+    let [low, high] = known.fold([0.0, 0.0_f64], |[low, high], x| [x.min(low), x.max(high)]);
+    let step = if high > low { 0.1 * (high - low) } else { 1.0 };
+    let mut last = high;
     for (k, node) in scene.nodes.iter().enumerate() {
-        let at = node.at.as_slice();
-        if at.len() != scene.dimension || !at.iter().all(|x| x.is_finite()) {
+        let at = node.at.unwrap_or_else(|| {
+            last += step;
+            match scene.dimension {
+                3 => [last, 0.0, 0.0].into(),
+                _ => [last, 0.0].into(),
+            }
+        });
+        let all = at.as_slice();
+        if all.len() != scene.dimension || !all.iter().all(|x| x.is_finite()) {
             let count = if scene.dimension == 3 { "three" } else { "two" };
             return refused(format!(
                 "nodes[{k}].at: a position must be {count} finite numbers"
@@ -175,7 +190,7 @@ fn nodes(scene: &Scene) -> Result<Vec<Node>, Fault> {
             "" => format!("node.{}", k + 1),
             name => shown::cut(name, limits::NAME),
         };
-        let [x, y, _] = node.at.in_space();
+        let [x, y, _] = at.in_space();
         nodes.push(Node { name, at: [x, y] });
     }
     // A contact may have a different name than its node.

@@ -55,6 +55,9 @@ use stickslip_platform::input;
 pub use compile::increments;
 use nodes::Names;
 
+/// Where an interface problem in space cannot be used.
+pub const IN_SPACE: &str = "the interface problem is one in space, which `stickslip FILE`, `run`, `record` and `remedies` solve";
+
 /// A scene that has been read and checked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
@@ -78,8 +81,20 @@ impl Scene {
     /// value, as in `--set`.
     ///
     /// # Errors
-    /// If the scene does not exist or is invalid.
+    /// If the scene does not exist, is invalid, or is an interface problem in space.
     pub fn open(name: &str, overrides: &[(String, String)]) -> Result<Scene, SceneError> {
+        let scene = Scene::open_any(name, overrides)?;
+        match scene.spec.in_space {
+            None => Ok(scene),
+            Some(_) => Err(SceneError::whole(name, IN_SPACE)),
+        }
+    }
+
+    /// As [`Scene::open`], also for an interface problem in space, which has its own solver ([`solver::any_solver`]).
+    ///
+    /// # Errors
+    /// If the scene does not exist or is invalid.
+    pub fn open_any(name: &str, overrides: &[(String, String)]) -> Result<Scene, SceneError> {
         if !std::path::Path::new(name).is_file()
             && let Some(builtin) = builtin::find(name)
         {
@@ -322,6 +337,9 @@ impl Source<'_> {
     fn condensed(&self) -> Result<Scene, SceneError> {
         let (name, text) = (self.name, self.text);
         let problem = read::problem(name, text)?;
+        if let Some(what) = problem.unfit_in_space() {
+            return Err(SceneError::whole(name, what));
+        }
         let place = |overrides: &[Override], fault: Fault| {
             let own = Fault::new(problem.origin(&fault.path), fault.message.clone());
             match placed(name, "", overrides, fault) {

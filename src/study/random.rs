@@ -125,6 +125,7 @@ impl Population {
         };
         RandomProblem {
             problem: Problem {
+                tangents: 1,
                 title: format!("Random interface problem {k} of seed {}", self.seed),
                 about: String::new(),
                 contacts,

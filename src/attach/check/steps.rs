@@ -4,10 +4,10 @@
 use super::report::{Outcome, Report, fails, good, not_tried};
 use super::trial::{Trial, is_last, millis};
 use stickslip_core::model::{Mode, Model};
+use stickslip_core::step::judged::ALLOWED;
 use stickslip_debugger::explain::names;
 use stickslip_debugger::recorded::decode::WireFrame;
 use stickslip_debugger::recorded::fault::Fault;
-use stickslip_debugger::recorded::judged::ALLOWED;
 use stickslip_scene::shown;
 
 use std::time::Instant;

@@ -421,6 +421,30 @@ mod tests {
         }
 
         #[test]
+        fn a_state_is_completed_to_the_contacts_of_the_scene_or_rejected(
+            before in prop::collection::vec(contact(), 0..4),
+            sent in prop::collection::vec(contact(), 0..4),
+            kept in prop::collection::vec(any::<bool>(), 4),
+        ) {
+            let ids: Vec<Id> = before.iter().filter_map(|found| found.id.clone()).collect();
+            let Answer::State(mut state) = Answer::read(r#"{"type":"state","at":{"increment":1},"ended":"iteration","contacts":[]}"#).expect("sound") else {
+                panic!("a state");
+            };
+            // A part of the contacts in their order is completed; others are not of this scene.
+            state.contacts = before.iter().zip(&kept).filter(|(_, kept)| **kept).map(|(found, _)| found.clone()).collect();
+            let rows = state.contacts.len();
+            let all = state.complete(&ids, &before).expect("in order");
+            prop_assert_eq!(all.len(), before.len());
+            let unchanged = all.iter().zip(&kept).filter(|(_, kept)| !**kept);
+            prop_assert!(unchanged.clone().all(|(found, _)| found.mode == found.next));
+            prop_assert_eq!(unchanged.count() + rows, before.len());
+            state.contacts = sent;
+            if state.complete(&ids, &before).is_ok() {
+                prop_assert!(state.contacts.len() >= ids.len());
+            }
+        }
+
+        #[test]
         fn no_line_makes_the_reader_panic(text in ".{0,200}") {
             let _ = Answer::read(&text);
             let _ = Request::read(&text);

@@ -7,6 +7,7 @@ use super::arc::ArcSpec;
 use super::contact_law::{ContactLaw, FrictionSpec};
 use super::described::macros::described;
 use super::given::{Cells, NodeSet, SideSet};
+use super::in_space::SpaceSpec;
 pub use super::loads::{LoadSpec, Scale};
 pub use super::monitor::{MonitorSpec, Quantity};
 use stickslip_core::model::{
@@ -62,6 +63,9 @@ described! {
         /// solver can solve the scene (manual page `attaching`). Default: none.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub attached: Option<String> => skip,
+        /// An interface problem in space. Of the rest of the file only title, text and settings are used. Default: none.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub in_space: Option<SpaceSpec> => skip,
     }
 }
 
@@ -84,6 +88,7 @@ impl Default for Spec {
             settings: Settings::default(),
             monitors: Vec::new(),
             attached: None,
+            in_space: None,
         }
     }
 }

@@ -268,6 +268,7 @@ impl<'s> StoredParts<'s> {
         let lengths = motions.flatten().chain(spec.contacts.iter().map(|c| c.gap));
         let largest = lengths.map(f64::abs).fold(0.0, f64::max);
         Problem {
+            tangents: 1,
             title: spec.title.clone(),
             about: spec.about.clone(),
             contacts: self.contacts.iter().enumerate().map(contact).collect(),
