@@ -104,7 +104,7 @@ impl ConeSolver {
     /// Goes to the forces of the current state.
     fn go(&mut self) -> Result<u64, SolverLost> {
         let place = self.state.place().unwrap_or(0);
-        if self.at != Some(place) || !self.state.asked().is_empty() {
+        if self.at != Some(place) || !self.state.changes().is_empty() {
             let forces = self.forces.get(place);
             let forces =
                 forces.ok_or_else(|| SolverLost::new("the state is not one of this solver"))?;
@@ -135,7 +135,7 @@ impl Solver for ConeSolver {
             return Ok(false);
         }
         let place = self.go()?;
-        let asked = self.state.asked().to_vec();
+        let asked = self.state.changes().to_vec();
         let norms = |relative: f64| Norms {
             relative,
             limit: SETTLED,
