@@ -38,11 +38,11 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     if let Some(text) = &spec.attached {
         return attached::compile(spec, text);
     }
+    check_texts(spec)?;
     if let Some(problem) = &spec.in_space {
         return in_space::compile(spec, problem);
     }
     history::memory(&spec.settings)?;
-    check_texts(spec)?;
     check_lengths(spec)?;
     let mut names = Names::from_spec(spec)?;
     bodies::materials(spec)?;
