@@ -699,7 +699,7 @@ fn the_surface_between_a_node_and_its_anchor_may_stretch() {
 #[test]
 fn a_tied_node_may_be_pulled_and_may_not_stray() {
     let stage = Stage {
-        bond: Bond::Tied { upright: false },
+        bond: Bond::tied(),
         ..Stage::floor(0.0, 0.0)
     };
     let to = |to: [f64; 2], force: [f64; 2]| stage.broken([1.0, 0.0], to, force);

@@ -28,7 +28,7 @@ use crate::contact::element::{SurfaceElement, closed};
 use crate::contact::facing::{MOST, faced};
 use crate::contact::laws::{Finding, JudgedLaw, JudgedNumbers, Scales, Verdict};
 use crate::contact::point_force::judged::{JudgedGives, LoadedInterface, hand_on};
-use crate::contact::projection::SurfacePoint;
+use crate::contact::projection::{SurfacePoint, tangent};
 use crate::contact::side_laws::{Amounts, SideHistory, TouchedSide};
 use crate::contact::side_laws::{beyond_border, in_corner, on_side, slip_into};
 use crate::contact::stick_point::distance;
@@ -322,8 +322,15 @@ impl Judge {
         let here = |earlier: &&ClosestPoint| earlier.spot.surface == foot.spot.surface;
         let surface = &seen.surfaces[foot.spot.surface];
         let earlier = self.earlier.iter().find(here);
+        let elastic = match seen.contacts[slave].bond.give()[1] {
+            0.0 => 0.0,
+            give => {
+                let t = tangent(outward(foot, seen.surfaces, seen.now));
+                give * (dot(seen.forces[slave], t) - seen.earlier[slave])
+            }
+        };
         earlier.map_or(f64::INFINITY, |earlier| {
-            distance(surface, earlier.spot, foot.spot, seen.now)
+            distance(surface, earlier.spot, foot.spot, seen.now) + elastic
         })
     }
 

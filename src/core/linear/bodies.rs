@@ -190,8 +190,21 @@ fn is_laid_out_alike(one: &Model, other: &Model) -> bool {
     let memory = |model: &Model| (model.settings.memory, model.budget, model.length);
     let mut contacts = one.contacts.iter().zip(&other.contacts);
     let stands_alike = |(a, b): (&Contact, &Contact)| {
-        (a.node, &a.surfaces, &a.facing, a.overlap, a.bond)
-            == (b.node, &b.surfaces, &b.facing, b.overlap, b.bond)
+        (
+            a.node,
+            &a.weights,
+            &a.surfaces,
+            &a.facing,
+            a.overlap,
+            a.bond,
+        ) == (
+            b.node,
+            &b.weights,
+            &b.surfaces,
+            &b.facing,
+            b.overlap,
+            b.bond,
+        )
     };
     one.contacts.len() == other.contacts.len()
         && contacts.all(stands_alike)
@@ -330,6 +343,16 @@ impl Source for Bodies {
         }
         for (d, u) in u.iter_mut().enumerate() {
             *u += self.system.increment(&self.model, d);
+        }
+        for contact in self.model.contacts.iter().filter(|c| !c.weights.is_empty()) {
+            let first = &self.model.dofs.first;
+            for axis in 0..2 {
+                let parts = contact
+                    .carriers()
+                    .map(|(n, weight)| weight * u[first[n] + axis]);
+                let sum = parts.sum();
+                u[first[contact.node] + axis] = sum;
+            }
         }
         largest
     }

@@ -317,10 +317,6 @@ fn ignored_and_reinterpreted_input_is_listed_with_its_line() {
         found.contains("30: *EXPANSION is ignored: it concerns temperatures"),
         "{found}"
     );
-    assert!(
-        found.contains("36: SURFACE TO SURFACE is treated as node to surface"),
-        "{found}"
-    );
     let twice = but(
         BLOCK,
         "*BOUNDARY\nGROUND, 1, 2",
