@@ -126,6 +126,7 @@ fn judged_over(
         brought: &[brought],
         earlier: &elastic[..1],
         anchored: &elastic[1..],
+        ties: &[None],
         scales: Scales {
             length: 1.0,
             force: 1.0,

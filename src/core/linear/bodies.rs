@@ -60,6 +60,7 @@ struct Bench {
     brought: Vec<f64>,
     earlier: Vec<f64>,
     anchored: Vec<f64>,
+    ties: Vec<Option<SurfacePoint>>,
     /// Contact force at every node.
     contact: Vec<[f64; 2]>,
     /// Load at every degree of freedom.
@@ -85,6 +86,7 @@ impl Bodies {
                 brought: Vec::with_capacity(contacts),
                 earlier: Vec::with_capacity(contacts),
                 anchored: Vec::with_capacity(contacts),
+                ties: Vec::with_capacity(contacts),
                 contact: vec![[0.0; 2]; nodes],
                 load: vec![0.0; model.dofs.len()],
             },
@@ -439,6 +441,10 @@ impl Source for Bodies {
         bench
             .anchored
             .extend(accepted().map(|state| state.stretched));
+        bench.ties.clear();
+        bench
+            .ties
+            .extend(at.contacts.iter().map(|state| state.anchor));
         let now = &self.system.positions;
         let overlaps = model
             .contacts
@@ -489,6 +495,7 @@ impl Source for Bodies {
             brought: &bench.brought,
             earlier: &bench.earlier,
             anchored: &bench.anchored,
+            ties: &bench.ties,
             scales,
         };
         let mut verdict = bench.judge.interface(&seen, &mut bench.contact);

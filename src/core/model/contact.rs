@@ -144,8 +144,8 @@ documented! {
         /// Its nodes, with their tributary areas (node to surface).
         #[default]
         Node,
-        /// Gauss points of its sides (surface to surface): as many as a side has nodes, on each part of a side that lies over one
-        /// side of the undeformed masters. A point is a weighted sum of the nodes of its side. A side belongs to the slave
+        /// Gauss points of its sides (surface to surface), at least 10 per side, on each part of a side that lies over one side of
+        /// the undeformed masters. A point is a weighted sum of the nodes of its side. A side belongs to the slave
         /// surface if all its nodes do. Only for solids, and not for hard contact or rigid ties, which would be more equations
         /// than a side has unknowns.
         Surface,

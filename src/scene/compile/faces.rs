@@ -12,6 +12,9 @@ use stickslip_core::contact::projection::{closest_point, projection_at};
 use stickslip_core::fem::lagrange::gauss;
 use stickslip_core::model::{Body, BodyKind, Contact, Node, Surface};
 
+/// Minimum number of points of a side. Where a contact zone ends within a side, its width depends on them: with 10 points, decks with
+/// one element per side agree with CalculiX (28 points or more) within 1 %, with 3 within 4 %.
+const POINTS: usize = 10;
 /// Borders of parts closer than this, in coordinates ξ of the side, are one border.
 const SAME: f64 = 1e-6;
 
@@ -112,8 +115,9 @@ fn borders(
     found
 }
 
-/// Points ξ and weights of the Gauss rule with `count` points on each part.
-fn rule(borders: &[f64], count: usize) -> Vec<(f64, f64)> {
+/// Points ξ and weights of the Gauss rules on the parts of a side with `nodes` nodes.
+fn rule(borders: &[f64], nodes: usize) -> Vec<(f64, f64)> {
+    let count = nodes.max(POINTS.div_ceil(borders.len().max(2) - 1));
     let parts = borders
         .windows(2)
         .map(|part| (0.5 * (part[0] + part[1]), 0.5 * (part[1] - part[0])));
