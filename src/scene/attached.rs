@@ -146,7 +146,7 @@ pub(super) fn compile(spec: &Spec, text: &str) -> Result<(Model, Names), Fault> 
 /// Contact law of a contact.
 fn bond(contact: &message::Contact) -> Bond {
     match (contact.tied, contact.gives) {
-        (true, _) => Bond::Tied { upright: false },
+        (true, _) => Bond::tied(),
         (false, Some(give)) => Bond::giving(give),
         (false, None) => Bond::Hard,
     }

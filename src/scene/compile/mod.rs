@@ -5,6 +5,7 @@
 
 mod arc;
 mod bodies;
+mod faces;
 mod history;
 mod in_space;
 mod interface;
@@ -67,10 +68,19 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
         );
     }
     let mut surfaces = interface::surfaces(spec, &names, length)?;
-    let (mut slaves, pairs) = interface::slaves(spec, &names, &surfaces, length)?;
+    let (mut slaves, mut pairs) = interface::slaves(spec, &names, &surfaces, length)?;
     interface::smoothed(spec, &names, &mut surfaces)?;
-    corners::face(&surfaces.cut(spec), &bodies, &pairs, &mut slaves);
     interface::check_use(spec, &names, &on_body, &surfaces.made, &slaves)?;
+    faces::spread(
+        spec,
+        &mut names,
+        &bodies,
+        &surfaces.made,
+        &mut slaves,
+        &mut pairs,
+    )?;
+    on_body.resize(names.nodes.len(), false);
+    corners::face(&surfaces.cut(spec), &bodies, &pairs, &mut slaves);
     history::settings(&spec.settings)?;
     if spec.settings.initial_gaps == InitialGaps::Adjust {
         let within = spec.settings.adjust_gap;
@@ -110,6 +120,7 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     );
     interface::drop_idle_slaves(spec, &names, &dofs, &surfaces, &mut slaves);
     laws::stand_upright(&dofs, &surfaces, &mut slaves);
+    laws::check_points(&surfaces, &slaves)?;
     laws::check_corners(spec, &names, &surfaces, &slaves)?;
     interface::check_held_slaves(spec, &names, &dofs, &surfaces, &slaves)?;
     history::history(&spec.history)?;
