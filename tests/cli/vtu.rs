@@ -389,7 +389,7 @@ fn switches_of_a_finished_run_are_on_the_nodes_of_its_deck() {
         let array = grid.on_points.iter().find(|array| array.name == name);
         match &array.unwrap().values {
             Values::Wholes(values) => values.clone(),
-            Values::Numbers(_) => panic!("{name}"),
+            other => panic!("{name}: {other:?}"),
         }
     };
     let (nodes, counts, status) = (column("node"), column("switches"), column("status"));

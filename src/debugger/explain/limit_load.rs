@@ -35,6 +35,23 @@ const MOST_MINORS: u64 = 600;
 /// Fall of the load, as a fraction of the largest of the history, above the errors of equilibrium.
 const FALL: f64 = 1e-6;
 
+/// An accepted state on a path.
+struct PathPoint {
+    /// Displacements.
+    u: Arc<Vec<f64>>,
+    /// Direction of the path there.
+    direction: Arc<Vec<f64>>,
+}
+
+impl PathPoint {
+    /// Whether these displacements are farther along the path.
+    fn is_before(&self, u: &[f64]) -> bool {
+        let moved = u.iter().zip(self.u.iter()).map(|(u, from)| u - from);
+        let along = self.direction.iter().zip(moved);
+        along.map(|(c, moved)| c * moved).sum::<f64>() > 0.0
+    }
+}
+
 /// The largest load on the path from the last equilibrium, before it falls while the displacements go on. `None` if it does not fall
 /// within [`MOST_STEPS`] increments, or if the path reaches the load of the failed increment. The stepper's final state is
 /// unspecified.
@@ -44,7 +61,7 @@ fn largest_load(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -
     let ahead = along.way.as_ref()?.ahead;
     let largest = model.path.iter().fold(0.0_f64, |m, p| m.max(p.abs()));
     let (mut best, mut steps) = (state.start.load_factor, 0);
-    let mut last: Option<(Arc<Vec<f64>>, Arc<Vec<f64>>)> = None;
+    let mut last: Option<PathPoint> = None;
     stepper.restore(&along);
     let until = Until::end().minors(MOST_MINORS).interrupted_by(stop);
     let end = stepper.drive(until, |stepper| {
@@ -53,15 +70,11 @@ fn largest_load(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -
         };
         let now = stepper.state();
         let (load, u) = (now.start.load_factor, now.start.u.clone());
-        let onwards = last.take().map(|(from, row)| {
-            let moved = u.iter().zip(from.iter()).map(|(u, from)| u - from);
-            row.iter()
-                .zip(moved)
-                .map(|(c, moved)| c * moved)
-                .sum::<f64>()
-                > 0.0
+        let onwards = last.take().map(|last| last.is_before(&u));
+        last = now.way.as_ref().map(|way| PathPoint {
+            u,
+            direction: way.last.clone(),
         });
-        last = now.way.as_ref().map(|way| (u, way.last.clone()));
         steps += 1;
         let reaches = (load - state.load_factor) * ahead > 0.0;
         if jumped || reaches || steps > MOST_STEPS || onwards == Some(false) {
