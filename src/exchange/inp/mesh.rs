@@ -59,7 +59,7 @@ impl Names {
         };
         let within = labels
             .range(self.number(from)..=self.number(to))
-            .filter(|(label, _)| (*label - self.number(from)) % by == 0);
+            .filter(|(label, _)| (*label - self.number(from)).is_multiple_of(by));
         members.extend(within.map(|(_, &position)| position));
         fits(members, first, "set")
     }
