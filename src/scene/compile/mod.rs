@@ -39,6 +39,7 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
         return attached::compile(spec, text);
     }
     if let Some(problem) = &spec.in_space {
+        check_texts(spec)?;
         return in_space::compile(spec, problem);
     }
     history::memory(&spec.settings)?;
