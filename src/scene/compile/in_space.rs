@@ -10,7 +10,7 @@ use std::collections::HashSet;
 use std::sync::Arc;
 use stickslip_core::model::{Contact, Model, Node, SpaceProblem, Surface};
 
-/// Checks a problem.
+/// Checks a problem; the texts have been checked.
 pub(super) fn compile(spec: &Spec, problem: &SpaceSpec) -> Result<(Model, Names), Fault> {
     history::memory(&spec.settings)?;
     history::settings(&spec.settings)?;

@@ -41,6 +41,7 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     }
     check_texts(spec)?;
     if let Some(problem) = &spec.in_space {
+        check_texts(spec)?;
         return in_space::compile(spec, problem);
     }
     history::memory(&spec.settings)?;
