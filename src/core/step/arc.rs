@@ -324,7 +324,11 @@ impl State {
     pub fn along_path(&self, model: &Model, step: f64) -> Option<State> {
         let corner = model.path.get(self.start.leg + 1)?;
         let mut along = self.clone();
-        (along.motion, along.fallback, along.pace) = (None, None, Pace::default());
+        (
+            along.recovery.motion,
+            along.recovery.fallback,
+            along.record.pace,
+        ) = (None, None, Pace::default());
         along.way = Some(Box::new(ArcState {
             measured: ArcMeasure::Displacements,
             ahead: (corner - self.start.load_factor).signum(),
