@@ -160,11 +160,7 @@ fn values_that_repeat_and_long_periods_are_found() {
     built(folder.path(), &[]);
     let script = folder.path().join("repeats.py").display().to_string();
     for (period, repeats, told) in [
-        (
-            "3",
-            "values",
-            "stays sliding while its margin repeats",
-        ),
+        ("3", "values", "stays sliding while its margin repeats"),
         ("81", "modes", " times) → fixed"),
     ] {
         let command = ["python3", &script, period, repeats];
