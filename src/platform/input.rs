@@ -1,7 +1,7 @@
 //! Reads files: only regular ones, without blocking, and up to a maximum size.
 
+use crate::disk::{self, File, Metadata, OpenOptions};
 use crate::system;
-use std::fs::{File, Metadata, OpenOptions};
 use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
 
@@ -133,7 +133,7 @@ pub const MARK: char = '\u{feff}';
 /// If it is not a regular file, or cannot be opened.
 pub fn open(path: &Path, options: &mut OpenOptions) -> Result<File, Unreadable> {
     // Checked before opening, since opening some devices has side effects, and afterwards, since the file may have been replaced.
-    match std::fs::metadata(path) {
+    match disk::metadata(path) {
         Ok(found) => regular(&found)?,
         Err(error) if error.kind() == io::ErrorKind::NotFound => {}
         Err(error) => return Err(error.into()),

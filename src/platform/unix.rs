@@ -7,6 +7,7 @@ use rustix::time::{ClockId, clock_gettime};
 use std::fs::{File, FileType, Metadata, OpenOptions, Permissions};
 use std::io;
 use std::os::unix::fs::{FileTypeExt, MetadataExt, OpenOptionsExt, PermissionsExt};
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Opens without blocking, even a pipe without a reader or writer.
@@ -68,4 +69,21 @@ pub fn is_running(process: i32) -> bool {
 pub fn thread_time() -> Duration {
     let time = clock_gettime(ClockId::ThreadCPUTime);
     Duration::new(time.tv_sec as u64, time.tv_nsec as u32)
+}
+
+/// The user's folder for the program's configuration.
+pub fn config_folder() -> Option<PathBuf> {
+    let ours = directories::ProjectDirs::from("", "", "stickslip")?;
+    Some(ours.config_dir().to_owned())
+}
+
+/// The user's folder for journals and progress: for state, or for data on systems without one.
+pub fn state_folder() -> Option<PathBuf> {
+    let ours = directories::ProjectDirs::from("", "", "stickslip")?;
+    Some(ours.state_dir().unwrap_or(ours.data_local_dir()).to_owned())
+}
+
+/// Syncs a folder, so that its new files survive a power failure. Some file systems cannot.
+pub fn sync_folder(folder: &Path) {
+    let _ = File::open(folder).and_then(|folder| folder.sync_all());
 }

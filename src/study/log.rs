@@ -14,11 +14,12 @@ use super::shard::Key;
 use super::sweep_input::Input;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use std::fs::{File, TryLockError};
+use std::fs::TryLockError;
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use stickslip_exchange::seal::{Seal, opened as unsealed, sealed};
+use stickslip_platform::disk::{File, OpenOptions};
 use stickslip_platform::input::{self, Unreadable};
 use stickslip_scene::format::kind::{FileKind, mistaken};
 use stickslip_scene::format::notation;
@@ -392,7 +393,7 @@ fn content<T: Outcome>(
 }
 
 /// Opens a file with these options.
-fn opened(path: &Path, options: &mut std::fs::OpenOptions) -> Result<File, LogError> {
+fn opened(path: &Path, options: &mut OpenOptions) -> Result<File, LogError> {
     input::open(path, options).map_err(|why| LogError::Unread {
         path: path.to_owned(),
         why,

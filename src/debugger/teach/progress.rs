@@ -6,6 +6,7 @@ use crate::record::journal;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use stickslip_platform::disk;
 use stickslip_platform::files::{self, FileError};
 use stickslip_platform::input::{self, Unreadable};
 use stickslip_scene::format::notation;
@@ -241,7 +242,7 @@ pub fn keep(file: &Path, tutor: &Tutor) -> Result<(), ProgressError> {
         message: e.to_string(),
     })?;
     if let Some(folder) = file.parent() {
-        std::fs::create_dir_all(folder).map_err(|source| FileError::Failed {
+        disk::create_dir_all(folder).map_err(|source| FileError::Failed {
             path: folder.to_owned(),
             source,
         })?;

@@ -195,7 +195,7 @@ pub fn did_you_mean<'a>(wrong: &str, candidates: impl IntoIterator<Item = &'a st
 pub fn did_you_mean_file(missing: &str) -> String {
     let path = FilePath::new(missing);
     let folder = path.parent().filter(|folder| *folder != FilePath::new(""));
-    let entries = std::fs::read_dir(folder.unwrap_or(FilePath::new(".")));
+    let entries = stickslip_platform::disk::read_dir(folder.unwrap_or(FilePath::new(".")));
     let names = entries.into_iter().flatten().flatten();
     let in_folder =
         |name| folder.map_or(FilePath::new("").join(&name), |folder| folder.join(&name));
