@@ -3,18 +3,19 @@
 use crate::app::{App, Effect, LoadTarget, Overlay, TURN};
 use crate::chartpage::{ChartPage, NoPage};
 use crate::chooser_state::{self, Offer, PreviewLoader};
+use crate::event::{Event, KeyEvent};
 use crate::keys;
 use crate::layout::Pane;
 use crate::learning::Learning;
 use crate::loading::{LoadedFile, Loading};
-use crate::terminal;
 use crate::theme::Theme;
 use crate::view::View;
-use crossterm::event::{Event, KeyEvent};
+use ratatui::layout::Rect;
 use std::collections::VecDeque;
 use std::io::{self, Write};
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
+use std::sync::Arc;
+use std::time::Duration;
 use stickslip_core::step::state::Status;
 use stickslip_debugger::action::{self, ChartOf};
 use stickslip_debugger::explain::report;
@@ -23,6 +24,8 @@ use stickslip_debugger::recorded::calculix::words::GREETING;
 use stickslip_debugger::session::{Reply, Session};
 use stickslip_debugger::teach::progress::{self, Progress, ProgressStore};
 use stickslip_debugger::teach::{Lesson, Tutor, play};
+use stickslip_platform::clock::Instant;
+use stickslip_platform::task;
 use stickslip_scene::{gaps, shown};
 use stickslip_study::measuring::ChartMeasurement;
 
@@ -182,7 +185,7 @@ impl Debugger {
                 let effect = self.app.mouse(mouse, view.as_ref())?;
                 self.carry_out(effect)
             }
-            _ => None,
+            Event::Mouse(_) => None,
         }
     }
 
@@ -303,11 +306,11 @@ impl Debugger {
             let open = self.app.overlay.is_open_to_pages();
             // Behind another page these would never finish.
             if open && (self.loading.is_some() || self.measuring.is_some()) {
-                std::thread::sleep(Duration::from_millis(1));
+                task::nap(Duration::from_millis(1));
                 continue;
             }
             while self.looking.is_busy() {
-                std::thread::sleep(Duration::from_millis(1));
+                task::nap(Duration::from_millis(1));
                 self.advance();
             }
             match &mut self.session {
@@ -584,7 +587,7 @@ impl Debugger {
         };
         let elapsed = TURN * turns as u32;
         let turned = elapsed != std::mem::replace(&mut self.app.busy, elapsed);
-        let panicked = terminal::panic_elsewhere();
+        let panicked = task::take_panic();
         let failed = panicked.is_some();
         if let Some(message) = panicked {
             self.app.complain(format!(
@@ -616,10 +619,23 @@ impl Debugger {
             solves || debugger.loading.is_some() && entered.elapsed() < QUICK
         };
         while quick(self) {
-            std::thread::sleep(Duration::from_micros(500));
+            task::nap(Duration::from_micros(500));
             self.advance();
         }
     }
+}
+
+/// The screen after some keys, as plain text. Keys are named as in the key table and separated by blanks; each one waits for the
+/// solver.
+///
+/// # Errors
+/// If the scene cannot be loaded.
+pub fn screen(scene: &str, keys: &str, width: u16, height: u16) -> Result<String, String> {
+    let session = Session::open(scene)?;
+    let mut debugger = Debugger::new(Theme::mono(), offers(), Some(session));
+    debugger.app.area = Rect::new(0, 0, width, height);
+    debugger.type_keys(keys);
+    Ok(debugger.text(width, height))
 }
 
 /// The first message after opening a scene: warnings about its start, or the first key to press.

@@ -6,7 +6,6 @@ use crate::debugger::{Debugger, TerminalRequest, offers};
 use crate::terminal::{self, Signals, Terminal};
 use crate::theme::{Theme, wants_no_colour};
 use crossterm::event::{self, Event};
-use ratatui::layout::Rect;
 use signal_hook::consts::SIGHUP;
 use std::io::{self, IsTerminal};
 use std::time::{Duration, Instant};
@@ -139,19 +138,6 @@ fn leave(ended: io::Result<()>, signals: &Signals) -> Result<(), Error> {
     ended.map_err(Error::from)
 }
 
-/// The screen after some keys, as plain text. Keys are named as in the key table and separated by blanks; each one waits for the
-/// solver.
-///
-/// # Errors
-/// If the scene cannot be loaded.
-pub fn screen(scene: &str, keys: &str, width: u16, height: u16) -> Result<String, Error> {
-    let session = Session::open(scene).map_err(Error::Session)?;
-    let mut debugger = Debugger::new(Theme::mono(), offers(), Some(session));
-    debugger.app.area = Rect::new(0, 0, width, height);
-    debugger.type_keys(keys);
-    Ok(debugger.text(width, height))
-}
-
 /// Longest wait for a key: the screen follows a running solver.
 const IDLE: Duration = Duration::from_millis(100);
 const BUSY: Duration = Duration::from_millis(40);
@@ -192,7 +178,8 @@ fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -
         }
         while let Some(event) = input {
             changed = true;
-            if let Some(outside) = debugger.event(&event)
+            if let Some(event) = terminal::input(event)
+                && let Some(outside) = debugger.event(&event)
                 && obey(outside, terminal, signals, &mut debugger.app)?
             {
                 return Ok(());

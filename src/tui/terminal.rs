@@ -7,11 +7,15 @@
 
 use crate::app::App;
 use crate::background;
+use crate::event::{Event, KeyCode, KeyEvent, Modifiers, MouseAction, MouseEvent};
 use crate::screen;
 use crate::view::View;
 use crossterm::clipboard::CopyToClipboard;
 use crossterm::cursor::{Hide, Show};
-use crossterm::event::{DisableBracketedPaste, EnableBracketedPaste};
+use crossterm::event::{
+    DisableBracketedPaste, EnableBracketedPaste, Event as TerminalEvent, KeyCode as TerminalKey,
+    KeyEventKind, KeyModifiers, MouseButton, MouseEventKind,
+};
 use crossterm::terminal::{
     BeginSynchronizedUpdate, EndSynchronizedUpdate, EnterAlternateScreen, LeaveAlternateScreen,
     disable_raw_mode, enable_raw_mode,
@@ -31,13 +35,12 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, MutexGuard, Once, PoisonError};
 use std::thread;
 use std::time::Duration;
+use stickslip_platform::task;
 
 /// Whether the program has taken over the terminal.
 static OWNERSHIP: Ownership = Ownership(Mutex::new(false));
 /// Whether mouse support is on while the program has the terminal.
 static MOUSE: AtomicBool = AtomicBool::new(false);
-/// The message of a panic on another thread, which must not write to the screen.
-static PANIC: Mutex<Option<String>> = Mutex::new(None);
 
 /// Enables reports of clicks and the wheel, with positions of any size. Crossterm's own command also enables motion reports.
 struct EnableMouse;
@@ -248,7 +251,7 @@ pub fn is_gone() -> bool {
 }
 
 /// Makes a panic readable: on this thread the terminal is restored first; on another thread (the solver's) the message is stored
-/// for [`panic_elsewhere`], since this thread keeps drawing.
+/// for [`task::take_panic`], since this thread keeps drawing.
 fn hook_panics() {
     static ONCE: Once = Once::new();
     let ours = thread::current().id();
@@ -259,15 +262,62 @@ fn hook_panics() {
                 give_back();
                 before(info);
             } else {
-                *PANIC.lock().unwrap_or_else(PoisonError::into_inner) = Some(info.to_string());
+                task::store_panic(info.to_string());
             }
         }));
     });
 }
 
-/// Takes the message of a panic on another thread.
-pub fn panic_elsewhere() -> Option<String> {
-    PANIC.lock().unwrap_or_else(PoisonError::into_inner).take()
+/// The debugger's input of a terminal event; `None` for releases and events that no action uses.
+pub fn input(event: TerminalEvent) -> Option<Event> {
+    Some(match event {
+        TerminalEvent::Key(key) if key.kind == KeyEventKind::Release => return None,
+        TerminalEvent::Key(key) => {
+            let modifiers = Modifiers {
+                shift: key.modifiers.contains(KeyModifiers::SHIFT),
+                control: key.modifiers.contains(KeyModifiers::CONTROL),
+                alt: key.modifiers.contains(KeyModifiers::ALT),
+            };
+            Event::Key(KeyEvent::new(key_code(key.code)?, modifiers))
+        }
+        TerminalEvent::Mouse(mouse) => {
+            let kind = match mouse.kind {
+                MouseEventKind::Down(MouseButton::Left) => MouseAction::Click,
+                MouseEventKind::ScrollUp => MouseAction::ScrollUp,
+                MouseEventKind::ScrollDown => MouseAction::ScrollDown,
+                _ => return None,
+            };
+            Event::Mouse(MouseEvent {
+                kind,
+                column: mouse.column,
+                row: mouse.row,
+            })
+        }
+        TerminalEvent::Paste(text) => Event::Paste(text),
+        _ => return None,
+    })
+}
+
+fn key_code(code: TerminalKey) -> Option<KeyCode> {
+    Some(match code {
+        TerminalKey::Char(letter) => KeyCode::Char(letter),
+        TerminalKey::F(number) => KeyCode::F(number),
+        TerminalKey::Enter => KeyCode::Enter,
+        TerminalKey::Tab => KeyCode::Tab,
+        TerminalKey::BackTab => KeyCode::BackTab,
+        TerminalKey::Esc => KeyCode::Esc,
+        TerminalKey::Up => KeyCode::Up,
+        TerminalKey::Down => KeyCode::Down,
+        TerminalKey::Left => KeyCode::Left,
+        TerminalKey::Right => KeyCode::Right,
+        TerminalKey::Home => KeyCode::Home,
+        TerminalKey::End => KeyCode::End,
+        TerminalKey::PageUp => KeyCode::PageUp,
+        TerminalKey::PageDown => KeyCode::PageDown,
+        TerminalKey::Backspace => KeyCode::Backspace,
+        TerminalKey::Delete => KeyCode::Delete,
+        _ => return None,
+    })
 }
 
 /// Signals, as flags for the event loop.
