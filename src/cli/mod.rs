@@ -48,7 +48,6 @@ mod solver;
 mod story;
 mod study;
 mod sweep;
-mod table;
 mod tally;
 
 use base::{Exit, notify, say};

@@ -74,13 +74,13 @@ pub fn beside(own: &Path, named: &str) -> Result<PathBuf, String> {
     let folder = own.parent().unwrap_or(Path::new(""));
     let path = folder.join(named);
     let told = |error: io::Error| Unreadable::Failed(error).to_string();
-    let real = path.canonicalize().map_err(told)?;
+    let real = disk::canonicalize(&path).map_err(told)?;
     let here = if folder == Path::new("") {
         Path::new(".")
     } else {
         folder
     };
-    match real.starts_with(here.canonicalize().map_err(told)?) {
+    match real.starts_with(disk::canonicalize(here).map_err(told)?) {
         true => Ok(path),
         false => Err("the file is a link to a file outside this folder".to_owned()),
     }

@@ -325,6 +325,15 @@ pub fn metadata(path: impl AsRef<Path>) -> io::Result<Metadata> {
     }
 }
 
+/// The path without `.` and `..`.
+///
+/// # Errors
+/// If it does not exist.
+pub fn canonicalize(path: impl AsRef<Path>) -> io::Result<PathBuf> {
+    metadata(&path)?;
+    Ok(plain(path.as_ref()))
+}
+
 /// An entry of a folder.
 #[derive(Debug, Clone)]
 pub struct DirEntry(PathBuf);

@@ -259,8 +259,7 @@ pub fn files(folder: &Path) -> Vec<Offer> {
     let name = |entry: disk::DirEntry| {
         let path = entry.path();
         let ending = path.extension().and_then(|ending| ending.to_str())?;
-        let wanted = ["ron", "dat"].contains(&ending)
-            && disk::metadata(&path).is_ok_and(|found| found.is_file());
+        let wanted = ["ron", "dat"].contains(&ending) && disk::is_file(&path);
         let name = entry.file_name().into_string().ok()?;
         (wanted && !name.starts_with('.')).then_some(name)
     };

@@ -11,6 +11,7 @@ use crate::recorded::exchange;
 use std::sync::Arc;
 use stickslip_core::contact::laws::JudgedLaw;
 use stickslip_core::model::{Mode, Model};
+use stickslip_platform::disk;
 use stickslip_scene::embedded::EmbeddedFile;
 use stickslip_scene::embedded_all;
 use stickslip_scene::format::error::{AtPath, Path, SceneError, at, bail, did_you_mean, fault};
@@ -221,13 +222,13 @@ impl Lesson {
     ///
     /// # Errors If there is no such lesson, or it does not match its scene: one message, with line and column.
     pub fn open(name: &str) -> Result<Lesson, SceneError> {
-        if !std::path::Path::new(name).is_file()
+        if !disk::is_file(name)
             && let Some(builtin) = find(name)
         {
             return Lesson::from_text(builtin.name, builtin.text);
         }
         let text = read::text(name).map_err(|mut error| {
-            if !std::path::Path::new(name).exists() {
+            if !disk::exists(name) {
                 let names = || LESSONS.iter().map(|lesson| lesson.name);
                 error.message = format!(
                     "no such file or built-in lesson{} (built-in: {})",

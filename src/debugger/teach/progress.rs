@@ -97,7 +97,7 @@ impl Progress {
     ///
     /// # Errors If the file exists and cannot be read.
     pub fn read(file: &Path) -> Result<Progress, ProgressError> {
-        if !file.exists() {
+        if !disk::exists(file) {
             return Ok(Progress::default());
         }
         let unread = |why| ProgressError::Unread {
