@@ -348,7 +348,7 @@ impl App {
     }
 
     /// Follows the terminal's background, unless the user has chosen colours.
-    pub(super) fn find_colours(&mut self, light: bool) {
+    pub fn find_colours(&mut self, light: bool) {
         if self.finds_colours {
             self.colours = Colours::for_background(light);
             self.theme = Theme::chosen(self.colours);

@@ -12,7 +12,6 @@ use crate::theme::Theme;
 use crate::view::View;
 use ratatui::layout::Rect;
 use std::collections::VecDeque;
-use std::io::{self, Write};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
@@ -60,19 +59,19 @@ pub struct Debugger {
     /// The session; `None` until a scene is opened.
     pub session: Option<Session>,
     /// Requests to the event loop from queued keys.
-    pub(super) outside: VecDeque<TerminalRequest>,
+    outside: VecDeque<TerminalRequest>,
     /// Start time of the current computation.
     begun: Instant,
     /// Number of frames in the session at the last draw.
     frames: usize,
     /// Whether scenes opened here get a journal.
-    pub(super) keeps: bool,
+    pub keeps: bool,
     /// The chart that is being measured.
     measuring: Option<ChartMeasurement>,
     /// The file that is being loaded.
-    pub(super) loading: Option<Loading>,
+    loading: Option<Loading>,
     /// The preview that is being loaded.
-    pub(super) looking: PreviewLoader,
+    looking: PreviewLoader,
     /// Stores the progress in lessons.
     progress: ProgressStore,
     /// When the lesson was started, less the time that earlier sessions spent on it.
@@ -106,7 +105,7 @@ impl Debugger {
     }
 
     /// From now on stores the progress in lessons, and lists the files of the folder in the chooser.
-    pub(super) fn use_user_files(&mut self) {
+    pub fn use_user_files(&mut self) {
         self.progress = ProgressStore::new(progress::place());
         self.lists = true;
     }
@@ -141,24 +140,19 @@ impl Debugger {
         any
     }
 
-    /// Prints one line on exit: where the journal is, or why there is none.
-    pub(super) fn print_exit_line(&self) {
-        let Some(session) = &self.session else { return };
-        let text = match (session.journal().path(), session.journal().lost()) {
-            (Some(path), _) => {
-                let path = path.display();
-                format!("journal: {path} (`stickslip resume {path}` continues it)")
-            }
-            (None, Some(why)) => format!("no journal: {why}"),
-            (None, None) => return,
-        };
-        // Standard error may be closed.
-        let _ = writeln!(io::stderr(), "{}", shown::line(&text));
-    }
-
     /// The data that the panes draw.
     pub fn view(&self) -> Option<View<'_>> {
         self.session.as_ref().map(View::new)
+    }
+
+    /// The next request of queued input to the event loop.
+    pub fn take_request(&mut self) -> Option<TerminalRequest> {
+        self.outside.pop_front()
+    }
+
+    /// Whether anything is computed or loaded whose result will change the screen.
+    pub fn is_working(&self) -> bool {
+        self.is_busy() || self.loading.is_some() || self.looking.is_busy()
     }
 
     /// Whether the solver is running.
@@ -211,7 +205,7 @@ impl Debugger {
     }
 
     /// Carries out an effect, unless only the event loop can.
-    fn carry_out(&mut self, effect: Effect) -> Option<TerminalRequest> {
+    pub fn carry_out(&mut self, effect: Effect) -> Option<TerminalRequest> {
         match effect {
             Effect::Quit => return Some(TerminalRequest::Quit),
             Effect::Suspend => return Some(TerminalRequest::Suspend),
@@ -501,7 +495,8 @@ impl Debugger {
         }
     }
 
-    fn open(&mut self, mut session: Session) {
+    /// Continues with another session.
+    pub fn open(&mut self, mut session: Session) {
         let resumed = session.journal().path().is_some();
         // A resumed journal continues on its own.
         if self.keeps && !resumed && session.connection().capabilities().past.is_none() {
@@ -612,7 +607,7 @@ impl Debugger {
     }
 
     /// Waits briefly for quick steps, so that fast typing is not queued.
-    pub(super) fn breathe(&mut self) {
+    pub fn breathe(&mut self) {
         let entered = Instant::now();
         let quick = |debugger: &Debugger| {
             let solves = debugger.is_busy() && debugger.begun.elapsed() < QUICK;

@@ -7,7 +7,7 @@ use crate::terminal::{self, Signals, Terminal};
 use crate::theme::{Theme, wants_no_colour};
 use crossterm::event::{self, Event};
 use signal_hook::consts::SIGHUP;
-use std::io::{self, IsTerminal};
+use std::io::{self, IsTerminal, Write};
 use std::time::{Duration, Instant};
 use stickslip_debugger::action::Colours;
 use stickslip_debugger::action::config::Config;
@@ -16,6 +16,7 @@ use stickslip_debugger::session::Session;
 use stickslip_debugger::teach::Lesson;
 use stickslip_scene::Scene;
 use stickslip_scene::format::SceneError;
+use stickslip_scene::shown;
 
 /// Why the debugger could not start, or stopped.
 #[derive(Debug, thiserror::Error)]
@@ -123,8 +124,24 @@ fn run_on(mut debugger: Debugger) -> Result<(), Error> {
         // The terminal is restored before anything is printed.
         events(&mut debugger, &mut terminal, &signals)
     });
-    debugger.print_exit_line();
+    if let Some(session) = &debugger.session {
+        print_exit_line(session);
+    }
     leave(ended, &signals)
+}
+
+/// Prints one line on exit: where the journal is, or why there is none.
+fn print_exit_line(session: &Session) {
+    let text = match (session.journal().path(), session.journal().lost()) {
+        (Some(path), _) => {
+            let path = path.display();
+            format!("journal: {path} (`stickslip resume {path}` continues it)")
+        }
+        (None, Some(why)) => format!("no journal: {why}"),
+        (None, None) => return,
+    };
+    // Standard error may be closed.
+    let _ = writeln!(io::stderr(), "{}", shown::line(&text));
 }
 
 /// Ends the process as its signal would, exits quietly if the terminal is gone, and otherwise returns the error.
@@ -151,7 +168,7 @@ fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -
     reply.expected = debugger.app.finds_colours;
     while signals.end().is_none() {
         changed |= debugger.advance();
-        while let Some(outside) = debugger.outside.pop_front() {
+        while let Some(outside) = debugger.take_request() {
             changed = true;
             if obey(outside, terminal, signals, &mut debugger.app)? {
                 return Ok(());
@@ -165,7 +182,7 @@ fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -
             debugger.app.area = terminal.draw(app, debugger.view().as_ref())?;
             drawn = Instant::now();
         }
-        let works = debugger.is_busy() || debugger.loading.is_some() || debugger.looking.is_busy();
+        let works = debugger.is_working();
         let wait = match (behind, works) {
             (true, _) => Duration::ZERO,
             (false, true) => BUSY,
