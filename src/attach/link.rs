@@ -4,10 +4,7 @@
 //! process has a separate process group, so that a Ctrl-C in the terminal reaches only this program, which passes it on: first as a
 //! message, then as a signal, then by ending the process.
 
-use rustix::io::ioctl_fionbio;
-use rustix::process::{Pid, Signal, WaitId, WaitIdOptions, kill_process_group, waitid};
 use std::io::{self, BufRead, BufReader, Read, Write};
-use std::os::unix::process::CommandExt;
 use std::process::{Child, ChildStdin, Command, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -19,6 +16,7 @@ use stickslip_debugger::recorded::log::Log;
 use stickslip_exchange::attach::conversation::STARTED;
 use stickslip_exchange::attach::message::{Level, Progress};
 use stickslip_exchange::attach::{Answer, Line, LineReader, MOST_BYTES, Request, Side};
+use stickslip_platform::process;
 use stickslip_scene::{number, shown};
 
 /// Polling interval for interrupts.
@@ -92,9 +90,8 @@ impl Link {
             .args(arguments)
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .process_group(0);
-        let mut child = command
+            .stderr(Stdio::piped());
+        let mut child = process::set_group(&mut command)
             .spawn()
             .map_err(|error| not_started(error.to_string()))?;
         log.noted(&format!("{STARTED}: {}", start.typed()));
@@ -109,7 +106,7 @@ impl Link {
         let input = child.stdin.take();
         if let Some(input) = &input {
             // Writing must not block if the solver does not read.
-            ioctl_fionbio(input, true).map_err(|error| not_started(error.to_string()))?;
+            process::set_nonblocking(input).map_err(|error| not_started(error.to_string()))?;
         }
         Ok(Link {
             input,
@@ -326,7 +323,7 @@ impl Link {
                 1 if self.interrupts && !waiting.partly => self.interrupt(),
                 // The solver cannot be interrupted, so this waits for the current iteration.
                 1 => {}
-                2 => self.signal(Signal::INT),
+                2 => process::interrupt(&mut self.child),
                 _ => return Err(Fault::Stopped { asked: asked() }),
             }
             waiting.heeded = asks;
@@ -344,7 +341,7 @@ impl Link {
         }
         // The output may be kept open by a child of the solver.
         waiting.look = now + FAREWELL;
-        match (self.end(), waiting.gone) {
+        match (process::end(&mut self.child), waiting.gone) {
             (Some(_), true) => Err(self.died("a child process keeps its output open", waiting)),
             (end, _) => {
                 waiting.gone = end.is_some();
@@ -363,32 +360,11 @@ impl Link {
         }
     }
 
-    /// How the process ended; `None` while it runs. The process is not reaped, so that the number of its group is not reused.
-    fn end(&self) -> Option<String> {
-        let pid = i32::try_from(self.child.id())
-            .ok()
-            .and_then(Pid::from_raw)?;
-        let look = WaitIdOptions::EXITED | WaitIdOptions::NOHANG | WaitIdOptions::NOWAIT;
-        match waitid(WaitId::Pid(pid), look) {
-            Ok(status) => {
-                status.map(
-                    |status| match (status.exit_status(), status.terminating_signal()) {
-                        (Some(code), _) => format!("exit status {code}"),
-                        (None, Some(signal)) => format!("killed by signal {signal}"),
-                        (None, None) => "ended".into(),
-                    },
-                )
-            }
-            // The process no longer exists.
-            Err(_) => Some("ended".into()),
-        }
-    }
-
     /// Whether the process ends within a time.
-    fn ends_within(&self, time: Duration) -> bool {
+    fn ends_within(&mut self, time: Duration) -> bool {
         let until = Instant::now() + time;
         loop {
-            if self.end().is_some() {
+            if process::end(&mut self.child).is_some() {
                 return true;
             }
             if Instant::now() > until {
@@ -403,9 +379,7 @@ impl Link {
         self.ends_within(FAREWELL);
         // Standard error is a separate pipe; its last lines may arrive later.
         thread::sleep(2 * LOOK);
-        let how = self
-            .end()
-            .unwrap_or_else(|| "standard output closed".into());
+        let how = process::end(&mut self.child).unwrap_or_else(|| "standard output closed".into());
         let last = self.log.last_printed();
         let parts = [
             Some(how),
@@ -415,13 +389,6 @@ impl Link {
         let how = parts.into_iter().flatten().collect::<Vec<_>>().join("; ");
         let asked = waiting.asked.clone();
         Fault::Died { how, asked }
-    }
-
-    fn signal(&self, signal: Signal) {
-        if let Some(group) = i32::try_from(self.child.id()).ok().and_then(Pid::from_raw) {
-            // The process may have ended in the meantime.
-            let _ = kill_process_group(group, signal);
-        }
     }
 
     /// Closes the input, after a `bye` if `farewell`; returns whether the process ended.
@@ -443,7 +410,7 @@ impl Drop for Link {
             self.leave(true);
         }
         // Also kills processes that the solver started.
-        self.signal(Signal::KILL);
+        process::kill(&mut self.child);
         let _ = self.child.wait();
     }
 }

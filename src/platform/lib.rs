@@ -4,9 +4,12 @@
 //! - [`disk`]: files and folders; in a browser files in memory.
 //! - [`input`]: reads regular files up to a maximum size, without blocking.
 //! - [`files`]: writes files completely or not at all, and overwrites only on request.
-//! - [`system`]: locks, private files, processor time, folders; one file per system.
+//! - `process`: processes started by the program; `signals`: Ctrl-C, suspending, hang-ups; `terminal`: the terminal's size and its
+//!   answers to queries. A browser has none of them.
+//! - [`system`]: locks, private files, processor time, folders.
 //! - [`task`]: threads, or slices of the only thread.
-//! - [`terminal`]: the terminal's size and its answers to queries.
+//!
+//! Each of the last three kinds has one file per system.
 
 #![forbid(unsafe_code)]
 
@@ -16,9 +19,18 @@ pub mod files;
 pub mod input;
 #[cfg(target_family = "wasm")]
 pub mod memory_disk;
+#[cfg(not(target_family = "wasm"))]
+#[cfg_attr(unix, path = "unix_process.rs")]
+#[cfg_attr(windows, path = "windows_process.rs")]
+pub mod process;
+#[cfg(not(target_family = "wasm"))]
+#[cfg_attr(unix, path = "unix_signals.rs")]
+#[cfg_attr(windows, path = "windows_signals.rs")]
+pub mod signals;
 #[cfg_attr(unix, path = "unix.rs")]
+#[cfg_attr(windows, path = "windows.rs")]
 #[cfg_attr(target_family = "wasm", path = "browser.rs")]
 pub mod system;
 pub mod task;
-#[cfg(unix)]
+#[cfg(not(target_family = "wasm"))]
 pub mod terminal;

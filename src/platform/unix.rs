@@ -1,6 +1,6 @@
 //! Unix systems such as Linux and macOS.
 
-use rustix::fs::OFlags;
+use rustix::fs::{Access, OFlags};
 use rustix::io::Errno;
 use rustix::process::{Pid, test_kill_process};
 use rustix::time::{ClockId, clock_gettime};
@@ -8,6 +8,7 @@ use std::fs::{File, FileType, Metadata, OpenOptions, Permissions};
 use std::io;
 use std::os::unix::fs::{FileTypeExt, MetadataExt, OpenOptionsExt, PermissionsExt};
 use std::path::{Path, PathBuf};
+use std::process::Command;
 use std::time::Duration;
 
 /// Opens without blocking, even a pipe without a reader or writer.
@@ -87,3 +88,31 @@ pub fn state_folder() -> Option<PathBuf> {
 pub fn sync_folder(folder: &Path) {
     let _ = File::open(folder).and_then(|folder| folder.sync_all());
 }
+
+/// Name and version of the system.
+pub fn name() -> String {
+    let kernel = rustix::system::uname();
+    let word = |text: &std::ffi::CStr| text.to_string_lossy().into_owned();
+    format!("{} {}", word(kernel.sysname()), word(kernel.release()))
+}
+
+/// Free space of the disk of a folder; `None` if it is not known.
+pub fn free_bytes(folder: &Path) -> Option<f64> {
+    let disk = rustix::fs::statvfs(folder).ok()?;
+    Some(disk.f_bavail as f64 * disk.f_frsize as f64)
+}
+
+/// Whether files can be created in a folder.
+pub fn is_writable(folder: &Path) -> bool {
+    rustix::fs::access(folder, Access::WRITE_OK | Access::EXEC_OK).is_ok()
+}
+
+/// The command that runs a line of the shell.
+pub fn shell() -> Command {
+    let mut command = Command::new("/bin/sh");
+    command.arg("-c");
+    command
+}
+
+/// The pager without the user's choice.
+pub const PAGER: &str = "less -R";

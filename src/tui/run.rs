@@ -3,10 +3,9 @@
 use crate::app::App;
 use crate::background::{self, Reply};
 use crate::debugger::{Debugger, TerminalRequest, offers};
-use crate::terminal::{self, Signals, Terminal};
+use crate::terminal::{self, Terminal};
 use crate::theme::{Theme, wants_no_colour};
 use crossterm::event::{self, Event};
-use signal_hook::consts::SIGHUP;
 use std::io::{self, IsTerminal, Write};
 use std::time::{Duration, Instant};
 use stickslip_debugger::action::Colours;
@@ -14,6 +13,7 @@ use stickslip_debugger::action::config::Config;
 use stickslip_debugger::record::journal::{JournalError, JournalTarget};
 use stickslip_debugger::session::Session;
 use stickslip_debugger::teach::Lesson;
+use stickslip_platform::signals::{self, Signals};
 use stickslip_scene::Scene;
 use stickslip_scene::format::SceneError;
 use stickslip_scene::shown;
@@ -115,7 +115,7 @@ fn configured(config: Config, session: Option<Session>) -> Debugger {
 }
 
 fn run_on(mut debugger: Debugger) -> Result<(), Error> {
-    let signals = Signals::listen()?;
+    let signals = terminal::listen()?;
     let ended = Terminal::enter().and_then(|mut terminal| {
         terminal.set_mouse(debugger.app.mouse)?;
         if debugger.app.finds_colours {
@@ -145,12 +145,12 @@ fn print_exit_line(session: &Session) {
 }
 
 /// Ends the process as its signal would, exits quietly if the terminal is gone, and otherwise returns the error.
-fn leave(ended: io::Result<()>, signals: &Signals) -> Result<(), Error> {
-    if let Some(signal) = signals.end() {
-        terminal::obey(signal)?;
+fn leave(ended: io::Result<()>, watched: &Signals) -> Result<(), Error> {
+    if let Some(signal) = watched.end() {
+        signals::obey(signal)?;
     }
     if ended.is_err() && terminal::is_gone() {
-        terminal::obey(SIGHUP)?;
+        signals::hang_up()?;
     }
     ended.map_err(Error::from)
 }

@@ -1,0 +1,19 @@
+//! The console of Windows.
+
+use super::Answers;
+use std::io::{self, IsTerminal, stdout};
+
+/// Columns and rows of the terminal on standard output; `None` if it is not a terminal, or its size is not known.
+pub fn size() -> Option<(u16, u16)> {
+    let size = stdout().is_terminal().then(crossterm::terminal::size)?;
+    size.ok()
+        .filter(|(columns, rows)| *columns > 0 && *rows > 0)
+}
+
+/// `None`: the console is not queried.
+///
+/// # Errors
+/// Never.
+pub fn ask() -> io::Result<Option<Answers>> {
+    Ok(None)
+}
