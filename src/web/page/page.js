@@ -76,13 +76,10 @@ function resize() {
   const box = screen.parentElement;
   const font = Math.min(WIDEST_FONT, box.clientWidth / COLUMNS / 0.602);
   screen.style.fontSize = `${font}px`;
-  const probe = document.createElement('b');
-  probe.textContent = 'M'.repeat(100);
-  screen.append(probe);
-  const { width } = probe.getBoundingClientRect();
-  probe.remove();
-  const cell = width / 100;
-  const line = Math.round(font * 1.18);
+  const probe = document.createElement('canvas').getContext('2d');
+  probe.font = `100px ${getComputedStyle(screen).fontFamily}`;
+  const cell = probe.measureText('M').width / 100 * font;
+  const line = Math.floor(font * 1.17);
   screen.style.setProperty('--cell', `${cell}px`);
   screen.style.lineHeight = `${line}px`;
   const columns = Math.max(COLUMNS, Math.floor(box.clientWidth / cell));
