@@ -50,5 +50,10 @@ mod page {
         pub fn elapsed(&self) -> Duration {
             now().saturating_sub(self.0)
         }
+
+        /// The point in time this much earlier; `None` before 1970.
+        pub fn checked_sub(self, duration: Duration) -> Option<Instant> {
+            self.0.checked_sub(duration).map(Instant)
+        }
     }
 }

@@ -83,6 +83,7 @@ pub fn write(path: &Path, text: impl AsRef<[u8]>, overwrite: bool) -> Result<(),
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::io::Write;
 
     fn names(directory: &Path) -> Vec<String> {
         let entries = std::fs::read_dir(directory).unwrap();

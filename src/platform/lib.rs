@@ -1,6 +1,6 @@
 //! Operating-system services, and all their differences between systems.
 //!
-//! - [`clock`]: time.
+//! - [`clock`]: the current time, and time that has passed.
 //! - [`disk`]: files and folders; in a browser files in memory.
 //! - [`input`]: reads regular files up to a maximum size, without blocking.
 //! - [`files`]: writes files completely or not at all, and overwrites only on request.

@@ -9,7 +9,7 @@ use unicode_width::UnicodeWidthStr;
 #[cfg_attr(windows, path = "windows_terminal.rs")]
 mod system;
 
-pub use system::{ask, size};
+pub use system::{ask, report_mouse, size};
 
 /// The answers of a terminal.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -76,6 +76,7 @@ impl Answers {
     }
 }
 
+#[cfg(unix)]
 fn questions() -> String {
     let widths = TEXTS.iter().map(|(_, text)| format!("\r{text}\x1b[6n"));
     let modes = [MOUSE, IN_ONE_GO].map(|mode| format!("\x1b[?{mode}$p"));
@@ -87,6 +88,7 @@ fn questions() -> String {
     )
 }
 
+#[cfg(unix)]
 impl Answers {
     /// The answers so far, and whether the last one has arrived. Key presses in between are ignored.
     fn read(told: &[u8]) -> (Answers, bool) {
@@ -115,7 +117,7 @@ impl Answers {
     }
 }
 
-#[cfg(test)]
+#[cfg(all(test, unix))]
 mod tests {
     use super::*;
 

@@ -15,6 +15,20 @@ pub fn size() -> Option<(u16, u16)> {
     (size.ws_col > 0 && size.ws_row > 0).then_some((size.ws_col, size.ws_row))
 }
 
+/// Enables or disables reports of clicks and the wheel, with positions of any size; without reports of motion.
+///
+/// # Errors
+/// If standard output is closed.
+pub fn report_mouse(on: bool) -> io::Result<()> {
+    let codes = match on {
+        true => "\x1b[?1000h\x1b[?1006h",
+        false => "\x1b[?1006l\x1b[?1000l",
+    };
+    let mut out = stdout().lock();
+    out.write_all(codes.as_bytes())?;
+    out.flush()
+}
+
 /// Queries the terminal; `None` if standard input or output is not a terminal.
 ///
 /// The queries use the current line, which is empty afterwards.

@@ -13,7 +13,6 @@ use crate::view::View;
 use ratatui::layout::Rect;
 use std::collections::VecDeque;
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::time::Duration;
 use stickslip_core::step::state::Status;
 use stickslip_debugger::action::{self, ChartOf};

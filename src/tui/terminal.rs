@@ -24,37 +24,18 @@ use crossterm::{execute, queue};
 use ratatui::backend::CrosstermBackend;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
-use std::fmt;
 use std::io::{self, IsTerminal, Stdout, Write, stdout};
 use std::mem::ManuallyDrop;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, MutexGuard, Once, PoisonError};
 use std::thread;
 use stickslip_platform::signals::{self, Signals};
-use stickslip_platform::task;
+use stickslip_platform::{task, terminal as console};
 
 /// Whether the program has taken over the terminal.
 static OWNERSHIP: Ownership = Ownership(Mutex::new(false));
 /// Whether mouse support is on while the program has the terminal.
 static MOUSE: AtomicBool = AtomicBool::new(false);
-
-/// Enables reports of clicks and the wheel, with positions of any size. Crossterm's own command also enables motion reports.
-struct EnableMouse;
-
-impl crossterm::Command for EnableMouse {
-    fn write_ansi(&self, f: &mut impl fmt::Write) -> fmt::Result {
-        f.write_str("\x1b[?1000h\x1b[?1006h")
-    }
-}
-
-/// Disables mouse reports.
-struct DisableMouse;
-
-impl crossterm::Command for DisableMouse {
-    fn write_ansi(&self, f: &mut impl fmt::Write) -> fmt::Result {
-        f.write_str("\x1b[?1006l\x1b[?1000l")
-    }
-}
 
 /// The terminal, taken over until this is dropped.
 #[derive(Debug)]
@@ -99,10 +80,7 @@ impl Terminal {
     /// Turns mouse reports on or off.
     pub fn set_mouse(&mut self, on: bool) -> io::Result<()> {
         MOUSE.store(on, Ordering::SeqCst);
-        match on {
-            true => execute!(stdout(), EnableMouse),
-            false => execute!(stdout(), DisableMouse),
-        }
+        console::report_mouse(on)
     }
 
     /// Asks for the background colour; the reply arrives among the keys.
@@ -201,21 +179,16 @@ fn enter() -> io::Result<()> {
     signals::read_without_waiting()?;
     execute!(stdout(), EnterAlternateScreen, EnableBracketedPaste, Hide)?;
     match MOUSE.load(Ordering::SeqCst) {
-        true => execute!(stdout(), EnableMouse),
+        true => console::report_mouse(true),
         false => Ok(()),
     }
 }
 
 /// Errors are ignored: the terminal may be gone.
 fn leave() {
-    let _ = execute!(
-        stdout(),
-        EndSynchronizedUpdate,
-        DisableMouse,
-        DisableBracketedPaste,
-        LeaveAlternateScreen,
-        Show
-    );
+    let _ = execute!(stdout(), EndSynchronizedUpdate);
+    let _ = console::report_mouse(false);
+    let _ = execute!(stdout(), DisableBracketedPaste, LeaveAlternateScreen, Show);
     let _ = stdout().flush();
     let _ = disable_raw_mode();
 }
