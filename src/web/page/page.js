@@ -169,7 +169,7 @@ document.getElementById('file').addEventListener('change', (event) => {
   event.target.value = '';
 });
 
-// A link such as #lesson=4-oscillation or #scene=osc-two6&friction.angle=20.
+// A link such as #lesson=oscillation or #scene=osc-two6&friction.angle=20.
 function follow() {
   const settings = [...new URLSearchParams(location.hash.slice(1))];
   if (settings.length > 0) send({ open: settings });
