@@ -88,7 +88,7 @@ fn questions() -> String {
     )
 }
 
-#[cfg(unix)]
+#[cfg(any(unix, test))]
 impl Answers {
     /// The answers so far, and whether the last one has arrived. Key presses in between are ignored.
     fn read(told: &[u8]) -> (Answers, bool) {
@@ -117,7 +117,7 @@ impl Answers {
     }
 }
 
-#[cfg(all(test, unix))]
+#[cfg(test)]
 mod tests {
     use super::*;
 

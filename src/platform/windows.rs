@@ -44,7 +44,7 @@ pub fn special_kind(found: FileType) -> Option<&'static str> {
     }
 }
 
-/// Whether two files are the same, as far as size and time of creation show.
+/// Whether two files have the same size and time of creation, so that they may be the same file.
 pub fn is_same_file(one: &Metadata, other: &Metadata) -> bool {
     (one.creation_time(), one.file_size()) == (other.creation_time(), other.file_size())
 }
@@ -88,7 +88,7 @@ pub fn free_bytes(_: &Path) -> Option<f64> {
     None
 }
 
-/// Whether files can be created in a folder, as far as its attributes show.
+/// Whether the attributes of a folder allow files to be created in it.
 pub fn is_writable(folder: &Path) -> bool {
     folder
         .metadata()
