@@ -261,6 +261,8 @@ impl Lines<'_> {
                 false => Err(broken("the line is longer than any result")),
             };
         }
+        // A copy through Windows may end its lines with CRLF.
+        bytes.pop_if(|last| *last == b'\r');
         let mut text =
             String::from_utf8(bytes).map_err(|_| broken("the line is not valid UTF-8"))?;
         match unsealed(&text) {
