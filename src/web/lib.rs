@@ -11,8 +11,10 @@ mod exports;
 mod message;
 mod page;
 mod paint;
+mod pictures;
 mod trace;
 
 pub use message::{Content, MouseKind, Request, Update};
 pub use page::Page;
+pub use pictures::{Pictures, pictures};
 pub use trace::trace;

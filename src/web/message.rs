@@ -1,5 +1,6 @@
 //! Messages between the page and the program, as JSON.
 
+use crate::pictures::Pictures;
 use serde::{Deserialize, Serialize};
 
 /// A message of the page.
@@ -40,6 +41,13 @@ pub enum Request {
     },
     /// The settings of a link, in order: `lesson`, `scene` or `journal`, and paths of the scene with values.
     Open(Vec<(String, String)>),
+    /// Run the session's scene with the settings of the sliders, and return pictures.
+    Pictures {
+        /// Paths and values.
+        settings: Vec<(String, String)>,
+        /// Part of the load path, up to 1.
+        part: f64,
+    },
     /// Solve a scene and return its trace.
     Trace(String),
     /// Only continue.
@@ -93,6 +101,9 @@ pub struct Update {
     /// Text for the clipboard.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub copy: Option<String>,
+    /// The requested pictures, or why there are none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pictures: Option<Result<Pictures, String>>,
     /// The requested trace, or why there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub trace: Option<Result<String, String>>,

@@ -2,6 +2,7 @@
 
 use crate::message::{Content, MouseKind, Request, Update};
 use crate::paint;
+use crate::pictures::pictures;
 use crate::trace::trace;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -59,6 +60,12 @@ impl Page {
             }
             Request::File { path, content } => memory_disk::put(Path::new(&path), content.into()),
             Request::Open(settings) => self.open(settings),
+            Request::Pictures { settings, part } => {
+                self.update.pictures = Some(match &self.debugger.session {
+                    Some(session) => pictures(session.scene(), &settings, part),
+                    None => Err("open a scene first".to_owned()),
+                });
+            }
             Request::Trace(scene) => self.update.trace = Some(trace(&scene)),
             Request::Advance => {}
         }

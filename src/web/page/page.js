@@ -12,7 +12,7 @@ const WIDEST_FONT = 16;
 
 let size = { columns: 0, rows: 0 };
 // For scripts that drive the page.
-const state = { pending: 0, busy: true, memory: 0, loaded: null, trace: null, failed: null, send };
+const state = { pending: 0, busy: true, memory: 0, loaded: null, trace: null, drawn: null, failed: null, send };
 window.stickslip = state;
 
 function send(request) {
@@ -32,6 +32,7 @@ worker.onmessage = ({ data: update }) => {
   for (const [path, content] of update.files) store(path, content);
   if (update.copy !== undefined) navigator.clipboard?.writeText(update.copy);
   if (update.trace !== undefined) state.trace = update.trace;
+  if (update.pictures !== undefined) showPictures(update.pictures);
   state.memory = update.memory;
   state.loaded ??= performance.now();
   state.pending -= update.answers;
@@ -143,6 +144,57 @@ for (const button of document.querySelectorAll('#keys button')) {
     button.blur();
   });
 }
+
+const pictures = document.getElementById('pictures');
+const [angle, part, increment] = pictures.querySelectorAll('input');
+const problem = document.getElementById('problem');
+// The scene of the pictures with its own increment; one request is under way at a time.
+let base = null;
+let isDrawing = false;
+let isStale = false;
+
+function draw() {
+  isStale = isDrawing;
+  if (isDrawing || pictures.hidden) return;
+  isDrawing = true;
+  const settings = base === null ? []
+    : [['friction.angle', angle.value], ['history.increment', String(base.increment * 2 ** increment.value)]];
+  state.asked = performance.now();
+  send({ pictures: { settings, part: Number(part.value) } });
+}
+
+function showPictures({ Ok: found, Err: why }) {
+  isDrawing = false;
+  problem.textContent = why ?? '';
+  if (found !== undefined) {
+    if (base === null) {
+      base = { scene: found.scene, increment: found.increment };
+      angle.value = found.angle ?? 0;
+      increment.value = 0;
+    } else if (base.scene !== found.scene) {
+      // Another scene was opened meanwhile, and got the settings of the old one.
+      base = null;
+      isStale = true;
+    }
+    const values = [`${angle.value}°`, found.load.toPrecision(4), found.increment.toPrecision(3)];
+    pictures.querySelectorAll('output').forEach((output, at) => { output.textContent = values[at]; });
+    pictures.querySelectorAll('.picture').forEach((box, at) => {
+      const { Ok: svg, Err: missing } = found.drawn[at];
+      if (svg === undefined) box.textContent = missing;
+      else box.innerHTML = svg;
+    });
+    state.drawn = performance.now() - state.asked;
+  }
+  if (isStale) draw();
+}
+
+for (const slider of [angle, part, increment]) slider.addEventListener('input', draw);
+document.getElementById('show').addEventListener('change', (event) => {
+  pictures.hidden = !event.target.checked;
+  base = null;
+  resize();
+  draw();
+});
 
 // A dropped file is stored under its name; the last one is opened.
 async function take(files) {
