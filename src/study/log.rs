@@ -227,7 +227,8 @@ impl Lines<'_> {
         let bytes = self.bytes(MOST_HEAD)?;
         let mark = input::MARK.to_string();
         let text = bytes.strip_prefix(mark.as_bytes()).unwrap_or(&bytes);
-        match text.strip_suffix(b"\n") {
+        let line = text.strip_suffix(b"\n");
+        match line.map(|line| line.strip_suffix(b"\r").unwrap_or(line)) {
             Some(line) if line == head().as_bytes() => {
                 (self.number, self.whole) = (1, bytes.len() as u64);
                 Ok(true)
