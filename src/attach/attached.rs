@@ -22,7 +22,7 @@ use stickslip_debugger::recorded::fault::Fault;
 use stickslip_debugger::recorded::interface_problem::read_problem;
 use stickslip_debugger::recorded::log::Log;
 use stickslip_debugger::recorded::orders::requests;
-use stickslip_exchange::attach::message::{self, EndedLevel, Hello, Id, Restore};
+use stickslip_exchange::attach::message::{self, ContactResult, EndedLevel, Hello, Id, Restore};
 use stickslip_exchange::attach::{Answer, Request};
 use stickslip_scene::Scene;
 
@@ -30,7 +30,7 @@ use stickslip_scene::Scene;
 pub struct Attached {
     start: Start,
     model: Arc<Model>,
-    told: message::Scene,
+    scene: message::Scene,
     ids: Vec<Id>,
     hello: Hello,
     offers: Capabilities,
@@ -55,14 +55,24 @@ struct StoredState {
     token: Option<serde_json::Value>,
     /// Position, outcome and modes of the iteration that produced it; `None` at the start.
     led: Option<(Position, EndedLevel, Vec<Mode>)>,
+    /// Its contacts, if the next state may leave some out.
+    contacts: Vec<ContactResult>,
+}
+
+/// A state with all contacts, and those that the next one may leave out.
+struct ReportedState {
+    state: message::State,
+    contacts: Vec<ContactResult>,
 }
 
 impl StoredState {
-    fn from_message(told: &message::State, position: Position) -> StoredState {
-        let next = told.contacts.iter().map(|found| found.next);
+    fn from_message(reported: ReportedState, position: Position) -> StoredState {
+        let ReportedState { state, contacts } = reported;
+        let next = state.contacts.iter().map(|found| found.next);
         StoredState {
             token: None,
-            led: Some((position, told.ended, next.collect())),
+            led: Some((position, state.ended, next.collect())),
+            contacts,
         }
     }
 
@@ -84,16 +94,16 @@ impl Attached {
         let StartedSolver {
             link,
             hello,
-            scene: told,
+            scene: message,
             offers,
         } = meet(&start, &log, &asks)?;
-        let (scene, ids, now) = decode::start(&offers.name, &told, offers.begins_with())?;
+        let (scene, ids, now) = decode::start(&offers.name, &message, offers.begins_with())?;
         let mut attached = Attached {
             ids,
             now,
             start,
             model: Arc::new(scene.model.clone()),
-            told,
+            scene: message,
             hello,
             offers,
             link: Some(link),
@@ -220,7 +230,7 @@ impl Attached {
             _ => {
                 self.end();
                 let met = meet(&self.start, &self.log, &self.asks)?;
-                if let Some(what) = another(&self.told, &self.hello, &met) {
+                if let Some(what) = another(&self.scene, &self.hello, &met) {
                     return Err(Fault::OtherScene { what });
                 }
                 self.link = Some(met.link);
@@ -246,14 +256,14 @@ impl Attached {
 
     /// Repeats the iteration that leads to a node, from its predecessor.
     fn do_again(&mut self, place: u64) -> Result<(), Fault> {
-        let asked = match self.places.from(place) {
-            Some((_, asked)) => asked.to_vec(),
+        let (from, asked) = match self.places.from(place) {
+            Some((from, asked)) => (from, asked.to_vec()),
             None => return Err(Fault::Unknown),
         };
         self.change(&asked)?;
-        let told = self.step_there()?;
-        let position = self.frame().check(&told)?;
-        self.same(place, &StoredState::from_message(&told, position))?;
+        let reported = self.step_there(from)?;
+        let position = self.frame().check(&reported.state)?;
+        self.same(place, &StoredState::from_message(reported, position))?;
         self.at = Some(place);
         self.save(place)
     }
@@ -281,12 +291,25 @@ impl Attached {
         Ok(())
     }
 
-    /// Makes one iteration from the solver's current state.
-    fn step_there(&mut self) -> Result<message::State, Fault> {
+    /// Makes one iteration from the solver's current state, which is that of a node.
+    fn step_there(&mut self, from: u64) -> Result<ReportedState, Fault> {
         // Unknown until the answer is evaluated.
         self.at = None;
         match self.ask(&Request::Step)? {
-            Answer::State(told) => Ok(*told),
+            Answer::State(mut state) => {
+                let before = self
+                    .places
+                    .get(from)
+                    .filter(|_| self.hello.abilities.partial);
+                let contacts = before.map(|before| state.complete(&self.ids, &before.contacts));
+                let contacts = contacts.unwrap_or_else(|| Ok(Vec::new()));
+                let contacts = contacts.map_err(|why| Fault::Unfit {
+                    message: "state",
+                    why,
+                })?;
+                let state = *state;
+                Ok(ReportedState { state, contacts })
+            }
             other => Err(self.other(&Request::Step, other, "state")),
         }
     }
@@ -335,11 +358,13 @@ impl Attached {
     /// Makes one iteration from the current state.
     fn iterate(&mut self) -> Result<(), Fault> {
         self.go()?;
-        let (from, asked) = (self.place()?, self.now.state.asked().to_vec());
+        let (from, asked) = (self.place()?, self.now.state.changes().to_vec());
         self.change(&asked)?;
-        let told = self.step_there()?;
-        let mut led = self.frame().recorded_step(&self.now.state, &told)?;
-        let kept = StoredState::from_message(&told, led.event.position);
+        let reported = self.step_there(from)?;
+        let mut led = self
+            .frame()
+            .recorded_step(&self.now.state, &reported.state)?;
+        let kept = StoredState::from_message(reported, led.event.position);
         let place = match self.places.follows(from, &asked) {
             Some(place) => {
                 self.same(place, &kept)?;
@@ -360,7 +385,7 @@ impl Attached {
     /// Requests the frozen interface problem of the current state.
     fn ask_problem(&mut self) -> Result<ReportedProblem, Fault> {
         self.go()?;
-        let asked = self.now.state.asked().to_vec();
+        let asked = self.now.state.changes().to_vec();
         if !asked.is_empty() {
             // The interventions are part of the problem, so the solver is no longer at this node.
             self.change(&asked)?;
@@ -439,7 +464,7 @@ impl Solver for Attached {
         let lost = self.log.lost();
         let anew = std::mem::take(&mut self.anew);
         let s = if again == 1 { "" } else { "s" };
-        let told = match (anew, again) {
+        let repeated = match (anew, again) {
             (true, 0) => Some("the solver was restarted".to_owned()),
             (true, _) => Some(format!(
                 "the solver was restarted and repeated {again} iteration{s}"
@@ -447,13 +472,13 @@ impl Solver for Attached {
             (false, 0) => None,
             (false, _) => Some(format!("the solver repeated {again} iteration{s}")),
         };
-        let parts: Vec<String> = told.into_iter().chain(lost).collect();
+        let parts: Vec<String> = repeated.into_iter().chain(lost).collect();
         (!parts.is_empty()).then(|| parts.join("; "))
     }
 }
 
 /// The first difference to the greeting and scene of the first start.
-fn another(told: &message::Scene, hello: &Hello, met: &StartedSolver) -> Option<&'static str> {
+fn another(first: &message::Scene, hello: &Hello, met: &StartedSolver) -> Option<&'static str> {
     let scene = &met.scene;
     let parts = [
         (hello.abilities == met.hello.abilities, "list of abilities"),
@@ -462,9 +487,9 @@ fn another(told: &message::Scene, hello: &Hello, met: &StartedSolver) -> Option<
             hello.parameters == met.hello.parameters,
             "set of parameters",
         ),
-        (told.contacts == scene.contacts, "list of contacts"),
-        (told.nodes == scene.nodes, "list of nodes"),
-        (told == scene, "scene"),
+        (first.contacts == scene.contacts, "list of contacts"),
+        (first.nodes == scene.nodes, "list of nodes"),
+        (first == scene, "scene"),
     ];
     parts.iter().find(|(same, _)| !same).map(|(_, what)| *what)
 }
@@ -478,7 +503,7 @@ fn differs(then: &StoredState, now: &StoredState, model: &Model) -> Option<Strin
     }
     let other = modes.iter().zip(now).position(|(then, now)| then != now);
     if let Some(k) = other {
-        let word = |told| names::mode(told);
+        let word = |mode| names::mode(mode);
         return Some(format!(
             "the next mode of {} is {} instead of {}",
             names::slave(model, k),

@@ -118,6 +118,7 @@ impl<'a> Server<'a> {
                 restore: Restore::Any,
                 problem: true,
                 interrupt: false,
+                partial: false,
             },
             decides: None,
             parameters: parameters(self.scene),
@@ -138,8 +139,8 @@ impl<'a> Server<'a> {
             self.stepper.monitors(&mut monitors);
         }
         let (state, event) = (self.stepper.state(), self.stepper.event());
-        let told = wire::state(self.stepper.model(), state, event, &monitors);
-        Answer::State(Box::new(told))
+        let state = wire::state(self.stepper.model(), state, event, &monitors);
+        Answer::State(Box::new(state))
     }
 
     fn on_contact(&mut self, id: &Id, what: impl FnOnce(usize) -> Intervention) -> Answer {

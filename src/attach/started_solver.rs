@@ -13,7 +13,7 @@ use stickslip_exchange::attach::{Answer, PROTOCOLS, Request};
 use stickslip_scene::shown;
 
 /// Optional parts of the protocol that the debugger reads.
-const READS: [&str; 2] = ["progress", "space"];
+const READS: [&str; 3] = ["progress", "space", "partial"];
 
 /// A started solver.
 pub struct StartedSolver {

@@ -10,8 +10,8 @@ use stickslip_core::step::state::State;
 use stickslip_debugger::explain::failures;
 use stickslip_debugger::explain::names;
 use stickslip_exchange::attach::message::{
-    self, Components, Contact, ContactResult, EndedLevel, Forced, Friction, Id, Monitor, Scene,
-    SurfaceMessage, ToldKind, number,
+    self, Components, Contact, ContactResult, EndedLevel, Forced, Friction, Id, Monitor,
+    ReportedKind, Scene, SurfaceMessage, number,
 };
 
 /// The number of a contact in messages, from 1.
@@ -56,7 +56,7 @@ pub fn scene(model: &Model) -> Scene {
 fn node(node: &stickslip_core::model::Node) -> message::NodeMessage {
     message::NodeMessage {
         name: node.name.clone(),
-        at: node.at.into(),
+        at: Some(node.at.into()),
     }
 }
 
@@ -109,11 +109,13 @@ fn monitor(monitor: &stickslip_core::model::Monitor) -> Monitor {
             axis: Axis::X | Axis::Y,
             ..
         }
-        | MonitorQuantity::Reaction { .. } => ToldKind::Force,
-        MonitorQuantity::Pressure { .. } => ToldKind::Pressure,
-        MonitorQuantity::Modes { .. } => ToldKind::Count,
-        MonitorQuantity::Displacement { .. } | MonitorQuantity::Drift { .. } => ToldKind::Length,
-        MonitorQuantity::Arc | MonitorQuantity::Told { .. } => ToldKind::Other,
+        | MonitorQuantity::Reaction { .. } => ReportedKind::Force,
+        MonitorQuantity::Pressure { .. } => ReportedKind::Pressure,
+        MonitorQuantity::Modes { .. } => ReportedKind::Count,
+        MonitorQuantity::Displacement { .. } | MonitorQuantity::Drift { .. } => {
+            ReportedKind::Length
+        }
+        MonitorQuantity::Arc | MonitorQuantity::Reported { .. } => ReportedKind::Other,
     };
     Monitor::Kind {
         name: monitor.name.clone(),

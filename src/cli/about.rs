@@ -26,7 +26,7 @@ pub fn main(verbose: bool) -> Result<Exit, Error> {
             ("memory", estimate::bytes(memory::free()) + " for scenes"),
             ("streams", streams()),
             ("terminal", terminal()),
-            ("asked", asked()),
+            ("asked", terminal_answers()),
             ("locale", variables(&["LC_ALL", "LC_CTYPE", "LANG"])),
             ("folder", here()),
             ("journals", folder(journal::directory().ok())),
@@ -151,7 +151,7 @@ fn variables(names: &[&str]) -> String {
 }
 
 /// The terminal's answers to queries.
-fn asked() -> String {
+fn terminal_answers() -> String {
     match terminal::ask() {
         Ok(None) => "not asked: standard input or output is not a terminal".into(),
         Ok(Some(answers)) if answers == Answers::default() => "the terminal does not answer".into(),

@@ -7,12 +7,15 @@ use super::json::{self, JsonArgs};
 use super::records::{
     AuditRecord, FailureRecord, FindingRecord, HistoryRecord, InsideRecord, StretchRecord,
 };
+use super::solver::{SolverArgs, step_to_end};
 use std::path::Path;
 use std::sync::Arc;
+use stickslip_attach::Attached;
 use stickslip_core::contact::laws::JudgedLaw;
 use stickslip_core::model::Model;
-use stickslip_core::step::drive::RunEnd;
+use stickslip_core::step::drive::{RunEnd, Until};
 use stickslip_core::step::event::Outcome;
+use stickslip_core::step::solver::Solver;
 use stickslip_debugger::explain::audit::{Audit, PenetratingMaster, StretchFinding, WorstFinding};
 use stickslip_debugger::explain::judged;
 use stickslip_debugger::explain::names;
@@ -27,14 +30,20 @@ use stickslip_scene::solver::solver;
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// Scene files, names of built-in scenes, or snapshots
-    #[arg(required = true, value_name = "SCENE|SNAPSHOT")]
+    #[arg(
+        required_unless_present = "command",
+        conflicts_with = "command",
+        value_name = "SCENE|SNAPSHOT"
+    )]
     inputs: Vec<String>,
     #[command(flatten)]
     set: SetArgs,
     #[command(flatten)]
     json: JsonArgs,
-    /// Overwrites an existing file
-    #[arg(long, requires = "json")]
+    #[command(flatten)]
+    solver: SolverArgs,
+    /// Overwrites existing files
+    #[arg(long)]
     force: bool,
 }
 
@@ -43,9 +52,17 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     let json = args.json.open(args.force)?;
     let mut exit = Exit::Good;
     let mut histories = Vec::new();
-    for input in &args.inputs {
+    let says = !args.json.is_on_standard_output();
+    let mut solver = args.solver.attached(&args.set, args.force)?;
+    let of_solver = solver
+        .iter_mut()
+        .map(|(scene, solver)| attached(scene, solver, says, &interrupt));
+    let of_scenes = args.inputs.iter().map(|input| {
         let course = open(input, args)?;
-        let history = one(&course, !args.json.is_on_standard_output(), &interrupt)?;
+        one(&course, says, &interrupt)
+    });
+    for history in of_solver.chain(of_scenes) {
+        let history = history?;
         match history.outcome {
             INTERRUPTED => exit = Exit::Interrupted,
             _ if history.violated => exit = Exit::Unconverged,
@@ -86,38 +103,63 @@ const INTERRUPTED: &str = "interrupted";
 fn one(course: &Course, says: bool, interrupt: &Interrupt) -> Result<HistoryRecord, Error> {
     let mut stepper = solver(Arc::new(course.scene.model.clone()));
     let mut audit = Audit::default();
-    let name = &course.scene.name;
     let end = course.go(&mut stepper, interrupt, &mut |stepper| {
         let failed = matches!(stepper.event().outcome, Outcome::Failed(_));
         if !failed || course.steps.is_some() {
             audit.take(stepper);
         }
     })?;
-    let model = &course.scene.model;
-    let mut history = record(name, model, &audit);
+    history(&course.scene, &audit, end, &stepper, says)?
+}
+
+/// Audits the history of an attached solver.
+fn attached(
+    scene: &Scene,
+    solver: &mut Attached,
+    says: bool,
+    interrupt: &Interrupt,
+) -> Result<HistoryRecord, Error> {
+    let mut audit = Audit::default();
+    let came = || interrupt.has_arrived();
+    let until = Until::end().interrupted_by(&came);
+    let end = step_to_end(solver, until, &mut |solver| audit.take_reported(solver))?;
+    let Ok(history) = history(scene, &audit, end, solver, says)?;
+    Ok(history)
+}
+
+/// The report of an audited history.
+fn history<E>(
+    scene: &Scene,
+    audit: &Audit,
+    end: RunEnd<E>,
+    solver: &dyn Solver,
+    says: bool,
+) -> Result<Result<HistoryRecord, E>, Error> {
+    let (name, model) = (&scene.name, &scene.model);
+    let mut history = record(name, model, audit);
     let failed = match end {
-        RunEnd::Stopped(error) => return Err(error),
+        RunEnd::Stopped(error) => return Ok(Err(error)),
         RunEnd::Interrupted => {
             notify(&format!("{name}: interrupted"));
             history.outcome = INTERRUPTED;
-            return Ok(history);
+            return Ok(Ok(history));
         }
         RunEnd::Failed(failure) => {
-            let event = stepper.event();
+            let event = solver.event();
             Some((event.position, event.load_factor, failure))
         }
         RunEnd::Finished | RunEnd::Spent => None,
     };
     if says {
-        say(&table(name, model, &audit))?;
+        say(&table(name, model, audit))?;
     }
     if let Some((position, load, failure)) = failed {
-        let text = report::failure(model, stepper.state(), position, load, &failure);
+        let text = report::failure(model, solver.state(), position, load, &failure);
         notify(&format!("{name}: history ends early: {text}"));
         history.outcome = "failed";
         history.failure = Some(FailureRecord::new(model, position, load, &failure));
     }
-    Ok(history)
+    Ok(Ok(history))
 }
 
 /// The report as data.

@@ -18,7 +18,7 @@ pub fn main(list: &Benchmarks, out: &OutputArgs) -> Result<Exit, Error> {
     let interrupt = Interrupt::listen();
     let outputs = Outputs::open(out)?;
     let watch = Watch {
-        stop: &|| interrupt.came(),
+        stop: &|| interrupt.has_arrived(),
         done: &|_| {},
     };
     let compared = list.run(out.jobs(), &watch);

@@ -184,7 +184,7 @@ fn with_studies() -> Vec<Named> {
 }
 
 fn lessons() -> Vec<Named> {
-    let list = teach::list().iter();
+    let list = teach::list().iter().chain(teach::lesson::sheets());
     list.map(|lesson| (lesson.name, teach::lesson::title(lesson)))
         .collect()
 }

@@ -1,18 +1,25 @@
-//! `stickslip core SCENE`: solves up to the first true cycle of minor iterations, reduces it to the fewest nodes that still cycle,
-//! and writes these as a separate scene.
+//! `stickslip core SCENE`, or `-- COMMAND`: solves up to the first true cycle of minor iterations, reduces it to the fewest nodes
+//! that still cycle, and writes these as a separate scene. For an attached solver, the cycle is that of Table 2 on the interface
+//! problem that the solver reports after the first increment that fails.
 //!
 //! Exit code 0: the scene was written. Exit code 3: there is none, and the message gives the reason: the scene converges, fails
 //! otherwise, or its core cannot be written as a matrix.
 
-use super::base::{Error, Exit, SceneArgs, notify, put, run_to_end};
+use super::base::{Error, Exit, notify, put, run_to_end};
+use super::solver::{SubjectArgs, step_to_end};
 use std::path::PathBuf;
 use std::sync::Arc;
+use stickslip_attach::Attached;
 use stickslip_core::model::{AtCycle, AtLimit, Strategy};
+use stickslip_core::step::drive::{RunEnd, Until};
 use stickslip_core::step::event::Failure;
+use stickslip_core::step::solver::Solver;
 use stickslip_debugger::explain::core::core;
 use stickslip_debugger::explain::diagnosis::cycling;
 use stickslip_debugger::explain::report;
+use stickslip_debugger::record::export::export_state::ExportError;
 use stickslip_debugger::record::export::{self, NoExport, Origin};
+use stickslip_debugger::session::exports;
 use stickslip_platform::files::Output;
 use stickslip_scene::Scene;
 use stickslip_scene::solver::solver;
@@ -20,7 +27,7 @@ use stickslip_scene::solver::solver;
 #[derive(Debug, clap::Args)]
 pub struct Args {
     #[command(flatten)]
-    scene: SceneArgs,
+    subject: SubjectArgs,
     /// Output file; - is standard output
     #[arg(short, long, value_name = "FILE", default_value = "-")]
     output: PathBuf,
@@ -30,15 +37,26 @@ pub struct Args {
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
-    let scene = args.scene.open()?;
     if args.output.as_os_str() != "-" {
         // Checked before the solve, so that the result of a long solve can be written; leaves no file behind.
         drop(Output::create(&args.output, args.force)?);
     }
-    let text = match text(&scene) {
+    let attached = args
+        .subject
+        .solver
+        .attached(&args.subject.set, args.force)?;
+    let (name, text) = match attached {
+        Some((scene, mut solver)) => (scene.name, of_solver(&mut solver)?),
+        None => {
+            let scene = args.subject.scene()?;
+            let text = text(&scene);
+            (scene.name, text)
+        }
+    };
+    let text = match text {
         Ok(text) => text,
         Err(why) => {
-            notify(&format!("{}: {why}", scene.name));
+            notify(&format!("{name}: {why}"));
             return Ok(Exit::Unconverged);
         }
     };
@@ -60,6 +78,27 @@ enum NoCore {
     NotFound,
     #[error(transparent)]
     NoExport(#[from] NoExport),
+    #[error(transparent)]
+    Reported(#[from] ExportError),
+}
+
+/// The core of the interface problem that an attached solver reports after its first failure, or why there is none.
+fn of_solver(solver: &mut Attached) -> Result<Result<String, NoCore>, Error> {
+    let end = step_to_end(solver, Until::end(), &mut |_| ())?;
+    if !matches!(end, RunEnd::Failed(_)) {
+        return Ok(Err(NoCore::Converges("")));
+    }
+    let (model, state) = (solver.model().clone(), solver.state().clone());
+    let posed = solver.interface_problem(&state).map_err(Error::usage)?;
+    let event = solver.event();
+    let origin = Origin {
+        scene: model.title.clone(),
+        changes: Vec::new(),
+        at: event.position,
+        load: event.load_factor,
+    };
+    let text = exports::core_of_reported(&model, &state, &posed, &origin);
+    Ok(text.map_err(NoCore::Reported))
 }
 
 /// The core's file, or why there is none.

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use stickslip_core::step::drive::{RunEnd, Until};
 use stickslip_core::step::stepper::Stepper;
 use stickslip_debugger::record::snapshot::{AppliedIntervention, Snapshot, SnapshotError};
-use stickslip_scene::Scene;
+use stickslip_scene::{IN_SPACE, Scene};
 
 /// A scene, with the interventions and the number of steps of a snapshot.
 pub struct Course {
@@ -40,6 +40,9 @@ impl Course {
             let name = snapshot.name;
             return Err(SnapshotError::Attached { name }.into());
         }
+        if snapshot.scene.in_space.is_some() {
+            return Err(usage!("{name}: {IN_SPACE}"));
+        }
         Ok(Course {
             scene: Scene::from_spec(name, snapshot.scene)?,
             applied: snapshot.interventions,
@@ -68,7 +71,7 @@ impl Course {
             Ok(())
         };
         intervene(stepper, 0)?;
-        let came = || interrupt.came();
+        let came = || interrupt.has_arrived();
         let until = Until::end().interrupted_by(&came);
         // A snapshot continues after a failure if its user did.
         let until = match self.steps {

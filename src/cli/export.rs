@@ -6,15 +6,17 @@ use super::course::Course;
 use super::front;
 use super::interrupt::Interrupt;
 use super::place::{RunPosition, notify_missed, seek};
-use super::solver::{SolverArgs, session_of};
+use super::solver::{SolverArgs, session_of, step_to_end};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stickslip_core::model::Model;
-use stickslip_core::step::drive::RunEnd;
+use stickslip_core::step::drive::{RunEnd, Until};
 use stickslip_core::step::event::{Failure, Position};
+use stickslip_core::step::solver::Solver;
 use stickslip_core::step::state::{State, Status};
 use stickslip_core::step::stepper::Stepper;
 use stickslip_debugger::explain::{failures, names, report};
+use stickslip_debugger::record::command::ExportScope;
 use stickslip_debugger::record::export::export_state::{ExportState, PicturePart, PictureRequest};
 use stickslip_debugger::record::export::run_history::RunHistory;
 use stickslip_debugger::record::export::skeleton::skeleton;
@@ -22,6 +24,7 @@ use stickslip_debugger::record::export::{self, ExportKind, ExportSource, Origin}
 use stickslip_debugger::record::journal::Record;
 use stickslip_debugger::record::snapshot::Snapshot;
 use stickslip_debugger::recorded::calculix::{self as recorded, switches};
+use stickslip_debugger::session::exports::{self, Export};
 use stickslip_exchange::fclib;
 use stickslip_exchange::vtu;
 use stickslip_platform::files::{self, Output};
@@ -47,8 +50,11 @@ A scene is exported at its end, or where it fails. Exit codes: 0 the file was wr
 2 bad input or usage; 3 --at is not reached, or the state cannot be written in this format.")]
 pub struct Args {
     /// A scene file, the name of a built-in scene, a snapshot, a journal, a mesh, or the .cel file of a CalculiX run
-    #[arg(value_name = "SCENE|SNAPSHOT|JOURNAL|MESH|CEL")]
-    input: String,
+    #[arg(
+        value_name = "SCENE|SNAPSHOT|JOURNAL|MESH|CEL",
+        required_unless_present = "command"
+    )]
+    input: Option<String>,
     #[command(flatten)]
     set: SetArgs,
     /// Output file; its extension selects the format
@@ -79,9 +85,16 @@ pub struct Args {
     /// Overwrites an existing file
     #[arg(long)]
     force: bool,
-    /// Replays the journal of an attached solver
+    /// An attached solver: of a journal, or of a frozen problem
     #[command(flatten)]
     solver: SolverArgs,
+}
+
+impl Args {
+    /// The input file or scene; empty for an attached solver alone.
+    fn input(&self) -> &str {
+        self.input.as_deref().unwrap_or_default()
+    }
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
@@ -119,9 +132,12 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     for name in &names {
         drop(Output::create(name, args.force)?);
     }
+    if args.input.is_none() {
+        return reported(args, &interrupt);
+    }
     let contents = match kind.made_of {
-        _ if calculix::is_cel(&args.input) => vec![switches(args, kind)?],
-        _ if import::is_mesh(&args.input) => vec![around_mesh(args, kind)?],
+        _ if calculix::is_cel(args.input()) => vec![switches(args, kind)?],
+        _ if import::is_mesh(args.input()) => vec![around_mesh(args, kind)?],
         ExportSource::Journal => vec![film(args)?],
         ExportSource::State(_) | ExportSource::Parts(_) => match state(args, kind, &interrupt)? {
             Ok(contents) => contents,
@@ -132,6 +148,57 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     files::write_all(&whole, args.force)?;
     for (name, _) in &whole {
         notify(&format!("wrote {}", name.display()));
+    }
+    Ok(Exit::Good)
+}
+
+/// Writes the interface problem that an attached solver reports.
+fn reported(args: &Args, interrupt: &Interrupt) -> Result<Exit, Error> {
+    if !args.frozen {
+        return Err(usage!(
+            "only the frozen interface problem of an attached solver can be exported; add --frozen"
+        ));
+    }
+    let Some((scene, mut solver)) = args.solver.attached(&args.set, args.force)? else {
+        return Err(usage!("no input given"));
+    };
+    match args.at {
+        Some(at) => {
+            if let Err(missed) = seek(&mut solver, at, interrupt, &mut |_| ()) {
+                return Ok(notify_missed(&scene, &solver, at, missed));
+            }
+        }
+        None => {
+            let came = || interrupt.has_arrived();
+            let until = Until::end().interrupted_by(&came);
+            if step_to_end(&mut solver, until, &mut |_| ())? == RunEnd::Interrupted {
+                notify(&format!("{}: interrupted", scene.name));
+                return Ok(Exit::Interrupted);
+            }
+        }
+    }
+    let state = solver.state().clone();
+    let posed = solver.interface_problem(&state).map_err(Error::usage)?;
+    let event = solver.event();
+    let ask = Export {
+        what: ExportScope::Whole,
+        file: args.output.clone(),
+        overwrite: args.force,
+        origin: Origin {
+            scene: scene.model.title.clone(),
+            changes: Vec::new(),
+            at: event.position,
+            load: event.load_factor,
+        },
+        state: Box::new(state),
+        shown: None,
+    };
+    match exports::write_posed(&scene.model, &posed, &ask) {
+        Ok(()) => notify(&format!("wrote {}", args.output.display())),
+        Err(why) => {
+            notify(&format!("{}: {why}", scene.name));
+            return Ok(Exit::Unconverged);
+        }
     }
     Ok(Exit::Good)
 }
@@ -187,7 +254,7 @@ fn input_kind(input: &str) -> FileKind {
 
 /// A scene that imports a mesh.
 fn around_mesh(args: &Args, kind: &ExportKind) -> Result<Vec<u8>, Error> {
-    let file = &args.input;
+    let file = args.input();
     let usage = |why: &str| usage!("{file}: {why}");
     if kind.extension != "ron" || args.frozen {
         return Err(usage(
@@ -215,7 +282,7 @@ fn around_mesh(args: &Args, kind: &ExportKind) -> Result<Vec<u8>, Error> {
 
 /// The mesh of a CalculiX run with the switches of its contacts.
 fn switches(args: &Args, kind: &ExportKind) -> Result<Vec<u8>, Error> {
-    let file = &args.input;
+    let file = args.input();
     if kind.extension != "vtu" {
         return Err(usage!(
             "{file}: a CalculiX run can only be exported for ParaView: -o FILE.vtu"
@@ -239,14 +306,14 @@ fn switches(args: &Args, kind: &ExportKind) -> Result<Vec<u8>, Error> {
 
 /// The film of a journal.
 fn film(args: &Args) -> Result<Vec<u8>, Error> {
-    if input_kind(&args.input) != FileKind::Journal {
+    if input_kind(args.input()) != FileKind::Journal {
         return Err(usage!(
             "{}: not a journal; .cast files are made from a journal of the debugger (:journal shows its path)",
-            args.input
+            args.input()
         ));
     }
     scene_only(args, "a journal is replayed as recorded")?;
-    let record = Record::read(Path::new(&args.input))?;
+    let record = Record::read(Path::new(args.input()))?;
     let session = session_of(&record, &args.solver)?;
     Ok(front::film(&record, session)?.into_bytes())
 }
@@ -258,25 +325,31 @@ fn scene_only(args: &Args, why: &str) -> Result<(), Error> {
         (false, _) => "--set",
         (true, Some(_)) => "--at",
     };
-    Err(usage!("{}: {why}; {given} is for scenes only", args.input))
+    Err(usage!(
+        "{}: {why}; {given} is for scenes only",
+        args.input()
+    ))
 }
 
 fn open(args: &Args) -> Result<Course, Error> {
-    match input_kind(&args.input) {
+    match input_kind(args.input()) {
         FileKind::Snapshot => {
             scene_only(args, "a snapshot is exported as recorded")?;
-            let snapshot = Snapshot::read(Path::new(&args.input))?;
+            let snapshot = Snapshot::read(Path::new(args.input()))?;
             let name = snapshot.name.clone();
             Course::from_snapshot(&name, snapshot)
         }
         FileKind::Journal => {
-            let name = &args.input;
+            let name = args.input();
             Err(usage!(
                 "{name}: a journal can only be exported as .cast; `w` in the debugger (`stickslip resume {name}`) \
                  writes a snapshot of the shown state"
             ))
         }
-        _ => Ok(Course::from_scene(Scene::open(&args.input, &args.set.set)?)),
+        _ => Ok(Course::from_scene(Scene::open(
+            args.input(),
+            &args.set.set,
+        )?)),
     }
 }
 

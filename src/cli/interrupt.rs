@@ -38,7 +38,7 @@ impl Interrupt {
     }
 
     /// Whether a signal has arrived.
-    pub fn came(&self) -> bool {
+    pub fn has_arrived(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }
 }

@@ -1,34 +1,69 @@
-//! `stickslip lesson [NAME|FILE]`: lists the guided lessons, starts one, or checks one without a terminal.
+//! `stickslip lesson [NAME|FILE]`: lists the guided lessons, starts one, checks or prints one without a terminal, and collects what
+//! students hand in.
 
-use super::base::{Error, Exit, say};
+use super::base::{Error, Exit, notify, say, usage};
 use super::debugger::needs_terminal;
 use super::front;
 use std::fmt::Write;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stickslip_debugger::teach::play::play;
-use stickslip_debugger::teach::progress::{self, Progress};
-use stickslip_debugger::teach::{self, Lesson, lesson};
+use stickslip_debugger::teach::progress::{self, Progress, ProgressError};
+use stickslip_debugger::teach::tutor::{Paragraph, paragraphs};
+use stickslip_debugger::teach::{self, Lesson, hand_in, lesson};
 use stickslip_scene::shown;
 use unicode_width::UnicodeWidthStr;
+
+/// Columns of a printed exercise sheet.
+const SHEET_WIDTH: usize = 80;
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
     /// A lesson file, or a built-in lesson by name or number; NAME@STEP starts at a step. Without one, lists the lessons
     lesson: Option<String>,
+    /// Takes the lesson on this scene instead of its own, such as lesson cure on a scene that fails
+    #[arg(long, value_name = "SCENE", requires = "lesson")]
+    scene: Option<String>,
     /// Plays the lesson with the right keys and answers, and prints its questions, answers, replies and hints
     #[arg(long, requires = "lesson")]
     check: bool,
+    /// Prints the questions of the lesson without answers, as an exercise sheet
+    #[arg(long, requires = "lesson", conflicts_with = "check")]
+    sheet: bool,
+    /// Writes your answers, attempts and times in all lessons to a file that you can hand in; its name is yours: ada.work
+    #[arg(long, value_name = "FILE", conflicts_with = "lesson")]
+    work: Option<PathBuf>,
+    /// Overwrites an existing file
+    #[arg(long, requires = "work")]
+    force: bool,
+    /// Prints the table of a class from files that were handed in
+    #[arg(long, value_name = "FILE", num_args = 1.., conflicts_with_all = ["lesson", "work"])]
+    collect: Vec<PathBuf>,
 }
 
 pub fn main(args: &Args) -> Result<Exit, Error> {
+    if let Some(to) = &args.work {
+        return write_hand_in(to, args.force);
+    }
+    if !args.collect.is_empty() {
+        say(&class_table(&args.collect)?)?;
+        return Ok(Exit::Good);
+    }
     let Some(name) = &args.lesson else {
         say(&list()?)?;
         return Ok(Exit::Good);
     };
     let (name, step) = lesson::split_step(name);
-    let lesson = Lesson::open(name)?;
-    if args.check {
-        say(&check(lesson)?)?;
+    let lesson = match &args.scene {
+        Some(scene) => Lesson::open_on(name, scene)?,
+        None => Lesson::open(name)?,
+    };
+    if args.check || args.sheet {
+        let text = match args.check {
+            true => check(lesson)?,
+            false => sheet(lesson)?,
+        };
+        say(&text)?;
         return Ok(Exit::Good);
     }
     front::ready()?;
@@ -36,6 +71,35 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     needs_terminal("a lesson", &instead)?;
     front::lesson(lesson, step)?;
     Ok(Exit::Good)
+}
+
+/// Writes the user's progress to a file.
+fn write_hand_in(to: &Path, force: bool) -> Result<Exit, Error> {
+    let own = progress::place()
+        .ok_or_else(|| usage!("--work: no folder with your progress: HOME is not set"))?;
+    if !own.exists() {
+        return Err(usage!(
+            "--work: you have not begun a lesson yet: {} does not exist",
+            own.display()
+        ));
+    }
+    let name = hand_in::write(&own, to, force).map_err(|error| match error {
+        ProgressError::Unwritten(error) => error.into(),
+        error => Error::usage(error),
+    })?;
+    notify(&format!("wrote {}, for {name}", to.display()));
+    Ok(Exit::Good)
+}
+
+/// The table of a class, lessons in teaching order.
+fn class_table(files: &[PathBuf]) -> Result<String, Error> {
+    let read = |file: &PathBuf| match file.exists() {
+        true => Progress::read(file).map_err(Error::usage),
+        false => Err(usage!("{}: no such file", file.display())),
+    };
+    let class = files.iter().map(read).collect::<Result<Vec<_>, _>>()?;
+    let order: Vec<&str> = teach::list().iter().map(|lesson| lesson.name).collect();
+    Ok(hand_in::class_table(&class, &order))
 }
 
 /// The built-in lessons, one per line, with the user's progress.
@@ -85,4 +149,44 @@ fn check(lesson: Lesson) -> Result<String, Error> {
         );
     }
     Ok(text)
+}
+
+/// The questions of a lesson, numbered, with the texts before each.
+fn sheet(lesson: Lesson) -> Result<String, Error> {
+    let lesson = Arc::new(lesson);
+    let mut text = lesson.title.clone() + "\n";
+    for (number, asked) in (1..).zip(play(&lesson)?) {
+        if !asked.before.is_empty() {
+            text += &printed("", &asked.before.join(" "));
+        }
+        text += &printed(&format!("{number}. "), &asked.question);
+        for (option, letter) in asked.options.iter().zip('a'..) {
+            text += &indented(&format!("   {letter}) "), option);
+        }
+    }
+    Ok(text)
+}
+
+/// A text after an empty line, with its equations on lines of their own.
+fn printed(mark: &str, text: &str) -> String {
+    let indent = " ".repeat(mark.width());
+    let lines = paragraphs(text).into_iter().enumerate();
+    let lines = lines.map(|(k, paragraph)| match paragraph {
+        Paragraph::Equation(equation) => indented(&format!("{indent}    "), &equation),
+        Paragraph::Text(text) if k == 0 => indented(mark, &text),
+        Paragraph::Text(text) => indented(&indent, &text),
+        _ => String::new(),
+    });
+    "\n".to_owned() + &lines.collect::<String>()
+}
+
+/// A text that begins with a mark, its further lines below the first.
+fn indented(mark: &str, text: &str) -> String {
+    let indent = " ".repeat(mark.width());
+    let lines = shown::wrap(text, SHEET_WIDTH - mark.width());
+    let line = |(k, line): (usize, &String)| match k {
+        0 => format!("{mark}{line}\n"),
+        _ => format!("{indent}{line}\n"),
+    };
+    lines.iter().enumerate().map(line).collect()
 }

@@ -3,7 +3,10 @@
 use super::base::{Error, Exit, say};
 use stickslip_scene::builtin;
 
-pub fn main() -> Result<Exit, Error> {
+#[derive(Debug, clap::Args)]
+pub struct Args {}
+
+pub fn main(_: &Args) -> Result<Exit, Error> {
     let scenes = builtin::list();
     let width = scenes.iter().map(|s| s.name.len()).max().unwrap_or(0);
     let lines: String = scenes

@@ -17,7 +17,8 @@ pub struct Args {
 }
 
 /// Writes the pages.
-pub fn main(args: &Args, mut program: clap::Command) -> Result<Exit, Error> {
+pub fn main(args: &Args) -> Result<Exit, Error> {
+    let mut program = super::program();
     program.build();
     let Some(folder) = &args.output else {
         say(&page(&program)?)?;

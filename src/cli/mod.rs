@@ -84,52 +84,69 @@ struct Cli {
     verbose: bool,
 }
 
-#[derive(Debug, Subcommand)]
-enum Command {
+/// Defines the subcommands: the help, the name and the module of each.
+macro_rules! subcommands {
+    ($($(#[$help:meta])* $name:ident $module:ident,)*) => {
+        #[derive(Debug, Subcommand)]
+        enum Command {
+            $($(#[$help])* $name($module::Args),)*
+        }
+
+        impl Command {
+            fn run(&self) -> Result<Exit, base::Error> {
+                match self {
+                    $(Command::$name(args) => $module::main(args),)*
+                }
+            }
+        }
+    };
+}
+
+subcommands! {
     /// Solves a scene without stopping
-    Run(run::Args),
+    Run run,
     /// Validates a scene and estimates its cost
-    Check(check::Args),
+    Check check,
     /// Lists the built-in scenes
-    List,
+    List list,
     /// Solves up to a position and writes a snapshot of it
-    Record(record::Args),
+    Record record,
     /// Recomputes snapshots and compares
-    Replay(replay::Args),
+    Replay replay,
     /// Compares two snapshots, node by node
-    Diff(diff::Args),
+    Diff diff,
     /// Continues a session of the debugger from its journal
-    Resume(resume::Args),
+    Resume resume,
     /// Prints a journal or a finished CalculiX run as text
-    Story(story::Args),
+    Story story,
     /// Checks every accepted increment from positions and forces alone, and prints the largest violation of each law
-    Audit(audit::Args),
+    Audit audit,
     /// Tries every remedy at a scene's first failure, and compares them
-    Remedies(remedies::Args),
+    Remedies remedies,
     /// Writes the fewest nodes that still cycle as a separate scene
-    Core(core::Args),
+    Core core,
     /// Converts a scene, a snapshot or a journal to a picture or another file, by extension
-    Export(export::Args),
+    Export export,
     /// Solves a scene with many settings and compares
-    Study(study::Args),
+    Study study,
     /// Shows where the iterations converge
-    Map(map::Args),
+    Map map,
     /// Charts error over cost for different settings
-    Chart(chart::Args),
+    Chart chart,
     /// Steps an external solver
-    Attach(attach::Args),
+    Attach attach,
     /// Serves stickslip's own solver to a debugger that attaches to it
-    Serve(serve::Args),
+    Serve serve,
     /// Lists guided lessons, starts one, or checks one
-    Lesson(lesson::Args),
+    Lesson lesson,
     /// Prints the file of a built-in scene, study or lesson, or a finished CalculiX run as text
-    Show(show::Args),
+    Show show,
     /// Prints a shell's completion script
-    Completions(completions::Args),
+    Completions completions,
     /// Writes pages for man
-    Man(man::Args),
+    Man man,
     /// Shows a page of the manual, or the help of a subcommand
-    Help(help::Args),
+    Help help,
 }
 
 /// Runs the program.
@@ -175,28 +192,7 @@ pub fn main() -> ExitCode {
     let ended = match &cli.command {
         None if cli.version => about::main(cli.verbose),
         None => debugger::main(cli.debugger),
-        Some(Command::Run(args)) => run::main(args),
-        Some(Command::Check(args)) => check::main(args),
-        Some(Command::List) => list::main(),
-        Some(Command::Attach(args)) => attach::main(args),
-        Some(Command::Serve(args)) => serve::main(args),
-        Some(Command::Record(args)) => record::main(args),
-        Some(Command::Audit(args)) => audit::main(args),
-        Some(Command::Replay(args)) => replay::main(args),
-        Some(Command::Diff(args)) => diff::main(args),
-        Some(Command::Resume(args)) => resume::main(args),
-        Some(Command::Story(args)) => story::main(args),
-        Some(Command::Remedies(args)) => remedies::main(args),
-        Some(Command::Core(args)) => core::main(args),
-        Some(Command::Export(args)) => export::main(args),
-        Some(Command::Study(args)) => study::main(args),
-        Some(Command::Map(args)) => map::main(args),
-        Some(Command::Chart(args)) => chart::main(args),
-        Some(Command::Lesson(args)) => lesson::main(args),
-        Some(Command::Show(args)) => show::main(args),
-        Some(Command::Completions(args)) => completions::main(args),
-        Some(Command::Man(args)) => man::main(args, program()),
-        Some(Command::Help(args)) => help::main(args, program()),
+        Some(command) => command.run(),
     };
     ended
         .unwrap_or_else(|error| {

@@ -104,7 +104,7 @@ pub fn seek<T: Solver + ?Sized>(
     let end = drive(solver, Until::end(), |solver| {
         steps += 1;
         see(solver);
-        if interrupt.came() {
+        if interrupt.has_arrived() {
             return ControlFlow::Break(Err(SeekFailure::Interrupted));
         }
         let event = solver.event();

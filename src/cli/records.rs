@@ -451,7 +451,6 @@ macro_rules! failure_kinds {
     ($($kind:ident $word:literal $meaning:literal,)*) => {
         stickslip_core::words! {
             /// Kinds of failure.
-            #[derive(Debug, Clone, Copy, PartialEq, Eq)]
             pub enum FailureKind, ALL, word {
                 $($kind $word,)*
             }

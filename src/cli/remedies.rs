@@ -1,13 +1,13 @@
 //! `stickslip remedies SCENE`, or `-- COMMAND`: solves up to the first increment that fails, tries every remedy there, and prints
 //! their cost and result.
 
-use super::base::{Error, Exit, notify, quoted, run_to_end, say, usage};
+use super::base::{Error, Exit, notify, quoted, run_to_end, say};
 use super::json::{self, JsonArgs};
 use super::records::{FailureKind, FailureRecord, RemediesRecord, RemedyRecord};
-use super::solver::{Subject, SubjectArgs};
-use stickslip_core::step::event::Failure;
+use super::solver::{Subject, SubjectArgs, step_to_end};
+use stickslip_core::step::drive::{RunEnd, Until};
 use stickslip_core::step::solver::Solver;
-use stickslip_core::step::state::{State, Status};
+use stickslip_core::step::state::State;
 use stickslip_debugger::explain::examination::Examination;
 use stickslip_debugger::explain::remedies::{
     self, COLUMNS, RemainingViolations, RemedyTrial, TrialEnd,
@@ -31,9 +31,6 @@ pub struct Args {
     #[arg(long)]
     force: bool,
 }
-
-/// Maximum number of iterations of an attached solver.
-const MOST_STEPS: usize = 10_000;
 
 /// The command that tries the remedies of a scene, with its options.
 pub fn command(scene: &Scene) -> String {
@@ -60,7 +57,10 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     };
     let failure = match solver.stepper() {
         Some(stepper) => run_to_end(stepper),
-        None => step_to_end(solver.as_mut())?,
+        None => match step_to_end(solver.as_mut(), Until::end(), &mut |_| ())? {
+            RunEnd::Failed(failure) => Some(failure),
+            _ => None,
+        },
     };
     let Some(failure) = failure else {
         notify("the scene converges; nothing to remedy");
@@ -101,21 +101,6 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     record.remedies.extend(untried.iter().map(not_tried));
     json::write(json, &record)?;
     Ok(exit)
-}
-
-/// Steps an attached solver until an increment fails; `None` if none does.
-fn step_to_end(solver: &mut dyn Solver) -> Result<Option<Failure>, Error> {
-    for _ in 0..MOST_STEPS {
-        if !solver.step().map_err(Error::usage)? {
-            return Ok(None);
-        }
-        if let Status::Failed(failure) = &solver.state().status {
-            return Ok(Some(failure.clone()));
-        }
-    }
-    Err(usage!(
-        "the solver neither failed nor ended within {MOST_STEPS} iterations"
-    ))
 }
 
 /// The causes that the interface problem of an attached solver shows, and the remedies that the solver offers.

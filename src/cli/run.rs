@@ -1,6 +1,6 @@
 //! `stickslip run`: solves a scene from start to end.
 
-use super::base::{Error, Exit, OutputState, notify, usage};
+use super::base::{Error, Exit, OutputState, notify, quoted, usage};
 use super::interrupt::Interrupt;
 use super::json;
 use super::records::{FailureKind, FailureRecord, RunRecord};
@@ -141,6 +141,7 @@ impl<'a> Run<'a> {
         let (model, spec) = (&scene.model, &scene.spec);
         let chosen = spec.settings.touch == Touch::Auto && model.settings.touch == Touch::Ratio;
         let watched = chosen && model.control != Control::Arc && !args.quiet;
+        let is_own = solver.stepper().is_some();
         let stepper = solver.stepper().filter(|_| watched);
         let touch = stepper.map(|stepper| TouchWatch::new(stepper.state()));
         let most = args.subject.solver.is_named().then_some(args.most);
@@ -148,7 +149,7 @@ impl<'a> Run<'a> {
         tally.touch = touch;
         Run {
             solver,
-            is_own: most.is_none(),
+            is_own,
             tally,
         }
     }
@@ -163,7 +164,7 @@ impl<'a> Run<'a> {
         if let Some((grids, stepper)) = outputs.grids.as_mut().zip(solver.stepper()) {
             grids.start(stepper)?;
         }
-        let came = || interrupt.came();
+        let came = || interrupt.has_arrived();
         let until = Until::end().interrupted_by(&came);
         let end = drive(solver, until, |solver| match tally.see(solver, outputs) {
             Ok(OutputState::Well) => match tally.endless(solver) {
@@ -194,7 +195,11 @@ impl<'a> Run<'a> {
                 self.tally.report_slaves();
             }
         }
-        if let Some(touch) = self.tally.touch.as_ref().filter(|_| !interrupt.came())
+        if let Some(touch) = self
+            .tally
+            .touch
+            .as_ref()
+            .filter(|_| !interrupt.has_arrived())
             && let Some(difference) = touch.measure(self.solver.model())
         {
             self.tally.messages.note(difference.words());
@@ -252,7 +257,13 @@ impl<'a> Run<'a> {
         let mut result = self.with_message(result, text);
         if !self.is_own {
             // Only an attached solver knows the cause.
-            notify("  `stickslip attach` opens it in the debugger; d shows the cause");
+            let how = match self.tally.scene.spec.in_space {
+                None => "`stickslip attach`".to_owned(),
+                Some(_) => format!("`stickslip {}`", quoted(&self.tally.scene.name)),
+            };
+            notify(&format!(
+                "  {how} opens it in the debugger; d shows the cause"
+            ));
             return result;
         }
         let mut scratch = solver(self.solver.model().clone());
@@ -260,7 +271,7 @@ impl<'a> Run<'a> {
         notify(&format!(
             "  `{remedies}` tries every remedy; in the debugger, d shows the cause"
         ));
-        let stop = || interrupt.came();
+        let stop = || interrupt.has_arrived();
         let most = (&self.tally.scene.spec, self.tally.steps);
         result.why = page::causes(&mut scratch, state, failure, &stop);
         for line in &result.why {
@@ -309,6 +320,7 @@ impl<'a> Run<'a> {
             found,
             jumps,
             losses,
+            without_friction,
             ..
         } = &self.tally;
         let name = &scene.name;
@@ -325,6 +337,14 @@ impl<'a> Run<'a> {
             let at = loads(jumps);
             notify(&format!(
                 "{name}: jumped to another equilibrium branch at load {at}"
+            ));
+        }
+        if let Some((body, load)) = without_friction
+            && !(jumps.is_empty() && losses.is_empty())
+        {
+            let at = sig4(*load);
+            notify(&format!(
+                "{name}: limit load: friction is used up at load {at}: all contacts of body {body} slide"
             ));
         }
         if !losses.is_empty() {

@@ -53,7 +53,8 @@ fn find(name: &str, chart: bool) -> Result<&'static str, String> {
         let scenes = builtin::list().iter().map(|scene| scene.name);
         let others = studies::list().iter().map(|study| study.name);
         let others = others.chain([benchmarks::BUILTIN]);
-        let lessons = teach::list().iter().map(|lesson| lesson.name);
+        let lessons = teach::list().iter().chain(teach::lesson::sheets());
+        let lessons = lessons.map(|lesson| lesson.name);
         let (what, near) = match chart {
             true => ("chart", did_you_mean(name, chart_file::names())),
             false => (

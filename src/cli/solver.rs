@@ -1,16 +1,19 @@
 //! The subject of a run: a scene for stickslip's own solver, or an attached solver.
 
 use super::base::{Error, SetArgs, usage};
+use std::convert::Infallible;
+use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 use stickslip_attach::{Attached, Start};
+use stickslip_core::step::drive::{RunEnd, Until, drive};
 use stickslip_core::step::solver::Solver;
 use stickslip_debugger::record::journal::Record;
 use stickslip_debugger::recorded::log::Log;
 use stickslip_debugger::session::Session;
 use stickslip_scene::Scene;
-use stickslip_scene::solver::solver;
+use stickslip_scene::solver::any_solver;
 
 /// An attached solver and its time limits.
 #[derive(Debug, clap::Args)]
@@ -72,12 +75,51 @@ impl SolverArgs {
         Ok(log)
     }
 
+    /// Starts the solver, if one is given; changes to a scene are refused.
+    pub fn attached(
+        &self,
+        set: &SetArgs,
+        overwrite: bool,
+    ) -> Result<Option<(Scene, Attached)>, Error> {
+        if !self.is_named() {
+            return Ok(None);
+        }
+        if let Some((path, _)) = set.set.first() {
+            return Err(usage!(
+                "--set {path}: only for scenes; set a solver's parameters by its arguments or in the debugger (:set)"
+            ));
+        }
+        let (scene, attached, _) = self.attach(overwrite)?;
+        Ok(Some((scene, attached)))
+    }
+
     /// Starts the solver; `overwrite` allows the exchange to replace an existing file.
     pub fn attach(&self, overwrite: bool) -> Result<(Scene, Attached, Log), Error> {
         let log = self.log(overwrite)?;
         let attached = Attached::attach(self.start(), log.clone());
         let (scene, attached) = attached.map_err(Error::usage)?;
         Ok((scene, attached, log))
+    }
+}
+
+/// Maximum number of iterations of an attached solver.
+const MOST_STEPS: u64 = 10_000;
+
+/// Steps an attached solver until an increment fails, and calls `see` after each iteration.
+pub fn step_to_end(
+    solver: &mut dyn Solver,
+    until: Until<'_>,
+    see: &mut dyn FnMut(&dyn Solver),
+) -> Result<RunEnd<Infallible>, Error> {
+    let end = drive(solver, until.minors(MOST_STEPS), |solver| {
+        see(solver);
+        ControlFlow::Continue(())
+    });
+    match end.map_err(Error::usage)? {
+        RunEnd::Spent => Err(usage!(
+            "the solver neither failed nor ended within {MOST_STEPS} iterations"
+        )),
+        end => Ok(end),
     }
 }
 
@@ -102,21 +144,22 @@ pub struct Subject {
 impl SubjectArgs {
     /// Opens the scene, or attaches the solver.
     pub fn open(&self, overwrite: bool) -> Result<Subject, Error> {
-        if self.solver.is_named() {
-            if let Some((path, _)) = self.set.set.first() {
-                return Err(usage!(
-                    "--set {path}: only for scenes; set a solver's parameters by its arguments or in the debugger (:set)"
-                ));
-            }
-            let (scene, attached, _) = self.solver.attach(overwrite)?;
+        if let Some((scene, attached)) = self.solver.attached(&self.set, overwrite)? {
             return Ok(Subject {
                 scene,
                 solver: Box::new(attached),
             });
         }
-        let scene = Scene::open(self.scene.as_deref().unwrap_or_default(), &self.set.set)?;
-        let solver = Box::new(solver(Arc::new(scene.model.clone())));
+        let name = self.scene.as_deref().unwrap_or_default();
+        let scene = Scene::open_any(name, &self.set.set)?;
+        let solver = any_solver(Arc::new(scene.model.clone()));
         Ok(Subject { scene, solver })
+    }
+
+    /// Opens the scene.
+    pub fn scene(&self) -> Result<Scene, Error> {
+        let name = self.scene.as_deref().unwrap_or_default();
+        Ok(Scene::open(name, &self.set.set)?)
     }
 }
 

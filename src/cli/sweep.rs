@@ -99,7 +99,7 @@ impl SweepArgs {
         report_machines(&store);
         let progress = self.out.progress(sweep.steps(), step);
         let watch = Watch {
-            stop: &|| interrupt.came(),
+            stop: &|| interrupt.has_arrived(),
             done: &|steps| progress.inc(steps),
         };
         let results = sweep.run_with(&store, self.out.jobs(), &watch);
@@ -130,7 +130,7 @@ impl SweepArgs {
         }
         let (all, done) = (results.len(), count_done(&results));
         let report = match report(results) {
-            Err(_) if interrupt.came() => {
+            Err(_) if interrupt.has_arrived() => {
                 notify("interrupted before any result");
                 return Ok(Exit::Interrupted);
             }

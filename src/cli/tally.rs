@@ -14,6 +14,7 @@ use stickslip_core::step::recovery::fallback::Fallback;
 use stickslip_core::step::solver::Solver;
 use stickslip_debugger::explain::accuracy;
 use stickslip_debugger::explain::bond;
+use stickslip_debugger::explain::limit_load::body_without_friction;
 use stickslip_debugger::explain::names;
 use stickslip_debugger::explain::report;
 use stickslip_debugger::explain::touch::TouchWatch;
@@ -91,6 +92,8 @@ pub struct Tally<'a> {
     /// Load factors of accepted increments that jumped, and of those that lost stability.
     pub jumps: Vec<f64>,
     pub losses: Vec<f64>,
+    /// Before the first of these: the body that has no friction left, and the load factor since when.
+    pub without_friction: Option<(String, f64)>,
     /// What kept the run going, each with how often and its first and last increment.
     recoveries: BTreeMap<&'static str, (u32, RangeInclusive<u32>)>,
     /// Bodies without enough contact to be held, with the first and last increment in which they were.
@@ -127,6 +130,7 @@ impl<'a> Tally<'a> {
             found: BTreeMap::new(),
             jumps: Vec::new(),
             losses: Vec::new(),
+            without_friction: None,
             recoveries: BTreeMap::new(),
             loose: BTreeMap::new(),
             noisiest: Norms::default(),
@@ -311,6 +315,14 @@ impl<'a> Tally<'a> {
             Some(_) => self.losses.push(event.load_factor),
             None if jumped => self.jumps.push(event.load_factor),
             None => {}
+        }
+        if self.jumps.is_empty() && self.losses.is_empty() {
+            let body = body_without_friction(&self.scene.model, &event.nodes);
+            let since = self.without_friction.take();
+            self.without_friction = body.map(|body| match since {
+                Some(since) if since.0 == body => since,
+                _ => (body.to_owned(), event.load_factor),
+            });
         }
         if after.noise > self.noisiest.noise {
             self.noisiest = after;

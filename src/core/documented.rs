@@ -43,8 +43,17 @@ macro_rules! doc_line {
 
 pub(crate) use doc_line;
 
-/// Defines a struct of plain fields or an enum of unit variants, and adds `DOCS`.
+/// Defines a struct of plain fields or an enum of unit variants, and adds `DOCS`. A `choice` is an enum whose variants are words of
+/// the scene file, one of them the default.
 macro_rules! documented {
+    ($(#[$($meta:tt)*])* $vis:vis choice $name:ident { $($parts:tt)* }) => {
+        $crate::documented::documented! {
+            #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+            #[serde(rename_all = "lowercase")]
+            $(#[$($meta)*])*
+            $vis enum $name { $($parts)* }
+        }
+    };
     ($(#[$($meta:tt)*])* $vis:vis struct $name:ident {
         $($(#[$($part_meta:tt)*])* $part_vis:vis $part:ident : $type:ty),* $(,)?
     }) => {

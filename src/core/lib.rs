@@ -60,6 +60,7 @@
 //! Each takes only from those above it:
 //!
 //! - [`words`](macro@words): names of the variants of an enum, each written once.
+//! - [`plane`]: vectors in the plane.
 //! - [`executor`]: parallel work on bodies, on threads that the caller provides.
 //! - [`linalg`]: sparsity patterns, factors, checked solves; a separate package.
 //! - [`documented`]: types whose doc comments the program shows.
@@ -67,8 +68,8 @@
 //! - [`model`]: the problem as plain data: nodes, bodies, surfaces, contacts, loads, settings.
 //! - [`builder`]: builds a model in code.
 //! - [`fem`]: finite elements, one small file per kind. [`fem::isoparametric`] is the formulation that all continuum elements
-//!   share; other elements return internal forces and their tangent themselves ([`fem::element`]). [`fem::assembly`] assembles the elements of all bodies, [`fem::recovery`]
-//!   computes stresses for output.
+//!   share; other elements return internal forces and their tangent themselves ([`fem::element`]). [`fem::assembly`] assembles
+//!   the elements of all bodies, [`fem::recovery`] computes stresses for output.
 //! - [`contact`]: one slave node: projection on its surface, the equations of Table 1, the decision of Table 2, and the judge,
 //!   which checks every accepted state against the contact laws.
 //! - [`interface`]: the interface problem of a major iteration: geometry and stiffness frozen, no bodies.
@@ -100,6 +101,7 @@ pub mod fem;
 pub mod interface;
 pub mod linear;
 pub mod model;
+pub mod plane;
 pub mod step;
 pub mod strategy;
 

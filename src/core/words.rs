@@ -7,6 +7,7 @@ macro_rules! words {
     ($(#[$meta:meta])* $vis:vis enum $type:ident, $($name:ident),+ {
         $($(#[$part:meta])* $variant:ident $text:literal),* $(,)?
     }) => {
+        #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         $(#[$meta])*
         $vis enum $type {
             $($(#[$part])* $variant),*

@@ -1,6 +1,6 @@
 //! Friction problems, the common data of readers and writers of interface problems.
 //!
-//! Components come in pairs, normal and tangential for each contact in turn; with m contacts:
+//! Components are normal and tangential for each contact in turn, in space with two tangential ones; with m contacts in the plane:
 //!
 //! ```text
 //! local:   u = W r + q                          W: 2m x 2m
@@ -18,6 +18,13 @@ pub struct Matrix {
     pub columns: usize,
     /// Row and column, both from 0, and value; duplicate entries are added.
     pub entries: Vec<(usize, usize, f64)>,
+}
+
+impl Local {
+    /// Number of components per contact: 2, or 3 in space.
+    pub fn dimension(&self) -> usize {
+        self.q.len() / self.mu.len().max(1)
+    }
 }
 
 impl Matrix {

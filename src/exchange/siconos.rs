@@ -1,8 +1,8 @@
-//! Plane friction problems in Siconos' plain-text format: `FrictionContactProblem` and `GlobalFrictionContactProblem`
+//! Friction problems in Siconos' plain-text format: `FrictionContactProblem` and `GlobalFrictionContactProblem`
 //! ([`crate::problem`] has the equations).
 //!
-//! Numbers separated by spaces, in this order: dimension (2) and number of contacts m; the matrices, W, or M and H; then q (2 m
-//! numbers), or q (here f, as many as M has rows) and b (2 m numbers); and mu (m). A matrix consists of its storage type, rows
+//! Numbers separated by spaces, in this order: dimension d (2 or 3) and number of contacts m; the matrices, W, or M and H; then q (d m
+//! numbers), or q (here f, as many as M has rows) and b (d m numbers); and mu (m). A matrix consists of its storage type, rows
 //! and columns, followed by its data:
 //!
 //! - `0`, dense: rows and columns again, then all entries, column by column;
@@ -28,7 +28,7 @@ use std::fmt::{Debug, Write};
 pub enum Storage {
     /// All entries, column by column.
     Dense,
-    /// Blocks of 2 by 2, without zero blocks.
+    /// One block per pair of contacts, without zero blocks.
     Blocks,
 }
 
@@ -38,8 +38,8 @@ pub enum Storage {
 /// The error with its position.
 pub fn read(text: &str) -> Result<Problem, FormatError> {
     let mut words = Words::new(text);
-    let contacts = head(&mut words)?;
-    let Some(size) = contacts.checked_mul(2) else {
+    let (dimension, contacts) = head(&mut words)?;
+    let Some(size) = contacts.checked_mul(dimension) else {
         bail!(
             words.place(),
             "the problem has {contacts} contacts, which is far too many"
@@ -54,26 +54,18 @@ pub fn read(text: &str) -> Result<Problem, FormatError> {
 /// An error before that number, with its position.
 pub fn contacts(text: &str) -> Result<(usize, (usize, usize)), FormatError> {
     let mut words = Words::new(text);
-    let contacts = head(&mut words)?;
+    let (_, contacts) = head(&mut words)?;
     Ok((contacts, words.place()))
 }
 
-fn head(words: &mut Words<'_>) -> Result<usize, FormatError> {
-    match words.count("the dimension")? {
-        2 => {}
-        3 => {
-            bail!(
-                words.place(),
-                "the problem is three-dimensional (dimension 3); only plane problems (2) are supported"
-            );
-        }
-        other => {
-            bail!(
-                words.place(),
-                "the file begins with {other}; a Siconos friction problem begins with its dimension, 2, and \
-                 a scene with a bracket"
-            );
-        }
+fn head(words: &mut Words<'_>) -> Result<(usize, usize), FormatError> {
+    let dimension = words.count("the dimension")?;
+    if !(2..=3).contains(&dimension) {
+        bail!(
+            words.place(),
+            "the file begins with {dimension}; a Siconos friction problem begins with its dimension, 2 or 3, and \
+             a scene with a bracket"
+        );
     }
     let contacts = words.count("the number of contacts")?;
     if contacts == 0 {
@@ -82,7 +74,7 @@ fn head(words: &mut Words<'_>) -> Result<usize, FormatError> {
             "the problem has 0 contacts; it must have at least 1"
         );
     }
-    Ok(contacts)
+    Ok((dimension, contacts))
 }
 
 fn body(words: &mut Words<'_>, contacts: usize, size: usize) -> Result<Problem, FormatError> {
@@ -104,7 +96,7 @@ fn body(words: &mut Words<'_>, contacts: usize, size: usize) -> Result<Problem, 
     }))
 }
 
-/// Whether the text after a first matrix of 2 m rows is a second matrix.
+/// Whether the text after a first matrix with the rows of W is a second matrix.
 fn begins_matrix(words: &Words<'_>, size: usize, contacts: usize) -> bool {
     let mut left = words.left();
     let mut whole = || left.next().and_then(|word| word.parse::<usize>().ok());
@@ -350,7 +342,8 @@ fn sparse(
 /// The file of a local problem. Numbers are written with enough digits to be read back exactly.
 pub fn write(problem: &Local, storage: Storage) -> String {
     let size = problem.q.len();
-    let mut text = format!("2\n{}\n", problem.mu.len());
+    let dimension = problem.dimension();
+    let mut text = format!("{dimension}\n{}\n", problem.mu.len());
     let rows = problem.w.dense();
     match storage {
         Storage::Dense => {
@@ -361,7 +354,7 @@ pub fn write(problem: &Local, storage: Storage) -> String {
         }
         Storage::Blocks => {
             let _ = writeln!(text, "1\n{size}\n{size}");
-            write_blocks(&mut text, &rows);
+            write_blocks(&mut text, &rows, dimension);
         }
     }
     line(&mut text, problem.q.iter());
@@ -369,11 +362,12 @@ pub fn write(problem: &Local, storage: Storage) -> String {
     text
 }
 
-fn write_blocks(text: &mut String, rows: &[Vec<f64>]) {
-    let contacts = rows.len() / 2;
-    let entries = |i: usize, j: usize| {
-        let at = [(0, 0), (1, 0), (0, 1), (1, 1)];
-        at.map(|(a, b)| rows[2 * i + a][2 * j + b])
+fn write_blocks(text: &mut String, rows: &[Vec<f64>], dimension: usize) {
+    let contacts = rows.len() / dimension;
+    let entries = |i: usize, j: usize| -> Vec<f64> {
+        let at = (0..dimension).flat_map(|b| (0..dimension).map(move |a| (a, b)));
+        at.map(|(a, b)| rows[dimension * i + a][dimension * j + b])
+            .collect()
     };
     let (mut begins, mut columns, mut blocks) = (vec![0], Vec::new(), String::new());
     for i in 0..contacts {
@@ -393,7 +387,7 @@ fn write_blocks(text: &mut String, rows: &[Vec<f64>]) {
     }
     let _ = writeln!(text, "{}\n{contacts}\n{contacts}", columns.len());
     for _ in 0..2 {
-        line(text, (1..=contacts).map(|k| 2 * k));
+        line(text, (1..=contacts).map(|k| dimension * k));
     }
     let _ = writeln!(text, "{}\n{}", begins.len(), columns.len());
     line(text, begins.iter());
@@ -474,7 +468,6 @@ mod tests {
     #[test]
     fn errors_have_a_position() {
         let cases = [
-            ("3\n1\n", (1, 1), "three-dimensional"),
             ("7\n", (1, 1), "begins with its dimension"),
             ("2\n0\n", (2, 1), "0 contacts"),
             ("2\n1\n9\n", (3, 1), "storage 9"),

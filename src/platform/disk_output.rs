@@ -18,9 +18,9 @@ pub struct Output {
 
 enum OutputTarget {
     /// A temporary file in the target's folder, renamed at the end.
-    Beside(BufWriter<NamedTempFile>),
+    Temporary(BufWriter<NamedTempFile>),
     /// A device or a pipe, written directly.
-    Straight(BufWriter<File>),
+    Direct(BufWriter<File>),
 }
 
 impl Output {
@@ -38,11 +38,11 @@ impl Output {
             && !found.is_file()
             && !found.is_dir()
         {
-            let open = straight(path).map_err(failed)?;
+            let open = open_direct(path).map_err(failed)?;
             return Ok(Output {
                 target: path.to_owned(),
                 overwrite,
-                to: OutputTarget::Straight(BufWriter::new(open)),
+                to: OutputTarget::Direct(BufWriter::new(open)),
             });
         }
         if found.as_ref().is_some_and(|found| found.is_dir()) {
@@ -54,11 +54,11 @@ impl Output {
         }
         // A link is followed: its target is replaced or created, and the link stays.
         let target = followed(path).map_err(failed)?;
-        let to = beside(&target).map_err(failed)?;
+        let to = temporary_file(&target).map_err(failed)?;
         Ok(Output {
             target,
             overwrite,
-            to: OutputTarget::Beside(BufWriter::new(to)),
+            to: OutputTarget::Temporary(BufWriter::new(to)),
         })
     }
 
@@ -82,11 +82,11 @@ impl Output {
             source,
         };
         let file = match to {
-            OutputTarget::Straight(mut file) => {
+            OutputTarget::Direct(mut file) => {
                 file.flush().map_err(failed)?;
                 None
             }
-            OutputTarget::Beside(file) => {
+            OutputTarget::Temporary(file) => {
                 let file = file.into_inner().map_err(|e| failed(e.into_error()))?;
                 file.as_file().sync_all().map_err(failed)?;
                 Some(file)
@@ -117,7 +117,7 @@ impl Output {
 }
 
 /// Opens a device or a pipe for writing; fails at once for a pipe without a reader.
-fn straight(path: &Path) -> io::Result<File> {
+fn open_direct(path: &Path) -> io::Result<File> {
     let open = system::set_nonblocking(File::options().write(true)).open(path);
     let open = open.map_err(|error| match system::is_unread_pipe(&error) {
         true => io::Error::other("is a pipe without a reader"),
@@ -229,7 +229,7 @@ const SUFFIX: &str = ".tmp";
 static MAKING: Mutex<()> = Mutex::new(());
 
 /// A temporary file in the target's folder, so that it can be renamed to the target in one step.
-fn beside(target: &Path) -> io::Result<NamedTempFile> {
+fn temporary_file(target: &Path) -> io::Result<NamedTempFile> {
     let directory = folder(target);
     if target.file_name().is_none() {
         return Err(io::Error::other("not a file name"));
@@ -297,15 +297,15 @@ fn is_gone(process: i32) -> bool {
 impl Write for Output {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
         match &mut self.to {
-            OutputTarget::Beside(file) => file.write(bytes),
-            OutputTarget::Straight(file) => file.write(bytes),
+            OutputTarget::Temporary(file) => file.write(bytes),
+            OutputTarget::Direct(file) => file.write(bytes),
         }
     }
 
     fn flush(&mut self) -> io::Result<()> {
         match &mut self.to {
-            OutputTarget::Beside(file) => file.flush(),
-            OutputTarget::Straight(file) => file.flush(),
+            OutputTarget::Temporary(file) => file.flush(),
+            OutputTarget::Direct(file) => file.flush(),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Reads files: only regular ones, without blocking, and up to a maximum size.
 
 use crate::disk::{self, File, Metadata, OpenOptions};
+use crate::similar::did_you_mean_file;
 use crate::system;
 use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
@@ -66,21 +67,21 @@ pub fn bytes(path: &Path, most: u64, what: &'static str) -> Result<Vec<u8>, Unre
 ///
 /// # Errors
 /// A message with the reason.
-pub fn beside(own: &Path, named: &str) -> Result<PathBuf, String> {
+pub fn path_in_folder(own: &Path, named: &str) -> Result<PathBuf, String> {
     let parts = || Path::new(named).components();
     if named.is_empty() || !parts().all(|part| matches!(part, Component::Normal(_))) {
         return Err("the file must be in the same folder as this one or below it; expected a relative path without ..".to_owned());
     }
     let folder = own.parent().unwrap_or(Path::new(""));
     let path = folder.join(named);
-    let told = |error: io::Error| Unreadable::Failed(error).to_string();
-    let real = disk::canonicalize(&path).map_err(told)?;
+    let message = |error: io::Error| failed(&path, error).to_string();
+    let real = disk::canonicalize(&path).map_err(message)?;
     let here = if folder == Path::new("") {
         Path::new(".")
     } else {
         folder
     };
-    match real.starts_with(disk::canonicalize(here).map_err(told)?) {
+    match real.starts_with(disk::canonicalize(here).map_err(message)?) {
         true => Ok(path),
         false => Err("the file is a link to a file outside this folder".to_owned()),
     }
@@ -138,9 +139,22 @@ pub fn open(path: &Path, options: &mut OpenOptions) -> Result<File, Unreadable> 
         Err(error) if error.kind() == io::ErrorKind::NotFound => {}
         Err(error) => return Err(error.into()),
     }
-    let file = system::set_nonblocking(options).open(path)?;
+    let file = system::set_nonblocking(options).open(path);
+    let file = file.map_err(|error| failed(path, error))?;
     regular(&file.metadata()?)?;
     Ok(file)
+}
+
+/// The error with the name of a similar file if this one does not exist.
+fn failed(path: &Path, error: io::Error) -> Unreadable {
+    let similar = match error.kind() {
+        io::ErrorKind::NotFound => did_you_mean_file(&path.to_string_lossy()),
+        _ => String::new(),
+    };
+    match similar.is_empty() {
+        true => Unreadable::Failed(error),
+        false => Unreadable::Failed(io::Error::new(error.kind(), format!("{error}{similar}"))),
+    }
 }
 
 fn regular(found: &Metadata) -> Result<(), Unreadable> {
@@ -187,7 +201,7 @@ mod tests {
         std::os::unix::fs::symlink("deep/b", folder.join("in")).unwrap();
         let own = folder.join("scene");
         for named in ["a", "deep/b", "in"] {
-            assert_eq!(beside(&own, named), Ok(folder.join(named)));
+            assert_eq!(path_in_folder(&own, named), Ok(folder.join(named)));
         }
         let absolute = folder.join("a");
         let wrong = [
@@ -199,7 +213,7 @@ mod tests {
             absolute.to_str().unwrap(),
         ];
         for named in wrong {
-            assert!(beside(&own, named).is_err(), "{named}");
+            assert!(path_in_folder(&own, named).is_err(), "{named}");
         }
     }
 

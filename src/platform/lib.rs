@@ -4,6 +4,7 @@
 //! - [`disk`]: files and folders; in a browser files in memory.
 //! - [`input`]: reads regular files up to a maximum size, without blocking.
 //! - [`files`]: writes files completely or not at all, and overwrites only on request.
+//! - [`similar`]: suggestions for mistyped names.
 //! - `process`: processes started by the program; `signals`: Ctrl-C, suspending, hang-ups; `terminal`: the terminal's size and its
 //!   answers to queries. A browser has none of them.
 //! - [`system`]: locks, private files, processor time, folders.
@@ -27,6 +28,7 @@ pub mod process;
 #[cfg_attr(unix, path = "unix_signals.rs")]
 #[cfg_attr(windows, path = "windows_signals.rs")]
 pub mod signals;
+pub mod similar;
 #[cfg_attr(unix, path = "unix.rs")]
 #[cfg_attr(windows, path = "windows.rs")]
 #[cfg_attr(target_family = "wasm", path = "browser.rs")]

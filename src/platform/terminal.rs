@@ -91,9 +91,9 @@ fn questions() -> String {
 #[cfg(any(unix, test))]
 impl Answers {
     /// The answers so far, and whether the last one has arrived. Key presses in between are ignored.
-    fn read(told: &[u8]) -> (Answers, bool) {
+    fn read(bytes: &[u8]) -> (Answers, bool) {
         let mut answers = Answers::default();
-        let text = String::from_utf8_lossy(told);
+        let text = String::from_utf8_lossy(bytes);
         for answer in text.split("\x1b[").skip(1) {
             let end = answer.find(|c: char| c.is_ascii_alphabetic());
             let Some((numbers, end)) = end.map(|at| (&answer[..at], &answer[at..])) else {

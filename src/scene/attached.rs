@@ -13,7 +13,7 @@ use crate::shown;
 use std::collections::{HashMap, HashSet};
 use stickslip_core::model::{
     Body, BodyKind, Bond, Contact, Control, Form, Friction, Jumps, Linear, Model, Monitor,
-    MonitorQuantity, Node, Surface, ToldKind,
+    MonitorQuantity, Node, ReportedKind, Surface,
 };
 use stickslip_exchange::attach::Answer;
 use stickslip_exchange::attach::message::{self, Scene};
@@ -52,16 +52,16 @@ pub(super) fn spec(scene: &Scene, increment: Option<f64>) -> Spec {
 }
 
 /// Friction in the core's format.
-pub fn friction(told: &message::Friction) -> Friction {
-    let cohesion = told.cohesion;
-    match (told.angle, told.mu) {
+pub fn friction(message: &message::Friction) -> Friction {
+    let cohesion = message.cohesion;
+    match (message.angle, message.mu) {
         (Some(angle), _) => Friction { angle, cohesion },
         (None, mu) => Friction::from_coefficient(mu.unwrap_or(0.0), cohesion),
     }
 }
 
 /// The scene message in a scene file.
-pub fn told(text: &str) -> Result<Scene, Fault> {
+pub fn message(text: &str) -> Result<Scene, Fault> {
     let here = at!["attached"];
     match Answer::read(text) {
         Ok(Answer::Scene(scene)) => Ok(*scene),
@@ -76,7 +76,7 @@ pub fn told(text: &str) -> Result<Scene, Fault> {
 
 /// Checks a scene sent by a solver.
 pub(super) fn compile(spec: &Spec, text: &str) -> Result<(Model, Names), Fault> {
-    let scene = told(text)?;
+    let scene = message(text)?;
     if !(2..=3).contains(&scene.dimension) {
         return refused("dimension: must be 2 or 3");
     }
@@ -92,14 +92,14 @@ pub(super) fn compile(spec: &Spec, text: &str) -> Result<(Model, Names), Fault> 
     of_body.extend(contacts.iter().map(|contact| contact.node));
     of_body.sort_unstable();
     of_body.dedup();
-    let monitor = |(number, told): (usize, &message::Monitor)| {
-        let (name, kind) = match told {
-            message::Monitor::Name(name) => (name, ToldKind::Other),
+    let named = |(number, monitor): (usize, &message::Monitor)| {
+        let (name, kind) = match monitor {
+            message::Monitor::Name(name) => (name, ReportedKind::Other),
             message::Monitor::Kind { name, kind } => (name, *kind),
         };
         Monitor {
             name: shown::line(name).into_owned(),
-            of: MonitorQuantity::Told { number, kind },
+            of: MonitorQuantity::Reported { number, kind },
         }
     };
     let mut model = Model {
@@ -126,11 +126,11 @@ pub(super) fn compile(spec: &Spec, text: &str) -> Result<(Model, Names), Fault> 
             Control::Load
         },
         settings: spec.settings,
-        monitors: scene.monitors.iter().enumerate().map(monitor).collect(),
+        monitors: scene.monitors.iter().enumerate().map(named).collect(),
         ..Model::from_contacts(&shown::line(&scene.title), nodes, surfaces, contacts)
     };
     if scene.dimension == 3 {
-        let z = |node: &message::NodeMessage| node.at.in_space()[2];
+        let z = |node: &message::NodeMessage| node.at.map_or(0.0, |at| at.in_space()[2]);
         model.raise(scene.nodes.iter().map(z).collect());
     }
     if !model.length.is_finite() {
@@ -144,8 +144,8 @@ pub(super) fn compile(spec: &Spec, text: &str) -> Result<(Model, Names), Fault> 
 }
 
 /// Contact law of a contact.
-fn bond(told: &message::Contact) -> Bond {
-    match (told.tied, told.gives) {
+fn bond(contact: &message::Contact) -> Bond {
+    match (contact.tied, contact.gives) {
         (true, _) => Bond::Tied { upright: false },
         (false, Some(give)) => Bond::giving(give),
         (false, None) => Bond::Hard,
@@ -163,9 +163,24 @@ fn nodes(scene: &Scene) -> Result<Vec<Node>, Fault> {
         ));
     }
     let mut nodes: Vec<Node> = Vec::with_capacity(scene.nodes.len());
+    // Nodes without a position are drawn in a row to the right of the others.
+    let known = scene
+        .nodes
+        .iter()
+        .filter_map(|node| Some(node.at?.in_space()[0]));
+    let [low, high] = known.fold([0.0, 0.0_f64], |[low, high], x| [x.min(low), x.max(high)]);
+    let step = if high > low { 0.1 * (high - low) } else { 1.0 };
+    let mut last = high;
     for (k, node) in scene.nodes.iter().enumerate() {
-        let at = node.at.as_slice();
-        if at.len() != scene.dimension || !at.iter().all(|x| x.is_finite()) {
+        let at = node.at.unwrap_or_else(|| {
+            last += step;
+            match scene.dimension {
+                3 => [last, 0.0, 0.0].into(),
+                _ => [last, 0.0].into(),
+            }
+        });
+        let all = at.as_slice();
+        if all.len() != scene.dimension || !all.iter().all(|x| x.is_finite()) {
             let count = if scene.dimension == 3 { "three" } else { "two" };
             return refused(format!(
                 "nodes[{k}].at: a position must be {count} finite numbers"
@@ -175,7 +190,7 @@ fn nodes(scene: &Scene) -> Result<Vec<Node>, Fault> {
             "" => format!("node.{}", k + 1),
             name => shown::cut(name, limits::NAME),
         };
-        let [x, y, _] = node.at.in_space();
+        let [x, y, _] = at.in_space();
         nodes.push(Node { name, at: [x, y] });
     }
     // A contact may have a different name than its node.
@@ -201,7 +216,7 @@ fn nodes(scene: &Scene) -> Result<Vec<Node>, Fault> {
 }
 
 /// Checks that all these nodes exist.
-fn known(scene: &Scene, of: &[usize], place: impl Fn() -> String) -> Result<(), Fault> {
+fn check_nodes(scene: &Scene, of: &[usize], place: impl Fn() -> String) -> Result<(), Fault> {
     match of.iter().find(|&&node| node >= scene.nodes.len()) {
         None => Ok(()),
         Some(node) => refused(format!(
@@ -214,7 +229,7 @@ fn known(scene: &Scene, of: &[usize], place: impl Fn() -> String) -> Result<(), 
 
 fn lines(scene: &Scene) -> Result<Vec<Vec<usize>>, Fault> {
     for (k, line) in scene.lines.iter().enumerate() {
-        known(scene, line, || format!("lines[{k}]"))?;
+        check_nodes(scene, line, || format!("lines[{k}]"))?;
         if line.len() < 2 {
             return refused(format!("lines[{k}]: a line needs at least two nodes"));
         }
@@ -236,7 +251,7 @@ fn lines(scene: &Scene) -> Result<Vec<Vec<usize>>, Fault> {
 
 /// The closed curve around a face.
 fn outline(scene: &Scene, face: &[usize], place: impl Fn() -> String) -> Result<Vec<usize>, Fault> {
-    known(scene, face, &place)?;
+    check_nodes(scene, face, &place)?;
     match face {
         [first, _, _, ..] => Ok(face.iter().chain([first]).copied().collect()),
         _ => refused(format!("{}: a face needs at least three nodes", place())),
@@ -248,18 +263,18 @@ type Surfaces<'a> = (Vec<Surface>, HashMap<&'a str, usize>);
 fn surfaces(scene: &Scene) -> Result<Surfaces<'_>, Fault> {
     let mut numbers = HashMap::new();
     let mut surfaces = Vec::new();
-    for (k, told) in scene.surfaces.iter().enumerate() {
-        let elements = segments(scene, told, k)?;
-        if numbers.insert(told.name.as_str(), k).is_some() {
+    for (k, surface) in scene.surfaces.iter().enumerate() {
+        let elements = segments(scene, surface, k)?;
+        if numbers.insert(surface.name.as_str(), k).is_some() {
             return refused(format!(
                 "surfaces[{k}].name: {:?} is already used",
-                told.name
+                surface.name
             ));
         }
         surfaces.push(Surface::new(
-            &shown::cut(&told.name, limits::NAME),
+            &shown::cut(&surface.name, limits::NAME),
             elements,
-            told.rigid,
+            surface.rigid,
         ));
     }
     Ok((surfaces, numbers))
@@ -268,26 +283,26 @@ fn surfaces(scene: &Scene) -> Result<Surfaces<'_>, Fault> {
 /// The segments of a surface: of its chain, or of the outlines of its faces in space.
 fn segments(
     scene: &Scene,
-    told: &message::SurfaceMessage,
+    surface: &message::SurfaceMessage,
     k: usize,
 ) -> Result<Vec<Vec<usize>>, Fault> {
     let windows = |chain: &[usize]| chain.windows(2).map(<[usize]>::to_vec).collect::<Vec<_>>();
-    known(scene, &told.nodes, || format!("surfaces[{k}].nodes"))?;
+    check_nodes(scene, &surface.nodes, || format!("surfaces[{k}].nodes"))?;
     if scene.dimension == 2 {
-        return match told.nodes.len() {
-            2.. => Ok(windows(&told.nodes)),
+        return match surface.nodes.len() {
+            2.. => Ok(windows(&surface.nodes)),
             _ => refused(format!(
                 "surfaces[{k}].nodes: a surface needs at least two nodes"
             )),
         };
     }
-    if told.faces.is_empty() {
+    if surface.faces.is_empty() {
         return refused(format!(
             "surfaces[{k}].faces: a surface in space needs at least one face"
         ));
     }
     let mut all = Vec::new();
-    for (number, face) in told.faces.iter().enumerate() {
+    for (number, face) in surface.faces.iter().enumerate() {
         let place = || format!("surfaces[{k}].faces[{number}]");
         all.extend(windows(&outline(scene, face, place)?));
     }
@@ -300,17 +315,17 @@ fn contacts(scene: &Scene, surfaces: &HashMap<&str, usize>) -> Result<Vec<Contac
     }
     let (mut ids, mut taken) = (HashSet::new(), HashSet::new());
     let mut contacts = Vec::with_capacity(scene.contacts.len());
-    for (k, told) in scene.contacts.iter().enumerate() {
-        known(scene, &[told.node], || format!("contacts[{k}].node"))?;
-        if !ids.insert(&told.id) {
-            return refused(format!("contacts[{k}].id: {} is already used", told.id));
+    for (k, contact) in scene.contacts.iter().enumerate() {
+        check_nodes(scene, &[contact.node], || format!("contacts[{k}].node"))?;
+        if !ids.insert(&contact.id) {
+            return refused(format!("contacts[{k}].id: {} is already used", contact.id));
         }
-        if !taken.insert(told.node) {
+        if !taken.insert(contact.node) {
             return refused(format!(
                 "contacts[{k}].node: this node already has a contact"
             ));
         }
-        let surface = match &told.surface {
+        let surface = match &contact.surface {
             None => Vec::new(),
             Some(name) => match surfaces.get(name.as_str()) {
                 Some(&number) => vec![number],
@@ -321,7 +336,7 @@ fn contacts(scene: &Scene, surfaces: &HashMap<&str, usize>) -> Result<Vec<Contac
                 }
             },
         };
-        let friction = friction(&told.friction);
+        let friction = friction(&contact.friction);
         let sound = (0.0..90.0).contains(&friction.angle)
             && (0.0..f64::INFINITY).contains(&friction.cohesion);
         if !sound {
@@ -330,10 +345,10 @@ fn contacts(scene: &Scene, surfaces: &HashMap<&str, usize>) -> Result<Vec<Contac
             ));
         }
         contacts.push(Contact {
-            start: told.mode,
-            bond: bond(told),
-            area: told.area,
-            ..Contact::new(told.node, surface, friction)
+            start: contact.mode,
+            bond: bond(contact),
+            area: contact.area,
+            ..Contact::new(contact.node, surface, friction)
         });
     }
     Ok(contacts)

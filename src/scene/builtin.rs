@@ -61,8 +61,7 @@ pub fn list() -> &'static [EmbeddedFile] {
 
 /// The built-in scene with a name, with or without the extension `.ron`.
 pub fn find(name: &str) -> Option<&'static EmbeddedFile> {
-    let name = name.strip_suffix(".ron").unwrap_or(name);
-    SCENES.iter().find(|scene| scene.name == name)
+    embedded::find(SCENES, name)
 }
 
 /// One-line description of a built-in scene: its title.

@@ -21,8 +21,8 @@ pub fn is_cel(name: &str) -> bool {
 
 /// The .cel file that belongs to a .sta or .cvg file; `None` for other names.
 pub fn cel_of(name: &str) -> Option<PathBuf> {
-    let beside = ENDS[1..].iter().any(|end| ends(name, end));
-    beside.then(|| Path::new(name).with_extension(ENDS[0]))
+    let belongs = ENDS[1..].iter().any(|end| ends(name, end));
+    belongs.then(|| Path::new(name).with_extension(ENDS[0]))
 }
 
 fn ends(name: &str, end: &str) -> bool {
@@ -55,8 +55,8 @@ pub fn read(path: &Path) -> Result<CalculixFiles, String> {
             "{path}: no contact elements in this file, so there is nothing to show"
         ));
     }
-    let sta = beside(path, ENDS[1], sta::read)?;
-    let cvg = beside(path, ENDS[2], cvg::read)?;
+    let sta = read_sibling(path, ENDS[1], sta::read)?;
+    let cvg = read_sibling(path, ENDS[2], cvg::read)?;
     Ok(CalculixFiles::new(cel, sta, cvg))
 }
 
@@ -65,13 +65,13 @@ pub fn read(path: &Path) -> Result<CalculixFiles, String> {
 /// # Errors
 /// If the file cannot be read.
 pub fn pressures(cel: &Path) -> Result<Vec<(u32, f64)>, String> {
-    beside(cel, "frd", frd::pressures).map(Option::unwrap_or_default)
+    read_sibling(cel, "frd", frd::pressures).map(Option::unwrap_or_default)
 }
 
 type Reader = BufReader<File>;
 
 /// Reads a file next to the .cel; `None` if it does not exist.
-fn beside<T>(
+fn read_sibling<T>(
     cel: &Path,
     end: &str,
     read: impl Fn(Reader) -> Result<T, FormatError>,

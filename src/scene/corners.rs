@@ -3,6 +3,7 @@
 
 use std::collections::HashMap;
 use stickslip_core::model::{Body, BodyKind, Contact, Facing, Node};
+use stickslip_core::plane::{cross, dot, minus};
 
 /// Angle between two elements above which their border is a real corner rather than part of a curve (30 degrees).
 pub(super) const CORNER: f64 = std::f64::consts::FRAC_PI_6;
@@ -15,10 +16,10 @@ pub(super) fn turn(one: &[usize], other: &[usize], at: impl Fn(usize) -> [f64; 2
     };
     let way = |from: usize, to: usize| {
         let (from, to) = (at(from), at(to));
-        [to[0] - from[0], to[1] - from[1]]
+        minus(to, from)
     };
     let (a, b) = (way(*before, *last), way(*first, *behind));
-    (a[0] * b[1] - a[1] * b[0]).atan2(a[0] * b[0] + a[1] * b[1])
+    cross(a, b).atan2(dot(a, b))
 }
 
 /// A chain of elements in walking order, cut at its convex corners. A closed chain starts at a corner, if it has one.

@@ -9,6 +9,12 @@ pub struct EmbeddedFile {
     pub text: &'static str,
 }
 
+/// The file with a name, with or without the extension `.ron`.
+pub fn find(files: &'static [EmbeddedFile], name: &str) -> Option<&'static EmbeddedFile> {
+    let name = name.strip_suffix(".ron").unwrap_or(name);
+    files.iter().find(|file| file.name == name)
+}
+
 /// An [`EmbeddedFile`](crate::embedded::EmbeddedFile): its name, then its path, relative to the folder of the package, in parts.
 #[macro_export]
 macro_rules! embedded {

@@ -1,6 +1,7 @@
 //! Positions of the slave nodes relative to their surfaces before the first solve: initial gaps, warnings about them, and the
 //! effect of `settings.initial_gaps`.
 
+use crate::geometry::distance_to_segment;
 use crate::pressed;
 use std::collections::HashSet;
 use stickslip_core::contact::element::SurfaceElement;
@@ -8,6 +9,7 @@ use stickslip_core::contact::facing::{MOST as MOST_SURFACES, faced};
 use stickslip_core::contact::projection::{SurfacePoint, project, projection_at};
 use stickslip_core::fem::lagrange;
 use stickslip_core::model::{Body, BodyKind, Contact, InitialGaps, Model, Node, Surface};
+use stickslip_core::plane::dot;
 
 /// Gaps below this fraction of the scene's length count as zero.
 const NONE: f64 = 1e-9;
@@ -83,13 +85,13 @@ pub fn words(model: &Model) -> Vec<String> {
                 false => gap,
             });
         // Distinguishes an exact 0 from a gap that rounds to it.
-        let told = |gap: f64| match gap {
+        let text = |gap: f64| match gap {
             0.0 => "0".to_owned(),
             gap => format!("{gap:.4}"),
         };
         let range = match least == largest {
-            true => told(least),
-            false => format!("{} to {}", told(least), told(largest)),
+            true => text(least),
+            false => format!("{} to {}", text(least), text(largest)),
         };
         let inside = match found.inside.len() {
             0 => String::new(),
@@ -173,7 +175,7 @@ pub fn turned(model: &Model) -> Vec<TurnedSurface> {
                         SurfaceElement::from_surface(&model.surfaces[surface], spot.element);
                     let slopes = element.shape(spot.xi).d;
                     let n = normal(element.nodes, &model.nodes, &slopes);
-                    own[0] * n[0] + own[1] * n[1]
+                    dot(own, n)
                 })
             });
         let over: Vec<f64> = over.collect();
@@ -307,14 +309,11 @@ fn outline(model: &Model, edges: &[Vec<usize>]) -> Vec<[[f64; 2]; 2]> {
 fn is_inside(at: [f64; 2], sides: &[[[f64; 2]; 2]], near: f64) -> bool {
     let mut inside = false;
     for [a, b] in sides {
-        let (along, to) = ([b[0] - a[0], b[1] - a[1]], [at[0] - a[0], at[1] - a[1]]);
-        let size = along[0] * along[0] + along[1] * along[1];
-        let part =
-            ((along[0] * to[0] + along[1] * to[1]) / size.max(f64::MIN_POSITIVE)).clamp(0.0, 1.0);
-        if (to[0] - part * along[0]).hypot(to[1] - part * along[1]) <= near {
+        if distance_to_segment(at, *a, *b) <= near {
             return false;
         }
-        if (a[1] > at[1]) != (b[1] > at[1]) && at[0] < a[0] + (at[1] - a[1]) / along[1] * along[0] {
+        let crossing = |y: f64| a[0] + (y - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
+        if (a[1] > at[1]) != (b[1] > at[1]) && at[0] < crossing(at[1]) {
             inside = !inside;
         }
     }

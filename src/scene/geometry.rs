@@ -4,6 +4,7 @@ use super::limits;
 use crate::format::error::{Fault, Path, bail};
 use stickslip_core::fem::continuum;
 use stickslip_core::model::{ElementKind, Node};
+use stickslip_core::plane::{cross, dot, minus};
 
 /// Rejects chains with an element whose nodes coincide or whose curve folds back or has zero velocity.
 ///
@@ -170,9 +171,10 @@ pub(crate) fn distance_up_to(
     least
 }
 
-fn distance_to_segment(p: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
-    let along = [b[0] - a[0], b[1] - a[1]];
-    let square = along[0] * along[0] + along[1] * along[1];
+/// Distance of a point from the segment from a to b.
+pub(crate) fn distance_to_segment(p: [f64; 2], a: [f64; 2], b: [f64; 2]) -> f64 {
+    let along = minus(b, a);
+    let square = dot(along, along);
     let share = if square > 0.0 {
         (((p[0] - a[0]) * along[0] + (p[1] - a[1]) * along[1]) / square).clamp(0.0, 1.0)
     } else {
@@ -192,8 +194,8 @@ pub(crate) fn straight(nodes: &[Node], elements: &[Vec<usize>], length: f64) -> 
     let whole = distance(start, end);
     let along = [(end[0] - start[0]) / whole, (end[1] - start[1]) / whole];
     let off = |at: &[f64; 2]| {
-        let to = [at[0] - start[0], at[1] - start[1]];
-        (to[0] * along[1] - to[1] * along[0]).abs()
+        let to = minus(*at, start);
+        cross(to, along).abs()
     };
     let place = |at: &[f64; 2]| (at[0] - start[0]) * along[0] + (at[1] - start[1]) * along[1];
     let tiny = OFF * length.max(whole);

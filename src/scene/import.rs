@@ -47,7 +47,7 @@ pub(super) fn resolve(spec: &mut Spec, scene: &str) -> Result<bool, ImportError>
                 return Err(ImportError::Here(Fault::new(here.then("scale"), message)));
             }
             let mesh = read(&here.then("file"), scene, file)?;
-            let given = given(id, &mesh, *reduced, *scale);
+            let given = mesh_nodes(id, &mesh, *reduced, *scale);
             *nodes = given.map_err(|(field, message)| {
                 ImportError::Here(Fault::new(here.then(field), message))
             })?;
@@ -59,7 +59,7 @@ pub(super) fn resolve(spec: &mut Spec, scene: &str) -> Result<bool, ImportError>
 
 fn read(here: &Path, scene: &str, file: &str) -> Result<Mesh, ImportError> {
     let unread = |message: String| ImportError::Here(fault!(here, "{}: {message}", quoted(file)));
-    let path = input::beside(std::path::Path::new(scene), file).map_err(unread)?;
+    let path = input::path_in_folder(std::path::Path::new(scene), file).map_err(unread)?;
     mesh(&path.to_string_lossy()).map_err(|error| match error {
         NoMesh::Unread(message) => unread(message),
         NoMesh::Broken(error) => ImportError::There(error),
@@ -116,7 +116,7 @@ pub fn is_mesh(file: &str) -> bool {
 }
 
 /// A mesh in the form of the scene; or the wrong field of the import, with the reason.
-pub(crate) fn given(
+pub(crate) fn mesh_nodes(
     id: &str,
     mesh: &Mesh,
     reduced: bool,

@@ -55,6 +55,9 @@ use stickslip_platform::{disk, input};
 pub use compile::increments;
 use nodes::Names;
 
+/// Where an interface problem in space cannot be used.
+pub const IN_SPACE: &str = "the interface problem is one in space, which `stickslip FILE`, `run`, `record` and `remedies` solve";
+
 /// A scene that has been read and checked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Scene {
@@ -78,8 +81,20 @@ impl Scene {
     /// value, as in `--set`.
     ///
     /// # Errors
-    /// If the scene does not exist or is invalid.
+    /// If the scene does not exist, is invalid, or is an interface problem in space.
     pub fn open(name: &str, overrides: &[(String, String)]) -> Result<Scene, SceneError> {
+        let scene = Scene::open_any(name, overrides)?;
+        match scene.spec.in_space {
+            None => Ok(scene),
+            Some(_) => Err(SceneError::whole(name, IN_SPACE)),
+        }
+    }
+
+    /// As [`Scene::open`], also for an interface problem in space, which has its own solver ([`solver::any_solver`]).
+    ///
+    /// # Errors
+    /// If the scene does not exist or is invalid.
+    pub fn open_any(name: &str, overrides: &[(String, String)]) -> Result<Scene, SceneError> {
         if !disk::is_file(name)
             && let Some(builtin) = builtin::find(name)
         {
@@ -113,7 +128,7 @@ impl Scene {
     /// A message with the reason.
     pub fn named_in(own: &str, named: &str) -> Result<String, String> {
         let own = std::path::Path::new(own);
-        let found = match input::beside(own, named.trim_start_matches("./")) {
+        let found = match input::path_in_folder(own, named.trim_start_matches("./")) {
             Ok(path) if disk::is_file(&path) => return Ok(path.to_string_lossy().into_owned()),
             Ok(_) => "not a file".to_owned(),
             Err(why) => why,
@@ -122,9 +137,9 @@ impl Scene {
             return Ok(named.to_owned());
         }
         let names = builtin::list().iter().map(|scene| scene.name);
-        let (quoted, meant) = (error::quoted(named), error::did_you_mean(named, names));
+        let (quoted, similar) = (error::quoted(named), error::did_you_mean(named, names));
         Err(format!(
-            "no scene {quoted} in the folder of this file or below, and no built-in scene of that name{meant}: {found}"
+            "no scene {quoted} in the folder of this file or below, and no built-in scene of that name{similar}: {found}"
         ))
     }
 
@@ -322,6 +337,9 @@ impl Source<'_> {
     fn condensed(&self) -> Result<Scene, SceneError> {
         let (name, text) = (self.name, self.text);
         let problem = read::problem(name, text)?;
+        if let Some(what) = problem.unfit_in_space() {
+            return Err(SceneError::whole(name, what));
+        }
         let place = |overrides: &[Override], fault: Fault| {
             let own = Fault::new(problem.origin(&fault.path), fault.message.clone());
             match placed(name, "", overrides, fault) {

@@ -27,14 +27,14 @@ struct HeldPoint {
 /// One sentence for each solid that prescribed displacements compress beyond the range of St Venant-Kirchhoff's law.
 pub fn warnings(model: &Model) -> Vec<String> {
     let bodies = model.bodies.iter();
-    let told = bodies.filter_map(|body| match &body.kind {
-        BodyKind::Solid(solid) => told(model, body, solid),
+    let warnings = bodies.filter_map(|body| match &body.kind {
+        BodyKind::Solid(solid) => warning(model, body, solid),
         _ => None,
     });
-    told.collect()
+    warnings.collect()
 }
 
-fn told(model: &Model, body: &Body, solid: &Solid) -> Option<String> {
+fn warning(model: &Model, body: &Body, solid: &Solid) -> Option<String> {
     let softens = |number: &usize| {
         let elastic = &solid.materials[*number];
         StretchRange::from_elastic(elastic) == StretchRange::Stretch(SOFTENING)

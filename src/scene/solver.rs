@@ -6,6 +6,8 @@
 use std::sync::Arc;
 use stickslip_core::executor::Executor;
 use stickslip_core::model::Model;
+use stickslip_core::step::cone_solver::ConeSolver;
+use stickslip_core::step::solver::Solver;
 use stickslip_core::step::stepper::Stepper;
 
 /// Rayon's threads.
@@ -14,6 +16,14 @@ struct Threads;
 impl Executor for Threads {
     fn join(&self, first: &mut (dyn FnMut() + Send), second: &mut (dyn FnMut() + Send)) {
         rayon::join(first, second);
+    }
+}
+
+/// The solver of any scene, also of an interface problem in space, at the start of its history.
+pub fn any_solver(model: Arc<Model>) -> Box<dyn Solver> {
+    match ConeSolver::new(model.clone()) {
+        Some(solver) => Box::new(solver),
+        None => Box::new(solver(model)),
     }
 }
 

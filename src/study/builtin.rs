@@ -1,6 +1,6 @@
 //! The built-in studies.
 
-use stickslip_scene::embedded::EmbeddedFile;
+use stickslip_scene::embedded::{self, EmbeddedFile};
 use stickslip_scene::embedded_all;
 
 /// In the order in which they are listed.
@@ -26,6 +26,5 @@ pub fn list() -> &'static [EmbeddedFile] {
 
 /// The built-in study with this name, with or without `.ron`.
 pub fn find(name: &str) -> Option<&'static EmbeddedFile> {
-    let name = name.strip_suffix(".ron").unwrap_or(name);
-    STUDIES.iter().find(|study| study.name == name)
+    embedded::find(STUDIES, name)
 }

@@ -1,7 +1,7 @@
 //! Kinds of monitors: those of one kind share a unit and a scale, and can be compared.
 
 use serde::{Deserialize, Serialize};
-use stickslip_core::model::{Model, MonitorQuantity, ToldKind};
+use stickslip_core::model::{Model, MonitorQuantity, ReportedKind};
 
 /// Kind of a monitor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -44,11 +44,11 @@ pub fn kind(model: &Model, watched: &MonitorQuantity) -> MonitorKind {
         MonitorQuantity::Drift { .. } => MonitorKind::Drift,
         MonitorQuantity::Pressure { .. } => MonitorKind::Pressure,
         MonitorQuantity::Arc => MonitorKind::Length,
-        MonitorQuantity::Told { kind, .. } => match kind {
-            ToldKind::Length | ToldKind::Other => MonitorKind::Length,
-            ToldKind::Force => MonitorKind::Force,
-            ToldKind::Pressure => MonitorKind::Pressure,
-            ToldKind::Count => MonitorKind::Count,
+        MonitorQuantity::Reported { kind, .. } => match kind {
+            ReportedKind::Length | ReportedKind::Other => MonitorKind::Length,
+            ReportedKind::Force => MonitorKind::Force,
+            ReportedKind::Pressure => MonitorKind::Pressure,
+            ReportedKind::Count => MonitorKind::Count,
         },
     }
 }

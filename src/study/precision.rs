@@ -90,7 +90,7 @@ impl Point {
 
 stickslip_core::words! {
     /// Kind of cost.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+    #[derive(Default)]
     pub enum Cost, ALL, word {
         /// Processor time, seconds.
         #[default]

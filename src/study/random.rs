@@ -49,7 +49,6 @@ pub struct RandomProblem {
 
 stickslip_core::words! {
     /// Form of the body behind the contacts.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum Form, name {
         /// A stiffness.
         Stiffness "stiffness",
@@ -126,6 +125,7 @@ impl Population {
         };
         RandomProblem {
             problem: Problem {
+                tangents: 1,
                 title: format!("Random interface problem {k} of seed {}", self.seed),
                 about: String::new(),
                 contacts,

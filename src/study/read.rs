@@ -178,7 +178,7 @@ impl Study {
         if std::path::Path::new(name).exists() {
             let text = text(name)?;
             return if is_study(&text) {
-                Study::from_text(name, &text)?.beside(name)
+                Study::from_text(name, &text)?.open_scenes(name)
             } else {
                 Ok(Study::from_scene(name))
             };
@@ -231,7 +231,7 @@ impl Study {
     }
 
     /// The study of a file; [`Scene::named_in`] opens its scenes.
-    fn beside(mut self, file: &str) -> Result<Study, SceneError> {
+    fn open_scenes(mut self, file: &str) -> Result<Study, SceneError> {
         for scene in &mut self.scenes {
             *scene = Scene::named_in(file, scene).map_err(|why| SceneError::whole(file, why))?;
         }

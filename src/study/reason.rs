@@ -6,7 +6,7 @@ use stickslip_core::step::event::Failure;
 
 stickslip_core::words! {
     /// Why an increment failed, in a word.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
+    #[derive(Hash, Serialize, Deserialize)]
     pub enum Reason, word {
         /// The minor iterations cycle.
         MinorCycle "minor-cycle",

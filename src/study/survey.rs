@@ -94,10 +94,10 @@ impl Survey {
         all.filter_map(|(k, judged)| Some((k, judged.as_ref()?)))
     }
 
-    /// Counts the verdicts of variant number `v` on the problems selected by `meant`.
-    pub fn tally(&self, v: usize, meant: impl Fn(&JudgedProblem) -> bool) -> Tally {
+    /// Counts the verdicts of variant number `v` on the problems selected by `selected`.
+    pub fn tally(&self, v: usize, selected: impl Fn(&JudgedProblem) -> bool) -> Tally {
         let mut tally = Tally::default();
-        for (_, judged) in self.done().filter(|(_, judged)| meant(judged)) {
+        for (_, judged) in self.done().filter(|(_, judged)| selected(judged)) {
             tally.add(judged.solvable(), judged.trials[v].verdict);
         }
         tally

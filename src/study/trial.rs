@@ -110,6 +110,7 @@ pub struct PreparedVariant<'a> {
 pub fn prepared(variants: &[Variant]) -> Vec<PreparedVariant<'_>> {
     // All problems share this history and these settings, and nothing else matters here.
     let common = Problem {
+        tangents: 1,
         title: String::new(),
         about: String::new(),
         contacts: Vec::new(),
@@ -308,6 +309,7 @@ mod tests {
     /// A node on two unit springs, with load (−1, 1) along n and t and friction μ = 0.5: it slides, u_t = 0.5.
     fn slider() -> Problem {
         Problem {
+            tangents: 1,
             title: "slider".to_owned(),
             about: String::new(),
             contacts: vec![Contact {

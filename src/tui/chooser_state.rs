@@ -20,7 +20,6 @@ const LOOKED_AT: usize = 5000;
 
 stickslip_core::words! {
     /// Groups in display order.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum Group, title {
         /// Guided lessons.
         Lessons "Lessons",

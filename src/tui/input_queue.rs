@@ -24,7 +24,6 @@ pub enum QueuedInput {
 
 stickslip_core::words! {
     /// What the queue waits for.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum WaitReason, until {
         /// The end of a run.
         Run "until the run stops; Ctrl-C interrupts it",

@@ -15,7 +15,6 @@ use ratatui::layout::{Constraint, Layout, Rect};
 
 stickslip_core::words! {
     /// A pane; all but [`Pane::Lesson`] can have the focus.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum Pane, title {
         /// The table of slave nodes.
         Nodes "slave nodes",

@@ -91,7 +91,7 @@ impl App {
             Some((_, area)) => lesson::room(*area, tutor, &self.theme),
             None => (usize::from(self.area.width.saturating_sub(2)), 0),
         };
-        let all = lesson::said(tutor, width, &self.theme).len();
+        let all = lesson::tutor_lines(tutor, width, &self.theme).len();
         let from = lesson::top(self, tutor, width, room);
         let to = if room == 0 { 0 } else { (from + room).min(all) };
         Some(VisibleLines { from, to, all })

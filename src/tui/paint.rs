@@ -33,6 +33,11 @@ pub fn lines(buffer: &mut Buffer, area: Rect, lines: &[Line]) {
     }
 }
 
+/// Writes a line in place of missing content.
+pub fn note(buffer: &mut Buffer, area: Rect, text: &str, theme: &Theme) {
+    lines(buffer, area, &[Line::styled(text, theme.faint)]);
+}
+
 /// A text cut to a width, with `…` in place of the rest.
 pub fn cut(text: &str, width: usize) -> String {
     let text = shown::line(text);

@@ -277,6 +277,6 @@ fn continued(signals: &Signals) -> bool {
 
 /// Loads a scene.
 fn load(scene: &str, overrides: &[(String, String)]) -> Result<Session, SceneError> {
-    let scene = Scene::open(scene, overrides)?;
+    let scene = Scene::open_any(scene, overrides)?;
     Ok(Session::new(scene))
 }

@@ -3,7 +3,6 @@
 use crate::app::{App, Overlay};
 use crate::chooser_state::Preview;
 use crate::layout::{self, Choice, Pane, ScreenAreas};
-use crate::paint;
 use crate::panes::branches;
 use crate::panes::chooser;
 use crate::panes::contact;
@@ -11,6 +10,7 @@ use crate::panes::curve;
 use crate::panes::decision;
 use crate::panes::diagnosis;
 use crate::panes::footer;
+use crate::panes::frame;
 use crate::panes::help;
 use crate::panes::lesson;
 use crate::panes::manual;
@@ -120,7 +120,7 @@ pub fn is_hidden(pane: Pane, app: &App, view: &View) -> bool {
 
 fn draw_pane(pane: Pane, buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     if is_hidden(pane, app, view) {
-        let inner = paint::frame(buffer, area, "Hidden", app.panes.focus == pane, &app.theme);
+        let inner = frame(buffer, area, pane, "Hidden", app);
         let text = " until you predict what follows";
         Line::styled(text, app.theme.faint).render(inner, buffer);
         return;

@@ -115,6 +115,16 @@ const FAULTS: &[(&str, bool, &str)] = &[
         false,
         "contacts[0].id is 7; it must be a, as in the scene",
     ),
+    (
+        "partial-stranger",
+        false,
+        "contact \"8\" is not in the scene, or not in its order",
+    ),
+    (
+        "partial-nameless",
+        false,
+        "a state without all contacts needs their ids",
+    ),
     ("too-few", false, "it has 1 contacts; the scene has 2"),
     ("too-many", false, "it has 3 contacts; the scene has 2"),
     (

@@ -1,7 +1,8 @@
 //! A solver between the debugger and another: what that offers in `hello` is changed on the way.
 //!
 //! Its first argument is what `restore` becomes, the second names parts of the others, by commas: `blind` leaves out forces,
-//! `upside-down` turns their sign in the states, `flat` halves the matrix of its problem, `flat-first` only in its second answer, `deaf` answers `set` without handing it on.
+//! `upside-down` turns their sign in the states, `flat` halves the matrix of its problem, `flat-first` only in its second answer, `partial` leaves out
+//! contacts that did not change, `deaf` answers `set` without handing it on.
 
 use serde_json::{Value, json};
 use std::io::{BufRead, BufReader, Write};
@@ -39,6 +40,7 @@ pub fn main(arguments: &[String]) -> ExitCode {
         }
     });
     let mut problems = 0;
+    let mut before = None;
     let mut out = std::io::stdout().lock();
     for line in BufReader::new(child.stdout.take().unwrap()).lines() {
         let line = line.unwrap();
@@ -46,8 +48,14 @@ pub fn main(arguments: &[String]) -> ExitCode {
         let line = match handed_on {
             false => "{\"type\":\"ok\"}".into(),
             true if line.starts_with("{\"type\":\"hello\"") => changed(&line, |hello| {
-                hello["abilities"]["restore"] = json!(restore)
+                hello["abilities"]["restore"] = json!(restore);
+                if how == "partial" {
+                    hello["abilities"]["partial"] = json!(true);
+                }
             }),
+            true if line.starts_with("{\"type\":\"state\"") && how == "partial" => {
+                partial(&line, &mut before)
+            }
             true if line.starts_with("{\"type\":\"state\"") && how == "upside-down" => {
                 changed(&line, upside_down)
             }
@@ -66,6 +74,35 @@ pub fn main(arguments: &[String]) -> ExitCode {
     }
     let _ = child.wait();
     ExitCode::SUCCESS
+}
+
+/// A state without the contacts that are the same as before it.
+fn partial(line: &str, before: &mut Option<Vec<Value>>) -> String {
+    let mut state: Value = serde_json::from_str(line).unwrap();
+    let all = state["contacts"].as_array().unwrap().clone();
+    if all.is_empty() {
+        return line.into();
+    }
+    if let Some(before) = before.replace(all.clone()) {
+        let unchanged = |(old, new): &(Value, &Value)| {
+            let mut old = old.clone();
+            old["mode"] = old["next"].clone();
+            let contact = old.as_object_mut().unwrap();
+            contact.remove("wanted");
+            if contact.get("forced") == Some(&json!("once")) {
+                contact.remove("forced");
+            }
+            old == **new
+        };
+        let rest = before.into_iter().zip(&all).filter(|pair| !unchanged(pair));
+        let mut rest: Vec<Value> = rest.map(|(_, new)| new.clone()).collect();
+        if rest.is_empty() {
+            // An attempt without contacts could not be solved.
+            rest.push(all[0].clone());
+        }
+        state["contacts"] = json!(rest);
+    }
+    state.to_string()
 }
 
 fn changed(line: &str, change: impl Fn(&mut Value)) -> String {

@@ -18,10 +18,10 @@ pub fn tests() -> Vec<Trial> {
 }
 
 /// Attaches, keeps the exchange, does all commands, and opens what was kept.
-fn kept(restore: &str, file: &Path) -> (Session, exchange::OpenedExchange) {
+fn kept(restore: &str, how: &str, file: &Path) -> (Session, exchange::OpenedExchange) {
     let log = Log::default();
     log.keep(file, false).unwrap();
-    let mut session = session(start("osc-lag4", restore, ""), &log);
+    let mut session = session(start("osc-lag4", restore, how), &log);
     for command in script() {
         does(&mut session, command);
     }
@@ -35,9 +35,9 @@ fn open(file: &Path) -> exchange::OpenedExchange {
 }
 
 fn a_kept_exchange_has_every_branch_with_the_same_states() {
-    for restore in ["any", "none"] {
+    for (restore, how) in [("any", ""), ("none", ""), ("none", "partial")] {
         let folder = tempfile::tempdir().unwrap();
-        let (mut session, opened) = kept(restore, &folder.path().join("all.exchange"));
+        let (mut session, opened) = kept(restore, how, &folder.path().join("all.exchange"));
         let lines = opened.lines.clone();
         assert!(
             lines.len() >= summaries(session.timeline().tree()).len() - 1,

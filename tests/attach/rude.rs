@@ -151,7 +151,7 @@ impl Rude {
             "type": "hello", "protocol": protocol, "name": name, "version": "1",
             "abilities": {
                 "force": true, "hold": true, "restore": restore, "problem": self.how.contains("problem"),
-                "interrupt": self.how.contains("interrupt"),
+                "interrupt": self.how.contains("interrupt"), "partial": self.how.starts_with("partial"),
             },
             "parameters": parameters,
         })
@@ -376,6 +376,12 @@ impl Rude {
             "other-order" => {
                 self.changed(|state| state["contacts"].as_array_mut().unwrap().reverse())
             }
+            "partial-stranger" => self.changed(|state| {
+                state["contacts"] = json!([{"id": 8, "mode": "free", "next": "free"}]);
+            }),
+            "partial-nameless" => self.changed(|state| {
+                state["contacts"] = json!([{"mode": "free", "next": "free"}]);
+            }),
             "too-few" => self.changed(|state| {
                 state["contacts"].as_array_mut().unwrap().pop();
             }),

@@ -265,16 +265,44 @@ def getfem(solver: Attached) -> Driven:
     return Driven(states, f"{iterations} iterations, as in whole calls; F_x / F_y {ratio:.3f}", times=times)
 
 
+def slides(state: Message, mu: float) -> None:
+    """Friction on every sliding contact has its limit and the direction of the slip."""
+    for row in state["contacts"]:
+        if row["mode"] == "sliding":
+            near("|F_t| by F_n", size(row["f_t"]) / row["f_n"], mu, 1e-9)
+            for f, slip in zip(row["f_t"], row["slip"]):
+                if abs(f / size(row["f_t"]) - slip / size(row["slip"])) > 1e-6:
+                    raise Failed("friction is not along the slip")
+
+
+def hexahedra(solver: Attached) -> Driven:
+    """The outer nodes slide, each in its direction, and the states after a restore are the same."""
+    start = solver.ask("save")["token"]
+    states, times = times_of(solver, 400)
+    must("its end", states[-1]["ended"], "done")
+    accepted = [state for state in states if state["ended"] in ("increment", "done")]
+    must("increments", len(accepted), 4)
+    for state in accepted:
+        slides(state, 0.4)
+        pressing = sum(row["f_n"] for row in state["contacts"])
+        near("the force on the plane", state["monitors"][0], pressing, 1e-12)
+    modes = letters(states[-1])
+    if not ("S" in modes and "X" in modes):
+        raise Failed(f"its modes are {modes}")
+    solver.ask("restore", token=start)
+    must("the run after a restore", solver.run(400), states)
+    solver.ask("restore", token=start)
+    solver.ask("set", name="friction", value=50.0)
+    must("modes under strong friction", set(letters(solver.run(400)[-1])), {"X"})
+    return Driven(states, f"{modes.count('S')} slide, {modes.count('X')} stick; friction along the slip", times=times)
+
+
 def block3d(solver: Attached) -> Driven:
     """Friction on every sliding contact has its limit and the direction of the slip, and the problem is that of the states."""
     problem = solver.ask("problem")
     states, times = times_of(solver, 40)
     must("its end", states[-1]["ended"], "done")
-    for row in states[-1]["contacts"]:
-        if row["mode"] == "sliding":
-            near("|F_t| by F_n", size(row["f_t"]) / row["f_n"], 0.4, 1e-9)
-            for f, slip in zip(row["f_t"], row["slip"]):
-                near("direction of friction", f / size(row["f_t"]), slip / size(row["slip"]), 1e-6)
+    slides(states[-1], 0.4)
     force = [each for row in states[0]["contacts"] for each in (row["f_n"], *row["f_t"])]
     for row, q, contact in zip(problem["matrix"][::3], problem["q"][::3], states[0]["contacts"]):
         if abs(sum(w * f for w, f in zip(row, force)) + q - contact["gap"]) > 1e-12:
@@ -286,6 +314,7 @@ ADAPTERS = (
     Adapter("helper", "faults.py", (), "ctypes", faults, run_ends=None),
     Adapter("springs", "springs.py", ("numpy",), "numpy", springs, run_ends=3),
     Adapter("scikit-fem", "scikit_fem.py", ("scikit-fem==12.0.2", "scipy"), "skfem", scikit_fem),
+    Adapter("hexahedra", "scikit_fem_block.py", ("scikit-fem==12.0.2", "scipy"), "skfem", hexahedra, close=1e-12),
     Adapter("Kratos", "kratos.py", ("KratosContactStructuralMechanicsApplication==10.4.4",
                                     "KratosStructuralMechanicsApplication==10.4.4"), "KratosMultiphysics", kratos),
     # Lengths of vectors may differ in the last digit between Python and Rust.

@@ -196,6 +196,7 @@ fn hello() -> Hello {
             restore: Restore::Any,
             problem: false,
             interrupt: false,
+            partial: false,
         },
         decides: None,
         parameters: Vec::new(),
@@ -205,12 +206,12 @@ fn hello() -> Hello {
 fn scene(contacts: usize) -> Scene {
     let node = |k: usize| NodeMessage {
         name: format!("node.{k}"),
-        at: [k as f64, 0.1].into(),
+        at: Some([k as f64, 0.1].into()),
     };
     let mut nodes: Vec<NodeMessage> = (0..contacts).map(node).collect();
     let end = |name: &str, x| NodeMessage {
         name: name.into(),
-        at: [x, 0.0].into(),
+        at: Some([x, 0.0].into()),
     };
     nodes.push(end("right", contacts as f64));
     nodes.push(end("left", -1.0));

@@ -1,9 +1,8 @@
 //! What the command line says where something else was meant, and with which code it ends.
 
-use crate::program::{code, err, out, program, well, words};
-use std::io::{BufRead, BufReader};
+use crate::program::{code, err, out, program, read_first_line, well, words};
 use std::path::Path;
-use std::process::{Output, Stdio};
+use std::process::Output;
 
 const OSC: &str = "osc-inclined-cantilever";
 
@@ -159,16 +158,7 @@ fn what_else_is_written_is_whole_though_the_reader_of_one_table_left() {
     let arguments = words(
         "run 02-two-cantilevers-rough --set history.increment=0.001 --csv - --snapshot end.ron",
     );
-    let mut child = program(directory.path(), &arguments)
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
-    assert!(lines.next().unwrap().unwrap().starts_with("increment,"));
-    drop(lines);
-    let output = child.wait_with_output().unwrap();
-    assert_eq!(code(&output), 0, "{}", err(&output));
+    let output = read_first_line(program(directory.path(), &arguments));
     let snapshot = std::fs::read_to_string(directory.path().join("end.ron")).unwrap();
     assert!(snapshot.contains("status: Finished"), "the run was cut");
 }
@@ -225,11 +215,15 @@ fn a_missing_file_gets_a_suggestion_from_its_folder() {
     let here = directory.path();
     std::fs::copy(top("problems/osc-two6.ron"), here.join("clip.ron")).unwrap();
     for arguments in [
-        ["run", "cilp.ron"],
-        ["replay", "cilp.ron"],
-        ["cilp.ron", "--no-journal"],
+        &["run", "cilp.ron"][..],
+        &["replay", "cilp.ron"],
+        &["resume", "--check", "cilp.ron"],
+        &["story", "cilp.ron"],
+        &["chart", "--from", "cilp.ron"],
+        &["chart", "osc-two6", "--reference", "cilp.ron"],
+        &["cilp.ron", "--no-journal"],
     ] {
-        let wrong = ran(here, &arguments);
+        let wrong = ran(here, arguments);
         let told = err(&wrong);
         assert!(told.contains("; did you mean \"clip.ron\"?"), "{told}");
         assert_eq!(code(&wrong), 2);

@@ -401,7 +401,10 @@ fn a_branch_that_does_not_fit_is_refused_and_the_others_go_on() {
         forward(&mut session, Unit::Increment, 2);
         session
     };
-    let one = started(Budget::default()).timeline().tree().kept();
+    let one = started(Budget::default())
+        .timeline()
+        .tree()
+        .permanent_bytes();
     let mut session = started(Budget {
         branches: 2 * one,
         ..Budget::default()
@@ -426,7 +429,8 @@ fn a_branch_that_does_not_fit_is_refused_and_the_others_go_on() {
     );
     // One branch more than fits is what the last one may take.
     assert!(
-        session.timeline().tree().kept() >= 2 * one && session.timeline().tree().kept() < 3 * one
+        session.timeline().tree().permanent_bytes() >= 2 * one
+            && session.timeline().tree().permanent_bytes() < 3 * one
     );
     let count = verdicts(&session).len();
     branch(&mut session, "b1");

@@ -6,6 +6,7 @@ mod stored;
 use std::path::{Path, PathBuf};
 use stickslip::recorded::calculix::rules::{examine, shape::DeckShape};
 use stickslip_exchange::inp::{self, Deck};
+use stickslip_exchange::mesh::CellKind;
 use stored::{opened, rows, run};
 
 fn root() -> PathBuf {
@@ -144,36 +145,13 @@ fn faces_of_all_kinds_of_solids_are_read() {
 
 /// The deck of two such elements, the second half a unit above the first, which is mirrored if its face S1 is the master.
 fn stacked(kind: &str, corners: &[[f64; 3]], low: &str, high: &str) -> String {
-    let edges: &[[usize; 2]] = match corners.len() {
-        8 => &[
-            [0, 1],
-            [1, 2],
-            [2, 3],
-            [3, 0],
-            [4, 5],
-            [5, 6],
-            [6, 7],
-            [7, 4],
-            [0, 4],
-            [1, 5],
-            [2, 6],
-            [3, 7],
-        ],
-        6 => &[
-            [0, 1],
-            [1, 2],
-            [2, 0],
-            [3, 4],
-            [4, 5],
-            [5, 3],
-            [0, 3],
-            [1, 4],
-            [2, 5],
-        ],
-        _ => &[[0, 1], [1, 2], [2, 0], [0, 3], [1, 3], [2, 3]],
+    let of_kind = match corners.len() {
+        8 => CellKind::Hexa8,
+        6 => CellKind::Wedge6,
+        _ => CellKind::Tetra4,
     };
     let wanted = match kind {
-        "C3D20" | "C3D20R" | "C3D15" | "C3D10" | "C3D10T" => edges,
+        "C3D20" | "C3D20R" | "C3D15" | "C3D10" | "C3D10T" => of_kind.edges(),
         _ => &[],
     };
     let place = |k: usize, at: [f64; 3]| match (k, low) {

@@ -123,8 +123,8 @@ fn influences_add_up_to_what_happened() {
         }
         for pair in states.windows(2).take(diagnosis.cycle.period as usize - 1) {
             let (old, new) = (
-                trials.given(&pair[0]).unwrap(),
-                trials.given(&pair[1]).unwrap(),
+                trials.solve_states(&pair[0]).unwrap(),
+                trials.solve_states(&pair[1]).unwrap(),
             );
             for target in 0..problem.nodes.len() {
                 let all = influences(&problem, &pair[0], &pair[1], &[target]).unwrap();

@@ -399,7 +399,7 @@ fn resume_and_story_on_the_command_line_end_as_they_should() {
     ends(
         &run(state, &["story", "nowhere"]),
         2,
-        "nowhere: the journal cannot be read",
+        "nowhere: the file cannot be read",
     );
     let other = directory.path().join("other");
     std::fs::write(

@@ -17,6 +17,8 @@ mod cores;
 mod replay;
 // Journals replay to the same bits, and are told as stories.
 mod journal;
+// Exercise sheets and what students hand in.
+mod exercises;
 // Lessons can be played through, tell nothing early, and say where they are wrong.
 mod lessons;
 // Lessons on small screens, and what of them is kept.

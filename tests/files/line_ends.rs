@@ -70,7 +70,11 @@ fn every_reader_takes_crlf() {
     for file in FILES {
         let name = Path::new(file).file_name().unwrap();
         // A deck names its mesh in a folder.
-        let part = if file.contains("/parts/") { "parts" } else { "" };
+        let part = if file.contains("/parts/") {
+            "parts"
+        } else {
+            ""
+        };
         fs::create_dir_all(folder.path().join(part)).unwrap();
         fs::copy(top.join(file), folder.path().join(part).join(name)).unwrap();
     }

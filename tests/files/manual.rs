@@ -13,6 +13,7 @@ use stickslip::manual::render::{WIDTH, render};
 use stickslip::manual::{self, PAGES};
 use stickslip::scene::{Scene, builtin};
 use stickslip::study::{benchmarks, builtin as studies, chart_file};
+use stickslip::teach::lesson::LessonStep;
 use stickslip::teach::play::play;
 use stickslip::teach::{self, Lesson};
 use stickslip::tui::{Debugger, theme::Theme};
@@ -541,7 +542,8 @@ fn the_exercise_on_the_judge_finds_a_broken_law_that_shrinks_with_the_increment(
 fn each_topic_of_the_theory_has_a_lesson_and_each_lesson_a_session() {
     let text = |name: &str| stickslip::manual::page(name).unwrap().text();
     let (teaching, theory) = (text("teaching"), text("theory"));
-    let rows: Vec<(&str, &str)> = teaching
+    let (_, topics) = teaching.split_once("| topic | lesson |").unwrap();
+    let rows: Vec<(&str, &str)> = topics
         .lines()
         .filter_map(|line| {
             line.strip_prefix("| ")?
@@ -559,5 +561,53 @@ fn each_topic_of_the_theory_has_a_lesson_and_each_lesson_a_session() {
     for lesson in stickslip::teach::lesson::list() {
         let named = format!("`{}`", lesson.name);
         assert!(sessions.contains(&named), "{named}");
+    }
+}
+
+/// The minutes of a lesson by the rule on page `teaching`.
+fn minutes(lesson: &Lesson) -> f64 {
+    let text = teach::find(&lesson.name).unwrap().text;
+    let (_, steps) = text.split_once("steps:").unwrap();
+    let quoted = steps.split('"').skip(1).step_by(2);
+    let words: usize = quoted.map(|text| text.split_whitespace().count()).sum();
+    let step = |step: &LessonStep| match step {
+        LessonStep::Text(_) => 0.0,
+        LessonStep::Press { .. } => 0.25,
+        LessonStep::Ask(_) => 1.0,
+        LessonStep::Predict { right, .. } => f64::from(*right),
+        LessonStep::Reach(_) => 4.0,
+    };
+    words as f64 / 120.0 + lesson.steps.iter().map(step).sum::<f64>()
+}
+
+#[test]
+fn sessions_of_the_course_have_90_minutes_and_lessons_for_their_share() {
+    let teaching = manual::page("teaching").unwrap().text();
+    let cells = |line: &str| -> Vec<String> {
+        let cells = line.trim_matches('|').split('|');
+        cells.map(|cell| cell.trim().to_owned()).collect()
+    };
+    let rows = |columns: usize| -> Vec<Vec<String>> {
+        let rows = teaching
+            .lines()
+            .filter(|line| line.starts_with("| "))
+            .map(cells);
+        rows.filter(|row| row.len() == columns && row[0].parse::<u32>().is_ok())
+            .collect()
+    };
+    let (sessions, plans) = (rows(5), rows(4));
+    assert_eq!((sessions.len(), plans.len()), (6, 6));
+    for (session, plan) in sessions.iter().zip(&plans) {
+        let plan: Vec<f64> = plan[1..].iter().map(|cell| cell.parse().unwrap()).collect();
+        assert_eq!(plan.iter().sum::<f64>(), 90.0);
+        let lessons = session[2]
+            .split(", ")
+            .map(|name| Lesson::open(name.trim_matches('`')));
+        let needed: f64 = lessons.map(|lesson| minutes(&lesson.unwrap())).sum();
+        assert!((needed - plan[1]).abs() <= 5.0, "{session:?}: {needed}");
+        assert!(
+            teach::find(session[3].trim_matches('`')).is_some(),
+            "{session:?}"
+        );
     }
 }

@@ -7,9 +7,10 @@
 1. Global problems (M, H, f, b) that Siconos writes, dense and sparse: its own reduction and Lemke's method beside stickslip.
 2. Frozen problems of built-in scenes that stickslip writes (.dat, .mtx, .h5): the .dat is solved by Siconos, the .mtx is read
    by scipy, the .h5 by fclib itself, and all three must have the same numbers to the last bit.
+3. Problems in space that Siconos writes, solved by its NSGS and by stickslip.
 
 Every answer r of Siconos is judged here by the laws, since some of its methods call NaN a success. It ends with code 1 if
-anything differs by more than 1e-9 of the largest force.
+anything differs by more than 1e-9 of the largest force, or 1e-7 in space.
 """
 import argparse
 import contextlib
@@ -27,6 +28,8 @@ import siconos.numerics as sn
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 CLOSE = 1e-9
+# Both stop at an error: stickslip's is 1e-9 of the forces.
+CLOSE_IN_SPACE = 1e-7
 # Scenes whose frozen problem has a compliance, where their unknowns move both ways.
 SCENES = ("02-two-cantilevers-rough", "05-cantilever-elastic-block", "osc-inclined-cantilever", "osc-two6", "osc-three10", "osc-touch2", "osc-snap")
 
@@ -89,6 +92,34 @@ def hushed():
         os.dup2(kept, 1)
         os.close(kept)
         os.close(nowhere)
+
+
+def space_problem(contacts, folder):
+    """Contacts of a block that is pressed down and turned; numbers that are the same in every file."""
+    random = np.random.default_rng(contacts)
+    size = 3 * contacts
+    factor = np.round(random.normal(size=(size, size)), 3) / 8
+    w = np.round(np.eye(size) + factor @ factor.T, 6)
+    q = np.round(random.normal(size=size), 3)
+    q[::3] -= 0.5
+    mu = np.round(random.uniform(0.1, 0.6, contacts), 3)
+    problem = sn.FrictionContactProblem(3, w, q, mu)
+    file = os.path.join(folder, f"space-{contacts}.dat")
+    sn.frictionContact_printInFilename(problem, file)
+    options = sn.SolverOptions(sn.SICONOS_FRICTION_3D_NSGS)
+    options.dparam[sn.SICONOS_DPARAM_TOL] = 1e-13
+    options.iparam[sn.SICONOS_IPARAM_MAX_ITER] = 100_000
+    r, u = np.zeros(size), np.zeros(size)
+    with hushed():
+        sn.fc3d_driver(problem, r, u, options)
+    return file, r
+
+
+def space_forces(program, file):
+    """F_n and |F_t| of each contact in turn."""
+    rows = list(csv.DictReader(io.StringIO(stickslip(program, "run", file, "-q", "--trace", "-"))))
+    nodes = list(dict.fromkeys(row["node"] for row in rows))
+    return np.array([[float(row[key]) for key in ("f_n", "f_t")] for row in rows[-len(nodes) :]])
 
 
 def dense(matrix):
@@ -186,6 +217,14 @@ def main():
             error = np.abs(ours - theirs).max() / np.abs(theirs).max()
             wrong += error > CLOSE
             print(f"  {kind:8} read by stickslip: forces {error:.1e} from Siconos'")
+        print("problems in space that Siconos writes")
+        for contacts in (3, 10, 40):
+            file, r = space_problem(contacts, folder)
+            ours = space_forces(program, file)
+            theirs = np.column_stack([r[::3], np.hypot(r[1::3], r[2::3])])
+            error = np.abs(ours - theirs).max() / np.abs(theirs).max()
+            wrong += error > CLOSE_IN_SPACE
+            print(f"  {contacts:3} contacts: forces {error:.1e} from Siconos' NSGS")
         print("frozen problems that stickslip writes")
         for scene in SCENES:
             base = os.path.join(folder, scene)

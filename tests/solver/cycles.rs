@@ -41,6 +41,7 @@ fn smooth(m: &[Vec<f64>], gaps: &[f64], touching: &[usize]) -> Scene {
         state: InitialState::default(),
     };
     let problem = Problem {
+        tangents: 1,
         title: "planted".into(),
         about: String::new(),
         contacts: (0..n).map(contact).collect(),
@@ -331,6 +332,7 @@ fn random(n: usize, random: &mut Random) -> InterfaceProblem {
         state: InitialState::default(),
     };
     let problem = Problem {
+        tangents: 1,
         title: "random".into(),
         about: String::new(),
         contacts: (0..n).map(|k| contact(k, random)).collect(),

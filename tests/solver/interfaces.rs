@@ -5,13 +5,17 @@ use crate::siconos::{answer, assert_solved};
 use proptest::prelude::*;
 use std::fs;
 use std::path::Path;
+use std::sync::Arc;
 use stickslip::format::Spec;
 use stickslip::linear::estimate::GIGABYTE;
 use stickslip::model::Mode;
 use stickslip::scene::Scene;
 use stickslip::scene::problems::market;
 use stickslip::scene::siconos::{Friction2d, Storage, read};
-use stickslip_exchange::fclib;
+use stickslip::scene::solver::any_solver;
+use stickslip_exchange::problem::{Local, Matrix};
+use stickslip_exchange::siconos::write;
+use stickslip_exchange::{fclib, matrix_market};
 use tempfile::TempDir;
 
 fn folder() -> TempDir {
@@ -230,10 +234,129 @@ fn a_matrix_that_does_not_fit_into_memory_is_refused_before_it_is_made() {
 }
 
 #[test]
-fn a_problem_in_space_is_refused_with_a_sentence() {
+fn a_problem_in_space_is_the_same_from_every_file_and_obeys_the_laws() {
     let folder = folder();
-    let text = put(&folder, "space.dat", "3\n1\n0\n3\n3\n");
-    assert!(refusal(&folder, &text).starts_with("space.dat:1:1: the problem is three-dimensional"));
+    let local = in_space();
+    let mut files = vec![
+        put(&folder, "p.dat", write(&local, Storage::Dense)),
+        put(&folder, "b.dat", write(&local, Storage::Blocks)),
+        put(&folder, "p_W.mtx", matrix_market::write(&local.w, &[])),
+    ];
+    put(
+        &folder,
+        "p_q.mtx",
+        matrix_market::write_column(&local.q, &[]),
+    );
+    put(
+        &folder,
+        "p_mu.mtx",
+        matrix_market::write_column(&local.mu, &[]),
+    );
+    if fclib::ready().is_ok() {
+        files.push(put(
+            &folder,
+            "p.h5",
+            fclib::write(&local, "of a test").unwrap(),
+        ));
+    }
+    let open = |file: &String| Scene::open_any(file, &[]).unwrap();
+    let whole = open(&files[0]);
+    for file in &files {
+        assert_eq!(open(file).spec.in_space, whole.spec.in_space, "{file}");
+        assert!(refusal(&folder, file).contains("is one in space"), "{file}");
+    }
+    let mut solver = any_solver(Arc::new(whole.model.clone()));
+    while solver.step().unwrap() {}
+    let nodes = &solver.event().nodes;
+    let forces: Vec<f64> = nodes
+        .iter()
+        .flat_map(|node| {
+            let (sin, cos) = node.directions.unwrap()[0].sin_cos();
+            [node.f_n, node.f_t * cos, node.f_t * sin]
+        })
+        .collect();
+    let mut motion = local.q.clone();
+    for &(i, j, w) in &local.w.entries {
+        motion[i] += w * forces[j];
+    }
+    for (k, mu) in local.mu.iter().enumerate() {
+        let (f, u) = (&forces[3 * k..], &motion[3 * k..]);
+        let (shear, slip) = (f[1].hypot(f[2]), u[1].hypot(u[2]));
+        assert!(
+            f[0] >= 0.0 && u[0] > -1e-8 && (f[0] * u[0]).abs() < 1e-8,
+            "{k}"
+        );
+        assert!(shear <= mu * f[0] + 1e-8, "{k}");
+        assert!(
+            (f[1] * u[1] + f[2] * u[2] + mu * f[0] * slip).abs() < 1e-8,
+            "{k}"
+        );
+    }
+    let modes: Vec<Mode> = nodes.iter().map(|node| node.decision.next).collect();
+    assert_eq!(modes, [Mode::Sliding, Mode::Fixed, Mode::Free]);
+    for (text, told) in [
+        ("3\n1\n0\n3\n3\n3 3\n1 0 0 0 1 0 0 0 1\n-1 0 0\n", "mu"),
+        ("3\n1\n0\n2\n2\n", "it must be 3"),
+        ("4\n1\n", "begins with its dimension, 2 or 3"),
+    ] {
+        let file = put(&folder, "wrong.dat", text);
+        assert!(
+            refusal(&folder, &file).contains(told),
+            "{}",
+            refusal(&folder, &file)
+        );
+    }
+}
+
+#[test]
+fn contacts_in_space_are_read_and_what_they_cannot_have_is_refused() {
+    let text = |change: (&str, &str)| {
+        "Contacts(title: \"t\", tangents: 2, contacts: [(id: \"a\", gap: 0.5, friction: (angle: 20))],
+          matrix: Compliance([[1, 0, 0], [0, 1, 0], [0, 0, 1]]), free: [-1, 0.25, 0])"
+            .replacen(change.0, change.1, 1)
+    };
+    let scene = Scene::from_text("a.ron", &text(("", "")), &[]).unwrap();
+    let problem = scene.spec.in_space.unwrap();
+    assert_eq!(problem.free, [-0.5, 0.25, 0.0]);
+    assert_eq!(problem.compliance, [(0, 0, 1.0), (1, 1, 1.0), (2, 2, 1.0)]);
+    for (change, told) in [
+        (("tangents: 2", "tangents: 3"), "tangents is 3"),
+        (("Compliance", "Stiffness"), "needs a compliance"),
+        (("gap: 0.5", "load: (0, 1)"), "no loads"),
+        (("[-1, 0.25, 0]", "[-1, 0.25, 0, 1]"), "it has 4 numbers"),
+        (
+            ("[0, 0, 1]]", "[0, 0, 1], [1, 0, 0]]"),
+            "the matrix has 3 rows",
+        ),
+        (("\"a\"", "\"floor\""), "already used"),
+        (("angle: 20", "angle: 90"), "below 90"),
+        (("[[1", "[[1e13"), "1e12"),
+    ] {
+        let error = Scene::from_text("a.ron", &text(change), &[]).unwrap_err();
+        assert!(error.to_string().contains(told), "{error}");
+    }
+}
+
+/// Three contacts: one slides, one sticks, one is open.
+fn in_space() -> Local {
+    let size = 9;
+    let rows = (0..size).map(|i| {
+        let entry = |j: usize| match i == j {
+            true => 2.0,
+            false => 0.1 / (1.0 + (i as f64 - j as f64).abs()),
+        };
+        (0..size).map(entry).collect()
+    });
+    Local {
+        w: Matrix::from_rows(&rows.collect::<Vec<Vec<f64>>>()),
+        q: vec![-1.0, 0.8, -0.3, -2.0, 0.1, 0.1, 1.0, 0.2, 0.3],
+        mu: vec![0.3, 0.5, 0.2],
+    }
+}
+
+#[test]
+fn what_is_no_problem_is_refused_with_a_sentence() {
+    let folder = folder();
     let hdf = put(&folder, "broken.h5", b"\x89HDF\r\n\x1a\nnothing more");
     let told = match fclib::ready() {
         Ok(()) => "invalid HDF5 file",

@@ -61,13 +61,28 @@ fn a_block_on_a_slope_is_refused_where_friction_is_used_up_and_the_load_is_named
     }
 }
 
-/// The same on an elastic wedge, whose slope gives: it tips over the lower corner soon after, and that is marked.
+/// The same on an elastic wedge, whose slope gives: all contacts slide before the limit load of the rigid slope. The block tips
+/// over the lower corner soon after, and that is marked.
 #[test]
 fn a_block_on_a_wedge_is_not_tipped_without_a_word() {
-    let run = run(&found("block-on-a-wedge.inp", &[]));
-    let mark = first_mark(&run).expect("it tips, and that is marked");
+    let (code, told, table) = told(&["tests/findings/block-on-a-wedge.inp"]);
+    assert_eq!(code, 3, "nothing holds it");
+    let rows = rows(&table);
+    let marked = rows.iter().find(|row| row["jumped"] == "1");
+    let mark: f64 = marked.expect("it tips, and that is marked")["load"]
+        .parse()
+        .unwrap();
     assert!(mark > 1.4762 * 0.998 && mark < 1.48, "{mark}");
-    assert!(run.failure.is_some(), "nothing holds it");
+    let (_, rest) = told
+        .split_once("limit load: friction is used up at load ")
+        .unwrap_or_else(|| panic!("{told}"));
+    let (load, rest) = rest.split_once(": ").unwrap();
+    let load: f64 = load.parse().unwrap();
+    assert!(load < mark && (load / 1.4762 - 1.0).abs() < 2e-3, "{load}");
+    assert!(
+        rest.starts_with("all contacts of body BLOCK slide"),
+        "{rest}"
+    );
 }
 
 /// Below its shallow limit point the arch's top is above −0.3; beyond it the arch hangs. Arc length puts the limit at 1.9959.

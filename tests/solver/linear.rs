@@ -25,6 +25,7 @@ fn contact(id: &str, gap: f64, load: [f64; 2]) -> Contact {
 
 fn problem(contacts: Vec<Contact>, matrix: Matrix, free: Vec<f64>) -> Problem {
     Problem {
+        tangents: 1,
         title: "t".to_owned(),
         about: String::new(),
         contacts,

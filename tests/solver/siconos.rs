@@ -126,11 +126,6 @@ fn a_broken_file_is_refused_with_its_line() {
     let blocks = text("two-blocks.dat");
     let cases = [
         (
-            dense.replacen("2\n2\n", "3\n2\n", 1),
-            1,
-            "three-dimensional",
-        ),
-        (
             dense.replacen("2\n2\n", "7\n2\n", 1),
             1,
             "begins with its dimension",

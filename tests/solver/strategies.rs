@@ -58,6 +58,7 @@ pub fn problem(seed: u64) -> Problem {
         })
         .collect();
     Problem {
+        tangents: 1,
         title: format!("problem {seed}"),
         about: String::new(),
         contacts,

@@ -286,19 +286,19 @@ fn another_value(known: &ParameterMessage) -> Option<Value> {
 }
 
 /// The value of the parameter with this name and a predefined meaning, if it is a number.
-fn meant(trial: &Trial, name: &str) -> Option<f64> {
-    let known = trial
+fn parameter_value(trial: &Trial, name: &str) -> Option<f64> {
+    let parameter = trial
         .hello
         .parameters
         .iter()
-        .find(|known| known.name == name);
-    known?.value.as_f64()
+        .find(|parameter| parameter.name == name);
+    parameter?.value.as_f64()
 }
 
 /// Checks that a new increment restarts the current one.
 pub fn increment(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
     const MEND: &str = "with a new size, restart the current increment from the last accepted state: same increment, next attempt, major 1, minor 1";
-    let Some(size) = meant(&trial, INCREMENT) else {
+    let Some(size) = parameter_value(&trial, INCREMENT) else {
         return Ok(not_offered(""));
     };
     // In the middle of an increment, if possible.
@@ -349,7 +349,7 @@ pub fn increment(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
 
 /// Checks that without friction the limit is the cohesion.
 pub fn friction(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
-    if meant(&trial, FRICTION).is_none() {
+    if parameter_value(&trial, FRICTION).is_none() {
         return Ok(not_offered(""));
     }
     if let Err(reason) = trial.set(FRICTION, 0.0)? {

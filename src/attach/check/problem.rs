@@ -50,15 +50,17 @@ pub fn problem(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
     // The same at the start of the increment, where an attempt that was given up returns to.
     let mut stuck_at_start = stuck.clone();
     for _ in 0..states.len() {
-        let told = match trial.ask(&Request::Problem)? {
-            Answer::Problem(told) => Some(*told),
+        let problem = match trial.ask(&Request::Problem)? {
+            Answer::Problem(problem) => Some(*problem),
             Answer::Refused { reason } => {
                 refused.get_or_insert(reason);
                 None
             }
             answer => return Err(other(&Request::Problem, answer, "problem")),
         };
-        let posed = told.map(|told| read_problem(&told, &ids)).transpose()?;
+        let posed = problem
+            .map(|problem| read_problem(&problem, &ids))
+            .transpose()?;
         asked += usize::from(posed.is_some());
         let Some(state) = trial.step()? else { break };
         for (stuck, found) in stuck.iter_mut().zip(&state.contacts) {

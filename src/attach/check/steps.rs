@@ -4,10 +4,10 @@
 use super::report::{Outcome, Report, fails, good, not_tried};
 use super::trial::{Trial, is_last, millis};
 use stickslip_core::model::{Mode, Model};
+use stickslip_core::step::judged::ALLOWED;
 use stickslip_debugger::explain::names;
 use stickslip_debugger::recorded::decode::WireFrame;
 use stickslip_debugger::recorded::fault::Fault;
-use stickslip_debugger::recorded::judged::ALLOWED;
 use stickslip_scene::shown;
 
 use std::time::Instant;
@@ -128,7 +128,7 @@ fn look(report: &mut Report, scene: &Scene, name: &str, states: &[State]) {
             let kilobytes = bytes as f64 / 1e3 / states.len() as f64;
             let found = format!(
                 "{}; {kilobytes:.1} kB each, read in {own:.2} ms",
-                told(states)
+                reported_values(states)
             );
             report.add("states", Ok(good(found)));
         }
@@ -167,15 +167,15 @@ fn taken_in(model: &Model, scene: &Scene, states: &[State]) -> Result<(), String
     };
     let mut from = OurState::outside_start(model);
     for (state, number) in states.iter().zip(1..) {
-        let told = match Answer::read(&line(state)) {
-            Ok(Answer::State(told)) => *told,
+        let message = match Answer::read(&line(state)) {
+            Ok(Answer::State(message)) => *message,
             _ => {
                 return Err(format!(
                     "state {number} changes when it is written and read again"
                 ));
             }
         };
-        let led = frame.recorded_step(&from, &told);
+        let led = frame.recorded_step(&from, &message);
         from = led
             .map_err(|fault| format!("state {number}: {fault}"))?
             .state;
@@ -184,7 +184,7 @@ fn taken_in(model: &Model, scene: &Scene, states: &[State]) -> Result<(), String
 }
 
 /// Which values the states report.
-fn told(states: &[State]) -> String {
+fn reported_values(states: &[State]) -> String {
     let all = || states.iter().flat_map(|state| &state.contacts);
     type Number = fn(&ContactResult) -> Option<f64>;
     let names: [(&str, Number); 5] = [
@@ -276,18 +276,21 @@ fn laws(states: &[State]) -> Outcome {
     for state in accepted {
         count += 1;
         for found in &state.contacts {
-            let told = |why: String| {
+            let located = |why: String| {
                 let id = found.label();
                 let at = state.at.increment;
                 format!("increment {at}, contact {}: {why}", shown::line(&id))
             };
             if let Some((why, mend)) = unlawful(found, ALLOWED * largest) {
-                return fails(told(why), mend);
+                return fails(located(why), mend);
             }
             if let Some((why, _)) = unlawful(found, ROUNDED * largest)
                 && nearly.is_empty()
             {
-                nearly = format!("; only to {ALLOWED:e} of the largest force: {}", told(why));
+                nearly = format!(
+                    "; only to {ALLOWED:e} of the largest force: {}",
+                    located(why)
+                );
             }
         }
     }

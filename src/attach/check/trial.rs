@@ -26,6 +26,9 @@ pub struct Trial {
     log: Log,
     asks: Arc<AtomicUsize>,
     until: Instant,
+    /// Contacts of the current state and of saved ones, which the next state may leave out.
+    contacts: Vec<ContactResult>,
+    saved: Vec<(Value, Vec<ContactResult>)>,
 }
 
 impl Trial {
@@ -48,6 +51,8 @@ impl Trial {
             log: log.clone(),
             asks,
             until: Instant::now() + BUDGET,
+            contacts: Vec::new(),
+            saved: Vec::new(),
         })
     }
 
@@ -94,6 +99,15 @@ impl Trial {
     pub fn step(&mut self) -> Result<Option<State>, Fault> {
         match self.ask(&Request::Step)? {
             Answer::State(mut state) => {
+                if self.hello.abilities.partial {
+                    let ids = self.scene.contacts.iter().map(|contact| contact.id.clone());
+                    let ids: Vec<Id> = ids.collect();
+                    let all = state.complete(&ids, &self.contacts);
+                    self.contacts = all.map_err(|why| Fault::Unfit {
+                        message: "state",
+                        why,
+                    })?;
+                }
                 state.fill_ids(self.scene.contacts.iter().map(|contact| &contact.id));
                 Ok(Some(*state))
             }
@@ -137,7 +151,10 @@ impl Trial {
     /// The fault that ended the solver.
     pub fn save(&mut self) -> Result<Result<Value, String>, Fault> {
         match self.ask(&Request::Save)? {
-            Answer::Saved { token } => Ok(Ok(token)),
+            Answer::Saved { token } => {
+                self.saved.push((token.clone(), self.contacts.clone()));
+                Ok(Ok(token))
+            }
             Answer::Refused { reason } => Ok(Err(reason)),
             answer => Err(other(&Request::Save, answer, "saved")),
         }
@@ -148,6 +165,9 @@ impl Trial {
     /// # Errors
     /// The fault that ended the solver.
     pub fn restore(&mut self, token: &Value) -> Result<Result<(), String>, Fault> {
+        if let Some((_, contacts)) = self.saved.iter().find(|(known, _)| known == token) {
+            self.contacts.clone_from(contacts);
+        }
         let token = token.clone();
         self.order(&Request::Restore { token })
     }

@@ -102,6 +102,8 @@ class Solver:
     restores: ClassVar[str] = "any"
     #: Whether `step` checks `interrupted`.
     interrupts: ClassVar[bool] = False
+    #: Whether `step` may leave out contacts whose numbers and mode are those before it; the others then need an `id`.
+    partial: ClassVar[bool] = False
     #: The modes that the user holds, by contact. `force` is called for each of them before every step; a solver needs
     #: this only to determine whether its modes have settled.
     held: dict[Id, str]
@@ -361,7 +363,7 @@ class _Session:
         if protocol not in known:
             raise Refused(f"this solver needs protocol version {protocol}; the debugger supports {known}")
         solver, forces = self.solver, self.offers("force")
-        abilities = {"force": forces, "hold": forces, "problem": self.offers("problem"), "interrupt": solver.interrupts,
+        abilities = {"force": forces, "hold": forces, "problem": self.offers("problem"), "interrupt": solver.interrupts, "partial": solver.partial,
                      "restore": solver.restores if self.offers("restore") else "none"}
         parameters = [{**asdict(each), "value": getattr(solver, each.name)} for each in solver.parameters]
         return {"type": "hello", "protocol": protocol, "protocols": PROTOCOLS, "name": solver.name, "version": solver.version,
@@ -378,10 +380,10 @@ class _Session:
         rows = state["contacts"] = _rows(state.get("contacts", []))
         if state.get("ended") not in ENDS:
             raise Refused(f"`ended` must be one of {', '.join(ENDS)}, not {state.get('ended')!r}")
-        if len(rows) != len(ids) and (rows or state["ended"] != "failure"):
+        if len(rows) != len(ids) and not self.solver.partial and (rows or state["ended"] != "failure"):
             raise Refused(f"the state has {len(rows)} contacts instead of {len(ids)}")
         for contact, row in zip(ids, rows):
-            row.setdefault("id", contact)
+            contact = row.setdefault("id", contact)
             course.chosen[contact] = row["next"]
             if contact in course.held:
                 row.update(forced="held", wanted=row["next"], next=course.held[contact])

@@ -8,6 +8,7 @@ use crate::contact::element::{ElementPositions, SurfaceElement};
 use crate::contact::projection::{Bounds, SurfacePoint, blend};
 use crate::fem::lagrange::{MAX_NODES, Shape, node, shape};
 use crate::model::Surface;
+use crate::plane::{dot, length, minus, unit};
 use std::sync::LazyLock;
 
 /// Number of search intervals per degree of a curved element.
@@ -65,7 +66,7 @@ pub fn find(
     let nodes = chains
         .filter(|chain| !chain.endless)
         .flat_map(|chain| chain.elements.iter().flatten());
-    let squares = nodes.map(|&n| squared([point[0] - positions[n][0], point[1] - positions[n][1]]));
+    let squares = nodes.map(|&n| squared(minus(point, positions[n])));
     let reach = squares.fold(f64::INFINITY, f64::min).sqrt() + slack;
     let mut least = f64::INFINITY;
     for &surface in candidates {
@@ -78,7 +79,7 @@ pub fn find(
             }
             let mut found = |xi: f64| {
                 let at = place(curve, positions, xi);
-                let distance = length([point[0] - at[0], point[1] - at[1]]);
+                let distance = length(minus(point, at));
                 if distance <= least + slack {
                     least = least.min(distance);
                     let spot = SurfacePoint {
@@ -171,7 +172,7 @@ fn root(
 fn slope(places: &ElementPositions, point: [f64; 2], s: &Shape) -> f64 {
     let to = places.sum_from([-point[0], -point[1]], &s.n);
     let d = places.sum(&s.d);
-    to[0] * d[0] + to[1] * d[1]
+    dot(to, d)
 }
 
 /// Its derivative with respect to ξ.
@@ -183,9 +184,9 @@ fn rise(places: &ElementPositions, point: [f64; 2], s: &Shape) -> f64 {
 /// ξ of the projection on the infinite straight line through an element's ends.
 fn on_line(element: SurfaceElement<'_>, positions: &[[f64; 2]], point: [f64; 2]) -> f64 {
     let [start, end] = [-1.0, 1.0].map(|xi| place(element, positions, xi));
-    let along = [end[0] - start[0], end[1] - start[1]];
-    let to = [point[0] - start[0], point[1] - start[1]];
-    2.0 * (to[0] * along[0] + to[1] * along[1]) / squared(along).max(f64::MIN_POSITIVE) - 1.0
+    let along = minus(end, start);
+    let to = minus(point, start);
+    2.0 * dot(to, along) / squared(along).max(f64::MIN_POSITIVE) - 1.0
 }
 
 /// Position of a point of an element.
@@ -200,17 +201,11 @@ pub fn speed(element: SurfaceElement<'_>, positions: &[[f64; 2]], xi: f64) -> f6
 
 /// Unit tangent along the walk at a point of an element. `None` where dx/dξ = 0.
 pub fn direction(element: SurfaceElement<'_>, positions: &[[f64; 2]], xi: f64) -> Option<[f64; 2]> {
-    let d = blend(element.nodes, positions, &element.slopes(xi));
-    let size = length(d);
-    (size > 0.0).then(|| [d[0] / size, d[1] / size])
+    unit(blend(element.nodes, positions, &element.slopes(xi)))
 }
 
 fn squared(v: [f64; 2]) -> f64 {
-    v[0] * v[0] + v[1] * v[1]
-}
-
-fn length(v: [f64; 2]) -> f64 {
-    squared(v).sqrt()
+    dot(v, v)
 }
 
 #[cfg(test)]

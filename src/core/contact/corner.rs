@@ -29,6 +29,7 @@
 //! node moves to one of the sides.
 
 use crate::model::Friction;
+use crate::plane::{cross, dot, unit};
 
 /// A side of a master at a point, with its friction.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -241,19 +242,6 @@ fn tangent(normal: [f64; 2]) -> [f64; 2] {
 
 fn add(a: [f64; 2], b: [f64; 2], times: f64) -> [f64; 2] {
     [a[0] + times * b[0], a[1] + times * b[1]]
-}
-
-pub(crate) fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
-}
-
-pub(super) fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[1] - a[1] * b[0]
-}
-
-fn unit(v: [f64; 2]) -> Option<[f64; 2]> {
-    let length = dot(v, v).sqrt();
-    (length > 0.0).then(|| [v[0] / length, v[1] / length])
 }
 
 #[cfg(test)]

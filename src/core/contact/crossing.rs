@@ -7,10 +7,10 @@
 //! The corner holds a node like one within a chain ([`crate::contact::corner`]), with the force assigned to the first surface.
 //! That is valid only for rigid surfaces, whose supports carry it; corners between other surfaces are not supported.
 
-use crate::contact::corner::{cross, dot};
 use crate::contact::element::SurfaceElement;
-use crate::contact::projection::{STRAIGHT, SurfacePoint, blend, length, right_of, unit};
+use crate::contact::projection::{STRAIGHT, SurfacePoint, blend, right_of};
 use crate::model::Surface;
+use crate::plane::{cross, dot, length, minus, unit};
 
 /// Maximum number of Newton steps; straight chains need one.
 const STEPS: usize = 20;
@@ -77,7 +77,7 @@ pub fn find(
         endless[k]
             || [-1.0, 1.0].into_iter().any(|end| {
                 let there = blend(elements[k].nodes, positions, &elements[k].shape(end).n);
-                let out = [there[0] - at[k][0], there[1] - at[k][1]];
+                let out = minus(there, at[k]);
                 dot(out, other) > PARALLEL * length(slopes[k])
             })
     };

@@ -13,6 +13,7 @@
 
 use crate::contact::projection::{closest_point, normal, right_of};
 use crate::model::{Contact, Surface};
+use crate::plane::{dot, minus};
 
 /// Maximum number of surfaces of a slave node for which the facing condition is tested; a node with more may touch all of them.
 pub const MOST: usize = 16;
@@ -32,13 +33,13 @@ pub fn faced<'a>(
         return all;
     };
     let [from, to] = facing.outline.map(|node| positions[node]);
-    let own = right_of([to[0] - from[0], to[1] - from[1]]);
+    let own = right_of(minus(to, from));
     let at = positions[slave.node];
     let faces = |surface: usize| {
         let spot = closest_point(at, surfaces, &[surface], positions, None);
         spot.is_some_and(|spot| {
             let n = normal(&surfaces[surface], spot, positions);
-            own[0] * n[0] + own[1] * n[1] < FACES
+            dot(own, n) < FACES
         })
     };
     let (mut count, mut found) = (0, false);

@@ -16,6 +16,7 @@
 //! S* and the normal are determined by both elements, and none of this applies.
 
 use crate::contact::projection::{Curve, Projection, tangent};
+use crate::plane::dot;
 
 /// Effect of the motion of one degree of freedom at S*.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -58,11 +59,11 @@ fn stiffness(projection: &Projection, curve: &Curve) -> f64 {
 }
 
 fn squared(curve: &Curve) -> f64 {
-    curve.slope[0] * curve.slope[0] + curve.slope[1] * curve.slope[1]
+    dot(curve.slope, curve.slope)
 }
 
 fn bend(projection: &Projection, curve: &Curve) -> f64 {
-    projection.normal[0] * curve.bend[0] + projection.normal[1] * curve.bend[1]
+    dot(projection.normal, curve.bend)
 }
 
 /// Derivative of the interaction force at degree of freedom i with respect to degree of freedom j, with constant components F_n

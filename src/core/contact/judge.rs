@@ -23,7 +23,7 @@
 
 use crate::contact::closest_history::{ClosestPoints, FEW};
 use crate::contact::closest_points::{self, ClosestPoint, direction, place, speed};
-use crate::contact::corner::{Side, dot};
+use crate::contact::corner::Side;
 use crate::contact::element::{SurfaceElement, closed};
 use crate::contact::facing::{MOST, faced};
 use crate::contact::laws::{Finding, JudgedLaw, JudgedNumbers, Scales, Verdict};
@@ -34,6 +34,7 @@ use crate::contact::side_laws::{beyond_border, in_corner, on_side, slip_into};
 use crate::contact::stick_point::distance;
 use crate::model::Friction;
 use crate::model::{Contact, Surface};
+use crate::plane::{self, dot, length, minus, unit};
 
 /// Input of the judge: an interface, now and in the last accepted state.
 #[derive(Debug, Clone, Copy)]
@@ -174,7 +175,7 @@ impl Judge {
         let (mut point, force) = (seen.point(slave), seen.forces[slave]);
         let Scales { length, forces, .. } = seen.scales;
         let near = seen.scales.near();
-        let pressed = size(force) > forces * seen.scales.force;
+        let pressed = plane::length(force) > forces * seen.scales.force;
         closest_points::find(
             point,
             seen.surfaces,
@@ -339,7 +340,7 @@ impl Judge {
                 let element =
                     SurfaceElement::from_surface(&seen.surfaces[border.surface], border.element);
                 let at = place(element, seen.now, end);
-                let there = size([point[0] - at[0], point[1] - at[1]]) <= near;
+                let there = length(minus(point, at)) <= near;
                 there
                     .then(|| beyond_border(seen.surfaces, border))
                     .flatten()
@@ -432,7 +433,7 @@ fn end_at(seen: &JudgedState, point: [f64; 2], spot: SurfacePoint, near: f64) ->
             seen.now,
             xi,
         );
-        size([point[0] - at[0], point[1] - at[1]]) <= near
+        length(minus(point, at)) <= near
     })
     .find(|&xi| beyond_border(seen.surfaces, SurfacePoint { xi, ..spot }).is_none())
 }
@@ -502,10 +503,7 @@ fn touching(
 /// Outward unit direction at a closest point; `None` if undefined.
 fn outward(foot: &ClosestPoint, surfaces: &[Surface], positions: &[[f64; 2]]) -> [f64; 2] {
     let n = outward_at(foot, surfaces, positions);
-    match size(n) {
-        0.0 => n,
-        size => n.map(|n| n / size),
-    }
+    unit(n).unwrap_or(n)
 }
 
 /// Sum of the outward normals of the sides at a closest point.
@@ -531,7 +529,7 @@ fn signed_gap(
     positions: &[[f64; 2]],
 ) -> f64 {
     let n = outward_at(foot, surfaces, positions);
-    let to = [point[0] - foot.at[0], point[1] - foot.at[1]];
+    let to = minus(point, foot.at);
     if dot(to, n) < 0.0 {
         -foot.distance
     } else {
@@ -568,12 +566,8 @@ fn is_past_end_at(
     if !is_last || closed(chain) {
         return false;
     }
-    let to = [point[0] - foot.at[0], point[1] - foot.at[1]];
+    let to = minus(point, foot.at);
     let t =
         direction(SurfaceElement::from_surface(chain, element), positions, xi).unwrap_or([0.0; 2]);
     xi * dot(to, t) > near
-}
-
-fn size(v: [f64; 2]) -> f64 {
-    dot(v, v).sqrt()
 }

@@ -37,7 +37,7 @@ impl Scales {
 
 crate::words! {
     /// A law.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+    #[derive(Hash, PartialOrd, Ord, Serialize, Deserialize)]
     #[serde(rename_all = "kebab-case")]
     pub enum JudgedLaw, name {
         /// g >= 0: no slave node is inside a master (length).

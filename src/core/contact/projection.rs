@@ -8,6 +8,7 @@
 use crate::contact::element::{ElementPositions, SurfaceElement};
 use crate::fem::lagrange::MAX_NODES;
 use crate::model::Surface;
+use crate::plane::{cross, dot, length, minus, unit};
 
 /// Distance beyond an end of a chain at which a node still counts as over it, relative to the last element's length.
 const END_TOLERANCE: f64 = 1e-9;
@@ -49,10 +50,10 @@ pub struct Projection {
 impl Projection {
     /// The same point with another normal (unit): that of a corner in which a slave node at `slave` is held.
     pub fn along(self, normal: [f64; 2], slave: [f64; 2]) -> Self {
-        let to = [slave[0] - self.foot[0], slave[1] - self.foot[1]];
+        let to = minus(slave, self.foot);
         Projection {
             normal,
-            gap: to[0] * normal[0] + to[1] * normal[1],
+            gap: dot(to, normal),
             curve: None,
             ..self
         }
@@ -63,8 +64,8 @@ impl Projection {
     /// √m / (m − g k) (1 / length), with m and k of [`crate::contact::geometric_tangent`]. `None` at an end of the element.
     pub fn lever(&self) -> Option<f64> {
         let Curve { slope, bend } = self.curve?;
-        let m = slope[0] * slope[0] + slope[1] * slope[1];
-        let k = bend[0] * self.normal[0] + bend[1] * self.normal[1];
+        let m = dot(slope, slope);
+        let k = dot(bend, self.normal);
         Some(m.sqrt() / (m - self.gap * k))
     }
 }
@@ -176,7 +177,7 @@ fn nearest_node(
         .filter(|surface| surface.smooth.is_empty())
         .flat_map(|surface| surface.elements.iter().flatten());
     let squared = nodes.map(|&node| {
-        let [x, y] = away(slave, positions[node]);
+        let [x, y] = minus(slave, positions[node]);
         x * x + y * y
     });
     squared.fold(f64::INFINITY, f64::min).sqrt()
@@ -288,10 +289,10 @@ pub fn has_kink(surface: &Surface, border: SurfacePoint, positions: &[[f64; 2]])
     };
     let own = slope_at(surface, border.element, border.xi, positions);
     let across = slope_at(surface, other, xi, positions);
-    let cross = own[0] * across[1] - own[1] * across[0];
-    let dot = own[0] * across[0] + own[1] * across[1];
+    let turn = cross(own, across);
+    let cosine = dot(own, across);
     // For small angles, the arc tangent equals its argument.
-    cross.abs() > 2.0 * STRAIGHT * dot
+    turn.abs() > 2.0 * STRAIGHT * cosine
 }
 
 /// Geometry at a surface point, for a slave node at `slave`.
@@ -354,7 +355,7 @@ pub fn mean_normal(one: [f64; 2], other: [f64; 2]) -> [f64; 2] {
 }
 
 /// The last point that has the side's own normal, on the side ahead of a border (along the walk) or on the one behind it.
-pub fn beside(surface: &Surface, border: SurfacePoint, ahead: bool) -> SurfacePoint {
+pub fn point_on_side(surface: &Surface, border: SurfacePoint, ahead: bool) -> SurfacePoint {
     let own = (border.xi < 0.0) == ahead;
     let across = || neighbour(surface, border).filter(|_| !own);
     let (element, xi) = across().unwrap_or((border.element, border.xi));
@@ -412,14 +413,10 @@ fn closest_of_line(
 ) -> (f64, f64) {
     let at = |xi: f64| blend(element.nodes, positions, &element.shape(xi).n);
     let (start, end) = (at(-1.0), at(1.0));
-    let (along, to) = (
-        [end[0] - start[0], end[1] - start[1]],
-        [slave[0] - start[0], slave[1] - start[1]],
-    );
-    let part = (to[0] * along[0] + to[1] * along[1])
-        / (along[0] * along[0] + along[1] * along[1]).max(f64::MIN_POSITIVE);
+    let (along, to) = (minus(end, start), minus(slave, start));
+    let part = dot(to, along) / dot(along, along).max(f64::MIN_POSITIVE);
     let xi = 2.0 * part - 1.0;
-    (length(away(slave, at(xi))), xi)
+    (length(minus(slave, at(xi))), xi)
 }
 
 /// Distance to the closest point of an element, and its coordinate; `guess` is a coordinate that may be close.
@@ -431,8 +428,8 @@ fn closest(
 ) -> (f64, f64) {
     let places = ElementPositions::from_nodes(element.nodes, positions);
     let squared = |n: &[f64; MAX_NODES]| {
-        let to = away(slave, places.sum(n));
-        to[0] * to[0] + to[1] * to[1]
+        let to = minus(slave, places.sum(n));
+        dot(to, to)
     };
     let mut start = (f64::INFINITY, 0.0);
     let mut look = |xi: f64, n: &[f64; MAX_NODES]| {
@@ -471,9 +468,9 @@ fn descend(
     for _ in 0..50 {
         let s = element.shape(xi);
         let (x, d, dd) = (places.sum(&s.n), places.sum(&s.d), places.sum(&s.dd));
-        let to = away(slave, x);
-        let slope = d[0] * d[0] + d[1] * d[1];
-        let curvature = slope - (to[0] * dd[0] + to[1] * dd[1]);
+        let to = minus(slave, x);
+        let slope = dot(d, d);
+        let curvature = slope - dot(to, dd);
         let denominator = if curvature > 0.1 * slope {
             curvature
         } else {
@@ -482,7 +479,7 @@ fn descend(
         if denominator == 0.0 {
             break;
         }
-        let next = (xi + (to[0] * d[0] + to[1] * d[1]) / denominator).clamp(-1.0, 1.0);
+        let next = (xi + dot(to, d) / denominator).clamp(-1.0, 1.0);
         let step = (next - xi).abs();
         xi = next;
         if step <= 2.0 * f64::EPSILON {
@@ -507,20 +504,6 @@ pub(super) fn blend(
     })
 }
 
-fn away(slave: [f64; 2], x: [f64; 2]) -> [f64; 2] {
-    [slave[0] - x[0], slave[1] - x[1]]
-}
-
-/// `hypot` is ten times slower and unnecessary: squared lengths of a scene neither overflow nor underflow.
-pub(super) fn length(v: [f64; 2]) -> f64 {
-    (v[0] * v[0] + v[1] * v[1]).sqrt()
-}
-
-pub(super) fn unit(v: [f64; 2]) -> Option<[f64; 2]> {
-    let length = length(v);
-    (length > 0.0).then(|| [v[0] / length, v[1] / length])
-}
-
 /// The bounding box of an element's nodes.
 pub(super) struct Bounds {
     low: [f64; 2],
@@ -542,7 +525,7 @@ impl Bounds {
     }
 
     fn sides(&self) -> [f64; 2] {
-        [self.high[0] - self.low[0], self.high[1] - self.low[1]]
+        minus(self.high, self.low)
     }
 
     /// Length of the diagonal.

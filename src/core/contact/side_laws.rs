@@ -1,11 +1,12 @@
 //! Evaluates the contact laws for the judge: on a single side, or where two sides meet.
 
+use crate::contact::corner::half_angle;
 use crate::contact::corner::{Side, beyond_corner, beyond_slid, beyond_vertex};
-use crate::contact::corner::{cross, dot, half_angle};
 use crate::contact::element::SurfaceElement;
 use crate::contact::laws::{JudgedNumbers, Scales};
 use crate::contact::projection::SurfacePoint;
 use crate::model::Surface;
+use crate::plane::{cross, dot};
 
 /// A side of the master that a node touches.
 #[derive(Debug, Clone, Copy)]

@@ -16,14 +16,15 @@ use crate::contact::crossing;
 use crate::contact::facing::{MOST, faced, is_piece};
 use crate::contact::point_force;
 use crate::contact::projection::{
-    Projection, STRAIGHT, SurfacePoint, beside, border, element_size, mean_normal, neighbour,
-    normal, project, projection_at, sharpen, slopes_at_border, tangent,
+    Projection, STRAIGHT, SurfacePoint, border, element_size, mean_normal, neighbour, normal,
+    point_on_side, project, projection_at, sharpen, slopes_at_border, tangent,
 };
 use crate::contact::state::ContactState;
 use crate::contact::stick_point::distance;
 use crate::contact::table1::t_max;
 use crate::model::Mode;
 use crate::model::{Bond, Contact, Friction, Surface};
+use crate::plane::{cross, dot};
 
 /// A node is at a corner or vertex if its distance is below this fraction of the element's size.
 const AT_VERTEX: f64 = 1e-9;
@@ -225,13 +226,13 @@ impl Ground<'_> {
             return None;
         }
         let Some(second) = node.second else {
-            return Some((beside(surface, on, way < 0.0), -way.signum()));
+            return Some((point_on_side(surface, on, way < 0.0), -way.signum()));
         };
         let other = if on == second { spot } else { second };
         let [own, across] =
             [on, other].map(|at| normal(&self.surfaces[at.surface], at, self.positions));
         // Motion along t on the first side of the walk, or against t on the second side, is motion into a concave corner.
-        (corner::cross(own, across) * way < 0.0).then_some((on, -way.signum()))
+        (cross(own, across) * way < 0.0).then_some((on, -way.signum()))
     }
 
     /// dx/dξ of the two sides of a border, rotated by F_n where they have local flexibility ([`point_force`]).
@@ -324,7 +325,11 @@ impl Ground<'_> {
             && held.surface == spot.surface
         {
             // Slip is the motion of S* relative to the node, which itself moves in the opposite direction.
-            node.spot = Some(beside(&self.surfaces[held.surface], held, node.sign < 0.0));
+            node.spot = Some(point_on_side(
+                &self.surfaces[held.surface],
+                held,
+                node.sign < 0.0,
+            ));
         }
     }
 
@@ -337,7 +342,7 @@ impl Ground<'_> {
         let out = held.map(|spot| {
             let surface = &self.surfaces[spot.surface];
             let n = normal(surface, spot, self.positions);
-            -node.sign * (t[0] * n[0] + t[1] * n[1])
+            -node.sign * dot(t, n)
         });
         // It leaves the side from which its motion points away.
         node.spot = Some(if out[0] < out[1] { held[0] } else { held[1] });
@@ -409,7 +414,7 @@ impl Ground<'_> {
             let size = element_size(&self.surfaces[spot.surface], spot, self.positions);
             if here.gap.abs() <= AT_VERTEX * size {
                 let surface = &self.surfaces[spot.surface];
-                node.spot = Some(beside(surface, spot, spot.xi < 0.0));
+                node.spot = Some(point_on_side(surface, spot, spot.xi < 0.0));
                 if node.mode == Mode::Fixed && !node.is_forced() {
                     // Friction points back to the vertex, which is ahead along t at ξ = 1.
                     (node.mode, node.sign) = (Mode::Sliding, spot.xi);
@@ -505,7 +510,7 @@ pub fn leave_border(surfaces: &[Surface], node: &mut ContactState) {
     let Some(spot) = spot else { return };
     let surface = &surfaces[spot.surface];
     if neighbour(surface, spot).is_some() {
-        node.spot = Some(beside(surface, spot, node.sign < 0.0));
+        node.spot = Some(point_on_side(surface, spot, node.sign < 0.0));
     }
 }
 

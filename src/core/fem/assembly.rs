@@ -7,7 +7,7 @@
 use crate::executor::{Executor, SequentialExecutor};
 use crate::fem::beam::{self, Section};
 use crate::fem::continuum;
-use crate::fem::element::{Element, ElementOutput, PreviousState};
+use crate::fem::element::{Element, ElementOutput, Previous};
 use crate::fem::material::Material;
 use crate::fem::matrix;
 use crate::fem::small;
@@ -362,7 +362,7 @@ impl Assembly {
             let history = &mut history[placed.history.clone()];
             let old = &mut self.memory[..history.len()];
             old.copy_from_slice(history);
-            let past = PreviousState {
+            let past = Previous {
                 u: &self.room.before[..n],
                 history: old,
             };
@@ -417,7 +417,7 @@ impl AssemblyWork<'_> {
             if !history.is_empty() {
                 placed.gather(self.moved.before, before);
             }
-            let past = PreviousState { u: before, history };
+            let past = Previous { u: before, history };
             if !placed.element.add(&past, u, force, tangent) {
                 placed.give_up(sums);
                 continue;
@@ -533,13 +533,13 @@ impl AssembledElement {
         moved: &AssemblyMotion<'a>,
         u: &mut [f64],
         before: &'a mut [f64],
-    ) -> PreviousState<'a> {
+    ) -> Previous<'a> {
         self.gather(moved.u, u);
         let history = &moved.history[self.history.clone()];
         if !history.is_empty() {
             self.gather(moved.before, before);
         }
-        PreviousState { u: before, history }
+        Previous { u: before, history }
     }
 
     fn gather(&self, from: &[f64], to: &mut [f64]) {

@@ -14,7 +14,7 @@
 //!
 //! The degrees of freedom of an element are ordered x, y, θ of node 1, of node 2, …, then Q at the Gauss points.
 
-use crate::fem::element::{self, Element as _, PreviousState};
+use crate::fem::element::{self, Element as _, Previous};
 use crate::fem::lagrange::{MAX_NODES, gauss, shape};
 use nalgebra::Vector3;
 
@@ -189,13 +189,7 @@ impl element::Element for BeamElement {
             }
     }
 
-    fn add(
-        &self,
-        _past: &PreviousState<'_>,
-        u: &[f64],
-        force: &mut [f64],
-        tangent: &mut [f64],
-    ) -> bool {
+    fn add(&self, _past: &Previous<'_>, u: &[f64], force: &mut [f64], tangent: &mut [f64]) -> bool {
         let (m, size) = (self.nodes, self.dofs());
         for (p, point) in self.points.iter().enumerate() {
             let (state, along) = self.section(p, u);

@@ -2,7 +2,7 @@
 
 use crate::elements::kinds::continuum_kind::{ContinuumKind, Parent};
 use crate::elements::kinds::with_kind;
-use crate::fem::element::{Element, PreviousState};
+use crate::fem::element::{Element, Previous};
 use crate::fem::isoparametric::ContinuumElement;
 use crate::fem::isoparametric::{self, PointState};
 use crate::fem::material::Material;
@@ -62,7 +62,7 @@ impl Element for Malformed {
         self.history
     }
 
-    fn add(&self, _: &PreviousState<'_>, _: &[f64], _: &mut [f64], _: &mut [f64]) -> bool {
+    fn add(&self, _: &Previous<'_>, _: &[f64], _: &mut [f64], _: &mut [f64]) -> bool {
         false
     }
 }
@@ -73,7 +73,7 @@ pub fn states(
     kind: ElementKind,
     at: &[[f64; 2]],
     (material, update): (Material, Update),
-    past: &PreviousState<'_>,
+    past: &Previous<'_>,
     u: &[f64],
 ) -> Vec<Option<PointState>> {
     with_kind!(kind, states_by(at, (material, update), past, u))
@@ -83,7 +83,7 @@ fn states_by<const N: usize, const P: usize>(
     kind: &'static ContinuumKind<N, P>,
     at: &[[f64; 2]],
     (material, update): (Material, Update),
-    past: &PreviousState<'_>,
+    past: &Previous<'_>,
     u: &[f64],
 ) -> Vec<Option<PointState>> {
     let Ok(at) = <[[f64; 2]; N]>::try_from(at) else {

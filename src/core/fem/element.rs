@@ -2,7 +2,7 @@
 
 /// State of an element at the last accepted increment. Most elements do not use it.
 #[derive(Debug, Clone, Copy)]
-pub struct PreviousState<'a> {
+pub struct Previous<'a> {
     /// Displacements of the element.
     pub u: &'a [f64],
     /// [`Element::history_len`] numbers, all zero before the first increment.
@@ -22,22 +22,10 @@ pub trait Element: Send + Sync {
     /// Adds the internal forces f at displacements `u` to `force`, and ∂f/∂u to `tangent` (row by row, [`Element::dofs`] squared
     /// entries). The part below the diagonal may be left to [`Element::mirror`]. Returns false, with incomplete sums, if there is
     /// no response to these displacements.
-    fn add(
-        &self,
-        past: &PreviousState<'_>,
-        u: &[f64],
-        force: &mut [f64],
-        tangent: &mut [f64],
-    ) -> bool;
+    fn add(&self, past: &Previous<'_>, u: &[f64], force: &mut [f64], tangent: &mut [f64]) -> bool;
 
     /// Adds only the internal forces, with the same bits; `room` is workspace for a tangent, with undefined content on return.
-    fn resist(
-        &self,
-        past: &PreviousState<'_>,
-        u: &[f64],
-        force: &mut [f64],
-        room: &mut [f64],
-    ) -> bool {
+    fn resist(&self, past: &Previous<'_>, u: &[f64], force: &mut [f64], room: &mut [f64]) -> bool {
         self.add(past, u, force, room)
     }
 
@@ -45,7 +33,7 @@ pub trait Element: Send + Sync {
     fn mirror(&self, _tangent: &mut [f64]) {}
 
     /// Updates the history variables when `u` is accepted.
-    fn advance(&self, _past: &PreviousState<'_>, _u: &[f64], _history: &mut [f64]) {}
+    fn advance(&self, _past: &Previous<'_>, _u: &[f64], _history: &mut [f64]) {}
 }
 
 /// Output of [`assemble`](crate::fem::assembly::Assembly::assemble), all of it overwritten.

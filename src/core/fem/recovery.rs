@@ -6,7 +6,7 @@
 //! elasticity.
 
 use super::continuum;
-use super::element::PreviousState;
+use super::element::Previous;
 use super::material::Material;
 use crate::fem::isoparametric::PointState;
 use crate::model::{Body, BodyKind, ElementKind, Model, SolidElement};
@@ -91,7 +91,7 @@ fn each_element(
             };
             let count = continuum::history_len(element.kind, elastic.update);
             let (u, before) = (own(at.u), own(at.before));
-            let past = PreviousState {
+            let past = Previous {
                 u: &before,
                 history: &at.history[remembered..remembered + count],
             };

@@ -3,7 +3,7 @@
 //! At zero strain both laws have the moduli of linear elasticity, and strains are linear in the displacements, so this is the
 //! element of linear elasticity. K is computed once.
 
-use super::element::{self, PreviousState};
+use super::element::{self, Previous};
 
 /// An element linearised at the undeformed state.
 pub struct SmallStrainElement {
@@ -19,7 +19,7 @@ impl SmallStrainElement {
         let (rest, mut force) = (vec![0.0; dofs], vec![0.0; dofs]);
         let history = vec![0.0; of.history_len()];
         let mut stiffness = vec![0.0; dofs * dofs];
-        let past = PreviousState {
+        let past = Previous {
             u: &rest,
             history: &history,
         };
@@ -37,13 +37,7 @@ impl element::Element for SmallStrainElement {
         self.dofs
     }
 
-    fn add(
-        &self,
-        past: &PreviousState<'_>,
-        u: &[f64],
-        force: &mut [f64],
-        tangent: &mut [f64],
-    ) -> bool {
+    fn add(&self, past: &Previous<'_>, u: &[f64], force: &mut [f64], tangent: &mut [f64]) -> bool {
         if !self.resist(past, u, force, &mut []) {
             return false;
         }
@@ -53,7 +47,7 @@ impl element::Element for SmallStrainElement {
         true
     }
 
-    fn resist(&self, _: &PreviousState<'_>, u: &[f64], force: &mut [f64], _: &mut [f64]) -> bool {
+    fn resist(&self, _: &Previous<'_>, u: &[f64], force: &mut [f64], _: &mut [f64]) -> bool {
         let Some(stiffness) = &self.stiffness else {
             return false;
         };

@@ -2,7 +2,7 @@
 
 use super::beam::{self, Section};
 use super::continuum;
-use super::element::{Element, PreviousState};
+use super::element::{Element, Previous};
 use super::material::Material;
 use super::{small, truss};
 use crate::elements::lagrange::MAX_NODES;
@@ -126,7 +126,7 @@ fn solid(kind: ElementKind, law: Law, plane: Plane, update: Update) -> Specimen 
     }
 }
 
-fn elastic(law: Law, plane: Plane, update: Update) -> Elastic {
+pub(super) fn elastic(law: Law, plane: Plane, update: Update) -> Elastic {
     Elastic {
         young: 100.0,
         poisson: 0.3,
@@ -163,7 +163,7 @@ impl Specimen {
         })
     }
 
-    fn evaluate(&self, past: &PreviousState<'_>, u: &[f64]) -> (Vec<f64>, Vec<f64>) {
+    fn evaluate(&self, past: &Previous<'_>, u: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let n = self.element.dofs();
         let (mut force, mut tangent) = (vec![0.0; n], vec![0.0; n * n]);
         let answers = self.element.add(past, u, &mut force, &mut tangent);
@@ -182,7 +182,7 @@ impl Specimen {
 fn a_rigid_motion_strains_no_element() {
     for specimen in specimens() {
         let (u, history) = specimen.at_rest();
-        let past = PreviousState {
+        let past = Previous {
             u: &u,
             history: &history,
         };
@@ -206,7 +206,7 @@ fn the_tangent_of_every_element_is_the_derivative_of_its_force_and_symmetric() {
         let history: Vec<f64> = (0..specimen.element.history_len())
             .map(|k| noise(k, 0.1))
             .collect();
-        let past = PreviousState {
+        let past = Previous {
             u: &before,
             history: &history,
         };
@@ -260,33 +260,25 @@ fn the_shape_functions_of_every_kind_are_one_at_their_node_and_sum_to_one() {
 
 #[test]
 fn the_shape_functions_of_every_kind_reproduce_its_polynomials() {
+    const QUAD9: [(i32, i32); 9] = [
+        (0, 0),
+        (1, 0),
+        (0, 1),
+        (1, 1),
+        (2, 0),
+        (0, 2),
+        (2, 1),
+        (1, 2),
+        (2, 2),
+    ];
     for kind in ElementKind::ALL {
         // Powers of ξ and η in the kind's shape functions.
         let powers: &[(i32, i32)] = match kind {
             ElementKind::Triangle3 => &[(0, 0), (1, 0), (0, 1)],
             ElementKind::Quad4 => &[(0, 0), (1, 0), (0, 1), (1, 1)],
             ElementKind::Triangle6 => &[(0, 0), (1, 0), (0, 1), (1, 1), (2, 0), (0, 2)],
-            ElementKind::Quad8 | ElementKind::Quad8Reduced => &[
-                (0, 0),
-                (1, 0),
-                (0, 1),
-                (1, 1),
-                (2, 0),
-                (0, 2),
-                (2, 1),
-                (1, 2),
-            ],
-            ElementKind::Quad9 => &[
-                (0, 0),
-                (1, 0),
-                (0, 1),
-                (1, 1),
-                (2, 0),
-                (0, 2),
-                (2, 1),
-                (1, 2),
-                (2, 2),
-            ],
+            ElementKind::Quad8 | ElementKind::Quad8Reduced => &QUAD9[..8],
+            ElementKind::Quad9 => &QUAD9,
         };
         assert_eq!(powers.len(), kind.nodes());
         let places = continuum::places(kind);
@@ -351,7 +343,7 @@ fn every_kind_of_continuum_element_passes_the_patch_test() {
                 let u =
                     specimen.displaced(|_, [x, y]| vec![0.03 * x - 0.02 * y, 0.01 * x - 0.025 * y]);
                 let (rest, history) = specimen.at_rest();
-                let past = PreviousState {
+                let past = Previous {
                     u: &rest,
                     history: &history,
                 };
@@ -414,7 +406,7 @@ fn an_element_with_too_few_nodes_has_no_response() {
         assert_eq!(cut.history_len(), whole.element.history_len());
         let (n, history) = (cut.dofs(), vec![0.0; cut.history_len()]);
         let (u, mut force, mut tangent) = (vec![0.0; n], vec![0.0; n], vec![0.0; n * n]);
-        let past = PreviousState {
+        let past = Previous {
             u: &u,
             history: &history,
         };

@@ -6,7 +6,7 @@
 //! N = EA (l − L) / L,      f = N (−t, t),      K = ± (EA/L t tᵀ + N/l (I − t tᵀ)).
 //! ```
 
-use super::element::{self, PreviousState};
+use super::element::{self, Previous};
 
 /// A bar.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,13 +27,7 @@ impl element::Element for TrussElement {
         4
     }
 
-    fn add(
-        &self,
-        _: &PreviousState<'_>,
-        u: &[f64],
-        force: &mut [f64],
-        tangent: &mut [f64],
-    ) -> bool {
+    fn add(&self, _: &Previous<'_>, u: &[f64], force: &mut [f64], tangent: &mut [f64]) -> bool {
         let along = [0, 1].map(|k| self.at[1][k] - self.at[0][k]);
         let moved = [0, 1].map(|k| u[2 + k] - u[k]);
         let now = [along[0] + moved[0], along[1] + moved[1]];

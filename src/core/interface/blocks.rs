@@ -1,35 +1,36 @@
-//! A sparse matrix over the contacts: 2 by 2 blocks, normal and tangential, column by column.
+//! A sparse matrix over the contacts, column by column: square blocks of D components, the normal one and one tangential one, or
+//! two of them in space.
 
 /// A square matrix over the contacts, stored by its blocks.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Blocks {
+pub struct Blocks<const D: usize = 2> {
     /// Index of the first block of each column of blocks, and the number of blocks.
     starts: Vec<usize>,
     /// Row of each block; ascending within a column.
     rows: Vec<u32>,
-    /// Entries nn, tn, nt, tt of each block.
-    values: Vec<[f64; 4]>,
+    /// The columns of each block: of the normal force first.
+    values: Vec<[[f64; D]; D]>,
     /// Index of the diagonal block of each column.
     own: Vec<usize>,
     /// Whether it was given by its entries, and these are symmetric bit by bit.
     symmetric: bool,
 }
 
-impl Blocks {
-    /// A matrix over this many contacts from its entries: row, column (two per contact) and value. Repeated entries are added.
+impl<const D: usize> Blocks<D> {
+    /// A matrix over this many contacts from its entries: row, column (D per contact) and value. Repeated entries are added.
     pub fn from_entries(
         contacts: usize,
         entries: impl Iterator<Item = (usize, usize, f64)> + Clone,
     ) -> Self {
-        let places = entries.clone().map(|(i, j, _)| (j / 2, i / 2));
+        let places = entries.clone().map(|(i, j, _)| (j / D, i / D));
         let mut places: Vec<(usize, usize)> = places.collect();
         places.extend((0..contacts).map(|k| (k, k)));
         places.sort_unstable();
         places.dedup();
         let mut blocks = Blocks::at(contacts, &places);
         for (i, j, value) in entries {
-            if let Some(block) = blocks.find(i / 2, j / 2) {
-                blocks.values[block][2 * (j % 2) + i % 2] += value;
+            if let Some(block) = blocks.find(i / D, j / D) {
+                blocks.values[block][j % D][i % D] += value;
             }
         }
         blocks.symmetric = blocks.equals_its_transpose();
@@ -38,14 +39,14 @@ impl Blocks {
 
     /// A full matrix from its columns, which are consecutive.
     pub fn from_dense(contacts: usize, columns: &[f64]) -> Self {
-        let count = 2 * contacts;
+        let count = D * contacts;
         let places = (0..contacts).flat_map(|j| (0..contacts).map(move |i| (j, i)));
         let mut blocks = Blocks::at(contacts, &places.collect::<Vec<_>>());
         for (block, values) in blocks.values.iter_mut().enumerate() {
             let (j, i) = (block / contacts, block % contacts);
-            let first = 2 * j * count + 2 * i;
-            let next = first + count;
-            *values = [first, first + 1, next, next + 1].map(|place| columns[place]);
+            let first = D * j * count + D * i;
+            *values =
+                std::array::from_fn(|k| std::array::from_fn(|l| columns[first + k * count + l]));
         }
         blocks
     }
@@ -62,7 +63,7 @@ impl Blocks {
         Blocks {
             starts,
             rows: places.iter().map(|&(_, i)| i as u32).collect(),
-            values: vec![[0.0; 4]; places.len()],
+            values: vec![[[0.0; D]; D]; places.len()],
             own,
             symmetric: false,
         }
@@ -70,9 +71,9 @@ impl Blocks {
 
     fn equals_its_transpose(&self) -> bool {
         let mut columns = (0..self.contacts()).flat_map(|j| self.column(j).map(move |b| (j, b)));
-        columns.all(|(j, (i, &[nn, tn, nt, tt]))| {
+        columns.all(|(j, (i, block))| {
             let other = self.find(j, i).map(|block| self.values[block]);
-            other == Some([nn, nt, tn, tt])
+            other.is_some_and(|other| (0..D).all(|k| (0..D).all(|l| other[l][k] == block[k][l])))
         })
     }
 
@@ -82,15 +83,17 @@ impl Blocks {
     }
 
     /// The product of a contact's rows and `x`, for a symmetric matrix: its rows are its columns.
-    pub fn row(&self, contact: usize, x: &[f64]) -> [f64; 2] {
-        let (mut n, mut t) = (0.0, 0.0);
-        for (i, [nn, tn, nt, tt]) in self.column(contact) {
-            if let [x_n, x_t] = x[2 * i..2 * i + 2] {
-                n += nn * x_n + tn * x_t;
-                t += nt * x_n + tt * x_t;
+    pub fn row(&self, contact: usize, x: &[f64]) -> [f64; D] {
+        let mut y = [0.0; D];
+        for (i, block) in self.column(contact) {
+            let x = &x[D * i..D * i + D];
+            for (y, column) in y.iter_mut().zip(block) {
+                let mut products = column.iter().zip(x).map(|(w, x)| w * x);
+                let first = products.next().unwrap_or(0.0);
+                *y += products.fold(first, |sum, product| sum + product);
             }
         }
-        [n, t]
+        y
     }
 
     /// Number of contacts.
@@ -106,34 +109,27 @@ impl Blocks {
     }
 
     /// The blocks of a column of blocks with their rows.
-    pub fn column(&self, j: usize) -> impl Iterator<Item = (usize, &[f64; 4])> {
+    pub fn column(&self, j: usize) -> impl Iterator<Item = (usize, &[[f64; D]; D])> {
         let range = self.starts[j]..self.starts[j + 1];
         let rows = self.rows[range.clone()].iter().map(|&i| i as usize);
         rows.zip(&self.values[range])
     }
 
     /// The diagonal block of a contact.
-    pub fn own(&self, contact: usize) -> &[f64; 4] {
+    pub fn own(&self, contact: usize) -> &[[f64; D]; D] {
         &self.values[self.own[contact]]
     }
 
     /// Adds the product of a column of blocks and `x`, the components of its contact, to `y`; first that of the normal one.
-    pub fn add_column(&self, j: usize, x: [f64; 2], y: &mut [f64]) {
-        let [normal, tangential] = x;
-        if normal != 0.0 && tangential != 0.0 {
-            for (i, [nn, tn, nt, tt]) in self.column(j) {
-                y[2 * i] = (y[2 * i] + nn * normal) + nt * tangential;
-                y[2 * i + 1] = (y[2 * i + 1] + tn * normal) + tt * tangential;
-            }
-        } else if normal != 0.0 {
-            for (i, [nn, tn, _, _]) in self.column(j) {
-                y[2 * i] += nn * normal;
-                y[2 * i + 1] += tn * normal;
-            }
-        } else if tangential != 0.0 {
-            for (i, [_, _, nt, tt]) in self.column(j) {
-                y[2 * i] += nt * tangential;
-                y[2 * i + 1] += tt * tangential;
+    pub fn add_column(&self, j: usize, x: [f64; D], y: &mut [f64]) {
+        if x == [0.0; D] {
+            return;
+        }
+        for (i, block) in self.column(j) {
+            for (column, x) in block.iter().zip(x).filter(|(_, x)| *x != 0.0) {
+                for (y, w) in y[D * i..D * i + D].iter_mut().zip(column) {
+                    *y += w * x;
+                }
             }
         }
     }
@@ -141,7 +137,7 @@ impl Blocks {
     /// Adds the product with `x` to `y`.
     pub fn multiply(&self, x: &[f64], y: &mut [f64]) {
         for j in 0..self.contacts() {
-            self.add_column(j, [x[2 * j], x[2 * j + 1]], y);
+            self.add_column(j, std::array::from_fn(|k| x[D * j + k]), y);
         }
     }
 
@@ -184,15 +180,15 @@ mod tests {
     #[test]
     fn parts_are_the_connected_contacts() {
         let entries = [(0, 4, 1.0), (4, 0, 1.0), (7, 2, 2.0), (2, 7, 2.0)];
-        let blocks = Blocks::from_entries(5, entries.iter().copied());
+        let blocks = Blocks::<2>::from_entries(5, entries.iter().copied());
         assert_eq!(blocks.parts(), [vec![0, 2], vec![1, 3], vec![4]]);
     }
 
     #[test]
     fn repeated_entries_are_added_and_multiplied() {
         let entries = [(0, 0, 1.0), (1, 0, 2.0), (0, 0, 0.5), (3, 1, -1.0)];
-        let blocks = Blocks::from_entries(2, entries.iter().copied());
-        assert_eq!(blocks.own(0), &[1.5, 2.0, 0.0, 0.0]);
+        let blocks = Blocks::<2>::from_entries(2, entries.iter().copied());
+        assert_eq!(blocks.own(0), &[[1.5, 2.0], [0.0, 0.0]]);
         let mut y = vec![0.0; 4];
         blocks.multiply(&[2.0, 3.0, 0.0, 0.0], &mut y);
         assert_eq!(y, [3.0, 4.0, 0.0, -3.0]);
@@ -213,7 +209,7 @@ mod tests {
             .filter(|(i, j, _)| i != j)
             .map(|&(i, j, w)| (j, i, w));
         let entries: Vec<_> = half.iter().copied().chain(other).collect();
-        let blocks = Blocks::from_entries(2, entries.into_iter());
+        let blocks = Blocks::<2>::from_entries(2, entries.into_iter());
         assert!(blocks.is_symmetric());
         let (x, mut y) = ([1.0, 2.0, -1.0, 3.0], vec![0.0; 4]);
         blocks.multiply(&x, &mut y);
@@ -223,8 +219,8 @@ mod tests {
     #[test]
     fn a_full_matrix_has_all_blocks() {
         let columns: Vec<f64> = (0..16).map(f64::from).collect();
-        let blocks = Blocks::from_dense(2, &columns);
-        assert_eq!(blocks.own(1), &[10.0, 11.0, 14.0, 15.0]);
+        let blocks = Blocks::<2>::from_dense(2, &columns);
+        assert_eq!(blocks.own(1), &[[10.0, 11.0], [14.0, 15.0]]);
         let mut y = vec![0.0; 4];
         blocks.multiply(&[0.0, 1.0, 0.0, 0.0], &mut y);
         assert_eq!(y, [4.0, 5.0, 6.0, 7.0]);

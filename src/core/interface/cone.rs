@@ -1,12 +1,13 @@
-//! Interface problems in space: block Gauss-Seidel sweeps, in which each contact solves its own cone problem with the forces of all
-//! others fixed (Jourdan, Alart and Jean 1998).
+//! One state of an interface problem in space, found by block Gauss-Seidel sweeps.
 //!
 //! With (gap, u) = W f + q and three rows per contact, a contact is open (f = 0, gap >= 0), sticks (gap = 0, u = 0, |f_t| <= mu f_n
 //! + c) or slides (gap = 0, f_t = -(mu f_n + c) u / |u|).
 
+use super::blocks::Blocks;
+use super::sweep::Sweep;
 use crate::model::{Friction, Mode};
-use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
-use std::f64::consts::TAU;
+use nalgebra::{DMatrix, DVector};
+use std::sync::Arc;
 
 /// Maximum number of sweeps.
 const SWEEPS: usize = 20_000;
@@ -14,10 +15,6 @@ const SWEEPS: usize = 20_000;
 const SETTLED: f64 = 1e-13;
 /// Relative violation of the laws at which a result counts as a solution.
 const SOUND: f64 = 1e-8;
-/// Number of directions of sliding between which the direction is bracketed.
-const DIRECTIONS: u32 = 72;
-/// Halvings of a bracket.
-const HALVINGS: u32 = 60;
 
 /// A contact in a solution.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,35 +34,26 @@ pub fn solve(
     q: &DVector<f64>,
     friction: &[Friction],
 ) -> Option<Vec<ConeContact>> {
-    let mut f = DVector::zeros(q.len());
+    let blocks = Blocks::from_dense(friction.len(), w.as_slice());
+    let mut sweeps = Sweep::in_space(Arc::new(blocks), q.as_slice().to_vec(), friction);
     for _ in 0..SWEEPS {
-        let mut change = 0.0_f64;
-        for (contact, friction) in friction.iter().enumerate() {
-            let at = 3 * contact;
-            let own: Matrix3<f64> = w.fixed_view::<3, 3>(at, at).into_owned();
-            let old: Vector3<f64> = f.fixed_rows::<3>(at).into_owned();
-            let moved = w.rows(at, 3) * &f + q.rows(at, 3);
-            let without = Vector3::new(moved[0], moved[1], moved[2]) - own * old;
-            let new = local(&own, &without, friction);
-            change = change.max((new - old).amax());
-            f.fixed_rows_mut::<3>(at).copy_from(&new);
-        }
-        if change <= SETTLED * f.amax() {
+        if sweeps.sweep() <= SETTLED {
             break;
         }
     }
+    let f = DVector::from_column_slice(sweeps.forces());
     let motion = w * &f + q;
     let (force, length) = (f.amax(), motion.amax().max(q.amax()));
     let contacts = friction.iter().enumerate();
     let found = contacts.map(|(k, friction)| {
         let of = |all: &DVector<f64>| [all[3 * k], all[3 * k + 1], all[3 * k + 2]];
-        contact(of(&f), of(&motion), friction, [force, length])
+        lawful(of(&f), of(&motion), friction, [force, length])
     });
     found.collect()
 }
 
 /// The contact with its mode; `None` if it violates a law.
-fn contact(
+pub(super) fn lawful(
     force: [f64; 3],
     motion: [f64; 3],
     friction: &Friction,
@@ -97,54 +85,10 @@ fn contact(
     })
 }
 
-/// The force of one contact, whose motion without it is `b`.
-fn local(w: &Matrix3<f64>, b: &Vector3<f64>, friction: &Friction) -> Vector3<f64> {
-    if b[0] >= 0.0 {
-        return Vector3::zeros();
-    }
-    let (mu, cohesion) = (friction.coefficient(), friction.cohesion);
-    let stick = w.lu().solve(b).map(|f| -f);
-    if let Some(f) = stick
-        && f[0] >= 0.0
-        && f[1].hypot(f[2]) <= mu * f[0] + cohesion
-    {
-        return f;
-    }
-    // In a direction: the force, and the motion along and across.
-    let slide = |angle: f64| {
-        let (sin, cos) = angle.sin_cos();
-        let along = w[(0, 1)] * cos + w[(0, 2)] * sin;
-        let f_n = (-b[0] - cohesion * along) / (w[(0, 0)] + mu * along);
-        let limit = mu * f_n + cohesion;
-        let f = Vector3::new(f_n, limit * cos, limit * sin);
-        let u = w * f + b;
-        (f, cos * u[1] + sin * u[2], cos * u[2] - sin * u[1])
-    };
-    let step = TAU / f64::from(DIRECTIONS);
-    for k in 0..DIRECTIONS {
-        let (mut low, mut high) = (step * f64::from(k), step * f64::from(k + 1));
-        let below = slide(low).2 < 0.0;
-        if (slide(high).2 < 0.0) == below {
-            continue;
-        }
-        for _ in 0..HALVINGS {
-            let middle = 0.5 * (low + high);
-            match (slide(middle).2 < 0.0) == below {
-                true => low = middle,
-                false => high = middle,
-            }
-        }
-        let (f, along, _) = slide(low);
-        if f[0] >= 0.0 && along <= 0.0 {
-            return f;
-        }
-    }
-    Vector3::new((-b[0] / w[(0, 0)]).max(0.0), 0.0, 0.0)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::TAU;
 
     fn one(q: [f64; 3]) -> ConeContact {
         let w = DMatrix::from_row_slice(3, 3, &[2.0, 0.3, 0.0, 0.3, 1.0, 0.2, 0.0, 0.2, 1.5]);

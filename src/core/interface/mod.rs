@@ -7,7 +7,7 @@
 //! - [`blocks`]: a sparse compliance; [`census`], [`lemke`], [`copositive`] and [`sweep`]: searches for a consistent state over all nodes; [`tableau`]: pivoting
 //!   for two of them; [`vertex`]: selects unique forces if they are not unique; [`branches`] and [`feasible`]: rule out
 //!   inconsistent combinations in a census of many nodes.
-//! - [`cone`]: problems in space, with friction cones.
+//! - [`cone`], `cone_law`, [`cone_census`]: problems in space, with friction cones.
 //! - [`t_max_iteration`]: evolution of T_max while the modes repeat.
 //! - [`uniqueness`]: whether the matrix alone excludes a second state; [`family`]: states that differ only in their forces;
 //!   [`definite`]: eigenvalues of the compliance, and the problem without negative ones.
@@ -16,6 +16,8 @@ pub mod blocks;
 pub mod branches;
 pub mod census;
 pub mod cone;
+pub mod cone_census;
+mod cone_law;
 pub mod copositive;
 pub mod cycle;
 pub mod definite;

@@ -14,28 +14,30 @@
 //! ```
 
 use crate::interface::blocks::Blocks;
+use crate::interface::cone_law::local;
 use crate::interface::problem::{AssumedMode, InterfaceProblem, ProblemNode};
 use crate::linalg::DenseFactors;
+use crate::model::Friction;
 use std::ops::Range;
 use std::sync::Arc;
 
 /// Estimated norm of the scaled inverse above which the response has no compliance.
 const SINGULAR: f64 = 1e11;
 
-/// State of the sweeps.
+/// State of the sweeps: with D = 2 in the plane, with D = 3 and two tangential components in space.
 #[derive(Debug, Clone)]
-pub struct Sweep {
+pub struct Sweep<const D: usize = 2> {
     /// W.
-    compliance: Arc<Blocks>,
+    compliance: Arc<Blocks<D>>,
     /// Whether W was given by its entries, and not inverted.
     given: bool,
     nodes: Vec<SingleNode>,
     /// The nodes, part by part, and the parts.
     order: Vec<usize>,
     parts: Vec<Part>,
-    /// F_n, F_t of each node in turn.
+    /// The forces of each node in turn, the normal one first.
     forces: Vec<f64>,
-    /// Gap and negative slip of each node in turn: without forces, and with the current ones.
+    /// Gap and negative slip (motion of the node) of each node in turn: without forces, and with the current ones.
     free: Vec<f64>,
     motions: Vec<f64>,
     /// Whether the next sweep runs backwards.
@@ -68,13 +70,36 @@ impl SingleNode {
     fn new(node: &ProblemNode) -> Self {
         let [normal, tangential] = node.moves();
         SingleNode {
-            does: AssumedMode::Free,
-            coefficient: node.friction.coefficient(),
-            cohesion: node.friction.cohesion,
             presses: normal,
             rough: normal && tangential && !node.friction.is_smooth(),
+            ..SingleNode::with_friction(&node.friction)
         }
     }
+
+    /// A node that can move in every direction.
+    fn with_friction(friction: &Friction) -> Self {
+        SingleNode {
+            does: AssumedMode::Free,
+            coefficient: friction.coefficient(),
+            cohesion: friction.cohesion,
+            presses: true,
+            rough: !friction.is_smooth(),
+        }
+    }
+
+    /// The friction bound under a normal force.
+    fn limit(&self, f_n: f64) -> f64 {
+        self.coefficient * f_n + self.cohesion
+    }
+}
+
+/// Coulomb's law at one node with all others frozen.
+pub trait LocalLaw<const D: usize> {
+    /// The force on a node that obeys the law; also sets its mode.
+    fn alone(&mut self, place: usize) -> [f64; D];
+
+    /// The square of the natural map at a node (force²).
+    fn natural(&self, place: usize) -> f64;
 }
 
 impl Sweep {
@@ -108,7 +133,7 @@ impl Sweep {
             free[n] += node.kinematics.map_or(0.0, |over| over.gap) - node.prescribed[0];
             free[t] -= node.state.slipped(&problem.settings) + node.prescribed[1];
         }
-        let compliance = Blocks::from_dense(problem.nodes.len(), &compliance);
+        let compliance = Blocks::<2>::from_dense(problem.nodes.len(), &compliance);
         // The initial motions are those without forces.
         for (place, node) in problem.nodes.iter().enumerate() {
             compliance.add_column(place, [-node.state.f_n, -node.state.f_t], &mut free);
@@ -127,6 +152,74 @@ impl Sweep {
         free: Vec<f64>,
         nodes: &[ProblemNode],
     ) -> Self {
+        let nodes = nodes.iter().map(SingleNode::new).collect();
+        Sweep::without_forces(compliance, parts, free, nodes)
+    }
+
+    /// Continues from the forces of the nodes' states.
+    pub fn with_forces(mut self, nodes: &[ProblemNode]) -> Self {
+        for (force, node) in self.forces.chunks_exact_mut(2).zip(nodes) {
+            force.copy_from_slice(&[node.state.f_n, node.state.f_t]);
+        }
+        self.renew_motions();
+        self
+    }
+
+    /// F_n, F_t, gap and slip of a node after the last sweep.
+    pub fn numbers(&self, place: usize) -> [f64; 4] {
+        let (n, t) = (2 * place, 2 * place + 1);
+        let gap = match self.nodes[place].does {
+            AssumedMode::Free if self.nodes[place].presses => self.motions[n],
+            AssumedMode::Free => f64::INFINITY,
+            _ => 0.0,
+        };
+        [self.forces[n], self.forces[t], gap, -self.motions[t]]
+    }
+}
+
+impl Sweep<3> {
+    /// Starts without forces in space; `free` are gap and motion of each node without contact forces.
+    pub fn in_space(compliance: Arc<Blocks<3>>, free: Vec<f64>, friction: &[Friction]) -> Self {
+        let parts = compliance.parts();
+        let nodes = friction.iter().map(SingleNode::with_friction).collect();
+        Sweep::without_forces(compliance, parts, free, nodes)
+    }
+
+    /// The forces (f_n, f_1, f_2) of each node in turn.
+    pub fn forces(&self) -> &[f64] {
+        &self.forces
+    }
+
+    /// Gap and motion (gap, u_1, u_2) of each node in turn.
+    pub fn motions(&self) -> &[f64] {
+        &self.motions
+    }
+
+    /// Continues from other forces and friction, after this number of sweeps; tolerance and result are those of [`Sweep::settle`].
+    pub fn continue_from(
+        &mut self,
+        forces: &[f64],
+        friction: &[Friction],
+        sweeps: usize,
+        tolerance: f64,
+    ) -> f64 {
+        self.forces.copy_from_slice(forces);
+        self.nodes = friction.iter().map(SingleNode::with_friction).collect();
+        self.back = sweeps % 2 == 1;
+        self.settle(tolerance)
+    }
+}
+
+impl<const D: usize> Sweep<D>
+where
+    Sweep<D>: LocalLaw<D>,
+{
+    fn without_forces(
+        compliance: Arc<Blocks<D>>,
+        parts: Vec<Vec<usize>>,
+        free: Vec<f64>,
+        nodes: Vec<SingleNode>,
+    ) -> Self {
         let mut first = 0;
         let ranges = parts.iter().map(|part| {
             first += part.len();
@@ -138,7 +231,7 @@ impl Sweep {
         Sweep {
             compliance,
             given: true,
-            nodes: nodes.iter().map(SingleNode::new).collect(),
+            nodes,
             parts: ranges.collect(),
             order: parts.concat(),
             forces: vec![0.0; free.len()],
@@ -152,15 +245,6 @@ impl Sweep {
     /// Whether the compliance was given by its entries: it may be singular, and the forces that obey the law need not be unique.
     pub fn is_given(&self) -> bool {
         self.given
-    }
-
-    /// Continues from the forces of the nodes' states.
-    pub fn with_forces(mut self, nodes: &[ProblemNode]) -> Self {
-        for (force, node) in self.forces.chunks_exact_mut(2).zip(nodes) {
-            force.copy_from_slice(&[node.state.f_n, node.state.f_t]);
-        }
-        self.renew_motions();
-        self
     }
 
     /// Recomputes the motions, in which round-off accumulates.
@@ -190,18 +274,18 @@ impl Sweep {
                 let by_rows = self.compliance.is_symmetric();
                 if by_rows {
                     let moved = self.compliance.row(place, &self.forces);
-                    for (k, moved) in (2 * place..).zip(moved) {
+                    for (k, moved) in (D * place..).zip(moved) {
                         self.motions[k] = self.free[k] + moved;
                     }
                 }
                 let force = self.alone(place);
-                let change: [f64; 2] =
-                    std::array::from_fn(|k| force[k] - self.forces[2 * place + k]);
+                let change: [f64; D] =
+                    std::array::from_fn(|k| force[k] - self.forces[D * place + k]);
                 if !by_rows {
                     self.compliance.add_column(place, change, &mut self.motions);
                 }
-                self.forces[2 * place..2 * place + 2].copy_from_slice(&force);
-                for k in 0..2 {
+                self.forces[D * place..D * place + D].copy_from_slice(&force);
+                for k in 0..D {
                     most = most.max(change[k].abs());
                     largest = largest.max(force[k].abs());
                 }
@@ -236,12 +320,23 @@ impl Sweep {
         }
     }
 
-    /// The square of the natural map at a node (force²).
+    /// Whether the last sweep found forces that obey the law at every node, with all others frozen.
+    pub fn is_answered(&self) -> bool {
+        !self.unanswered
+    }
+
+    /// Mode of a node after the last sweep.
+    pub fn assumed(&self, place: usize) -> AssumedMode {
+        self.nodes[place].does
+    }
+}
+
+impl LocalLaw<2> for Sweep<2> {
     fn natural(&self, place: usize) -> f64 {
         let node = &self.nodes[place];
         let (f_n, f_t) = (self.forces[2 * place], self.forces[2 * place + 1]);
         let [e_n, e_t] = [self.motions[2 * place], self.motions[2 * place + 1]];
-        let &[nn, _, _, tt] = self.compliance.own(place);
+        let &[[nn, _], [_, tt]] = self.compliance.own(place);
         // A motion without compliance has no force that stops it.
         let by = |motion: f64, own: f64| match own > 0.0 {
             true => motion / own,
@@ -254,16 +349,15 @@ impl Sweep {
         };
         let limit = match node.does {
             AssumedMode::Free => 0.0,
-            _ => (node.coefficient * f_n + node.cohesion).max(0.0),
+            _ => node.limit(f_n).max(0.0),
         };
         let tangential = f_t - (f_t - by(e_t, tt)).clamp(-limit, limit);
         normal * normal + tangential * tangential
     }
 
-    /// The force on a node that obeys Coulomb's law with all others frozen; also sets its mode.
     fn alone(&mut self, place: usize) -> [f64; 2] {
         let (n, t) = (2 * place, 2 * place + 1);
-        let &[nn, tn, nt, tt] = self.compliance.own(place);
+        let &[[nn, tn], [nt, tt]] = self.compliance.own(place);
         let (f_n, f_t) = (self.forces[n], self.forces[t]);
         // Motions without this node's own force.
         let q = [
@@ -309,25 +403,42 @@ impl Sweep {
         self.unanswered = true;
         [f_n, f_t]
     }
+}
 
-    /// Whether the last sweep found forces that obey the law at every node, with all others frozen.
-    pub fn is_answered(&self) -> bool {
-        !self.unanswered
+impl LocalLaw<3> for Sweep<3> {
+    fn alone(&mut self, place: usize) -> [f64; 3] {
+        let own = self.compliance.own(place);
+        let (forces, motions) = (&self.forces[3 * place..], &self.motions[3 * place..]);
+        // Motions without this node's own force.
+        let without = [0, 1, 2].map(|i| {
+            let by_own = (0..3).fold(0.0, |sum, k| sum + own[k][i] * forces[k]);
+            motions[i] - by_own
+        });
+        let node = &mut self.nodes[place];
+        let (does, force) = local(own, without, node.coefficient, node.cohesion);
+        node.does = does;
+        force
     }
 
-    /// Mode of a node after the last sweep.
-    pub fn assumed(&self, place: usize) -> AssumedMode {
-        self.nodes[place].does
-    }
-
-    /// F_n, F_t, gap and slip of a node after the last sweep.
-    pub fn numbers(&self, place: usize) -> [f64; 4] {
-        let (n, t) = (2 * place, 2 * place + 1);
-        let gap = match self.nodes[place].does {
-            AssumedMode::Free if self.nodes[place].presses => self.motions[n],
-            AssumedMode::Free => f64::INFINITY,
-            _ => 0.0,
+    fn natural(&self, place: usize) -> f64 {
+        let node = &self.nodes[place];
+        let (force, motion) = (&self.forces[3 * place..], &self.motions[3 * place..]);
+        let own = self.compliance.own(place);
+        let (nn, tt) = (own[0][0], 0.5 * (own[1][1] + own[2][2]));
+        // A motion without compliance has no force that stops it.
+        let by = |motion: f64, own: f64| if own > 0.0 { motion / own } else { 0.0 };
+        let normal = match nn <= 0.0 && motion[0] < 0.0 {
+            true => f64::INFINITY,
+            false => force[0] - (force[0] - by(motion[0], nn)).max(0.0),
         };
-        [self.forces[n], self.forces[t], gap, -self.motions[t]]
+        let limit = match force[0] > 0.0 {
+            true => node.limit(force[0]),
+            false => 0.0,
+        };
+        let trial = [1, 2].map(|k| force[k] - by(motion[k], tt));
+        let size = trial[0].hypot(trial[1]);
+        let part = if size > limit { limit / size } else { 1.0 };
+        let off = [0, 1].map(|k| force[k + 1] - part * trial[k]);
+        normal * normal + off[0] * off[0] + off[1] * off[1]
     }
 }

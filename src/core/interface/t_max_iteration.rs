@@ -207,7 +207,7 @@ fn map(trials: &mut Trials<'_>, round: &[Vec<ContactState>], places: &[usize]) -
         all[k * size + k] = 1.0;
     }
     for nodes in round {
-        let given = trials.given(nodes)?;
+        let given = trials.solve_states(nodes)?;
         let mut once = vec![0.0; size * size];
         for (j, &from) in places.iter().enumerate() {
             if nodes[from].mode != Mode::Sliding {

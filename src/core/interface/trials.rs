@@ -57,7 +57,7 @@ impl<'a> Trials<'a> {
         method: &dyn Method,
     ) -> Option<(Vec<ContactRecord>, bool)> {
         let problem = self.problem;
-        let given = self.given(nodes)?;
+        let given = self.solve_states(nodes)?;
         let forces = nodes.iter().zip(&given).flat_map(|(node, given)| {
             [node.f_n + given.force[0], node.f_t + given.force[1]].map(f64::abs)
         });
@@ -91,7 +91,7 @@ impl<'a> Trials<'a> {
     }
 
     /// Solves Table 1's equations for the states of the nodes, without checking the modes. `None` if they are singular.
-    pub fn given(&mut self, nodes: &[ContactState]) -> Option<Vec<NodeIncrement>> {
+    pub fn solve_states(&mut self, nodes: &[ContactState]) -> Option<Vec<NodeIncrement>> {
         let settings = self.problem.settings;
         self.solve(|s, node| {
             rows::rows(

@@ -39,7 +39,7 @@ pub struct Bodies {
     /// Data for stability checks, created on first use.
     tangent: Option<Tangent>,
     /// Whether the force of each contact can be computed from the stresses ([`stresses_tell`]).
-    told: Vec<bool>,
+    stresses_known: Vec<bool>,
     /// Whether any contact starts inside and is pushed out over the first leg.
     overlaps: bool,
     /// Whether any bond has a compliance along n.
@@ -89,7 +89,7 @@ impl Bodies {
                 load: vec![0.0; model.dofs.len()],
             },
             tangent: None,
-            told: stresses_tell(&model),
+            stresses_known: stresses_tell(&model),
             overlaps: model.contacts.iter().any(|contact| contact.overlap > 0.0),
             gives: model
                 .contacts
@@ -150,7 +150,7 @@ pub(super) fn value(
             pressure(contacts, at.contacts, slaves, *shear)
         }
         MonitorQuantity::Arc => at.arc,
-        MonitorQuantity::Told { .. } | MonitorQuantity::Reaction { .. } => f64::NAN,
+        MonitorQuantity::Reported { .. } | MonitorQuantity::Reaction { .. } => f64::NAN,
     }
 }
 
@@ -277,8 +277,8 @@ impl Source for Bodies {
         self.system.norms_of(&self.model, at)
     }
 
-    fn asked(&self) -> f64 {
-        self.system.asked(&self.model)
+    fn required_force(&self) -> f64 {
+        self.system.required_force(&self.model)
     }
 
     fn largest_residual(&self) -> Option<(usize, f64)> {
@@ -302,7 +302,7 @@ impl Source for Bodies {
     }
 
     fn increment(&self, contact: usize) -> NodeIncrement {
-        self.system.given(contact)
+        self.system.solution_at(contact)
     }
 
     fn problem(&mut self, at: &LinearisationPoint<'_>) -> Result<InterfaceProblem, SolveError> {
@@ -343,7 +343,7 @@ impl Source for Bodies {
     fn take_forces_from_stresses(&mut self, contacts: &mut [ContactState]) -> bool {
         let mut changed = false;
         for (k, state) in contacts.iter_mut().enumerate() {
-            if state.mode == Mode::Free || !self.told[k] {
+            if state.mode == Mode::Free || !self.stresses_known[k] {
                 continue;
             }
             let first = self.model.dofs.first[self.model.contacts[k].node];

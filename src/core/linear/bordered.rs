@@ -20,9 +20,9 @@
 
 use super::source::{LinearisationPoint, LoadEquation};
 use super::system::System;
-use crate::contact::corner::dot;
 use crate::linalg::SolveError;
 use crate::model::{Factor, Model};
+use crate::plane::dot;
 
 /// A border is singular if its pivot is below this fraction of its terms.
 const NO_PIVOT: f64 = 1e-13;

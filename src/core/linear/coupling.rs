@@ -6,6 +6,7 @@ use crate::contact::projection::{Projection, tangent};
 use crate::contact::state::ContactState;
 use crate::linalg::Pattern;
 use crate::model::{Bond, Model};
+use crate::plane::dot;
 
 /// A Cartesian displacement in a slave node's equations, with its weight in u_S* − u_S.
 #[derive(Debug, Clone, Copy)]
@@ -110,7 +111,7 @@ impl Interface {
     /// Contribution of prescribed motions to the normal (k = 0) or tangential (k = 1) row (length).
     pub fn prescribed_along(&self, k: usize, frame: &[[f64; 2]; 2]) -> f64 {
         match self.point.is_empty() {
-            true => frame[k][0] * self.prescribed[0] + frame[k][1] * self.prescribed[1],
+            true => dot(frame[k], self.prescribed),
             false => self.pushed[k],
         }
     }

@@ -147,7 +147,7 @@ impl Estimate {
             budget,
         };
         let (major, _) = estimate.with(model.settings.solver);
-        let look = symmetric.seconds + LOOK * kept(model, c).powi(3) / SYMMETRIC;
+        let look = symmetric.seconds + LOOK * dense_unknowns(model, c).powi(3) / SYMMETRIC;
         estimate.stability = look / major.seconds.max(f64::MIN_POSITIVE);
         estimate
     }
@@ -344,7 +344,7 @@ fn displacements(model: &Model) -> f64 {
 }
 
 /// Number of unknowns in the dense part of a stability check: `c` of the interface, and all unknowns of bodies that need pivoting.
-fn kept(model: &Model, c: f64) -> f64 {
+fn dense_unknowns(model: &Model, c: f64) -> f64 {
     let pivoted = model.bodies.iter().map(|body| match &body.kind {
         BodyKind::Beam(beam) if beam.first_shear.is_some() => {
             let front = beam.elements.first().map_or(0, Vec::len).saturating_sub(1);

@@ -76,13 +76,13 @@ impl FlexibleContact {
     }
 
     /// Local deflection of the surface at this point (length).
-    pub fn given(&self) -> f64 {
+    pub fn deflection(&self) -> f64 {
         self.own.give * self.force + self.others.give
     }
 
     /// Offset (length) of the point at which the node is judged, along n of the element's line.
     pub fn way_out(&self) -> [f64; 2] {
-        self.line.map(|n| n * self.given())
+        self.line.map(|n| n * self.deflection())
     }
 
     fn turn(&mut self) {

@@ -69,7 +69,9 @@ impl System {
             length_floor = length_floor.max(placed);
         }
         let relative = |force: f64| if force > 0.0 { force / scale } else { 0.0 };
-        let wanted = self.sizes.wanted(model, at, |dof| self.nodal_force(dof));
+        let wanted = self
+            .sizes
+            .force_scale(model, at, |dof| self.nodal_force(dof));
         let noise = if floor > 0.0 { floor / wanted } else { 0.0 };
         self.norms = Norms {
             force,
@@ -87,7 +89,7 @@ impl System {
 
     /// Largest force that a solve has to balance: the current out-of-balance force, plus the contribution of prescribed motions;
     /// relative to the force scale.
-    pub fn asked(&self, model: &Model) -> f64 {
+    pub fn required_force(&self, model: &Model) -> f64 {
         let mut largest = 0.0_f64;
         for (d, equation) in model.dofs.equation.iter().enumerate() {
             if let (Some(e), Some(lever)) = (*equation, self.sizes.lever(d)) {

@@ -7,6 +7,7 @@ use crate::contact::projection::{Projection, tangent};
 use crate::contact::state::ContactState;
 use crate::model::{BodyKind, Model};
 use crate::model::{Component, Mode};
+use crate::plane::minus;
 use nalgebra::DMatrix;
 use serde::{Deserialize, Serialize};
 
@@ -119,7 +120,7 @@ impl Frame<'_> {
     /// Adds weight times the motion of a body's node in a direction.
     fn add_as(&self, row: &mut [f64], body: usize, node: usize, direction: [f64; 2], weight: f64) {
         let (center, x) = (self.center(body), self.positions[node]);
-        let arm = [x[0] - center[0], x[1] - center[1]];
+        let arm = minus(x, center);
         row[3 * body] += weight * direction[0];
         row[3 * body + 1] += weight * direction[1];
         row[3 * body + 2] +=

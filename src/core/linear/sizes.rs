@@ -88,7 +88,7 @@ impl Sizes {
 
     /// The forces of interest: loads, contact forces, and reactions of prescribed displacements; `reaction` returns the reaction
     /// force. Without loads, at least the force that moves the softest body by the largest displacement of the scene.
-    pub fn wanted(
+    pub fn force_scale(
         &self,
         model: &Model,
         at: &LinearisationPoint<'_>,

@@ -212,7 +212,7 @@ pub trait Source: Send {
 
     /// Largest force that the next solve has to balance, including the contribution of prescribed motions, relative to the scale
     /// of [`Norms::relative`].
-    fn asked(&self) -> f64 {
+    fn required_force(&self) -> f64 {
         f64::INFINITY
     }
 
@@ -509,7 +509,7 @@ pub trait Source: Send {
             MonitorQuantity::Drift { slaves } => largest_drift(at.contacts, slaves),
             MonitorQuantity::Arc => at.arc,
             MonitorQuantity::Pressure { .. }
-            | MonitorQuantity::Told { .. }
+            | MonitorQuantity::Reported { .. }
             | MonitorQuantity::Reaction { .. } => f64::NAN,
         }
     }

@@ -79,7 +79,10 @@ impl SparseInterface {
         let compliance = blocks(contacts, given.linear);
         let count = 2 * contacts;
         let own = (0..contacts).map(|k| compliance.own(k));
-        let mean = own.map(|own| own[0].abs() + own[3].abs()).sum::<f64>() / count as f64;
+        let mean = own
+            .map(|own| own[0][0].abs() + own[1][1].abs())
+            .sum::<f64>()
+            / count as f64;
         Some(SparseInterface {
             first_force: given.first_force,
             floor: given.floor,
@@ -222,7 +225,7 @@ impl SparseInterface {
                 for (row, into) in of(i) {
                     let k = into.component;
                     if let Some(slot) = pattern.slot(row, column) {
-                        values[slot] += block[k] * n + block[2 + k] * t;
+                        values[slot] += block[0][k] * n + block[1][k] * t;
                     }
                 }
             }

@@ -40,7 +40,7 @@ pub fn sparse_contacts(model: &Model) -> Option<SparseContacts<'_>> {
     let watched = |monitor: &Monitor| {
         !matches!(
             monitor.of,
-            MonitorQuantity::Told { .. } | MonitorQuantity::Reaction { .. }
+            MonitorQuantity::Reported { .. } | MonitorQuantity::Reaction { .. }
         )
     };
     if !bare || !many || !model.monitors.iter().all(watched) || !is_unsupported(model, body) {

@@ -585,7 +585,7 @@ impl System {
     }
 
     /// Result of the last solve at a slave node.
-    pub fn given(&self, slave: usize) -> NodeIncrement {
+    pub fn solution_at(&self, slave: usize) -> NodeIncrement {
         NodeIncrement {
             force: self.condensed.forces[slave],
             motion: self.condensed.motions[slave],

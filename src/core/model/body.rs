@@ -2,7 +2,6 @@
 
 use crate::documented::documented;
 use crate::elements::kinds::ElementKind;
-use serde::{Deserialize, Serialize};
 
 /// A deformable body.
 #[derive(Debug, Clone, PartialEq)]
@@ -137,9 +136,7 @@ impl Elastic {
 
 documented! {
     /// Stress-strain law.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-    #[serde(rename_all = "lowercase")]
-    pub enum Law {
+    pub choice Law {
         /// St Venant-Kirchhoff, S = λ tr(E) I + 2μ E: for large rotations and small strains. In compression it softens below a
         /// stretch of 1/√3.
         #[default]
@@ -152,9 +149,7 @@ documented! {
 
 documented! {
     /// Assumption about the out-of-plane direction.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-    #[serde(rename_all = "lowercase")]
-    pub enum Plane {
+    pub choice Plane {
         /// No out-of-plane strain: a long body.
         #[default]
         Strain,
@@ -168,9 +163,7 @@ documented! {
 
 documented! {
     /// Reference configuration of strains and stresses.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-    #[serde(rename_all = "lowercase")]
-    pub enum Update {
+    pub choice Update {
         /// The undeformed shape (total Lagrangian): the result does not depend on the increment size.
         #[default]
         Total,

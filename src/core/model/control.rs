@@ -5,9 +5,7 @@ use serde::{Deserialize, Serialize};
 
 documented! {
     /// What controls the history from one increment to the next.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-    #[serde(rename_all = "lowercase")]
-    pub enum Control {
+    pub choice Control {
         /// The load factor, in increments.
         #[default]
         Load,

@@ -1,7 +1,6 @@
 //! Loads, prescribed displacements, and the path of the load factor.
 
 use crate::documented::documented;
-use serde::{Deserialize, Serialize};
 
 /// A dead load (force or moment) on one degree of freedom.
 #[derive(Debug, Clone, PartialEq)]
@@ -87,9 +86,7 @@ impl Factor {
 
 documented! {
     /// What to do with an increment that jumps to another equilibrium branch.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-    #[serde(rename_all = "lowercase")]
-    pub enum Jumps {
+    pub choice Jumps {
         /// Accept and mark the increment if it moved further than its tangent and the previous increments predict.
         Accept,
         /// Cut the increment; if the smallest increment still jumps, accept and mark it.

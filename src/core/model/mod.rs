@@ -18,6 +18,7 @@ mod mesh;
 mod settings;
 
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 pub use crate::documented;
 pub use crate::elements::kinds::ElementKind;
@@ -139,6 +140,17 @@ impl RunFinding {
 pub struct Space {
     /// z of each node (length).
     pub heights: Vec<f64>,
+    /// The interface problem, if the model has nothing else.
+    pub problem: Option<Arc<SpaceProblem>>,
+}
+
+/// An interface problem in space: (gap, u) = W f + free in the total forces, with three components per contact.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct SpaceProblem {
+    /// Entries of W: row, column and value (length per force); repeated ones are added.
+    pub entries: Vec<(usize, usize, f64)>,
+    /// Gap and motion of each node without contact forces (length).
+    pub free: Vec<f64>,
 }
 
 /// A node in the reference configuration.
@@ -201,11 +213,11 @@ pub enum MonitorQuantity {
         shear: bool,
     },
     /// A number reported by an attached solver.
-    Told {
+    Reported {
         /// Index among the numbers that it reports.
         number: usize,
         /// Kind of number.
-        kind: ToldKind,
+        kind: ReportedKind,
     },
     /// Arc along the equilibrium path from the start of the history, in the quantity that [`ArcLength::along`] measures.
     Arc,
@@ -214,7 +226,7 @@ pub enum MonitorQuantity {
 /// Kind of a number reported by an attached solver.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
-pub enum ToldKind {
+pub enum ReportedKind {
     /// A length.
     Length,
     /// A force.
@@ -365,7 +377,10 @@ impl Model {
         self.dofs.first = (0..count).map(|node| 3 * node).collect();
         self.dofs.count = vec![3; count];
         self.dofs.equation = vec![None; 3 * count];
-        self.space = Some(Space { heights });
+        self.space = Some(Space {
+            heights,
+            problem: None,
+        });
     }
 
     /// Reference position of a node; z is 0 in the plane.

@@ -161,9 +161,7 @@ crate::words! {
 
 documented! {
     /// What to do with gaps that exist before the first increment.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-    #[serde(rename_all = "lowercase")]
-    pub enum InitialGaps {
+    pub choice InitialGaps {
         /// Leave them: the first increment pushes out nodes that start inside.
         #[default]
         Keep,
@@ -178,9 +176,7 @@ documented! {
 
 documented! {
     /// Stick point of a node that touches within an increment.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-    #[serde(rename_all = "lowercase")]
-    pub enum Touch {
+    pub choice Touch {
         /// `ratio` if any body is a mesh; `start` if all bodies are given by matrices or springs, as in interface problems.
         #[default]
         Auto,
@@ -193,9 +189,7 @@ documented! {
 
 documented! {
     /// The paper's two residual methods ("Formulation of the residual force vector").
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-    #[serde(rename_all = "lowercase")]
-    pub enum ResidualMethod {
+    pub choice ResidualMethod {
         /// Method 1: accumulate the interaction forces at the slave nodes over the major iterations.
         Accumulate,
         /// Method 2: the interaction force at a slave node is the nodal force of the current stresses minus the load.
@@ -206,9 +200,7 @@ documented! {
 
 documented! {
     /// The system that the minor iterations solve; the results agree to round-off.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-    #[serde(rename_all = "lowercase")]
-    pub enum LinearSolver {
+    pub choice LinearSolver {
         /// `condensed` if the bodies have many times more unknowns than the interface and it is cheaper, else `augmented`; the
         /// other one if only that fits into memory.
         #[default]
@@ -223,9 +215,7 @@ documented! {
 
 documented! {
     /// Whether to search for other solutions where an increment fails.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-    #[serde(rename_all = "lowercase")]
-    pub enum SearchMode {
+    pub choice SearchMode {
         /// After the strategies and the other parts of the increment: nodes that touch at the start are held, the increment is cut
         /// below its least size, and where equilibrium ends the nodes move damped to the next one, which is marked.
         #[default]
@@ -237,9 +227,7 @@ documented! {
 
 documented! {
     /// How often the bodies' stiffness is taken and factored.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-    #[serde(rename_all = "lowercase")]
-    pub enum Refactor {
+    pub choice Refactor {
         /// In every major iteration, as in the paper.
         #[default]
         Each,
@@ -253,9 +241,7 @@ documented! {
 
 documented! {
     /// Whether the tangent includes the change of normal, projection and gap within a major iteration.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-    #[serde(rename_all = "lowercase")]
-    pub enum Geometry {
+    pub choice Geometry {
         /// It does: major iterations converge quadratically near the solution.
         #[default]
         Consistent,
@@ -267,9 +253,7 @@ documented! {
 documented! {
     /// Local deformation of a beam with a shear stiffness GA under the point force of a slave node. Shear-rigid beams are always
     /// plain elements.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-    #[serde(rename_all = "lowercase")]
-    pub enum PointForce {
+    pub choice PointForce {
         /// Beam theory: a slope jump of F_n / GA in the axis and a kink in the moment, which the element's polynomials smear out,
         /// are added in closed form (page `theory`).
         #[default]
@@ -283,9 +267,7 @@ documented! {
 
 documented! {
     /// How T_max of a sliding node enters the equations.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-    #[serde(rename_all = "lowercase")]
-    pub enum BoundUpdate {
+    pub choice BoundUpdate {
         /// Taken from the previous minor iteration, as in the paper.
         #[default]
         Lagged,
@@ -296,9 +278,7 @@ documented! {
 
 documented! {
     /// Period over which the slip of a sliding node is accumulated.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-    #[serde(rename_all = "lowercase")]
-    pub enum SlipCount {
+    pub choice SlipCount {
         /// Since the last converged increment, or since the node touched.
         #[default]
         Increment,
@@ -309,9 +289,7 @@ documented! {
 
 documented! {
     /// Reference point of a fixed node.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-    #[serde(rename_all = "lowercase")]
-    pub enum Sticking {
+    pub choice Sticking {
         /// The surface point where it stuck: any motion away from that point is undone.
         #[default]
         Anchored,
@@ -322,9 +300,7 @@ documented! {
 
 documented! {
     /// How ties in Table 2 are resolved.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-    #[serde(rename_all = "lowercase")]
-    pub enum TieRule {
+    pub choice TieRule {
         /// Within the tolerance, a tie keeps the current mode.
         #[default]
         Keep,
@@ -335,9 +311,7 @@ documented! {
 
 documented! {
     /// What to do when an iteration limit is reached.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-    #[serde(rename_all = "lowercase")]
-    pub enum AtLimit {
+    pub choice AtLimit {
         /// The increment fails.
         #[default]
         Stop,
@@ -348,9 +322,7 @@ documented! {
 
 documented! {
     /// What to do when the minor iterations return to an earlier state.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-    #[serde(rename_all = "lowercase")]
-    pub enum AtCycle {
+    pub choice AtCycle {
         /// The increment fails.
         #[default]
         Stop,

@@ -49,7 +49,7 @@ impl State {
     }
 
     /// Changes since it reached that place.
-    pub fn asked(&self) -> &[Intervention] {
+    pub fn changes(&self) -> &[Intervention] {
         self.outside.as_ref().map_or(&[], |outside| &outside.asked)
     }
 

@@ -36,7 +36,7 @@ impl Stepper {
         let held = self.now.hold(&self.event.nodes);
         let before = self.now.state.major.correction;
         let asked = match self.now.keeps_factors() {
-            true => self.now.source.asked(),
+            true => self.now.source.required_force(),
             false => f64::INFINITY,
         };
         if self.now.source.recover() == SolveResult::Not {

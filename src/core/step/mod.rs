@@ -10,10 +10,12 @@
 //! - [`major_history`]: cycles of major iterations.
 //! - [`solver`]: the interface of everything that can be stepped; `external_state`: states of attached solvers; [`stored_states`]: the tree of
 //!   these states.
+//! - [`cone_solver`]: sweeps over an interface problem in space; [`judged`]: the contact laws, checked with reported numbers.
 //! - [`drive`]: the loop over minor iterations; [`intervene`]: applies an [`intervention`] of the user.
 
 mod arc;
 pub mod arc_state;
+pub mod cone_solver;
 pub mod drive;
 pub mod event;
 mod external_state;
@@ -21,6 +23,7 @@ mod increment;
 pub mod intervene;
 pub mod intervention;
 mod iterate;
+pub mod judged;
 mod jump;
 mod major;
 pub mod major_history;

@@ -3,7 +3,7 @@
 mod block;
 mod census;
 mod copositive;
-mod gauss_seidel;
+pub(crate) mod gauss_seidel;
 mod ladder;
 mod least;
 mod lemke;

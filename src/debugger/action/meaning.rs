@@ -152,7 +152,6 @@ pub enum Page {
 
 stickslip_core::words! {
     /// Sort order of the slave nodes.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum Sort, ALL, word {
         /// The order of the scene.
         Scene "scene",
@@ -171,7 +170,6 @@ stickslip_core::words! {
 
 stickslip_core::words! {
     /// Which slave nodes the table shows, in addition to the selected one.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum Filter, ALL, word {
         /// All.
         All "all",
@@ -192,7 +190,6 @@ stickslip_core::words! {
 
 stickslip_core::words! {
     /// Whose decisions are hidden, in free mode, until they are predicted.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum HiddenDecisions, ALL, word {
         /// All, until any one node is predicted, such as the selected one.
         Selected "selected",
@@ -257,7 +254,7 @@ impl CopyTarget {
 
 stickslip_core::words! {
     /// The colours of the screen.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+    #[derive(Default)]
     pub enum Colours, ALL, word {
         /// The terminal's own colours, for dark backgrounds and most light ones.
         #[default]

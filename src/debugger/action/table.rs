@@ -8,7 +8,6 @@ use crate::record::command::{BranchTarget, Command, ExportScope, Unit};
 
 stickslip_core::words! {
     /// Heading under which help lists an action.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum Group, ALL, title {
         /// Moving through the iterations.
         Go "Move through the iterations",

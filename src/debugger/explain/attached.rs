@@ -36,7 +36,7 @@ pub fn examine(
         return describe(DONE.into());
     }
     if posed.tangents == 2 {
-        return cone_problem::examine(model, posed);
+        return cone_problem::examine(model, posed, stop);
     }
     let walk = walk(model, state, posed, reported);
     let mut asked = reported.problem(model, state, posed);

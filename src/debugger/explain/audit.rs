@@ -7,11 +7,14 @@
 
 use stickslip_core::contact::closest_points::place;
 use stickslip_core::contact::element::SurfaceElement;
-use stickslip_core::contact::laws::{Finding, JudgedLaw};
+use stickslip_core::contact::laws::{Finding, JudgedLaw, Verdict};
 use stickslip_core::fem::deformation::{PointDeformation, deformation};
 use stickslip_core::model::Model;
 use stickslip_core::model::{BodyKind, Solid};
-use stickslip_core::step::event::Outcome;
+use stickslip_core::plane::{dot, minus};
+use stickslip_core::step::event::{Event, Outcome};
+use stickslip_core::step::judged::{self, Sizes};
+use stickslip_core::step::solver::Solver;
 use stickslip_core::step::stepper::Stepper;
 
 /// Number of points per edge of an outline, for the search for nodes inside it.
@@ -85,21 +88,12 @@ impl Audit {
         else {
             return;
         };
-        self.increments += 1;
-        self.marked += u32::from(marked.is_some());
+        self.add(event, verdict, marked.is_some());
         let found = |finding: Finding| WorstFinding {
             increment: event.position.increment,
             load_factor: event.load_factor,
             finding,
         };
-        let worst = match marked {
-            Some(_) => &mut self.worst_marked,
-            None => &mut self.worst,
-        };
-        let all = verdict.worst.iter().chain(&verdict.bonds);
-        for (worst, &finding) in worst.iter_mut().zip(all) {
-            keep_worse(worst, finding.map(found));
-        }
         keep_worse(&mut self.work, verdict.work.map(found));
         if let Some(found) = deformation(stepper.model(), &state.start.u) {
             let stretched = |point: PointDeformation| StretchFinding {
@@ -129,6 +123,36 @@ impl Audit {
                 body,
                 depth,
             });
+        }
+    }
+
+    /// Adds the last iteration of an attached solver, if it ended in an accepted increment; what the solver does not report is not
+    /// checked.
+    pub fn take_reported(&mut self, solver: &dyn Solver) {
+        let (event, state) = (solver.event(), solver.state());
+        if matches!(event.outcome, Outcome::Increment { .. }) {
+            let sizes = Sizes::from_state(state, event);
+            let verdict = judged::verdict(solver.model(), &event.nodes, &sizes);
+            self.add(event, &verdict, false);
+        }
+    }
+
+    /// Adds the verdict on an accepted increment.
+    fn add(&mut self, event: &Event, verdict: &Verdict, is_marked: bool) {
+        self.increments += 1;
+        self.marked += u32::from(is_marked);
+        let worst = match is_marked {
+            true => &mut self.worst_marked,
+            false => &mut self.worst,
+        };
+        let all = verdict.worst.iter().chain(&verdict.bonds);
+        for (worst, finding) in worst.iter_mut().zip(all) {
+            let found = finding.map(|finding| WorstFinding {
+                increment: event.position.increment,
+                load_factor: event.load_factor,
+                finding,
+            });
+            keep_worse(worst, found);
         }
     }
 
@@ -224,13 +248,13 @@ fn depth(outline: &[[[f64; 2]; 2]], point: [f64; 2]) -> f64 {
 
 /// Distance of a point from a segment.
 fn distance(a: [f64; 2], b: [f64; 2], point: [f64; 2]) -> f64 {
-    let along = [b[0] - a[0], b[1] - a[1]];
-    let to = [point[0] - a[0], point[1] - a[1]];
-    let squared = along[0] * along[0] + along[1] * along[1];
-    let part = (to[0] * along[0] + to[1] * along[1]) / squared.max(f64::MIN_POSITIVE);
+    let along = minus(b, a);
+    let to = minus(point, a);
+    let squared = dot(along, along);
+    let part = dot(to, along) / squared.max(f64::MIN_POSITIVE);
     let part = part.clamp(0.0, 1.0);
     let off = [to[0] - part * along[0], to[1] - part * along[1]];
-    (off[0] * off[0] + off[1] * off[1]).sqrt()
+    dot(off, off).sqrt()
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use super::outline::Point;
 use std::collections::{BTreeMap, BTreeSet};
 use stickslip_core::model::{BodyKind, Component, Model};
+use stickslip_core::plane::minus;
 
 /// What an arrow or a turn stands for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -94,7 +95,7 @@ fn pressures(
                 continue;
             };
             let (from, to) = (place(first), place(last));
-            let [x, y] = [to[0] - from[0], to[1] - from[1]];
+            let [x, y] = minus(to, from);
             let length = x.hypot(y);
             if length > 0.0 {
                 found.push(ConditionArrow {

@@ -7,6 +7,7 @@ use super::names;
 use std::sync::Arc;
 use stickslip_core::contact::record::ContactRecord;
 use stickslip_core::interface::cone::{self, ConeContact};
+use stickslip_core::interface::cone_census;
 use stickslip_core::model::{Mode, Model};
 use stickslip_core::step::event::Event;
 use stickslip_core::step::solver::ReportedProblem;
@@ -14,8 +15,8 @@ use stickslip_core::step::solver::ReportedProblem;
 /// Maximum number of contacts, because the matrix is dense.
 const MOST: usize = 500;
 
-/// Searches a consistent state of the problem that is solved next.
-pub fn examine(model: &Model, posed: &ReportedProblem) -> Examination {
+/// Searches consistent states of the problem that is solved next. Stops early if `stop` returns true.
+pub fn examine(model: &Model, posed: &ReportedProblem, stop: &dyn Fn() -> bool) -> Examination {
     let describe = |head: String| Examination {
         head,
         ..Examination::default()
@@ -29,24 +30,57 @@ pub fn examine(model: &Model, posed: &ReportedProblem) -> Examination {
     let Some((w, q)) = posed.compliance() else {
         return describe("The reported stiffness is singular.".into());
     };
-    let Some(found) = cone::solve(&w, &q, &posed.friction) else {
-        return describe(
-            "Block Gauss-Seidel sweeps on the interface problem do not converge: no consistent state was found.".into(),
-        );
+    let mut states: Vec<_> = cone::solve(&w, &q, &posed.friction).into_iter().collect();
+    let is_unique = !states.is_empty() && cone_census::is_unique(&w, &posed.friction);
+    let mut tried = None;
+    if !is_unique && let Some(census) = cone_census::census(&w, &q, &posed.friction, stop) {
+        tried = Some(census.combinations);
+        if census.states.len() >= states.len() {
+            states = census.states;
+        }
+    }
+    let head = match states.as_slice() {
+        [] => "Block Gauss-Seidel sweeps on the interface problem do not converge: no consistent state was found.".to_owned(),
+        [state] if is_unique => format!(
+            "The interface problem has exactly one consistent state, because friction is weak against the stiffness: {}.",
+            counts(state)
+        ),
+        [state] => format!(
+            "A consistent state of the interface problem was found (others may exist): {}.",
+            counts(state)
+        ),
+        all => format!(
+            "{} consistent states of the interface problem were found (others may exist).",
+            all.len()
+        ),
     };
-    let of = |mode: Mode| found.iter().filter(|contact| contact.mode == mode).count();
-    let head = format!(
-        "A consistent state of the interface problem was found (others may exist): {} free, {} sliding, {} fixed.",
-        of(Mode::Free),
-        of(Mode::Sliding),
-        of(Mode::Fixed)
-    );
-    let lines = found.iter().zip(&posed.contacts);
-    let lines = lines.map(|(contact, &slave)| words(model, slave, contact));
+    let several = states.len() > 1;
+    let mut lines = Vec::new();
+    for (number, state) in (1..).zip(&states) {
+        if several {
+            lines.push(format!("state {number}: {}", counts(state)));
+        }
+        let contacts = state.iter().zip(&posed.contacts);
+        lines.extend(contacts.map(|(contact, &slave)| words(model, slave, contact)));
+    }
+    lines.extend(tried.map(|count| {
+        format!("all {count} combinations of modes were tried, each from 4 directions of sliding")
+    }));
     Examination {
         facts: Fact::all(Part::Census, lines),
         ..describe(head)
     }
+}
+
+/// The number of contacts in each mode.
+fn counts(state: &[ConeContact]) -> String {
+    let of = |mode: Mode| state.iter().filter(|contact| contact.mode == mode).count();
+    format!(
+        "{} free, {} sliding, {} fixed",
+        of(Mode::Free),
+        of(Mode::Sliding),
+        of(Mode::Fixed)
+    )
 }
 
 /// A contact of the state in one line.

@@ -41,8 +41,8 @@ pub fn influences(
     targets: &[usize],
 ) -> Option<Vec<Vec<Influence>>> {
     let mut trials = Trials::new(problem)?;
-    let old = trials.given(before)?;
-    trials.given(after)?;
+    let old = trials.solve_states(before)?;
+    trials.solve_states(after)?;
     spread(&mut trials, after, targets, |from, row| {
         row.value - left_side(row, &old[from])
     })

@@ -39,6 +39,7 @@ pub fn problem(model: &Model, state: &State, posed: &ReportedProblem) -> Problem
     let rows = posed.matrix.clone();
     let free = (0..posed.q.len()).map(|k| if k % 2 == 0 { 0.0 } else { posed.q[k] });
     Problem {
+        tangents: 1,
         title: format!("Interface problem of {}", model.title)
             .chars()
             .filter(|c| !c.is_control())

@@ -4,11 +4,16 @@
 //! Repeats the failed increment in smaller steps ([`super::load_limit_probe`]). In the last equilibrium, computes the remaining
 //! resistance of each contact of the body against the free motion. With v the relative velocity, friction resists with at
 //! most tan φ F_n + c per |v_t|, of which |F_t| is used; an opening contact yields F_n per v_n until its force is zero.
+//!
+//! A deformable surface can hold a body for a while after all of its contacts slide. Accepted increments are therefore also
+//! checked directly ([`body_without_friction`]).
 
 use super::load_limit_probe::{LoadLimitProbe, reach};
 use super::rigid_motion::BodyMotion;
+use std::collections::HashSet;
+use stickslip_core::contact::record::ContactRecord;
 use stickslip_core::linear::singular::{RigidMotion, Singular};
-use stickslip_core::model::Mode;
+use stickslip_core::model::{Body, Mode, Model};
 use stickslip_core::step::event::Failure;
 use stickslip_core::step::state::State;
 use stickslip_core::step::stepper::Stepper;
@@ -66,6 +71,42 @@ pub fn limit_load(
         "limit load: {why} at load {}: body {name} is held up to this load",
         sig4(load)
     ))
+}
+
+/// The body that has no friction left in an accepted increment: it is held by its slave nodes only, and all of them that touch
+/// slide.
+pub fn body_without_friction<'a>(model: &'a Model, contacts: &[ContactRecord]) -> Option<&'a str> {
+    let touching = model.contacts.iter().zip(contacts);
+    let touching: Vec<(usize, bool)> = touching
+        .filter(|(_, found)| found.decision.before != Mode::Free)
+        .map(|(contact, found)| {
+            let slides = found.decision.before == Mode::Sliding && found.t_max != 0.0;
+            (contact.node, slides)
+        })
+        .collect();
+    if !touching.iter().any(|(_, slides)| *slides) {
+        return None;
+    }
+    let is_free = |node: usize| {
+        let first = model.dofs.first[node];
+        let own = first..first + usize::from(model.dofs.count[node]);
+        model.dofs.equation[own].iter().all(Option::is_some)
+    };
+    let slides = |body: &&Body| {
+        let nodes: HashSet<usize> = body.nodes.iter().copied().collect();
+        let mut own = touching
+            .iter()
+            .filter(|(node, _)| nodes.contains(node))
+            .peekable();
+        let others = model.bodies.iter().filter(|other| other.name != body.name);
+        own.peek().is_some()
+            && own.all(|(_, slides)| *slides)
+            && nodes.iter().all(|&node| is_free(node))
+            && !others
+                .flat_map(|other| &other.nodes)
+                .any(|node| nodes.contains(node))
+    };
+    model.bodies.iter().find(slides).map(|body| &*body.name)
 }
 
 /// The rigid motions that a failure reports.

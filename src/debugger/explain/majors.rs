@@ -8,6 +8,7 @@ use super::names::{mode, slave};
 use stickslip_core::contact::element::SurfaceElement;
 use stickslip_core::contact::projection::SurfacePoint;
 use stickslip_core::model::{Geometry, Mode, Model, ResidualMethod, Settings};
+use stickslip_core::plane::{cross, dot};
 use stickslip_core::step::major_history::{MajorCycle, Stop};
 use stickslip_core::step::state::State;
 use stickslip_scene::number::sig4;
@@ -55,7 +56,7 @@ impl Kink {
             _ => return None,
         };
         let (u, v) = (slope(before, places, 1.0), slope(after, places, -1.0));
-        let turn = (u[0] * v[1] - u[1] * v[0]).atan2(u[0] * v[0] + u[1] * v[1]);
+        let turn = cross(u, v).atan2(dot(u, v));
         Some(Kink {
             degrees: turn.to_degrees(),
             at: places[*after.first()?],

@@ -4,6 +4,7 @@
 use stickslip_core::contact::element::SurfaceElement;
 use stickslip_core::fem::lagrange;
 use stickslip_core::model::{Body, BodyKind, Model};
+use stickslip_core::plane::minus;
 use stickslip_core::step::event::Event;
 
 /// A point in the scene or on the sheet.
@@ -130,7 +131,7 @@ impl Bounds {
 
     /// Width and height.
     pub fn size(&self) -> Point {
-        [self.high[0] - self.low[0], self.high[1] - self.low[1]]
+        minus(self.high, self.low)
     }
 
     /// Length of the diagonal.

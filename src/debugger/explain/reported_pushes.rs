@@ -78,7 +78,8 @@ pub fn pushes(
     let modes = |place: usize| [earlier.modes[place], later.modes[place]];
     let mut is_explained = true;
     let change = |place: usize, row: &Equation| {
-        let change = left_side(row, &later.given(place)) - left_side(row, &earlier.given(place));
+        let change =
+            left_side(row, &later.increment(place)) - left_side(row, &earlier.increment(place));
         let scale = match row.motion {
             RelativeMotion::None => problem.force,
             RelativeMotion::Normal | RelativeMotion::Tangential => problem.length,
@@ -95,7 +96,7 @@ pub fn pushes(
         change
     };
     let mut trials = Trials::new(&problem)?;
-    trials.given(&states)?;
+    trials.solve_states(&states)?;
     let found = spread(&mut trials, &states, &[target], change)?;
     let push = |influence: super::influence::Influence| NodePush {
         slave: posed.contacts[influence.from],
@@ -139,7 +140,7 @@ impl ReportedPushes {
     }
 
     /// Forces and motions of a contact, in the convention of its equations.
-    fn given(&self, place: usize) -> NodeIncrement {
+    fn increment(&self, place: usize) -> NodeIncrement {
         let of = |numbers: &DVector<f64>| [numbers[2 * place], numbers[2 * place + 1]];
         NodeIncrement {
             force: of(&self.forces),
@@ -152,7 +153,7 @@ impl ReportedPushes {
     fn follows_law(&self, posed: &ReportedProblem) -> bool {
         let most = SAME * self.forces.amax();
         (0..self.modes.len()).all(|place| {
-            let (friction, force) = (posed.friction[place], self.given(place).force);
+            let (friction, force) = (posed.friction[place], self.increment(place).force);
             let bound = friction.coefficient() * force[0] + friction.cohesion;
             self.modes[place] != Mode::Sliding || (force[1].abs() - bound).abs() <= most
         })

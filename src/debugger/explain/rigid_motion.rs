@@ -8,6 +8,7 @@ use stickslip_core::contact::projection::{Projection, projection_at, tangent};
 use stickslip_core::fem::pressure::Pressures;
 use stickslip_core::linear::singular::{LooseMotion, RigidMotion, Singular};
 use stickslip_core::model::{Factor, Mode, Model};
+use stickslip_core::plane::dot;
 use stickslip_core::step::state::State;
 use stickslip_core::step::stepper::Stepper;
 use stickslip_scene::number::{shortest, sig4};
@@ -223,7 +224,7 @@ impl<'a> BodyMotion<'a> {
                 false => (self.velocity(over.foot), -1.0),
             };
             let [n, t] = [over.normal, tangent(over.normal)];
-            let along = |d: [f64; 2]| side * (v[0] * d[0] + v[1] * d[1]);
+            let along = |d: [f64; 2]| side * dot(v, d);
             Some((s, [along(n), along(t)]))
         };
         self.own().filter_map(rate).collect()

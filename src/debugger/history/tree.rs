@@ -180,7 +180,7 @@ impl Tree {
 
     /// Size in bytes of the data that is never thinned: the entry and the strip of every point, and a whole
     /// frame at the tip of every branch. It depends only on the tree, so that a replay computes the same value.
-    pub fn kept(&self) -> usize {
+    pub fn permanent_bytes(&self) -> usize {
         let away: usize = self.branches.iter().map(|branch| branch.away.len()).sum();
         let strip = Strip::BYTES_PER_ITERATION + self.model.contacts.len() * Strip::BYTES_PER_NODE;
         let point = size_of::<Frame>() + strip;

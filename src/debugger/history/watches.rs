@@ -8,7 +8,7 @@ use stickslip_core::model::Model;
 stickslip_core::words! {
     /// A quantity of the last minor iteration. Forces and lengths are those of
     /// [`stickslip_core::contact::record::ContactRecord`].
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+    #[derive(Serialize, Deserialize)]
     #[serde(rename = "Quantity")]
     pub enum WatchQuantity, ALL, word {
         /// Gap (length), negative for penetration.

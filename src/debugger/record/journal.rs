@@ -325,9 +325,8 @@ impl Record {
     /// If the file cannot be read or is damaged, with the line.
     pub fn read(path: &Path) -> Result<Record, JournalError> {
         let file = path.display().to_string();
-        let bytes = input::bytes(path, RECORD_BYTES, "too large for a journal").map_err(|why| {
-            SceneError::whole(&file, format!("the journal cannot be read: {why}"))
-        })?;
+        let bytes = input::bytes(path, RECORD_BYTES, "too large for a journal")
+            .map_err(|why| read::not_read(&file, &why))?;
         Record::from_bytes(&file, &bytes)
     }
 

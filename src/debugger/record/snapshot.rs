@@ -24,7 +24,7 @@ use stickslip_platform::input::{self, RECORD_BYTES};
 use stickslip_scene::Scene;
 use stickslip_scene::format::kind::FileKind;
 use stickslip_scene::format::{SceneError, Spec, notation, read};
-use stickslip_scene::solver::solver;
+use stickslip_scene::solver::any_solver;
 
 /// Format version written by this program, and the only one it reads.
 pub const FORMAT: u32 = 1;
@@ -256,7 +256,7 @@ impl Snapshot {
             return Err(SnapshotError::Attached { name });
         }
         let scene = Scene::from_spec(&self.name, self.scene.clone())?;
-        self.replay_on(&scene, &mut solver(Arc::new(scene.model.clone())))
+        self.replay_on(&scene, any_solver(Arc::new(scene.model.clone())).as_mut())
     }
 
     /// Recomputes the snapshot with an attached solver, from its start.

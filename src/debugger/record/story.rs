@@ -33,7 +33,7 @@ pub fn story(record: &Record) -> Result<String, JournalError> {
         }
         number += 1;
         text += &format!("{number:>3}. {}\n", done(&model, entry));
-        for line in seen(entry) {
+        for line in result_lines(entry) {
             text += &format!("     {line}\n");
         }
     }
@@ -129,7 +129,7 @@ fn forward(unit: Unit, count: u32) -> String {
 }
 
 /// The result of the command.
-fn seen(entry: &Entry) -> Vec<String> {
+fn result_lines(entry: &Entry) -> Vec<String> {
     let mut lines = Vec::new();
     if entry.solved > 0 {
         let plural = |n: u64| if n == 1 { "" } else { "s" };

@@ -36,7 +36,9 @@ use std::fmt::Write;
 use stickslip_core::contact::record::ContactRecord;
 use stickslip_core::fem::deformation::deformation;
 use stickslip_core::linear::stability::Stability;
-use stickslip_core::model::{Control, Friction, Jumps, Model, Monitor, MonitorQuantity, ToldKind};
+use stickslip_core::model::{
+    Control, Friction, Jumps, Model, Monitor, MonitorQuantity, ReportedKind,
+};
 use stickslip_core::step::event::{Event, Failure, Outcome};
 use stickslip_core::step::recovery::motion::Motion;
 use stickslip_study::csv::field;
@@ -146,8 +148,8 @@ fn has_pressures(model: &Model) -> bool {
         matches!(
             monitor.of,
             MonitorQuantity::Pressure { .. }
-                | MonitorQuantity::Told {
-                    kind: ToldKind::Pressure,
+                | MonitorQuantity::Reported {
+                    kind: ReportedKind::Pressure,
                     ..
                 }
         )

@@ -5,7 +5,6 @@
 //! or Newton's method on the projections), to show where the two differ.
 
 use super::fault::Fault;
-use super::judged::{self, Sizes};
 use serde::Deserialize;
 use serde::de::IntoDeserializer;
 use serde::de::value::{Error as NoName, StrDeserializer};
@@ -19,6 +18,7 @@ use stickslip_core::interface::method::NodeContext;
 use stickslip_core::linear::norms::Norms;
 use stickslip_core::model::{Friction, Mode, Model, Strategy};
 use stickslip_core::step::event::{Event, Failure, Frame, Outcome, Position, Words};
+use stickslip_core::step::judged::{self, Sizes};
 use stickslip_core::step::state::State;
 use stickslip_core::strategy::method;
 use stickslip_exchange::attach::message::{

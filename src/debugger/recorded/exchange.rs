@@ -17,7 +17,7 @@ use stickslip_core::step::solver::{Capabilities, RewindSupport, Solver, SolverLo
 use stickslip_core::step::state::{State, Status};
 use stickslip_core::step::stored_states::StoredStates;
 use stickslip_exchange::attach::conversation::STARTED;
-use stickslip_exchange::attach::message::{Hello, Id};
+use stickslip_exchange::attach::message::{self, ContactResult, Hello, Id};
 use stickslip_exchange::attach::{Answer, Request, Side, TranscriptLine};
 use stickslip_exchange::format_error::FormatError;
 use stickslip_platform::input::{self, Unreadable};
@@ -94,7 +94,7 @@ pub fn open(name: &str, text: &str) -> Result<OpenedExchange, SceneError> {
                 log.noted(&line.text);
             }
             Side::Logged => log.printed(&line.text),
-            Side::Asked => reader.asked(Request::read(&line.text).map_err(broken)?),
+            Side::Asked => reader.take_request(Request::read(&line.text).map_err(broken)?),
             // An invalid message ended the original session.
             Side::Answered => match Answer::read(&line.text) {
                 Ok(Answer::Message { level, text }) => log.message(level, &text),
@@ -148,6 +148,8 @@ struct ExchangeReader {
     at: u64,
     changed: Vec<Intervention>,
     tokens: HashMap<String, u64>,
+    /// Contacts of each state that the next one may leave out.
+    contacts: HashMap<u64, Vec<ContactResult>>,
     /// A request without an answer yet.
     pending: Option<Request>,
 }
@@ -169,6 +171,7 @@ impl ExchangeReader {
             at: 0,
             changed: Vec::new(),
             tokens: HashMap::new(),
+            contacts: HashMap::new(),
             pending: None,
         }
     }
@@ -181,7 +184,7 @@ impl ExchangeReader {
         self.pending = None;
     }
 
-    fn asked(&mut self, request: Request) {
+    fn take_request(&mut self, request: Request) {
         if !matches!(request, Request::Interrupt | Request::Bye) {
             self.pending = Some(request);
         }
@@ -201,7 +204,7 @@ impl ExchangeReader {
                     start,
                 });
             }
-            (Answer::State(sent), _) => self.recorded_step(&sent)?,
+            (Answer::State(sent), _) => self.recorded_step(*sent)?,
             (Answer::Saved { token }, _) => {
                 self.tokens.insert(token.to_string(), self.at);
             }
@@ -226,10 +229,7 @@ impl ExchangeReader {
         &led.unwrap_or(&met.start).state
     }
 
-    fn recorded_step(
-        &mut self,
-        sent: &stickslip_exchange::attach::message::State,
-    ) -> Result<(), Fault> {
+    fn recorded_step(&mut self, mut sent: message::State) -> Result<(), Fault> {
         let met = self.met.as_ref().ok_or(Fault::NoScene)?;
         let asked = std::mem::take(&mut self.changed);
         if let Some(place) = self.places.follows(self.at, &asked) {
@@ -246,8 +246,18 @@ impl ExchangeReader {
             ids: &met.ids,
             decides: met.hello.decides,
         };
-        let led = frame.recorded_step(&from, sent)?;
+        let mut contacts = Vec::new();
+        if met.hello.abilities.partial {
+            let before = self.contacts.get(&self.at).map_or(&[][..], Vec::as_slice);
+            let all = sent.complete(&met.ids, before);
+            contacts = all.map_err(|why| Fault::Unfit {
+                message: "state",
+                why,
+            })?;
+        }
+        let led = frame.recorded_step(&from, &sent)?;
         self.at = self.places.add(self.at, asked, Some(led));
+        self.contacts.insert(self.at, contacts);
         if let Some(Some(led)) = self.places.get_mut(self.at) {
             led.state_at(self.at);
         }
@@ -266,7 +276,7 @@ impl RecordedSolver {
     fn next(&self) -> Option<&RecordedStep> {
         let place = self
             .places
-            .follows(self.now.state.place()?, self.now.state.asked())?;
+            .follows(self.now.state.place()?, self.now.state.changes())?;
         self.places.get(place)?.as_ref()
     }
 }

@@ -3,8 +3,7 @@
 //! ([`Solver`](stickslip_core::step::Solver)).
 //!
 //! - [`fault`]: errors of a solver that violates the protocol; [`log`]: its log.
-//! - [`decode`]: its messages as states and events; [`interface_problem`]: its frozen interface problem; [`judged`]: the
-//!   contact laws, checked with its numbers.
+//! - [`decode`]: its messages as states and events; [`interface_problem`]: its frozen interface problem.
 //! - [`orders`]: interventions as requests.
 //! - [`exchange`]: a solver replayed from its stored exchange; [`story`]: such a file as text.
 //! - [`calculix`]: finished CalculiX runs; [`recording`]: opens a finished run by file name.
@@ -13,7 +12,6 @@ pub mod calculix;
 pub mod decode;
 pub mod exchange;
 pub mod fault;
-pub mod judged;
 pub mod log;
 pub mod orders;
 

@@ -55,7 +55,7 @@ pub fn story(file: &str, opened: &mut OpenedExchange) -> String {
         };
         text += &way(&model, &mut opened.past, line, along);
     }
-    text += &said(opened);
+    text += &last_messages(opened);
     text
 }
 
@@ -130,7 +130,7 @@ fn cycle(model: &Model, strips: &[Strip]) -> String {
 }
 
 /// The last warnings and errors, and the last remark.
-fn said(opened: &OpenedExchange) -> String {
+fn last_messages(opened: &OpenedExchange) -> String {
     let (_, lines) = opened.log.lines();
     let grave = |how: LogOrigin| matches!(how, LogOrigin::Message(Level::Warning | Level::Error));
     let all: Vec<String> = lines

@@ -113,9 +113,29 @@ fn shown(
     kind.made(&shown, stepper).ok_or(ExportError::OfJournal)?
 }
 
+/// The scene with the core of the cycle of an interface problem that an attached solver reports.
+///
+/// # Errors If there is no core, or it cannot be written.
+pub fn core_of_reported(
+    model: &Model,
+    state: &State,
+    posed: &ReportedProblem,
+    origin: &Origin,
+) -> Result<String, ExportError> {
+    if posed.tangents == 2 {
+        return Err(ExportError::InSpace);
+    }
+    let problem = interface_scene::problem(model, state, posed);
+    let (_, mut stepper) = interface_scene::stepper(problem).map_err(Box::new)?;
+    let start = stepper.state().clone();
+    core_of(&mut stepper, &start, origin)
+}
+
 /// Writes the interface problem that an attached solver reports, or its core, possibly in another program's
 /// format.
-pub(super) fn write_posed(
+///
+/// # Errors If it cannot be written.
+pub fn write_posed(
     model: &Model,
     posed: &ReportedProblem,
     ask: &Export,
@@ -123,18 +143,11 @@ pub(super) fn write_posed(
     if posed.tangents == 2 {
         return Err(ExportError::InSpace);
     }
-    let solver = || {
-        let problem = interface_scene::problem(model, &ask.state, posed);
-        interface_scene::stepper(problem).map_err(Box::new)
-    };
     let text = match (ask.what, export::kind(&ask.file)) {
-        (ExportScope::Core, _) => {
-            let (_, mut stepper) = solver()?;
-            let start = stepper.state().clone();
-            core_of(&mut stepper, &start, &ask.origin)?
-        }
+        (ExportScope::Core, _) => core_of_reported(model, &ask.state, posed, &ask.origin)?,
         (_, Ok(kind)) if kind.may_be_frozen && kind.extension != "ron" => {
-            let (scene, mut stepper) = solver()?;
+            let problem = interface_scene::problem(model, &ask.state, posed);
+            let (scene, mut stepper) = interface_scene::stepper(problem).map_err(Box::new)?;
             let shown = PictureContext {
                 scene,
                 event: None,

@@ -28,6 +28,7 @@ use crate::recorded::log::Log;
 use std::sync::Arc;
 use std::time::Duration;
 use stickslip_core::model::Model;
+use stickslip_core::step::cone_solver::ConeSolver;
 use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::solver::{Capabilities, Solver};
 use stickslip_core::step::stepper::Stepper;
@@ -88,6 +89,9 @@ impl Session {
     /// A session whose history stays within a budget.
     pub fn with_budget(scene: Scene, budget: Budget) -> Self {
         let model = Arc::new(scene.model.clone());
+        if let Some(solver) = ConeSolver::new(model.clone()) {
+            return Session::attached(scene, Box::new(solver), Log::default());
+        }
         let start = Stepper::new(model.clone()).state().clone();
         let own = model.clone();
         let worker = Worker::new(move || Box::new(solver(own))).unattended();

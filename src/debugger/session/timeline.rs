@@ -132,7 +132,7 @@ impl Timeline {
 
     /// Rejects a new branch when the branches have used up their memory budget.
     pub(super) fn check_room(&self) -> Result<(), Refusal> {
-        let (taken, most) = (self.tree.kept(), self.tree.budget().branches);
+        let (taken, most) = (self.tree.permanent_bytes(), self.tree.budget().branches);
         match taken < most {
             true => Ok(()),
             false => Err(Refusal::NoRoom { taken, most }),

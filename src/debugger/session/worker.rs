@@ -287,7 +287,7 @@ fn run(
     let mut watch = solver.stepper().is_none().then(rounds::CycleWatch::default);
     let mut round = None;
     let end = drive(solver, until, |solver| {
-        let (frame, strip) = seen(solver, &before, began);
+        let (frame, strip) = frame_and_strip(solver, &before, began);
         left -= u32::from(unit.ends(strip.kind));
         if strip.kind.is_failure() {
             left = 0;
@@ -334,7 +334,7 @@ fn run(
 }
 
 /// The last minor iteration, started at `began`, as a frame and its strip.
-fn seen(solver: &mut dyn Solver, before: &Strip, began: Instant) -> (Frame, Strip) {
+fn frame_and_strip(solver: &mut dyn Solver, before: &Strip, began: Instant) -> (Frame, Strip) {
     let seconds = began.elapsed().as_secs_f32();
     let event = Arc::new(solver.event().clone());
     let strip = Strip::new(
@@ -405,7 +405,7 @@ fn made(
     began: Instant,
 ) -> Message {
     let Some(intervention) = step else {
-        let (frame, strip) = seen(solver, before, began);
+        let (frame, strip) = frame_and_strip(solver, before, began);
         before.clone_from(&strip);
         return Message::Made(Box::new(frame), Box::new(strip));
     };

@@ -212,7 +212,10 @@ impl FrameValues {
                 mode: Mode::Free,
                 ..state
             });
-            let free = trials.given(&free.collect::<Vec<_>>())?.get(at)?.motion;
+            let free = trials
+                .solve_states(&free.collect::<Vec<_>>())?
+                .get(at)?
+                .motion;
             let along_n = trials.answers_to(at, 0)?.get(at)?.motion;
             let along_t = trials.answers_to(at, 1)?.get(at)?.motion;
             Some(CondensedNode {

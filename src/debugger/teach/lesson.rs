@@ -8,11 +8,12 @@ use super::task::{Goal, LessonTask};
 use crate::action::{self, Action, Context};
 use crate::record::command::Command;
 use crate::recorded::exchange;
+use std::borrow::Cow;
 use std::sync::Arc;
 use stickslip_core::contact::laws::JudgedLaw;
 use stickslip_core::model::{Mode, Model};
 use stickslip_platform::disk;
-use stickslip_scene::embedded::EmbeddedFile;
+use stickslip_scene::embedded::{self, EmbeddedFile};
 use stickslip_scene::embedded_all;
 use stickslip_scene::format::error::{AtPath, Path, SceneError, at, bail, did_you_mean, fault};
 use stickslip_scene::format::kind::FileKind;
@@ -125,7 +126,7 @@ pub enum Truth {
     Close(LessonQuantity, LessonQuantity),
     /// The run with these settings is the cheapest of those with an error of at most this.
     Cheapest(Vec<(String, String)>, f64),
-    /// Right or wrong, as the author says.
+    /// Whether the author marked it as right.
     Known(bool),
 }
 
@@ -167,6 +168,18 @@ const LESSONS: &[EmbeddedFile] = embedded_all![
     "cure",
 ];
 
+/// The built-in exercise sheets, one for each session of the course.
+const SHEETS: &[EmbeddedFile] = embedded_all![
+    "../../problems/exercises/",
+    ".ron",
+    "sheet-1",
+    "sheet-2",
+    "sheet-3",
+    "sheet-4",
+    "sheet-5",
+    "sheet-6",
+];
+
 /// The built-in recorded exchanges.
 const EXCHANGES: &[EmbeddedFile] =
     embedded_all!["../../problems/lessons/", ".exchange", "kratos-walk"];
@@ -176,20 +189,25 @@ pub fn list() -> &'static [EmbeddedFile] {
     LESSONS
 }
 
+/// The built-in exercise sheets, in the order of the course. They are lessons to be printed.
+pub fn sheets() -> &'static [EmbeddedFile] {
+    SHEETS
+}
+
 /// The title of a built-in lesson; empty if it cannot be read (checked by a test).
 pub fn title(lesson: &EmbeddedFile) -> String {
     let spec = read::value::<LessonSpec>(lesson.name, lesson.text, "lesson");
     spec.map(|spec| spec.title).unwrap_or_default()
 }
 
-/// Finds a built-in lesson by its name, with or without `.ron`, or by its number in teaching order.
+/// Finds a built-in lesson or exercise sheet by its name, with or without `.ron`, or a lesson by its number in teaching order.
 pub fn find(name: &str) -> Option<&'static EmbeddedFile> {
     let name = name.strip_suffix(".ron").unwrap_or(name);
     match name.parse::<usize>() {
         Ok(number) => LESSONS.get(number.checked_sub(1)?),
         Err(_) => {
             let name = current_name(name);
-            LESSONS.iter().find(|lesson| lesson.name == name)
+            embedded::find(LESSONS, name).or_else(|| embedded::find(SHEETS, name))
         }
     }
 }
@@ -222,23 +240,18 @@ impl Lesson {
     ///
     /// # Errors If there is no such lesson, or it does not match its scene: one message, with line and column.
     pub fn open(name: &str) -> Result<Lesson, SceneError> {
-        if !disk::is_file(name)
-            && let Some(builtin) = find(name)
-        {
-            return Lesson::from_text(builtin.name, builtin.text);
-        }
-        let text = read::text(name).map_err(|mut error| {
-            if !disk::exists(name) {
-                let names = || LESSONS.iter().map(|lesson| lesson.name);
-                error.message = format!(
-                    "no such file or built-in lesson{} (built-in: {})",
-                    did_you_mean(name, names()),
-                    names().collect::<Vec<_>>().join(", ")
-                );
-            }
-            error
-        })?;
-        Lesson::from_text(name, &text)
+        let (name, text) = text_of(name)?;
+        Lesson::from_text(&name, &text)
+    }
+
+    /// Opens a lesson on another scene than its own.
+    ///
+    /// # Errors
+    /// As [`Lesson::open`]; also if the scene cannot be opened, or the lesson does not fit it.
+    pub fn open_on(name: &str, scene: &str) -> Result<Lesson, SceneError> {
+        let (name, text) = text_of(name)?;
+        let scene = Scene::open(scene, &[])?;
+        Lesson::read(&name, &text, Some(scene))
     }
 
     /// Reads a lesson from text; `name` is its name for messages.
@@ -246,12 +259,26 @@ impl Lesson {
     /// # Errors
     /// As [`Lesson::open`].
     pub fn from_text(name: &str, text: &str) -> Result<Lesson, SceneError> {
+        Lesson::read(name, text, None)
+    }
+
+    /// Reads a lesson, on another scene than its own if one is given.
+    fn read(name: &str, text: &str, other: Option<Scene>) -> Result<Lesson, SceneError> {
         let spec: LessonSpec = read::value(name, text, "lesson")
             .map_err(|error| read::or_mistaken(error, name, text, FileKind::Lesson))?;
-        let recorded = recorded(name, text, &spec)?;
-        let scene = match &recorded {
-            Some(exchange) => exchange::open(&exchange.0, &exchange.1)?.scene,
-            None => scene(name, text, &spec)?,
+        let recorded = match other {
+            Some(_) => None,
+            None => recorded(name, text, &spec)?,
+        };
+        // Progress on another scene is counted apart.
+        let own_name = match &other {
+            Some(scene) => format!("{name} on {}", scene.name),
+            None => name.to_owned(),
+        };
+        let scene = match (other, &recorded) {
+            (Some(scene), _) => scene,
+            (None, Some(exchange)) => exchange::open(&exchange.0, &exchange.1)?.scene,
+            (None, None) => scene(name, text, &spec)?,
         };
         let reader = LessonReader { scene: &scene };
         let steps = reader
@@ -259,7 +286,7 @@ impl Lesson {
             .map_err(|fault| placed(name, text, &[], fault))?;
         let runs = runs(&spec, &scene).map_err(|fault| placed(name, text, &[], fault))?;
         Ok(Lesson {
-            name: name.to_owned(),
+            name: own_name,
             title: spec.title,
             about: spec.about,
             model: Arc::new(scene.model.clone()),
@@ -276,6 +303,27 @@ impl Lesson {
         let fault = Fault::new(at!["steps", step], message);
         placed(&self.name, &self.text, &[], fault)
     }
+}
+
+/// Name and text of a lesson file, or of a built-in lesson; a file takes precedence.
+fn text_of(name: &str) -> Result<(Cow<'_, str>, Cow<'static, str>), SceneError> {
+    if !disk::is_file(name)
+        && let Some(builtin) = find(name)
+    {
+        return Ok((builtin.name.into(), builtin.text.into()));
+    }
+    let text = read::text(name).map_err(|mut error| {
+        if !disk::exists(name) {
+            let names = || LESSONS.iter().map(|lesson| lesson.name);
+            error.message = format!(
+                "no such file or built-in lesson{} (built-in: {})",
+                did_you_mean(name, names()),
+                names().collect::<Vec<_>>().join(", ")
+            );
+        }
+        error
+    })?;
+    Ok((name.into(), text.into()))
 }
 
 /// The recorded exchange of a lesson, by name and text.

@@ -5,10 +5,12 @@
 //!   of a chart.
 //! - [`tutor`]: a lesson in progress; [`question`]: its questions; [`guess`]: free mode, with decisions hidden until predicted; [`refusal`]:
 //!   errors.
-//! - [`play`]: plays a lesson automatically, to check it; [`progress`]: saves the user's progress.
+//! - [`play`]: plays a lesson automatically, to check it; [`progress`]: saves the user's progress; [`hand_in`]: what
+//!   students hand in.
 
 pub mod frame_values;
 pub mod guess;
+pub mod hand_in;
 pub mod lesson;
 pub mod play;
 pub mod progress;

@@ -23,8 +23,12 @@ const MOST_STEPS: u32 = 1000;
 pub struct AnsweredQuestion {
     /// Index of the step, from 0.
     pub step: usize,
+    /// The texts since the previous question.
+    pub before: Vec<String>,
     /// The question.
     pub question: String,
+    /// The choices, if there are any.
+    pub options: Vec<String>,
     /// The right answer, as typed.
     pub answer: String,
     /// The reply to the right answer.
@@ -83,7 +87,7 @@ fn advance(
     to: usize,
 ) -> Result<Vec<AnsweredQuestion>, SceneError> {
     let lesson = tutor.shared_lesson();
-    let mut answered = Vec::new();
+    let (mut answered, mut before) = (Vec::new(), Vec::new());
     while let Some(step) = lesson.steps.get(tutor.at()).filter(|_| tutor.at() < to) {
         let at = tutor.at();
         let fault = |why: PlaybackError| lesson.fault(at, why.to_string());
@@ -92,8 +96,9 @@ fn advance(
             return Err(lesson.fault(at, message.to_owned()));
         }
         match step {
-            LessonStep::Text(_) => {}
+            LessonStep::Text(_) => before.push(tutor.text().to_owned()),
             LessonStep::Press { action, .. } => {
+                before.push(tutor.text().to_owned());
                 tutor
                     .permits(action, session.cursor(), session.frame())
                     .map_err(refused)?;
@@ -109,7 +114,9 @@ fn advance(
                 }
                 answered.push(AnsweredQuestion {
                     step: at,
+                    before: std::mem::take(&mut before),
                     question: tutor.text().to_owned(),
+                    options: Vec::new(),
                     answer,
                     then: tutor.last_reply(),
                     hint: tutor.task_hint(),
@@ -123,7 +130,9 @@ fn advance(
                 let question = tutor.question();
                 answered.push(AnsweredQuestion {
                     step: at,
+                    before: std::mem::take(&mut before),
                     question: tutor.text().to_owned(),
+                    options: question.map_or(Vec::new(), |question| question.options.clone()),
                     answer: readable(tutor, &word),
                     then: question.map_or(String::new(), TutorQuestion::reply_to_right),
                     hint: question.map_or(String::new(), |question| question.reply_to_wrong("")),

@@ -43,13 +43,19 @@ pub struct LessonProgress {
 #[serde(deny_unknown_fields)]
 pub struct Progress {
     format: u32,
-    lessons: BTreeMap<String, LessonProgress>,
+    /// Who handed it in; empty in the user's own file.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub(super) name: String,
+    pub(super) lessons: BTreeMap<String, LessonProgress>,
 }
 
 impl Default for Progress {
     fn default() -> Self {
-        let (format, lessons) = (FORMAT, BTreeMap::new());
-        Progress { format, lessons }
+        Progress {
+            format: FORMAT,
+            name: String::new(),
+            lessons: BTreeMap::new(),
+        }
     }
 }
 
@@ -134,6 +140,19 @@ impl Progress {
     /// Progress in a lesson.
     pub fn of(&self, lesson: &str) -> Option<LessonProgress> {
         self.lessons.get(lesson).cloned()
+    }
+
+    /// Writes it to a file; `overwrite` allows replacing an existing one.
+    ///
+    /// # Errors If the file cannot be written, or exists and must stay.
+    pub(super) fn write(&self, file: &Path, overwrite: bool) -> Result<(), ProgressError> {
+        let text = notation::lines(self, ron::ser::PrettyConfig::new());
+        let text = text.map_err(|e| ProgressError::Damaged {
+            file: file.to_owned(),
+            line: 1,
+            message: e.to_string(),
+        })?;
+        Ok(files::write(file, &text, overwrite)?)
     }
 
     /// Updates the progress from the state of a lesson. Returns whether anything improved.
@@ -234,18 +253,11 @@ pub fn keep(file: &Path, tutor: &Tutor) -> Result<(), ProgressError> {
     if !progress.take(tutor) {
         return Ok(());
     }
-    let layout = ron::ser::PrettyConfig::new();
-    let text = notation::lines(&progress, layout);
-    let text = text.map_err(|e| ProgressError::Damaged {
-        file: file.to_owned(),
-        line: 1,
-        message: e.to_string(),
-    })?;
     if let Some(folder) = file.parent() {
         disk::create_dir_all(folder).map_err(|source| FileError::Failed {
             path: folder.to_owned(),
             source,
         })?;
     }
-    Ok(files::write(file, &text, true)?)
+    progress.write(file, true)
 }

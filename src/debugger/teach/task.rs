@@ -14,6 +14,10 @@ use stickslip_scene::number::shortest;
 /// Relative difference of load factors that counts as none.
 const SAME_LOAD: f64 = 1e-9;
 
+/// The reply if the task is a failure and the history ends without one.
+const NOTHING_FAILS: &str =
+    "This history reaches its end: nothing fails here. Begin the lesson on a scene that fails.";
+
 /// A task.
 #[derive(Debug, Clone)]
 pub struct LessonTask {
@@ -45,7 +49,7 @@ pub enum Goal {
 impl LessonTask {
     /// Checks the frames up to the shown one. Returns the reply if the goal is reached.
     ///
-    /// # Errors If it is reached with a forbidden aid, or the reply has an unknown number.
+    /// # Errors If it is reached with a forbidden aid, if it can no longer be reached, or if the reply has an unknown number.
     pub(super) fn check(
         &self,
         frames: &[Frame],
@@ -53,7 +57,12 @@ impl LessonTask {
     ) -> Result<Option<String>, String> {
         let frame = &look.frame;
         if !self.goal.is_reached(frame) {
-            return Ok(None);
+            let nothing_fails =
+                self.goal == Goal::Failure && frame.state.status == Status::Finished;
+            return match nothing_fails {
+                true => Err(NOTHING_FAILS.into()),
+                false => Ok(None),
+            };
         }
         let used = self.without.iter().find(|aid| uses(**aid, frames));
         if let Some(aid) = used {

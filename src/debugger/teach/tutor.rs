@@ -474,14 +474,7 @@ impl Tutor {
 
     /// The contents of the page.
     pub fn page(&self) -> Vec<Paragraph> {
-        let parts = self.text.split('$').map(str::trim).enumerate();
-        let mut page: Vec<Paragraph> = parts
-            .filter(|(_, part)| !part.is_empty())
-            .map(|(index, part)| match index % 2 {
-                0 => Paragraph::Text(part.to_owned()),
-                _ => Paragraph::Equation(part.to_owned()),
-            })
-            .collect();
+        let mut page = paragraphs(&self.text);
         if let Some(question) = &self.question {
             let options = question.options.iter().enumerate();
             page.extend(options.map(|(k, text)| Paragraph::Option(k + 1, text.clone())));
@@ -530,6 +523,18 @@ impl Tutor {
     pub fn solution(&self) -> Option<String> {
         self.question().map(TutorQuestion::solution)
     }
+}
+
+/// A text and its equations, which are between dollar signs.
+pub fn paragraphs(text: &str) -> Vec<Paragraph> {
+    let parts = text.split('$').map(str::trim).enumerate();
+    parts
+        .filter(|(_, part)| !part.is_empty())
+        .map(|(index, part)| match index % 2 {
+            0 => Paragraph::Text(part.to_owned()),
+            _ => Paragraph::Equation(part.to_owned()),
+        })
+        .collect()
 }
 
 fn capital(text: &str) -> String {

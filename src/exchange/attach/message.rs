@@ -4,7 +4,7 @@ pub use super::components::Components;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 pub use stickslip_core::contact::table2::Test;
-pub use stickslip_core::model::{Mode, ToldKind};
+pub use stickslip_core::model::{Mode, ReportedKind};
 pub use stickslip_core::step::event::Position;
 pub use stickslip_core::step::solver::ReportedForm;
 
@@ -194,6 +194,9 @@ pub struct Abilities {
     pub problem: bool,
     /// Reads its input while it works.
     pub interrupt: bool,
+    /// States may leave out contacts that did not change.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub partial: bool,
 }
 
 /// States that can be saved and restored.
@@ -308,8 +311,9 @@ pub struct NodeMessage {
     /// Name shown to the user; generated if it is empty.
     #[serde(default)]
     pub name: String,
-    /// Position (length), two or three coordinates.
-    pub at: Components,
+    /// Position (length), two or three coordinates; `None` if only its motion is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at: Option<Components>,
 }
 
 /// A number that states report.
@@ -326,7 +330,7 @@ pub enum Monitor {
         /// Name shown to the user.
         name: String,
         /// Kind of number.
-        kind: ToldKind,
+        kind: ReportedKind,
     },
 }
 
@@ -509,6 +513,39 @@ pub struct ContactResult {
 }
 
 impl State {
+    /// Adds the contacts that the message leaves out: they keep the numbers of `before`, and their next mode. Returns the contacts
+    /// that the next state may leave out.
+    ///
+    /// # Errors
+    /// If a contact has no id, is not in the order of `ids`, or is left out before it was reported.
+    pub fn complete(
+        &mut self,
+        ids: &[Id],
+        before: &[ContactResult],
+    ) -> Result<Vec<ContactResult>, String> {
+        let unsolved = matches!(self.ended, EndedLevel::Cut | EndedLevel::Failure);
+        if self.contacts.is_empty() && unsolved {
+            return Ok(before.to_vec());
+        }
+        if self.contacts.len() < ids.len() {
+            let mut sent = std::mem::take(&mut self.contacts).into_iter().peekable();
+            for (k, id) in ids.iter().enumerate() {
+                let found = sent.next_if(|found| found.id.as_ref() == Some(id));
+                let kept = || before.get(k).map(ContactResult::unchanged);
+                let found = found.or_else(kept);
+                self.contacts
+                    .push(found.ok_or_else(|| format!("contact {id} has not been reported yet"))?);
+            }
+            if let Some(other) = sent.next() {
+                let id = other.label();
+                return Err(format!(
+                    "contact {id:?} is not in the scene, or not in its order; a state without all contacts needs their ids"
+                ));
+            }
+        }
+        Ok(self.contacts.clone())
+    }
+
     /// Enters the ids of contacts that have none.
     pub fn fill_ids<'a>(&mut self, ids: impl Iterator<Item = &'a Id>) {
         for (found, id) in self.contacts.iter_mut().zip(ids) {
@@ -518,6 +555,16 @@ impl State {
 }
 
 impl ContactResult {
+    /// The same numbers after another iteration.
+    fn unchanged(&self) -> ContactResult {
+        ContactResult {
+            mode: self.next,
+            wanted: None,
+            forced: self.forced.filter(|forced| *forced == Forced::Held),
+            ..self.clone()
+        }
+    }
+
     /// The id for messages to the user.
     pub fn label(&self) -> String {
         self.id.as_ref().map_or_else(String::new, Id::to_string)

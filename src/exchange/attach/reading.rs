@@ -85,9 +85,13 @@ fn body<'a, T: Deserialize<'a>>(line: &'a str) -> Result<T, FormatError> {
 
 /// Converts a serde error to one with the message path and the column.
 fn broken(line: &str, path: &str, error: &serde_json::Error) -> FormatError {
-    let told = error.to_string();
+    let message = error.to_string();
     // The position is reported separately.
-    let mut told = told.split(" at line ").next().unwrap_or(&told).to_owned();
+    let mut message = message
+        .split(" at line ")
+        .next()
+        .unwrap_or(&message)
+        .to_owned();
     // serde_json counts columns in bytes.
     let at = error.column().saturating_sub(1).min(line.len());
     let mut at = (0..=at)
@@ -100,18 +104,18 @@ fn broken(line: &str, path: &str, error: &serde_json::Error) -> FormatError {
         .iter()
         .any(|none| line[letters.len()..].starts_with(none))
     {
-        told = "JSON has no NaN and infinity; write null instead".to_owned();
+        message = "JSON has no NaN and infinity; write null instead".to_owned();
         at = letters.len();
     }
     let mut letters = path.chars();
     let path: String = letters.by_ref().take(MOST_PATH).collect();
     let cut = if letters.next().is_some() { "…" } else { "" };
     if !path.is_empty() && path != "." {
-        told = format!("{path}{cut}: {told}");
+        message = format!("{path}{cut}: {message}");
     }
     match error.column() {
-        0 => FormatError::whole(told),
-        _ => FormatError::at(error.line().max(1), line[..at].chars().count() + 1, told),
+        0 => FormatError::whole(message),
+        _ => FormatError::at(error.line().max(1), line[..at].chars().count() + 1, message),
     }
 }
 
@@ -413,6 +417,30 @@ mod tests {
                 let count = damaged.chars().count();
                 prop_assert!(!broken.message.is_empty());
                 prop_assert!(broken.at.is_none_or(|(line, column)| line == 1 && column <= count + 1), "{:?}", broken);
+            }
+        }
+
+        #[test]
+        fn a_state_is_completed_to_the_contacts_of_the_scene_or_rejected(
+            before in prop::collection::vec(contact(), 0..4),
+            sent in prop::collection::vec(contact(), 0..4),
+            kept in prop::collection::vec(any::<bool>(), 4),
+        ) {
+            let ids: Vec<Id> = before.iter().filter_map(|found| found.id.clone()).collect();
+            let Answer::State(mut state) = Answer::read(r#"{"type":"state","at":{"increment":1},"ended":"iteration","contacts":[]}"#).expect("sound") else {
+                panic!("a state");
+            };
+            // A part of the contacts in their order is completed; others are not of this scene.
+            state.contacts = before.iter().zip(&kept).filter(|(_, kept)| **kept).map(|(found, _)| found.clone()).collect();
+            let rows = state.contacts.len();
+            let all = state.complete(&ids, &before).expect("in order");
+            prop_assert_eq!(all.len(), before.len());
+            let unchanged = all.iter().zip(&kept).filter(|(_, kept)| !**kept);
+            prop_assert!(unchanged.clone().all(|(found, _)| found.mode == found.next));
+            prop_assert_eq!(unchanged.count() + rows, before.len());
+            state.contacts = sent;
+            if state.complete(&ids, &before).is_ok() {
+                prop_assert!(state.contacts.len() >= ids.len());
             }
         }
 

@@ -73,19 +73,19 @@ pub struct ContactElements {
 /// If it cannot be read, a line is invalid, or its iterations are not in order.
 pub fn read(from: impl BufRead) -> Result<ContactElements, FormatError> {
     let mut lines = Lines::new(from);
-    let mut reading = Reading::default();
+    let mut reader = CelReader::default();
     while let Some(line) = lines.next()? {
         if !line.whole {
-            reading.found.stop = Some(Stop::Cut(line.number));
+            reader.found.stop = Some(Stop::Cut(line.number));
             break;
         }
         match line.bytes.first() {
             Some(b'*') if line.bytes.starts_with(b"**") => {}
-            Some(b'*') => reading.header(line)?,
-            _ => reading.data(line)?,
+            Some(b'*') => reader.header(line)?,
+            _ => reader.data(line)?,
         }
     }
-    Ok(reading.end())
+    Ok(reader.end())
 }
 
 /// The types of contact elements, and their numbers of nodes.
@@ -95,7 +95,7 @@ const MOST: usize = 8;
 
 /// State of the reader.
 #[derive(Default)]
-struct Reading {
+struct CelReader {
     found: ContactElements,
     slaves: HashMap<Slave, u32>,
     masters: HashMap<[u32; 4], u32>,
@@ -108,7 +108,7 @@ struct Reading {
     open: Option<usize>,
 }
 
-impl Reading {
+impl CelReader {
     fn header(&mut self, line: ResultLine) -> Result<(), FormatError> {
         if self.open.is_some() {
             let message = format!(

@@ -92,7 +92,7 @@ impl CalculixFiles {
         sta: Option<Table<FinishedAttempt>>,
         cvg: Option<Table<(RunPosition, Norms)>>,
     ) -> CalculixFiles {
-        let beside =
+        let optional =
             |stop: Option<Option<Stop>>| stop.map_or(OptionalFile::Missing, OptionalFile::Read);
         let mut run = CalculixFiles {
             slaves: cel.slaves,
@@ -101,8 +101,8 @@ impl CalculixFiles {
             iterations: Vec::new(),
             closed: cel.closed,
             cel: cel.stop,
-            sta: beside(sta.as_ref().map(|table| table.1)),
-            cvg: beside(cvg.as_ref().map(|table| table.1)),
+            sta: optional(sta.as_ref().map(|table| table.1)),
+            cvg: optional(cvg.as_ref().map(|table| table.1)),
             differs: None,
         };
         let mut all: BTreeMap<RunPosition, (Option<Range<usize>>, Option<Norms>)> = BTreeMap::new();

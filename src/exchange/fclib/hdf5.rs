@@ -53,21 +53,17 @@ pub fn read(bytes: Vec<u8>) -> Result<Problem, FormatError> {
         true => "fclib_local",
         false => "fclib_global",
     };
-    let part = Part {
+    let mut part = Part {
         file: &file,
         root,
         size,
+        dimension: 2,
     };
-    match part.whole("spacedim")? {
-        2 => {}
-        3 => {
-            return Err(part.broken(
-                "spacedim",
-                "is 3: the problem is three-dimensional; only plane problems (2) are supported",
-            ));
-        }
-        other => return Err(part.broken("spacedim", &format!("is {other}; it must be 2"))),
-    }
+    part.dimension = match part.whole("spacedim")? {
+        2 => 2,
+        3 => 3,
+        other => return Err(part.broken("spacedim", &format!("is {other}; it must be 2 or 3"))),
+    };
     match has("fclib_local") {
         true => local(&part),
         false => global(&part),
@@ -80,7 +76,7 @@ fn local(part: &Part<'_>) -> Result<Problem, FormatError> {
     part.pairs("W", &w, size)?;
     let local = Local {
         q: part.numbers("vectors/q", size)?,
-        mu: part.coefficients(size / 2)?,
+        mu: part.coefficients(size / part.dimension)?,
         w,
     };
     if !part.has("V") {
@@ -119,7 +115,7 @@ fn global(part: &Part<'_>) -> Result<Problem, FormatError> {
         h,
         f,
         b: part.numbers("vectors/w", size)?,
-        mu: part.coefficients(size / 2)?,
+        mu: part.coefficients(size / part.dimension)?,
     }))
 }
 
@@ -129,6 +125,8 @@ struct Part<'f> {
     root: &'static str,
     /// Size of the file in bytes.
     size: u64,
+    /// Components per contact.
+    dimension: usize,
 }
 
 impl Part<'_> {
@@ -220,12 +218,14 @@ impl Part<'_> {
 
     /// Rejects a size that is not two components per contact.
     fn pairs(&self, name: &str, of: &Matrix, size: usize) -> Result<(), FormatError> {
-        if size > 0 && size.is_multiple_of(2) {
+        let components = self.dimension;
+        if size > 0 && size.is_multiple_of(components) {
             let rows = if name == "W" { size } else { of.rows };
             return self.sized(name, of, rows, size);
         }
-        let what =
-            format!("has {size} columns; it must have two per contact, and at least one contact");
+        let what = format!(
+            "has {size} columns; it must have {components} per contact, and at least one contact"
+        );
         Err(self.broken(name, &what))
     }
 
@@ -327,7 +327,8 @@ pub fn write(problem: &Local, title: &str) -> Result<Vec<u8>, FormatError> {
     // Readable by every HDF5 library from version 1.8.
     file.with_libver_bounds(LibVer::Earliest, LibVer::V18);
     let mut local = file.create_group("fclib_local");
-    local.create_dataset("spacedim").with_i32_data(&[2]);
+    let dimension = if problem.dimension() == 3 { 3 } else { 2 };
+    local.create_dataset("spacedim").with_i32_data(&[dimension]);
     let mut w = local.create_group("W");
     write_matrix(&mut w, &problem.w)?;
     local.add_group(w.finish());
@@ -486,7 +487,8 @@ mod tests {
         };
         assert!(read(with(2, 2, 0.1)).is_ok());
         let cases = [
-            (with(3, 2, 0.1), "three-dimensional"),
+            (with(4, 2, 0.1), "must be 2 or 3"),
+            (with(3, 2, 0.1), "3 per contact"),
             (with(2, 3, 0.1), "2 rows and 3 columns"),
             (with(2, 2, -0.1), "negative"),
             (

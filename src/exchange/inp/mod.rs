@@ -88,7 +88,7 @@ fn whole(sources: &Sources, is_outline: bool) -> Done<Deck> {
     reader.deck.files = sources.names.clone();
     let mut readings = Vec::with_capacity(cards.len());
     for card in &cards {
-        readings.push(reader.known(card)?);
+        readings.push(reader.check_keyword(card)?);
     }
     for passes in [&[Pass::Mesh][..], &[Pass::Laws], &[Pass::Model, Pass::Step]] {
         for (card, reading) in cards.iter().zip(&readings) {
@@ -128,7 +128,7 @@ fn whole(sources: &Sources, is_outline: bool) -> Done<Deck> {
 
 impl Reader {
     /// Rejects unsupported keywords, and adds warnings about ignored ones.
-    fn known(&mut self, card: &Card<'_>) -> Done<Option<Reading>> {
+    fn check_keyword(&mut self, card: &Card<'_>) -> Done<Option<Reading>> {
         match card.key.as_str() {
             _ if self.is_outline => {}
             "ELEMENT" => drop(mesh::element_type(card, false)?),

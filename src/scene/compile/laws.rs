@@ -12,6 +12,7 @@ use stickslip_core::contact::projection::{project, projection_at};
 use stickslip_core::model::{
     Body, Bond, Contact, Dofs, Friction, InitialState, Mode, Node, Surface,
 };
+use stickslip_core::plane::{self, minus};
 
 /// Maximum distance that a tied node is moved, relative to the scene's length; nodes further away are not meant to be tied.
 const JOINED: f64 = 0.05;
@@ -207,13 +208,13 @@ fn cross(nodes: &[Node], surfaces: [&Surface; 2]) -> bool {
         surface.endless || (-TOUCHES..=1.0 + TOUCHES).contains(&part)
     };
     let [one, other] = surfaces.map(sides);
-    one.iter().any(|[a, b]| {
-        other.iter().any(|[c, d]| {
-            let (r, u) = ([b[0] - a[0], b[1] - a[1]], [d[0] - c[0], d[1] - c[1]]);
-            let to = [c[0] - a[0], c[1] - a[1]];
-            let turn = r[0] * u[1] - r[1] * u[0];
-            let along = (to[0] * u[1] - to[1] * u[0]) / turn;
-            let across = (to[0] * r[1] - to[1] * r[0]) / turn;
+    one.iter().any(|&[a, b]| {
+        other.iter().any(|&[c, d]| {
+            let (r, u) = (minus(b, a), minus(d, c));
+            let to = minus(c, a);
+            let turn = plane::cross(r, u);
+            let along = plane::cross(to, u) / turn;
+            let across = plane::cross(to, r) / turn;
             turn != 0.0 && on(along, surfaces[0]) && on(across, surfaces[1])
         })
     })

@@ -6,6 +6,7 @@ use crate::format::error::{AtPath, Fault, Path, bail, fault};
 use crate::format::spec::{Bar, BodySpec, Spec};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use stickslip_core::model::{Body, BodyKind, Dofs, Factor, Form, Linear, Load, Truss};
+use stickslip_core::plane::minus;
 use stickslip_exchange::problem::Matrix;
 
 /// A body given by a stiffness or a compliance. The degrees of freedom of a compliance's forces are numbered later, with all
@@ -220,7 +221,7 @@ fn direction(here: &Path, bar: &Bar, ends: &[usize], names: &Names) -> Result<[f
 /// The direction from one node to another.
 fn along(here: &Path, names: &Names, a: usize, b: usize) -> Result<[f64; 2], Fault> {
     let (a, b) = (&names.nodes[a], &names.nodes[b]);
-    let line = [b.at[0] - a.at[0], b.at[1] - a.at[1]];
+    let line = minus(b.at, a.at);
     let length = line[0].hypot(line[1]);
     if length == 0.0 {
         bail!(

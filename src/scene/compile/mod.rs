@@ -6,6 +6,7 @@
 mod arc;
 mod bodies;
 mod history;
+mod in_space;
 mod interface;
 mod laws;
 mod layout;
@@ -36,6 +37,9 @@ use stickslip_core::model::{InitialGaps, Model};
 pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     if let Some(text) = &spec.attached {
         return attached::compile(spec, text);
+    }
+    if let Some(problem) = &spec.in_space {
+        return in_space::compile(spec, problem);
     }
     history::memory(&spec.settings)?;
     check_texts(spec)?;

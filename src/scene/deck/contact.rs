@@ -8,6 +8,7 @@ use crate::format::error::at;
 use crate::format::error::bail;
 use crate::format::given::SideSet;
 use crate::format::spec::{Nodes, SlaveSpec, SurfaceSpec};
+use crate::geometry::distance_to_segment;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use stickslip_core::model::{InitialGaps, Mode};
 use stickslip_exchange::inp::DeckLocation;
@@ -433,7 +434,7 @@ impl DeckObjects<'_> {
         let is_near = |node: &usize| {
             lines
                 .iter()
-                .any(|line| distance(at(node), *line) <= tolerance)
+                .any(|(a, b)| distance_to_segment(at(node), *a, *b) <= tolerance)
         };
         let near: Vec<usize> = slaves.iter().copied().filter(is_near).collect();
         if near.is_empty() {
@@ -466,14 +467,4 @@ fn rough(coefficient: f64) -> FrictionSpec {
         angle: coefficient.atan().to_degrees(),
         ..FrictionSpec::default()
     }
-}
-
-/// Distance of a point from a line segment.
-fn distance(at: [f64; 2], (a, b): ([f64; 2], [f64; 2])) -> f64 {
-    let along = [b[0] - a[0], b[1] - a[1]];
-    let square = along[0] * along[0] + along[1] * along[1];
-    let from = [at[0] - a[0], at[1] - a[1]];
-    let part = ((from[0] * along[0] + from[1] * along[1]) / square).clamp(0.0, 1.0);
-    let part = if part.is_nan() { 0.0 } else { part };
-    (from[0] - part * along[0]).hypot(from[1] - part * along[1])
 }

@@ -163,7 +163,7 @@ fn shown(deck: &str, file: &str) -> String {
 fn included(deck: &FilePath, wanted: &str) -> Result<String, String> {
     let named = wanted.trim_start_matches("./");
     let quoted = |why: &dyn std::fmt::Display| format!("{}: {why}", error::quoted(wanted));
-    let path = input::beside(deck, named).map_err(|why| quoted(&why))?;
+    let path = input::path_in_folder(deck, named).map_err(|why| quoted(&why))?;
     text(&path).map_err(|why| quoted(&why))
 }
 
@@ -299,13 +299,13 @@ impl<'d> DeckObjects<'d> {
         debug_assert_eq!(origin.files.first().map(String::as_str), Some(name));
         let mut remarks = self.remarks;
         remarks.sort_by_key(|(place, _)| (place.file, place.line));
-        let told = |(place, text): (DeckLocation, String)| {
+        let located = |(place, text): (DeckLocation, String)| {
             let file = origin.files.get(place.file).map_or(name, String::as_str);
             format!("{file}:{}: {text}", place.line)
         };
         DeckScene {
             spec: self.spec,
-            remarks: remarks.into_iter().map(told).collect(),
+            remarks: remarks.into_iter().map(located).collect(),
             origin,
         }
     }

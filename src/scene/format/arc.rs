@@ -1,14 +1,12 @@
 //! `history.arc`: arc-length control.
 
 use super::described::macros::described;
-use serde::{Deserialize, Serialize};
 use stickslip_core::model::ArcLength;
 
 described! {
     /// Arc-length control (`control: arc`): every increment advances a given distance along the equilibrium path, and the load
     /// factor is an unknown. Sizes are lengths, or in the unit of the followed monitor.
-    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-    #[serde(deny_unknown_fields, default)]
+    #[serde(default)]
     pub struct ArcSpec {
         /// Displacement monitor whose changes define the increments. Default: none, all displacements are followed together along
         /// the tangent, and the size of an increment is the largest displacement along it.
@@ -40,8 +38,6 @@ described! {
 
 described! {
     /// A displacement that ends an arc-length history.
-    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-    #[serde(deny_unknown_fields)]
     pub struct EndSpec {
         /// Name of a displacement monitor.
         pub monitor: String,

@@ -8,12 +8,16 @@
 //! K (u − free λ) = load λ + f        or        u = free λ + W (load λ + f),        gap = gap_0 + u_n
 //! ```
 //!
+//! With `tangents: 2` the problem is one in space, given by W: three components (n, t, n × t) per contact, no loads, and gaps that
+//! `free` includes.
+//!
 //! A RON file that begins with `Contacts(` is such a problem, with the fields of [`Problem`]; [`Problem::text`] writes it.
 //! [`Problem::spec`] converts it to an ordinary scene: the contacts in a row above an endless floor y = 0, where u_n = u_y and
 //! u_t = −u_x.
 
 use super::contact_law::ContactLaw;
 use super::error::{Path, Step, at};
+use super::in_space::SpaceSpec;
 use super::notation;
 use super::spec::{BodySpec, History, LoadSpec, Nodes, SlaveSpec, Spec, SurfaceSpec};
 use serde::de::Error;
@@ -66,6 +70,9 @@ pub struct Problem {
     /// Description. Default: empty.
     #[serde(default)]
     pub about: String,
+    /// Tangential components of each contact: 1, or 2 in space. Default: 1.
+    #[serde(default = "one", deserialize_with = "tangents")]
+    pub tangents: usize,
     /// The contacts, in the order of the rows and columns of `matrix`.
     pub contacts: Vec<Contact>,
     /// Response of the body that carries the contacts.
@@ -83,6 +90,19 @@ pub struct Problem {
     /// Options of the method. Default: as for a scene.
     #[serde(default)]
     pub settings: Settings,
+}
+
+fn one() -> usize {
+    1
+}
+
+fn tangents<'de, D: Deserializer<'de>>(reader: D) -> Result<usize, D::Error> {
+    match usize::deserialize(reader)? {
+        tangents @ 1..=2 => Ok(tangents),
+        other => Err(D::Error::custom(format!(
+            "tangents is {other}; it must be 1, or 2 in space"
+        ))),
+    }
 }
 
 fn positive<'de, D: Deserializer<'de>>(reader: D) -> Result<Option<f64>, D::Error> {
@@ -140,6 +160,15 @@ impl Problem {
 
     /// The problem as a scene; compiling the scene checks it.
     pub fn spec(&self) -> Spec {
+        if self.tangents == 2 {
+            return Spec {
+                title: self.title.clone(),
+                about: self.about.clone(),
+                settings: self.settings,
+                in_space: Some(self.space()),
+                ..Spec::default()
+            };
+        }
         let spacing = self.length();
         let ids = || self.contacts.iter().map(|contact| contact.id.clone());
         let mut nodes: Vec<Nodes> = self
@@ -193,6 +222,43 @@ impl Problem {
         }
     }
 
+    /// What a problem in space cannot have; `None` if there is nothing.
+    pub(crate) fn unfit_in_space(&self) -> Option<&'static str> {
+        let loaded = |contact: &Contact| contact.load != [0.0; 2];
+        match &self.matrix {
+            _ if self.tangents == 1 => None,
+            Matrix::Stiffness(_) => Some("matrix: a problem in space needs a compliance"),
+            _ if self.contacts.iter().any(loaded) => {
+                Some("load: a problem in space has no loads; add W load to free")
+            }
+            _ => None,
+        }
+    }
+
+    /// The problem in space.
+    fn space(&self) -> SpaceSpec {
+        let contact = |contact: &Contact| (contact.id.clone(), contact.friction);
+        let mut free = self.free.clone();
+        free.resize(free.len().max(3 * self.contacts.len()), 0.0);
+        for (free, contact) in free.iter_mut().step_by(3).zip(&self.contacts) {
+            *free += contact.gap;
+        }
+        SpaceSpec {
+            contacts: self.contacts.iter().map(contact).collect(),
+            compliance: match &self.matrix {
+                Matrix::Entries(entries) => entries.clone(),
+                Matrix::Compliance(rows) | Matrix::Stiffness(rows) => {
+                    let row = |(i, row): (usize, &Vec<f64>)| {
+                        let entries = row.iter().enumerate().filter(|(_, w)| **w != 0.0);
+                        entries.map(|(j, &w)| (i, j, w)).collect::<Vec<_>>()
+                    };
+                    rows.iter().enumerate().flat_map(row).collect()
+                }
+            },
+            free,
+        }
+    }
+
     /// Length scale of the gaps and motions.
     fn length(&self) -> f64 {
         if let Some(spacing) = self.spacing {
@@ -218,6 +284,9 @@ impl Problem {
         text += &format!("{HEAD}(\n    title: {},\n", quoted(&self.title));
         if !self.about.is_empty() {
             text += &format!("    about: {},\n", quoted(&self.about));
+        }
+        if self.tangents != 1 {
+            text += &format!("    tangents: {},\n", self.tangents);
         }
         text += "    contacts: [\n";
         for contact in &self.contacts {

@@ -1,13 +1,11 @@
 //! The interaction between slave nodes and surfaces: contact law and friction.
 
 use super::described::macros::described;
-use serde::{Deserialize, Serialize};
 use stickslip_core::model::Friction;
 
 described! {
     /// The contact law between a slave node and its surface. Coulomb friction applies to the first two.
-    #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-    #[serde(deny_unknown_fields)]
+    #[derive(Copy, Default)]
     pub enum ContactLaw {
         /// g >= 0 and F_n >= 0, one of them zero.
         #[default]
@@ -34,8 +32,7 @@ impl ContactLaw {
 
 described! {
     /// Coulomb friction, eqn (20): |F_t| <= tan φ F_n + c, where c is `cohesion` + `adhesion` times the node's tributary area.
-    #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-    #[serde(deny_unknown_fields)]
+    #[derive(Copy, Default)]
     pub struct FrictionSpec {
         /// Friction angle φ in degrees, 0 <= φ < 90. Default: 0.
         #[serde(default)]

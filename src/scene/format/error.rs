@@ -3,7 +3,8 @@
 use crate::shown;
 use crate::shown::first_of;
 use std::fmt;
-use std::path::Path as FilePath;
+pub(crate) use stickslip_platform::similar::nearest;
+pub use stickslip_platform::similar::{did_you_mean, did_you_mean_file};
 
 /// One step from a value of the scene file to a value inside it.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
@@ -183,83 +184,6 @@ impl fmt::Display for SceneError {
     }
 }
 
-/// `; did you mean "beam.end"?` if a candidate is close enough to be a typo, else an empty string.
-pub fn did_you_mean<'a>(wrong: &str, candidates: impl IntoIterator<Item = &'a str>) -> String {
-    match nearest(wrong, candidates) {
-        Some(right) => format!("; did you mean {right:?}?"),
-        None => String::new(),
-    }
-}
-
-/// As [`did_you_mean`], for the path of a missing file and the files in its folder.
-pub fn did_you_mean_file(missing: &str) -> String {
-    let path = FilePath::new(missing);
-    let folder = path.parent().filter(|folder| *folder != FilePath::new(""));
-    let entries = stickslip_platform::disk::read_dir(folder.unwrap_or(FilePath::new(".")));
-    let names = entries.into_iter().flatten().flatten();
-    let in_folder =
-        |name| folder.map_or(FilePath::new("").join(&name), |folder| folder.join(&name));
-    let paths = names.map(|entry| in_folder(entry.file_name()));
-    let mut paths: Vec<String> = paths
-        .map(|path| path.to_string_lossy().into_owned())
-        .collect();
-    // The order of a folder differs between machines.
-    paths.sort_unstable();
-    did_you_mean(missing, paths.iter().map(String::as_str))
-}
-
-/// The candidate with the smallest edit distance, if that is at most a third of the differing part.
-///
-/// The common start and end are ignored, so `settings.foo` is not close to `settings.slip`, and `wall.ron` not to `beam.ron`.
-pub(crate) fn nearest<'a>(
-    wrong: &str,
-    candidates: impl IntoIterator<Item = &'a str>,
-) -> Option<&'a str> {
-    // Longer words are not typos, and the distance costs quadratic time.
-    const LONGEST: usize = 64;
-    let wrong: Vec<char> = wrong.chars().take(LONGEST + 1).collect();
-    let far = |right: &str| {
-        let right: Vec<char> = right.chars().take(LONGEST + 1).collect();
-        let same = wrong.iter().zip(&right).take_while(|(a, b)| a == b).count();
-        let (a, b) = (&wrong[same..], &right[same..]);
-        let end = a.iter().rev().zip(b.iter().rev());
-        let end = end.take_while(|(a, b)| a == b).count();
-        let (a, b) = (&a[..a.len() - end], &b[..b.len() - end]);
-        let most = a
-            .len()
-            .div_ceil(3)
-            .max(1)
-            .min(wrong.len().saturating_sub(1));
-        let possible = wrong.len().max(right.len()) <= LONGEST && a.len().abs_diff(b.len()) <= most;
-        possible.then(|| distance(a, b)).filter(|far| *far <= most)
-    };
-    candidates
-        .into_iter()
-        .filter_map(|right| far(right).map(|far| (far, right)))
-        .min_by_key(|(far, _)| *far)
-        .map(|(_, right)| right)
-}
-
-/// Edit distance in which swapping two adjacent characters counts as one change.
-fn distance(a: &[char], b: &[char]) -> usize {
-    let mut rows = vec![(0..=b.len()).collect::<Vec<usize>>()];
-    for i in 1..=a.len() {
-        let mut row = vec![i];
-        for j in 1..=b.len() {
-            let same = usize::from(a[i - 1] != b[j - 1]);
-            let mut best = (rows[i - 1][j] + 1)
-                .min(row[j - 1] + 1)
-                .min(rows[i - 1][j - 1] + same);
-            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
-                best = best.min(rows[i - 2][j - 2] + 1);
-            }
-            row.push(best);
-        }
-        rows.push(row);
-    }
-    rows[a.len()][b.len()]
-}
-
 /// Some of the names for a message, in quotes; the others are only counted.
 pub fn some_of<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     let quoted = names.into_iter().map(|name| format!("{name:?}"));
@@ -300,22 +224,5 @@ mod tests {
             "slaves[0].nodes[1]"
         );
         assert_eq!(Path::default().to_string(), "");
-    }
-
-    #[test]
-    fn typos_are_recognised_and_unrelated_words_are_not() {
-        assert_eq!(
-            nearest("beam.edn", ["floor.end", "beam.end", "beam.start"]),
-            Some("beam.end")
-        );
-        assert_eq!(nearest("refin", ["refine"]), Some("refine"));
-        assert_eq!(nearest("wall", ["beam.end", "floor"]), None);
-        assert_eq!(nearest("settings.foo", ["settings.slip"]), None);
-        assert_eq!(nearest("wall.ron", ["beam.ron"]), None);
-        assert_eq!(nearest("z", ["x"]), None);
-        assert_eq!(nearest("", ["x"]), None);
-        let chars = |text: &str| text.chars().collect::<Vec<_>>();
-        assert_eq!(distance(&chars("abcd"), &chars("abdc")), 1);
-        assert_eq!(distance(&[], &chars("abc")), 3);
     }
 }

@@ -1,13 +1,10 @@
 //! Parts of a mesh that is given node by node: elements, node sets and side sets.
 
 use super::described::macros::described;
-use serde::{Deserialize, Serialize};
 use stickslip_core::model::ElementKind;
 
 described! {
     /// Elements of a given mesh with the same kind and part.
-    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-    #[serde(deny_unknown_fields)]
     pub struct Cells {
         /// Name of the part; several lists may use the same name.
         pub part: String,
@@ -24,8 +21,6 @@ described! {
 
 described! {
     /// A named set of nodes of a given mesh.
-    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-    #[serde(deny_unknown_fields)]
     pub struct NodeSet {
         /// Name; `ID.name` refers to all these nodes.
         pub name: String,
@@ -36,8 +31,6 @@ described! {
 
 described! {
     /// A named set of element sides, or of lines that belong to no element, of a given mesh.
-    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-    #[serde(deny_unknown_fields)]
     pub struct SideSet {
         /// Name; `ID.name` can be used wherever a chain or an edge of a block can.
         pub name: String,

@@ -1,13 +1,10 @@
 //! The loads of a scene file and their amplitudes.
 
 use super::described::macros::described;
-use serde::{Deserialize, Serialize};
 use stickslip_core::model::Component;
 
 described! {
     /// A reference load; the applied load is its value times the load factor (or times the factor that `scale` assigns to it).
-    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-    #[serde(deny_unknown_fields)]
     pub enum LoadSpec {
         /// A dead point load.
         Force {

@@ -58,7 +58,12 @@ fn fields(form: &Form, all: &[Type]) -> String {
             Some(_) => "one of these words".to_owned(),
             None => field.kind.clone(),
         };
-        text += format!("- `{}`: {kind}{default}. {}", field.name, said(&field.docs)).trim_end();
+        text += format!(
+            "- `{}`: {kind}{default}. {}",
+            field.name,
+            without_default(&field.docs)
+        )
+        .trim_end();
         text.push('\n');
         for word in words.into_iter().flatten() {
             text += format!(
@@ -90,7 +95,7 @@ fn words<'a>(field: &Field, all: &'a [Type]) -> Option<&'a [Form]> {
 }
 
 /// A doc comment without a plain default at its end, because the default is shown separately.
-fn said(docs: &str) -> String {
+fn without_default(docs: &str) -> String {
     let docs = plain(docs);
     match docs.split_once("Default: ") {
         Some((before, default))

@@ -16,6 +16,7 @@ pub mod contact_law;
 pub mod described;
 pub mod error;
 pub mod given;
+pub mod in_space;
 pub mod kind;
 pub mod loads;
 pub mod locate;

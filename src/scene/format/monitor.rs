@@ -1,13 +1,10 @@
 //! `monitors`: the quantities that a scene reports.
 
 use super::described::macros::described;
-use serde::{Deserialize, Serialize};
 use stickslip_core::model::{Axis, Component, Mode};
 
 described! {
     /// A quantity to report after every converged increment.
-    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-    #[serde(deny_unknown_fields)]
     pub struct MonitorSpec {
         /// Column name in `--csv`.
         pub name: String => name,
@@ -18,8 +15,6 @@ described! {
 
 described! {
     /// The quantity that a monitor reports.
-    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-    #[serde(deny_unknown_fields)]
     pub enum Quantity {
         /// A displacement (or rotation) of a node.
         Displacement {

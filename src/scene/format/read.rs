@@ -1,7 +1,7 @@
 //! Reads the text of a file into a [`Spec`]; errors of syntax and type have a location.
 
 use super::condensed::Problem;
-use super::error::{Path, SceneError, did_you_mean, did_you_mean_file, quoted, shortened};
+use super::error::{Path, SceneError, did_you_mean, quoted, shortened};
 use super::kind::{FileKind, mistaken};
 use super::locate::{byte_at, line_and_column, locate, path_at, too_deep};
 use super::notation;
@@ -57,7 +57,7 @@ fn unreadable(file: &str, text: &str, what: &str, error: &SpannedError) -> Scene
     let of_value = line_and_column(text, value.start);
     // If a whole value is wrong, report its start. Otherwise report ron's cursor: the start of its span is closer to the error
     // than the end.
-    let (at, message) = match (wanted(&error.code), &error.code) {
+    let (at, message) = match (expected(&error.code), &error.code) {
         (Some(wanted), _) if !path.0.is_empty() => {
             let shown = shortened(text.get(value).unwrap_or_default());
             (
@@ -105,7 +105,7 @@ pub fn path_of(text: &str, error: &SpannedError) -> Path {
 }
 
 /// What was expected instead of the value.
-fn wanted(error: &ron::Error) -> Option<&'static str> {
+fn expected(error: &ron::Error) -> Option<&'static str> {
     use ron::Error as E;
     match error {
         E::ExpectedFloat => Some("a number"),
@@ -145,17 +145,7 @@ pub fn not_read(file: &str, error: &Unreadable) -> SceneError {
             Unreadable::NoText { line, column } => Some((*line, *column)),
             _ => None,
         },
-        ..SceneError::whole(file, format!("{error}{}", near(file, error)))
-    }
-}
-
-/// `; did you mean "clip.ron"?` for a missing file with a similar name.
-pub fn near(file: &str, error: &Unreadable) -> String {
-    match error {
-        Unreadable::Failed(error) if error.kind() == std::io::ErrorKind::NotFound => {
-            did_you_mean_file(file)
-        }
-        _ => String::new(),
+        ..SceneError::whole(file, error.to_string())
     }
 }
 

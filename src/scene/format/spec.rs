@@ -7,9 +7,9 @@ use super::arc::ArcSpec;
 use super::contact_law::{ContactLaw, FrictionSpec};
 use super::described::macros::described;
 use super::given::{Cells, NodeSet, SideSet};
+use super::in_space::SpaceSpec;
 pub use super::loads::{LoadSpec, Scale};
 pub use super::monitor::{MonitorSpec, Quantity};
-use serde::{Deserialize, Serialize};
 use stickslip_core::model::{
     Component, Control, ElementKind, InitialState, Jumps, Law, Mode, Plane, Settings, Update,
     least, on_leg,
@@ -21,8 +21,6 @@ pub type Point = (f64, f64);
 
 described! {
     /// A whole scene file.
-    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-    #[serde(deny_unknown_fields)]
     pub struct Spec {
         /// One-line title of the scene.
         pub title: String,
@@ -65,6 +63,9 @@ described! {
         /// solver can solve the scene (manual page `attaching`). Default: none.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub attached: Option<String> => skip,
+        /// An interface problem in space. Of the rest of the file only title, text and settings are used. Default: none.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        pub in_space: Option<SpaceSpec> => skip,
     }
 }
 
@@ -87,6 +88,7 @@ impl Default for Spec {
             settings: Settings::default(),
             monitors: Vec::new(),
             attached: None,
+            in_space: None,
         }
     }
 }
@@ -100,8 +102,6 @@ described! {
     ///
     /// The nodes of a chain are `ID.1`, `ID.2`, … in order. `ID.start`, `ID.end`, `ID@0.5` (at that fraction of the chain's
     /// parameter) and `ID.all` are independent of the refinement. The same names exist for each edge of a block.
-    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-    #[serde(deny_unknown_fields)]
     pub enum Nodes {
         /// A single node named `id`.
         Node {
@@ -267,8 +267,8 @@ fn joint_tolerance() -> f64 {
 
 described! {
     /// The curved sides of a block. Default of each: straight.
-    #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-    #[serde(deny_unknown_fields, default)]
+    #[derive(Default)]
+    #[serde(default)]
     pub struct Sides {
         /// Shape of the bottom side; straight if omitted.
         pub bottom: Option<Side>,
@@ -295,8 +295,6 @@ impl Sides {
 
 described! {
     /// A curved side of a block, from corner to corner.
-    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-    #[serde(deny_unknown_fields)]
     pub enum Side {
         /// The shorter circular arc between both corners, about a center at equal distance from them.
         Arc {
@@ -314,8 +312,8 @@ described! {
 
 described! {
     /// Position of a block: rotation, then translation.
-    #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
-    #[serde(deny_unknown_fields, default)]
+    #[derive(Copy, Default)]
+    #[serde(default)]
     pub struct BlockPosition {
         /// Rotation in degrees, anticlockwise. Default: 0.
         pub turn: f64,
@@ -328,8 +326,6 @@ described! {
 
 described! {
     /// A material or section.
-    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-    #[serde(deny_unknown_fields)]
     #[allow(non_snake_case)]
     pub enum Material {
         /// Section stiffnesses of a beam.
@@ -383,8 +379,6 @@ impl Material {
 
 described! {
     /// A deformable body.
-    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-    #[serde(deny_unknown_fields)]
     #[allow(non_snake_case)]
     pub enum BodySpec {
         /// A geometrically exact planar beam along a chain of nodes.
@@ -456,8 +450,6 @@ described! {
 described! {
     /// A linear bar between two nodes, or from one node to the ground. It resists relative motion along its angle only, in
     /// tension and compression, without a dead band.
-    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-    #[serde(deny_unknown_fields)]
     pub struct Bar {
         /// One or two nodes.
         pub nodes: Vec<String>,
@@ -471,8 +463,6 @@ described! {
 
 described! {
     /// A part of a solid with a different material: the elements whose midpoint lies in an axis-parallel rectangle.
-    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-    #[serde(deny_unknown_fields)]
     pub struct Region {
         /// Lower left corner.
         pub from: Point,
@@ -501,8 +491,6 @@ described! {
     ///
     /// The outward side is on the right when walking along the chain (the body is on the left, as on the boundary of a body
     /// walked anticlockwise). Nodes that belong to no body are fixed: the surface is rigid and adds no unknowns.
-    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-    #[serde(deny_unknown_fields)]
     pub struct SurfaceSpec {
         /// Name of the surface.
         pub id: String => name,
@@ -529,8 +517,6 @@ described! {
 
 described! {
     /// Slave nodes and the surfaces that they may touch.
-    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-    #[serde(deny_unknown_fields)]
     pub struct SlaveSpec {
         /// Names of nodes. `ID.all` means every node of a chain, and an edge such as `ID.left` of a block all its nodes, except
         /// nodes that cannot move if the surface cannot move either. A corner of two edges counts once.
@@ -561,8 +547,6 @@ described! {
 
 described! {
     /// Restrained degrees of freedom of a node.
-    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-    #[serde(deny_unknown_fields)]
     pub struct SupportSpec {
         /// Name of a node; `ID.all` for a whole chain.
         pub node: String,
@@ -573,8 +557,6 @@ described! {
 
 described! {
     /// The path of the load factor.
-    #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-    #[serde(deny_unknown_fields)]
     pub struct History {
         /// Corners of the path. The first one, usually 0, is the unloaded state.
         pub path: Vec<f64>,

@@ -3,6 +3,7 @@
 use super::super::geometry::Folds;
 use crate::format::error::{Fault, Path, bail, fault};
 use stickslip_core::model::{ElementKind, Node};
+use stickslip_core::plane::minus;
 
 /// An element: its kind and its node numbers, anticlockwise.
 pub(crate) type Element = (ElementKind, Vec<usize>);
@@ -72,7 +73,7 @@ pub(super) fn named(nodes: &[Node], some: &[usize]) -> String {
 /// Twice the area of a polygon; positive if anticlockwise.
 fn area(nodes: &[Node], around: &[usize]) -> f64 {
     let origin = around.first().map_or([0.0; 2], |&n| nodes[n].at);
-    let from = |n: usize| [nodes[n].at[0] - origin[0], nodes[n].at[1] - origin[1]];
+    let from = |n: usize| minus(nodes[n].at, origin);
     let pairs = around.iter().zip(around.iter().cycle().skip(1));
     pairs
         .map(|(&a, &b)| {

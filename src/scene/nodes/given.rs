@@ -14,7 +14,7 @@ use stickslip_core::model::Node;
 
 impl Names {
     /// Adds a mesh given node by node: the whole mesh, then its parts, sets and sides.
-    pub(super) fn given(&mut self, at: usize, nodes: &Nodes) -> Result<(), Fault> {
+    pub(super) fn add_mesh(&mut self, at: usize, nodes: &Nodes) -> Result<(), Fault> {
         let Nodes::Given {
             id,
             nodes: listed,

@@ -76,7 +76,7 @@ impl Names {
                 through(&here, points, *per_element, refine)?,
                 EntryKind::Chain(*per_element),
             ),
-            Nodes::Given { .. } => return self.given(at, nodes),
+            Nodes::Given { .. } => return self.add_mesh(at, nodes),
             Nodes::Import { file, .. } => {
                 bail!(
                     here.then("file"),

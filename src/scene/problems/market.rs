@@ -8,6 +8,8 @@
 //! NAME_f.mtx   loads on the contacts            2 m numbers; where it is missing there are none
 //! ```
 //!
+//! In space W and q have 3 m rows, and there is neither K nor f: the number of friction coefficients tells.
+//!
 //! The components are those of [`super::siconos`]. The user names the matrix file; the others are next to it. For a stiffness, q
 //! may be missing if f is given.
 
@@ -62,9 +64,10 @@ pub fn read(file: &str, text: &str, memory: Option<f64>) -> Result<Problem, Scen
     let names = MarketNames::from_file(Path::new(file)).map_err(whole)?;
     let matrix = matrix_market::read(text).map_err(|broken| read::of_file(file, broken))?;
     let size = matrix.rows;
-    if size == 0 || size != matrix.columns || !size.is_multiple_of(2) {
+    let divided = size.is_multiple_of(2) || size.is_multiple_of(3);
+    if size == 0 || size != matrix.columns || !divided {
         return Err(whole(format!(
-            "the matrix has {} rows and {} columns; it must be square, with two rows per contact, normal and tangential",
+            "the matrix has {} rows and {} columns; it must be square, with two rows per contact, normal and tangential, or three in space",
             matrix.rows, matrix.columns
         )));
     }
@@ -73,7 +76,7 @@ pub fn read(file: &str, text: &str, memory: Option<f64>) -> Result<Problem, Scen
         false => entries_fit(size / 2, matrix.entries.len() as f64, memory),
     }
     .map_err(whole)?;
-    let mu = column(&names, "mu", size / 2)?;
+    let mu = column(&names, "mu", &[size / 2, size / 3])?;
     let missing = |part: &str| {
         let path = names.part(part);
         whole(format!(
@@ -87,14 +90,22 @@ pub fn read(file: &str, text: &str, memory: Option<f64>) -> Result<Problem, Scen
         let why = format!("the friction coefficient is {wrong:?}; it must not be negative");
         return Err(SceneError::whole(&file, why));
     }
-    let f = column(&names, "f", size)?;
-    let q = column(&names, "q", size)?;
+    let tangents = size / mu.len() - 1;
+    let f = column(&names, "f", &[size])?;
+    let q = column(&names, "q", &[size])?;
+    if (tangents == 2 && (names.stiffness || f.is_some())) || (1 + tangents) * mu.len() != size {
+        return Err(whole(format!(
+            "the matrix has {size} rows for {} contacts; a problem in space has three per contact, and is given by W and q",
+            mu.len()
+        )));
+    }
     if q.is_none() && !(names.stiffness && f.is_some()) {
         return Err(missing("q"));
     }
     Ok(Problem {
         title: super::title(file),
         about: "An interface problem from Matrix Market files.".to_owned(),
+        tangents,
         contacts: contacts(&mu, &f.unwrap_or_default()),
         matrix: match names.stiffness {
             true => Matrix::Stiffness(matrix.dense()),
@@ -108,21 +119,29 @@ pub fn read(file: &str, text: &str, memory: Option<f64>) -> Result<Problem, Scen
 }
 
 /// The numbers in a file next to the matrix; `None` if it does not exist.
-fn column(names: &MarketNames, part: &str, size: usize) -> Result<Option<Vec<f64>>, SceneError> {
+fn column(
+    names: &MarketNames,
+    part: &str,
+    sizes: &[usize],
+) -> Result<Option<Vec<f64>>, SceneError> {
     let path = names.part(part);
     if !path.exists() {
         return Ok(None);
     }
     let file = path.display().to_string();
     let name = path.file_name().unwrap_or_default().to_string_lossy();
-    let path =
-        input::beside(&names.part("W"), &name).map_err(|why| SceneError::whole(&file, why))?;
+    let path = input::path_in_folder(&names.part("W"), &name)
+        .map_err(|why| SceneError::whole(&file, why))?;
     let text = super::text(&path)?;
     let read = matrix_market::read(&text).map_err(|broken| read::of_file(&file, broken))?;
-    if (read.rows, read.columns) != (size, 1) && (read.rows, read.columns) != (1, size) {
+    let size = read.rows.max(read.columns);
+    if read.rows.min(read.columns) != 1 || !sizes.contains(&size) {
+        let sizes: Vec<String> = sizes.iter().map(usize::to_string).collect();
         let why = format!(
-            "{part} has {} rows and {} columns; it must be a column of {size} numbers",
-            read.rows, read.columns
+            "{part} has {} rows and {} columns; it must be a column of {} numbers",
+            read.rows,
+            read.columns,
+            sizes.join(" or ")
         );
         return Err(SceneError::whole(&file, why));
     }

@@ -1,4 +1,4 @@
-//! Plane friction problems condensed to their contacts, as in Siconos and fclib:
+//! Friction problems condensed to their contacts, as in Siconos and fclib:
 //!
 //! ```text
 //! u = W r + q,     0 <= u_n ⊥ r_n >= 0,     |r_t| <= mu r_n, against u_t     (n, t of each contact in turn)
@@ -56,8 +56,14 @@ pub fn read(text: &str) -> Result<Friction2d, SiconosError> {
 /// As [`read`].
 pub fn read_within(text: &str, memory: Option<f64>) -> Result<Friction2d, SiconosError> {
     let local = local_within(text, memory, super::fits)?;
-    let problem = Friction2d::from_local(local);
-    Ok(problem)
+    match local.dimension() {
+        2 => Ok(Friction2d::from_local(local)),
+        other => Err(SiconosError {
+            line: 1,
+            column: 1,
+            message: format!("the dimension is {other}; it must be 2"),
+        }),
+    }
 }
 
 /// Reads such a file as a problem condensed to its contacts, if `fits` accepts the number of contacts.
@@ -149,6 +155,7 @@ pub(super) fn problem(local: Local, title: &str) -> Problem {
     Problem {
         title: title.to_owned(),
         about: "A friction problem in Siconos' format: u = W r + q.".to_owned(),
+        tangents: local.dimension() - 1,
         contacts: contacts(&local.mu, &[]),
         settings: settings(local.mu.len()),
         matrix: super::compliance(local.w),

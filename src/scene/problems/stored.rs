@@ -30,9 +30,9 @@ pub fn read(file: &str, text: &str, memory: Option<f64>) -> Result<Problem, Scen
     let spec: Stored = read::value(file, text, "stored stiffness")?;
     let place = |fault: Fault| placed(file, text, &[], fault);
     let named = |key: &str, name: &str| {
-        input::beside(std::path::Path::new(file), name).map_err(|why| {
-            let told = format!("{}: {why}", quoted(name));
-            place(Fault::new(at![key], told))
+        input::path_in_folder(std::path::Path::new(file), name).map_err(|why| {
+            let message = format!("{}: {why}", quoted(name));
+            place(Fault::new(at![key], message))
         })
     };
     let unknowns = match &spec.unknowns {
@@ -268,6 +268,7 @@ impl<'s> StoredParts<'s> {
         let lengths = motions.flatten().chain(spec.contacts.iter().map(|c| c.gap));
         let largest = lengths.map(f64::abs).fold(0.0, f64::max);
         Problem {
+            tangents: 1,
             title: spec.title.clone(),
             about: spec.about.clone(),
             contacts: self.contacts.iter().enumerate().map(contact).collect(),

@@ -1,5 +1,6 @@
 //! The branch tree, with the outcome and cost of each branch, and a comparison of the selected branch with the current one.
 
+use super::frame;
 use crate::app::App;
 use crate::columns::rows_shown;
 use crate::layout::Pane;
@@ -25,15 +26,14 @@ const NAME: usize = 12;
 /// Draws the tree and the comparison.
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let theme = &app.theme;
-    let focused = app.panes.focus == Pane::Branches;
     let Some(tree) = view.tree else {
-        paint::frame(buffer, area, "Branches", focused, theme);
+        frame(buffer, area, Pane::Branches, "Branches", app);
         return;
     };
     let all = verdicts::summaries(tree);
     let at = app.branch.min(all.len().saturating_sub(1));
     let title = format!("Branches  {}/{}", at + 1, all.len());
-    let inner = paint::frame(buffer, area, &title, focused, theme);
+    let inner = frame(buffer, area, Pane::Branches, &title, app);
     let order = verdicts::order(&all);
     let width = usize::from(inner.width);
     let compared = comparison(tree, &all, order.get(at).map_or(0, |o| o.0), app, view);

@@ -9,7 +9,7 @@ use ratatui::text::{Line, Span};
 use unicode_width::UnicodeWidthStr;
 
 /// Minimum width for a preview next to the list, and minimum height for a preview below it.
-const BESIDE: u16 = 110;
+const SIDE_BY_SIDE: u16 = 110;
 const BELOW: u16 = 16;
 /// Rows of a preview below the list, and columns of its picture.
 const ROWS: u16 = 7;
@@ -28,9 +28,9 @@ pub fn draw(buffer: &mut Buffer, area: Rect, chooser: &Chooser, app: &App) -> Re
     };
     let inner = paint::frame(buffer, area, &title, true, &app.theme);
     let width = width(&app.offers);
-    let beside = inner.width >= width.max(BESIDE - LOOK) + LOOK;
+    let side_by_side = inner.width >= width.max(SIDE_BY_SIDE - LOOK) + LOOK;
     let (list, preview) = match () {
-        _ if beside => {
+        _ if side_by_side => {
             let columns = [
                 Constraint::Length(width.max(inner.width / 2)),
                 Constraint::Fill(1),
@@ -60,7 +60,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, chooser: &Chooser, app: &App) -> Re
     match left.is_empty() {
         true => {
             let text = " no name or title contains these words; Esc clears them";
-            paint::lines(buffer, list, &[Line::styled(text, app.theme.faint)]);
+            paint::note(buffer, list, text, &app.theme);
         }
         false => paint::lines(buffer, list, &lines),
     }
@@ -68,7 +68,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, chooser: &Chooser, app: &App) -> Re
     let known = app.preview.as_ref();
     let seen = selected.and_then(|offer| known.filter(|preview| preview.name == offer.name));
     match (preview, seen) {
-        (Some(area), Some(preview)) => look(buffer, area, preview, beside, app),
+        (Some(area), Some(preview)) => look(buffer, area, preview, side_by_side, app),
         _ => Rect::ZERO,
     }
 }
@@ -129,7 +129,7 @@ fn lines<'a>(left: &[&'a Offer], at: usize, width: usize, app: &App) -> (Vec<Lin
 }
 
 /// Draws title and description of the selected entry, and returns the area for its picture.
-fn look(buffer: &mut Buffer, area: Rect, preview: &Preview, beside: bool, app: &App) -> Rect {
+fn look(buffer: &mut Buffer, area: Rect, preview: &Preview, side_by_side: bool, app: &App) -> Rect {
     let theme = &app.theme;
     let glance = match &preview.what {
         Ok(glance) => glance,
@@ -139,7 +139,7 @@ fn look(buffer: &mut Buffer, area: Rect, preview: &Preview, beside: bool, app: &
             return Rect::ZERO;
         }
     };
-    let (words, picture) = match beside {
+    let (words, picture) = match side_by_side {
         true => {
             let rows = description(glance, area.width, app).len() as u16 + 1;
             let rows = [Constraint::Length(rows.min(WORDS)), Constraint::Fill(1)];

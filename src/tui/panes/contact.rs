@@ -1,11 +1,13 @@
 //! The contact of the selected node: its geometry and force in numbers, and below them as many of three pictures as fit: the force
 //! in the Coulomb cone (in space, the friction circle with the slip) with the trail of the last iterations, T_max over the minor iterations as a cobweb, and who pushed the node.
 
+use super::frame;
 use crate::app::App;
 use crate::canvas::{Canvas, Dot};
 use crate::chartframe::ChartFrame;
 use crate::layout::Pane;
 use crate::paint;
+use crate::theme::Theme;
 use crate::view::View;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -42,8 +44,13 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let theme = &app.theme;
     let slave = app.slave(view);
     let name = view.slave(slave);
-    let focused = app.panes.focus == Pane::Contact;
-    let inner = paint::frame(buffer, area, &format!("Contact  {name}"), focused, theme);
+    let inner = frame(
+        buffer,
+        area,
+        Pane::Contact,
+        &format!("Contact  {name}"),
+        app,
+    );
     let say = |buffer: &mut Buffer, text: &str| {
         paint::lines(
             buffer,
@@ -204,8 +211,8 @@ fn draw_cone(
 ) {
     let theme = &app.theme;
     let area = headed(buffer, area, "Coulomb cone", app);
-    let (Some(cone), Some(now)) = (cone, trail.last()) else {
-        return paint::lines(buffer, area, &[Line::styled(" no force", theme.faint)]);
+    let (Some(cone), false) = (cone, trail.is_empty()) else {
+        return paint::note(buffer, area, " no force", theme);
     };
     let frame = ChartFrame::within(area, LABELS);
     let mut canvas = Canvas::new(frame.field);
@@ -228,17 +235,7 @@ fn draw_cone(
         .iter()
         .map(|point| dot([point.f_t, point.f_n]))
         .collect();
-    canvas.polyline(&dots, theme.faint);
-    canvas.render(buffer);
-    for (point, at) in trail.iter().zip(&dots) {
-        let (glyph, style) = match point == now {
-            true => ("●", theme.mode(point.mode).add_modifier(Modifier::BOLD)),
-            false => ("○", theme.mode(point.mode)),
-        };
-        if let Some(cell) = canvas.cell(*at).and_then(|at| buffer.cell_mut(at)) {
-            cell.set_symbol(glyph).set_style(style);
-        }
-    }
+    draw_trail(buffer, &mut canvas, trail, &dots, theme);
     frame.axis(buffer, theme.faint);
     frame.tick(buffer, 0, &tick(cone.f_n), theme.faint);
     let zero = canvas
@@ -246,6 +243,28 @@ fn draw_cone(
         .map_or(0, |(_, y)| y - frame.field.y);
     frame.tick(buffer, zero, "F_n 0", theme.faint);
     below(buffer, frame, [-cone.f_t, cone.f_t], "F_t", app);
+}
+
+/// Draws the canvas with a trail: a dot for each minor iteration, the last one filled.
+fn draw_trail(
+    buffer: &mut Buffer,
+    canvas: &mut Canvas,
+    trail: &[TrailPoint],
+    dots: &[Dot],
+    theme: &Theme,
+) {
+    canvas.polyline(dots, theme.faint);
+    canvas.render(buffer);
+    let last = dots.len().saturating_sub(1);
+    for (k, (point, at)) in trail.iter().zip(dots).enumerate() {
+        let (glyph, style) = match k == last {
+            true => ("●", theme.mode(point.mode).add_modifier(Modifier::BOLD)),
+            false => ("○", theme.mode(point.mode)),
+        };
+        if let Some(cell) = canvas.cell(*at).and_then(|at| buffer.cell_mut(at)) {
+            cell.set_symbol(glyph).set_style(style);
+        }
+    }
 }
 
 /// In space, the friction circle of radius T_max seen along n: the trail of F_t, and the slip as a ray.
@@ -262,7 +281,7 @@ fn circle(
     let sizes = trail.iter().map(|point| point.f_t).chain([radius]);
     let reach = 1.15 * sizes.filter(|size| size.is_finite()).fold(0.0, f64::max);
     if forces.is_empty() || reach <= 0.0 {
-        return paint::lines(buffer, area, &[Line::styled(" no friction", theme.faint)]);
+        return paint::note(buffer, area, " no friction", theme);
     }
     let mut canvas = Canvas::new(area);
     let [width, height] = canvas.size();
@@ -276,18 +295,7 @@ fn circle(
         canvas.line(dot([0.0; 2]), dot(on_circle(slip)), theme.good);
     }
     let dots: Vec<Dot> = forces.into_iter().map(dot).collect();
-    canvas.polyline(&dots, theme.faint);
-    canvas.render(buffer);
-    let last = dots.len().saturating_sub(1);
-    for (k, (point, at)) in trail.iter().zip(&dots).enumerate() {
-        let (glyph, style) = match k == last {
-            true => ("●", theme.mode(point.mode).add_modifier(Modifier::BOLD)),
-            false => ("○", theme.mode(point.mode)),
-        };
-        if let Some(cell) = canvas.cell(*at).and_then(|at| buffer.cell_mut(at)) {
-            cell.set_symbol(glyph).set_style(style);
-        }
-    }
+    draw_trail(buffer, &mut canvas, trail, &dots, theme);
 }
 
 /// A number at an axis.

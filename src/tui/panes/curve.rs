@@ -1,5 +1,6 @@
 //! The load factor over a monitor at each accepted increment up to the shown frame.
 
+use super::frame;
 use crate::app::App;
 use crate::canvas::Canvas;
 use crate::chartframe::ChartFrame;
@@ -29,9 +30,9 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         None => "Load".into(),
     };
     let title = paint::cut(&title, (area.width as usize).saturating_sub(4));
-    let inner = paint::frame(buffer, area, &title, app.panes.focus == Pane::Curve, theme);
+    let inner = frame(buffer, area, Pane::Curve, &title, app);
     let say = |buffer: &mut Buffer, text: &'static str| {
-        paint::lines(buffer, inner, &[Line::styled(text, theme.faint)]);
+        paint::note(buffer, inner, text, theme);
     };
     if monitors.is_empty() {
         return say(buffer, " This scene has no monitors.");

@@ -1,5 +1,6 @@
 //! The decision on the selected node: Table 2 with the cell that fired, and the tested inequalities with their values.
 
+use super::frame;
 use crate::app::App;
 use crate::layout::Pane;
 use crate::paint;
@@ -42,13 +43,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     } else {
         format!("Decision  {}", view.slave(slave))
     };
-    let inner = paint::frame(
-        buffer,
-        area,
-        &title,
-        app.panes.focus == Pane::Decision,
-        theme,
-    );
+    let inner = frame(buffer, area, Pane::Decision, &title, app);
     if view.model.finished.is_some() {
         let words = view.words(slave).unwrap_or("No decision at the start.");
         let lines = paint::wrapped(words, inner.width.into(), theme.text);

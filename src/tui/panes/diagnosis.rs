@@ -1,6 +1,7 @@
 //! The diagnosis: What, Why and Try, and below them the loop, the census, the rates and the details. Enter takes the selected line
 //! of Try. If nothing failed, the consistent states are listed side by side, and Enter starts from the selected one.
 
+use super::frame;
 use crate::app::App;
 use crate::layout::Pane;
 use crate::paint;
@@ -26,7 +27,6 @@ const MOST_LISTED: usize = 8;
 /// Draws the diagnosis.
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let theme = &app.theme;
-    let focused = app.panes.focus == Pane::Diagnosis;
     let width = usize::from(area.width.saturating_sub(2));
     let height = usize::from(area.height.saturating_sub(2));
     let mut title = "Diagnosis".to_string();
@@ -67,7 +67,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
             lines
         }
     };
-    let inner = paint::frame(buffer, area, &title, focused, theme);
+    let inner = frame(buffer, area, Pane::Diagnosis, &title, app);
     paint::lines(buffer, inner, &lines);
 }
 

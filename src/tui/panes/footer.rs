@@ -72,7 +72,7 @@ fn message(app: &App, view: Option<&View>, places: &ScreenAreas, width: usize) -
     if let (false, "", Some(tutor)) = (shown, app.message.text.as_str(), &app.learning.lesson) {
         return wrapped(&format!("▶ {}", tutor.todo()), width, theme.key);
     }
-    let mut lines = said(app, view, width);
+    let mut lines = message_lines(app, view, width);
     if let Some(notice) = &app.notice {
         lines.retain(|line| line.width() > 1);
         lines.splice(0..0, wrapped(notice, width, theme.bad));
@@ -118,7 +118,7 @@ fn question(app: &App, view: Option<&View>) -> Option<String> {
 }
 
 /// The last message, and the watches.
-fn said(app: &App, view: Option<&View>, width: usize) -> paint::Lines {
+fn message_lines(app: &App, view: Option<&View>, width: usize) -> paint::Lines {
     let theme = &app.theme;
     let aside = view.map_or("", |view| view.aside.as_str());
     let text = app.message.text.as_str();

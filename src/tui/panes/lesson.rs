@@ -18,7 +18,7 @@ pub fn rows(app: &App, width: u16) -> u16 {
     match &app.learning.lesson {
         Some(tutor) => {
             let todo = todo(tutor, inner, &app.theme);
-            2 + (said(tutor, inner, &app.theme).len() + todo.len()) as u16
+            2 + (tutor_lines(tutor, inner, &app.theme).len() + todo.len()) as u16
         }
         None => 0,
     }
@@ -31,7 +31,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App) {
     };
     let inner = paint::frame(buffer, area, &title(tutor, area.width), false, &app.theme);
     let (width, room) = room(area, tutor, &app.theme);
-    let mut lines = said(tutor, width, &app.theme);
+    let mut lines = tutor_lines(tutor, width, &app.theme);
     let (top, all) = (top(app, tutor, width, room), lines.len());
     let shown = top..(top + room).min(all);
     let same = app.learning.reading.edition == tutor.edition();
@@ -66,7 +66,7 @@ pub fn room(area: Rect, tutor: &Tutor, theme: &Theme) -> (usize, usize) {
 
 /// The first visible line: the latest addition to the text, or the top of a new page.
 pub fn top(app: &App, tutor: &Tutor, width: usize, room: usize) -> usize {
-    let all = said(tutor, width, &app.theme).len();
+    let all = tutor_lines(tutor, width, &app.theme).len();
     let (now, then) = (tutor.edition(), app.learning.reading.edition);
     let wanted = match now.0 == then.0 {
         true if now.1 == then.1 => app.learning.reading.top,
@@ -101,7 +101,7 @@ fn todo(tutor: &Tutor, width: usize, theme: &Theme) -> paint::Lines {
 }
 
 /// The tutor's text, wrapped. A mark precedes the reply to an answer, so that it does not depend on colour.
-pub fn said(tutor: &Tutor, width: usize, theme: &Theme) -> paint::Lines {
+pub fn tutor_lines(tutor: &Tutor, width: usize, theme: &Theme) -> paint::Lines {
     let page = tutor.page();
     let parts = page.iter().flat_map(|part| paragraph(part, width, theme));
     parts.collect()

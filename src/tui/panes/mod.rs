@@ -19,3 +19,14 @@ pub mod solver;
 pub mod status;
 pub mod timeline;
 pub mod workprecision;
+
+use crate::app::App;
+use crate::layout::Pane;
+use crate::paint;
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+
+/// Draws the frame of a pane, and returns the area inside.
+pub fn frame(buffer: &mut Buffer, area: Rect, pane: Pane, title: &str, app: &App) -> Rect {
+    paint::frame(buffer, area, title, app.panes.focus == pane, &app.theme)
+}

@@ -1,5 +1,6 @@
 //! The slave-node table: the values of every slave node in the shown minor iteration.
 
+use super::frame;
 use crate::app::App;
 use crate::columns::rows_shown;
 use crate::layout::Pane;
@@ -113,22 +114,9 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let at = order.iter().position(|slave| *slave == selected);
     let at = at.unwrap_or(0);
     let title = title(at, order.len(), count, app);
-    let inner = paint::frame(
-        buffer,
-        area,
-        &title,
-        app.panes.focus == Pane::Nodes,
-        &app.theme,
-    );
+    let inner = frame(buffer, area, Pane::Nodes, &title, app);
     if count == 0 {
-        paint::lines(
-            buffer,
-            inner,
-            &[Line::styled(
-                " This scene has no slave nodes.",
-                app.theme.faint,
-            )],
-        );
+        paint::note(buffer, inner, " This scene has no slave nodes.", &app.theme);
         return;
     }
     let longest = (0..count)

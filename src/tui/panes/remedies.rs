@@ -1,5 +1,6 @@
 //! The remedies that were tried, with their cost and result; the selected one can be applied.
 
+use super::frame;
 use crate::app::App;
 use crate::layout::Pane;
 use crate::paint;
@@ -22,12 +23,11 @@ const NAME: usize = 26;
 /// Draws the list.
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let theme = &app.theme;
-    let focused = app.panes.focus == Pane::Remedies;
     let tried = view.background.and_then(|background| background.tried());
     let Some(tried) = tried else {
-        let inner = paint::frame(buffer, area, "Remedies", focused, theme);
+        let inner = frame(buffer, area, Pane::Remedies, "Remedies", app);
         let text = " Press r to try every remedy separately from the shown state.";
-        paint::lines(buffer, inner, &[Line::styled(text, theme.faint)]);
+        paint::note(buffer, inner, text, theme);
         return;
     };
     let title = format!(
@@ -35,7 +35,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         tried.place.1,
         tried.place.0 + 1
     );
-    let inner = paint::frame(buffer, area, &title, focused, theme);
+    let inner = frame(buffer, area, Pane::Remedies, &title, app);
     let trying = view
         .background
         .is_some_and(|background| background.is_trying());

@@ -1,5 +1,6 @@
 //! The residual by major iteration in the shown increment, on a log scale, with its limit.
 
+use super::frame;
 use crate::app::App;
 use crate::convergence::{self, Point};
 use crate::layout::Pane;
@@ -26,19 +27,9 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
         None => "Residual by major iteration",
         Some(_) => "Residual by iteration of this attempt",
     };
-    let inner = paint::frame(
-        buffer,
-        area,
-        title,
-        app.panes.focus == Pane::Residual,
-        theme,
-    );
+    let inner = frame(buffer, area, Pane::Residual, title, app);
     let Some((_, last)) = view.residuals.last() else {
-        paint::lines(
-            buffer,
-            inner,
-            &[Line::styled(" No iteration yet.", theme.faint)],
-        );
+        paint::note(buffer, inner, " No iteration yet.", theme);
         return;
     };
     let words = |value: f64| short(value, view);

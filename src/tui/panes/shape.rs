@@ -3,6 +3,7 @@
 //! nodes, and slave nodes by the letters of their modes. Solids show the boundaries between materials, and their elements if these
 //! are large enough. Small displacements are magnified.
 
+use super::frame;
 use crate::app::App;
 use crate::camera::Camera;
 use crate::canvas::{Canvas, Dot};
@@ -59,7 +60,7 @@ const SPACING: f64 = 16.0;
 /// Draws the shape.
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let theme = &app.theme;
-    let inner = paint::frame(buffer, area, "Shape", app.panes.focus == Pane::Shape, theme);
+    let inner = frame(buffer, area, Pane::Shape, "Shape", app);
     if view.model.finished.is_some() {
         let none = "The files of this run contain no coordinates.";
         let lines = paint::wrapped(none, inner.width.into(), theme.faint);
@@ -88,7 +89,7 @@ pub fn picture(buffer: &mut Buffer, inner: Rect, app: &App, view: &View) -> Opti
     let (mut canvas, window) = field(inner, app, view);
     bodies(&mut canvas, &window, app, view);
     surfaces(&mut canvas, &window, app, view);
-    let given = given(view, &window);
+    let given = shown_conditions(view, &window);
     for (line, style, _) in given.arrows.iter().map(|one| drawn(one, &window, app)) {
         canvas.line(line[0], line[1], style);
     }
@@ -424,7 +425,7 @@ fn forces(window: &Window, view: &View) -> (Vec<[Dot; 2]>, f64) {
 }
 
 /// Supports, loads and prescribed motions.
-fn given(view: &View, window: &Window) -> Conditions {
+fn shown_conditions(view: &View, window: &Window) -> Conditions {
     let load_factor = match view.event() {
         Some(event) => event.load_factor,
         None => view.frame().state.load_factor,
@@ -548,14 +549,14 @@ fn slaves(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view
                 cell.set_style(style.add_modifier(Modifier::REVERSED));
             }
         }
-        let beside = (x + 1, y);
+        let right = (x + 1, y);
         let crowded = |&(a, b): &&(u16, u16)| a.abs_diff(x) < APART && b.abs_diff(y) < 2;
         if app.camera.zoom > 1.0 && seen.iter().filter(crowded).count() == 1 {
             name(buffer, canvas, (x + 2, y), view.slave(slave), theme.faint);
         }
         if found(view).is_some_and(|found| found.nodes.contains(&slave))
-            && canvas.area().contains(beside.into())
-            && let Some(cell) = buffer.cell_mut(beside)
+            && canvas.area().contains(right.into())
+            && let Some(cell) = buffer.cell_mut(right)
         {
             cell.set_symbol(MARK).set_style(theme.strong);
         }

@@ -162,7 +162,7 @@ fn rows(page: Page, width: usize, view: Option<&View>) -> Vec<Row> {
         return Vec::new();
     };
     match page {
-        Page::Log => said(attached.log.lines()),
+        Page::Log => log_rows(attached.log.lines()),
         Page::Run => printed(attached.log.lines().1, width),
         Page::Parameters => parameters(&attached.offers.parameters, width, view),
     }
@@ -185,7 +185,7 @@ fn printed(lines: Vec<stickslip_debugger::recorded::log::LogLine>, width: usize)
 }
 
 /// The log, one line per row, the newest last.
-fn said((first, lines): (usize, Vec<stickslip_debugger::recorded::log::LogLine>)) -> Vec<Row> {
+fn log_rows((first, lines): (usize, Vec<stickslip_debugger::recorded::log::LogLine>)) -> Vec<Row> {
     let faint = |text: String| Row {
         text,
         style: |theme| theme.faint,

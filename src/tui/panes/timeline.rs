@@ -4,6 +4,7 @@
 //! Rules separate majors and increments, a bracket marks a cycle, and forced modes are lower-case letters. Only the columns around
 //! the cursor are computed, so that drawing does not depend on the length of the history.
 
+use super::frame;
 use crate::app::App;
 use crate::columns::{self, Column, rows_shown};
 use crate::layout::Pane;
@@ -38,13 +39,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     if rows < count {
         title += &format!("  node {} of {count}, folded", selected + 1);
     }
-    let inner = paint::frame(
-        buffer,
-        area,
-        &title,
-        app.panes.focus == Pane::Timeline,
-        theme,
-    );
+    let inner = frame(buffer, area, Pane::Timeline, &title, app);
     if view.model.finished.is_some() && area.height > 2 {
         let legend = paint::cut(LETTERS, inner.width.into());
         buffer.set_string(inner.x, area.bottom() - 1, legend, theme.faint);

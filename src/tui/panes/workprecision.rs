@@ -44,7 +44,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, page: &ChartPage, theme: &Theme) {
     let title = format!("Work and precision  {}{number}", chart.title);
     let inner = paint::frame(buffer, area, &title, true, theme);
     if inner.height < BELOW + 4 || inner.width < LEFT + 12 {
-        paint::lines(buffer, inner, &[Line::styled("no room", theme.faint)]);
+        paint::note(buffer, inner, "no room", theme);
         return;
     }
     let legend = if inner.width >= LEFT + 40 + LEGEND {

@@ -11,6 +11,7 @@ use crate::contact::point_force;
 use crate::contact::projection::SurfacePoint;
 use crate::fem::lagrange::{MAX_NODES, gauss};
 use crate::model::{Contact, PointGive, Surface};
+use crate::plane::dot;
 
 /// The interface in one configuration, with its forces.
 #[derive(Debug, Clone, Copy)]
@@ -203,7 +204,7 @@ impl Line {
             element.shape(spot.xi),
         );
         let [x, d, dd] = [&s.n, &s.d, &s.dd].map(|weights| places.sum(weights));
-        let m = d[0] * d[0] + d[1] * d[1];
+        let m = dot(d, d);
         let away = (point[0] - x[0]) * dd[0] + (point[1] - x[1]) * dd[1];
         (m > 0.0).then(|| Line {
             normal: [d[1] / m.sqrt(), -d[0] / m.sqrt()],
@@ -340,11 +341,11 @@ pub fn hand_on(
             seen.point(slave),
         );
         let [x, d] = [&s.n, &s.d].map(|weights| places.sum(weights));
-        let m = d[0] * d[0] + d[1] * d[1];
+        let m = dot(d, d);
         let across = [d[1], -d[0]];
         // (g / √m) (F · t) n, the weight of dx/dξ of the element.
         let gap = (at[0] - x[0]) * across[0] + (at[1] - x[1]) * across[1];
-        let along = force[0] * d[0] + force[1] * d[1];
+        let along = dot(force, d);
         moment = across.map(|n| gap * along * n / (m * m));
     }
     for k in 0..2 {

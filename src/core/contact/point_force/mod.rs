@@ -36,6 +36,7 @@ pub use pair::Pair;
 use crate::contact::element::SurfaceElement;
 use crate::contact::projection::{Projection, SurfacePoint, tangent};
 use crate::model::{PointGive, Surface};
+use crate::plane::length;
 
 /// Local flexibilities of the element at a surface point. `None` if the element has none.
 pub fn of(surface: &Surface, spot: SurfacePoint) -> Option<PointGive> {
@@ -59,7 +60,7 @@ pub fn turned_end(surface: &Surface, end: SurfacePoint, slope: [f64; 2], f_n: f6
         return slope;
     };
     let degree = SurfaceElement::from_surface(surface, end.element).degree();
-    let size = (slope[0] * slope[0] + slope[1] * slope[1]).sqrt();
+    let size = length(slope);
     let own = Pair::new(&give, degree, end.xi, end.xi);
     let a = tilt(&own, 1.0 / size, f_n, &OtherForces::default());
     let across = tangent(slope);

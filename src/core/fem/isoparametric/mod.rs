@@ -19,10 +19,10 @@
 //!   c : ε with the moduli of the small-strain law, and on acceptance σ = f S fᵀ / det f. Rigid motions cause no strain here
 //!   either, but the path is approximated by chords: the result depends on the increment size.
 //!
-//! In both cases force and tangent are pure functions of (shape, [`PreviousState`], current displacements), and the tangent is exact.
+//! In both cases force and tangent are pure functions of (shape, [`Previous`], current displacements), and the tangent is exact.
 
 use crate::elements::kinds::continuum_kind::Parent;
-use crate::fem::element::{self, PreviousState};
+use crate::fem::element::{self, Previous};
 use crate::fem::material::{Material, Response};
 use crate::model::{Law, Update};
 use nalgebra::{Matrix2, Vector3};
@@ -183,7 +183,7 @@ impl<const N: usize, const P: usize, const HOOP: bool> ContinuumElement<N, P, HO
         }
     }
 
-    fn reference(&self, past: &PreviousState<'_>, u: &[f64]) -> Reference<N> {
+    fn reference(&self, past: &Previous<'_>, u: &[f64]) -> Reference<N> {
         let mut reference = Reference {
             at: self.at,
             u: pairs(u),
@@ -201,12 +201,7 @@ impl<const N: usize, const P: usize, const HOOP: bool> ContinuumElement<N, P, HO
     }
 
     /// Gauss point p; `None` if the material has no response, or the reference shape is folded.
-    fn point(
-        &self,
-        reference: &Reference<N>,
-        past: &PreviousState<'_>,
-        p: usize,
-    ) -> Option<Point<N>> {
+    fn point(&self, reference: &Reference<N>, past: &Previous<'_>, p: usize) -> Option<Point<N>> {
         let Gradients { grad, area } = match self.update {
             Update::Total | Update::Small => self.points[p],
             Update::Updated => gradients(&self.rule[p], &reference.at),
@@ -244,7 +239,7 @@ impl<const N: usize, const P: usize, const HOOP: bool> ContinuumElement<N, P, HO
     /// The same in axisymmetry.
     fn point_of_revolution(
         &self,
-        past: &PreviousState<'_>,
+        past: &Previous<'_>,
         p: usize,
         (grad, area): ([[f64; 2]; N], f64),
         h: [[f64; 2]; 2],
@@ -282,12 +277,12 @@ impl<const N: usize, const P: usize, const HOOP: bool> ContinuumElement<N, P, HO
     }
 
     /// States of all Gauss points.
-    pub fn point_states(&self, past: &PreviousState<'_>, u: &[f64]) -> Vec<Option<PointState>> {
+    pub fn point_states(&self, past: &Previous<'_>, u: &[f64]) -> Vec<Option<PointState>> {
         (0..P).map(|p| self.point_state(past, u, p)).collect()
     }
 
     /// State of Gauss point p; `None` if the material has no response.
-    pub fn point_state(&self, past: &PreviousState<'_>, u: &[f64], p: usize) -> Option<PointState> {
+    pub fn point_state(&self, past: &Previous<'_>, u: &[f64], p: usize) -> Option<PointState> {
         let h = slope(&self.points[p].grad, &pairs(u));
         let gradient = plus_identity(&h);
         let (cauchy, across) = if self.update == Update::Small {
@@ -342,13 +337,7 @@ impl<const N: usize, const P: usize, const HOOP: bool> element::Element
         history_len(self.update, P)
     }
 
-    fn add(
-        &self,
-        past: &PreviousState<'_>,
-        u: &[f64],
-        force: &mut [f64],
-        tangent: &mut [f64],
-    ) -> bool {
+    fn add(&self, past: &Previous<'_>, u: &[f64], force: &mut [f64], tangent: &mut [f64]) -> bool {
         let dofs = 2 * N;
         let reference = self.reference(past, u);
         let mut terms = [Terms::default(); P];
@@ -392,13 +381,7 @@ impl<const N: usize, const P: usize, const HOOP: bool> element::Element
         true
     }
 
-    fn resist(
-        &self,
-        past: &PreviousState<'_>,
-        u: &[f64],
-        force: &mut [f64],
-        _: &mut [f64],
-    ) -> bool {
+    fn resist(&self, past: &Previous<'_>, u: &[f64], force: &mut [f64], _: &mut [f64]) -> bool {
         let reference = self.reference(past, u);
         for p in 0..P {
             let Some(point) = self.point(&reference, past, p) else {
@@ -418,7 +401,7 @@ impl<const N: usize, const P: usize, const HOOP: bool> element::Element
         true
     }
 
-    fn advance(&self, past: &PreviousState<'_>, u: &[f64], history: &mut [f64]) {
+    fn advance(&self, past: &Previous<'_>, u: &[f64], history: &mut [f64]) {
         if self.update != Update::Updated {
             return;
         }

@@ -4,6 +4,7 @@
 use super::*;
 use crate::elements::kinds::quad8;
 use crate::fem::element::Element as _;
+use crate::fem::tests::elastic;
 use crate::model::Elastic;
 use crate::model::Plane;
 
@@ -11,17 +12,6 @@ const NODES: usize = 8;
 const DOFS: usize = 2 * NODES;
 const POINTS: usize = 9;
 type Quad = ContinuumElement<NODES, POINTS, false>;
-
-fn elastic(law: Law, plane: Plane, update: Update) -> Elastic {
-    Elastic {
-        young: 100.0,
-        poisson: 0.3,
-        law,
-        plane,
-        thickness: 0.7,
-        update,
-    }
-}
 
 /// All combinations of options.
 fn kinds() -> Vec<Elastic> {
@@ -68,7 +58,7 @@ fn past() -> (Vec<f64>, Vec<f64>) {
     (u, history)
 }
 
-fn evaluate(element: &Quad, past: &PreviousState<'_>, u: &[f64]) -> (Vec<f64>, Vec<f64>) {
+fn evaluate(element: &Quad, past: &Previous<'_>, u: &[f64]) -> (Vec<f64>, Vec<f64>) {
     let (mut f, mut k) = (vec![0.0; DOFS], vec![0.0; DOFS * DOFS]);
     assert!(element.add(past, u, &mut f, &mut k));
     element.mirror(&mut k);
@@ -94,7 +84,7 @@ fn a_rigid_motion_causes_no_strain_and_rotates_the_stress() {
     for kind in kinds() {
         for angle in [0.3_f64, 2.5, -7.0] {
             let element = element(&kind);
-            let past = PreviousState {
+            let past = Previous {
                 u: &rest,
                 history: &none,
             };
@@ -104,7 +94,7 @@ fn a_rigid_motion_causes_no_strain_and_rotates_the_stress() {
     }
     let (_, history) = past();
     let element = element(&elastic(Law::Svk, Plane::Stress, Update::Updated));
-    let past = PreviousState {
+    let past = Previous {
         u: &rest,
         history: &history,
     };
@@ -125,7 +115,7 @@ fn kind_scale(history: &[f64]) -> f64 {
 #[test]
 fn a_small_updated_step_equals_a_total_one() {
     let (rest, none) = ([0.0; DOFS], [0.0; MEMORY * POINTS]);
-    let past = PreviousState {
+    let past = Previous {
         u: &rest,
         history: &none,
     };
@@ -144,7 +134,7 @@ fn a_small_updated_step_equals_a_total_one() {
 fn cauchy_stress_is_in_balance_with_the_force() {
     // Virtual power of a uniform velocity gradient: Σ f_i · v_i = ∫ σ : grad v dv, for a homogeneous state.
     let (rest, none) = ([0.0; DOFS], [0.0; MEMORY * POINTS]);
-    let past = PreviousState {
+    let past = Previous {
         u: &rest,
         history: &none,
     };
@@ -190,7 +180,7 @@ fn cauchy_stress_is_in_balance_with_the_force() {
 
 #[test]
 fn an_inverted_element_has_no_response_where_the_law_excludes_inversion() {
-    let past = PreviousState {
+    let past = Previous {
         u: &[0.0; DOFS],
         history: &[],
     };

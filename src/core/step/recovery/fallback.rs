@@ -29,7 +29,7 @@ pub(super) const DEEPER: f64 = 4096.0;
 
 crate::words! {
     /// A fallback.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+    #[derive(PartialOrd, Ord, Serialize, Deserialize)]
     #[serde(rename_all = "kebab-case")]
     pub enum Fallback, words {
         /// Nodes that touch at the start of the history, without a gap, start fixed.

@@ -32,6 +32,7 @@ use crate::contact::tracking::leave_border;
 use crate::interface::kinematics::{NodeIncrement, NodeKinematics};
 use crate::linear::source::SolveResult;
 use crate::model::{BoundUpdate, Friction, Mode};
+use crate::plane::minus;
 use crate::step::arc_state::{ArcState, Change};
 use crate::step::event::{Failure, Outcome};
 use crate::step::iterate::Iterate;
@@ -143,7 +144,6 @@ impl Iterate {
             return Err(Failure::PathReversal);
         }
         let (still, there) = self.solve_tangent()?;
-        let minus = |a: [f64; 2], b: [f64; 2]| [a[0] - b[0], a[1] - b[1]];
         let rates = given.iter().zip(&there).map(|(a, b)| NodeIncrement {
             force: minus(a.force, b.force),
             motion: minus(a.motion, b.motion),

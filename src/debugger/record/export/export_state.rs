@@ -45,7 +45,6 @@ pub struct ExportState<'a> {
 
 stickslip_core::words! {
     /// A part of a picture.
-    #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum PicturePart, ALL, word {
         /// The deformed shape.
         Shape "shape",

@@ -291,6 +291,7 @@ fn text(
             continue;
         };
         let written = Problem {
+            tangents: 1,
             title: shortened(&title),
             about: String::new(),
             contacts: (0..count)

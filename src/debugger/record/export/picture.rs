@@ -6,7 +6,6 @@
 
 use super::chart;
 use super::export_state::{ExportError, ExportState, PicturePart};
-use super::pressures::pressures;
 use super::timeline::{self, chosen, colour};
 use super::window::{FORCE, Window};
 use crate::explain::conditions::{Given, conditions};
@@ -200,15 +199,6 @@ fn pen(width: f64, colour: Colour) -> Pen {
     }
 }
 
-fn stroke(sheet: &mut Sheet, window: &Window, points: &[Point], pen: &Pen) {
-    for chain in window.inside(&curve(points)) {
-        match pen.dashed {
-            true => sheet.dashed(&chain, pen.width, pen.colour),
-            false => sheet.line(&chain, pen.width, pen.colour),
-        }
-    }
-}
-
 fn shape(
     sheet: &mut Sheet,
     shown: &ExportState,
@@ -225,17 +215,23 @@ fn shape(
     };
     let seen = extent(model, OBLIQUE, &now).unwrap_or(Bounds::UNIT);
     let window = Window::new(&seen, patch, room(shown));
-    let mut taken = OccupiedArea::within(patch);
-    bodies(sheet, &window, model, &now, &mut taken);
-    surfaces(sheet, &window, model, &now, &mut taken);
-    gaps(sheet, &window, shown, &now);
-    let pressure = pressures(sheet, &window, shown, &now);
-    let marked = radius(&window, model, &now);
-    given(sheet, &window, shown, &now, marked, &mut taken);
-    let largest = forces(sheet, &window, shown, &now, marked, &mut taken);
-    slaves(sheet, &window, shown, &now, rows, marked, &mut taken)?;
-    sheet.height = top + high + 0.5 * MARGIN;
-    legend(sheet, &window, shown, largest, magnified)?;
+    let mut shape = ShapeDrawing {
+        marked: radius(&window, model, &now),
+        taken: OccupiedArea::within(patch),
+        sheet,
+        window,
+        shown,
+        now: &now,
+    };
+    shape.bodies();
+    shape.surfaces();
+    shape.gaps();
+    let pressure = shape.pressures();
+    shape.conditions();
+    let largest = shape.forces();
+    shape.slaves(rows)?;
+    shape.sheet.height = top + high + 0.5 * MARGIN;
+    shape.legend(largest, magnified)?;
     if pressure > 0.0 {
         let text = format!(
             "blue: contact pressure F_n / A on undeformed areas, maximum {}",
@@ -246,115 +242,295 @@ fn shape(
     Ok(())
 }
 
-/// Undeformed (dashed) and deformed elements.
-fn bodies(
-    sheet: &mut Sheet,
-    window: &Window,
-    model: &Model,
-    now: &dyn Fn(usize) -> Point,
-    taken: &mut OccupiedArea,
-) {
-    let lines = || model.bodies.iter().flat_map(|body| body.kind.lines());
-    let before = Pen {
-        dashed: true,
-        ..pen(1.0, (150, 150, 150))
-    };
-    for element in lines() {
-        let points: Vec<Point> = element
-            .iter()
-            .map(|&node| OBLIQUE.at(model, node))
-            .collect();
-        stroke(sheet, window, &points, &before);
-    }
-    for body in &model.bodies {
-        let BodyKind::Solid(solid) = &body.kind else {
-            continue;
-        };
-        for SolidElement { kind, nodes, .. } in &solid.elements {
-            let across = kind.faces().len() / 2;
-            let (a, b) = (now(nodes[0]), now(nodes[across]));
-            if (a[0] - b[0]).hypot(a[1] - b[1]) * window.scale < ELEMENT {
-                continue;
-            }
-            for face in kind.faces_of(nodes) {
-                let points: Vec<Point> = face.iter().map(|&node| now(node)).collect();
-                stroke(sheet, window, &points, &pen(0.7, PALE));
-            }
-        }
-    }
-    for element in lines() {
-        let points: Vec<Point> = element.iter().map(|&node| now(node)).collect();
-        stroke(sheet, window, &points, &pen(2.0, DARK));
-        for chain in window.inside(&curve(&points)) {
-            for pair in chain.windows(2) {
-                taken.take_line(pair[0], pair[1]);
-            }
-        }
-    }
+/// A shape being drawn.
+pub(super) struct ShapeDrawing<'a> {
+    pub sheet: &'a mut Sheet,
+    pub window: Window,
+    pub shown: &'a ExportState<'a>,
+    /// Deformed position of a node.
+    now: &'a dyn Fn(usize) -> Point,
+    /// Size of the markers of slave nodes.
+    marked: f64,
+    /// What labels must not cover.
+    taken: OccupiedArea,
 }
 
-/// Master surfaces, with arrows to their outward side: on the right in the direction of travel.
-fn surfaces(
-    sheet: &mut Sheet,
-    window: &Window,
-    model: &Model,
-    now: &dyn Fn(usize) -> Point,
-    taken: &mut OccupiedArea,
-) {
-    for surface in &model.surfaces {
-        let mut walked = 0.5 * SPACING;
-        for element in SurfaceElement::all(surface) {
-            let points = outline::element(element, now);
-            stroke(sheet, window, &points, &pen(2.6, BLACK));
-            for chain in window.inside(&curve(&points)) {
+impl ShapeDrawing<'_> {
+    /// Deformed position of a node on the sheet.
+    pub fn at(&self, node: usize) -> (f64, f64) {
+        self.window.at((self.now)(node))
+    }
+
+    fn stroke(&mut self, points: &[Point], pen: &Pen) {
+        for chain in self.window.inside(&curve(points)) {
+            match pen.dashed {
+                true => self.sheet.dashed(&chain, pen.width, pen.colour),
+                false => self.sheet.line(&chain, pen.width, pen.colour),
+            }
+        }
+    }
+
+    /// Undeformed (dashed) and deformed elements.
+    fn bodies(&mut self) {
+        let model = &self.shown.scene.model;
+        let lines = || model.bodies.iter().flat_map(|body| body.kind.lines());
+        let before = Pen {
+            dashed: true,
+            ..pen(1.0, (150, 150, 150))
+        };
+        for element in lines() {
+            let points: Vec<Point> = element
+                .iter()
+                .map(|&node| OBLIQUE.at(model, node))
+                .collect();
+            self.stroke(&points, &before);
+        }
+        for body in &model.bodies {
+            let BodyKind::Solid(solid) = &body.kind else {
+                continue;
+            };
+            for SolidElement { kind, nodes, .. } in &solid.elements {
+                let across = kind.faces().len() / 2;
+                let (a, b) = ((self.now)(nodes[0]), (self.now)(nodes[across]));
+                if (a[0] - b[0]).hypot(a[1] - b[1]) * self.window.scale < ELEMENT {
+                    continue;
+                }
+                for face in kind.faces_of(nodes) {
+                    let points: Vec<Point> = face.iter().map(|&node| (self.now)(node)).collect();
+                    self.stroke(&points, &pen(0.7, PALE));
+                }
+            }
+        }
+        for element in lines() {
+            let points: Vec<Point> = element.iter().map(|&node| (self.now)(node)).collect();
+            self.stroke(&points, &pen(2.0, DARK));
+            for chain in self.window.inside(&curve(&points)) {
                 for pair in chain.windows(2) {
-                    taken.take_line(pair[0], pair[1]);
-                    normals(sheet, pair[0], pair[1], &mut walked, taken);
+                    self.taken.take_line(pair[0], pair[1]);
                 }
             }
         }
     }
-}
 
-fn normals(
-    sheet: &mut Sheet,
-    from: (f64, f64),
-    to: (f64, f64),
-    walked: &mut f64,
-    taken: &mut OccupiedArea,
-) {
-    let (x, y) = (to.0 - from.0, to.1 - from.1);
-    let length = x.hypot(y);
-    if length <= 0.0 || !length.is_finite() {
-        return;
+    /// Master surfaces, with arrows to their outward side: on the right in the direction of travel.
+    fn surfaces(&mut self) {
+        for surface in &self.shown.scene.model.surfaces {
+            let mut walked = 0.5 * SPACING;
+            for element in SurfaceElement::all(surface) {
+                let points = outline::element(element, self.now);
+                self.stroke(&points, &pen(2.6, BLACK));
+                for chain in self.window.inside(&curve(&points)) {
+                    for pair in chain.windows(2) {
+                        self.taken.take_line(pair[0], pair[1]);
+                        self.normals(pair[0], pair[1], &mut walked);
+                    }
+                }
+            }
+        }
     }
-    let (x, y) = (x / length, y / length);
-    while *walked < length {
-        let foot = (from.0 + *walked * x, from.1 + *walked * y);
-        // On the right in the direction of travel; y points down on the sheet.
-        let tip = (foot.0 - NORMAL * y, foot.1 + NORMAL * x);
-        sheet.arrow(foot, tip, 1.0, GREY);
-        taken.take_line(foot, tip);
-        *walked += SPACING;
-    }
-    *walked -= length;
-}
 
-/// Open gaps as lines from node to surface, if they are wide enough to see.
-fn gaps(sheet: &mut Sheet, window: &Window, shown: &ExportState, now: &dyn Fn(usize) -> Point) {
-    let Some(event) = shown.event else { return };
-    for (contact, found) in shown.scene.model.contacts.iter().zip(&event.nodes) {
-        let is_open = found.spot.is_some() && found.decision.before == Mode::Free;
-        if !is_open || found.directions.is_some() {
-            continue;
+    fn normals(&mut self, from: (f64, f64), to: (f64, f64), walked: &mut f64) {
+        let (x, y) = (to.0 - from.0, to.1 - from.1);
+        let length = x.hypot(y);
+        if length <= 0.0 || !length.is_finite() {
+            return;
         }
-        let at = now(contact.node);
-        let foot = [0, 1].map(|axis| at[axis] - found.gap * found.normal[axis]);
-        let (from, to) = (window.at(at), window.at(foot));
-        let wide = (from.0 - to.0).hypot(from.1 - to.1);
-        if wide > 2.0 && window.holds(from) && window.holds(to) {
-            sheet.dashed(&[from, to], 1.0, (0, 114, 178));
+        let (x, y) = (x / length, y / length);
+        while *walked < length {
+            let foot = (from.0 + *walked * x, from.1 + *walked * y);
+            // On the right in the direction of travel; y points down on the sheet.
+            let tip = (foot.0 - NORMAL * y, foot.1 + NORMAL * x);
+            self.sheet.arrow(foot, tip, 1.0, GREY);
+            self.taken.take_line(foot, tip);
+            *walked += SPACING;
         }
+        *walked -= length;
+    }
+
+    /// Open gaps as lines from node to surface, if they are wide enough to see.
+    fn gaps(&mut self) {
+        let Some(event) = self.shown.event else {
+            return;
+        };
+        for (contact, found) in self.shown.scene.model.contacts.iter().zip(&event.nodes) {
+            let is_open = found.spot.is_some() && found.decision.before == Mode::Free;
+            if !is_open || found.directions.is_some() {
+                continue;
+            }
+            let at = (self.now)(contact.node);
+            let foot = [0, 1].map(|axis| at[axis] - found.gap * found.normal[axis]);
+            let (from, to) = (self.window.at(at), self.window.at(foot));
+            let wide = (from.0 - to.0).hypot(from.1 - to.1);
+            if wide > 2.0 && self.window.holds(from) && self.window.holds(to) {
+                self.sheet.dashed(&[from, to], 1.0, (0, 114, 178));
+            }
+        }
+    }
+
+    /// Supports, loads and prescribed motions.
+    fn conditions(&mut self) {
+        let load_factor = self.shown.event.map_or(0.0, |event| event.load_factor);
+        let found = conditions(&self.shown.scene.model, load_factor, self.now);
+        for (node, held) in found.supports {
+            let at = self.at(node);
+            let kind = match held {
+                [true, true, true] => 1,
+                [true, true, false] | [false, true, _] => 2,
+                [true, false, _] | [false, false, _] => 3,
+            };
+            if self.window.holds(at) {
+                self.sheet.marker(at, kind, 3.5, GREEN);
+            }
+        }
+        for arrow in &found.arrows {
+            let at = self.window.at(arrow.at);
+            let [x, y] = arrow.along.map(|x| LOAD * x);
+            let clear = (self.marked + 3.0) / x.hypot(y).max(1e-300);
+            let part = |by: f64| (at.0 + by * x, at.1 - by * y);
+            let (from, to) = match arrow.given {
+                Given::Load => (part(-1.0 - clear), part(-clear)),
+                Given::Motion => (part(clear), part(1.0 + clear)),
+            };
+            if !self.window.holds(at) {
+                continue;
+            }
+            self.sheet.arrow(from, to, 1.6, GREEN);
+            if arrow.given == Given::Motion {
+                let (side, length) = ([-y, x], x.hypot(y).max(1e-300));
+                let beside =
+                    |p: (f64, f64)| (p.0 + 3.0 * side[0] / length, p.1 - 3.0 * side[1] / length);
+                self.sheet.line(&[beside(from), beside(to)], 1.2, GREEN);
+            }
+            self.taken.take_line(from, to);
+        }
+        for (node, _, left) in found.turns {
+            let at = self.at(node);
+            if self.window.holds(at) {
+                let sign = if left { 1.0 } else { -1.0 };
+                let arc: Vec<(f64, f64)> = (0..=12)
+                    .map(|k| sign * (0.35 + 0.4 * f64::from(k)))
+                    .map(|a| (at.0 + 12.0 * a.cos(), at.1 - 12.0 * a.sin()))
+                    .collect();
+                self.sheet.line(&arc, 1.6, GREEN);
+                if let [.., before, end] = arc[..] {
+                    let far = |a: f64, b: f64| b + 3.0 * (b - a);
+                    let tip = (far(before.0, end.0), far(before.1, end.1));
+                    self.sheet.arrow(before, tip, 1.6, GREEN);
+                }
+            }
+        }
+    }
+
+    /// Contact forces on the slave nodes, as arrows from the node in the direction in which the master pushes it; returns the largest.
+    fn forces(&mut self) -> f64 {
+        let largest = largest(self.shown);
+        let Some(event) = self.shown.event.filter(|_| largest > 0.0) else {
+            return 0.0;
+        };
+        let contacts = self.shown.scene.model.contacts.iter().zip(&event.nodes);
+        for (slave, (contact, found)) in contacts.enumerate() {
+            let force = OBLIQUE.force(&self.shown.scene.model, event, slave);
+            let scale = FORCE / largest;
+            let node = self.at(contact.node);
+            let along = |axis: usize| scale * force[axis];
+            let long = scale * size(found) >= 1.0;
+            if long && self.window.holds(node) {
+                // The arrow starts next to the node's marker.
+                let clear = (self.marked + 1.5) / (scale * size(found));
+                let part = |by: f64| (node.0 + by * along(0), node.1 - by * along(1));
+                let (tail, tip) = (part(clear), part(1.0 + clear));
+                self.sheet.arrow(tail, tip, 2.0, VERMILION);
+                self.taken.take_line(tail, tip);
+            }
+        }
+        largest
+    }
+
+    /// Markers of the slave nodes; those in the table are labelled with their names, or with their numbers where
+    /// names do not fit.
+    fn slaves(&mut self, rows: &[usize]) -> Result<(), PlotError> {
+        let model = &self.shown.scene.model;
+        let at: Vec<_> = model
+            .contacts
+            .iter()
+            .map(|contact| self.at(contact.node))
+            .collect();
+        for (slave, &at) in at
+            .iter()
+            .enumerate()
+            .filter(|(_, at)| self.window.holds(**at))
+        {
+            marker(self.sheet, at, mode(self.shown, slave), self.marked);
+            let side = 2.0 * self.marked + 4.0;
+            self.taken.take(Patch::about(at, (side, side)));
+        }
+        for (row, &slave) in rows.iter().enumerate() {
+            let at = at[slave];
+            if !self.window.holds(at) {
+                continue;
+            }
+            for text in [
+                names::slave(model, slave).to_owned(),
+                format!("({})", row + 1),
+            ] {
+                let size = (widest([text.as_str()], SMALL)? + 4.0, 1.1 * SMALL);
+                if let Some(patch) = self.taken.place(at, size, 60.0) {
+                    self.sheet.leader(at, &patch, self.marked + 12.0);
+                    self.sheet
+                        .text(patch.middle(), &text, SMALL, BLACK, Anchor::Middle);
+                    break;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// A text in the legend; returns its width with the space after it.
+    fn entry(&mut self, at: (f64, f64), text: &str) -> Result<f64, PlotError> {
+        self.sheet.text(at, text, SMALL, BLACK, Anchor::Left);
+        Ok(widest([text], SMALL)? + 22.0)
+    }
+
+    /// The legend: modes, and the scales of lengths and forces.
+    fn legend(&mut self, largest: f64, magnified: f64) -> Result<(), PlotError> {
+        let y = self.sheet.height + 0.7 * LABEL;
+        let mut x = MARGIN + 6.0;
+        for mode in [Mode::Free, Mode::Sliding, Mode::Fixed] {
+            marker(self.sheet, (x, y), mode, 5.0);
+            x += 12.0 + self.entry((x + 12.0, y), names::mode(mode))?;
+        }
+        let unit = outline::round_down(90.0 / self.window.scale);
+        if unit.is_finite() && unit > 0.0 {
+            let wide = unit * self.window.scale;
+            self.sheet.line(&[(x, y), (x + wide, y)], 2.0, BLACK);
+            for end in [x, x + wide] {
+                self.sheet
+                    .line(&[(end, y - 5.0), (end, y + 5.0)], 1.5, BLACK);
+            }
+            x += wide + 8.0;
+            x += self.entry((x, y), &format!("length {}", shortest(unit)))?;
+        }
+        if largest > 0.0 {
+            let unit = outline::round_down(0.8 * largest);
+            let wide = FORCE * unit / largest;
+            self.sheet.arrow((x, y), (x + wide, y), 2.0, VERMILION);
+            x += wide + 8.0;
+            x += self.entry((x, y), &format!("contact force {}", shortest(unit)))?;
+        }
+        self.sheet.arrow((x, y + 6.0), (x, y - 7.0), 1.0, GREY);
+        self.sheet
+            .text((x + 10.0, y), "outward side", SMALL, BLACK, Anchor::Left);
+        let moved = moved(self.shown);
+        let scale = match magnified == 1.0 {
+            true => "to scale".to_owned(),
+            false => format!("magnified ×{}", shortest(magnified)),
+        };
+        let words = format!(
+            "Displacements {scale}, maximum {}; dashed: undeformed; green: supports, loads, and prescribed motions (double line).",
+            plain_four(moved)
+        );
+        self.sheet.height = y + 1.2 * LABEL;
+        self.sheet.paragraph(&[words], SMALL, GREY)
     }
 }
 
@@ -403,137 +579,6 @@ fn largest(shown: &ExportState) -> f64 {
     sizes.filter(|f| f.is_finite()).fold(0.0, f64::max)
 }
 
-/// Supports, loads and prescribed motions.
-fn given(
-    sheet: &mut Sheet,
-    window: &Window,
-    shown: &ExportState,
-    now: &dyn Fn(usize) -> Point,
-    marked: f64,
-    taken: &mut OccupiedArea,
-) {
-    let load_factor = shown.event.map_or(0.0, |event| event.load_factor);
-    let found = conditions(&shown.scene.model, load_factor, now);
-    for (node, held) in found.supports {
-        let at = window.at(now(node));
-        let kind = match held {
-            [true, true, true] => 1,
-            [true, true, false] | [false, true, _] => 2,
-            [true, false, _] | [false, false, _] => 3,
-        };
-        if window.holds(at) {
-            sheet.marker(at, kind, 3.5, GREEN);
-        }
-    }
-    for arrow in &found.arrows {
-        let at = window.at(arrow.at);
-        let [x, y] = arrow.along.map(|x| LOAD * x);
-        let clear = (marked + 3.0) / x.hypot(y).max(1e-300);
-        let part = |by: f64| (at.0 + by * x, at.1 - by * y);
-        let (from, to) = match arrow.given {
-            Given::Load => (part(-1.0 - clear), part(-clear)),
-            Given::Motion => (part(clear), part(1.0 + clear)),
-        };
-        if !window.holds(at) {
-            continue;
-        }
-        sheet.arrow(from, to, 1.6, GREEN);
-        if arrow.given == Given::Motion {
-            let (side, length) = ([-y, x], x.hypot(y).max(1e-300));
-            let beside =
-                |p: (f64, f64)| (p.0 + 3.0 * side[0] / length, p.1 - 3.0 * side[1] / length);
-            sheet.line(&[beside(from), beside(to)], 1.2, GREEN);
-        }
-        taken.take_line(from, to);
-    }
-    for (node, _, left) in found.turns {
-        let at = window.at(now(node));
-        if window.holds(at) {
-            let sign = if left { 1.0 } else { -1.0 };
-            let arc: Vec<(f64, f64)> = (0..=12)
-                .map(|k| sign * (0.35 + 0.4 * f64::from(k)))
-                .map(|a| (at.0 + 12.0 * a.cos(), at.1 - 12.0 * a.sin()))
-                .collect();
-            sheet.line(&arc, 1.6, GREEN);
-            if let [.., before, end] = arc[..] {
-                let far = |a: f64, b: f64| b + 3.0 * (b - a);
-                let tip = (far(before.0, end.0), far(before.1, end.1));
-                sheet.arrow(before, tip, 1.6, GREEN);
-            }
-        }
-    }
-}
-
-/// Contact forces on the slave nodes, as arrows from the node in the direction in which the master pushes it; returns the largest.
-fn forces(
-    sheet: &mut Sheet,
-    window: &Window,
-    shown: &ExportState,
-    now: &dyn Fn(usize) -> Point,
-    marked: f64,
-    taken: &mut OccupiedArea,
-) -> f64 {
-    let largest = largest(shown);
-    let Some(event) = shown.event.filter(|_| largest > 0.0) else {
-        return 0.0;
-    };
-    let contacts = shown.scene.model.contacts.iter().zip(&event.nodes);
-    for (slave, (contact, found)) in contacts.enumerate() {
-        let force = OBLIQUE.force(&shown.scene.model, event, slave);
-        let scale = FORCE / largest;
-        let node = window.at(now(contact.node));
-        let along = |axis: usize| scale * force[axis];
-        let long = scale * size(found) >= 1.0;
-        if long && window.holds(node) {
-            // The arrow starts next to the node's marker.
-            let clear = (marked + 1.5) / (scale * size(found));
-            let part = |by: f64| (node.0 + by * along(0), node.1 - by * along(1));
-            let (tail, tip) = (part(clear), part(1.0 + clear));
-            sheet.arrow(tail, tip, 2.0, VERMILION);
-            taken.take_line(tail, tip);
-        }
-    }
-    largest
-}
-
-/// Markers of the slave nodes; those in the table are labelled with their names, or with their numbers where
-/// names do not fit.
-fn slaves(
-    sheet: &mut Sheet,
-    window: &Window,
-    shown: &ExportState,
-    now: &dyn Fn(usize) -> Point,
-    rows: &[usize],
-    r: f64,
-    taken: &mut OccupiedArea,
-) -> Result<(), PlotError> {
-    let model = &shown.scene.model;
-    let at = |slave: usize| window.at(now(model.contacts[slave].node));
-    let slaves = || (0..model.contacts.len()).filter(|s| window.holds(at(*s)));
-    for slave in slaves() {
-        marker(sheet, at(slave), mode(shown, slave), r);
-        taken.take(Patch::about(at(slave), (2.0 * r + 4.0, 2.0 * r + 4.0)));
-    }
-    for (row, &slave) in rows
-        .iter()
-        .enumerate()
-        .filter(|(_, s)| window.holds(at(**s)))
-    {
-        for text in [
-            names::slave(model, slave).to_owned(),
-            format!("({})", row + 1),
-        ] {
-            let size = (widest([text.as_str()], SMALL)? + 4.0, 1.1 * SMALL);
-            if let Some(patch) = taken.place(at(slave), size, 60.0) {
-                sheet.leader(at(slave), &patch, r + 12.0);
-                sheet.text(patch.middle(), &text, SMALL, BLACK, Anchor::Middle);
-                break;
-            }
-        }
-    }
-    Ok(())
-}
-
 /// The largest marker size without overlap.
 fn radius(window: &Window, model: &Model, now: &dyn Fn(usize) -> Point) -> f64 {
     let at: Vec<(f64, f64)> = model
@@ -553,58 +598,6 @@ fn radius(window: &Window, model: &Model, now: &dyn Fn(usize) -> Point) -> f64 {
 fn mode(shown: &ExportState, slave: usize) -> Mode {
     let found = shown.event.and_then(|event| event.nodes.get(slave));
     found.map_or(shown.state.nodes[slave].mode, |found| found.decision.before)
-}
-
-/// A text in the legend; returns its width with the space after it.
-fn entry(sheet: &mut Sheet, at: (f64, f64), text: &str) -> Result<f64, PlotError> {
-    sheet.text(at, text, SMALL, BLACK, Anchor::Left);
-    Ok(widest([text], SMALL)? + 22.0)
-}
-
-/// The legend: modes, and the scales of lengths and forces.
-fn legend(
-    sheet: &mut Sheet,
-    window: &Window,
-    shown: &ExportState,
-    largest: f64,
-    magnified: f64,
-) -> Result<(), PlotError> {
-    let y = sheet.height + 0.7 * LABEL;
-    let mut x = MARGIN + 6.0;
-    for mode in [Mode::Free, Mode::Sliding, Mode::Fixed] {
-        marker(sheet, (x, y), mode, 5.0);
-        x += 12.0 + entry(sheet, (x + 12.0, y), names::mode(mode))?;
-    }
-    let unit = outline::round_down(90.0 / window.scale);
-    if unit.is_finite() && unit > 0.0 {
-        let wide = unit * window.scale;
-        sheet.line(&[(x, y), (x + wide, y)], 2.0, BLACK);
-        for end in [x, x + wide] {
-            sheet.line(&[(end, y - 5.0), (end, y + 5.0)], 1.5, BLACK);
-        }
-        x += wide + 8.0;
-        x += entry(sheet, (x, y), &format!("length {}", shortest(unit)))?;
-    }
-    if largest > 0.0 {
-        let unit = outline::round_down(0.8 * largest);
-        let wide = FORCE * unit / largest;
-        sheet.arrow((x, y), (x + wide, y), 2.0, VERMILION);
-        x += wide + 8.0;
-        x += entry(sheet, (x, y), &format!("contact force {}", shortest(unit)))?;
-    }
-    sheet.arrow((x, y + 6.0), (x, y - 7.0), 1.0, GREY);
-    sheet.text((x + 10.0, y), "outward side", SMALL, BLACK, Anchor::Left);
-    let moved = moved(shown);
-    let scale = match magnified == 1.0 {
-        true => "to scale".to_owned(),
-        false => format!("magnified ×{}", shortest(magnified)),
-    };
-    let words = format!(
-        "Displacements {scale}, maximum {}; dashed: undeformed; green: supports, loads, and prescribed motions (double line).",
-        plain_four(moved)
-    );
-    sheet.height = y + 1.2 * LABEL;
-    sheet.paragraph(&[words], SMALL, GREY)
 }
 
 /// Four significant digits, without trailing zeros.

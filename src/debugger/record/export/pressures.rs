@@ -1,60 +1,57 @@
 //! Contact pressures in a picture.
 
-use super::export_state::ExportState;
-use super::window::{FORCE, Window};
-use crate::explain::outline::Point;
+use super::picture::ShapeDrawing;
+use super::window::FORCE;
 use crate::explain::round_off::RoundOff;
-use stickslip_study::sheet::{Colour, Sheet};
+use stickslip_study::sheet::Colour;
 
 /// Colour of pressures.
 const BLUE: Colour = (86, 180, 233);
 
-/// Draws contact pressures along the sides of bodies whose nodes are all slaves, from the nodes along the
-/// master's normal; the largest has half the length of the longest force. Returns the largest.
-pub(super) fn pressures(
-    sheet: &mut Sheet,
-    window: &Window,
-    shown: &ExportState,
-    now: &dyn Fn(usize) -> Point,
-) -> f64 {
-    let (model, Some(event)) = (&shown.scene.model, shown.event) else {
-        return 0.0;
-    };
-    let round_off = RoundOff::new(model, &event.before);
-    let mut of_node = vec![None; model.nodes.len()];
-    for (contact, found) in model.contacts.iter().zip(&event.nodes) {
-        let pressure = contact.pressure(round_off.force(found.f_n), 0.0);
-        of_node[contact.node] = pressure.map(|[pressure, _]| (pressure, found.normal));
-    }
-    let sizes = of_node.iter().flatten().map(|(pressure, _)| pressure.abs());
-    let largest = sizes.filter(|p| p.is_finite()).fold(0.0, f64::max);
-    if largest == 0.0 {
-        return 0.0;
-    }
-    let scale = 0.5 * FORCE / largest;
-    let lines = model.bodies.iter().flat_map(|body| body.kind.lines());
-    for line in lines {
-        let ends: Option<Vec<[(f64, f64); 2]>> = line
-            .iter()
-            .map(|&node| {
-                let (pressure, n) = of_node[node]?;
-                let foot = window.at(now(node));
-                let tip = (
-                    foot.0 + scale * pressure * n[0],
-                    foot.1 - scale * pressure * n[1],
-                );
-                Some([foot, tip])
-            })
-            .collect();
-        let Some(ends) = ends.filter(|ends| ends.iter().flatten().all(|at| window.holds(*at)))
-        else {
-            continue;
+impl ShapeDrawing<'_> {
+    /// Draws contact pressures along the sides of bodies whose nodes are all slaves, from the nodes along the
+    /// master's normal; the largest has half the length of the longest force. Returns the largest.
+    pub(super) fn pressures(&mut self) -> f64 {
+        let (model, Some(event)) = (&self.shown.scene.model, self.shown.event) else {
+            return 0.0;
         };
-        let tips: Vec<(f64, f64)> = ends.iter().map(|end| end[1]).collect();
-        sheet.line(&tips, 1.6, BLUE);
-        for end in &ends {
-            sheet.line(end, 0.8, BLUE);
+        let round_off = RoundOff::new(model, &event.before);
+        let mut of_node = vec![None; model.nodes.len()];
+        for (contact, found) in model.contacts.iter().zip(&event.nodes) {
+            let pressure = contact.pressure(round_off.force(found.f_n), 0.0);
+            of_node[contact.node] = pressure.map(|[pressure, _]| (pressure, found.normal));
         }
+        let sizes = of_node.iter().flatten().map(|(pressure, _)| pressure.abs());
+        let largest = sizes.filter(|p| p.is_finite()).fold(0.0, f64::max);
+        if largest == 0.0 {
+            return 0.0;
+        }
+        let scale = 0.5 * FORCE / largest;
+        let lines = model.bodies.iter().flat_map(|body| body.kind.lines());
+        for line in lines {
+            let ends: Option<Vec<[(f64, f64); 2]>> = line
+                .iter()
+                .map(|&node| {
+                    let (pressure, n) = of_node[node]?;
+                    let foot = self.at(node);
+                    let tip = (
+                        foot.0 + scale * pressure * n[0],
+                        foot.1 - scale * pressure * n[1],
+                    );
+                    Some([foot, tip])
+                })
+                .collect();
+            let Some(ends) =
+                ends.filter(|ends| ends.iter().flatten().all(|at| self.window.holds(*at)))
+            else {
+                continue;
+            };
+            let tips: Vec<(f64, f64)> = ends.iter().map(|end| end[1]).collect();
+            self.sheet.line(&tips, 1.6, BLUE);
+            for end in &ends {
+                self.sheet.line(end, 0.8, BLUE);
+            }
+        }
+        largest
     }
-    largest
 }

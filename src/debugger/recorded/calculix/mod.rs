@@ -76,7 +76,7 @@ pub fn open(run: CalculixRun, deck: Option<Deck>) -> Result<OpenedRun, String> {
     };
     let node = |slave: usize| message::NodeMessage {
         name: run.slave(slave),
-        at: [0.0, 0.0].into(),
+        at: Some([0.0, 0.0].into()),
     };
     let scene = message::Scene {
         title: Path::new(&run.name)

@@ -63,7 +63,7 @@ pub fn notes(run: &CalculixRun) -> Vec<String> {
             ),
         })
     };
-    let beside = |end: &str, file: OptionalFile, without: &str| match file {
+    let note = |end: &str, file: OptionalFile, without: &str| match file {
         OptionalFile::Missing => Some(format!("{stem}.{end} is missing: {without}")),
         OptionalFile::Read(stop) => stopped(end, stop),
     };
@@ -77,8 +77,8 @@ pub fn notes(run: &CalculixRun) -> Vec<String> {
     let cvg = "residuals are unknown, and iterations without contact elements, or with unchanged ones, are not shown";
     let notes = [
         stopped("cel", files.cel),
-        beside("sta", files.sta, sta),
-        beside("cvg", files.cvg, cvg),
+        note("sta", files.sta, sta),
+        note("cvg", files.cvg, cvg),
         differs,
     ];
     notes.into_iter().flatten().collect()

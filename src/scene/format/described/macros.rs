@@ -51,6 +51,8 @@ macro_rules! described {
     ($(#[$($meta:tt)*])* $vis:vis struct $name:ident {
         $($(#[$($part_meta:tt)*])* $part_vis:vis $part:ident : $type:ty $(=> $mark:ident)?),* $(,)?
     }) => {
+        #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+        #[serde(deny_unknown_fields)]
         $(#[$($meta)*])*
         $vis struct $name {
             $($(#[$($part_meta)*])* $part_vis $part: $type),*
@@ -88,7 +90,7 @@ macro_rules! described {
                     described::OWN_DEFAULTS.to_owned()
                 }
                 fn types(into: &mut Vec<described::Type>) -> Result<(), String> {
-                    if described::known(into, stringify!($name)) {
+                    if described::contains(into, stringify!($name)) {
                         return Ok(());
                     }
                     let every = false $(|| described::macros::has_default!($($meta)*))*;
@@ -118,6 +120,8 @@ macro_rules! described {
             $($(#[$($part_meta:tt)*])* $part:ident : $type:ty $(=> $mark:ident)?),* $(,)?
         })?),* $(,)?
     }) => {
+        #[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+        #[serde(deny_unknown_fields)]
         $(#[$($meta)*])*
         $vis enum $name {
             $($(#[$($form_meta)*])* $form $({
@@ -170,7 +174,7 @@ macro_rules! described {
                     name.to_owned()
                 }
                 fn types(into: &mut Vec<described::Type>) -> Result<(), String> {
-                    if described::known(into, stringify!($name)) {
+                    if described::contains(into, stringify!($name)) {
                         return Ok(());
                     }
                     let mut forms = Vec::new();

@@ -17,7 +17,7 @@ mod words;
 use super::error::{Path, SetError, quoted};
 use stickslip_core::model::documented::{DocAttributes, text};
 pub use types::{Field, Form, Type};
-pub(crate) use types::{OWN_DEFAULTS, blank_form, known, link, read_blank};
+pub(crate) use types::{OWN_DEFAULTS, blank_form, contains, link, read_blank};
 
 /// The current location of a walk, as a linked list of steps. It is converted to a name or a path only on demand.
 #[derive(Clone, Copy)]

@@ -1,7 +1,7 @@
 //! Types that the scene file shares with the solver: defined with [`documented!`](stickslip_core::model::documented) and listed
 //! here.
 
-use super::types::{Form, OWN_DEFAULTS, Type, known, lines_of, link, of_words, read_blank};
+use super::types::{Form, OWN_DEFAULTS, Type, contains, lines_of, link, of_words, read_blank};
 use super::words::{of_word, word, words};
 use super::{Choice, Described, Scalar, ScalarPlace, Visit, field_of, one_of, types_of};
 use stickslip_core::model::documented::text;
@@ -28,7 +28,7 @@ macro_rules! fields {
                 OWN_DEFAULTS.to_owned()
             }
             fn types(into: &mut Vec<Type>) -> Result<(), String> {
-                if known(into, $name::DOCS.name) {
+                if contains(into, $name::DOCS.name) {
                     return Ok(());
                 }
                 let $name { $($part),* } = &read_blank(&Self::blank())?;
@@ -71,7 +71,7 @@ macro_rules! words {
                     word(self).to_owned()
                 }
                 fn types(into: &mut Vec<Type>) -> Result<(), String> {
-                    if !known(into, $type::DOCS.name) {
+                    if !contains(into, $type::DOCS.name) {
                         into.push(of_words(&$type::DOCS, words::<$type>()));
                     }
                     Ok(())

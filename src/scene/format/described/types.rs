@@ -40,7 +40,7 @@ pub struct Field {
 }
 
 /// Whether the reference already contains the type.
-pub(crate) fn known(types: &[Type], name: &str) -> bool {
+pub(crate) fn contains(types: &[Type], name: &str) -> bool {
     types.iter().any(|known| known.name == name)
 }
 

@@ -1,13 +1,14 @@
-//! Checks the laws of contact and friction with the numbers that an attached solver reports for an accepted
-//! state.
+//! Checks the laws of contact and friction with the numbers that another solver reports for an accepted state.
 //!
 //! Only those numbers are used: g >= 0 for rigid contact, no force across an open gap, F_n >= 0, |F_t| <=
 //! |T_max|, and friction that opposes the slip of a sliding node; in space, friction at its limit along the slip. Unreported
 //! quantities are not checked.
 
-use stickslip_core::contact::laws::{Finding, JudgedLaw, JudgedNumbers};
-use stickslip_core::contact::record::ContactRecord;
-use stickslip_core::model::{Mode, Model};
+use crate::contact::laws::{Finding, JudgedLaw, JudgedNumbers, Verdict};
+use crate::contact::record::ContactRecord;
+use crate::model::{Mode, Model};
+use crate::step::event::Event;
+use crate::step::state::State;
 
 /// Violations below this limit are accepted silently, relative to the largest force and the largest motion.
 /// Other solvers stop at their own criterion, often a thousandth, or satisfy the laws only on average over an
@@ -15,7 +16,7 @@ use stickslip_core::model::{Mode, Model};
 pub const ALLOWED: f64 = 1e-2;
 
 /// Forces below this fraction of the solver's residual scale are round-off or negligible.
-pub(super) const ROUND_OFF: f64 = 1e-6;
+pub const ROUND_OFF: f64 = 1e-6;
 
 /// Reference sizes for relative amounts.
 pub struct Sizes {
@@ -34,8 +35,33 @@ pub fn largest_force(nodes: &[ContactRecord]) -> f64 {
         .fold(0.0, |most: f64, f| most.max(f.abs()))
 }
 
+impl Sizes {
+    /// The sizes for a state that was accepted with an iteration.
+    pub fn from_state(state: &State, event: &Event) -> Sizes {
+        let known = state
+            .outside
+            .as_ref()
+            .map_or(0.0, |outside| outside.largest_force);
+        let count = event.frames.first().map_or(2, |_| 3);
+        let moved = state.u.chunks(count);
+        let moved = moved.map(|u| u.iter().map(|x| x * x).sum::<f64>().sqrt());
+        Sizes {
+            // The scale is NaN if it was not reported.
+            force: known.max(ROUND_OFF * event.before.scale),
+            length: moved.fold(0.0, f64::max),
+        }
+    }
+}
+
 /// The law with the largest violation in an accepted state.
 pub fn broken(model: &Model, nodes: &[ContactRecord], sizes: &Sizes) -> Option<Finding> {
+    let all = verdict(model, nodes, sizes);
+    let broken = all.broken().copied();
+    broken.max_by(|a, b| a.amount.total_cmp(&b.amount))
+}
+
+/// The largest amount by which each law is violated in an accepted state.
+pub fn verdict(model: &Model, nodes: &[ContactRecord], sizes: &Sizes) -> Verdict {
     let force = sizes.force;
     let length = if sizes.length > 0.0 {
         sizes.length
@@ -61,9 +87,10 @@ pub fn broken(model: &Model, nodes: &[ContactRecord], sizes: &Sizes) -> Option<F
             }
         })
     });
-    found
-        .filter(|found| found.amount > ALLOWED)
-        .max_by(|a, b| a.amount.total_cmp(&b.amount))
+    let mut verdict = Verdict::default();
+    let known = found.filter(|found| !found.amount.is_nan());
+    known.for_each(|found| verdict.add(found));
+    verdict
 }
 
 /// The violation of each law at a node; an unreported number gives NaN, which violates none.
