@@ -120,8 +120,8 @@ fn attached(
     interrupt: &Interrupt,
 ) -> Result<HistoryRecord, Error> {
     let mut audit = Audit::default();
-    let came = || interrupt.has_arrived();
-    let until = Until::end().interrupted_by(&came);
+    let has_arrived = || interrupt.has_arrived();
+    let until = Until::end().interrupted_by(&has_arrived);
     let end = step_to_end(solver, until, &mut |solver| audit.take_reported(solver))?;
     let Ok(history) = history(scene, &audit, end, solver, says)?;
     Ok(history)

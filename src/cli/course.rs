@@ -71,8 +71,8 @@ impl Course {
             Ok(())
         };
         intervene(stepper, 0)?;
-        let came = || interrupt.has_arrived();
-        let until = Until::end().interrupted_by(&came);
+        let has_arrived = || interrupt.has_arrived();
+        let until = Until::end().interrupted_by(&has_arrived);
         // A snapshot continues after a failure if its user did.
         let until = match self.steps {
             Some(steps) => until.minors(steps).past_failures(),

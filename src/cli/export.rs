@@ -169,8 +169,8 @@ fn reported(args: &Args, interrupt: &Interrupt) -> Result<Exit, Error> {
             }
         }
         None => {
-            let came = || interrupt.has_arrived();
-            let until = Until::end().interrupted_by(&came);
+            let has_arrived = || interrupt.has_arrived();
+            let until = Until::end().interrupted_by(&has_arrived);
             if step_to_end(&mut solver, until, &mut |_| ())? == RunEnd::Interrupted {
                 notify(&format!("{}: interrupted", scene.name));
                 return Ok(Exit::Interrupted);

@@ -159,6 +159,7 @@ fn what_else_is_written_is_whole_though_the_reader_of_one_table_left() {
         "run 02-two-cantilevers-rough --set history.increment=0.001 --csv - --snapshot end.ron",
     );
     let output = read_first_line(program(directory.path(), &arguments));
+    assert_eq!(code(&output), 0, "{}", err(&output));
     let snapshot = std::fs::read_to_string(directory.path().join("end.ron")).unwrap();
     assert!(snapshot.contains("status: Finished"), "the run was cut");
 }

@@ -205,7 +205,15 @@ fn what_is_handed_in_is_counted_in_the_table_of_the_class() {
         &["lesson", "--collect", "ada.work", "ben.work"],
         home.path(),
     );
-    insta::assert_snapshot!(table, @"");
+    insta::assert_snapshot!(table, @r"
+    student  finished  right  minutes
+    ada             2    4/4  21
+    ben             0    2/4  21
+
+    lesson    finished  right  minutes  most missed
+    modes       1 of 2    3/4       21  step 5, by 1 of 2
+    mine.ron    1 of 2    3/4       21  step 5, by 1 of 2
+    ");
     let none = run(&["lesson", "--collect", "eva.work"], home.path());
     assert_eq!(none.status.code(), Some(2), "{none:?}");
 }

@@ -196,7 +196,7 @@ impl Solver for Springs {
 fn told() -> Scene {
     let node = |name: String, at: [f64; 2]| NodeMessage {
         name,
-        at: at.into(),
+        at: Some(at.into()),
     };
     let mut nodes: Vec<NodeMessage> = GAPS
         .iter()

@@ -93,7 +93,7 @@ pub fn is_unique(w: &DMatrix<f64>, friction: &[Friction]) -> bool {
     let symmetric = 0.5 * (&scaled + scaled.transpose());
     let least = symmetric.symmetric_eigenvalues().min();
     let coefficient = |i: usize| {
-        if i % 3 == 0 {
+        if i.is_multiple_of(3) {
             0.0
         } else {
             friction[i / 3].coefficient()
@@ -240,7 +240,7 @@ mod tests {
             let factor = DMatrix::from_fn(9, 9, |i, j| 0.25 * number(i, j));
             let w = DMatrix::identity(9, 9) + &factor * factor.transpose();
             let q: Vec<f64> = (0..9)
-                .map(|i| number(i, 20) - if i % 3 == 0 { 0.5 } else { 0.0 })
+                .map(|i| number(i, 20) - if i.is_multiple_of(3) { 0.5 } else { 0.0 })
                 .collect();
             let mu = [0.1, 0.3, 0.6][seed % 3];
             let swept = solve(&w, &DVector::from_row_slice(&q), &friction(mu, 3));
