@@ -1,7 +1,7 @@
 //! External solvers, stepped by the debugger: child processes that speak the protocol of [`stickslip_exchange::attach`], used
 //! through the trait [`Solver`](stickslip_core::step::Solver).
 //!
-//! - [`link`]: the child process; [`started_solver`]: its start.
+//! - [`channel`]: streams and sockets; [`link`]: the child process; [`started_solver`]: its start.
 //! - [`attached`]: the solver, with the tree of its states.
 //! - [`serve`]: stickslip's own solver as an attachable program; `wire`: its states and events as messages.
 //! - [`check`]: tests what a solver offers.
@@ -9,6 +9,7 @@
 #![forbid(unsafe_code)]
 
 pub mod attached;
+pub mod channel;
 pub mod check;
 pub mod link;
 pub mod serve;
@@ -16,6 +17,7 @@ pub mod started_solver;
 mod wire;
 
 pub use attached::Attached;
+pub use channel::Channel;
 pub use link::Start;
 
 /// The Python module of the protocol.

@@ -1,11 +1,12 @@
-//! A solver as a child process: start, requests, interrupts and end.
+//! A solver as a child process, or behind a socket: start, requests, interrupts and end.
 //!
 //! A thread reads its standard output line by line, with a bounded queue; another thread copies its standard error to the log. The
 //! process has a separate process group, so that a Ctrl-C in the terminal reaches only this program, which passes it on: first as a
 //! message, then as a signal, then by ending the process.
 
+use super::channel::{Channel, Input, Listener};
 use std::io::{self, BufRead, BufReader, Read, Write};
-use std::process::{Child, ChildStdin, Command, Stdio};
+use std::process::{Child, Command, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
@@ -16,7 +17,7 @@ use stickslip_debugger::recorded::log::Log;
 use stickslip_exchange::attach::conversation::STARTED;
 use stickslip_exchange::attach::message::{Level, Progress};
 use stickslip_exchange::attach::{Answer, Line, LineReader, MOST_BYTES, Request, Side};
-use stickslip_platform::process;
+use stickslip_platform::{local_socket, process};
 use stickslip_scene::{number, shown};
 
 /// Polling interval for interrupts.
@@ -32,11 +33,13 @@ const NAME: usize = 60;
 /// Maximum bytes per line of standard error.
 const ERROR_BYTES: u64 = 8192;
 
-/// The command of a solver, and its time limits.
+/// The command of a solver, its channel and its time limits.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Start {
-    /// The program and its arguments.
+    /// The program and its arguments; empty for a solver that only connects.
     pub command: Vec<String>,
+    /// How messages are exchanged.
+    pub channel: Channel,
     /// Time limit from the start to the first answers.
     pub start: Duration,
     /// Time limit for other answers.
@@ -48,21 +51,25 @@ impl Start {
     pub fn new(command: Vec<String>) -> Start {
         Start {
             command,
+            channel: Channel::default(),
             start: Duration::from_secs(60),
             answer: Duration::from_secs(600),
         }
     }
 
-    /// The command as typed.
+    /// The command as typed, or the address of the channel.
     pub fn typed(&self) -> String {
-        self.command.join(" ")
+        match self.command.is_empty() {
+            true => self.channel.to_string(),
+            false => self.command.join(" "),
+        }
     }
 }
 
 /// A running solver.
 pub struct Link {
-    child: Child,
-    input: Option<ChildStdin>,
+    child: Option<Child>,
+    input: Option<Input>,
     output: Receiver<io::Result<Line>>,
     log: Log,
     stop: Arc<AtomicUsize>,
@@ -82,41 +89,98 @@ impl Link {
             command: start.typed(),
             why,
         };
-        let [program, arguments @ ..] = start.command.as_slice() else {
-            return Err(not_started("no command after --".into()));
-        };
-        let mut command = Command::new(program);
-        command
-            .args(arguments)
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped());
-        let mut child = process::set_group(&mut command)
-            .spawn()
-            .map_err(|error| not_started(error.to_string()))?;
-        log.noted(&format!("{STARTED}: {}", start.typed()));
+        let failed = |error: io::Error| not_started(error.to_string());
         let (lines, output) = sync_channel(WAITING);
-        if let Some(stream) = child.stdout.take() {
-            thread::spawn(move || read(stream, &lines));
-        }
-        if let Some(stream) = child.stderr.take() {
-            let log = log.clone();
-            thread::spawn(move || listen(stream, &log));
-        }
-        let input = child.stdin.take();
-        if let Some(input) = &input {
-            // Writing must not block if the solver does not read.
-            process::set_nonblocking(input).map_err(|error| not_started(error.to_string()))?;
-        }
-        Ok(Link {
-            input,
-            child,
+        let mut link = Link {
+            input: None,
+            child: None,
             output,
             log: log.clone(),
             stop,
             interrupts: false,
             stray: [None, None],
-        })
+        };
+        let listener = start.channel.listen().map_err(failed)?;
+        if start.command.is_empty() && listener.is_none() {
+            return Err(not_started("no command after --".into()));
+        }
+        let mut streams: [Option<Box<dyn Read + Send>>; 2] = [None, None];
+        if let [program, arguments @ ..] = start.command.as_slice() {
+            let (own, standard_input) = match start.channel {
+                Channel::Streams => (None, Stdio::piped()),
+                Channel::Inherited => {
+                    let (own, other) = local_socket::pair().map_err(failed)?;
+                    (Some(Input::Unix(own)), other)
+                }
+                Channel::Unix(_) | Channel::Tcp { .. } => (None, Stdio::null()),
+            };
+            let mut command = Command::new(program);
+            command
+                .args(arguments)
+                .envs(start.channel.environment())
+                .stdin(standard_input)
+                .stdout(Stdio::piped())
+                .stderr(Stdio::piped());
+            let mut child = process::set_group(&mut command).spawn().map_err(failed)?;
+            link.input = own.or_else(|| child.stdin.take().map(Input::Pipe));
+            streams = [
+                child.stdout.take().map(|stream| Box::new(stream) as _),
+                child.stderr.take().map(|stream| Box::new(stream) as _),
+            ];
+            link.child = Some(child);
+        }
+        log.noted(&format!("{STARTED}: {}", start.typed()));
+        if let Some(listener) = listener {
+            link.input = Some(link.connection(&listener, start)?);
+        }
+        // Writing must not block if the solver does not read.
+        let input = link.input.take().map(Input::prepared).transpose();
+        link.input = input.map_err(failed)?;
+        let reader = link.input.as_ref().map(Input::reader).transpose();
+        let from_socket = reader.map_err(failed)?.flatten();
+        let messages = from_socket.or_else(|| streams[0].take());
+        if let Some(stream) = messages {
+            thread::spawn(move || read(stream, &lines));
+        }
+        for stream in streams.into_iter().flatten() {
+            let log = log.clone();
+            thread::spawn(move || listen(stream, &log));
+        }
+        Ok(link)
+    }
+
+    /// Waits for a solver to connect.
+    fn connection(&mut self, listener: &Listener, start: &Start) -> Result<Input, Fault> {
+        let asked = || "the connection".to_owned();
+        let until = Instant::now() + start.start;
+        loop {
+            match listener.accept() {
+                Ok(Some(input)) => return Ok(input),
+                Ok(None) => {}
+                // Another connection may do better.
+                Err(error) => self.log.message(
+                    Level::Warning,
+                    &format!("a connection was refused: {error}"),
+                ),
+            }
+            if self.stop.load(Ordering::Relaxed) > 0 {
+                return Err(Fault::Stopped { asked: asked() });
+            }
+            if let Some(how) = self.end() {
+                return Err(Fault::Died {
+                    how,
+                    asked: asked(),
+                });
+            }
+            if Instant::now() > until {
+                return Err(Fault::Silent {
+                    asked: asked(),
+                    after: start.start,
+                    longer: "--start-timeout",
+                });
+            }
+            thread::sleep(LOOK);
+        }
     }
 
     /// Sets whether the solver reads its input during a request, so that it can be interrupted.
@@ -323,7 +387,11 @@ impl Link {
                 1 if self.interrupts && !waiting.partly => self.interrupt(),
                 // The solver cannot be interrupted, so this waits for the current iteration.
                 1 => {}
-                2 => process::interrupt(&mut self.child),
+                2 => {
+                    if let Some(child) = &mut self.child {
+                        process::interrupt(child);
+                    }
+                }
                 _ => return Err(Fault::Stopped { asked: asked() }),
             }
             waiting.heeded = asks;
@@ -341,7 +409,7 @@ impl Link {
         }
         // The output may be kept open by a child of the solver.
         waiting.look = now + FAREWELL;
-        match (process::end(&mut self.child), waiting.gone) {
+        match (self.end(), waiting.gone) {
             (Some(_), true) => Err(self.died("a child process keeps its output open", waiting)),
             (end, _) => {
                 waiting.gone = end.is_some();
@@ -360,11 +428,16 @@ impl Link {
         }
     }
 
+    /// How the process ended; `None` while it runs, or if none was started.
+    fn end(&mut self) -> Option<String> {
+        self.child.as_mut().and_then(process::end)
+    }
+
     /// Whether the process ends within a time.
     fn ends_within(&mut self, time: Duration) -> bool {
         let until = Instant::now() + time;
         loop {
-            if process::end(&mut self.child).is_some() {
+            if self.child.is_none() || self.end().is_some() {
                 return true;
             }
             if Instant::now() > until {
@@ -379,7 +452,10 @@ impl Link {
         self.ends_within(FAREWELL);
         // Standard error is a separate pipe; its last lines may arrive later.
         thread::sleep(2 * LOOK);
-        let how = process::end(&mut self.child).unwrap_or_else(|| "standard output closed".into());
+        let how = self.end().unwrap_or_else(|| match self.input {
+            Some(Input::Unix(_) | Input::Tcp(_)) => "connection closed".into(),
+            _ => "standard output closed".into(),
+        });
         let last = self.log.last_printed();
         let parts = [
             Some(how),
@@ -410,8 +486,10 @@ impl Drop for Link {
             self.leave(true);
         }
         // Also kills processes that the solver started.
-        process::kill(&mut self.child);
-        let _ = self.child.wait();
+        if let Some(child) = &mut self.child {
+            process::kill(child);
+            let _ = child.wait();
+        }
     }
 }
 

@@ -31,8 +31,8 @@ use stickslip_scene::solver::solver;
 pub struct Args {
     /// Scene files, names of built-in scenes, or snapshots
     #[arg(
-        required_unless_present = "command",
-        conflicts_with = "command",
+        required_unless_present_any = ["command", "listen"],
+        conflicts_with_all = ["command", "listen"],
         value_name = "SCENE|SNAPSHOT"
     )]
     inputs: Vec<String>,

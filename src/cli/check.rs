@@ -2,7 +2,7 @@
 
 use super::base::{Error, Exit, SceneArgs, notify, say};
 use super::json::{self, JsonArgs};
-use super::records::CheckRecord;
+use super::records::{CheckRecord, DeckRecord};
 use std::path::Path;
 use stickslip_debugger::recorded::calculix::rules::{self, shape::DeckShape};
 use stickslip_exchange::inp::Deck;
@@ -30,7 +30,7 @@ pub struct Args {
 pub fn main(args: &Args) -> Result<Exit, Error> {
     let deck = outlined(&args.scene.scene);
     let scene = match (args.scene.open(), &deck) {
-        (Err(_), Some(deck)) if deck.is_solid() => return check_solid(&args.scene.scene, deck),
+        (Err(_), Some(deck)) if deck.is_solid() => return check_solid(args, deck),
         (Ok(scene), _) => scene,
         (Err(why), deck) => {
             warn(&deck.iter().flat_map(causes).collect::<Vec<_>>());
@@ -81,24 +81,36 @@ fn causes(deck: &Deck) -> Vec<String> {
 }
 
 /// Checks a three-dimensional deck, which only CalculiX solves.
-fn check_solid(name: &str, deck: &Deck) -> Result<Exit, Error> {
-    say(&format!(
-        "{name}: three-dimensional deck for CalculiX\nnodes {}, elements {}, contact pairs {}, ties {}, steps {}\n",
-        deck.nodes.len(),
-        deck.elements.len(),
-        deck.pairs.len(),
-        deck.ties.len(),
-        deck.steps.len()
-    ))?;
-    for remark in &deck.remarks {
-        notify(&format!(
-            "note: {}:{}: {}",
-            deck.file(remark.place),
-            remark.place.line,
-            remark.text
-        ));
+fn check_solid(args: &Args, deck: &Deck) -> Result<Exit, Error> {
+    let json = args.json.open(args.force)?;
+    let remarks = deck.remarks.iter();
+    let notes = remarks.map(|remark| {
+        let (file, line) = (deck.file(remark.place), remark.place.line);
+        format!("{file}:{line}: {}", remark.text)
+    });
+    let record = DeckRecord {
+        schema: "stickslip-check-deck-1",
+        deck: args.scene.scene.clone(),
+        exit_code: Exit::Good as u8,
+        nodes: deck.nodes.len(),
+        elements: deck.elements.len(),
+        pairs: deck.pairs.len(),
+        ties: deck.ties.len(),
+        steps: deck.steps.len(),
+        notes: notes.collect(),
+        warnings: causes(deck),
+    };
+    if !args.json.is_on_standard_output() {
+        say(&format!(
+            "{}: three-dimensional deck for CalculiX\nnodes {}, elements {}, contact pairs {}, ties {}, steps {}\n",
+            record.deck, record.nodes, record.elements, record.pairs, record.ties, record.steps
+        ))?;
     }
-    warn(&causes(deck));
+    for note in &record.notes {
+        notify(&format!("note: {note}"));
+    }
+    warn(&record.warnings);
+    json::write(json, &record)?;
     Ok(Exit::Good)
 }
 

@@ -146,6 +146,7 @@ fn kind(arg: &clap::Arg) -> Option<Kind> {
 /// Values without completions.
 const FREE: &[&str] = &[
     "A..B",
+    "ADDRESS",
     "CELLS",
     "ERROR",
     "INC[.MAJOR[.MINOR]]",

@@ -52,7 +52,7 @@ pub struct Args {
     /// A scene file, the name of a built-in scene, a snapshot, a journal, a mesh, or the .cel file of a CalculiX run
     #[arg(
         value_name = "SCENE|SNAPSHOT|JOURNAL|MESH|CEL",
-        required_unless_present = "command"
+        required_unless_present_any = ["command", "listen"]
     )]
     input: Option<String>,
     #[command(flatten)]

@@ -17,9 +17,8 @@ pub struct Args {
     search: Option<String>,
 }
 
-/// Shows the requested page.
-pub fn main(args: &Args) -> Result<Exit, Error> {
-    let program = super::program();
+/// Shows the requested page; `program` is the whole command line.
+pub fn main(args: &Args, program: clap::Command) -> Result<Exit, Error> {
     match (&args.topic, &args.search) {
         (None, Some(word)) => search(word),
         (None, None) => contents(),

@@ -17,8 +17,7 @@ pub struct Args {
 }
 
 /// Writes the pages.
-pub fn main(args: &Args) -> Result<Exit, Error> {
-    let mut program = super::program();
+pub fn main(args: &Args, mut program: clap::Command) -> Result<Exit, Error> {
     program.build();
     let Some(folder) = &args.output else {
         say(&page(&program)?)?;

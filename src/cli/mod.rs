@@ -84,9 +84,9 @@ struct Cli {
     verbose: bool,
 }
 
-/// Defines the subcommands: the help, the name and the module of each.
+/// Defines the subcommands: the help, the name and the module of each, and what its `main` needs besides its arguments.
 macro_rules! subcommands {
-    ($($(#[$help:meta])* $name:ident $module:ident,)*) => {
+    ($($(#[$help:meta])* $name:ident $module:ident $(($more:expr))?,)*) => {
         #[derive(Debug, Subcommand)]
         enum Command {
             $($(#[$help])* $name($module::Args),)*
@@ -95,7 +95,7 @@ macro_rules! subcommands {
         impl Command {
             fn run(&self) -> Result<Exit, base::Error> {
                 match self {
-                    $(Command::$name(args) => $module::main(args),)*
+                    $(Command::$name(args) => $module::main(args $(, $more)?),)*
                 }
             }
         }
@@ -144,9 +144,9 @@ subcommands! {
     /// Prints a shell's completion script
     Completions completions,
     /// Writes pages for man
-    Man man,
+    Man man (program()),
     /// Shows a page of the manual, or the help of a subcommand
-    Help help,
+    Help help (program()),
 }
 
 /// Runs the program.

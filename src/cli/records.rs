@@ -234,6 +234,30 @@ records! {
         held: Option<usize>,
     }
 
+    /// Result of `stickslip check` on a three-dimensional deck.
+    DeckRecord "check of a deck in space" {
+        /// `stickslip-check-deck-1`
+        schema: &'static str,
+        /// Name of the deck
+        deck: String,
+        /// Exit code of the program
+        exit_code: u8,
+        /// Nodes
+        nodes: usize,
+        /// Elements
+        elements: usize,
+        /// Contact pairs
+        pairs: usize,
+        /// Ties
+        ties: usize,
+        /// Steps
+        steps: usize,
+        /// Notes
+        notes: Vec<String>,
+        /// Warnings: causes and cures that the rules find
+        warnings: Vec<String>,
+    }
+
     /// Result of `stickslip check`.
     CheckRecord "check" {
         /// `stickslip-check-1`

@@ -51,9 +51,9 @@ pub struct Args {
 pub fn main(args: &Args) -> Result<Exit, Error> {
     let interrupt = Interrupt::listen();
     let Subject { scene, mut solver } = args.subject.open(args.force)?;
-    if args.outputs.vtu.is_some() && args.subject.solver.is_named() {
+    if args.outputs.vtu.is_some() && solver.stepper().is_none() {
         return Err(usage!(
-            "--vtu cannot be used with an attached solver, which reports only its contacts"
+            "--vtu cannot be used here: there are no bodies, only contacts"
         ));
     }
     let asks = Arc::new(AtomicUsize::new(0));

@@ -1,12 +1,12 @@
 //! The subject of a run: a scene for stickslip's own solver, or an attached solver.
 
-use super::base::{Error, SetArgs, usage};
+use super::base::{Error, SetArgs, notify, usage};
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
-use stickslip_attach::{Attached, Start};
+use stickslip_attach::{Attached, Channel, Start};
 use stickslip_core::step::drive::{RunEnd, Until, drive};
 use stickslip_core::step::solver::Solver;
 use stickslip_debugger::record::journal::Record;
@@ -27,6 +27,13 @@ pub struct SolverArgs {
     /// Time limit for the start of the solver
     #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = seconds)]
     pub start_timeout: f64,
+    /// Waits for the solver to connect (unix:PATH, tcp:PORT, tcp:HOST:PORT), or makes its standard input a socket for both
+    /// directions (fd:0)
+    #[arg(long, value_name = "ADDRESS", value_parser = Channel::parse)]
+    pub listen: Option<Channel>,
+    /// Lets other machines connect to --listen tcp:HOST:PORT
+    #[arg(long, requires = "listen")]
+    pub remote: bool,
     /// Records all messages between debugger and solver in a new file, which can be opened later without the solver
     #[arg(long, value_name = "FILE", requires = "command")]
     pub exchange: Option<PathBuf>,
@@ -45,7 +52,7 @@ fn seconds(text: &str) -> Result<f64, super::base::NoValue> {
 impl SolverArgs {
     /// Whether a solver is given.
     pub fn is_named(&self) -> bool {
-        !self.command.is_empty()
+        !self.command.is_empty() || self.listen.is_some()
     }
 
     /// The command and its time limits.
@@ -53,6 +60,7 @@ impl SolverArgs {
         Start {
             start: Duration::from_secs_f64(self.start_timeout),
             answer: Duration::from_secs_f64(self.timeout),
+            channel: self.listen.clone().unwrap_or_default(),
             ..Start::new(self.command.clone())
         }
     }
@@ -95,6 +103,16 @@ impl SolverArgs {
 
     /// Starts the solver; `overwrite` allows the exchange to replace an existing file.
     pub fn attach(&self, overwrite: bool) -> Result<(Scene, Attached, Log), Error> {
+        if let Some(channel) = &self.listen {
+            if !(self.remote || channel.is_local()) {
+                return Err(usage!(
+                    "--listen {channel}: other machines could connect; add --remote if they may"
+                ));
+            }
+            if self.command.is_empty() {
+                notify(&channel.invitation());
+            }
+        }
         let log = self.log(overwrite)?;
         let attached = Attached::attach(self.start(), log.clone());
         let (scene, attached) = attached.map_err(Error::usage)?;
@@ -127,7 +145,7 @@ pub fn step_to_end(
 #[derive(Debug, clap::Args)]
 pub struct SubjectArgs {
     /// A scene file, or the name of a built-in scene
-    #[arg(required_unless_present = "command", conflicts_with = "command")]
+    #[arg(required_unless_present_any = ["command", "listen"], conflicts_with_all = ["command", "listen"])]
     pub scene: Option<String>,
     #[command(flatten)]
     pub set: SetArgs,

@@ -231,7 +231,9 @@ fn check(model: &Model) -> Result<(), ModelError> {
         }
     }
     for (k, contact) in model.contacts.iter().enumerate() {
+        let carriers: Vec<usize> = contact.carriers().map(|(node, _)| node).collect();
         exist(format!("contact {k}"), &[contact.node])?;
+        exist(format!("contact {k}"), &carriers)?;
         let surfaces = model.surfaces.len();
         if let Some(&surface) = contact
             .surfaces

@@ -13,7 +13,7 @@
 //! half of each side of its body that contains it. Bodies given by matrices have no sides.
 
 use std::collections::HashMap;
-use stickslip_core::fem::lagrange::{gauss, shape};
+use stickslip_core::fem::lagrange::{MAX_NODES, gauss, shape};
 use stickslip_core::model::{Body, BodyKind, Elastic, Node, Solid};
 
 /// Fractions of a side's area below this are round-off.
@@ -21,8 +21,8 @@ const NONE: f64 = 1e-9;
 
 /// A side of a body with its material, which determines the width across the plane.
 #[derive(Debug, Clone, Copy)]
-struct AreaSide<'a> {
-    nodes: &'a [usize],
+pub(super) struct AreaSide<'a> {
+    pub nodes: &'a [usize],
     made_of: Option<&'a Elastic>,
 }
 
@@ -82,7 +82,7 @@ fn off_axis(side: &AreaSide<'_>, nodes: &[Node], shares: &mut [f64]) {
 }
 
 /// The sides of a body.
-fn sides(body: &Body) -> Vec<AreaSide<'_>> {
+pub(super) fn sides(body: &Body) -> Vec<AreaSide<'_>> {
     let materials = match &body.kind {
         BodyKind::Beam(beam) => vec![None; beam.elements.len()],
         BodyKind::Solid(solid) => materials(solid),
@@ -146,24 +146,30 @@ fn integrals(side: &AreaSide<'_>, nodes: &[Node], from: f64, to: f64) -> Vec<f64
     let count = side.nodes.len();
     let mut sums = vec![0.0; count];
     for (x, weight) in gauss(count + 2) {
-        let here = shape(count, 0.5 * (from + to) + 0.5 * (to - from) * x);
-        let slope = [0, 1].map(|axis| -> f64 {
-            let at = side.nodes.iter().map(|&node| nodes[node].at[axis]);
-            at.zip(here.d).map(|(at, d)| at * d).sum()
-        });
-        let radius = side
-            .nodes
-            .iter()
-            .zip(here.n)
-            .map(|(&node, n)| nodes[node].at[0] * n)
-            .sum();
-        let width = side.made_of.map_or(1.0, |made_of| made_of.width(radius));
-        let size = 0.5 * (to - from) * weight * width * slope[0].hypot(slope[1]);
+        let (here, density) = density(side, nodes, 0.5 * (from + to) + 0.5 * (to - from) * x);
+        let size = 0.5 * (to - from) * weight * density;
         sums.iter_mut()
-            .zip(here.n)
+            .zip(here)
             .for_each(|(sum, n)| *sum += size * n);
     }
     sums
+}
+
+/// The functions N_i of a side at ξ, and w |dx/dξ| there.
+pub(super) fn density(side: &AreaSide<'_>, nodes: &[Node], xi: f64) -> ([f64; MAX_NODES], f64) {
+    let here = shape(side.nodes.len(), xi);
+    let slope = [0, 1].map(|axis| -> f64 {
+        let at = side.nodes.iter().map(|&node| nodes[node].at[axis]);
+        at.zip(here.d).map(|(at, d)| at * d).sum()
+    });
+    let radius = side
+        .nodes
+        .iter()
+        .zip(here.n)
+        .map(|(&node, n)| nodes[node].at[0] * n)
+        .sum();
+    let width = side.made_of.map_or(1.0, |made_of| made_of.width(radius));
+    (here.n, width * slope[0].hypot(slope[1]))
 }
 
 #[cfg(test)]

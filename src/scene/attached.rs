@@ -60,8 +60,8 @@ pub fn friction(message: &message::Friction) -> Friction {
     }
 }
 
-/// The scene message in a scene file.
-pub fn message(text: &str) -> Result<Scene, Fault> {
+/// Reads the scene message in a scene file.
+fn read_scene(text: &str) -> Result<Scene, Fault> {
     let here = at!["attached"];
     match Answer::read(text) {
         Ok(Answer::Scene(scene)) => Ok(*scene),
@@ -76,7 +76,7 @@ pub fn message(text: &str) -> Result<Scene, Fault> {
 
 /// Checks a scene sent by a solver.
 pub(super) fn compile(spec: &Spec, text: &str) -> Result<(Model, Names), Fault> {
-    let scene = message(text)?;
+    let scene = read_scene(text)?;
     if !(2..=3).contains(&scene.dimension) {
         return refused("dimension: must be 2 or 3");
     }
@@ -146,7 +146,7 @@ pub(super) fn compile(spec: &Spec, text: &str) -> Result<(Model, Names), Fault> 
 /// Contact law of a contact.
 fn bond(contact: &message::Contact) -> Bond {
     match (contact.tied, contact.gives) {
-        (true, _) => Bond::Tied { upright: false },
+        (true, _) => Bond::tied(),
         (false, Some(give)) => Bond::giving(give),
         (false, None) => Bond::Hard,
     }

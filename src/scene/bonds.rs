@@ -2,6 +2,7 @@
 
 use super::Scene;
 use crate::format::contact_law::ContactLaw;
+use crate::format::spec::SlaveSpec;
 use std::collections::HashSet;
 use stickslip_core::model::{Contact, Model, Surface};
 
@@ -73,13 +74,14 @@ fn left_out(scene: &Scene) -> Option<String> {
         .iter()
         .map(|slave| slave.node)
         .collect();
-    let penalty = |law: ContactLaw| matches!(law, ContactLaw::Penalty { .. });
+    let penalty =
+        |group: &SlaveSpec| group.by.is_node() && matches!(group.law, ContactLaw::Penalty { .. });
     let mut listed = HashSet::new();
     let named: Vec<String> = scene
         .spec
         .slaves
         .iter()
-        .filter(|group| penalty(group.law))
+        .filter(|group| penalty(group))
         .flat_map(|group| &group.nodes)
         .filter_map(|name| scene.names().nodes(name).ok())
         .flatten()

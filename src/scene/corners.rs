@@ -58,7 +58,10 @@ pub(super) fn face(pieces: &[usize], bodies: &[Body], pairs: &[usize], slaves: &
         let slides = |edge: &&&Vec<usize>| edge.iter().all(|node| pair_of.get(node) == pair);
         // The sides of the slave surface, or all sides of the node if it is on none of them.
         let on_side = outline(slave.node, edges.iter().filter(slides).copied());
-        let outline = on_side.or_else(|| outline(slave.node, edges.iter().copied()));
+        let outline = match slave.weights.as_slice() {
+            [(first, _), .., (last, _)] => Some([*first, *last]),
+            _ => on_side.or_else(|| outline(slave.node, edges.iter().copied())),
+        };
         slave.facing = outline.filter(|_| own.len() > 1).map(|outline| Facing {
             outline,
             pieces: own,

@@ -32,6 +32,10 @@ impl App {
             Page::Branches => self.panes.zoom(Pane::Branches),
             Page::Contact => self.panes.zoom(Pane::Contact),
             Page::Diagnosis => return self.ask_page(Pane::Diagnosis, view),
+            // The cures of a finished run are in its diagnosis.
+            Page::Remedies if view.is_some_and(|view| view.model.finished.is_some()) => {
+                return self.ask_page(Pane::Diagnosis, view);
+            }
             Page::Remedies => return self.ask_page(Pane::Remedies, view),
         }
         if page == Page::Branches {

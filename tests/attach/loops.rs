@@ -15,13 +15,15 @@ pub fn tests() -> Vec<Trial> {
     crate::tests![
         a_solver_in_c_fortran_or_python_keeps_its_loops_and_passes_every_check,
         a_branch_of_a_forked_state_leaves_the_other_one_as_it_was,
+        values_that_repeat_and_long_periods_are_found,
     ]
 }
 
-const SOURCES: [(&str, &str); 3] = [
+const SOURCES: [(&str, &str); 4] = [
     ("loops.c", include_str!("loops.c")),
     ("loops.f90", include_str!("loops.f90")),
     ("loops.py", include_str!("loops.py")),
+    ("repeats.py", include_str!("repeats.py")),
 ];
 const HEADER: [&str; 6] = [
     "cc",
@@ -151,4 +153,24 @@ fn a_branch_of_a_forked_state_leaves_the_other_one_as_it_was() {
     does(&mut session, Command::Goto { step: 0 });
     does(&mut session, forward(1));
     assert_eq!(session.cursor(), 1);
+}
+
+fn values_that_repeat_and_long_periods_are_found() {
+    let folder = tempfile::tempdir().unwrap();
+    built(folder.path(), &[]);
+    let script = folder.path().join("repeats.py").display().to_string();
+    for (period, repeats, told) in [
+        ("3", "values", "stays sliding while its margin repeats"),
+        ("81", "modes", " times) → fixed"),
+    ] {
+        let command = ["python3", &script, period, repeats];
+        let mut session = session(start(&command), &Log::default());
+        let run = Command::Forward {
+            unit: Unit::Run,
+            count: 1,
+        };
+        let said = does(&mut session, run);
+        let cycle = format!("cycle of period {period}: ");
+        assert!(said.contains(&cycle) && said.contains(told), "{said}");
+    }
 }

@@ -2,18 +2,19 @@
 
 use super::program::{code, err, out, program};
 use super::served::{seen, session};
-use super::side::{PATIENT, does};
+use super::side::{PATIENT, does, minor};
 use libtest_mimic::Trial;
+use std::io::{Read, Write};
 use std::path::Path;
 use std::process::Command as Process;
 use stickslip::attach::check::check;
-use stickslip::attach::{PYTHON, Start};
+use stickslip::attach::{Attached, Channel, PYTHON, Start};
 use stickslip::contact::record::ContactRecord;
 use stickslip::history::frame::Frame;
 use stickslip::model::Mode;
 use stickslip::record::command::{Command, Unit};
 use stickslip::record::export::grid::grid;
-use stickslip::recorded::{exchange, log::Log};
+use stickslip::recorded::{exchange, fault::Fault, log::Log};
 use stickslip::session::Session;
 use stickslip::step::event::Outcome;
 use stickslip_exchange::vtu::Values;
@@ -27,6 +28,8 @@ pub fn tests() -> Vec<Trial> {
             a_stored_exchange_in_space_has_the_same_states,
             remedies_are_tried_on_the_solver_itself,
             a_vtu_has_three_coordinates,
+            a_solver_connects_to_a_socket_and_starts_again_to_go_back,
+            a_connection_without_the_token_is_refused,
         ],
         Err(_) => Vec::new(),
     }
@@ -176,6 +179,78 @@ fn remedies_are_tried_on_the_solver_itself() {
     );
     let cause = "why: A consistent state of the interface problem was found";
     assert!(err(&output).contains(cause), "{}", err(&output));
+}
+
+fn a_solver_connects_to_a_socket_and_starts_again_to_go_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let usual = start(folder.path(), &[]);
+    let mut original = session(usual.clone(), &Log::default());
+    does(&mut original, run());
+    let free = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = free.local_addr().unwrap().port();
+    drop(free);
+    let socket = folder.path().join("socket");
+    let unix = format!("unix:{}", socket.display());
+    for address in ["fd:0", &unix, &format!("tcp:{port}")] {
+        let start = Start {
+            channel: Channel::parse(address).unwrap(),
+            ..usual.clone()
+        };
+        let mut attached = session(start, &Log::default());
+        does(&mut attached, run());
+        assert_eq!(
+            original.frames().len(),
+            attached.frames().len(),
+            "{address}"
+        );
+        does(&mut attached, Command::Goto { step: 1 });
+        does(
+            &mut attached,
+            Command::Set {
+                path: "r".into(),
+                value: "2".into(),
+            },
+        );
+        does(&mut attached, minor());
+        for (a, b) in original.frames().iter().zip(attached.frames()).take(2) {
+            assert_eq!(seen(a), seen(b), "{address}");
+        }
+        drop(attached);
+        assert!(!socket.exists(), "{address}");
+    }
+}
+
+fn a_connection_without_the_token_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let free = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = free.local_addr().unwrap();
+    drop(free);
+    let stranger = std::thread::spawn(move || {
+        for _ in 0..500 {
+            if let Ok(mut stream) = std::net::TcpStream::connect(address) {
+                let _ = stream.write_all(b"0123456789abcdef0123456789abcdef\n");
+                let mut rest = Vec::new();
+                return stream.read_to_end(&mut rest).map_or(0, |_| rest.len());
+            }
+            std::thread::sleep(std::time::Duration::from_millis(10));
+        }
+        0
+    });
+    let log = Log::default();
+    let waits = Start {
+        command: Vec::new(),
+        channel: Channel::parse(&format!("tcp:{}", address.port())).unwrap(),
+        start: std::time::Duration::from_secs(6),
+        ..start(folder.path(), &[])
+    };
+    let fault = Attached::attach(waits, log.clone()).err().unwrap();
+    assert!(matches!(fault, Fault::Silent { .. }), "{fault}");
+    assert_eq!(stranger.join().unwrap(), 0);
+    let said = log.lines().1;
+    assert!(
+        said.iter()
+            .any(|line| line.text.contains("a connection was refused"))
+    );
 }
 
 fn a_vtu_has_three_coordinates() {

@@ -62,6 +62,7 @@ fn row(name: &str, set: &[(&str, &str)]) {
         let nodes = &state.start.nodes;
         let forces: Vec<_> = nodes.iter().map(|node| node.force()).collect();
         let nothing = vec![0.0; forces.len()];
+        let ties = vec![None; forces.len()];
         let seen = JudgedState {
             surfaces: &model.surfaces,
             contacts: &model.contacts,
@@ -73,6 +74,7 @@ fn row(name: &str, set: &[(&str, &str)]) {
             brought: &nothing,
             earlier: &nothing,
             anchored: &nothing,
+            ties: &ties,
             scales: Scales {
                 length: model.length,
                 force: 1.0,

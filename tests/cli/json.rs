@@ -466,3 +466,21 @@ fn the_example_of_the_page_is_what_its_command_writes() {
     other["load"] = 0.5.into();
     assert!(!agree(&written, &other));
 }
+
+#[test]
+fn a_deck_in_space_is_checked_by_the_rules_into_a_record() {
+    let deck = concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/tests/calculix/causes/stiff.inp"
+    );
+    let record = json(&well(&ran(&["check", deck, "--json"])));
+    assert_eq!(record["schema"], "stickslip-check-deck-1");
+    assert_eq!(
+        (&record["pairs"], &record["exit_code"]),
+        (&1.into(), &0.into())
+    );
+    let warnings = list(&record["warnings"]);
+    let cured =
+        |warning: &&serde_json::Value| warning.as_str().is_some_and(|w| w.contains("Cure: "));
+    assert!(warnings.iter().filter(cured).count() > 0, "{record}");
+}

@@ -9,12 +9,14 @@ use std::sync::Arc;
 use stickslip::contact::record::ContactRecord;
 use stickslip::model::Mode;
 use stickslip::record::export::grid::grid;
+use stickslip::recorded::calculix::{self, switches};
 use stickslip::scene::Scene;
 use stickslip::step::drive::Until;
 use stickslip::step::state::Status;
 use stickslip::step::stepper::Stepper;
+use stickslip_exchange::calculix::cel::Slave;
 use stickslip_exchange::mesh::CellKind;
-use stickslip_exchange::vtu::{Array, Grid, Values};
+use stickslip_exchange::vtu::{self, Array, Grid, Values};
 
 const BLOCK: &str = "osc-block-slide";
 const ROUGH: &str = "02-two-cantilevers-rough";
@@ -369,4 +371,43 @@ fn a_stress_in_balance_with_a_pressed_face_is_on_its_nodes() {
         let off = stress.iter().zip(exact).map(|(s, e)| (s - e).abs());
         assert!(off.fold(0.0, f64::max) < 1e-9, "{stress:?}");
     }
+}
+
+#[test]
+fn switches_of_a_finished_run_are_on_the_nodes_of_its_deck() {
+    let directory = tempfile::tempdir().unwrap();
+    let cel = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/calculix/two-blocks.cel");
+    well(&ran(
+        directory.path(),
+        &["export", cel, "-o", "switches.vtu"],
+    ));
+    let written = fs::read_to_string(directory.path().join("switches.vtu")).unwrap();
+    let run = calculix::file(cel).unwrap().unwrap().run;
+    let (grid, lost) = switches::grid(&run, &[]).unwrap();
+    assert_eq!((written, lost), (vtu::write(&grid), 0));
+    let column = |name: &str| -> Vec<i32> {
+        let array = grid.on_points.iter().find(|array| array.name == name);
+        match &array.unwrap().values {
+            Values::Wholes(values) => values.clone(),
+            other => panic!("{name}: {other:?}"),
+        }
+    };
+    let (nodes, counts, status) = (column("node"), column("switches"), column("status"));
+    let mut compared = 0;
+    for (slave, of) in run.files.slaves.iter().enumerate() {
+        let Slave::Node(node) = of else {
+            panic!("{of:?}");
+        };
+        let at = nodes
+            .iter()
+            .position(|n| u32::try_from(*n) == Ok(*node))
+            .unwrap();
+        let total = run.switching_of(slave).map_or(0, |found| found.total());
+        assert_eq!(usize::try_from(counts[at]), Ok(total), "node {node}");
+        assert!((0..=1).contains(&status[at]));
+        compared += total;
+    }
+    assert!(compared > 0);
+    // Nodes that never touched.
+    assert!(counts.contains(&-1) && status.contains(&-1));
 }

@@ -126,6 +126,7 @@ fn judged_over(
         brought: &[brought],
         earlier: &elastic[..1],
         anchored: &elastic[1..],
+        ties: &[None],
         scales: Scales {
             length: 1.0,
             force: 1.0,
@@ -699,7 +700,7 @@ fn the_surface_between_a_node_and_its_anchor_may_stretch() {
 #[test]
 fn a_tied_node_may_be_pulled_and_may_not_stray() {
     let stage = Stage {
-        bond: Bond::Tied { upright: false },
+        bond: Bond::tied(),
         ..Stage::floor(0.0, 0.0)
     };
     let to = |to: [f64; 2], force: [f64; 2]| stage.broken([1.0, 0.0], to, force);

@@ -224,3 +224,23 @@ fn accepted_loads_never_go_back_under_load_control() {
         }
     }
 }
+
+/// Where the load falls beyond its maximum, no smaller increment helps; the load is that of arc length from the start.
+#[test]
+fn the_largest_load_on_the_path_is_named_where_the_search_ends() {
+    let file = "tests/findings/load-falls-beyond-its-maximum.ron";
+    let (code, reason, _) = told(&[file]);
+    assert_eq!(code, 3, "{reason}");
+    let named = "why: limit load: equilibrium exists on this path up to load ";
+    let mut lines = reason.lines().map(str::trim);
+    let found = lines.find_map(|line| line.strip_prefix(named));
+    let (load, beyond) = found.and_then(|line| line.split_once("; ")).unwrap();
+    assert_eq!(beyond, "beyond it the load falls along the path");
+    let (_, _, table) = told(&[file, "--set", "history.control=arc"]);
+    let loads = rows(&table)
+        .into_iter()
+        .map(|row| row["load"].parse().unwrap());
+    let highest = loads.fold(0.0, f64::max);
+    let load: f64 = load.parse().unwrap();
+    assert!((load - highest).abs() < 1e-5, "{load} {highest}");
+}

@@ -6,6 +6,9 @@
 #[path = "../common/terminal.rs"]
 mod terminal;
 
+#[path = "../common/causes.rs"]
+mod stored;
+
 // Shared: frames made by hand.
 mod by_hand;
 mod failures;

@@ -1,6 +1,7 @@
 //! A finished CalculiX run, looked at: screens at every size, keys, and sessions in a pseudo-terminal. The runs are those of
 //! `tests/calculix`, which `tests/peers/past.py` makes.
 
+use crate::stored::rows;
 use crate::terminal::*;
 use proptest::prelude::*;
 use ratatui::buffer::Buffer;
@@ -151,7 +152,6 @@ fn what_needs_a_solver_is_refused_with_the_reason() {
         "m",
         "M",
         "i",
-        "r",
         ": s e t Space s e t t i n g s . s l i p Space m a j o r Enter",
         ": c e n s u s Enter",
         ": j o u r n a l Space x Enter",
@@ -168,6 +168,27 @@ fn what_needs_a_solver_is_refused_with_the_reason() {
     assert!(debugger.app.message.text.contains("nonsense"));
     let quit = keys::press("q").unwrap();
     assert_eq!(debugger.key(&quit), Some(TerminalRequest::Quit));
+}
+
+#[test]
+fn the_cure_of_the_diagnosis_is_copied_as_lines_of_the_deck() {
+    for row in rows()
+        .iter()
+        .filter(|row| row.deck == "stick" || row.deck == "open")
+    {
+        let mut debugger = debugger(&format!("causes/{}", row.deck));
+        // Remedies of a finished run are the cures of its diagnosis.
+        for page in ["d", "r"] {
+            debugger.type_keys(page);
+            assert_eq!(debugger.app.panes.focus, Pane::Diagnosis);
+            let copied = debugger.key(&keys::press("Y").unwrap());
+            let Some(TerminalRequest::Copy(text)) = copied else {
+                panic!("{}: {copied:?} {}", row.deck, debugger.app.message.text);
+            };
+            assert_eq!(text, row.cure);
+            debugger.type_keys("Esc");
+        }
+    }
 }
 
 #[test]

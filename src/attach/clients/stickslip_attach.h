@@ -272,7 +272,8 @@ void ss_begin(const char *title, const char *name, const char *version) {
     (void)k;
     fflush(stdout);
     ss.in = dup(0);
-    ss.out = dup(1);
+    /* With --listen fd:0, standard input is a socket for both directions. */
+    ss.out = dup(getenv("STICKSLIP_CONNECT") && !strcmp(getenv("STICKSLIP_CONNECT"), "fd:0") ? 0 : 1);
     dup2(nothing, 0);
     dup2(2, 1);
     close(nothing);

@@ -32,6 +32,7 @@ import mmap
 import os
 import queue
 import signal
+import socket
 import sys
 import threading
 import traceback
@@ -244,7 +245,7 @@ class _Line:
         self.requests: queue.SimpleQueue[Optional[Message]] = queue.SimpleQueue()
         self.lock = threading.Lock()
         self.busy = False
-        self.source, self.sink = os.dup(0), os.dup(1)
+        self.source, self.sink = _connected()
         nothing = os.open(os.devnull, os.O_RDONLY)
         os.dup2(nothing, 0)
         os.close(nothing)
@@ -285,6 +286,24 @@ class _Line:
         with self.lock:
             while text:
                 text = text[os.write(self.sink, text):]
+
+
+def _connected() -> tuple[int, int]:
+    """Copies of the streams to the debugger, or a socket: `STICKSLIP_CONNECT` is `fd:0`, `unix:PATH` or `tcp:HOST:PORT`."""
+    kind, _, where = os.environ.get("STICKSLIP_CONNECT", "").partition(":")
+    if kind == "fd":
+        return os.dup(0), os.dup(0)
+    if kind == "unix":
+        line = socket.socket(socket.AF_UNIX)
+        line.connect(where)
+    elif kind == "tcp":
+        host, _, port = where.rpartition(":")
+        line = socket.create_connection((host.strip("[]"), int(port)))
+        line.sendall(os.environ["STICKSLIP_TOKEN"].encode() + b"\n")
+    else:
+        return os.dup(0), os.dup(1)
+    descriptor = line.detach()
+    return descriptor, os.dup(descriptor)
 
 
 # A process has one standard input and output.

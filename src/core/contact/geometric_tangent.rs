@@ -100,14 +100,29 @@ mod tests {
     use crate::contact::smooth::smooth;
     use crate::model::{Node, Surface};
 
-    /// Force on every degree of freedom (slave first) for constant components, from a new projection.
-    fn forces(surfaces: &[Surface], positions: &[[f64; 2]], f: [f64; 2]) -> Vec<f64> {
-        let spot = project(positions[0], surfaces, &[0], positions, None).unwrap();
-        let at = projection_at(surfaces, spot, positions, positions[0]);
+    /// Nodes of a slave point with their weights.
+    type Carriers<'a> = &'a [(usize, f64)];
+
+    fn place(carriers: Carriers<'_>, x: &[[f64; 2]]) -> [f64; 2] {
+        [0, 1].map(|axis| carriers.iter().map(|(n, w)| w * x[*n][axis]).sum())
+    }
+
+    /// Force on every degree of freedom for constant components, from a new projection.
+    fn forces(
+        surfaces: &[Surface],
+        positions: &[[f64; 2]],
+        carriers: Carriers<'_>,
+        f: [f64; 2],
+    ) -> Vec<f64> {
+        let slave = place(carriers, positions);
+        let spot = project(slave, surfaces, &[0], positions, None).unwrap();
+        let at = projection_at(surfaces, spot, positions, slave);
         let t = tangent(at.normal);
         let force = [0, 1].map(|a| f[0] * at.normal[a] + f[1] * t[a]);
         let mut all = vec![0.0; 2 * positions.len()];
-        all[..2].copy_from_slice(&force);
+        for (n, weight) in carriers {
+            (0..2).for_each(|a| all[2 * n + a] += weight * force[a]);
+        }
         for (&n, share) in surfaces[0].elements[spot.element].iter().zip(at.shape) {
             (0..2).for_each(|a| all[2 * n + a] -= share * force[a]);
         }
@@ -118,19 +133,21 @@ mod tests {
         Surface::new("s", vec![(1..=m).collect()], false)
     }
 
-    /// Compares with central differences, at node 0 over the surface.
-    fn check(surface: Surface, x: &[[f64; 2]], what: &str) {
+    /// Compares with central differences, at a point over the surface.
+    fn check(surface: Surface, x: &[[f64; 2]], carriers: Carriers<'_>, what: &str) {
         let (surfaces, f) = ([surface], [2.0, -0.7]);
-        let spot = project(x[0], &surfaces, &[0], x, None).unwrap();
-        let at = projection_at(&surfaces, spot, x, x[0]);
+        let slave = place(carriers, x);
+        let spot = project(slave, &surfaces, &[0], x, None).unwrap();
+        let at = projection_at(&surfaces, spot, x, slave);
         let curve = at.curve.unwrap();
         let nodes = &surfaces[0].elements[spot.element];
         let variation = |dof: usize| {
             let place = nodes.iter().position(|&n| n == dof / 2);
-            let (weight, slope) = match place {
-                Some(i) => (at.shape[i], at.shape_slope[i]),
-                None if dof < 2 => (-1.0, 0.0),
-                None => (0.0, 0.0),
+            let carrier = carriers.iter().find(|(n, _)| *n == dof / 2);
+            let (weight, slope) = match (place, carrier) {
+                (Some(i), _) => (at.shape[i], at.shape_slope[i]),
+                (None, Some((_, weight))) => (-weight, 0.0),
+                (None, None) => (0.0, 0.0),
             };
             Variation::new(&at, &curve, dof % 2, weight, slope)
         };
@@ -138,9 +155,9 @@ mod tests {
             let h = 1e-6;
             let mut moved = x.to_vec();
             moved[j / 2][j % 2] += h;
-            let plus = forces(&surfaces, &moved, f);
+            let plus = forces(&surfaces, &moved, carriers, f);
             moved[j / 2][j % 2] -= 2.0 * h;
-            let minus = forces(&surfaces, &moved, f);
+            let minus = forces(&surfaces, &moved, carriers, f);
             for i in 0..2 * x.len() {
                 let difference = (plus[i] - minus[i]) / (2.0 * h);
                 let exact = geometric_tangent(&at, &curve, f, &variation(i), &variation(j));
@@ -163,7 +180,21 @@ mod tests {
             for gap in [-0.1, 0.0, 0.15] {
                 let mut x = vec![[1.1 + 0.2 * gap, 0.9 - gap]];
                 x.extend(arc(m));
-                check(surface(m), &x, &format!("m {m} gap {gap}"));
+                check(surface(m), &x, &[(0, 1.0)], &format!("m {m} gap {gap}"));
+            }
+        }
+    }
+
+    #[test]
+    fn the_geometric_tangent_of_a_point_of_a_face_is_exact() {
+        for m in 2..=5 {
+            for gap in [-0.1, 0.0, 0.15] {
+                let mut x = vec![[0.5 + 0.2 * gap, 0.8 - gap]];
+                x.extend(arc(m));
+                x.extend([[1.4, 0.9 - gap], [2.0, 1.2 - gap]]);
+                // The functions of a side of three nodes at a Gauss point; one of them is negative.
+                let carriers = [(0, 0.5), (m + 1, 0.65), (m + 2, -0.15)];
+                check(surface(m), &x, &carriers, &format!("m {m} gap {gap}"));
             }
         }
     }
@@ -189,7 +220,12 @@ mod tests {
                 ];
                 let spot = project(x[0], &[chain.clone()], &[0], &x, None).unwrap();
                 assert_eq!(spot.element, k);
-                check(chain.clone(), &x, &format!("piece {k} gap {gap}"));
+                check(
+                    chain.clone(),
+                    &x,
+                    &[(0, 1.0)],
+                    &format!("piece {k} gap {gap}"),
+                );
             }
         }
     }

@@ -28,12 +28,12 @@ use crate::contact::element::{SurfaceElement, closed};
 use crate::contact::facing::{MOST, faced};
 use crate::contact::laws::{Finding, JudgedLaw, JudgedNumbers, Scales, Verdict};
 use crate::contact::point_force::judged::{JudgedGives, LoadedInterface, hand_on};
-use crate::contact::projection::SurfacePoint;
+use crate::contact::projection::{SurfacePoint, projection_at, tangent};
 use crate::contact::side_laws::{Amounts, SideHistory, TouchedSide};
 use crate::contact::side_laws::{beyond_border, in_corner, on_side, slip_into};
 use crate::contact::stick_point::distance;
 use crate::model::Friction;
-use crate::model::{Contact, Surface};
+use crate::model::{Bond, Contact, Surface};
 use crate::plane::{self, dot, length, minus, unit};
 
 /// Input of the judge: an interface, now and in the last accepted state.
@@ -60,6 +60,8 @@ pub struct JudgedState<'a> {
     pub earlier: &'a [f64],
     /// Elastic slip of each contact when it was last anchored, in the last accepted state (length).
     pub anchored: &'a [f64],
+    /// The point of its surface to which each contact is tied.
+    pub ties: &'a [Option<SurfacePoint>],
     /// Units of amounts, and tolerances.
     pub scales: Scales,
 }
@@ -216,6 +218,27 @@ impl Judge {
             foot = over(feet, point);
         }
         self.next.add(&self.feet);
+        if let (Bond::Tied { give, .. }, Some(spot)) = (bond, seen.ties[slave])
+            && *give != [0.0; 2]
+        {
+            // The springs act between the point and its anchor, wherever the surface is closest.
+            let anchor = projection_at(seen.surfaces, spot, seen.now, seen.point(slave));
+            let (n, t) = (anchor.normal, tangent(anchor.normal));
+            let to = [0, 1].map(|k| anchor.foot[k] - seen.point(slave)[k]);
+            let off = [
+                anchor.gap + give[0] * dot(force, n),
+                dot(to, t) - give[1] * dot(force, t),
+            ];
+            let held = ClosestPoint {
+                spot,
+                at: anchor.foot,
+                distance: 0.0,
+            };
+            hand_on(&seen.loaded(), slave, &held, false, contact);
+            let amount = off[0].abs().max(off[1].abs());
+            report(JudgedLaw::Tied, amount / length, JudgedNumbers::default());
+            return;
+        }
         if bond.is_tied() {
             let amount = foot.map_or(f64::INFINITY, |foot| {
                 hand_on(&seen.loaded(), slave, &foot, false, contact);

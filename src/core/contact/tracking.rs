@@ -164,7 +164,7 @@ impl Ground<'_> {
         };
         let over = projection_at(self.surfaces, spot, self.positions, at);
         let normal = match slave.bond {
-            Bond::Tied { upright: true } => axis(over.normal),
+            Bond::Tied { upright: true, .. } => axis(over.normal),
             _ => over.normal,
         };
         let ([c, s], t, [f_x, f_y]) = (normal, tangent(normal), node.force());
@@ -173,6 +173,10 @@ impl Ground<'_> {
         }
         (node.spot, node.anchor, node.normal) = (Some(spot), Some(spot), normal);
         node.drift = (over.foot[0] - at[0]) * t[0] + (over.foot[1] - at[1]) * t[1];
+        let give = slave.bond.give()[1];
+        if give > 0.0 {
+            node.drift -= give * node.f_t;
+        }
     }
 
     /// Whether a node held in a corner still sticks there, and the corner still exists; updates its angle.

@@ -275,7 +275,7 @@ fn the_shape_functions_of_every_kind_reproduce_its_polynomials() {
         // Powers of ξ and η in the kind's shape functions.
         let powers: &[(i32, i32)] = match kind {
             ElementKind::Triangle3 => &[(0, 0), (1, 0), (0, 1)],
-            ElementKind::Quad4 => &[(0, 0), (1, 0), (0, 1), (1, 1)],
+            ElementKind::Quad4 | ElementKind::Quad4Reduced => &[(0, 0), (1, 0), (0, 1), (1, 1)],
             ElementKind::Triangle6 => &[(0, 0), (1, 0), (0, 1), (1, 1), (2, 0), (0, 2)],
             ElementKind::Quad8 | ElementKind::Quad8Reduced => &QUAD9[..8],
             ElementKind::Quad9 => &QUAD9,

@@ -60,6 +60,7 @@ struct Bench {
     brought: Vec<f64>,
     earlier: Vec<f64>,
     anchored: Vec<f64>,
+    ties: Vec<Option<SurfacePoint>>,
     /// Contact force at every node.
     contact: Vec<[f64; 2]>,
     /// Load at every degree of freedom.
@@ -85,6 +86,7 @@ impl Bodies {
                 brought: Vec::with_capacity(contacts),
                 earlier: Vec::with_capacity(contacts),
                 anchored: Vec::with_capacity(contacts),
+                ties: Vec::with_capacity(contacts),
                 contact: vec![[0.0; 2]; nodes],
                 load: vec![0.0; model.dofs.len()],
             },
@@ -190,8 +192,21 @@ fn is_laid_out_alike(one: &Model, other: &Model) -> bool {
     let memory = |model: &Model| (model.settings.memory, model.budget, model.length);
     let mut contacts = one.contacts.iter().zip(&other.contacts);
     let stands_alike = |(a, b): (&Contact, &Contact)| {
-        (a.node, &a.surfaces, &a.facing, a.overlap, a.bond)
-            == (b.node, &b.surfaces, &b.facing, b.overlap, b.bond)
+        (
+            a.node,
+            &a.weights,
+            &a.surfaces,
+            &a.facing,
+            a.overlap,
+            a.bond,
+        ) == (
+            b.node,
+            &b.weights,
+            &b.surfaces,
+            &b.facing,
+            b.overlap,
+            b.bond,
+        )
     };
     one.contacts.len() == other.contacts.len()
         && contacts.all(stands_alike)
@@ -331,6 +346,16 @@ impl Source for Bodies {
         for (d, u) in u.iter_mut().enumerate() {
             *u += self.system.increment(&self.model, d);
         }
+        for contact in self.model.contacts.iter().filter(|c| !c.weights.is_empty()) {
+            let first = &self.model.dofs.first;
+            for axis in 0..2 {
+                let parts = contact
+                    .carriers()
+                    .map(|(n, weight)| weight * u[first[n] + axis]);
+                let sum = parts.sum();
+                u[first[contact.node] + axis] = sum;
+            }
+        }
         largest
     }
 
@@ -416,6 +441,10 @@ impl Source for Bodies {
         bench
             .anchored
             .extend(accepted().map(|state| state.stretched));
+        bench.ties.clear();
+        bench
+            .ties
+            .extend(at.contacts.iter().map(|state| state.anchor));
         let now = &self.system.positions;
         let overlaps = model
             .contacts
@@ -466,6 +495,7 @@ impl Source for Bodies {
             brought: &bench.brought,
             earlier: &bench.earlier,
             anchored: &bench.anchored,
+            ties: &bench.ties,
             scales,
         };
         let mut verdict = bench.judge.interface(&seen, &mut bench.contact);

@@ -5,7 +5,7 @@ use crate::contact::point_force::LinearisedForce;
 use crate::contact::projection::{Projection, tangent};
 use crate::contact::state::ContactState;
 use crate::linalg::Pattern;
-use crate::model::{Bond, Model};
+use crate::model::{Bond, Contact, Model};
 use crate::plane::dot;
 
 /// A Cartesian displacement in a slave node's equations, with its weight in u_S* − u_S.
@@ -124,25 +124,26 @@ impl Interface {
     }
 
     /// Lists the displacements of S and S*; on an unchanged element, only updates their weights.
-    pub fn link(&mut self, model: &Model, node: &ContactState, slave: usize) {
+    pub fn link(&mut self, model: &Model, node: &ContactState, slave: &Contact) {
         let on = node.spot.zip(self.projection);
         let element = on.map(|(spot, _)| (spot.surface, spot.element));
         if self.linked != Some(element) {
             (self.linked, self.placed) = (Some(element), false);
             self.links.clear();
-            self.list(model, slave);
+            slave.carriers().for_each(|(n, _)| self.list(model, n));
             if let Some((surface, element)) = element {
                 for &n in &model.surfaces[surface].elements[element] {
                     self.list(model, n);
                 }
             }
         }
-        self.links[..2]
-            .iter_mut()
-            .for_each(|link| link.weight = -1.0);
+        let (own, of_element) = self.links.split_at_mut(2 * slave.carriers().count());
+        for (pair, (_, weight)) in own.chunks_exact_mut(2).zip(slave.carriers()) {
+            pair.iter_mut().for_each(|link| link.weight = -weight);
+        }
         if let Some((_, projection)) = on {
             let shares = projection.shape.iter().zip(&projection.shape_slope);
-            for (pair, (&weight, &slope)) in self.links[2..].chunks_exact_mut(2).zip(shares) {
+            for (pair, (&weight, &slope)) in of_element.chunks_exact_mut(2).zip(shares) {
                 for link in pair {
                     (link.weight, link.slope) = (weight, slope);
                 }

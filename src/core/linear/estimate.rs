@@ -322,7 +322,7 @@ fn displacements(model: &Model) -> f64 {
     let mut wanted = vec![false; model.nodes.len()];
     let mut surfaces = vec![false; model.surfaces.len()];
     for slave in &model.contacts {
-        wanted[slave.node] = true;
+        slave.carriers().for_each(|(n, _)| wanted[n] = true);
         slave.surfaces.iter().for_each(|&s| surfaces[s] = true);
     }
     for (surface, met) in model.surfaces.iter().zip(surfaces) {

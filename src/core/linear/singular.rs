@@ -68,7 +68,9 @@ pub fn diagnose<'a>(
         };
         for direction in &directions[..active] {
             let mut row = frame.row();
-            frame.add(&mut row, model.contacts[s].node, *direction, -1.0);
+            for (n, weight) in model.contacts[s].carriers() {
+                frame.add(&mut row, n, *direction, -weight);
+            }
             for (&n, &weight) in master.iter().zip(&projection.shape) {
                 frame.add(&mut row, n, *direction, weight);
             }

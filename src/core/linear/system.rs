@@ -409,7 +409,7 @@ impl System {
     fn link(&mut self, model: &Model, at: &LinearisationPoint<'_>) {
         let slaves = at.contacts.iter().zip(&model.contacts);
         for (interface, (node, slave)) in self.interfaces.iter_mut().zip(slaves) {
-            interface.link(model, node, slave.node);
+            interface.link(model, node, slave);
         }
     }
 

@@ -1,5 +1,6 @@
 //! The interface: master surfaces and the contacts of slave nodes with them.
 
+use super::documented::documented;
 use super::friction::{Friction, InitialState, Mode};
 use serde::{Deserialize, Serialize};
 
@@ -66,11 +67,14 @@ pub struct Piece {
 /// Maximum number of nodes that a piece depends on.
 pub const STENCIL: usize = 4;
 
-/// A slave node with the surfaces that it may touch.
+/// A slave node, or a point of a slave face, with the surfaces that it may touch.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Contact {
     /// Number of the slave node.
     pub node: usize,
+    /// Nodes that carry the slave node, with weights, if it is a point of a face: it has no unknowns, and its displacement is their
+    /// weighted sum. Empty if it is a node of a body.
+    pub weights: Vec<(usize, f64)>,
     /// Numbers of the surfaces that it may touch.
     pub surfaces: Vec<usize>,
     /// Initial friction; the user may change it during a run.
@@ -107,6 +111,7 @@ impl Contact {
     pub fn new(node: usize, surfaces: Vec<usize>, friction: Friction) -> Self {
         Contact {
             node,
+            weights: Vec::new(),
             surfaces,
             friction,
             start: Mode::Free,
@@ -118,10 +123,39 @@ impl Contact {
         }
     }
 
+    /// The nodes on which its force acts, with their weights.
+    pub fn carriers(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        let own = self.weights.is_empty().then_some((self.node, 1.0));
+        own.into_iter().chain(self.weights.iter().copied())
+    }
+
     /// Contact pressure and shear traction (force per undeformed area) of these forces along n and t. `None` without an area.
     pub fn pressure(&self, f_n: f64, f_t: f64) -> Option<[f64; 2]> {
         let area = self.area.filter(|area| *area > 0.0)?;
         Some([f_n / area, f_t / area])
+    }
+}
+
+documented! {
+    /// The points of a slave surface at which its law holds.
+    #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+    #[serde(rename_all = "lowercase")]
+    pub enum SlavePoints {
+        /// Its nodes, with their tributary areas (node to surface).
+        #[default]
+        Node,
+        /// Gauss points of its sides (surface to surface), at least 10 per side, on each part of a side that lies over one side of
+        /// the undeformed masters. A point is a weighted sum of the nodes of its side. A side belongs to the slave
+        /// surface if all its nodes do. Only for solids, and not for hard contact or rigid ties, which would be more equations
+        /// than a side has unknowns.
+        Surface,
+    }
+}
+
+impl SlavePoints {
+    /// Whether this is the default, which scenes may omit.
+    pub fn is_node(&self) -> bool {
+        *self == SlavePoints::Node
     }
 }
 
@@ -137,6 +171,9 @@ pub enum Bond {
     Giving([f64; 2]),
     /// Tied to a point of its surface; transmits tension too.
     Tied {
+        /// Compliances along n and t (length per force); zeros if it is rigid.
+        #[serde(default, skip_serializing_if = "is_rigid")]
+        give: [f64; 2],
         /// Whether the normal is replaced by the nearest coordinate axis. Needed if supports restrain the node and its surface
         /// along the other axis, because the equations along n and t would then be linearly dependent.
         upright: bool,
@@ -156,8 +193,16 @@ impl Bond {
     /// Compliances in series along n and t (length per force).
     pub fn give(&self) -> [f64; 2] {
         match self {
-            Bond::Giving(give) => *give,
-            Bond::Hard | Bond::Tied { .. } => [0.0; 2],
+            Bond::Giving(give) | Bond::Tied { give, .. } => *give,
+            Bond::Hard => [0.0; 2],
+        }
+    }
+
+    /// The rigid tie.
+    pub fn tied() -> Self {
+        Bond::Tied {
+            give: [0.0; 2],
+            upright: false,
         }
     }
 
@@ -170,4 +215,8 @@ impl Bond {
     pub fn is_tied(&self) -> bool {
         matches!(self, Bond::Tied { .. })
     }
+}
+
+fn is_rigid(give: &[f64; 2]) -> bool {
+    *give == [0.0; 2]
 }

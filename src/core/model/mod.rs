@@ -25,7 +25,7 @@ pub use crate::elements::kinds::ElementKind;
 pub use body::{
     Beam, Body, BodyKind, Elastic, Form, Law, Linear, Plane, Solid, SolidElement, Truss, Update,
 };
-pub use contact::{Bond, Contact, Facing, Piece, PointGive, STENCIL, Surface};
+pub use contact::{Bond, Contact, Facing, Piece, PointGive, STENCIL, SlavePoints, Surface};
 pub use control::{ArcLength, ArcMeasure, Bound, Control};
 pub use dofs::{Axis, Component, Dofs};
 pub use friction::{Friction, InitialState, Mode};

@@ -19,11 +19,11 @@ use crate::contact::state::ContactState;
 use crate::linear::norms::Norms;
 use crate::linear::singular::Singular;
 use crate::model::{ArcLength, ArcMeasure, Jumps, Mode, Model};
-use crate::step::arc_state::{ArcConstraint, Change, ROUNDING, farthest};
+use crate::step::arc_state::{ArcConstraint, ArcState, Change, ROUNDING, farthest};
 use crate::step::event::{Failure, Outcome};
 use crate::step::iterate::Iterate;
 use crate::step::jump::AcceptanceNotes;
-use crate::step::pace::RATIO;
+use crate::step::pace::{Pace, RATIO};
 use crate::step::state::State;
 use crate::step::stepper::Stepper;
 use std::sync::Arc;
@@ -317,6 +317,24 @@ impl State {
         self.load_factor = start.load_factor;
         (self.major.target, self.major.last_target) = (start.load_factor, start.load_factor);
         self.change_modes();
+    }
+
+    /// The last accepted state, from which the path continues by arc length, first over a largest displacement of `step`. `None`
+    /// at the end of the history.
+    pub fn along_path(&self, model: &Model, step: f64) -> Option<State> {
+        let corner = model.path.get(self.start.leg + 1)?;
+        let mut along = self.clone();
+        (along.recovery.motion, along.recovery.fallback) = (None, None);
+        along.record.pace = Pace::default();
+        along.way = Some(Box::new(ArcState {
+            measured: ArcMeasure::Displacements,
+            ahead: (corner - self.start.load_factor).signum(),
+            step,
+            first: step,
+            ..ArcState::new(model)
+        }));
+        along.start_again();
+        Some(along)
     }
 
     /// Gives contacts the modes behind the corner, if the current increment starts there.

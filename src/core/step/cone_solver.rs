@@ -11,7 +11,7 @@ use crate::linear::norms::Norms;
 use crate::model::{Friction, Mode, Model, SpaceProblem};
 use crate::step::event::{Event, Failure, Outcome};
 use crate::step::intervene::{Intervention, Refusal};
-use crate::step::judged::{self, Sizes};
+use crate::step::judged::{self, ReferenceSizes};
 use crate::step::solver::{
     Capabilities, ReportedForm, ReportedProblem, RewindSupport, Solver, SolverLost,
 };
@@ -169,12 +169,14 @@ impl Solver for ConeSolver {
         };
         let motions = self.sweep.motions().chunks_exact(3);
         let moved = motions.flat_map(|motion| [motion[1], motion[2], motion[0]]);
-        self.state.u = Arc::new(moved.collect());
+        // The floor does not move.
+        let all = moved.chain(std::iter::repeat(0.0));
+        self.state.u = Arc::new(all.take(self.model.dofs.len()).collect());
         let largest = judged::largest_force(&self.event.nodes);
         if let Some(outside) = &mut self.state.outside {
             outside.largest_force = largest;
         }
-        let sizes = Sizes::from_state(&self.state, &self.event);
+        let sizes = ReferenceSizes::from_state(&self.state, &self.event);
         let broken = judged::broken(&self.model, &self.event.nodes, &sizes);
         if let Outcome::Increment { marked, .. } = &mut self.event.outcome {
             *marked = broken;
@@ -353,6 +355,7 @@ mod tests {
             assert!(solver.step().expect("it steps"));
             assert_eq!(solver.event(), &events[k]);
             assert_eq!(solver.state(), &states[k + 1]);
+            assert_eq!(solver.state().u.len(), solver.model().dofs.len());
         }
     }
 }

@@ -426,7 +426,7 @@ impl Failure {
             Failure::CutTooOften { slave, .. } | Failure::OverConstrained { slave, .. } => {
                 Some(*slave)
             }
-            Failure::LadderEnded { last, .. } => last.culprit(),
+            Failure::LadderEnded { first, last, .. } => last.culprit().or_else(|| first.culprit()),
             _ => None,
         }
     }

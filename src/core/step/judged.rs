@@ -19,7 +19,7 @@ pub const ALLOWED: f64 = 1e-2;
 pub const ROUND_OFF: f64 = 1e-6;
 
 /// Reference sizes for relative amounts.
-pub struct Sizes {
+pub struct ReferenceSizes {
     /// The largest contact force on the way to the state. Once all contacts are open again, only round-off is
     /// left.
     pub force: f64,
@@ -35,9 +35,9 @@ pub fn largest_force(nodes: &[ContactRecord]) -> f64 {
         .fold(0.0, |most: f64, f| most.max(f.abs()))
 }
 
-impl Sizes {
+impl ReferenceSizes {
     /// The sizes for a state that was accepted with an iteration.
-    pub fn from_state(state: &State, event: &Event) -> Sizes {
+    pub fn from_state(state: &State, event: &Event) -> ReferenceSizes {
         let known = state
             .outside
             .as_ref()
@@ -45,7 +45,7 @@ impl Sizes {
         let count = event.frames.first().map_or(2, |_| 3);
         let moved = state.u.chunks(count);
         let moved = moved.map(|u| u.iter().map(|x| x * x).sum::<f64>().sqrt());
-        Sizes {
+        ReferenceSizes {
             // The scale is NaN if it was not reported.
             force: known.max(ROUND_OFF * event.before.scale),
             length: moved.fold(0.0, f64::max),
@@ -54,14 +54,14 @@ impl Sizes {
 }
 
 /// The law with the largest violation in an accepted state.
-pub fn broken(model: &Model, nodes: &[ContactRecord], sizes: &Sizes) -> Option<Finding> {
+pub fn broken(model: &Model, nodes: &[ContactRecord], sizes: &ReferenceSizes) -> Option<Finding> {
     let all = verdict(model, nodes, sizes);
     let broken = all.broken().copied();
     broken.max_by(|a, b| a.amount.total_cmp(&b.amount))
 }
 
 /// The largest amount by which each law is violated in an accepted state.
-pub fn verdict(model: &Model, nodes: &[ContactRecord], sizes: &Sizes) -> Verdict {
+pub fn verdict(model: &Model, nodes: &[ContactRecord], sizes: &ReferenceSizes) -> Verdict {
     let force = sizes.force;
     let length = if sizes.length > 0.0 {
         sizes.length

@@ -28,6 +28,8 @@ enum Need {
     Parameters,
     /// The frozen interface problem.
     Problem,
+    /// The same, or a finished run, whose diagnosis has the cures.
+    Cures,
     /// The frozen interface problem, with forced modes to start from its states.
     Answers,
     /// A scene that can be solved repeatedly.
@@ -73,7 +75,8 @@ impl Need {
             Need::Cohesion => has(offers.cohesion, "a cohesion change"),
             Need::Settings => has(offers.settings, "settings of the two-level method"),
             Need::Parameters => has(!offers.parameters.is_empty(), "parameters that can be set"),
-            Need::Problem => has(offers.problem, "its interface problem"),
+            Need::Cures if offers.past.is_some() => Ok(()),
+            Need::Problem | Need::Cures => has(offers.problem, "its interface problem"),
             Need::Answers => has(offers.problem, "its interface problem").and_then(|()| takes(force(false))),
             Need::Chart => Err(
                 "charts can be measured only on scenes that stickslip solves itself (:chart FILE shows a table)".into(),
@@ -121,7 +124,8 @@ impl Need {
         Some(match ui {
             Ui::Ask(Question::Mode) => Need::ForceOrHold,
             Ui::Ask(Question::Increment) => Need::Increment,
-            Ui::Page(Page::Remedies) | Ui::Apply(_) => Need::Problem,
+            Ui::Page(Page::Remedies) => Need::Cures,
+            Ui::Apply(_) => Need::Problem,
             Ui::StartFrom(_) => Need::Answers,
             Ui::Chart(ChartOf::Scene | ChartOf::Settings(_)) => Need::Chart,
             Ui::Log | Ui::Parameters => Need::Attached,

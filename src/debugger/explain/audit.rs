@@ -13,7 +13,7 @@ use stickslip_core::model::Model;
 use stickslip_core::model::{BodyKind, Solid};
 use stickslip_core::plane::{dot, minus};
 use stickslip_core::step::event::{Event, Outcome};
-use stickslip_core::step::judged::{self, Sizes};
+use stickslip_core::step::judged::{self, ReferenceSizes};
 use stickslip_core::step::solver::Solver;
 use stickslip_core::step::stepper::Stepper;
 
@@ -131,7 +131,7 @@ impl Audit {
     pub fn take_reported(&mut self, solver: &dyn Solver) {
         let (event, state) = (solver.event(), solver.state());
         if matches!(event.outcome, Outcome::Increment { .. }) {
-            let sizes = Sizes::from_state(state, event);
+            let sizes = ReferenceSizes::from_state(state, event);
             let verdict = judged::verdict(solver.model(), &event.nodes, &sizes);
             self.add(event, &verdict, false);
         }

@@ -9,15 +9,11 @@ use stickslip_scene::shown::first_of;
 /// Maximum number of nodes named in a cycle.
 const MOST_NODES: usize = 6;
 
-/// A sequence of modes; long runs are counted.
-fn pattern(modes: &[Mode]) -> String {
-    let stays = modes.chunk_by(|a, b| a == b).map(|stay| {
-        let word = mode(stay[0]);
-        match stay.len() {
-            1 => word.to_string(),
-            2 => format!("{word} → {word}"),
-            n => format!("{word} ({n} times)"),
-        }
+/// A sequence of modes in words; long runs are counted.
+pub fn pattern(words: &[&str]) -> String {
+    let stays = words.chunk_by(|a, b| a == b).map(|stay| match stay {
+        [word, _, _, ..] => format!("{word} ({} times)", stay.len()),
+        _ => stay.join(" → "),
     });
     stays.collect::<Vec<_>>().join(" → ")
 }
@@ -73,7 +69,10 @@ pub fn cycle(model: &Model, cycle: &Cycle) -> String {
             [first, rest @ ..] if rest.iter().all(|m| m == first) => {
                 format!("{name} stays {} while its T_max repeats", mode(*first))
             }
-            modes => format!("{name} {} → …", pattern(modes)),
+            modes => {
+                let words: Vec<&str> = modes.iter().map(|m| mode(*m)).collect();
+                format!("{name} {} → …", pattern(&words))
+            }
         }
     };
     // Members whose modes change come first: the T_max of many others may follow them.

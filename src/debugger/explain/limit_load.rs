@@ -1,7 +1,9 @@
-//! The load at which a body becomes loose, and why: friction is used up, or no contact presses against the
-//! motion any more.
+//! The limit load: where a body becomes loose, and why (friction is used up, or no contact presses against the motion any more),
+//! or where the equilibrium path has its largest load.
 //!
-//! Repeats the failed increment in smaller steps ([`super::load_limit_probe`]). In the last equilibrium, computes the remaining
+//! **Largest load.** From the last equilibrium, follows the path by arc length until the load falls.
+//!
+//! **Loose body.** Repeats the failed increment in smaller steps ([`super::load_limit_probe`]). In the last equilibrium, computes the remaining
 //! resistance of each contact of the body against the free motion. With v the relative velocity, friction resists with at
 //! most tan φ F_n + c per |v_t|, of which |F_t| is used; an opening contact yields F_n per v_n until its force is zero.
 //!
@@ -11,16 +13,83 @@
 use super::load_limit_probe::{LoadLimitProbe, reach};
 use super::rigid_motion::BodyMotion;
 use std::collections::HashSet;
+use std::ops::ControlFlow;
+use std::sync::Arc;
 use stickslip_core::contact::record::ContactRecord;
 use stickslip_core::linear::singular::{RigidMotion, Singular};
 use stickslip_core::model::{Body, Mode, Model};
-use stickslip_core::step::event::Failure;
+use stickslip_core::step::drive::{RunEnd, Until};
+use stickslip_core::step::event::{Failure, Outcome};
 use stickslip_core::step::state::State;
 use stickslip_core::step::stepper::Stepper;
-use stickslip_scene::number::sig4;
+use stickslip_scene::number::{sig4, sig6};
 
 /// Fraction of the friction or of the contact forces below which nothing is left.
 const LEFT: f64 = 1e-2;
+
+/// First step along the path, as a fraction of the scene's length.
+const FIRST_STEP: f64 = 1e-4;
+/// Maximum number of increments along the path, and of minor iterations in all.
+const MOST_STEPS: u32 = 40;
+const MOST_MINORS: u64 = 600;
+/// Fall of the load, as a fraction of the largest of the history, above the errors of equilibrium.
+const FALL: f64 = 1e-6;
+
+/// An accepted state on a path.
+struct PathPoint {
+    /// Displacements.
+    u: Arc<Vec<f64>>,
+    /// Direction of the path there.
+    direction: Arc<Vec<f64>>,
+}
+
+impl PathPoint {
+    /// Whether these displacements are farther along the path.
+    fn is_before(&self, u: &[f64]) -> bool {
+        let moved = u.iter().zip(self.u.iter()).map(|(u, from)| u - from);
+        let along = self.direction.iter().zip(moved);
+        along.map(|(c, moved)| c * moved).sum::<f64>() > 0.0
+    }
+}
+
+/// The largest load on the path from the last equilibrium, before it falls while the displacements go on. `None` if it does not fall
+/// within [`MOST_STEPS`] increments, or if the path reaches the load of the failed increment. The stepper's final state is
+/// unspecified.
+fn largest_load(stepper: &mut Stepper, state: &State, stop: &dyn Fn() -> bool) -> Option<f64> {
+    let model = stepper.model().clone();
+    let along = state.along_path(&model, FIRST_STEP * model.length)?;
+    let ahead = along.way.as_ref()?.ahead;
+    let largest = model.path.iter().fold(0.0_f64, |m, p| m.max(p.abs()));
+    let (mut best, mut steps) = (state.start.load_factor, 0);
+    let mut last: Option<PathPoint> = None;
+    stepper.restore(&along);
+    let until = Until::end().minors(MOST_MINORS).interrupted_by(stop);
+    let end = stepper.drive(until, |stepper| {
+        let Outcome::Increment { jumped, .. } = stepper.event().outcome else {
+            return ControlFlow::Continue(());
+        };
+        let now = stepper.state();
+        let (load, u) = (now.start.load_factor, now.start.u.clone());
+        let onwards = last.take().map(|last| last.is_before(&u));
+        last = now.way.as_ref().map(|way| PathPoint {
+            u,
+            direction: way.last.clone(),
+        });
+        steps += 1;
+        let reaches = (load - state.load_factor) * ahead > 0.0;
+        if jumped || reaches || steps > MOST_STEPS || onwards == Some(false) {
+            return ControlFlow::Break(false);
+        }
+        if (best - load) * ahead > FALL * largest && onwards == Some(true) {
+            return ControlFlow::Break(true);
+        }
+        if (load - best) * ahead > 0.0 {
+            best = load;
+        }
+        ControlFlow::Continue(())
+    });
+    matches!(end, RunEnd::Stopped(true)).then_some(best)
+}
 
 /// Resistance of the remaining contacts against a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -31,18 +100,27 @@ struct Resistance {
     opening: [f64; 2],
 }
 
-/// Describes the limit load where the increment failed because nothing holds a body. `None` for other failures, for bodies
-/// that were loose from the start, and if interrupted. The stepper's final state is unspecified.
+/// Describes the limit load. `None` if none is found, for increments that were not cut and bodies that were loose from the start,
+/// and if interrupted. The stepper's final state is unspecified.
 pub fn limit_load(
     stepper: &mut Stepper,
     state: &State,
     failure: &Failure,
     stop: &dyn Fn() -> bool,
 ) -> Option<String> {
-    let motion = rigid(failure)?.first()?;
     if state.way.is_some() || state.recovery.motion.is_some() {
         return None;
     }
+    let Some(motion) = rigid(failure).and_then(|motions| motions.first()) else {
+        if state.sub_increment.cut == 0 {
+            return None;
+        }
+        let load = largest_load(stepper, state, stop)?;
+        return Some(format!(
+            "limit load: equilibrium exists on this path up to load {}; beyond it the load falls along the path",
+            sig6(load)
+        ));
+    };
     let found = reach(stepper, state, stop)?;
     let LoadLimitProbe { load, from, .. } = found;
     found.ends.as_ref()?;

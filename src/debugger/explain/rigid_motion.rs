@@ -194,7 +194,8 @@ impl<'a> BodyMotion<'a> {
             .collect();
         (0..model.contacts.len()).filter(move |&s| {
             let contact = &model.contacts[s];
-            self.has(contact.node) || contact.surfaces.iter().any(|&k| masters[k])
+            let mut carriers = contact.carriers();
+            carriers.any(|(node, _)| self.has(node)) || contact.surfaces.iter().any(|&k| masters[k])
         })
     }
 

@@ -1,10 +1,12 @@
 //! Detects repeating contact modes on a line, for solvers that do not report cycles.
 //!
-//! Only modes and, in space, directions of sliding are compared, over the minor and major iterations of one increment. A sequence of period 2 or
-//! more that has occurred twice in a row is reported as a cycle. Without a cycle, the nodes that keep changing
-//! are reported.
+//! Modes and, in space, directions of sliding are compared over the minor and major iterations of one attempt at an increment. A
+//! sequence of period 2 or more that has occurred twice in a row is reported as a cycle. If no mode changes, the margins of the
+//! tests are compared instead: a friction bound or a slip may repeat while the modes stay. Without a cycle, the nodes that keep
+//! changing are reported.
 
 use super::strip::Strip;
+use crate::explain::cycles::pattern;
 use crate::explain::names;
 use std::collections::VecDeque;
 use stickslip_core::contact::record;
@@ -12,7 +14,16 @@ use stickslip_core::interface::cycle;
 use stickslip_core::model::{Mode, Model};
 
 /// Longest period searched for.
-const LONGEST: usize = 12;
+const LONGEST: usize = 200;
+/// Periods above this must lie within one major iteration, or consist of major iterations of one minor iteration each: major
+/// iterations that start alike may pass through the same modes.
+const SHORT: usize = 12;
+/// Largest relative difference of equal margins, above their rounding.
+const SAME_MARGIN: f64 = 1e-6;
+/// Margins with a smaller relative difference may still converge.
+const DIFFERENT_MARGIN: f64 = 1e-3;
+/// Margins below this fraction of the largest are round-off.
+const NO_MARGIN: f64 = 1e-9;
 /// Number of latest iterations searched for nodes that keep changing.
 const BACK: usize = 8;
 /// Number of changes among them from which a node keeps changing.
@@ -76,12 +87,15 @@ pub enum Rounds {
 
 /// The behaviour of the modes up to the end of these strips; `None` if they do not keep changing.
 pub fn rounds(strips: &[Strip]) -> Option<Rounds> {
-    let last = strips.last()?.position.increment;
+    let last = strips.last()?.position;
     let solved = strips.iter().enumerate();
     let solved = solved.filter(|(_, strip)| strip.kind.is_solved());
     let tail: Vec<(usize, &Strip)> = solved
         .rev()
-        .take_while(|(_, strip)| strip.position.increment == last)
+        .take_while(|(_, strip)| {
+            let at = strip.position;
+            (at.increment, at.attempt) == (last.increment, last.attempt)
+        })
         .collect();
     let nodes = strips.last()?.slaves();
     // Counted back from the last iteration: the modes used in each solve; 0 are the modes for the next one.
@@ -100,18 +114,47 @@ pub fn rounds(strips: &[Strip]) -> Option<Rounds> {
     if tail.is_empty() {
         return None;
     }
+    let can_repeat = |period: usize| {
+        let turns = || tail[..2 * period].iter().map(|(_, strip)| strip.position);
+        (2..=LONGEST.min(tail.len() / 2)).contains(&period)
+            && (period <= SHORT
+                || turns().all(|at| at.major == last.major)
+                || turns().all(|at| at.minor == 1))
+    };
     // Equal modes may be a coincidence, so that two full periods have to agree.
     let repeats = |then: usize| {
         let period = tail.len() - then;
-        (2..=LONGEST.min(tail.len() / 2)).contains(&period)
+        can_repeat(period)
             && (0..=period).all(|back| same(back, back + period))
             && (1..period).any(|back| !same(0, back) || !same(1, back + 1))
     };
-    if let Some(round) = cycle::closed(tail.len(), 2, repeats, |_| true) {
+    let margin = |back: usize, slave: usize| f64::from(tail[back - 1].1.margin(slave));
+    let sizes = (0..nodes).map(|slave| margin(1, slave).abs());
+    let largest = sizes.filter(|size| size.is_finite()).fold(0.0, f64::max);
+    let near = |slave: usize, a: usize, b: usize, limit: f64| {
+        let [a, b] = [a, b].map(|back| margin(back, slave));
+        a == b || (a - b).abs() <= limit * a.abs().max(b.abs()).max(NO_MARGIN * largest)
+    };
+    let within = |a: usize, b: usize, limit: f64| {
+        same(a, b) && (0..nodes).all(|slave| near(slave, a, b, limit))
+    };
+    let values_repeat = |then: usize| {
+        let period = tail.len() - then;
+        can_repeat(period) && (1..=period).all(|back| within(back, back + period, SAME_MARGIN))
+    };
+    let elsewhere = |then: usize| !within(1, 1 + tail.len() - then, DIFFERENT_MARGIN);
+    let by_modes = cycle::closed(tail.len(), 2, repeats, |_| true);
+    let by_values = || cycle::closed(tail.len(), 2, values_repeat, elsewhere);
+    let values = by_modes.is_none();
+    if let Some(round) = by_modes.or_else(by_values) {
         let period = round.len();
-        let rounds =
-            (0..).take_while(|&back| back + period <= tail.len() && same(back, back + period));
-        let first = rounds.count() + period - 1;
+        let again = |back: usize| match values {
+            true => within(back + 1, back + 1 + period, SAME_MARGIN),
+            false => same(back, back + period),
+        };
+        let until = tail.len() - usize::from(values);
+        let rounds = (0..).take_while(|&back| back + period <= until && again(back));
+        let first = rounds.count() + period - usize::from(!values);
         let phase = |back: usize, slave: usize| {
             let solved = if back == 0 { period } else { back };
             (modes(back, slave), direction(solved, slave))
@@ -120,11 +163,13 @@ pub fn rounds(strips: &[Strip]) -> Option<Rounds> {
             (0..period).rev().map(|back| phase(back, slave)).collect()
         };
         let members = (0..nodes).map(|slave| (slave, pattern(slave)));
-        let changing = |(_, phases): &(usize, Vec<Phase>)| {
+        let changing = |(slave, phases): &(usize, Vec<Phase>)| {
             let (mode, direction) = phases[0];
-            phases
-                .iter()
-                .any(|(other, way)| *other != mode || turn(*way, direction) > SAME)
+            let mut back = 2..=period;
+            values && back.any(|back| !near(*slave, 1, back, DIFFERENT_MARGIN))
+                || phases
+                    .iter()
+                    .any(|(other, way)| *other != mode || turn(*way, direction) > SAME)
         };
         return Some(Rounds::Cycle {
             period,
@@ -159,21 +204,27 @@ pub fn words(model: &Model, rounds: &Rounds, tells_since: bool) -> String {
                 true => format!(" from step {since}"),
                 false => String::new(),
             };
-            let member = |(slave, phases): &(usize, Vec<Phase>)| {
-                let modes = phases.iter().map(|(mode, _)| names::status(model, *mode));
+            let keeps = |(_, phases): &&(usize, Vec<Phase>)| {
+                phases.iter().all(|(mode, _)| *mode == phases[0].0)
+            };
+            let member = |member: &(usize, Vec<Phase>)| {
+                let (slave, phases) = member;
+                let name = names::slave(model, *slave);
+                let mut modes = phases.iter().map(|(mode, _)| names::status(model, *mode));
+                if keeps(&member)
+                    && let Some(mode) = modes.next()
+                {
+                    return format!("{name} stays {mode} while its margin repeats");
+                }
                 let modes: Vec<&str> = modes.collect();
-                format!("{} {}", names::slave(model, *slave), modes.join(" → "))
+                format!("{name} {}", pattern(&modes))
             };
-            let changes = |(_, phases): &&(usize, Vec<Phase>)| {
-                phases.iter().any(|(mode, _)| *mode != phases[0].0)
-            };
-            let lines: Vec<String> = members
-                .iter()
-                .filter(changes)
-                .take(NAMED)
-                .map(member)
-                .collect();
             let swings: Vec<(usize, f64)> = swings(members).collect();
+            let swings_only = |found: &&(usize, Vec<Phase>)| {
+                keeps(found) && swings.iter().any(|swing| swing.0 == found.0)
+            };
+            let named = || members.iter().filter(|found| !swings_only(found));
+            let lines: Vec<String> = named().take(NAMED).map(member).collect();
             let most = swings
                 .iter()
                 .copied()
@@ -195,7 +246,7 @@ pub fn words(model: &Model, rounds: &Rounds, tells_since: bool) -> String {
                     .chain(lines)
                     .collect::<Vec<_>>()
                     .join("; "),
-                more(members.iter().filter(changes).count())
+                more(named().count())
             )
         }
         Rounds::Irregular { members, over } => {

@@ -18,7 +18,7 @@ use stickslip_core::interface::method::NodeContext;
 use stickslip_core::linear::norms::Norms;
 use stickslip_core::model::{Friction, Mode, Model, Strategy};
 use stickslip_core::step::event::{Event, Failure, Frame, Outcome, Position, Words};
-use stickslip_core::step::judged::{self, Sizes};
+use stickslip_core::step::judged::{self, ReferenceSizes};
 use stickslip_core::step::state::State;
 use stickslip_core::strategy::method;
 use stickslip_exchange::attach::message::{
@@ -117,7 +117,7 @@ impl WireFrame<'_> {
         let force = before.max(judged::largest_force(&nodes));
         let mut outcome = outcome(sent);
         if let Outcome::Increment { marked, .. } = &mut outcome {
-            let sizes = Sizes {
+            let sizes = ReferenceSizes {
                 force: force.max(judged::ROUND_OFF * sent.residual.scale.unwrap_or(0.0)),
                 length: largest(sent.displacements.as_deref()),
             };

@@ -56,8 +56,6 @@ const COUPLED: &str =
     "equations between nodes are not supported; give both bodies common nodes, or use *TIE";
 const OTHER: &str = "only *STATIC steps are supported";
 const INELASTIC: &str = "only isotropic, linear *ELASTIC materials are supported";
-const ASSEMBLED: &str = "parts and assemblies are not supported; write a flat deck (in Abaqus/CAE: Model, Edit \
-                         Attributes, \"Do not use parts and assemblies in input files\")";
 const FRAMES: &str = "other coordinate systems are not supported; write x and y";
 const CHANGES: &str = "contact definitions must be the same in all steps";
 
@@ -72,7 +70,7 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
             Reader::amplitude,
         ),
     ),
-    ("ASSEMBLY", Refused(ASSEMBLED)),
+    ("ASSEMBLY", Read("as Abaqus/CAE writes it", None)),
     (
         "BEAM SECTION",
         read(
@@ -117,7 +115,7 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
     (
         "CONTACT PAIR",
         read(
-            "both types as node to surface; masters are the sides of the second surface",
+            "NODE TO SURFACE; SURFACE TO SURFACE with LINEAR and TIED (HARD as node to surface, with a warning); masters are the sides of the second surface",
             Model,
             &["INTERACTION", "TYPE", "SMALLSLIDING", "ADJUST"],
             Reader::pair,
@@ -168,7 +166,7 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
     (
         "ELEMENT",
         read(
-            "CPE, CPS, CAX with 3, 4, 6, 8 nodes and 8R; B21, B22, B31, B31R, B32, B32R as plane elements",
+            "CPE, CPS, CAX with 3, 4, 6, 8 nodes, 4R and 8R; B21, B22, B31, B31R, B32, B32R as plane elements",
             Mesh,
             &["TYPE", "ELSET"],
             Reader::elements,
@@ -180,13 +178,13 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
         read(
             "",
             Mesh,
-            &["ELSET", "GENERATE", "UNSORTED", "INTERNAL"],
+            &["ELSET", "GENERATE", "UNSORTED", "INTERNAL", "INSTANCE"],
             Reader::element_set,
         ),
     ),
-    ("END ASSEMBLY", Refused(ASSEMBLED)),
-    ("END INSTANCE", Refused(ASSEMBLED)),
-    ("END PART", Refused(ASSEMBLED)),
+    ("END ASSEMBLY", Read("", None)),
+    ("END INSTANCE", Read("", None)),
+    ("END PART", Read("", None)),
     ("END STEP", read("", Step, &[], Reader::end)),
     ("ENERGY FILE", Ignored(OUTPUT)),
     ("ENERGY OUTPUT", Ignored(OUTPUT)),
@@ -220,7 +218,13 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
         "INITIAL CONDITIONS",
         Ignored("only TYPE=TEMPERATURE, because temperatures are ignored"),
     ),
-    ("INSTANCE", Refused(ASSEMBLED)),
+    (
+        "INSTANCE",
+        Read(
+            "of a part of the deck, with its translation and rotation; node 12 of the k-th of several is node k 000 + 12",
+            None,
+        ),
+    ),
     ("KINEMATIC", Refused(COUPLED)),
     ("KINEMATIC COUPLING", Refused(COUPLED)),
     ("MASS", Ignored("it only affects *DYNAMIC steps")),
@@ -253,13 +257,13 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
         read(
             "",
             Mesh,
-            &["NSET", "GENERATE", "UNSORTED", "INTERNAL"],
+            &["NSET", "GENERATE", "UNSORTED", "INTERNAL", "INSTANCE"],
             Reader::node_set,
         ),
     ),
     ("ORIENTATION", Refused(FRAMES)),
     ("OUTPUT", Ignored(OUTPUT)),
-    ("PART", Refused(ASSEMBLED)),
+    ("PART", Read("", None)),
     ("PHYSICAL CONSTANTS", Ignored("it only concerns heat")),
     ("PLASTIC", Refused(INELASTIC)),
     (
@@ -278,6 +282,10 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
             "rigid bodies with a reference node are not supported; fix or move all of their nodes by *BOUNDARY",
         ),
     ),
+    (
+        "SECTION CONTROLS",
+        Ignored("hourglass control is that of this program"),
+    ),
     ("SECTION PRINT", Ignored(OUTPUT)),
     (
         "SHELL SECTION",
@@ -288,7 +296,7 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
         read(
             "including the thickness",
             Model,
-            &["ELSET", "MATERIAL"],
+            &["ELSET", "MATERIAL", "CONTROLS"],
             Reader::solid_section,
         ),
     ),
@@ -338,7 +346,7 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
     (
         "SURFACE BEHAVIOR",
         read(
-            "HARD; LINEAR as a penalty; TIED as LINEAR in tension too",
+            "HARD; LINEAR as a penalty; TIED as springs in tension too, or rigidly with NODE TO SURFACE",
             Laws,
             &["PRESSUREOVERCLOSURE", "PRESSURE-OVERCLOSURE"],
             Reader::behavior,
@@ -379,7 +387,6 @@ pub(super) const COUPLING: &[&str] = &[
     "ELEMENT",
     "EQUATION",
     "GAP",
-    "INSTANCE",
     "KINEMATIC",
     "KINEMATICCOUPLING",
     "MPC",

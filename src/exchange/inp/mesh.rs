@@ -58,8 +58,8 @@ impl Names {
             MeshKind::Elements => &self.elements,
         };
         let within = labels
-            .range(from..=to)
-            .filter(|(label, _)| (*label - from) % by == 0);
+            .range(self.number(from)..=self.number(to))
+            .filter(|(label, _)| (*label - self.number(from)).is_multiple_of(by));
         members.extend(within.map(|(_, &position)| position));
         fits(members, first, "set")
     }
@@ -73,7 +73,7 @@ impl Reader {
             let Some(label) = cells.first() else {
                 continue;
             };
-            let number = label.whole("a node number")?;
+            let number = self.names.number(label.whole("a node number")?);
             let coordinate = |k: usize| super::cards::number_or_zero(&cells, k, "a coordinate");
             let (x, y, z) = (coordinate(1)?, coordinate(2)?, coordinate(3)?);
             if let Some(more) = cells.get(4) {
@@ -82,6 +82,7 @@ impl Reader {
                     "the text after a node's three coordinates is ignored",
                 );
             }
+            let [x, y, z] = self.names.within.place([x, y, z]);
             if z != 0.0 && !self.is_outline {
                 let at = cells.get(3).map_or(label.place(), CardCell::place);
                 bail!(at, "node {number} is at z = {z:?}; only z = 0 is supported");
@@ -108,7 +109,13 @@ impl Reader {
     pub(super) fn elements(&mut self, card: &Card<'_>) -> Done {
         let kind = element_type(card, self.is_outline)?;
         let count = kind.cell.nodes();
-        if matches!(kind.cell, CellKind::Triangle3 | CellKind::Quad4) {
+        if kind.cell == CellKind::Quad4 && kind.reduced {
+            self.deck.add_note(
+                card.place_of("TYPE"),
+                "CPE4R, CPS4R and CAX4R have one integration point; 5 % of full integration controls hourglass modes, which each \
+                 code does differently, so bending of coarse meshes differs",
+            );
+        } else if matches!(kind.cell, CellKind::Triangle3 | CellKind::Quad4) {
             self.deck.add_note(
             card.place_of("TYPE"),
             "elements with 3 and 4 nodes are fully integrated plane elements; CalculiX expands them to \
@@ -130,7 +137,7 @@ impl Reader {
             let Some(label) = words.first() else {
                 continue;
             };
-            let number = label.whole("an element number")?;
+            let number = self.names.number(label.whole("an element number")?);
             if words.len() != count + 1 {
                 bail!(
                     label,
@@ -141,7 +148,7 @@ impl Reader {
             }
             let mut of = Vec::with_capacity(count);
             for word in &words[1..] {
-                let node = word.whole("a node number")?;
+                let node = self.names.number(word.whole("a node number")?);
                 let known = self.names.nodes.get(&node).copied();
                 of.push(known.ok_or_else(|| {
                     word.wrong(format!("there is no node {node}; *NODE must come first"))
@@ -186,6 +193,14 @@ impl Reader {
     fn set(&mut self, card: &Card<'_>, kind: MeshKind, parameter: &str) -> Done {
         card.required(parameter)?;
         let mut members = Vec::new();
+        let own = self.names.within.clone();
+        if let Some(name) = card.value("INSTANCE")? {
+            let Some(instance) = self.names.instance(name) else {
+                let why = format!("there is no instance {}", short(name));
+                return Err(card.wrong_at("INSTANCE", why));
+            };
+            self.names.within = instance.clone();
+        }
         match card.has("GENERATE") {
             true => {
                 for line in &card.lines {
@@ -200,32 +215,24 @@ impl Reader {
                 }
             }
         }
+        self.names.within = own;
         self.add(card, kind, parameter, members)
     }
 
     /// Members that a word of a list refers to: one node or element by number, or a set by name.
     pub(super) fn members_of(&self, cell: &CardCell<'_>, kind: MeshKind) -> Done<Vec<usize>> {
         let word = kind.word();
-        let (labels, sets, all) = match kind {
-            MeshKind::Nodes => (
-                &self.names.nodes,
-                &self.names.node_sets,
-                &self.deck.node_sets,
-            ),
-            MeshKind::Elements => (
-                &self.names.elements,
-                &self.names.element_sets,
-                &self.deck.element_sets,
-            ),
+        let (sets, all) = match kind {
+            MeshKind::Nodes => (&self.names.node_sets, &self.deck.node_sets),
+            MeshKind::Elements => (&self.names.element_sets, &self.deck.element_sets),
         };
-        if let Ok(label) = cell.text.parse::<u64>() {
-            return match labels.get(&label) {
-                Some(position) => Ok(vec![*position]),
-                None => bail!(cell, "there is no {word} {label}"),
-            };
-        }
         let name = plain(cell.text);
-        match sets.get(&name) {
+        match self.names.labelled(&name, kind) {
+            Some(Ok(position)) => return Ok(vec![position]),
+            Some(Err(label)) => bail!(cell, "there is no {word} {label}"),
+            None => {}
+        }
+        match sets.get(&self.names.name(&name)) {
             Some(&set) => Ok(all[set].members.clone()),
             None => bail!(
                 cell,
@@ -241,7 +248,7 @@ impl Reader {
             MeshKind::Nodes => &self.names.node_sets,
             MeshKind::Elements => &self.names.element_sets,
         };
-        match sets.get(name) {
+        match sets.get(&self.names.name(name)) {
             Some(set) => Ok(*set),
             None => bail!(place, "there is no {} set {}", kind.word(), short(name)),
         }
@@ -250,7 +257,7 @@ impl Reader {
     /// Index of a surface by name.
     pub(super) fn surface_of(&self, cell: &CardCell<'_>) -> Done<usize> {
         let name = plain(cell.text);
-        let known = self.names.surfaces.get(&name).copied();
+        let known = self.names.surfaces.get(&self.names.name(&name)).copied();
         known.ok_or_else(|| {
             cell.wrong(format!(
                 "there is no surface {}; *SURFACE, NAME=... defines one",
@@ -271,6 +278,7 @@ impl Reader {
             return Ok(());
         };
         let place = card.place_of(parameter);
+        let name = &self.names.name(name);
         if name.chars().all(|c| c.is_ascii_digit()) {
             bail!(
                 place,
@@ -299,7 +307,7 @@ impl Reader {
     }
 
     pub(super) fn surface(&mut self, card: &Card<'_>) -> Done {
-        let name = card.required("NAME")?.to_owned();
+        let name = self.names.name(card.required("NAME")?);
         let of = match card.choice("TYPE", &["ELEMENT", "NODE"])? {
             0 => Faces::Elements(self.sides(card)?),
             _ => {
@@ -407,8 +415,7 @@ fn solid(name: &str) -> Option<CellKind> {
 }
 
 fn kind_of(name: &str) -> Result<ElementType, String> {
-    const RIGHT: &str =
-        "supported are CPE, CPS and CAX with 3, 4, 6, 8 and 8R, and B21, B22, B31, B31R, B32, B32R";
+    const RIGHT: &str = "supported are CPE, CPS and CAX with 3, 4, 4R, 6, 8 and 8R, and B21, B22, B31, B31R, B32, B32R";
     let plane = |family: Family, rest: &str| {
         let (cell, reduced) = match rest {
             "3" => (CellKind::Triangle3, false),
@@ -416,14 +423,7 @@ fn kind_of(name: &str) -> Result<ElementType, String> {
             "6" => (CellKind::Triangle6, false),
             "8" => (CellKind::Quad8, false),
             "8R" => (CellKind::Quad8, true),
-            "4R" => {
-                let full = name.trim_end_matches('R');
-                return Err(format!(
-                    "{name} has one integration point and needs hourglass stabilisation, which codes choose \
-                     differently; use {full} or, better, {}8R",
-                    full.trim_end_matches('4')
-                ));
-            }
+            "4R" => (CellKind::Quad4, true),
             _ => {
                 return Err(format!(
                     "elements of type {} are not supported; {RIGHT}",

@@ -11,6 +11,7 @@
 pub mod deck;
 pub mod keywords;
 
+mod assembly;
 mod cards;
 mod mesh;
 mod property;
@@ -81,20 +82,23 @@ fn deck(
 
 fn whole(sources: &Sources, is_outline: bool) -> Done<Deck> {
     let cards = cards::cards(sources.lines())?;
+    let assembly::Assembled { cards, instances } = assembly::assemble(&cards)?;
     let mut reader = Reader {
         is_outline,
         ..Reader::default()
     };
     reader.deck.files = sources.names.clone();
+    reader.names.instances.clone_from(&instances);
     let mut readings = Vec::with_capacity(cards.len());
-    for card in &cards {
+    for (card, _) in &cards {
         readings.push(reader.check_keyword(card)?);
     }
     for passes in [&[Pass::Mesh][..], &[Pass::Laws], &[Pass::Model, Pass::Step]] {
-        for (card, reading) in cards.iter().zip(&readings) {
+        for (&(card, instance), reading) in cards.iter().zip(&readings) {
             let Some(reading) = reading.filter(|own| passes.contains(&own.pass)) else {
                 continue;
             };
+            reader.names.within.clone_from(&instances[instance]);
             if is_outline {
                 let read = (reading.read)(&mut reader, card);
                 read.unwrap_or_else(|fault| reader.skip(card, &fault.message));
@@ -115,7 +119,7 @@ fn whole(sources: &Sources, is_outline: bool) -> Done<Deck> {
         line: 1,
         column: 1,
     };
-    reader.finish(cards.last().map_or(start, |card| card.place))?;
+    reader.finish(cards.last().map_or(start, |(card, _)| card.place))?;
     let mut deck = reader.deck;
     if is_outline {
         // Notes on how the plane solver reads the deck do not apply.

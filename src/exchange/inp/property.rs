@@ -344,14 +344,6 @@ impl Reader {
         let (all, what) = (&self.deck.interactions, "*SURFACE INTERACTION, NAME=");
         let interaction = index_of(card, "INTERACTION", what, all, |i| &i.name)?;
         let faces = card.choice("TYPE", &["NODE TO SURFACE", "SURFACE TO SURFACE"])? == 1;
-        if faces {
-            self.deck.add_note(
-                card.place_of("TYPE"),
-                "SURFACE TO SURFACE is treated as node to surface: the law holds at each slave node with \
-                 its tributary area, not at points of the sides, so forces differ from CalculiX's: by up to 58 % with one \
-                 element per side, less on finer meshes; TYPE=NODE TO SURFACE gives the same model in both",
-            );
-        }
         let adjust = match card.value("ADJUST")? {
             Some(value) if value.parse::<f64>().is_err() => {
                 let place = card.place_of("ADJUST");

@@ -1,5 +1,6 @@
 //! The state of reading a deck.
 
+use super::assembly::Instance;
 use super::deck::{Deck, Remark, Step};
 use std::collections::{BTreeMap, HashMap};
 
@@ -12,6 +13,9 @@ pub(super) struct Names {
     pub element_sets: HashMap<String, usize>,
     pub surfaces: HashMap<String, usize>,
     pub members: usize,
+    /// The instances of parts, and the one to which the current card belongs.
+    pub instances: Vec<Instance>,
+    pub within: Instance,
 }
 
 /// State of reading a deck.

@@ -1,6 +1,6 @@
 //! Interface problems in space: contacts side by side above a floor, in a square grid.
 
-use super::{check_texts, history};
+use super::history;
 use crate::format::error::{Fault, at, bail};
 use crate::format::in_space::SpaceSpec;
 use crate::format::spec::Spec;
@@ -10,9 +10,8 @@ use std::collections::HashSet;
 use std::sync::Arc;
 use stickslip_core::model::{Contact, Model, Node, SpaceProblem, Surface};
 
-/// Checks a problem.
+/// Checks a problem; the texts have been checked.
 pub(super) fn compile(spec: &Spec, problem: &SpaceSpec) -> Result<(Model, Names), Fault> {
-    check_texts(spec)?;
     history::memory(&spec.settings)?;
     history::settings(&spec.settings)?;
     check(problem)?;

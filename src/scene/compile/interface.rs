@@ -391,6 +391,11 @@ fn can_move(dofs: &Dofs, node: usize) -> bool {
     })
 }
 
+/// Whether x or y of a node that carries a slave node is an unknown.
+fn has_motion(dofs: &Dofs, slave: &Contact) -> bool {
+    slave.carriers().any(|(node, _)| can_move(dofs, node))
+}
+
 /// Removes slave nodes that were listed only through a collective name and cannot do anything: fixed nodes over fixed surfaces.
 pub(super) fn drop_idle_slaves(
     spec: &Spec,
@@ -404,7 +409,7 @@ pub(super) fn drop_idle_slaves(
         all.any(|name| names.node(name) == Ok(node))
     };
     slaves.retain(|slave| {
-        can_move(dofs, slave.node)
+        has_motion(dofs, slave)
             || !slave.surfaces.iter().all(|&s| surfaces[s].rigid)
             || single(slave.node)
     });
@@ -418,7 +423,7 @@ pub(super) fn check_held_slaves(
     surfaces: &[Surface],
     slaves: &[Contact],
 ) -> Result<(), Fault> {
-    for slave in slaves.iter().filter(|slave| !can_move(dofs, slave.node)) {
+    for slave in slaves.iter().filter(|slave| !has_motion(dofs, slave)) {
         let Some(&rigid) = slave.surfaces.iter().find(|&&s| surfaces[s].rigid) else {
             continue;
         };

@@ -9,9 +9,7 @@ use crate::format::spec::{SlaveSpec, Spec};
 use std::collections::HashSet;
 use stickslip_core::contact::facing::is_piece;
 use stickslip_core::contact::projection::{project, projection_at};
-use stickslip_core::model::{
-    Body, Bond, Contact, Dofs, Friction, InitialState, Mode, Node, Surface,
-};
+use stickslip_core::model::{Body, Bond, Contact, Dofs, InitialState, Mode, Node, Surface};
 use stickslip_core::plane::{self, minus};
 
 /// Maximum distance that a tied node is moved, relative to the scene's length; nodes further away are not meant to be tied.
@@ -29,9 +27,21 @@ pub(super) fn check(here: &Path, group: &SlaveSpec) -> Result<(), Fault> {
             false => Err(fault!(at, "{what} is {value:?}; it must be positive")),
         }
     };
-    if let ContactLaw::Penalty { stiffness } = group.law {
+    if let Some(stiffness) = group.law.stiffness() {
         let place = here.then("law").then("stiffness");
-        positive(place, stiffness, "the penalty stiffness")?;
+        positive(place, stiffness, "the stiffness")?;
+    }
+    if !group.by.is_node() && group.law.stiffness().is_none() {
+        bail!(
+            here.then("by"),
+            "points of faces need a law with a stiffness: Penalty or Bonded; with other laws use by: node"
+        );
+    }
+    if !group.by.is_node() && group.area.is_some() {
+        bail!(
+            here.then("area"),
+            "points of faces have areas of their sides; leave area out"
+        );
     }
     if let Some(stick) = group.stick {
         positive(here.then("stick"), stick, "the stick stiffness")?;
@@ -39,7 +49,7 @@ pub(super) fn check(here: &Path, group: &SlaveSpec) -> Result<(), Fault> {
     if let Some(area) = group.area {
         positive(here.then("area"), area, "the tributary area")?;
     }
-    if group.law != ContactLaw::Tied {
+    if !group.law.is_tied() {
         return Ok(());
     }
     let idle = |field: &str, why: &str| {
@@ -55,7 +65,11 @@ pub(super) fn check(here: &Path, group: &SlaveSpec) -> Result<(), Fault> {
         SlaveSpec {
             friction: Some(_), ..
         } => idle("friction", "has no friction"),
-        SlaveSpec { stick: Some(_), .. } => idle("stick", "is tied rigidly"),
+        SlaveSpec {
+            stick: Some(_),
+            law: ContactLaw::Tied,
+            ..
+        } => idle("stick", "is tied rigidly"),
         SlaveSpec {
             start: Mode::Sliding,
             ..
@@ -79,7 +93,7 @@ pub(super) fn tie(
     let mut places: Vec<[f64; 2]> = names.nodes.iter().map(|node| node.at).collect();
     let mut moved = false;
     for (slave, &pair) in slaves.iter_mut().zip(pairs) {
-        if spec.slaves[pair].law != ContactLaw::Tied {
+        if !spec.slaves[pair].law.is_tied() {
             continue;
         }
         let at = places[slave.node];
@@ -105,7 +119,7 @@ pub(super) fn tie(
         moved |= over.foot != at;
         places[slave.node] = over.foot;
         names.nodes[slave.node].at = over.foot;
-        (slave.bond, slave.start) = (Bond::Tied { upright: false }, Mode::Fixed);
+        (slave.bond, slave.start) = (Bond::tied(), Mode::Fixed);
     }
     Ok(moved)
 }
@@ -123,16 +137,15 @@ pub(super) fn apply(
     for (slave, &pair) in slaves.iter().zip(pairs) {
         pair_of[slave.node] = Some(pair);
     }
-    let gives = |pair: usize| matches!(spec.slaves[pair].law, ContactLaw::Penalty { .. });
+    let gives = |pair: usize| spec.slaves[pair].law.stiffness().is_some();
     let areas = tributary(&names.nodes, bodies, &pair_of, gives);
     for (slave, &pair) in slaves.iter_mut().zip(pairs) {
         let group = &spec.slaves[pair];
-        slave.area = group.area.or(areas[slave.node]);
-        let own = group.friction.unwrap_or(spec.friction);
-        if slave.bond.is_tied() {
-            slave.friction = Friction::default();
-            continue;
-        }
+        slave.area = slave.area.or(group.area).or(areas[slave.node]);
+        let own = match group.law.is_tied() {
+            true => FrictionSpec::default(),
+            false => group.friction.unwrap_or(spec.friction),
+        };
         check_area(spec, names, group, &own, slave)?;
         slave.friction = own.of_node(slave.area);
         slave.bond = bond(group, slave.area.unwrap_or(0.0));
@@ -155,9 +168,24 @@ pub(super) fn stand_upright(dofs: &Dofs, surfaces: &[Surface], slaves: &mut [Con
                 .any(|&n| dofs.equation[dofs.first[n] + k].is_some())
         };
         let own = |k: usize| dofs.equation[dofs.first[slave.node] + k].is_some();
-        let upright = own(0) != own(1) || moves(0) != moves(1);
-        slave.bond = Bond::Tied { upright };
+        if let Bond::Tied { give, upright } = &mut slave.bond {
+            // Springs keep the equations independent.
+            *upright = *give == [0.0; 2] && (own(0) != own(1) || moves(0) != moves(1));
+        }
     }
+}
+
+/// Rejects points of faces over elements with local flexibility under point forces.
+pub(super) fn check_points(surfaces: &[Surface], slaves: &[Contact]) -> Result<(), Fault> {
+    let is_flexible = |surface: &usize| !surfaces[*surface].gives.is_empty();
+    let mut points = slaves.iter().filter(|slave| !slave.weights.is_empty());
+    if points.any(|slave| slave.surfaces.iter().any(is_flexible)) {
+        bail!(
+            at!["slaves"],
+            "points of faces (by: surface) cannot touch shear-flexible beams; use by: node"
+        );
+    }
+    Ok(())
 }
 
 /// Rejects nodes with a compliance over two rigid surfaces that cross: in the corner both laws would apply.
@@ -222,16 +250,22 @@ fn cross(nodes: &[Node], surfaces: [&Surface; 2]) -> bool {
 
 /// Contact law at a node of a pair.
 fn bond(group: &SlaveSpec, area: f64) -> Bond {
-    let normal = match group.law {
-        ContactLaw::Penalty { stiffness } => 1.0 / (stiffness * area),
-        ContactLaw::Hard | ContactLaw::Tied => 0.0,
-    };
+    let compliance = |stiffness: f64| 1.0 / (stiffness * area);
+    let normal = group.law.stiffness().map_or(0.0, compliance);
     // A hard node without an area has no friction if there is no cohesion per node.
-    let tangential = match group.stick {
-        Some(stick) if area > 0.0 => 1.0 / (stick * area),
+    let tangential = match (group.law, group.stick) {
+        (ContactLaw::Bonded { stiffness }, None) => compliance(stiffness),
+        (_, Some(stick)) if area > 0.0 => compliance(stick),
         _ => 0.0,
     };
-    Bond::giving([normal, tangential])
+    let give = [normal, tangential];
+    match group.law.is_tied() {
+        true => Bond::Tied {
+            give,
+            upright: false,
+        },
+        false => Bond::giving(give),
+    }
 }
 
 /// Rejects laws per area at a node without an area.
@@ -244,7 +278,7 @@ fn check_area(
 ) -> Result<(), Fault> {
     let wants = match (group.law, group.stick, friction.adhesion != 0.0) {
         _ if slave.area.is_some() => return Ok(()),
-        (ContactLaw::Penalty { .. }, ..) => "a penalty stiffness is a pressure per length",
+        _ if group.law.stiffness().is_some() => "a stiffness is a pressure per length",
         (_, Some(_), _) => "a stick stiffness is a stress per length",
         (_, _, true) => "an adhesion is a force per area",
         _ => return Ok(()),

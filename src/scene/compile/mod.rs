@@ -5,6 +5,7 @@
 
 mod arc;
 mod bodies;
+mod faces;
 mod history;
 mod in_space;
 mod interface;
@@ -38,11 +39,12 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     if let Some(text) = &spec.attached {
         return attached::compile(spec, text);
     }
+    check_texts(spec)?;
     if let Some(problem) = &spec.in_space {
+        check_texts(spec)?;
         return in_space::compile(spec, problem);
     }
     history::memory(&spec.settings)?;
-    check_texts(spec)?;
     check_lengths(spec)?;
     let mut names = Names::from_spec(spec)?;
     bodies::materials(spec)?;
@@ -67,10 +69,19 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
         );
     }
     let mut surfaces = interface::surfaces(spec, &names, length)?;
-    let (mut slaves, pairs) = interface::slaves(spec, &names, &surfaces, length)?;
+    let (mut slaves, mut pairs) = interface::slaves(spec, &names, &surfaces, length)?;
     interface::smoothed(spec, &names, &mut surfaces)?;
-    corners::face(&surfaces.cut(spec), &bodies, &pairs, &mut slaves);
     interface::check_use(spec, &names, &on_body, &surfaces.made, &slaves)?;
+    faces::spread(
+        spec,
+        &mut names,
+        &bodies,
+        &surfaces.made,
+        &mut slaves,
+        &mut pairs,
+    )?;
+    on_body.resize(names.nodes.len(), false);
+    corners::face(&surfaces.cut(spec), &bodies, &pairs, &mut slaves);
     history::settings(&spec.settings)?;
     if spec.settings.initial_gaps == InitialGaps::Adjust {
         let within = spec.settings.adjust_gap;
@@ -110,6 +121,7 @@ pub(crate) fn compile(spec: &Spec) -> Result<(Model, Names), Fault> {
     );
     interface::drop_idle_slaves(spec, &names, &dofs, &surfaces, &mut slaves);
     laws::stand_upright(&dofs, &surfaces, &mut slaves);
+    laws::check_points(&surfaces, &slaves)?;
     laws::check_corners(spec, &names, &surfaces, &slaves)?;
     interface::check_held_slaves(spec, &names, &dofs, &surfaces, &slaves)?;
     history::history(&spec.history)?;

@@ -191,7 +191,10 @@ impl Groups {
             }
         }
         let contacts = scene.model.contacts.iter();
-        let all = contacts.map(|contact| of_node.get(contact.node).copied().flatten());
+        let all = contacts.map(|contact| {
+            let (node, _) = contact.carriers().next()?;
+            of_node.get(node).copied().flatten()
+        });
         all.collect::<Option<Vec<usize>>>().map(Groups)
     }
 }

@@ -289,6 +289,7 @@ impl DeckObjects<'_> {
 
 fn kind_of(kind: ElementType) -> ElementKind {
     match (kind.cell, kind.reduced) {
+        (CellKind::Quad4, true) => ElementKind::Quad4Reduced,
         (CellKind::Quad8, true) => ElementKind::Quad8Reduced,
         (cell, _) => element_kind(cell).unwrap_or_default(),
     }

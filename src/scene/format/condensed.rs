@@ -22,7 +22,7 @@ use super::notation;
 use super::spec::{BodySpec, History, LoadSpec, Nodes, SlaveSpec, Spec, SurfaceSpec};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize};
-use stickslip_core::model::{Friction, InitialState, Mode, Settings};
+use stickslip_core::model::{Friction, InitialState, Mode, Settings, SlavePoints};
 
 /// First word of an interface problem file.
 pub const HEAD: &str = "Contacts";
@@ -396,6 +396,7 @@ fn slave(contact: &Contact) -> SlaveSpec {
         friction: Some(contact.friction.into()),
         law: ContactLaw::Hard,
         stick: None,
+        by: SlavePoints::Node,
         area: None,
         state: contact.state,
     }

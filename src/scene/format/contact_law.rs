@@ -20,6 +20,12 @@ described! {
         /// Tied to its point of the surface, in tension too, without friction. The node is first moved onto the surface without
         /// stress.
         Tied,
+        /// Tied by springs, in tension too: g + F_n / (K A) = 0, and along the surface with the pair's `stick` stiffness (default:
+        /// K). For points of faces (`by: surface`), whose rigid ties would be more equations than a face has unknowns.
+        Bonded {
+            /// K, pressure per length.
+            stiffness: f64,
+        },
     }
 }
 
@@ -27,6 +33,19 @@ impl ContactLaw {
     /// Whether this is the default, which scenes may omit.
     pub fn is_hard(&self) -> bool {
         *self == ContactLaw::Hard
+    }
+
+    /// Whether it transmits tension, without friction.
+    pub fn is_tied(&self) -> bool {
+        matches!(self, ContactLaw::Tied | ContactLaw::Bonded { .. })
+    }
+
+    /// K (pressure per length); `None` if it is rigid.
+    pub fn stiffness(&self) -> Option<f64> {
+        match *self {
+            ContactLaw::Penalty { stiffness } | ContactLaw::Bonded { stiffness } => Some(stiffness),
+            ContactLaw::Hard | ContactLaw::Tied => None,
+        }
     }
 }
 

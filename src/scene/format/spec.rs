@@ -11,8 +11,8 @@ use super::in_space::SpaceSpec;
 pub use super::loads::{LoadSpec, Scale};
 pub use super::monitor::{MonitorSpec, Quantity};
 use stickslip_core::model::{
-    Component, Control, ElementKind, InitialState, Jumps, Law, Mode, Plane, Settings, Update,
-    least, on_leg,
+    Component, Control, ElementKind, InitialState, Jumps, Law, Mode, Plane, Settings, SlavePoints,
+    Update, least, on_leg,
 };
 use stickslip_core::words::is_default;
 
@@ -536,6 +536,9 @@ described! {
         /// tributary area A (elastic slip). Default: none, sticking is rigid.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub stick: Option<f64>,
+        /// The points of the slave surface at which the law holds. Default: node.
+        #[serde(default, skip_serializing_if = "SlavePoints::is_node")]
+        pub by: SlavePoints,
         /// Undeformed tributary area of each of these nodes. Default: none, it is computed from the sides of the body.
         #[serde(default, skip_serializing_if = "Option::is_none")]
         pub area: Option<f64>,

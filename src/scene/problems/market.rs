@@ -8,7 +8,7 @@
 //! NAME_f.mtx   loads on the contacts            2 m numbers; where it is missing there are none
 //! ```
 //!
-//! In space W and q have 3 m rows, and there is neither K nor f: the number of friction coefficients tells.
+//! In space W and q have 3 m rows, and there is neither K nor f; the number of friction coefficients decides.
 //!
 //! The components are those of [`super::siconos`]. The user names the matrix file; the others are next to it. For a stiffness, q
 //! may be missing if f is given.

@@ -330,7 +330,7 @@ pub fn hand_on(
     lever: bool,
     contact: &mut [[f64; 2]],
 ) {
-    let (node, force) = (seen.contacts[slave].node, seen.forces[slave]);
+    let force = seen.forces[slave];
     let element =
         SurfaceElement::from_surface(&seen.surfaces[foot.spot.surface], foot.spot.element);
     let s = element.shape(foot.spot.xi);
@@ -349,7 +349,9 @@ pub fn hand_on(
         moment = across.map(|n| gap * along * n / (m * m));
     }
     for k in 0..2 {
-        contact[node][k] += force[k];
+        for (node, weight) in seen.contacts[slave].carriers() {
+            contact[node][k] += weight * force[k];
+        }
         for ((&master, share), slope) in element.nodes.iter().zip(s.n).zip(s.d) {
             contact[master][k] -= share * force[k] - slope * moment[k];
         }

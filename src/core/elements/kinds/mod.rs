@@ -49,6 +49,9 @@ kinds! { $
     Triangle6 "triangle6" triangle6::KIND,
     /// 4-node quadrilateral, 2 x 2 points. Stiff in bending; locks if nu is near 0.5.
     Quad4 "quad4" quad4::KIND,
+    /// 4-node quadrilateral with reduced integration: 1 point, and 2 x 2 points with 5 % of the stiffness against hourglass
+    /// modes. Softer, and does not lock.
+    Quad4Reduced "quad4r" quad4::REDUCED,
     /// 8-node quadrilateral (serendipity), 3 x 3 points.
     #[default]
     Quad8 "quad8" quad8::KIND,

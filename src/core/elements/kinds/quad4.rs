@@ -1,6 +1,8 @@
-//! 4-node quadrilateral: bilinear displacements; 2 × 2 Gauss points.
+//! 4-node quadrilateral: bilinear displacements; 2 × 2 Gauss points, or reduced integration with 1 point.
 //!
-//! Stiff in bending, and locks with nearly incompressible materials.
+//! With 2 × 2 points it is stiff in bending, and locks with nearly incompressible materials. With 1 point it has two hourglass
+//! modes that strain no point; the reduced rule is therefore W = (1 − ε) W_1 + ε W_2×2, a physical hourglass control that is exact
+//! for constant strain and needs no parameters of the material.
 
 use super::continuum_kind::{ContinuumKind, Shape, parents};
 use crate::elements::quadrature::square;
@@ -16,6 +18,23 @@ pub static KIND: ContinuumKind<4, 4> = ContinuumKind {
     places: PLACES,
     shape,
     rule: LazyLock::new(|| parents(square(2), shape)),
+    nodes: LazyLock::new(|| parents(PLACES.map(|at| (at, 0.0)), shape)),
+};
+
+/// Fraction ε of full integration in the reduced rule.
+const HOURGLASS: f64 = 0.05;
+
+/// The kind with reduced integration.
+pub static REDUCED: ContinuumKind<4, 5> = ContinuumKind {
+    vtk: KIND.vtk,
+    faces: KIND.faces,
+    places: PLACES,
+    shape,
+    rule: LazyLock::new(|| {
+        let [a, b, c, d] = square::<4>(2).map(|(at, weight)| (at, HOURGLASS * weight));
+        let middle = ([0.0; 2], 4.0 * (1.0 - HOURGLASS));
+        parents([middle, a, b, c, d], shape)
+    }),
     nodes: LazyLock::new(|| parents(PLACES.map(|at| (at, 0.0)), shape)),
 };
 

@@ -8,7 +8,8 @@ use stickslip_core::model::documented::text;
 use stickslip_core::model::{
     AtCycle, AtLimit, Axis, BoundUpdate, Component, Control, ElementKind, Friction, Geometry,
     InitialGaps, InitialState, Jumps, Law, LinearSolver, Mode, Plane, PointForce, Refactor,
-    ResidualMethod, SearchMode, Settings, SlipCount, Sticking, Strategy, TieRule, Touch, Update,
+    ResidualMethod, SearchMode, Settings, SlavePoints, SlipCount, Sticking, Strategy, TieRule,
+    Touch, Update,
 };
 
 macro_rules! fields {
@@ -132,6 +133,7 @@ words!(
     Refactor,
     SearchMode,
     ResidualMethod,
+    SlavePoints,
     SlipCount,
     LinearSolver,
     Sticking,
