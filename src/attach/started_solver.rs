@@ -110,6 +110,7 @@ fn capabilities(hello: &Hello) -> Result<Capabilities, Fault> {
             Restore::Any => RewindSupport::ToAny,
         },
         problem: abilities.problem,
+        cures: false,
         parameters,
     })
 }

@@ -136,6 +136,9 @@ fn records_have_exactly_the_fields_of_the_page_and_every_table_is_written() {
         assert_eq!(record["schema"], format!("stickslip-{title}-1"));
         assert!(schema.fits(&record, title, &mut seen));
     }
+    let deck = record(&["check", "tests/calculix/causes/cuts.inp", "--json"]);
+    assert_eq!(deck["schema"], "stickslip-check-deck-1");
+    assert!(schema.fits(&deck, "check of a deck in space", &mut seen));
     let titles = schema.0.keys().filter(|title| *title != "Kinds of failure");
     assert_eq!(seen.iter().collect::<Vec<_>>(), titles.collect::<Vec<_>>());
     assert!(schema.kinds().len() > 15);

@@ -220,6 +220,8 @@ pub struct Capabilities {
     pub goes_back: RewindSupport,
     /// Its frozen interface problem is available ([`Solver::interface_problem`]).
     pub problem: bool,
+    /// The diagnosis has cures from the record itself.
+    pub cures: bool,
     /// Other parameters that can be changed.
     pub parameters: Vec<Parameter>,
 }
@@ -239,6 +241,7 @@ impl Capabilities {
             settings: true,
             goes_back: RewindSupport::ToAny,
             problem: true,
+            cures: false,
             parameters: Vec::new(),
         }
     }

@@ -75,7 +75,7 @@ impl Need {
             Need::Cohesion => has(offers.cohesion, "a cohesion change"),
             Need::Settings => has(offers.settings, "settings of the two-level method"),
             Need::Parameters => has(!offers.parameters.is_empty(), "parameters that can be set"),
-            Need::Cures if offers.past.is_some() => Ok(()),
+            Need::Cures if offers.cures => Ok(()),
             Need::Problem | Need::Cures => has(offers.problem, "its interface problem"),
             Need::Answers => has(offers.problem, "its interface problem").and_then(|()| takes(force(false))),
             Need::Chart => Err(

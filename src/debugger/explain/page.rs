@@ -497,7 +497,8 @@ impl PageBuilder {
         }
     }
 
-    /// The load at which friction is used up or contact is lost, if that is the cause: then it comes first.
+    /// The load at which friction is used up or contact is lost, or the largest one, if that is the cause: then it comes first, except
+    /// after a material that left its range.
     fn add_limit_load(
         &mut self,
         stepper: &mut Stepper,
@@ -512,7 +513,12 @@ impl PageBuilder {
         if matches!(failure, Failure::Singular(Singular::Rigid { .. })) {
             self.what = at(state, "equilibrium ends before this load");
         }
-        self.facts.insert(0, Fact::why(text));
+        let has_left_range = matches!(
+            Remedy::law(stepper.model(), state, failure),
+            Some((_, true))
+        );
+        let place = usize::from(has_left_range).min(self.facts.len());
+        self.facts.insert(place, Fact::why(text));
     }
 
     /// The remedies tried for the page: the consistent states, and those for this kind of failure.

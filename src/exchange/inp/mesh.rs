@@ -2,7 +2,7 @@
 
 use super::cards::{Card, CardCell, cells, short};
 use super::deck::{Element, ElementType, Faces, Family, Node, Set, Surface};
-use super::reader::{Names, Reader};
+use super::reader::{MeshKind, Names, Reader};
 use super::source::{DeckLocation, Done, Fault, plain};
 use crate::bail;
 use crate::mesh::CellKind;
@@ -369,22 +369,6 @@ impl Reader {
             fits(&sides, first, "surface")?;
         }
         Ok(once(sides))
-    }
-}
-
-/// Kind of a set's members.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum MeshKind {
-    Nodes,
-    Elements,
-}
-
-impl MeshKind {
-    fn word(self) -> &'static str {
-        match self {
-            MeshKind::Nodes => "node",
-            MeshKind::Elements => "element",
-        }
     }
 }
 

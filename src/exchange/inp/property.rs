@@ -4,8 +4,7 @@ use super::cards::{Card, CardCell, cells, number_or_zero, short};
 use super::deck::{
     Adjust, Amplitude, Faces, Family, Form, Interaction, Material, Normal, Pair, Section, Tie,
 };
-use super::mesh::MeshKind;
-use super::reader::Reader;
+use super::reader::{MeshKind, Reader};
 use super::source::{Done, SourceLine};
 use crate::bail;
 

@@ -2,8 +2,8 @@
 
 use super::cards::{Card, CardCell, cells, number_or_zero, short};
 use super::deck::{Direction, Element, Faces, Family, Pressure, Step, Time, Value, Volume, Weight};
-use super::mesh::{MeshKind, side_of};
-use super::reader::Reader;
+use super::mesh::side_of;
+use super::reader::{MeshKind, Reader};
 use super::source::{DeckLocation, Done, plain};
 use crate::bail;
 

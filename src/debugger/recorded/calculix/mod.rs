@@ -320,6 +320,7 @@ impl Solver for RecordedRun {
         Capabilities {
             name: "CalculiX".into(),
             past: Some(words::READ_ONLY),
+            cures: true,
             goes_back: RewindSupport::ToAny,
             ..Capabilities::default()
         }
