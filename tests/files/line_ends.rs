@@ -94,7 +94,7 @@ fn every_reader_takes_crlf() {
     let before: Vec<_> = READERS.iter().map(read).collect();
     end_lines_with_crlf(folder.path());
     for (line, before) in READERS.iter().zip(before) {
-        assert_eq!(read(&line), before, "{line}");
+        assert_eq!(read(line), before, "{line}");
         assert_ne!(before.0, 2, "{line}: {}", before.2);
     }
 }
