@@ -1,14 +1,13 @@
 //! How debugger and solver exchange lines: standard streams, one inherited socket, or a socket to which the solver connects.
 
 use std::fmt;
-use std::fs::{self, File, Permissions};
 use std::io::{self, Read, Write};
 use std::net::{Shutdown, TcpListener, TcpStream};
-use std::os::unix::fs::PermissionsExt;
-use std::os::unix::net::{UnixListener, UnixStream};
 use std::path::PathBuf;
 use std::process::ChildStdin;
 use std::time::Duration;
+use stickslip_platform::local_socket::{self, LocalListener, LocalStream};
+use stickslip_platform::{disk, process, random};
 
 /// Longest wait of a single write to a socket.
 const WRITE: Duration = Duration::from_millis(10);
@@ -110,11 +109,9 @@ impl Channel {
         Ok(match self {
             Channel::Streams | Channel::Inherited => None,
             Channel::Unix(path) => {
-                let listener = UnixListener::bind(path)?;
+                let listener = local_socket::bind(path)?;
                 listener.set_nonblocking(true)?;
-                let bound = Listener::Unix(listener, path.clone());
-                fs::set_permissions(path, Permissions::from_mode(0o600))?;
-                Some(bound)
+                Some(Listener::Unix(listener, path.clone()))
             }
             Channel::Tcp { address, token } => {
                 let listener = TcpListener::bind(address)?;
@@ -130,14 +127,15 @@ fn token() -> io::Result<String> {
     if let Some(token) = std::env::var(TOKEN).ok().filter(|token| !token.is_empty()) {
         return Ok(token);
     }
-    let mut bytes = [0; 16];
-    File::open("/dev/urandom")?.read_exact(&mut bytes)?;
-    Ok(bytes.iter().map(|byte| format!("{byte:02x}")).collect())
+    Ok(random::bytes::<16>()?
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect())
 }
 
 /// Waits for a connection.
 pub(super) enum Listener {
-    Unix(UnixListener, PathBuf),
+    Unix(LocalListener, PathBuf),
     Tcp(TcpListener, String),
 }
 
@@ -166,7 +164,7 @@ impl Drop for Listener {
     fn drop(&mut self) {
         if let Listener::Unix(_, path) = self {
             // The name of a socket that nobody listens to.
-            let _ = fs::remove_file(path);
+            let _ = disk::remove_file(path);
         }
     }
 }
@@ -194,7 +192,7 @@ fn introduced(mut stream: &TcpStream, token: &str) -> io::Result<()> {
 /// The debugger's end of the connection. Writing waits for a short time at most.
 pub(super) enum Input {
     Pipe(ChildStdin),
-    Unix(UnixStream),
+    Unix(LocalStream),
     Tcp(TcpStream),
 }
 
@@ -202,7 +200,7 @@ impl Input {
     /// A socket, with blocking reads and writes that give up soon.
     pub(super) fn prepared(self) -> io::Result<Input> {
         match &self {
-            Input::Pipe(pipe) => rustix::io::ioctl_fionbio(pipe, true)?,
+            Input::Pipe(pipe) => process::set_nonblocking(pipe)?,
             Input::Unix(stream) => {
                 stream.set_nonblocking(false)?;
                 stream.set_write_timeout(Some(WRITE))?;

@@ -5,11 +5,7 @@
 //! message, then as a signal, then by ending the process.
 
 use super::channel::{Channel, Input, Listener};
-use rustix::process::{Pid, Signal, WaitId, WaitIdOptions, kill_process_group, waitid};
 use std::io::{self, BufRead, BufReader, Read, Write};
-use std::os::fd::OwnedFd;
-use std::os::unix::net::UnixStream;
-use std::os::unix::process::CommandExt;
 use std::process::{Child, Command, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -21,6 +17,7 @@ use stickslip_debugger::recorded::log::Log;
 use stickslip_exchange::attach::conversation::STARTED;
 use stickslip_exchange::attach::message::{Level, Progress};
 use stickslip_exchange::attach::{Answer, Line, LineReader, MOST_BYTES, Request, Side};
+use stickslip_platform::{local_socket, process};
 use stickslip_scene::{number, shown};
 
 /// Polling interval for interrupts.
@@ -112,8 +109,8 @@ impl Link {
             let (own, standard_input) = match start.channel {
                 Channel::Streams => (None, Stdio::piped()),
                 Channel::Inherited => {
-                    let (own, other) = UnixStream::pair().map_err(failed)?;
-                    (Some(Input::Unix(own)), Stdio::from(OwnedFd::from(other)))
+                    let (own, other) = local_socket::pair().map_err(failed)?;
+                    (Some(Input::Unix(own)), other)
                 }
                 Channel::Unix(_) | Channel::Tcp { .. } => (None, Stdio::null()),
             };
@@ -123,9 +120,8 @@ impl Link {
                 .envs(start.channel.environment())
                 .stdin(standard_input)
                 .stdout(Stdio::piped())
-                .stderr(Stdio::piped())
-                .process_group(0);
-            let mut child = command.spawn().map_err(failed)?;
+                .stderr(Stdio::piped());
+            let mut child = process::set_group(&mut command).spawn().map_err(failed)?;
             link.input = own.or_else(|| child.stdin.take().map(Input::Pipe));
             streams = [
                 child.stdout.take().map(|stream| Box::new(stream) as _),
@@ -391,7 +387,11 @@ impl Link {
                 1 if self.interrupts && !waiting.partly => self.interrupt(),
                 // The solver cannot be interrupted, so this waits for the current iteration.
                 1 => {}
-                2 => self.signal(Signal::INT),
+                2 => {
+                    if let Some(child) = &mut self.child {
+                        process::interrupt(child);
+                    }
+                }
                 _ => return Err(Fault::Stopped { asked: asked() }),
             }
             waiting.heeded = asks;
@@ -428,33 +428,13 @@ impl Link {
         }
     }
 
-    /// The process that was started, if there is one.
-    fn pid(&self) -> Option<Pid> {
-        let child = self.child.as_ref()?;
-        i32::try_from(child.id()).ok().and_then(Pid::from_raw)
-    }
-
-    /// How the process ended; `None` while it runs, or if none was started. The process is not reaped, so that the number of its group is not reused.
-    fn end(&self) -> Option<String> {
-        let pid = self.pid()?;
-        let look = WaitIdOptions::EXITED | WaitIdOptions::NOHANG | WaitIdOptions::NOWAIT;
-        match waitid(WaitId::Pid(pid), look) {
-            Ok(status) => {
-                status.map(
-                    |status| match (status.exit_status(), status.terminating_signal()) {
-                        (Some(code), _) => format!("exit status {code}"),
-                        (None, Some(signal)) => format!("killed by signal {signal}"),
-                        (None, None) => "ended".into(),
-                    },
-                )
-            }
-            // The process no longer exists.
-            Err(_) => Some("ended".into()),
-        }
+    /// How the process ended; `None` while it runs, or if none was started.
+    fn end(&mut self) -> Option<String> {
+        self.child.as_mut().and_then(process::end)
     }
 
     /// Whether the process ends within a time.
-    fn ends_within(&self, time: Duration) -> bool {
+    fn ends_within(&mut self, time: Duration) -> bool {
         let until = Instant::now() + time;
         loop {
             if self.child.is_none() || self.end().is_some() {
@@ -487,13 +467,6 @@ impl Link {
         Fault::Died { how, asked }
     }
 
-    fn signal(&self, signal: Signal) {
-        if let Some(group) = self.pid() {
-            // The process may have ended in the meantime.
-            let _ = kill_process_group(group, signal);
-        }
-    }
-
     /// Closes the input, after a `bye` if `farewell`; returns whether the process ended.
     pub(super) fn leave(&mut self, farewell: bool) -> bool {
         if let Some(mut input) = self.input.take().filter(|_| farewell) {
@@ -513,8 +486,8 @@ impl Drop for Link {
             self.leave(true);
         }
         // Also kills processes that the solver started.
-        self.signal(Signal::KILL);
         if let Some(child) = &mut self.child {
+            process::kill(child);
             let _ = child.wait();
         }
     }

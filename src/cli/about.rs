@@ -1,15 +1,15 @@
 //! `stickslip --version --verbose`: build, machine, terminal and folders, for bug reports.
 
 use super::base::{Error, Exit, say};
-use rustix::fs::Access;
 use std::env;
 use std::fmt::Write;
 use std::io::{IsTerminal, stderr, stdin, stdout};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::Command;
 use stickslip_core::linear::estimate;
 use stickslip_debugger::action::config;
 use stickslip_debugger::record::journal;
+use stickslip_platform::system;
 use stickslip_platform::terminal::{self, Answers};
 use stickslip_scene::memory;
 use stickslip_study::origin;
@@ -20,7 +20,7 @@ pub fn main(verbose: bool) -> Result<Exit, Error> {
         let parts = [
             ("features", features()),
             ("target", target()),
-            ("system", system()),
+            ("system", kernel_and_libc()),
             ("machine", origin::machine()),
             ("threads", threads()),
             ("memory", estimate::bytes(memory::free()) + " for scenes"),
@@ -81,9 +81,7 @@ fn target() -> String {
 }
 
 /// The kernel, and the system's C library.
-fn system() -> String {
-    let kernel = rustix::system::uname();
-    let word = |text: &std::ffi::CStr| text.to_string_lossy().into_owned();
+fn kernel_and_libc() -> String {
     let asked = Command::new("getconf")
         .arg("GNU_LIBC_VERSION")
         .output()
@@ -92,9 +90,8 @@ fn system() -> String {
     let libc = libc.map(|asked| String::from_utf8_lossy(&asked.stdout).trim().to_owned());
     let libc = libc.filter(|libc| !libc.is_empty());
     format!(
-        "{} {}, {}",
-        word(kernel.sysname()),
-        word(kernel.release()),
+        "{}, {}",
+        system::name(),
         libc.unwrap_or_else(|| "no glibc reported by getconf".into())
     )
 }
@@ -205,21 +202,16 @@ fn folder(folder: Option<PathBuf>) -> String {
     };
     // A missing folder is created when needed, in the nearest existing ancestor.
     let there = folder.ancestors().find(|above| above.exists());
-    let may = there.is_some_and(writable);
+    let may = there.is_some_and(system::is_writable);
     let rights = match (folder.exists(), may) {
         (true, true) => "writable",
         (true, false) => "not writable",
         (false, true) => "does not exist yet, can be created",
         (false, false) => "does not exist, cannot be created",
     };
-    let free = there.and_then(|there| rustix::fs::statvfs(there).ok());
-    let free = free.map_or(String::new(), |disk| {
-        let free = disk.f_bavail as f64 * disk.f_frsize as f64;
+    let free = there.and_then(system::free_bytes);
+    let free = free.map_or(String::new(), |free| {
         format!("; {} free", estimate::bytes(free))
     });
     format!("{} {rights}{free}", folder.display())
-}
-
-fn writable(folder: &Path) -> bool {
-    rustix::fs::access(folder, Access::WRITE_OK | Access::EXEC_OK).is_ok()
 }

@@ -11,16 +11,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use stickslip_core::model::Model;
 use stickslip_core::step::drive::{RunEnd, Until};
-use stickslip_core::step::event::{Event, Failure, Outcome, Position};
+use stickslip_core::step::event::{Failure, Position};
 use stickslip_core::step::solver::Solver;
 use stickslip_core::step::state::{State, Status};
 use stickslip_core::step::stepper::Stepper;
-use stickslip_debugger::explain::{failures, names, report, trail};
-use stickslip_debugger::history::strip::Strip;
+use stickslip_debugger::explain::{failures, names, report};
 use stickslip_debugger::record::command::ExportScope;
-use stickslip_debugger::record::export::export_state::{
-    COLUMNS, ExportState, PicturePart, PictureRequest,
-};
+use stickslip_debugger::record::export::export_state::{ExportState, PicturePart, PictureRequest};
+use stickslip_debugger::record::export::run_history::RunHistory;
 use stickslip_debugger::record::export::skeleton::skeleton;
 use stickslip_debugger::record::export::{self, ExportKind, ExportSource, Origin};
 use stickslip_debugger::record::journal::Record;
@@ -355,54 +353,6 @@ fn open(args: &Args) -> Result<Course, Error> {
     }
 }
 
-/// Records of the run so far.
-struct RunHistory {
-    strips: Vec<Strip>,
-    last_major: State,
-    /// The last minor iterations, oldest first, if a picture shows them.
-    events: Vec<Arc<Event>>,
-    /// Load factor and monitors at the accepted increments, if a picture shows them.
-    accepted: Vec<(f64, Vec<f64>)>,
-    only: Option<PicturePart>,
-}
-
-impl RunHistory {
-    fn at_start(stepper: &Stepper, only: Option<PicturePart>) -> RunHistory {
-        let state = stepper.state();
-        RunHistory {
-            strips: vec![Strip::new(stepper.model(), state, None, None, 0.0)],
-            last_major: state.clone(),
-            events: Vec::new(),
-            accepted: Vec::new(),
-            only,
-        }
-    }
-
-    fn see(&mut self, stepper: &mut Stepper) {
-        if self.only == Some(PicturePart::Cone) {
-            self.events.push(Arc::new(stepper.event().clone()));
-            let more = self.events.len().saturating_sub(trail::LONGEST);
-            self.events.drain(..more);
-        }
-        let accepts = matches!(stepper.event().outcome, Outcome::Increment { .. });
-        if self.only == Some(PicturePart::Chart) && accepts {
-            let mut monitors = Vec::new();
-            stepper.monitors(&mut monitors);
-            self.accepted.push((stepper.event().load_factor, monitors));
-        }
-        let (state, event) = (stepper.state(), stepper.event());
-        let strip = Strip::new(stepper.model(), state, Some(event), self.strips.last(), 0.0);
-        self.strips.push(strip);
-        // A timeline shows only the last steps; their total is needed only if it is small.
-        if self.strips.len() > 64 * COLUMNS {
-            self.strips.drain(..32 * COLUMNS);
-        }
-        if state.next.minor == 1 && state.status == Status::Running {
-            self.last_major = state.clone();
-        }
-    }
-}
-
 /// How a run ended.
 enum RunStop {
     There(String),
@@ -419,7 +369,8 @@ fn state(
     let scene = &course.scene;
     let mut stepper = solver(Arc::new(scene.model.clone()));
     let picture = picture(args, &scene.model)?;
-    let mut seen = RunHistory::at_start(&stepper, picture.only);
+    let parts: Vec<_> = picture.only.into_iter().collect();
+    let mut seen = RunHistory::at_start(&stepper, &parts);
     // The scene file itself needs no solve.
     let solves = kind.extension != "ron" || args.frozen;
     let ended = match solves {
@@ -430,23 +381,14 @@ fn state(
         RunStop::There(ended) => ended,
         RunStop::Not(exit) => return Ok(Err(exit)),
     };
-    let solved = seen.strips.len() > 1;
-    let event = solved.then(|| stepper.event().clone());
+    let event = seen.has_started().then(|| stepper.event().clone());
     let state = stepper.state().clone();
     let at = event.as_ref().map_or(state.next, |event| event.position);
     let origin = origin(&course, at, &state);
     let shown = ExportState {
-        scene,
-        origin: &origin,
-        state: &state,
-        event: event.as_ref(),
-        strips: &seen.strips,
-        last_major: Some(&seen.last_major),
         ended,
         frozen: args.frozen,
-        picture: &picture,
-        events: &seen.events,
-        accepted: &seen.accepted,
+        ..seen.shown(scene, &origin, (&state, event.as_ref()), &picture)
     };
     match kind.made(&shown, &mut stepper) {
         None => Ok(Err(Exit::Bad)),
@@ -472,18 +414,18 @@ fn drive(
     course: &Course,
     at: Option<RunPosition>,
     stepper: &mut Stepper,
-    seen: &mut RunHistory,
+    seen: &mut RunHistory<'_>,
     interrupt: &Interrupt,
 ) -> Result<RunStop, Error> {
     let (scene, name) = (&course.scene, &course.scene.name);
     if let Some(at) = at {
-        let found = seek(stepper, at, interrupt, &mut |stepper| seen.see(stepper));
+        let found = seek(stepper, at, interrupt, &mut |stepper| seen.add(stepper));
         return Ok(match found {
             Ok(_) => RunStop::There(String::new()),
             Err(missed) => RunStop::Not(notify_missed(scene, stepper, at, missed)),
         });
     }
-    let end = course.go(stepper, interrupt, &mut |stepper| seen.see(stepper))?;
+    let end = course.go(stepper, interrupt, &mut |stepper| seen.add(stepper))?;
     Ok(match end {
         RunEnd::Stopped(error) => return Err(error),
         RunEnd::Interrupted => {

@@ -3,10 +3,10 @@
 use super::base::{Error, Exit, print, say, usage};
 use std::ffi::OsString;
 use std::io::{IsTerminal, Write};
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 use std::sync::Arc;
 use stickslip_manual::{self as manual, Page, render};
-use stickslip_platform::terminal;
+use stickslip_platform::{system, terminal};
 
 #[derive(Debug, clap::Args)]
 pub struct Args {
@@ -139,11 +139,10 @@ fn show(page: &Page) -> Result<Exit, Error> {
 fn paged(text: &str) -> bool {
     // The pager handles Ctrl-C while it runs.
     let kept = signal_hook::flag::register(signal_hook::consts::SIGINT, Arc::default());
-    let mut command = Command::new("/bin/sh");
+    let mut command = system::shell();
     let pager = std::env::var_os("PAGER").filter(|pager| !pager.is_empty());
     command
-        .arg("-c")
-        .arg(pager.unwrap_or_else(|| OsString::from("less -R")))
+        .arg(pager.unwrap_or_else(|| OsString::from(system::PAGER)))
         .stdin(Stdio::piped());
     if std::env::var_os("LESS").is_none() {
         // So that `PAGER=less` shows bold text, too.

@@ -6,11 +6,6 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 /// The signals that request the end of the program.
 const SIGNALS: [i32; 2] = [signal_hook::consts::SIGINT, signal_hook::consts::SIGTERM];
 
-/// Makes a write beyond the file size limit fail with an error instead of killing the program (SIGXFSZ).
-pub fn let_large_writes_fail() {
-    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Arc::default());
-}
-
 /// Makes Ctrl-C end the program at once, with exit code 130.
 pub fn end_at_once() {
     let always = Arc::new(AtomicBool::new(true));

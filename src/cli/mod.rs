@@ -48,7 +48,6 @@ mod solver;
 mod story;
 mod study;
 mod sweep;
-mod table;
 mod tally;
 
 use base::{Exit, notify, say};
@@ -170,7 +169,7 @@ pub fn main() -> ExitCode {
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(2));
         }
     };
-    interrupt::let_large_writes_fail();
+    stickslip_platform::signals::let_large_writes_fail();
     if !matches!(
         cli.command,
         None | Some(

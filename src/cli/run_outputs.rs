@@ -4,9 +4,9 @@ use super::base::{Error, OutputState, distinct};
 use super::grids::{GridInterval, Grids};
 use super::json::JsonArgs;
 use super::sink::Sink;
-use super::table;
 use std::path::PathBuf;
 use stickslip_core::model::Model;
+use stickslip_debugger::record::table;
 use stickslip_platform::files::Output;
 use stickslip_scene::Scene;
 

@@ -1,8 +1,8 @@
 //! Reads files: only regular ones, without blocking, and up to a maximum size.
 
+use crate::disk::{self, File, Metadata, OpenOptions};
 use crate::similar::did_you_mean_file;
 use crate::system;
-use std::fs::{File, Metadata, OpenOptions};
 use std::io::{self, Read};
 use std::path::{Component, Path, PathBuf};
 
@@ -75,13 +75,13 @@ pub fn path_in_folder(own: &Path, named: &str) -> Result<PathBuf, String> {
     let folder = own.parent().unwrap_or(Path::new(""));
     let path = folder.join(named);
     let message = |error: io::Error| failed(&path, error).to_string();
-    let real = path.canonicalize().map_err(message)?;
+    let real = disk::canonicalize(&path).map_err(message)?;
     let here = if folder == Path::new("") {
         Path::new(".")
     } else {
         folder
     };
-    match real.starts_with(here.canonicalize().map_err(message)?) {
+    match real.starts_with(disk::canonicalize(here).map_err(message)?) {
         true => Ok(path),
         false => Err("the file is a link to a file outside this folder".to_owned()),
     }
@@ -134,7 +134,7 @@ pub const MARK: char = '\u{feff}';
 /// If it is not a regular file, or cannot be opened.
 pub fn open(path: &Path, options: &mut OpenOptions) -> Result<File, Unreadable> {
     // Checked before opening, since opening some devices has side effects, and afterwards, since the file may have been replaced.
-    match std::fs::metadata(path) {
+    match disk::metadata(path) {
         Ok(found) => regular(&found)?,
         Err(error) if error.kind() == io::ErrorKind::NotFound => {}
         Err(error) => return Err(error.into()),

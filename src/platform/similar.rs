@@ -1,5 +1,6 @@
 //! Finds the name that a mistyped one probably stands for.
 
+use crate::disk;
 use std::path::Path;
 
 /// `; did you mean "beam.end"?` if a candidate is close enough to be a typo, else an empty string.
@@ -14,7 +15,7 @@ pub fn did_you_mean<'a>(wrong: &str, candidates: impl IntoIterator<Item = &'a st
 pub fn did_you_mean_file(missing: &str) -> String {
     let path = Path::new(missing);
     let folder = path.parent().filter(|folder| *folder != Path::new(""));
-    let entries = std::fs::read_dir(folder.unwrap_or(Path::new(".")));
+    let entries = disk::read_dir(folder.unwrap_or(Path::new(".")));
     let names = entries.into_iter().flatten().flatten();
     let in_folder = |name| folder.map_or(Path::new("").join(&name), |folder| folder.join(&name));
     let paths = names.map(|entry| in_folder(entry.file_name()));

@@ -3,20 +3,13 @@
 //! The queries are those of ECMA-48 and of DEC terminals: CSI 6 n (cursor position), CSI ? mode $ p (is this mode supported?) and
 //! CSI c (terminal type). Every terminal answers the last one, which ends the wait for the others.
 
-use rustix::event::{PollFd, PollFlags, Timespec, poll};
-use rustix::termios::{self, OptionalActions, Termios};
-use std::io::{self, IsTerminal, Stdin, Write, stdin, stdout};
-use std::time::{Duration, Instant};
 use unicode_width::UnicodeWidthStr;
 
-/// Time limit for an answer, also over a slow line.
-const PATIENCE: Duration = Duration::from_secs(2);
+#[cfg_attr(unix, path = "unix_terminal.rs")]
+#[cfg_attr(windows, path = "windows_terminal.rs")]
+mod system;
 
-/// Columns and rows of the terminal on standard output; `None` if it is not a terminal, or its size is not known.
-pub fn size() -> Option<(u16, u16)> {
-    let size = termios::tcgetwinsize(stdout()).ok()?;
-    (size.ws_col > 0 && size.ws_row > 0).then_some((size.ws_col, size.ws_row))
-}
+pub use system::{ask, report_mouse, size};
 
 /// The answers of a terminal.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -83,41 +76,7 @@ impl Answers {
     }
 }
 
-/// Queries the terminal; `None` if standard input or output is not a terminal.
-///
-/// The queries use the current line, which is empty afterwards.
-///
-/// # Errors
-/// If the terminal cannot be set to raw mode, or is closed.
-pub fn ask() -> io::Result<Option<Answers>> {
-    if !stdin().is_terminal() || !stdout().is_terminal() {
-        return Ok(None);
-    }
-    let _raw = RawMode::enter()?;
-    let mut out = stdout().lock();
-    out.write_all(questions().as_bytes())?;
-    out.flush()?;
-    let mut bytes = Vec::new();
-    let until = Instant::now() + PATIENCE;
-    while !Answers::read(&bytes).1 {
-        let left = until.saturating_duration_since(Instant::now());
-        let stdin = stdin();
-        let mut from = [PollFd::new(&stdin, PollFlags::IN)];
-        let left = Timespec::try_from(left).unwrap_or_default();
-        if poll(&mut from, Some(&left))? == 0 {
-            break;
-        }
-        let mut some = [0; 256];
-        match rustix::io::read(&stdin, &mut some)? {
-            0 => break,
-            n => bytes.extend_from_slice(&some[..n]),
-        }
-    }
-    out.write_all(b"\r\x1b[K")?;
-    out.flush()?;
-    Ok(Some(Answers::read(&bytes).0))
-}
-
+#[cfg(unix)]
 fn questions() -> String {
     let widths = TEXTS.iter().map(|(_, text)| format!("\r{text}\x1b[6n"));
     let modes = [MOUSE, IN_ONE_GO].map(|mode| format!("\x1b[?{mode}$p"));
@@ -129,6 +88,7 @@ fn questions() -> String {
     )
 }
 
+#[cfg(any(unix, test))]
 impl Answers {
     /// The answers so far, and whether the last one has arrived. Key presses in between are ignored.
     fn read(bytes: &[u8]) -> (Answers, bool) {
@@ -154,30 +114,6 @@ impl Answers {
             }
         }
         (answers, false)
-    }
-}
-
-/// The terminal in raw mode, until this is dropped.
-struct RawMode {
-    of: Stdin,
-    before: Termios,
-}
-
-impl RawMode {
-    fn enter() -> io::Result<RawMode> {
-        let of = stdin();
-        let before = termios::tcgetattr(&of)?;
-        let mut raw = before.clone();
-        raw.make_raw();
-        termios::tcsetattr(&of, OptionalActions::Now, &raw)?;
-        Ok(RawMode { of, before })
-    }
-}
-
-impl Drop for RawMode {
-    fn drop(&mut self) {
-        // A late answer must not reach the shell.
-        let _ = termios::tcsetattr(&self.of, OptionalActions::Flush, &self.before);
     }
 }
 

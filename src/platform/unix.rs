@@ -1,12 +1,14 @@
 //! Unix systems such as Linux and macOS.
 
-use rustix::fs::OFlags;
+use rustix::fs::{Access, OFlags};
 use rustix::io::Errno;
 use rustix::process::{Pid, test_kill_process};
 use rustix::time::{ClockId, clock_gettime};
 use std::fs::{File, FileType, Metadata, OpenOptions, Permissions};
 use std::io;
 use std::os::unix::fs::{FileTypeExt, MetadataExt, OpenOptionsExt, PermissionsExt};
+use std::path::{Path, PathBuf};
+use std::process::Command;
 use std::time::Duration;
 
 /// Opens without blocking, even a pipe without a reader or writer.
@@ -69,3 +71,48 @@ pub fn thread_time() -> Duration {
     let time = clock_gettime(ClockId::ThreadCPUTime);
     Duration::new(time.tv_sec as u64, time.tv_nsec as u32)
 }
+
+/// The user's folder for the program's configuration.
+pub fn config_folder() -> Option<PathBuf> {
+    let ours = directories::ProjectDirs::from("", "", "stickslip")?;
+    Some(ours.config_dir().to_owned())
+}
+
+/// The user's folder for journals and progress: for state, or for data on systems without one.
+pub fn state_folder() -> Option<PathBuf> {
+    let ours = directories::ProjectDirs::from("", "", "stickslip")?;
+    Some(ours.state_dir().unwrap_or(ours.data_local_dir()).to_owned())
+}
+
+/// Syncs a folder, so that its new files survive a power failure. Some file systems cannot.
+pub fn sync_folder(folder: &Path) {
+    let _ = File::open(folder).and_then(|folder| folder.sync_all());
+}
+
+/// Name and version of the system.
+pub fn name() -> String {
+    let kernel = rustix::system::uname();
+    let word = |text: &std::ffi::CStr| text.to_string_lossy().into_owned();
+    format!("{} {}", word(kernel.sysname()), word(kernel.release()))
+}
+
+/// Free space of the disk of a folder; `None` if it is not known.
+pub fn free_bytes(folder: &Path) -> Option<f64> {
+    let disk = rustix::fs::statvfs(folder).ok()?;
+    Some(disk.f_bavail as f64 * disk.f_frsize as f64)
+}
+
+/// Whether files can be created in a folder.
+pub fn is_writable(folder: &Path) -> bool {
+    rustix::fs::access(folder, Access::WRITE_OK | Access::EXEC_OK).is_ok()
+}
+
+/// The command that runs a line of the shell.
+pub fn shell() -> Command {
+    let mut command = Command::new("/bin/sh");
+    command.arg("-c");
+    command
+}
+
+/// The pager without the user's choice.
+pub const PAGER: &str = "less -R";

@@ -2,13 +2,13 @@
 
 pub use crate::deck::outline;
 use crate::format::SceneError;
-use std::fs::OpenOptions;
 use std::io::{self, BufReader};
 use std::path::{Path, PathBuf};
 use stickslip_exchange::calculix::files::CalculixFiles;
 use stickslip_exchange::calculix::{cel, cvg, frd, sta};
 use stickslip_exchange::format_error::FormatError;
 use stickslip_exchange::inp::Deck;
+use stickslip_platform::disk::{File, OpenOptions};
 use stickslip_platform::input::{self, Unreadable};
 
 /// Extensions of a run's files: contact elements, attempts, residuals.
@@ -68,7 +68,7 @@ pub fn pressures(cel: &Path) -> Result<Vec<(u32, f64)>, String> {
     read_sibling(cel, "frd", frd::pressures).map(Option::unwrap_or_default)
 }
 
-type Reader = BufReader<std::fs::File>;
+type Reader = BufReader<File>;
 
 /// Reads a file next to the .cel; `None` if it does not exist.
 fn read_sibling<T>(

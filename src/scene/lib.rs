@@ -50,7 +50,7 @@ pub use problems::siconos;
 use stickslip_core::model::Model;
 use stickslip_exchange::attach::message;
 use stickslip_exchange::matrix_market;
-use stickslip_platform::input;
+use stickslip_platform::{disk, input};
 
 pub use compile::increments;
 use nodes::Names;
@@ -95,7 +95,7 @@ impl Scene {
     /// # Errors
     /// If the scene does not exist or is invalid.
     pub fn open_any(name: &str, overrides: &[(String, String)]) -> Result<Scene, SceneError> {
-        if !std::path::Path::new(name).is_file()
+        if !disk::is_file(name)
             && let Some(builtin) = builtin::find(name)
         {
             return Scene::from_text(builtin.name, builtin.text, overrides);
@@ -113,7 +113,7 @@ impl Scene {
             false => read::text(name),
         };
         let text = text.map_err(|mut error| {
-            if !std::path::Path::new(name).exists() {
+            if !disk::exists(name) {
                 error.message = no_such_scene(name);
             }
             error
@@ -129,7 +129,7 @@ impl Scene {
     pub fn named_in(own: &str, named: &str) -> Result<String, String> {
         let own = std::path::Path::new(own);
         let found = match input::path_in_folder(own, named.trim_start_matches("./")) {
-            Ok(path) if path.is_file() => return Ok(path.to_string_lossy().into_owned()),
+            Ok(path) if disk::is_file(&path) => return Ok(path.to_string_lossy().into_owned()),
             Ok(_) => "not a file".to_owned(),
             Err(why) => why,
         };

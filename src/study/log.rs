@@ -14,11 +14,12 @@ use super::shard::Key;
 use super::sweep_input::Input;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use std::fs::{File, TryLockError};
+use std::fs::TryLockError;
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use stickslip_exchange::seal::{Seal, opened as unsealed, sealed};
+use stickslip_platform::disk::{File, OpenOptions};
 use stickslip_platform::input::{self, Unreadable};
 use stickslip_scene::format::kind::{FileKind, mistaken};
 use stickslip_scene::format::notation;
@@ -226,7 +227,8 @@ impl Lines<'_> {
         let bytes = self.bytes(MOST_HEAD)?;
         let mark = input::MARK.to_string();
         let text = bytes.strip_prefix(mark.as_bytes()).unwrap_or(&bytes);
-        match text.strip_suffix(b"\n") {
+        let line = text.strip_suffix(b"\n");
+        match line.map(|line| line.strip_suffix(b"\r").unwrap_or(line)) {
             Some(line) if line == head().as_bytes() => {
                 (self.number, self.whole) = (1, bytes.len() as u64);
                 Ok(true)
@@ -260,6 +262,8 @@ impl Lines<'_> {
                 false => Err(broken("the line is longer than any result")),
             };
         }
+        // A copy through Windows may end its lines with CRLF.
+        bytes.pop_if(|last| *last == b'\r');
         let mut text =
             String::from_utf8(bytes).map_err(|_| broken("the line is not valid UTF-8"))?;
         match unsealed(&text) {
@@ -392,7 +396,7 @@ fn content<T: Outcome>(
 }
 
 /// Opens a file with these options.
-fn opened(path: &Path, options: &mut std::fs::OpenOptions) -> Result<File, LogError> {
+fn opened(path: &Path, options: &mut OpenOptions) -> Result<File, LogError> {
     input::open(path, options).map_err(|why| LogError::Unread {
         path: path.to_owned(),
         why,

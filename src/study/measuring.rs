@@ -8,7 +8,7 @@ use super::{Vary, Watch};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
-use std::thread;
+use stickslip_platform::task;
 use stickslip_scene::Scene;
 
 /// Why there is no chart.
@@ -47,7 +47,7 @@ impl ChartMeasurement {
             all: Arc::clone(&all),
             result,
         };
-        thread::spawn(move || {
+        task::spawn(move || {
             let watch = Watch {
                 stop: &|| stop.load(Ordering::Relaxed),
                 done: &|increments| {

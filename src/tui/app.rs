@@ -5,6 +5,7 @@ use crate::camera::Camera;
 use crate::chartpage::ChartPage;
 use crate::chooser_state::{Chooser, Offer, Preview};
 use crate::commandline::{CommandLine, Purpose};
+use crate::event::KeyEvent;
 use crate::input_queue::{Ahead, QueuedInput};
 use crate::keys;
 use crate::layout::{Pane, ShownPanes};
@@ -15,7 +16,6 @@ use crate::panes::manual;
 use crate::panes::solver;
 use crate::theme::{self, Theme};
 use crate::view::{View, context};
-use crossterm::event::KeyEvent;
 use ratatui::layout::Rect;
 use std::fmt;
 use std::time::Duration;
@@ -348,7 +348,7 @@ impl App {
     }
 
     /// Follows the terminal's background, unless the user has chosen colours.
-    pub(super) fn find_colours(&mut self, light: bool) {
+    pub fn find_colours(&mut self, light: bool) {
         if self.finds_colours {
             self.colours = Colours::for_background(light);
             self.theme = Theme::chosen(self.colours);

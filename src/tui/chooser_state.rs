@@ -4,12 +4,12 @@ use crate::view::View;
 use std::path::Path;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
-use std::thread;
 use stickslip_core::model::Model;
 use stickslip_core::step::stepper::Stepper;
 use stickslip_debugger::history::frame::Frame;
 use stickslip_debugger::teach::progress::{LessonProgress, Progress};
 use stickslip_debugger::teach::{self, Lesson};
+use stickslip_platform::{disk, task};
 use stickslip_scene::embedded::EmbeddedFile;
 use stickslip_scene::format::SceneError;
 use stickslip_scene::{Scene, builtin};
@@ -184,7 +184,7 @@ impl PreviewLoader {
             let (sender, seen) = channel();
             self.0 = Some((offer.name.clone(), seen));
             let offer = offer.clone();
-            thread::spawn(move || {
+            task::spawn(move || {
                 // The receiver may be gone.
                 let _ = sender.send(Preview::new(&offer));
             });
@@ -252,13 +252,13 @@ pub fn offers(progress: &Progress) -> Vec<Offer> {
 
 /// Scene files of a folder, sorted by name.
 pub fn files(folder: &Path) -> Vec<Offer> {
-    let Ok(entries) = std::fs::read_dir(folder) else {
+    let Ok(entries) = disk::read_dir(folder) else {
         return Vec::new();
     };
-    let name = |entry: std::fs::DirEntry| {
+    let name = |entry: disk::DirEntry| {
         let path = entry.path();
         let ending = path.extension().and_then(|ending| ending.to_str())?;
-        let wanted = ["ron", "dat"].contains(&ending) && path.is_file();
+        let wanted = ["ron", "dat"].contains(&ending) && disk::is_file(&path);
         let name = entry.file_name().into_string().ok()?;
         (wanted && !name.starts_with('.')).then_some(name)
     };

@@ -1,14 +1,14 @@
 //! The input line at the bottom of the screen: `:` commands, and the answers to `i` and `/`.
 
+use crate::event::{KeyCode, KeyEvent, Modifiers};
 use crate::paint;
 use crate::theme::Theme;
-use crossterm::event::{Event, KeyEvent};
 use ratatui::style::Modifier;
 use ratatui::text::{Line, Span};
 use std::borrow::Cow;
 use stickslip_debugger::action::{self, ActionEntry, Context};
 use stickslip_scene::shown;
-use tui_input::{Input, InputRequest, backend::crossterm::EventHandler};
+use tui_input::{Input, InputRequest};
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
 /// What is being typed.
@@ -55,7 +55,9 @@ impl CommandLine {
     /// Handles an editing key.
     pub fn edit(&mut self, key: &KeyEvent) {
         self.completions = None;
-        self.input.handle_event(&Event::Key(*key));
+        if let Some(request) = edit_request(key) {
+            self.input.handle(request);
+        }
     }
 
     /// Inserts a text; line ends and control characters become blanks.
@@ -317,6 +319,30 @@ fn choices(text: &str, context: &Context) -> String {
             words.collect::<Vec<_>>().join("  ")
         }
     }
+}
+
+/// The edit that a key asks for, as in readline.
+fn edit_request(key: &KeyEvent) -> Option<InputRequest> {
+    use InputRequest::*;
+    use KeyCode::*;
+    Some(match (key.code, key.modifiers) {
+        (Backspace, Modifiers::NONE) | (Char('h'), Modifiers::CONTROL) => DeletePrevChar,
+        (Delete, Modifiers::NONE) => DeleteNextChar,
+        (Left, Modifiers::NONE) | (Char('b'), Modifiers::CONTROL) => GoToPrevChar,
+        (Left, Modifiers::CONTROL) => GoToPrevWord,
+        (Right, Modifiers::NONE) | (Char('f'), Modifiers::CONTROL) => GoToNextChar,
+        (Right, Modifiers::CONTROL) => GoToNextWord,
+        (Char('u'), Modifiers::CONTROL) => DeleteLine,
+        (Char('w'), Modifiers::CONTROL) => DeletePrevWord,
+        (Delete, Modifiers::CONTROL) => DeleteNextWord,
+        (Char('k'), Modifiers::CONTROL) => DeleteTillEnd,
+        (Char('y'), Modifiers::CONTROL) => Yank,
+        (Home, Modifiers::NONE) | (Char('a'), Modifiers::CONTROL) => GoToStart,
+        (End, Modifiers::NONE) | (Char('e'), Modifiers::CONTROL) => GoToEnd,
+        (Char(letter), Modifiers::NONE | Modifiers::SHIFT) => InsertChar(letter),
+        (Char(letter), modifiers) if modifiers.control && modifiers.alt => InsertChar(letter),
+        _ => return None,
+    })
 }
 
 #[cfg(test)]

@@ -3,18 +3,17 @@
 use crate::app::{App, Effect, LoadTarget, Overlay, TURN};
 use crate::chartpage::{ChartPage, NoPage};
 use crate::chooser_state::{self, Offer, PreviewLoader};
+use crate::event::{Event, KeyEvent};
 use crate::keys;
 use crate::layout::Pane;
 use crate::learning::Learning;
 use crate::loading::{LoadedFile, Loading};
-use crate::terminal;
 use crate::theme::Theme;
 use crate::view::View;
-use crossterm::event::{Event, KeyEvent};
+use ratatui::layout::Rect;
 use std::collections::VecDeque;
-use std::io::{self, Write};
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 use stickslip_core::step::state::Status;
 use stickslip_debugger::action::{self, ChartOf};
 use stickslip_debugger::explain::report;
@@ -23,6 +22,8 @@ use stickslip_debugger::recorded::calculix::words::GREETING;
 use stickslip_debugger::session::{Reply, Session};
 use stickslip_debugger::teach::progress::{self, Progress, ProgressStore};
 use stickslip_debugger::teach::{Lesson, Tutor, play};
+use stickslip_platform::clock::Instant;
+use stickslip_platform::task;
 use stickslip_scene::{gaps, shown};
 use stickslip_study::measuring::ChartMeasurement;
 
@@ -57,19 +58,19 @@ pub struct Debugger {
     /// The session; `None` until a scene is opened.
     pub session: Option<Session>,
     /// Requests to the event loop from queued keys.
-    pub(super) outside: VecDeque<TerminalRequest>,
+    outside: VecDeque<TerminalRequest>,
     /// Start time of the current computation.
     begun: Instant,
     /// Number of frames in the session at the last draw.
     frames: usize,
     /// Whether scenes opened here get a journal.
-    pub(super) keeps: bool,
+    pub keeps: bool,
     /// The chart that is being measured.
     measuring: Option<ChartMeasurement>,
     /// The file that is being loaded.
-    pub(super) loading: Option<Loading>,
+    loading: Option<Loading>,
     /// The preview that is being loaded.
-    pub(super) looking: PreviewLoader,
+    looking: PreviewLoader,
     /// Stores the progress in lessons.
     progress: ProgressStore,
     /// When the lesson was started, less the time that earlier sessions spent on it.
@@ -103,7 +104,7 @@ impl Debugger {
     }
 
     /// From now on stores the progress in lessons, and lists the files of the folder in the chooser.
-    pub(super) fn use_user_files(&mut self) {
+    pub fn use_user_files(&mut self) {
         self.progress = ProgressStore::new(progress::place());
         self.lists = true;
     }
@@ -138,24 +139,19 @@ impl Debugger {
         any
     }
 
-    /// Prints one line on exit: where the journal is, or why there is none.
-    pub(super) fn print_exit_line(&self) {
-        let Some(session) = &self.session else { return };
-        let text = match (session.journal().path(), session.journal().lost()) {
-            (Some(path), _) => {
-                let path = path.display();
-                format!("journal: {path} (`stickslip resume {path}` continues it)")
-            }
-            (None, Some(why)) => format!("no journal: {why}"),
-            (None, None) => return,
-        };
-        // Standard error may be closed.
-        let _ = writeln!(io::stderr(), "{}", shown::line(&text));
-    }
-
     /// The data that the panes draw.
     pub fn view(&self) -> Option<View<'_>> {
         self.session.as_ref().map(View::new)
+    }
+
+    /// The next request of queued input to the event loop.
+    pub fn take_request(&mut self) -> Option<TerminalRequest> {
+        self.outside.pop_front()
+    }
+
+    /// Whether anything is computed or loaded whose result will change the screen.
+    pub fn is_working(&self) -> bool {
+        self.is_busy() || self.loading.is_some() || self.looking.is_busy()
     }
 
     /// Whether the solver is running.
@@ -182,7 +178,7 @@ impl Debugger {
                 let effect = self.app.mouse(mouse, view.as_ref())?;
                 self.carry_out(effect)
             }
-            _ => None,
+            Event::Mouse(_) => None,
         }
     }
 
@@ -208,7 +204,7 @@ impl Debugger {
     }
 
     /// Carries out an effect, unless only the event loop can.
-    fn carry_out(&mut self, effect: Effect) -> Option<TerminalRequest> {
+    pub fn carry_out(&mut self, effect: Effect) -> Option<TerminalRequest> {
         match effect {
             Effect::Quit => return Some(TerminalRequest::Quit),
             Effect::Suspend => return Some(TerminalRequest::Suspend),
@@ -303,11 +299,11 @@ impl Debugger {
             let open = self.app.overlay.is_open_to_pages();
             // Behind another page these would never finish.
             if open && (self.loading.is_some() || self.measuring.is_some()) {
-                std::thread::sleep(Duration::from_millis(1));
+                task::nap(Duration::from_millis(1));
                 continue;
             }
             while self.looking.is_busy() {
-                std::thread::sleep(Duration::from_millis(1));
+                task::nap(Duration::from_millis(1));
                 self.advance();
             }
             match &mut self.session {
@@ -498,7 +494,8 @@ impl Debugger {
         }
     }
 
-    fn open(&mut self, mut session: Session) {
+    /// Continues with another session.
+    pub fn open(&mut self, mut session: Session) {
         let resumed = session.journal().path().is_some();
         // A resumed journal continues on its own.
         if self.keeps && !resumed && session.connection().capabilities().past.is_none() {
@@ -584,7 +581,7 @@ impl Debugger {
         };
         let elapsed = TURN * turns as u32;
         let turned = elapsed != std::mem::replace(&mut self.app.busy, elapsed);
-        let panicked = terminal::panic_elsewhere();
+        let panicked = task::take_panic();
         let failed = panicked.is_some();
         if let Some(message) = panicked {
             self.app.complain(format!(
@@ -609,17 +606,30 @@ impl Debugger {
     }
 
     /// Waits briefly for quick steps, so that fast typing is not queued.
-    pub(super) fn breathe(&mut self) {
+    pub fn breathe(&mut self) {
         let entered = Instant::now();
         let quick = |debugger: &Debugger| {
             let solves = debugger.is_busy() && debugger.begun.elapsed() < QUICK;
             solves || debugger.loading.is_some() && entered.elapsed() < QUICK
         };
         while quick(self) {
-            std::thread::sleep(Duration::from_micros(500));
+            task::nap(Duration::from_micros(500));
             self.advance();
         }
     }
+}
+
+/// The screen after some keys, as plain text. Keys are named as in the key table and separated by blanks; each one waits for the
+/// solver.
+///
+/// # Errors
+/// If the scene cannot be loaded.
+pub fn screen(scene: &str, keys: &str, width: u16, height: u16) -> Result<String, String> {
+    let session = Session::open(scene)?;
+    let mut debugger = Debugger::new(Theme::mono(), offers(), Some(session));
+    debugger.app.area = Rect::new(0, 0, width, height);
+    debugger.type_keys(keys);
+    Ok(debugger.text(width, height))
 }
 
 /// The first message after opening a scene: warnings about its start, or the first key to press.

@@ -2,8 +2,8 @@
 //!
 //! Keys that only change the view are handled at once if the queue is empty. Ctrl-C, Ctrl-Z and Ctrl-L are never queued.
 
+use crate::event::KeyEvent;
 use crate::keys;
-use crossterm::event::KeyEvent;
 use std::collections::VecDeque;
 
 /// Maximum length of the queue; only a key that is held down exceeds it.

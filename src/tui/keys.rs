@@ -1,15 +1,13 @@
 //! Names of terminal keys, as in the table of actions.
 
-use crossterm::event::{KeyCode, KeyEvent, KeyEventKind, KeyModifiers};
+use crate::event::{KeyCode, KeyEvent, Modifiers};
 
-/// The table's name of a key press: `s`, `S`, `F10`, `Shift-F11`, `Ctrl-c`, `PageDown`. `None` for key releases and keys without a
-/// name in the table.
+/// The table's name of a key press: `s`, `S`, `F10`, `Shift-F11`, `Ctrl-c`, `PageDown`. `None` for keys without a name in the table.
 pub fn name(key: &KeyEvent) -> Option<String> {
-    if key.kind == KeyEventKind::Release || key.modifiers.contains(KeyModifiers::ALT) {
+    if key.modifiers.alt {
         return None;
     }
-    let control = key.modifiers.contains(KeyModifiers::CONTROL);
-    let shift = key.modifiers.contains(KeyModifiers::SHIFT);
+    let Modifiers { control, shift, .. } = key.modifiers;
     let name = match key.code {
         KeyCode::Char(' ') => "Space".into(),
         KeyCode::Char(letter) if control => format!("Ctrl-{}", letter.to_lowercase()),
@@ -41,20 +39,20 @@ fn plain(code: KeyCode) -> Option<&'static str> {
         KeyCode::PageDown => "PageDown",
         KeyCode::Backspace => "Backspace",
         KeyCode::Delete => "Delete",
-        _ => return None,
+        KeyCode::BackTab | KeyCode::Char(_) | KeyCode::F(_) => return None,
     })
 }
 
 /// Splits one report into key presses: Esc followed by a letter arrives as Alt and the letter, which no action uses.
 pub fn apart(key: &KeyEvent) -> impl Iterator<Item = KeyEvent> {
-    let together = key.modifiers.contains(KeyModifiers::ALT);
-    let escape = together && key.kind != KeyEventKind::Release;
-    let alone = KeyEvent {
-        modifiers: key.modifiers.difference(KeyModifiers::ALT),
-        ..*key
+    let modifiers = Modifiers {
+        alt: false,
+        ..key.modifiers
     };
-    escape
-        .then(|| KeyEvent::new(KeyCode::Esc, KeyModifiers::NONE))
+    let alone = KeyEvent::new(key.code, modifiers);
+    let together = key.modifiers.alt;
+    together
+        .then(|| KeyEvent::new(KeyCode::Esc, Modifiers::NONE))
         .into_iter()
         .chain([alone])
 }
@@ -62,9 +60,9 @@ pub fn apart(key: &KeyEvent) -> impl Iterator<Item = KeyEvent> {
 /// The key press of a name, the inverse of [`name`]; for tests and scripts.
 pub fn press(name: &str) -> Option<KeyEvent> {
     let (modifiers, rest) = match name {
-        _ if name.starts_with("Ctrl-") => (KeyModifiers::CONTROL, &name[5..]),
-        _ if name.starts_with("Shift-F") => (KeyModifiers::SHIFT, &name[6..]),
-        _ => (KeyModifiers::NONE, name),
+        _ if name.starts_with("Ctrl-") => (Modifiers::CONTROL, &name[5..]),
+        _ if name.starts_with("Shift-F") => (Modifiers::SHIFT, &name[6..]),
+        _ => (Modifiers::NONE, name),
     };
     let mut letters = rest.chars();
     let code = match (letters.next()?, letters.as_str()) {
@@ -118,20 +116,25 @@ mod tests {
     }
 
     #[test]
-    fn releases_and_function_keys_beyond_f12() {
-        let mut key = KeyEvent::new(KeyCode::F(23), KeyModifiers::NONE);
+    fn function_keys_beyond_f12() {
+        let key = KeyEvent::new(KeyCode::F(23), Modifiers::NONE);
         assert_eq!(name(&key).as_deref(), Some("Shift-F11"));
-        key.kind = KeyEventKind::Release;
-        assert_eq!(name(&key), None);
     }
 
     #[test]
     fn escape_and_a_letter_in_one_report_are_two_keys() {
         let names = |key: KeyEvent| apart(&key).filter_map(|key| name(&key)).collect::<Vec<_>>();
         let with = |modifiers| KeyEvent::new(KeyCode::Char('c'), modifiers);
-        assert_eq!(names(with(KeyModifiers::ALT)), ["Esc", "c"]);
-        assert_eq!(names(with(KeyModifiers::NONE)), ["c"]);
-        let both = KeyModifiers::ALT | KeyModifiers::CONTROL;
+        let alt = Modifiers {
+            alt: true,
+            ..Modifiers::NONE
+        };
+        assert_eq!(names(with(alt)), ["Esc", "c"]);
+        assert_eq!(names(with(Modifiers::NONE)), ["c"]);
+        let both = Modifiers {
+            control: true,
+            ..alt
+        };
         assert_eq!(names(with(both)), ["Esc", "Ctrl-c"]);
     }
 }

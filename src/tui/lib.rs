@@ -8,6 +8,7 @@
 #![forbid(unsafe_code)]
 
 pub mod app;
+#[cfg(feature = "terminal")]
 mod background;
 pub mod camera;
 pub mod canvas;
@@ -20,6 +21,7 @@ pub mod commandline;
 pub mod convergence;
 mod copying;
 pub mod debugger;
+pub mod event;
 pub mod input_queue;
 pub mod keys;
 pub mod layout;
@@ -33,16 +35,19 @@ mod order;
 pub mod paint;
 pub mod panes;
 mod prompts;
+#[cfg(feature = "terminal")]
 pub mod run;
 pub mod screen;
 mod scroll;
+#[cfg(feature = "terminal")]
 pub mod terminal;
 pub mod theme;
 pub mod view;
 mod waiting;
 
 pub use app::{App, Effect};
-pub use debugger::Debugger;
-pub use run::{Error, resume, run, run_lesson, screen};
+pub use debugger::{Debugger, screen};
+#[cfg(feature = "terminal")]
+pub use run::{Error, resume, run, run_lesson};
 pub use screen::picture;
 pub use view::View;

@@ -3,11 +3,11 @@
 use crate::chartpage::{ChartPage, NoPage};
 use std::path::Path;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
-use std::thread;
 use stickslip_debugger::record::journal::{Journal, JournalError, Record};
 use stickslip_debugger::session::Session;
 use stickslip_debugger::teach::progress::ProgressStore;
 use stickslip_debugger::teach::{Lesson, Tutor, lesson, play};
+use stickslip_platform::task;
 use stickslip_scene::format::kind::FileKind;
 
 /// A loaded file, or why it cannot be loaded.
@@ -63,7 +63,7 @@ impl Loading {
 
     fn start(read: impl FnOnce() -> LoadedFile + Send + 'static) -> Loading {
         let (sender, result) = channel();
-        thread::spawn(move || {
+        task::spawn(move || {
             // The receiver may be gone.
             let _ = sender.send(read());
         });

@@ -1,12 +1,12 @@
 //! Mouse input: a click selects, the wheel scrolls. Every mouse action has a key.
 
 use crate::app::{App, Effect, Overlay};
+use crate::event::{MouseAction, MouseEvent};
 use crate::input_queue::QueuedInput;
 use crate::layout::Pane;
 use crate::panes::{branches, nodes, remedies, shape, timeline};
 use crate::screen;
 use crate::view::View;
-use crossterm::event::{MouseButton, MouseEvent, MouseEventKind};
 use ratatui::layout::{Position, Rect};
 use stickslip_debugger::action::{Action, Step, Ui};
 use stickslip_debugger::record::command::Command;
@@ -19,10 +19,9 @@ impl App {
     pub fn mouse(&mut self, event: &MouseEvent, view: Option<&View>) -> Option<Effect> {
         let at = Position::new(event.column, event.row);
         match event.kind {
-            MouseEventKind::Down(MouseButton::Left) => self.click(at, view),
-            MouseEventKind::ScrollUp => self.wheel(at, true, view),
-            MouseEventKind::ScrollDown => self.wheel(at, false, view),
-            _ => None,
+            MouseAction::Click => self.click(at, view),
+            MouseAction::ScrollUp => self.wheel(at, true, view),
+            MouseAction::ScrollDown => self.wheel(at, false, view),
         }
     }
 

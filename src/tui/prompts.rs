@@ -3,12 +3,12 @@
 use crate::app::{App, Effect, Overlay, PAGE};
 use crate::chooser_state::{Chooser, Group};
 use crate::commandline::Purpose;
+use crate::event::KeyEvent;
 use crate::input_queue::QueuedInput;
 use crate::screen;
 use crate::scroll::scrolled;
 use crate::theme;
 use crate::view::{View, context};
-use crossterm::event::KeyEvent;
 use ratatui::layout::Margin;
 use stickslip_core::model::Mode;
 use stickslip_debugger::action::{self, Action, Context, Question};

@@ -3,20 +3,20 @@
 use crate::app::App;
 use crate::background::{self, Reply};
 use crate::debugger::{Debugger, TerminalRequest, offers};
-use crate::terminal::{self, Signals, Terminal};
+use crate::terminal::{self, Terminal};
 use crate::theme::{Theme, wants_no_colour};
 use crossterm::event::{self, Event};
-use ratatui::layout::Rect;
-use signal_hook::consts::SIGHUP;
-use std::io::{self, IsTerminal};
+use std::io::{self, IsTerminal, Write};
 use std::time::{Duration, Instant};
 use stickslip_debugger::action::Colours;
 use stickslip_debugger::action::config::Config;
 use stickslip_debugger::record::journal::{JournalError, JournalTarget};
 use stickslip_debugger::session::Session;
 use stickslip_debugger::teach::Lesson;
+use stickslip_platform::signals::{self, Signals};
 use stickslip_scene::Scene;
 use stickslip_scene::format::SceneError;
+use stickslip_scene::shown;
 
 /// Why the debugger could not start, or stopped.
 #[derive(Debug, thiserror::Error)]
@@ -115,7 +115,7 @@ fn configured(config: Config, session: Option<Session>) -> Debugger {
 }
 
 fn run_on(mut debugger: Debugger) -> Result<(), Error> {
-    let signals = Signals::listen()?;
+    let signals = terminal::listen()?;
     let ended = Terminal::enter().and_then(|mut terminal| {
         terminal.set_mouse(debugger.app.mouse)?;
         if debugger.app.finds_colours {
@@ -124,32 +124,35 @@ fn run_on(mut debugger: Debugger) -> Result<(), Error> {
         // The terminal is restored before anything is printed.
         events(&mut debugger, &mut terminal, &signals)
     });
-    debugger.print_exit_line();
+    if let Some(session) = &debugger.session {
+        print_exit_line(session);
+    }
     leave(ended, &signals)
 }
 
-/// Ends the process as its signal would, exits quietly if the terminal is gone, and otherwise returns the error.
-fn leave(ended: io::Result<()>, signals: &Signals) -> Result<(), Error> {
-    if let Some(signal) = signals.end() {
-        terminal::obey(signal)?;
-    }
-    if ended.is_err() && terminal::is_gone() {
-        terminal::obey(SIGHUP)?;
-    }
-    ended.map_err(Error::from)
+/// Prints one line on exit: where the journal is, or why there is none.
+fn print_exit_line(session: &Session) {
+    let text = match (session.journal().path(), session.journal().lost()) {
+        (Some(path), _) => {
+            let path = path.display();
+            format!("journal: {path} (`stickslip resume {path}` continues it)")
+        }
+        (None, Some(why)) => format!("no journal: {why}"),
+        (None, None) => return,
+    };
+    // Standard error may be closed.
+    let _ = writeln!(io::stderr(), "{}", shown::line(&text));
 }
 
-/// The screen after some keys, as plain text. Keys are named as in the key table and separated by blanks; each one waits for the
-/// solver.
-///
-/// # Errors
-/// If the scene cannot be loaded.
-pub fn screen(scene: &str, keys: &str, width: u16, height: u16) -> Result<String, Error> {
-    let session = Session::open(scene).map_err(Error::Session)?;
-    let mut debugger = Debugger::new(Theme::mono(), offers(), Some(session));
-    debugger.app.area = Rect::new(0, 0, width, height);
-    debugger.type_keys(keys);
-    Ok(debugger.text(width, height))
+/// Ends the process as its signal would, exits quietly if the terminal is gone, and otherwise returns the error.
+fn leave(ended: io::Result<()>, watched: &Signals) -> Result<(), Error> {
+    if let Some(signal) = watched.end() {
+        signals::obey(signal)?;
+    }
+    if ended.is_err() && terminal::is_gone() {
+        signals::hang_up()?;
+    }
+    ended.map_err(Error::from)
 }
 
 /// Longest wait for a key: the screen follows a running solver.
@@ -165,7 +168,7 @@ fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -
     reply.expected = debugger.app.finds_colours;
     while signals.end().is_none() {
         changed |= debugger.advance();
-        while let Some(outside) = debugger.outside.pop_front() {
+        while let Some(outside) = debugger.take_request() {
             changed = true;
             if obey(outside, terminal, signals, &mut debugger.app)? {
                 return Ok(());
@@ -179,7 +182,7 @@ fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -
             debugger.app.area = terminal.draw(app, debugger.view().as_ref())?;
             drawn = Instant::now();
         }
-        let works = debugger.is_busy() || debugger.loading.is_some() || debugger.looking.is_busy();
+        let works = debugger.is_working();
         let wait = match (behind, works) {
             (true, _) => Duration::ZERO,
             (false, true) => BUSY,
@@ -192,7 +195,8 @@ fn events(debugger: &mut Debugger, terminal: &mut Terminal, signals: &Signals) -
         }
         while let Some(event) = input {
             changed = true;
-            if let Some(outside) = debugger.event(&event)
+            if let Some(event) = terminal::input(event)
+                && let Some(outside) = debugger.event(&event)
                 && obey(outside, terminal, signals, &mut debugger.app)?
             {
                 return Ok(());

@@ -7,11 +7,15 @@
 
 use crate::app::App;
 use crate::background;
+use crate::event::{Event, KeyCode, KeyEvent, Modifiers, MouseAction, MouseEvent};
 use crate::screen;
 use crate::view::View;
 use crossterm::clipboard::CopyToClipboard;
 use crossterm::cursor::{Hide, Show};
-use crossterm::event::{DisableBracketedPaste, EnableBracketedPaste};
+use crossterm::event::{
+    DisableBracketedPaste, EnableBracketedPaste, Event as TerminalEvent, KeyCode as TerminalKey,
+    KeyEventKind, KeyModifiers, MouseButton, MouseEventKind,
+};
 use crossterm::terminal::{
     BeginSynchronizedUpdate, EndSynchronizedUpdate, EnterAlternateScreen, LeaveAlternateScreen,
     disable_raw_mode, enable_raw_mode,
@@ -20,42 +24,18 @@ use crossterm::{execute, queue};
 use ratatui::backend::CrosstermBackend;
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
-use rustix::termios::{OptionalActions, SpecialCodeIndex, tcgetattr, tcsetattr};
-use signal_hook::consts::{SIGCONT, SIGHUP, SIGINT, SIGTERM, SIGTSTP, SIGTTIN};
-use signal_hook::iterator::Handle;
-use signal_hook::{SigId, flag, low_level};
-use std::fmt;
-use std::io::{self, IsTerminal, Stdout, Write, stdin, stdout};
+use std::io::{self, IsTerminal, Stdout, Write, stdout};
 use std::mem::ManuallyDrop;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, Once, PoisonError};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, MutexGuard, Once, PoisonError};
 use std::thread;
-use std::time::Duration;
+use stickslip_platform::signals::{self, Signals};
+use stickslip_platform::{task, terminal as console};
 
 /// Whether the program has taken over the terminal.
 static OWNERSHIP: Ownership = Ownership(Mutex::new(false));
 /// Whether mouse support is on while the program has the terminal.
 static MOUSE: AtomicBool = AtomicBool::new(false);
-/// The message of a panic on another thread, which must not write to the screen.
-static PANIC: Mutex<Option<String>> = Mutex::new(None);
-
-/// Enables reports of clicks and the wheel, with positions of any size. Crossterm's own command also enables motion reports.
-struct EnableMouse;
-
-impl crossterm::Command for EnableMouse {
-    fn write_ansi(&self, f: &mut impl fmt::Write) -> fmt::Result {
-        f.write_str("\x1b[?1000h\x1b[?1006h")
-    }
-}
-
-/// Disables mouse reports.
-struct DisableMouse;
-
-impl crossterm::Command for DisableMouse {
-    fn write_ansi(&self, f: &mut impl fmt::Write) -> fmt::Result {
-        f.write_str("\x1b[?1006l\x1b[?1000l")
-    }
-}
 
 /// The terminal, taken over until this is dropped.
 #[derive(Debug)]
@@ -100,10 +80,7 @@ impl Terminal {
     /// Turns mouse reports on or off.
     pub fn set_mouse(&mut self, on: bool) -> io::Result<()> {
         MOUSE.store(on, Ordering::SeqCst);
-        match on {
-            true => execute!(stdout(), EnableMouse),
-            false => execute!(stdout(), DisableMouse),
-        }
+        console::report_mouse(on)
     }
 
     /// Asks for the background colour; the reply arrives among the keys.
@@ -126,26 +103,14 @@ impl Terminal {
     }
 
     /// Restores the terminal, stops the process until it is continued, and takes over the terminal again. Returns at once
-    /// if no shell with job control could continue the process.
-    ///
-    /// The signal goes to the whole process group, as from the terminal itself on Ctrl-Z: otherwise a parent such as cargo
-    /// would wait endlessly, and the shell would never show its prompt. This process catches SIGTSTP, so it stops by
-    /// SIGTTIN: unlike SIGSTOP, the kernel ignores that signal in a process group without a shell above it (an orphaned
-    /// group in POSIX), where nothing would continue the process.
+    /// if no shell with job control could continue the process ([`signals::suspend`]).
     pub fn suspend(&mut self) -> io::Result<()> {
-        self.stopped_by(|| low_level::raise(SIGTTIN))
+        self.released(signals::suspend)
     }
 
     /// The same after a SIGTSTP from another process, which can also continue this process.
     pub fn stop(&mut self) -> io::Result<()> {
-        self.stopped_by(|| low_level::emulate_default_handler(SIGTSTP))
-    }
-
-    fn stopped_by(&mut self, stop: impl FnOnce() -> io::Result<()>) -> io::Result<()> {
-        self.released(|| {
-            rustix::process::kill_current_process_group(rustix::process::Signal::TSTP)?;
-            stop()
-        })
+        self.released(signals::stop)
     }
 
     /// Restores the terminal while `work` runs.
@@ -211,35 +176,26 @@ fn give_back() {
 
 fn enter() -> io::Result<()> {
     enable_raw_mode()?;
-    read_without_waiting()?;
+    signals::read_without_waiting()?;
     execute!(stdout(), EnterAlternateScreen, EnableBracketedPaste, Hide)?;
     match MOUSE.load(Ordering::SeqCst) {
-        true => execute!(stdout(), EnableMouse),
+        true => console::report_mouse(true),
         false => Ok(()),
     }
 }
 
-/// Makes reads return immediately when there is no input. Crossterm reads on after an incomplete or unknown escape sequence, and
-/// would block the screen until the next key. Leaving raw mode restores the old setting.
-fn read_without_waiting() -> io::Result<()> {
-    let mut settings = tcgetattr(stdin())?;
-    settings.special_codes[SpecialCodeIndex::VMIN] = 0;
-    settings.special_codes[SpecialCodeIndex::VTIME] = 0;
-    Ok(tcsetattr(stdin(), OptionalActions::Now, &settings)?)
-}
-
 /// Errors are ignored: the terminal may be gone.
 fn leave() {
-    let _ = execute!(
-        stdout(),
-        EndSynchronizedUpdate,
-        DisableMouse,
-        DisableBracketedPaste,
-        LeaveAlternateScreen,
-        Show
-    );
+    let _ = execute!(stdout(), EndSynchronizedUpdate);
+    let _ = console::report_mouse(false);
+    let _ = execute!(stdout(), DisableBracketedPaste, LeaveAlternateScreen, Show);
     let _ = stdout().flush();
     let _ = disable_raw_mode();
+}
+
+/// Installs the signal handlers of the debugger.
+pub fn listen() -> io::Result<Signals> {
+    Signals::listen(|| OWNERSHIP.give_back(leave))
 }
 
 /// Whether the terminal has been closed while the program runs.
@@ -248,7 +204,7 @@ pub fn is_gone() -> bool {
 }
 
 /// Makes a panic readable: on this thread the terminal is restored first; on another thread (the solver's) the message is stored
-/// for [`panic_elsewhere`], since this thread keeps drawing.
+/// for [`task::take_panic`], since this thread keeps drawing.
 fn hook_panics() {
     static ONCE: Once = Once::new();
     let ours = thread::current().id();
@@ -259,103 +215,69 @@ fn hook_panics() {
                 give_back();
                 before(info);
             } else {
-                *PANIC.lock().unwrap_or_else(PoisonError::into_inner) = Some(info.to_string());
+                task::store_panic(info.to_string());
             }
         }));
     });
 }
 
-/// Takes the message of a panic on another thread.
-pub fn panic_elsewhere() -> Option<String> {
-    PANIC.lock().unwrap_or_else(PoisonError::into_inner).take()
-}
-
-/// Signals, as flags for the event loop.
-#[derive(Debug)]
-pub struct Signals {
-    /// The terminating signal, or 0.
-    end: Arc<AtomicUsize>,
-    watch: Handle,
-    stop: Arc<AtomicBool>,
-    resumed: Arc<AtomicBool>,
-    registered: [SigId; 2],
-}
-
-/// Time for the event loop to end after a terminating signal.
-const PATIENCE: Duration = Duration::from_millis(300);
-
-impl Signals {
-    /// Installs the signal handlers.
-    pub fn listen() -> io::Result<Self> {
-        let (end, stop, resumed) = (Arc::default(), Arc::default(), Arc::default());
-        let watch = watch(&end)?;
-        let registered = [
-            flag::register(SIGTSTP, Arc::clone(&stop))?,
-            flag::register(SIGCONT, Arc::clone(&resumed))?,
-        ];
-        Ok(Signals {
-            end,
-            watch,
-            stop,
-            resumed,
-            registered,
-        })
-    }
-
-    /// The terminating signal, if one arrived.
-    pub fn end(&self) -> Option<i32> {
-        match self.end.load(Ordering::SeqCst) {
-            0 => None,
-            signal => Some(signal as i32),
+/// The debugger's input of a terminal event; `None` for releases and events that no action uses.
+pub fn input(event: TerminalEvent) -> Option<Event> {
+    Some(match event {
+        TerminalEvent::Key(key) if key.kind == KeyEventKind::Release => return None,
+        TerminalEvent::Key(key) => {
+            let modifiers = Modifiers {
+                shift: key.modifiers.contains(KeyModifiers::SHIFT),
+                control: key.modifiers.contains(KeyModifiers::CONTROL),
+                alt: key.modifiers.contains(KeyModifiers::ALT),
+            };
+            Event::Key(KeyEvent::new(key_code(key.code)?, modifiers))
         }
-    }
-
-    /// Whether a request to stop arrived since the last call.
-    pub fn stop(&self) -> bool {
-        self.stop.swap(false, Ordering::SeqCst)
-    }
-
-    /// Whether the process was continued since the last call.
-    pub fn resumed(&self) -> bool {
-        self.resumed.swap(false, Ordering::SeqCst)
-    }
-}
-
-impl Drop for Signals {
-    fn drop(&mut self) {
-        self.watch.close();
-        for id in self.registered {
-            low_level::unregister(id);
+        TerminalEvent::Mouse(mouse) => {
+            let kind = match mouse.kind {
+                MouseEventKind::Down(MouseButton::Left) => MouseAction::Click,
+                MouseEventKind::ScrollUp => MouseAction::ScrollUp,
+                MouseEventKind::ScrollDown => MouseAction::ScrollDown,
+                _ => return None,
+            };
+            Event::Mouse(MouseEvent {
+                kind,
+                column: mouse.column,
+                row: mouse.row,
+            })
         }
-    }
+        TerminalEvent::Paste(text) => Event::Paste(text),
+        _ => return None,
+    })
 }
 
-/// Waits on a separate thread for terminating signals. The event loop gets time to end by itself; it may be blocked in a write to a
-/// closed terminal.
-fn watch(end: &Arc<AtomicUsize>) -> io::Result<Handle> {
-    let mut signals = signal_hook::iterator::Signals::new([SIGTERM, SIGINT, SIGHUP])?;
-    let handle = signals.handle();
-    let end = Arc::clone(end);
-    thread::spawn(move || {
-        if let Some(signal) = signals.forever().next() {
-            end.store(signal as usize, Ordering::SeqCst);
-            thread::sleep(PATIENCE);
-            let _nobody_takes_it_again = OWNERSHIP.give_back(leave);
-            let _ = obey(signal);
-        }
-    });
-    Ok(handle)
-}
-
-/// Ends the process as the default action of the signal would, so that the parent sees it.
-pub fn obey(signal: i32) -> io::Result<()> {
-    low_level::emulate_default_handler(signal)
+fn key_code(code: TerminalKey) -> Option<KeyCode> {
+    Some(match code {
+        TerminalKey::Char(letter) => KeyCode::Char(letter),
+        TerminalKey::F(number) => KeyCode::F(number),
+        TerminalKey::Enter => KeyCode::Enter,
+        TerminalKey::Tab => KeyCode::Tab,
+        TerminalKey::BackTab => KeyCode::BackTab,
+        TerminalKey::Esc => KeyCode::Esc,
+        TerminalKey::Up => KeyCode::Up,
+        TerminalKey::Down => KeyCode::Down,
+        TerminalKey::Left => KeyCode::Left,
+        TerminalKey::Right => KeyCode::Right,
+        TerminalKey::Home => KeyCode::Home,
+        TerminalKey::End => KeyCode::End,
+        TerminalKey::PageUp => KeyCode::PageUp,
+        TerminalKey::PageDown => KeyCode::PageDown,
+        TerminalKey::Backspace => KeyCode::Backspace,
+        TerminalKey::Delete => KeyCode::Delete,
+        _ => return None,
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use std::sync::mpsc::{RecvTimeoutError, channel};
+    use std::time::Duration;
 
     #[test]
     fn restoring_waits_until_the_terminal_is_taken_over() {

@@ -31,6 +31,8 @@ mod hostile;
 mod orders;
 // What is no file, too large, too deep or does not fit is refused in one line.
 mod refusals;
+// Lines may end as on Windows.
+mod line_ends;
 // What is written is whole, or not there at all.
 mod writing;
 // The program may be passed on with all that it is made of.

@@ -1,7 +1,6 @@
 //! Keys, colours and the mouse as the user wants them; what is copied and looked for.
 
 use crate::terminal::{Session, Start};
-use crossterm::event::{Event, KeyModifiers, MouseButton, MouseEvent, MouseEventKind};
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::{Color, Modifier};
@@ -11,6 +10,7 @@ use stickslip::history::verdicts::summaries;
 use stickslip::scene::Scene;
 use stickslip::session;
 use stickslip::tui::debugger::TerminalRequest;
+use stickslip::tui::event::{Event, MouseAction, MouseEvent};
 use stickslip::tui::layout::Pane;
 use stickslip::tui::theme::Theme;
 use stickslip::tui::{Debugger, keys, screen};
@@ -45,20 +45,14 @@ fn place(debugger: &Debugger, heading: &str, wanted: &str) -> (u16, u16) {
     panic!("{wanted} is not under {heading}\n{text}");
 }
 
-fn mouse(debugger: &mut Debugger, kind: MouseEventKind, (column, row): (u16, u16)) {
-    let modifiers = KeyModifiers::NONE;
-    let event = MouseEvent {
-        kind,
-        column,
-        row,
-        modifiers,
-    };
+fn mouse(debugger: &mut Debugger, kind: MouseAction, (column, row): (u16, u16)) {
+    let event = MouseEvent { kind, column, row };
     debugger.event(&Event::Mouse(event));
     debugger.settle();
 }
 
 fn click(debugger: &mut Debugger, at: (u16, u16)) {
-    mouse(debugger, MouseEventKind::Down(MouseButton::Left), at);
+    mouse(debugger, MouseAction::Click, at);
 }
 
 #[test]
@@ -141,22 +135,22 @@ fn a_click_selects_a_branch_a_step_of_the_timeline_and_a_pane() {
 fn the_wheel_scrolls_what_it_is_over_and_the_focus_stays() {
     let mut debugger = debugger("osc-two6", "c", (120, 40));
     let nodes = place(&debugger, "Slave nodes", "b ");
-    mouse(&mut debugger, MouseEventKind::ScrollDown, nodes);
+    mouse(&mut debugger, MouseAction::ScrollDown, nodes);
     assert_eq!(debugger.app.selected, 1);
-    mouse(&mut debugger, MouseEventKind::ScrollUp, nodes);
+    mouse(&mut debugger, MouseAction::ScrollUp, nodes);
     assert_eq!(debugger.app.selected, 0);
     let shape = place(&debugger, "Shape", "Shape");
-    mouse(&mut debugger, MouseEventKind::ScrollUp, shape);
+    mouse(&mut debugger, MouseAction::ScrollUp, shape);
     assert!(debugger.app.camera.zoom > 1.0);
     assert_eq!(debugger.app.panes.focus, Pane::Nodes);
     debugger.type_keys("?");
     let top = text(&debugger);
-    mouse(&mut debugger, MouseEventKind::ScrollDown, shape);
+    mouse(&mut debugger, MouseAction::ScrollDown, shape);
     assert_ne!(text(&debugger), top);
-    mouse(&mut debugger, MouseEventKind::ScrollUp, shape);
+    mouse(&mut debugger, MouseAction::ScrollUp, shape);
     assert_eq!(text(&debugger), top);
     debugger.type_keys("Esc t");
-    mouse(&mut debugger, MouseEventKind::ScrollUp, (40, 20));
+    mouse(&mut debugger, MouseAction::ScrollUp, (40, 20));
     assert_eq!(debugger.session.as_ref().unwrap().cursor(), 5);
 }
 

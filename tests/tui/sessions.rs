@@ -522,7 +522,7 @@ fn breaks_down() {
             let terminal = tui::terminal::Terminal::enter().unwrap();
             let solver = thread::spawn(|| panic!("broken down elsewhere"));
             assert!(solver.join().is_err());
-            let told = tui::terminal::panic_elsewhere();
+            let told = stickslip_platform::task::take_panic();
             drop(terminal);
             println!(
                 "kept: {}",

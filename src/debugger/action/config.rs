@@ -13,7 +13,7 @@ use super::keymap::Keymap;
 use super::meaning::Colours;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
-use stickslip_platform::input;
+use stickslip_platform::{input, system};
 use stickslip_scene::format::SceneError;
 use stickslip_scene::format::read;
 
@@ -70,8 +70,7 @@ fn on() -> bool {
 
 /// The user's configuration folder, if the system has one.
 pub fn folder() -> Option<PathBuf> {
-    let ours = directories::ProjectDirs::from("", "", "stickslip")?;
-    Some(ours.config_dir().to_owned())
+    system::config_folder()
 }
 
 impl Config {

@@ -1,6 +1,7 @@
 //! Completion of paths.
 
 use std::path::Path;
+use stickslip_platform::disk;
 use stickslip_scene::shown;
 
 /// Maximum number of completions, and of folder entries read.
@@ -15,7 +16,7 @@ pub(super) fn beginning_with(word: &str, endings: &[&str]) -> Vec<String> {
         None => ("", word),
     };
     let place = if folder.is_empty() { "." } else { folder };
-    let Ok(entries) = std::fs::read_dir(Path::new(place)) else {
+    let Ok(entries) = disk::read_dir(Path::new(place)) else {
         return Vec::new();
     };
     let mut found = Vec::new();
@@ -28,11 +29,12 @@ pub(super) fn beginning_with(word: &str, endings: &[&str]) -> Vec<String> {
         if !name.starts_with(begun) || hidden || name.contains(shown::is_order) {
             continue;
         }
-        let path = entry.path();
-        if path.is_dir() {
-            found.push(format!("{folder}{name}/"));
-        } else if path.is_file() && ends_with(&name, endings) {
-            found.push(format!("{folder}{name}"));
+        match disk::metadata(entry.path()) {
+            Ok(entry) if entry.is_dir() => found.push(format!("{folder}{name}/")),
+            Ok(entry) if entry.is_file() && ends_with(&name, endings) => {
+                found.push(format!("{folder}{name}"));
+            }
+            _ => {}
         }
     }
     found.sort();

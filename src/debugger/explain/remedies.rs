@@ -10,7 +10,6 @@ use super::restart;
 use super::tested::Dimension;
 use std::cmp::Ordering;
 use std::ops::ControlFlow;
-use std::time::Instant;
 use stickslip_core::contact::laws::JudgedLaw;
 use stickslip_core::contact::record::{ContactRecord, Forced};
 use stickslip_core::interface::method::NotFound;
@@ -22,6 +21,7 @@ use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::solver::{Capabilities, Solver};
 use stickslip_core::step::state::{State, Status};
 use stickslip_core::step::stepper::Stepper;
+use stickslip_platform::clock::Instant;
 use stickslip_scene::format::paths;
 use stickslip_scene::format::spec::Spec;
 

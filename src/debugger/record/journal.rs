@@ -13,14 +13,14 @@ use crate::record::command::Command;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::fmt::Write as _;
-use std::fs::{File, TryLockError};
+use std::fs::TryLockError;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
-use std::time::{SystemTime, UNIX_EPOCH};
 use stickslip_core::step::state::State;
 use stickslip_exchange::seal::Digest;
+use stickslip_platform::disk::File;
 use stickslip_platform::input::{self, RECORD_BYTES};
-use stickslip_platform::{files, system};
+use stickslip_platform::{clock, disk, files, system};
 use stickslip_scene::Scene;
 use stickslip_scene::format::kind::FileKind;
 use stickslip_scene::format::{SceneError, Spec, notation, read};
@@ -177,7 +177,7 @@ impl Journal {
             }
             Err(error) => {
                 // This call created the file, and it is incomplete.
-                let _ = std::fs::remove_file(path);
+                let _ = disk::remove_file(path);
                 Err(error)
             }
         }
@@ -204,7 +204,7 @@ impl Journal {
     /// # Errors If there is no such folder, or the file cannot be written.
     pub fn create_default(scene: &Scene) -> Result<Journal, JournalError> {
         let directory = directory()?;
-        std::fs::create_dir_all(&directory).map_err(|e| failure(&directory, "written", e))?;
+        disk::create_dir_all(&directory).map_err(|e| failure(&directory, "written", e))?;
         let stem = format!("{}-{}", files::stem(&scene.name), stamp(now()));
         let name = |k: u32| match k {
             0 => directory.join(format!("{stem}.{EXTENSION}")),
@@ -256,7 +256,7 @@ impl Journal {
 
     /// Whether the file still exists at its path and has not been replaced.
     pub(crate) fn is_there(&self) -> bool {
-        match (std::fs::metadata(&self.path), self.file.metadata()) {
+        match (disk::metadata(&self.path), self.file.metadata()) {
             (Ok(named), Ok(own)) => system::is_same_file(&named, &own),
             _ => false,
         }
@@ -442,7 +442,7 @@ fn failure(file: &Path, doing: &'static str, source: io::Error) -> JournalError 
 /// case.
 fn sync_folder(file: &Path) {
     let folder = file.parent().filter(|folder| *folder != Path::new(""));
-    let _ = File::open(folder.unwrap_or(Path::new("."))).and_then(|folder| folder.sync_all());
+    system::sync_folder(folder.unwrap_or(Path::new(".")));
 }
 
 /// Default folder for journals: in the user's folder for state, or for data on systems without one.
@@ -456,8 +456,7 @@ pub fn directory() -> Result<PathBuf, JournalError> {
 ///
 /// # Errors If the system has no home directory.
 pub fn home() -> Result<PathBuf, JournalError> {
-    let ours = directories::ProjectDirs::from("", "", "stickslip").ok_or(JournalError::NoPlace)?;
-    Ok(ours.state_dir().unwrap_or(ours.data_local_dir()).to_owned())
+    system::state_folder().ok_or(JournalError::NoPlace)
 }
 
 /// The latest journal.
@@ -467,7 +466,7 @@ pub fn home() -> Result<PathBuf, JournalError> {
 pub fn newest() -> Result<PathBuf, JournalError> {
     let directory = directory()?;
     let none = || JournalError::NoJournal(directory.clone());
-    let written = |entry: std::fs::DirEntry| {
+    let written = |entry: disk::DirEntry| {
         let path = entry.path();
         let ours = path
             .extension()
@@ -475,7 +474,7 @@ pub fn newest() -> Result<PathBuf, JournalError> {
         let time = entry.metadata().and_then(|data| data.modified()).ok()?;
         ours.then_some((time, path))
     };
-    let entries = std::fs::read_dir(&directory).map_err(|_| none())?;
+    let entries = disk::read_dir(&directory).map_err(|_| none())?;
     let newest = entries.filter_map(|entry| written(entry.ok()?)).max();
     newest.map(|(_, path)| path).ok_or_else(none)
 }
@@ -522,8 +521,7 @@ fn digested(state: &State) -> State {
 
 /// Seconds since 1970; 0 if the clock is set earlier.
 pub(crate) fn now() -> u64 {
-    let since = SystemTime::now().duration_since(UNIX_EPOCH);
-    since.map_or(0, |since| since.as_secs())
+    clock::since_1970().as_secs()
 }
 
 /// Date and time in UTC: `20260131-235959`.

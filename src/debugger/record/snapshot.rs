@@ -18,6 +18,7 @@ use stickslip_core::step::event::{Event, Position};
 use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::solver::Solver;
 use stickslip_core::step::state::{State, Status};
+use stickslip_platform::disk;
 use stickslip_platform::files::{self, FileError};
 use stickslip_platform::input::{self, RECORD_BYTES};
 use stickslip_scene::Scene;
@@ -395,6 +396,6 @@ pub fn free_name(scene: &str, at: Position) -> PathBuf {
     };
     (0..1000)
         .map(name)
-        .find(|name| !name.exists())
+        .find(|name| !disk::exists(name))
         .unwrap_or_else(|| name(1000))
 }

@@ -2,13 +2,13 @@
 //! file, on request.
 
 use std::collections::VecDeque;
-use std::fs::File;
 use std::io::Write;
 use std::path::Path;
 use std::sync::{Arc, Mutex, PoisonError};
 use stickslip_exchange::attach::conversation::SEALED_HEAD;
 use stickslip_exchange::attach::message::Level;
 use stickslip_exchange::attach::{Side, TranscriptLine};
+use stickslip_platform::disk::File;
 use stickslip_scene::shown;
 
 /// Maximum number of lines kept for display.

@@ -34,13 +34,13 @@ use std::collections::HashMap;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
-use std::thread;
 use stickslip_core::fem::deformation::PointDeformation;
 use stickslip_core::linear::estimate::Estimate;
 use stickslip_core::model::Model;
 use stickslip_core::step::solver::{Capabilities, ReportedProblem};
 use stickslip_core::step::state::State;
 use stickslip_core::step::stepper::Stepper;
+use stickslip_platform::task::{self, Next};
 use stickslip_scene::format::spec::Spec;
 use stickslip_scene::solver::solver;
 
@@ -143,7 +143,7 @@ impl Background {
         let (news, replies) = channel();
         let stop = Arc::new(AtomicBool::new(false));
         let flag = stop.clone();
-        thread::spawn(move || {
+        let start = move || {
             let effort = Estimate::from_model(&model).with(model.settings.solver).0;
             let mut helper = Helper {
                 large: effort.bytes > LARGE,
@@ -155,13 +155,15 @@ impl Background {
                 posed: None,
                 lender,
             };
-            while let Ok(ask) = orders.recv() {
-                if helper.answer(ask, &news, &flag).is_none() {
-                    return;
+            move |ask| match helper.answer(ask, &news, &flag) {
+                Some(()) => {
+                    helper.rest();
+                    Next::Job
                 }
-                helper.rest();
+                None => Next::End,
             }
-        });
+        };
+        task::serve(orders, start);
         Background {
             asks,
             replies,
@@ -343,7 +345,7 @@ impl Background {
     /// Blocks until all requests are answered.
     pub fn wait(&mut self) {
         while self.waiting > 0 {
-            match self.replies.recv() {
+            match task::receive(&self.replies) {
                 Ok(reply) => self.take(reply),
                 Err(_) => self.gone(),
             }

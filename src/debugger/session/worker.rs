@@ -9,13 +9,14 @@ use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, Sender, SyncSender, TryRecvError, channel, sync_channel};
-use std::thread::{self, JoinHandle};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 use stickslip_core::step::drive::{RunEnd, Until, drive};
 use stickslip_core::step::event::Event;
 use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::solver::{Solver, SolverLost};
 use stickslip_core::step::state::State;
+use stickslip_platform::clock::Instant;
+use stickslip_platform::task::{self, Next, Task};
 
 /// Sleep between two polls while waiting for the worker. Waking the waiting thread with every message would
 /// cost the solver time in each iteration.
@@ -28,6 +29,8 @@ const AHEAD: usize = 1024;
 pub enum Job {
     /// Take steps from a state.
     Steps(Box<State>, Steps),
+    /// Continue the steps of the previous slice.
+    Rest(Steps),
     /// Call a function on the solver, between two other jobs.
     Look(SolverTask),
     /// End the thread.
@@ -90,7 +93,7 @@ impl Lender {
             let _ = reply.send(look(solver));
         });
         self.jobs.send(Job::Look(look)).ok()?;
-        answer.recv().ok()
+        task::receive(&answer).ok()
     }
 }
 
@@ -126,7 +129,7 @@ pub struct Worker {
     /// Whether it runs a job that may take long.
     busy: Arc<AtomicBool>,
     /// The thread, if its end is waited for.
-    thread: Option<JoinHandle<()>>,
+    thread: Option<Task>,
 }
 
 impl Worker {
@@ -138,27 +141,29 @@ impl Worker {
         let flag = stop.clone();
         let busy = Arc::new(AtomicBool::new(false));
         let at_work = busy.clone();
-        let thread = thread::spawn(move || {
+        let thread = task::serve(orders, move || {
             let mut solver = make();
             solver.set_cancel(flag.clone());
-            let solver = &mut *solver;
-            while let Ok(job) = orders.recv() {
+            move |job| {
+                let solver = &mut *solver;
                 at_work.store(!matches!(job, Job::Look(_)), Ordering::Relaxed);
-                let done = match job {
+                let end = match job {
                     Job::Steps(state, steps) => match solver.restore(&state) {
                         Ok(()) => take(solver, steps, &news, &flag),
-                        Err(lost) => news.send(Message::Lost(lost)).ok(),
+                        Err(lost) => news.send(Message::Lost(lost)).ok().map(|()| None),
                     },
+                    Job::Rest(steps) => take(solver, steps, &news, &flag),
                     Job::Look(look) => {
                         look(solver);
-                        Some(())
+                        Some(None)
                     }
                     Job::End => None,
                 };
-                at_work.store(false, Ordering::Relaxed);
-                if done.is_none() {
-                    return;
+                if let Some(Some(rest)) = end {
+                    return Next::Rest(Job::Rest(rest));
                 }
+                at_work.store(false, Ordering::Relaxed);
+                end.map_or(Next::End, |_| Next::Job)
             }
         });
         Worker {
@@ -202,7 +207,7 @@ impl Worker {
         loop {
             match self.try_next() {
                 Some(message) => return message,
-                None => thread::sleep(NAP),
+                None => task::nap(NAP),
             }
         }
     }
@@ -226,51 +231,52 @@ impl Drop for Worker {
             let _ = self.jobs.send(Job::End);
             // The worker must not block on a full channel.
             drop(std::mem::replace(&mut self.messages, channel().1));
-            // If the thread panicked, it has ended, which is enough.
-            let _ = thread.join();
+            thread.join();
         }
     }
 }
 
-/// Takes steps from the solver's state; `None` if the receiver is gone.
+/// Takes steps from the solver's state, and returns those that are left when the slice is over; `None` if the receiver is gone.
 fn take(
     solver: &mut dyn Solver,
     steps: Steps,
     news: &SyncSender<Message>,
     stop: &AtomicUsize,
-) -> Option<()> {
+) -> Option<Option<Steps>> {
     match steps {
         Steps::Run {
             before,
             unit,
             count,
             breakpoints,
-        } => run(solver, before, (unit, count), &breakpoints, news, stop),
+        } => run(solver, before, (unit, count), breakpoints, news, stop),
         Steps::Follow { mut before, steps } => {
-            follow(solver, steps, news, stop, |solver, step, began| {
+            let rest = follow(solver, steps, news, stop, |solver, step, began| {
                 made(solver, &mut before, step, began)
-            })
+            });
+            rest.map(|rest| rest.map(|steps| Steps::Follow { before, steps }))
         }
         Steps::Again { mut event, steps } => {
-            follow(solver, steps, news, stop, |solver, step, _| {
+            let rest = follow(solver, steps, news, stop, |solver, step, _| {
                 if step.is_none() {
                     event = Some(Arc::new(solver.event().clone()));
                 }
                 Message::Again(Box::new(solver.state().clone()), event.clone())
-            })
+            });
+            rest.map(|rest| rest.map(|steps| Steps::Again { event, steps }))
         }
     }
 }
 
-/// Solves; `None` if the receiver is gone.
+/// Solves; results as [`take`].
 fn run(
     solver: &mut dyn Solver,
     mut before: Strip,
     (unit, count): (Unit, u32),
-    breakpoints: &Breakpoints,
+    breakpoints: Breakpoints,
     news: &SyncSender<Message>,
     stop: &AtomicUsize,
-) -> Option<()> {
+) -> Option<Option<Steps>> {
     let (mut left, mut hits) = (count, Vec::new());
     let interrupted = || stop.load(Ordering::Relaxed) > 0;
     let most = if count == 0 { 0 } else { u64::MAX };
@@ -291,18 +297,28 @@ fn run(
         round = watch.as_mut().and_then(|watch| watch.see(&strip));
         let heard = news.send(Message::Made(Box::new(frame), Box::new(strip)));
         if heard.is_err() || left == 0 || !hits.is_empty() || round.is_some() {
-            return ControlFlow::Break(heard.ok());
+            return ControlFlow::Break(heard.ok().map(|()| false));
+        }
+        if task::is_slice_over() {
+            return ControlFlow::Break(Some(true));
         }
         began = Instant::now();
         ControlFlow::Continue(())
     });
     let end = match end {
-        Ok(RunEnd::Stopped(heard)) => {
-            heard?;
-            RunEnd::Spent
-        }
+        Ok(RunEnd::Stopped(is_slice_over)) => match is_slice_over? {
+            true => {
+                return Some(Some(Steps::Run {
+                    before,
+                    unit,
+                    count: left,
+                    breakpoints,
+                }));
+            }
+            false => RunEnd::Spent,
+        },
         Ok(end) => end,
-        Err(lost) => return news.send(Message::Lost(lost)).ok(),
+        Err(lost) => return news.send(Message::Lost(lost)).ok().map(|()| None),
     };
     let interrupted = matches!(end, RunEnd::Interrupted);
     let round = round.map(|round| rounds::words(solver.model(), &round, false));
@@ -314,6 +330,7 @@ fn run(
         remark,
     })
     .ok()
+    .map(|()| None)
 }
 
 /// The last minor iteration, started at `began`, as a frame and its strip.
@@ -340,17 +357,18 @@ fn frame_and_strip(solver: &mut dyn Solver, before: &Strip, began: Instant) -> (
     (frame, strip)
 }
 
-/// Takes a given sequence of steps until one fails, and sends `message` of each; `None` if the receiver is
-/// gone.
+/// Takes a given sequence of steps until one fails, and sends `message` of each; returns the steps that are left when the slice is
+/// over, and `None` if the receiver is gone.
 fn follow(
     solver: &mut dyn Solver,
     steps: Vec<Option<Intervention>>,
     news: &SyncSender<Message>,
     stop: &AtomicUsize,
     mut message: impl FnMut(&mut dyn Solver, Option<Intervention>, Instant) -> Message,
-) -> Option<()> {
+) -> Option<Option<Vec<Option<Intervention>>>> {
     let mut interrupted = false;
-    for step in steps {
+    let mut steps = steps.into_iter();
+    while let Some(step) = steps.next() {
         if stop.load(Ordering::Relaxed) > 0 {
             interrupted = true;
             break;
@@ -363,7 +381,10 @@ fn follow(
         match taken {
             Ok(true) => news.send(message(solver, step, began)).ok()?,
             Ok(false) => break,
-            Err(lost) => return news.send(Message::Lost(lost)).ok(),
+            Err(lost) => return news.send(Message::Lost(lost)).ok().map(|()| None),
+        }
+        if task::is_slice_over() && steps.len() > 0 {
+            return Some(Some(steps.collect()));
         }
     }
     let (hits, remark) = (Vec::new(), solver.take_notice());
@@ -373,6 +394,7 @@ fn follow(
         remark,
     })
     .ok()
+    .map(|()| None)
 }
 
 /// A step taken for the first time.

@@ -12,6 +12,7 @@ use std::borrow::Cow;
 use std::sync::Arc;
 use stickslip_core::contact::laws::JudgedLaw;
 use stickslip_core::model::{Mode, Model};
+use stickslip_platform::disk;
 use stickslip_scene::embedded::{self, EmbeddedFile};
 use stickslip_scene::embedded_all;
 use stickslip_scene::format::error::{AtPath, Path, SceneError, at, bail, did_you_mean, fault};
@@ -306,13 +307,13 @@ impl Lesson {
 
 /// Name and text of a lesson file, or of a built-in lesson; a file takes precedence.
 fn text_of(name: &str) -> Result<(Cow<'_, str>, Cow<'static, str>), SceneError> {
-    if !std::path::Path::new(name).is_file()
+    if !disk::is_file(name)
         && let Some(builtin) = find(name)
     {
         return Ok((builtin.name.into(), builtin.text.into()));
     }
     let text = read::text(name).map_err(|mut error| {
-        if !std::path::Path::new(name).exists() {
+        if !disk::exists(name) {
             let names = || LESSONS.iter().map(|lesson| lesson.name);
             error.message = format!(
                 "no such file or built-in lesson{} (built-in: {})",

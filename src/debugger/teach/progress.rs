@@ -6,6 +6,7 @@ use crate::record::journal;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use stickslip_platform::disk;
 use stickslip_platform::files::{self, FileError};
 use stickslip_platform::input::{self, Unreadable};
 use stickslip_scene::format::notation;
@@ -102,7 +103,7 @@ impl Progress {
     ///
     /// # Errors If the file exists and cannot be read.
     pub fn read(file: &Path) -> Result<Progress, ProgressError> {
-        if !file.exists() {
+        if !disk::exists(file) {
             return Ok(Progress::default());
         }
         let unread = |why| ProgressError::Unread {
@@ -253,7 +254,7 @@ pub fn keep(file: &Path, tutor: &Tutor) -> Result<(), ProgressError> {
         return Ok(());
     }
     if let Some(folder) = file.parent() {
-        std::fs::create_dir_all(folder).map_err(|source| FileError::Failed {
+        disk::create_dir_all(folder).map_err(|source| FileError::Failed {
             path: folder.to_owned(),
             source,
         })?;

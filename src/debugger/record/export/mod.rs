@@ -6,7 +6,7 @@
 //! - [`written`]: the scene itself, and the frozen problem in other programs' formats; [`skeleton`]: a scene
 //!   around a mesh.
 //! - [`grid`]: a state for ParaView.
-//! - [`export_state`]: the input of all of them.
+//! - [`export_state`]: the input of all of them; [`run_history`]: what pictures show of a run besides its last state.
 //!
 //! The film of a session is made from a journal by the terminal front end; the list only contains its
 //! extension.
@@ -15,6 +15,7 @@ pub mod export_state;
 pub mod frozen;
 pub mod grid;
 pub mod picture;
+pub mod run_history;
 pub mod skeleton;
 pub mod written;
 

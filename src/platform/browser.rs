@@ -1,7 +1,7 @@
-//! Systems without files or processes, such as browsers: files are regular, private and never locked, and clocks do not advance.
+//! Browsers: files are in memory, private and never locked.
 
-use std::fs::{File, FileType, Metadata, OpenOptions, Permissions};
-use std::io;
+use crate::disk::{FileType, Metadata, OpenOptions};
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Does nothing: opening never blocks.
@@ -9,27 +9,9 @@ pub fn set_nonblocking(options: &mut OpenOptions) -> &mut OpenOptions {
     options
 }
 
-/// Does nothing.
-///
-/// # Errors
-/// Never.
-pub fn set_blocking(_: &File) -> io::Result<()> {
-    Ok(())
-}
-
-/// False: there are no pipes.
-pub fn is_unread_pipe(_: &io::Error) -> bool {
-    false
-}
-
 /// Does nothing: files are private.
 pub fn set_private(options: &mut OpenOptions) -> &mut OpenOptions {
     options
-}
-
-/// `None`: the system's default.
-pub fn usual_permissions() -> Option<Permissions> {
-    None
 }
 
 /// The kind of a special file, as part of a message; `None` for a regular file.
@@ -46,12 +28,20 @@ pub fn is_same_file(_: &Metadata, _: &Metadata) -> bool {
     true
 }
 
-/// True, since it cannot be determined.
-pub fn is_running(_: i32) -> bool {
-    true
-}
-
 /// Zero, since it cannot be measured.
 pub fn thread_time() -> Duration {
     Duration::ZERO
 }
+
+/// `None`: the defaults hold.
+pub fn config_folder() -> Option<PathBuf> {
+    None
+}
+
+/// The folder whose files the page keeps.
+pub fn state_folder() -> Option<PathBuf> {
+    Some(PathBuf::from("/stickslip"))
+}
+
+/// Does nothing.
+pub fn sync_folder(_: &Path) {}

@@ -1,4 +1,4 @@
-//! Rows of `--csv` and `--trace`.
+//! Tables of a run: rows of `--csv` and `--trace`.
 //!
 //! Floats have as many digits as needed to read back the same bits; non-finite values are `NaN`, `inf` and `-inf`.
 //!
@@ -30,6 +30,8 @@
 //! - In space: `f_t` and `slip` are lengths of vectors, followed by their components along t and n × t (`f_1`, `f_2`, `slip_1`,
 //!   `slip_2`) and by `angle` between them (degrees).
 
+use crate::explain::names;
+use crate::history::strip::norms_after;
 use std::fmt::Write;
 use stickslip_core::contact::record::ContactRecord;
 use stickslip_core::fem::deformation::deformation;
@@ -39,8 +41,6 @@ use stickslip_core::model::{
 };
 use stickslip_core::step::event::{Event, Failure, Outcome};
 use stickslip_core::step::recovery::motion::Motion;
-use stickslip_debugger::explain::names;
-use stickslip_debugger::history::strip::norms_after;
 use stickslip_study::csv::field;
 
 /// The first line of `--csv`.

@@ -1,0 +1,89 @@
+//! What pictures show of a run besides its last state.
+
+use super::export_state::{COLUMNS, ExportState, PicturePart, PictureRequest};
+use super::frozen::Origin;
+use crate::explain::trail;
+use crate::history::strip::Strip;
+use std::sync::Arc;
+use stickslip_core::step::event::{Event, Outcome};
+use stickslip_core::step::state::{State, Status};
+use stickslip_core::step::stepper::Stepper;
+use stickslip_scene::Scene;
+
+/// Records of a run so far.
+pub struct RunHistory<'a> {
+    strips: Vec<Strip>,
+    last_major: State,
+    /// The last minor iterations, oldest first, if a picture shows them.
+    events: Vec<Arc<Event>>,
+    /// Load factor and monitors at the accepted increments, if a picture shows them.
+    accepted: Vec<(f64, Vec<f64>)>,
+    parts: &'a [PicturePart],
+}
+
+impl<'a> RunHistory<'a> {
+    /// The history of a run that starts now; `parts` are the parts of pictures that it must provide.
+    pub fn at_start(stepper: &Stepper, parts: &'a [PicturePart]) -> RunHistory<'a> {
+        let state = stepper.state();
+        RunHistory {
+            strips: vec![Strip::new(stepper.model(), state, None, None, 0.0)],
+            last_major: state.clone(),
+            events: Vec::new(),
+            accepted: Vec::new(),
+            parts,
+        }
+    }
+
+    /// Adds the last minor iteration.
+    pub fn add(&mut self, stepper: &mut Stepper) {
+        if self.parts.contains(&PicturePart::Cone) {
+            self.events.push(Arc::new(stepper.event().clone()));
+            let more = self.events.len().saturating_sub(trail::LONGEST);
+            self.events.drain(..more);
+        }
+        let accepts = matches!(stepper.event().outcome, Outcome::Increment { .. });
+        if self.parts.contains(&PicturePart::Chart) && accepts {
+            let mut monitors = Vec::new();
+            stepper.monitors(&mut monitors);
+            self.accepted.push((stepper.event().load_factor, monitors));
+        }
+        let (state, event) = (stepper.state(), stepper.event());
+        let strip = Strip::new(stepper.model(), state, Some(event), self.strips.last(), 0.0);
+        self.strips.push(strip);
+        // A timeline shows only the last steps; their total is needed only if it is small.
+        if self.strips.len() > 64 * COLUMNS {
+            self.strips.drain(..32 * COLUMNS);
+        }
+        if state.next.minor == 1 && state.status == Status::Running {
+            self.last_major = state.clone();
+        }
+    }
+
+    /// Whether the run has a minor iteration.
+    pub fn has_started(&self) -> bool {
+        self.strips.len() > 1
+    }
+
+    /// A state of the run with this history, to be exported.
+    pub fn shown<'s>(
+        &'s self,
+        scene: &'s Scene,
+        origin: &'s Origin,
+        (state, event): (&'s State, Option<&'s Event>),
+        picture: &'s PictureRequest,
+    ) -> ExportState<'s> {
+        ExportState {
+            scene,
+            origin,
+            state,
+            event,
+            strips: &self.strips,
+            last_major: Some(&self.last_major),
+            ended: String::new(),
+            frozen: false,
+            picture,
+            events: &self.events,
+            accepted: &self.accepted,
+        }
+    }
+}
