@@ -299,7 +299,7 @@ fn a_problem_in_space_is_the_same_from_every_file_and_obeys_the_laws() {
             "3\n1\n0\n3\n3\n3 3\n1 0 0 0 1 0 0 0 1\n-1 0 0\n",
             "a friction coefficient was expected",
         ),
-        ("3\n1\n0\n2\n2\n", "it must be 3"),
+        ("3\n1\n0\n3\n3\n2 3\n1 0 0 0 1 0\n", "it must be 3"),
         ("4\n1\n", "begins with its dimension, 2 or 3"),
     ] {
         let file = put(&folder, "wrong.dat", text);
