@@ -49,7 +49,7 @@ enum Cell {
 
 impl Cell {
     /// `None` for an element with nodes elsewhere, which a block cannot place.
-    fn of(kind: ElementKind) -> Option<Cell> {
+    fn from_kind(kind: ElementKind) -> Option<Cell> {
         match (kind.corners().count(), kind.nodes()) {
             (3, 3) | (4, 4) => Some(Cell::Corners),
             (4, 8) => Some(Cell::Sides),
@@ -75,7 +75,7 @@ const AROUND: [(usize, usize); 9] = [
 impl Grid {
     /// Kind of the row at j half cells.
     fn row(self, j: usize) -> Row {
-        match (Cell::of(self.kind), j.is_multiple_of(2)) {
+        match (Cell::from_kind(self.kind), j.is_multiple_of(2)) {
             (Some(Cell::Corners), true) => Row::Corners,
             (Some(Cell::Corners), false) => Row::None,
             (Some(Cell::Sides), false) => Row::Corners,
@@ -108,7 +108,7 @@ impl Grid {
 
     /// Approximate number of nodes added per cell.
     pub fn nodes_per_cell(kind: ElementKind) -> f64 {
-        match Cell::of(kind) {
+        match Cell::from_kind(kind) {
             Some(Cell::Corners) => 1.0,
             Some(Cell::Sides) => 3.0,
             Some(Cell::Inside) | None => 4.0,
@@ -231,7 +231,7 @@ pub(crate) fn block(
     refine: usize,
     chain: &dyn Fn(&str) -> Result<ChainPoints, String>,
 ) -> Result<(Grid, Vec<Point>), Fault> {
-    if Cell::of(shape.kind).is_none() {
+    if Cell::from_kind(shape.kind).is_none() {
         bail!(
             here.then("element"),
             "a block cannot be meshed with elements of kind {}; use Given or Import for its elements",

@@ -46,6 +46,11 @@ impl RoundOff {
         clean(value, self.length)
     }
 
+    /// A component of a unit vector, or 0 if it is round-off.
+    pub fn component(&self, value: f64) -> f64 {
+        clean(value, TIMES * f64::EPSILON)
+    }
+
     /// |F_t| over |T_max| as a table cell; a dash if both are round-off.
     pub fn ratio(&self, f_t: f64, t_max: f64) -> String {
         number::ratio(self.force(f_t), self.force(t_max))

@@ -294,8 +294,12 @@ fn measured(record: &ContactRecord, slave: usize, view: &View, theme: &Theme) ->
             "along the surface, from the point where it stuck or where the increment started",
         ),
         ("S*", place, ""),
-        ("at", pair(record.foot), ""),
-        ("normal", pair(record.normal), ""),
+        ("at", pair(record.foot.map(|x| round_off.length(x))), ""),
+        (
+            "normal",
+            pair(record.normal.map(|x| round_off.component(x))),
+            "",
+        ),
     ];
     let contact = &view.model.contacts[slave];
     let by_area = contact.pressure(round_off.force(record.f_n), round_off.force(record.f_t));
