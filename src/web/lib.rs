@@ -1,7 +1,7 @@
 //! The debugger in a web page: the screens, sessions, scenes and lessons of the terminal program.
 //!
-//! The program runs in a web worker (`page/worker.js`), so the page always responds. The worker sends a [`Request`] for each input
-//! and calls [`Page::advance`] in a loop while the solver works; each call solves for a few milliseconds and returns the rows of
+//! The program runs in a web worker (`page/worker.js`), so the page always responds. The worker sends a `Request` for each input
+//! and calls `Page::advance` in a loop while the solver works; each call solves for a few milliseconds and returns the rows of
 //! the screen that changed. `src/web/build` builds the page.
 
 #![cfg(target_family = "wasm")]
