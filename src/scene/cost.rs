@@ -210,7 +210,13 @@ fn elements_of(solid: &Solid) -> String {
             format!("{elements} of {} nodes{word}", kind.nodes())
         })
     };
-    let kinds: Vec<String> = ElementKind::ALL.iter().filter_map(of_kind).collect();
+    let mut kinds = ElementKind::ALL.to_vec();
+    for element in &solid.elements {
+        if !kinds.contains(&element.kind) {
+            kinds.push(element.kind);
+        }
+    }
+    let kinds: Vec<String> = kinds.iter().filter_map(of_kind).collect();
     kinds.join(" and ")
 }
 

@@ -119,7 +119,7 @@ impl Folds {
             } else {
                 (2.0 * r - 1.0, 2.0 * s - 1.0)
             };
-            continuum::shape(kind, xi, eta).1
+            continuum::formulation(kind).shape(xi, eta).1
         };
         Folds(places.map(slopes).collect())
     }

@@ -8,6 +8,7 @@ use crate::executor::{Executor, SequentialExecutor};
 use crate::fem::beam::{self, Section};
 use crate::fem::continuum;
 use crate::fem::element::{Element, ElementOutput, Previous};
+use crate::fem::isoparametric;
 use crate::fem::material::Material;
 use crate::fem::matrix;
 use crate::fem::small;
@@ -157,7 +158,8 @@ impl Assembly {
             let elastic = &solid.materials[*material];
             let positions: Vec<[f64; 2]> = nodes.iter().map(|&n| model.nodes[n].at).collect();
             let material = Material::new(elastic);
-            let element = continuum::element(*kind, &positions, material, elastic.update);
+            let element =
+                continuum::formulation(*kind).element(&positions, material, elastic.update);
             self.place(element, dofs_of(model, nodes, 2));
         }
     }
@@ -488,7 +490,8 @@ pub fn history_len(model: &Model) -> usize {
         BodyKind::Beam(_) | BodyKind::Truss(_) | BodyKind::Linear(_) => 0,
         BodyKind::Solid(solid) => {
             let of = |element: &SolidElement| {
-                continuum::history_len(element.kind, solid.materials[element.material].update)
+                let update = solid.materials[element.material].update;
+                isoparametric::history_len(update, element.kind.points())
             };
             solid.elements.iter().map(of).sum()
         }

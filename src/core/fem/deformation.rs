@@ -160,7 +160,8 @@ fn each_point(model: &Model, u: &[f64], mut see: impl FnMut(&Elastic, PointDefor
                 let first = model.dofs.first[node];
                 (model.nodes[node].at, [u[first], u[first + 1]])
             };
-            continuum::sample(element.kind, element.nodes.len(), node, |point| {
+            let formulation = continuum::formulation(element.kind);
+            formulation.sample(element.nodes.len(), &node, &mut |point| {
                 let [stretch, determinant] = measures(elastic, &point);
                 let point_deformation = PointDeformation {
                     body,

@@ -8,9 +8,10 @@
 use super::continuum;
 use super::element::Previous;
 use super::material::Material;
-use crate::fem::isoparametric::PointState;
+use crate::fem::isoparametric::{self, PointState};
 use crate::model::{Body, BodyKind, ElementKind, Model, SolidElement};
 use nalgebra::DMatrix;
+use std::collections::HashMap;
 
 /// σ11, σ22, σ33, σ12.
 pub type Stress = [f64; 4];
@@ -29,7 +30,7 @@ pub struct Configuration<'a> {
 /// Stresses at the nodes of each body, in the order of [`Body::nodes`]; `None` if no adjacent solid element has a response, and
 /// for all nodes of bodies that are not solids.
 pub fn nodal_stresses(model: &Model, at: Configuration<'_>) -> Vec<Vec<Option<Stress>>> {
-    let fits: Vec<DMatrix<f64>> = ElementKind::ALL.iter().map(|kind| fit(*kind)).collect();
+    let mut fits: HashMap<ElementKind, DMatrix<f64>> = HashMap::new();
     let mut sums = vec![([0.0; 4], 0_usize); model.nodes.len()];
     let mut found: Vec<Vec<Option<Stress>>> = Vec::with_capacity(model.bodies.len());
     let mut body_of = 0;
@@ -47,12 +48,11 @@ pub fn nodal_stresses(model: &Model, at: Configuration<'_>) -> Vec<Vec<Option<St
             finish(&model.bodies[body_of], &mut sums);
             body_of += 1;
         }
-        let place = ElementKind::ALL
-            .iter()
-            .position(|kind| *kind == element.kind);
-        let (Some(stresses), Some(fit)) = (stresses, place.map(|k| &fits[k])) else {
+        let Some(stresses) = stresses else {
             return;
         };
+        let kind = element.kind;
+        let fit = fits.entry(kind).or_insert_with(|| fit(kind));
         for (i, &node) in element.nodes.iter().enumerate() {
             let (sum, count) = &mut sums[node];
             for (p, stress) in stresses.iter().enumerate() {
@@ -89,7 +89,7 @@ fn each_element(
                 let first = element.nodes.iter().map(|&n| model.dofs.first[n]);
                 first.flat_map(|d| [u[d], u[d + 1]]).collect()
             };
-            let count = continuum::history_len(element.kind, elastic.update);
+            let count = isoparametric::history_len(elastic.update, element.kind.points());
             let (u, before) = (own(at.u), own(at.before));
             let past = Previous {
                 u: &before,
@@ -97,7 +97,7 @@ fn each_element(
             };
             remembered += count;
             let made_of = (Material::new(elastic), elastic.update);
-            let states = continuum::states(element.kind, &places, made_of, &past, &u);
+            let states = continuum::formulation(element.kind).states(&places, made_of, &past, &u);
             let stress =
                 |s: Option<PointState>| s.map(|s| [s.cauchy.x, s.cauchy.y, s.across, s.cauchy.z]);
             with(b, element, states.into_iter().map(stress).collect());
@@ -107,11 +107,11 @@ fn each_element(
 
 /// Least-squares weights of the values at the points in the value at each node.
 fn fit(kind: ElementKind) -> DMatrix<f64> {
-    let rule = continuum::rule(kind);
+    let formulation = continuum::formulation(kind);
+    let (rule, places) = (formulation.rule(), formulation.places());
     let terms = rule.len().min(4);
     let term = |[xi, eta]: [f64; 2], k: usize| [1.0, xi, eta, xi * eta][k];
     let at_points = DMatrix::from_fn(rule.len(), terms, |p, k| term(rule[p].at, k));
-    let places = continuum::places(kind);
     let at_nodes = DMatrix::from_fn(places.len(), terms, |i, k| term(places[i], k));
     // The points of every rule make the polynomial's terms independent.
     let normal = at_points.transpose() * &at_points;
@@ -128,7 +128,8 @@ mod tests {
     #[test]
     fn linear_fields_are_extrapolated_exactly_and_constant_ones_by_every_kind() {
         for kind in ElementKind::ALL {
-            let (fit, rule, places) = (fit(kind), continuum::rule(kind), continuum::places(kind));
+            let formulation = continuum::formulation(kind);
+            let (fit, rule, places) = (fit(kind), formulation.rule(), formulation.places());
             for (i, place) in places.iter().enumerate() {
                 let of = |field: &dyn Fn([f64; 2]) -> f64| -> f64 {
                     rule.iter()

@@ -25,7 +25,7 @@ pub(super) fn forces(
     for (element, elastic) in parts {
         let rule = rules
             .entry(element.kind)
-            .or_insert_with(|| continuum::rule(element.kind));
+            .or_insert_with(|| continuum::formulation(element.kind).rule());
         let at: Vec<[f64; 2]> = element.nodes.iter().map(|&n| names.nodes[n].at).collect();
         for point in rule.iter() {
             let volume = point.weight * jacobian(point, &at) * width(point, &at, elastic);

@@ -34,7 +34,7 @@ described! {
     pub struct SideSet {
         /// Name; `ID.name` can be used wherever a chain or an edge of a block can.
         pub name: String,
-        /// Node labels of each side from start to end, with its midside node, if any, between them. Sides of elements are sorted
+        /// Node labels of each side from start to end, with the nodes between them, if any. Sides of elements are sorted
         /// into walking order with the element on the left; their order here does not matter.
         pub sides: Vec<Vec<usize>>,
     }

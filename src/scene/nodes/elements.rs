@@ -49,9 +49,7 @@ pub(super) fn sound(
         if stickslip_core::mutants::is_active("middle-nodes-not-turned") {
             return Ok((kind, own));
         }
-        if own.len() >= 2 * count {
-            own[count..2 * count].reverse();
-        }
+        own[count..count * (kind.per_face() - 1)].reverse();
     }
     if folds.is_folded(own.iter().map(|&n| nodes[n].at)) {
         let [x, y] = nodes[own[0]].at;

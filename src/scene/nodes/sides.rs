@@ -4,6 +4,7 @@ use super::elements::{Element, named};
 use crate::format::error::{Fault, Path, bail};
 use crate::shown::first_of;
 use std::collections::{HashMap, HashSet};
+use stickslip_core::fem::lagrange::MAX_NODES;
 use stickslip_core::model::Node;
 
 /// Sides in walking order.
@@ -61,7 +62,8 @@ impl SideLine {
 
 /// The faces of elements at these sides, by start and end node.
 pub(super) struct Faces {
-    middles: HashMap<(usize, usize), Option<usize>>,
+    /// The nodes between the ends, from start to end.
+    middles: HashMap<(usize, usize), Vec<usize>>,
     /// Nodes of sides that belong to elements.
     on_elements: HashSet<usize>,
 }
@@ -79,10 +81,13 @@ impl Faces {
         };
         for (kind, nodes) in elements {
             for face in kind.faces() {
-                let (start, end) = (nodes[face[0]], nodes[face[face.len() - 1]]);
-                let middle = (face.len() == 3).then(|| nodes[face[1]]);
+                let &[start, ref middle @ .., end] = *face else {
+                    continue;
+                };
+                let (start, end) = (nodes[start], nodes[end]);
                 match (has(start), has(end)) {
                     (true, true) => {
+                        let middle = middle.iter().map(|&n| nodes[n]).collect();
                         faces.middles.insert((start, end), middle);
                         faces.on_elements.extend([start, end]);
                     }
@@ -112,10 +117,10 @@ pub(super) fn line(
     for (k, side) in sides.iter().enumerate() {
         let fault = |message: String| Fault::new(here.then(k), message);
         let (start, end) = match side[..] {
-            [start, end] | [start, _, end] => (start, end),
+            [start, .., end] if side.len() <= MAX_NODES => (start, end),
             _ => {
                 return Err(fault(format!(
-                    "the side has {} nodes; it must have 2 or 3",
+                    "the side has {} nodes; it must have 2 to {MAX_NODES}",
                     side.len()
                 )));
             }
@@ -123,7 +128,8 @@ pub(super) fn line(
         if (1..side.len()).any(|j| side[..j].contains(&side[j])) {
             return Err(fault("a node occurs twice in the side".to_owned()));
         }
-        let found = |from, to| faces.middles.get(&(from, to)).copied();
+        let found = |from, to| faces.middles.get(&(from, to));
+        let mut walked = side.clone();
         let middle = match (found(start, end), found(end, start)) {
             (None, None) if [start, end].iter().all(|n| faces.on_elements.contains(n)) => {
                 let message = format!(
@@ -134,29 +140,32 @@ pub(super) fn line(
             }
             (None, None) => {
                 free.push(k);
-                made.push(side.clone());
+                made.push(walked);
                 continue;
             }
             (Some(middle), other) => {
                 inside |= other.is_some();
-                made.push(side.clone());
                 middle
             }
             (None, Some(middle)) => {
-                made.push(side.iter().rev().copied().collect());
+                walked.reverse();
                 middle
             }
         };
-        if middle != (side.len() == 3).then(|| side[1]) {
+        let own = &walked[1..walked.len() - 1];
+        if middle != own {
+            let listed = |some: &[usize], none: &str| match some {
+                [] => none.to_owned(),
+                some => named(nodes, some),
+            };
             return Err(fault(format!(
                 "the side {} has {} in the middle, but the element has {}",
                 named(nodes, &[start, end]),
-                side.get(1)
-                    .filter(|_| side.len() == 3)
-                    .map_or("no node", |&n| &nodes[n].name),
-                middle.map_or("none", |n| &nodes[n].name),
+                listed(own, "no node"),
+                listed(middle, "none"),
             )));
         }
+        made.push(walked);
     }
     align(&mut made, &free);
     let mut walked = HashSet::new();

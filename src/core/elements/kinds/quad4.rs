@@ -4,39 +4,32 @@
 //! modes that strain no point; the reduced rule is therefore W = (1 − ε) W_1 + ε W_2×2, a physical hourglass control that is exact
 //! for constant strain and needs no parameters of the material.
 
-use super::continuum_kind::{ContinuumKind, Shape, parents};
+use super::continuum_kind::{ContinuumKind, Shape};
 use crate::elements::quadrature::square;
-use std::sync::LazyLock;
 
 /// Positions of the nodes in the parent square.
 const PLACES: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
 
+const SIDES: &[&[usize]] = &[&[0, 1], &[1, 2], &[2, 3], &[3, 0]];
+
 /// The kind.
-pub static KIND: ContinuumKind<4, 4> = ContinuumKind {
-    vtk: 9,
-    faces: &[&[0, 1], &[1, 2], &[2, 3], &[3, 0]],
-    places: PLACES,
-    shape,
-    rule: LazyLock::new(|| parents(square(2), shape)),
-    nodes: LazyLock::new(|| parents(PLACES.map(|at| (at, 0.0)), shape)),
-};
+pub static KIND: ContinuumKind<4, 4> = ContinuumKind::new(9, SIDES, PLACES, || square(2), shape);
 
 /// Fraction ε of full integration in the reduced rule.
 const HOURGLASS: f64 = 0.05;
 
 /// The kind with reduced integration.
-pub static REDUCED: ContinuumKind<4, 5> = ContinuumKind {
-    vtk: KIND.vtk,
-    faces: KIND.faces,
-    places: PLACES,
-    shape,
-    rule: LazyLock::new(|| {
+pub static REDUCED: ContinuumKind<4, 5> = ContinuumKind::new(
+    9,
+    SIDES,
+    PLACES,
+    || {
         let [a, b, c, d] = square::<4>(2).map(|(at, weight)| (at, HOURGLASS * weight));
         let middle = ([0.0; 2], 4.0 * (1.0 - HOURGLASS));
-        parents([middle, a, b, c, d], shape)
-    }),
-    nodes: LazyLock::new(|| parents(PLACES.map(|at| (at, 0.0)), shape)),
-};
+        [middle, a, b, c, d]
+    },
+    shape,
+);
 
 /// N_i = ¼ (1 + ξ_i ξ) (1 + η_i η).
 fn shape(xi: f64, eta: f64) -> Shape<4> {

@@ -4,9 +4,8 @@
 //! hourglass mode, which strains no point but cannot propagate to a neighbouring element. Nodes are the corners anticlockwise,
 //! then the midside nodes of the sides 1-2, 2-3, 3-4, 4-1.
 
-use super::continuum_kind::{ContinuumKind, QUADRATIC_SIDES, Shape, parents};
+use super::continuum_kind::{ContinuumKind, QUADRATIC_SIDES, Shape};
 use crate::elements::quadrature::square;
-use std::sync::LazyLock;
 
 /// Positions of the nodes in the parent square: those of the 9-node quadrilateral without its centre.
 const PLACES: [[f64; 2]; 8] = {
@@ -15,24 +14,12 @@ const PLACES: [[f64; 2]; 8] = {
 };
 
 /// The kind with full integration.
-pub static KIND: ContinuumKind<8, 9> = ContinuumKind {
-    vtk: 23,
-    faces: QUADRATIC_SIDES,
-    places: PLACES,
-    shape,
-    rule: LazyLock::new(|| parents(square(3), shape)),
-    nodes: LazyLock::new(|| parents(PLACES.map(|at| (at, 0.0)), shape)),
-};
+pub static KIND: ContinuumKind<8, 9> =
+    ContinuumKind::new(23, QUADRATIC_SIDES, PLACES, || square(3), shape);
 
 /// The kind with reduced integration.
-pub static REDUCED: ContinuumKind<8, 4> = ContinuumKind {
-    vtk: 23,
-    faces: QUADRATIC_SIDES,
-    places: PLACES,
-    shape,
-    rule: LazyLock::new(|| parents(square(2), shape)),
-    nodes: LazyLock::new(|| parents(PLACES.map(|at| (at, 0.0)), shape)),
-};
+pub static REDUCED: ContinuumKind<8, 4> =
+    ContinuumKind::new(23, QUADRATIC_SIDES, PLACES, || square(2), shape);
 
 /// The shape functions and their derivatives with respect to ξ and η.
 fn shape(xi: f64, eta: f64) -> Shape<8> {

@@ -1,8 +1,7 @@
 //! 9-node Lagrange quadrilateral: biquadratic displacements; 3 × 3 Gauss points.
 
-use super::continuum_kind::{ContinuumKind, QUADRATIC_SIDES, Shape, parents};
+use super::continuum_kind::{ContinuumKind, QUADRATIC_SIDES, Shape};
 use crate::elements::quadrature::square;
-use std::sync::LazyLock;
 
 /// Positions of the nodes in the parent square: corners, midside nodes, centre.
 pub(super) const PLACES: [[f64; 2]; 9] = [
@@ -18,14 +17,8 @@ pub(super) const PLACES: [[f64; 2]; 9] = [
 ];
 
 /// The kind.
-pub static KIND: ContinuumKind<9, 9> = ContinuumKind {
-    vtk: 28,
-    faces: QUADRATIC_SIDES,
-    places: PLACES,
-    shape,
-    rule: LazyLock::new(|| parents(square(3), shape)),
-    nodes: LazyLock::new(|| parents(PLACES.map(|at| (at, 0.0)), shape)),
-};
+pub static KIND: ContinuumKind<9, 9> =
+    ContinuumKind::new(28, QUADRATIC_SIDES, PLACES, || square(3), shape);
 
 /// Products of two parabolas: N_i = L(ξ; ξ_i) L(η; η_i).
 fn shape(xi: f64, eta: f64) -> Shape<9> {

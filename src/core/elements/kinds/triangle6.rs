@@ -1,8 +1,7 @@
 //! 6-node triangle: quadratic displacements; three interior integration points.
 
-use super::continuum_kind::{ContinuumKind, Shape, parents};
+use super::continuum_kind::{ContinuumKind, Shape};
 use crate::elements::quadrature::TRIANGLE_3;
-use std::sync::LazyLock;
 
 /// Positions of the nodes in the parent triangle.
 const PLACES: [[f64; 2]; 6] = [
@@ -15,14 +14,13 @@ const PLACES: [[f64; 2]; 6] = [
 ];
 
 /// The kind.
-pub static KIND: ContinuumKind<6, 3> = ContinuumKind {
-    vtk: 22,
-    faces: &[&[0, 3, 1], &[1, 4, 2], &[2, 5, 0]],
-    places: PLACES,
+pub static KIND: ContinuumKind<6, 3> = ContinuumKind::new(
+    22,
+    &[&[0, 3, 1], &[1, 4, 2], &[2, 5, 0]],
+    PLACES,
+    || TRIANGLE_3,
     shape,
-    rule: LazyLock::new(|| parents(TRIANGLE_3, shape)),
-    nodes: LazyLock::new(|| parents(PLACES.map(|at| (at, 0.0)), shape)),
-};
+);
 
 /// With L = (1 − ξ − η, ξ, η): N = L (2 L − 1) at a corner, 4 L_a L_b between the corners a and b.
 fn shape(xi: f64, eta: f64) -> Shape<6> {

@@ -38,7 +38,7 @@ const AT: [[f64; 2]; NODES] = [
 
 fn element(elastic: &Elastic) -> Quad {
     ContinuumElement::new(
-        &quad8::KIND.rule,
+        quad8::KIND.rule(),
         AT,
         Material::new(elastic),
         elastic.update,

@@ -143,7 +143,7 @@ impl Scalar<'_> {
             Scalar::Limit(n) => n.shown(),
             Scalar::Flag(flag) => flag.shown(),
             Scalar::Text(text) => (*text).clone(),
-            Scalar::Choice(choice) => choice.name().to_owned(),
+            Scalar::Choice(choice) => choice.name(),
         }
     }
 
@@ -200,7 +200,7 @@ fn one_of(words: &[&str]) -> String {
 /// A fixed set of words.
 pub(crate) trait Choice {
     fn names(&self) -> &'static [&'static str];
-    fn name(&self) -> &'static str;
+    fn name(&self) -> String;
     /// Sets the choice with that name, if there is one.
     fn choose(&mut self, name: &str) -> bool;
 }

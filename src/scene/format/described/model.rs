@@ -50,7 +50,7 @@ macro_rules! words {
                 fn names(&self) -> &'static [&'static str] {
                     words::<$type>()
                 }
-                fn name(&self) -> &'static str {
+                fn name(&self) -> String {
                     word(self)
                 }
                 fn choose(&mut self, name: &str) -> bool {
@@ -69,7 +69,7 @@ macro_rules! words {
                     words::<$type>().first().copied().unwrap_or_default().to_owned()
                 }
                 fn shown(&self) -> String {
-                    word(self).to_owned()
+                    word(self)
                 }
                 fn types(into: &mut Vec<Type>) -> Result<(), String> {
                     if !contains(into, $type::DOCS.name) {

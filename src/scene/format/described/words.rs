@@ -34,10 +34,8 @@ pub(super) fn words<T: DeserializeOwned>() -> &'static [&'static str] {
 }
 
 /// The word that serde writes for a value of an enum of unit variants.
-pub(super) fn word<T: Serialize + DeserializeOwned>(value: &T) -> &'static str {
-    let written = line(value).unwrap_or_default();
-    let found = words::<T>().iter().find(|word| **word == written);
-    found.copied().unwrap_or_default()
+pub(super) fn word(value: &impl Serialize) -> String {
+    line(value).unwrap_or_default()
 }
 
 /// The enum value for a word, if there is one.
@@ -55,7 +53,7 @@ mod tests {
     fn words_are_written_as_they_are_read() {
         for name in words::<Strategy>() {
             let value: Strategy = of_word(name).unwrap();
-            assert_eq!(word(&value), *name);
+            assert_eq!(word(&value), **name);
         }
         assert_eq!(words::<Strategy>(), Strategy::NAMES);
         assert_eq!(words::<Law>(), ["svk", "neohookean"]);
