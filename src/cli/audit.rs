@@ -23,8 +23,8 @@ use stickslip_debugger::explain::report;
 use stickslip_debugger::explain::strain;
 use stickslip_debugger::record::snapshot::Snapshot;
 use stickslip_scene::Scene;
-use stickslip_scene::format::kind::FileKind;
 use stickslip_scene::number::{shortest, sig4};
+use stickslip_scene::readers::FileKind;
 use stickslip_scene::solver::solver;
 
 #[derive(Debug, clap::Args)]

@@ -29,7 +29,7 @@ use stickslip_exchange::fclib;
 use stickslip_exchange::vtu;
 use stickslip_platform::files::{self, Output};
 use stickslip_scene::calculix;
-use stickslip_scene::format::kind::FileKind;
+use stickslip_scene::readers::FileKind;
 use stickslip_scene::solver::solver;
 use stickslip_scene::{Scene, import, shown};
 use stickslip_study::pen;

@@ -97,7 +97,7 @@ impl Base {
 fn compiled(scene: &Scene) -> Compiled<'_> {
     Compiled {
         spec: &scene.spec,
-        names: &scene.names,
+        names: scene.names(),
         model: &scene.model,
     }
 }

@@ -19,6 +19,12 @@ pub fn is_cel(name: &str) -> bool {
     ends(name, "cel")
 }
 
+/// Whether a text begins like the contact elements of a CalculiX run.
+pub fn is_contacts(text: &str) -> bool {
+    let first = text.lines().next().unwrap_or_default();
+    first.starts_with("*ELEMENT") && first.contains("=contactelements_st")
+}
+
 /// The .cel file that belongs to a .sta or .cvg file; `None` for other names.
 pub fn cel_of(name: &str) -> Option<PathBuf> {
     let belongs = ENDS[1..].iter().any(|end| ends(name, end));

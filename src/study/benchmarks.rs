@@ -239,7 +239,7 @@ impl Benchmarks {
 
 /// Whether a text is such a list, valid or not.
 fn is_list(text: &str) -> bool {
-    stickslip_scene::format::kind::has_field(text, "benchmarks")
+    stickslip_scene::readers::has_field(text, "benchmarks")
 }
 
 impl Benchmark {

@@ -21,10 +21,10 @@ use serde::de::{DeserializeOwned, Deserializer, Visitor};
 use std::fmt;
 use stickslip_scene::Scene;
 use stickslip_scene::format::error::{Path, SceneError, Step, did_you_mean, quoted};
-use stickslip_scene::format::kind::FileKind;
 use stickslip_scene::format::locate::{locate, too_deep};
 use stickslip_scene::format::notation;
-use stickslip_scene::format::read::{or_mistaken, path_of, plainly, shallow, text};
+use stickslip_scene::format::read::{path_of, plainly, shallow, text};
+use stickslip_scene::readers::{FileKind, or_mistaken};
 
 /// A study, before its scenes are checked.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]

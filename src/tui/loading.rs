@@ -8,7 +8,7 @@ use stickslip_debugger::session::Session;
 use stickslip_debugger::teach::progress::ProgressStore;
 use stickslip_debugger::teach::{Lesson, Tutor, lesson, play};
 use stickslip_platform::task;
-use stickslip_scene::format::kind::FileKind;
+use stickslip_scene::readers::FileKind;
 
 /// A loaded file, or why it cannot be loaded.
 pub enum LoadedFile {

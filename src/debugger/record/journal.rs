@@ -22,8 +22,8 @@ use stickslip_platform::disk::File;
 use stickslip_platform::input::{self, RECORD_BYTES};
 use stickslip_platform::{clock, disk, files, system};
 use stickslip_scene::Scene;
-use stickslip_scene::format::kind::FileKind;
 use stickslip_scene::format::{SceneError, Spec, notation, read};
+use stickslip_scene::readers::{FileKind, or_mistaken};
 
 /// Format version written by this program, and the only one it reads.
 pub const FORMAT: u32 = 1;
@@ -354,7 +354,7 @@ impl Record {
             damaged(file, (1, 1), message)
         })?;
         let header = header(file, first).map_err(|error| match error.at {
-            Some(_) => read::or_mistaken(error, file, text, FileKind::Journal),
+            Some(_) => or_mistaken(error, file, text, FileKind::Journal),
             None => error,
         })?;
         let mut record = Record {

@@ -22,8 +22,8 @@ use stickslip_platform::disk;
 use stickslip_platform::files::{self, FileError};
 use stickslip_platform::input::{self, RECORD_BYTES};
 use stickslip_scene::Scene;
-use stickslip_scene::format::kind::FileKind;
 use stickslip_scene::format::{SceneError, Spec, notation, read};
+use stickslip_scene::readers::{FileKind, or_mistaken};
 use stickslip_scene::solver::any_solver;
 
 /// Format version written by this program, and the only one it reads.
@@ -241,7 +241,7 @@ impl Snapshot {
             }
             notation::read(text).map_err(|e| {
                 let error = read::refused(file, 1, "", &e);
-                read::or_mistaken(error, file, text, FileKind::Snapshot)
+                or_mistaken(error, file, text, FileKind::Snapshot)
             })
         };
         read().map_err(|error| SnapshotError::Read(Box::new(error)))

@@ -22,8 +22,8 @@ use stickslip_exchange::attach::{Answer, Request, Side, TranscriptLine};
 use stickslip_exchange::format_error::FormatError;
 use stickslip_platform::input::{self, Unreadable};
 use stickslip_scene::Scene;
-use stickslip_scene::format::kind::FileKind;
 use stickslip_scene::format::{SceneError, read};
+use stickslip_scene::readers::FileKind;
 
 /// Steps from the start: an iteration (`None`) or an intervention each.
 pub type Line = Vec<Option<Intervention>>;

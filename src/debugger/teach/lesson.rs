@@ -16,9 +16,9 @@ use stickslip_platform::disk;
 use stickslip_scene::embedded::{self, EmbeddedFile};
 use stickslip_scene::embedded_all;
 use stickslip_scene::format::error::{AtPath, Path, SceneError, at, bail, did_you_mean, fault};
-use stickslip_scene::format::kind::FileKind;
 use stickslip_scene::format::{Fault, read};
-use stickslip_scene::{Scene, placed};
+use stickslip_scene::readers::{FileKind, or_mistaken};
+use stickslip_scene::scene::{Scene, placed};
 use stickslip_study::Vary;
 
 /// A lesson that matches its scene.
@@ -265,7 +265,7 @@ impl Lesson {
     /// Reads a lesson, on another scene than its own if one is given.
     fn read(name: &str, text: &str, other: Option<Scene>) -> Result<Lesson, SceneError> {
         let spec: LessonSpec = read::value(name, text, "lesson")
-            .map_err(|error| read::or_mistaken(error, name, text, FileKind::Lesson))?;
+            .map_err(|error| or_mistaken(error, name, text, FileKind::Lesson))?;
         let recorded = match other {
             Some(_) => None,
             None => recorded(name, text, &spec)?,

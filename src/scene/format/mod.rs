@@ -6,7 +6,7 @@
 //!   writes.
 //! - [`notation`]: the RON dialect; [`read`]: converts text to values; [`locate`]: converts paths to lines.
 //! - [`paths`]: lists and sets every scalar of a scene by its path.
-//! - [`error`]: errors with their location; [`kind`]: recognises other kinds of files.
+//! - [`error`]: errors with their location.
 //!
 //! [`scene`](crate) checks whether the values make sense.
 
@@ -17,7 +17,6 @@ pub mod described;
 pub mod error;
 pub mod given;
 pub mod in_space;
-pub mod kind;
 pub mod loads;
 pub mod locate;
 pub mod markdown;

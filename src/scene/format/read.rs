@@ -2,7 +2,6 @@
 
 use super::condensed::Problem;
 use super::error::{Path, SceneError, did_you_mean, quoted, shortened};
-use super::kind::{FileKind, mistaken};
 use super::locate::{byte_at, line_and_column, locate, path_at, too_deep};
 use super::notation;
 use super::spec::Spec;
@@ -17,15 +16,7 @@ pub const FILE_BYTES: usize = 512 << 20;
 
 /// Reads a scene from its text.
 pub fn spec(file: &str, text: &str) -> Result<Spec, SceneError> {
-    value(file, text, "scene").map_err(|error| or_mistaken(error, file, text, FileKind::Scene))
-}
-
-/// The given error, or a better one if the text is a file of another kind.
-pub fn or_mistaken(error: SceneError, file: &str, text: &str, wanted: FileKind) -> SceneError {
-    match mistaken(file, text, wanted) {
-        Some(message) => SceneError::whole(file, message),
-        None => error,
-    }
+    value(file, text, "scene")
 }
 
 /// Reads an interface problem from its text.

@@ -15,7 +15,7 @@ use crate::format::condensed::{Contact, Matrix, Problem};
 use crate::format::error::{AtPath, Fault, Path, at, bail, fault, quoted};
 use crate::format::stored::{RigidContact, Stored};
 use crate::format::{SceneError, read};
-use crate::placed;
+use crate::scene::placed;
 use std::collections::HashMap;
 use stickslip_core::model::InitialState;
 use stickslip_exchange::calculix::stiffness::{self, MatrixUnknown};
