@@ -18,6 +18,8 @@ mod legs;
 mod renewed;
 // The condensed interface takes the steps of the whole system, whatever the bodies.
 mod condensation;
+// Constant pressure across SURFACE TO SURFACE contacts of decks.
+mod deck_patches;
 // Bodies given by a matrix, endless floors, and what slave nodes bring along.
 mod interfaces;
 mod linear;

@@ -19,7 +19,7 @@
 
 use crate::contact::table2::TestedQuantity;
 use crate::interface::problem::{AssumedMode, InterfaceProblem};
-use crate::interface::tableau::{Columns, PathEnd, PathStart, Tableau};
+use crate::interface::tableau::{Columns, PathEnd, PathStart, Tableau, positive};
 
 /// A path that ends on a ray counts as solved if the covering variable is at most this (relative): the rows that should bound it
 /// are tied, and round-off decides between them.
@@ -52,7 +52,7 @@ const ROOM: usize = 7;
 #[derive(Debug, Clone)]
 pub struct Copositive {
     /// In the problem's units of force and length.
-    tableau: Tableau,
+    pub tableau: Tableau,
     nodes: Vec<HeldComponent>,
     /// Node and kind of every variable.
     owners: Vec<(usize, usize)>,
@@ -178,32 +178,12 @@ impl Copositive {
         number
     }
 
-    /// One pivot. `None` if the path has already ended.
-    pub fn pivot(&mut self) -> Option<()> {
-        self.tableau.pivot()
-    }
-
-    /// Number of pivots done.
-    pub fn pivots(&self) -> usize {
-        self.tableau.pivots()
-    }
-
-    /// Number of rows.
-    pub fn rows(&self) -> usize {
-        self.tableau.rows()
-    }
-
     /// Result of the path. `None` while it continues.
     pub fn ended(&self) -> Option<PathEnd> {
         match self.tableau.ended() {
             Some(PathEnd::Ray) if self.tableau.cover() <= NEARLY => Some(PathEnd::Solved),
             other => other,
         }
-    }
-
-    /// The covering variable: remaining relaxation of the problem, in units of its forces and lengths.
-    pub fn cover(&self) -> f64 {
-        self.tableau.cover()
     }
 
     /// The node of the last pivot, and the quantity that reached its bound. `None` if that was the covering variable.
@@ -269,8 +249,4 @@ fn spread(row: usize, number: usize) -> f64 {
     x = (x ^ (x >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     x = (x ^ (x >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
     ((x ^ (x >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-}
-
-fn positive(scale: f64) -> f64 {
-    if scale > 0.0 { scale } else { 1.0 }
 }

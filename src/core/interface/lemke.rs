@@ -14,7 +14,7 @@
 use crate::contact::table2::TestedQuantity;
 use crate::interface::problem::{AssumedMode, InterfaceProblem};
 pub use crate::interface::tableau::PathEnd;
-use crate::interface::tableau::{Columns, PathStart, Tableau};
+use crate::interface::tableau::{Columns, PathStart, Tableau, positive};
 
 /// A variable of the tableau.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,7 +37,7 @@ enum VariableKind {
 #[derive(Debug, Clone)]
 pub struct Lemke {
     /// In the problem's units of force and length.
-    tableau: Tableau,
+    pub tableau: Tableau,
     /// Node and kind of every variable.
     variables: Vec<(usize, VariableKind)>,
     /// The nodes with friction, with friction coefficient and cohesion.
@@ -175,16 +175,6 @@ impl Lemke {
         }
     }
 
-    /// Result of the path. `None` while it continues.
-    pub fn ended(&self) -> Option<PathEnd> {
-        self.tableau.ended()
-    }
-
-    /// One pivot. `None` if the path has already ended.
-    pub fn pivot(&mut self) -> Option<()> {
-        self.tableau.pivot()
-    }
-
     /// The node of the last pivot, and the quantity that reached its bound. `None` if that was the covering variable.
     pub fn bound(&self) -> Option<(usize, TestedQuantity)> {
         let (place, kind) = self.variables[self.tableau.left()?];
@@ -196,11 +186,6 @@ impl Lemke {
             VariableKind::Loose => return None,
         };
         Some((place, tested))
-    }
-
-    /// The covering variable: remaining relaxation of the problem, in units of its forces and lengths.
-    pub fn cover(&self) -> f64 {
-        self.tableau.cover()
     }
 
     fn at(&self, place: usize, kind: VariableKind) -> Option<f64> {
@@ -240,8 +225,4 @@ impl Lemke {
             self.length * slip,
         ]
     }
-}
-
-fn positive(scale: f64) -> f64 {
-    if scale > 0.0 { scale } else { 1.0 }
 }

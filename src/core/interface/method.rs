@@ -131,9 +131,10 @@ pub struct SearchInput<'a> {
 }
 
 impl SearchInput<'_> {
-    /// Takes the cached data, if they have this type.
-    pub fn take_kept<T: 'static>(&mut self) -> Option<Box<T>> {
-        self.kept.take()?.downcast().ok()
+    /// Takes the cached data, if they have this type and are at this start and step.
+    pub fn take_kept<T: 'static>(&mut self, at: impl Fn(&T) -> (usize, usize)) -> Option<Box<T>> {
+        let kept: Box<T> = self.kept.take()?.downcast().ok()?;
+        (at(&kept) == (self.start, self.step)).then_some(kept)
     }
 }
 

@@ -88,6 +88,11 @@ impl Columns<'_> {
     }
 }
 
+/// A unit of force or length: the scale of a problem if it has one.
+pub fn positive(scale: f64) -> f64 {
+    if scale > 0.0 { scale } else { 1.0 }
+}
+
 /// Parameters for starting a path.
 #[derive(Clone, Copy)]
 pub struct PathStart<'a> {

@@ -26,11 +26,13 @@ struct CopositivePath {
 impl CopositivePath {
     /// Performs the pivots of a minor iteration.
     fn go(&mut self) {
-        let most = match self.step < self.pivoting.rows() {
+        let most = match self.step < self.pivoting.tableau.rows() {
             true => 1,
             false => STRIDE,
         };
-        let done = (0..most).map_while(|_| self.pivoting.pivot()).count();
+        let done = (0..most)
+            .map_while(|_| self.pivoting.tableau.pivot())
+            .count();
         self.step += usize::from(done > 0);
     }
 }
@@ -44,15 +46,15 @@ impl Search for CopositiveStrategy {
                 states => NotFound::Unconfirmed { states }.into(),
             });
         }
-        let mut path: Box<CopositivePath> = match asked.take_kept() {
-            Some(path) if path_is_at(&path, &asked) => path,
-            _ => Box::new(path(&mut asked)?),
+        let mut path = match asked.take_kept(|path: &CopositivePath| (path.start, path.step)) {
+            Some(path) => path,
+            None => Box::new(path(&mut asked)?),
         };
         path.go();
         let pivoting = &path.pivoting;
         let ended = pivoting.ended();
         if ended == Some(PathEnd::Astray) {
-            let pivots = pivoting.pivots();
+            let pivots = pivoting.tableau.pivots();
             return Err(NotFound::Astray { pivots }.into());
         }
         let nodes = (0..asked.brought.len()).map(|k| (pivoting.assumed(k), pivoting.numbers(k)));
@@ -65,7 +67,7 @@ impl Search for CopositiveStrategy {
         let proposal = Proposal {
             nodes,
             rule: if solved { Rule::Found } else { Rule::Pivots },
-            cover: pivoting.cover(),
+            cover: pivoting.tableau.cover(),
             covers: TestedQuantity::Cover,
             bound: pivoting.bound(),
             next: PathEnd::next(ended, path.start, path.step),
@@ -73,10 +75,6 @@ impl Search for CopositiveStrategy {
         *asked.kept = Some(path);
         Ok(proposal)
     }
-}
-
-fn path_is_at(path: &CopositivePath, asked: &SearchInput<'_>) -> bool {
-    (path.start, path.step) == (asked.start, asked.step)
 }
 
 /// The path after the pivots done so far.

@@ -75,6 +75,10 @@ impl SweepState {
         }
     }
 
+    fn place(&self) -> (usize, usize) {
+        (self.start, self.step)
+    }
+
     /// Performs the sweeps of a minor iteration; returns whether the modes have been stable long enough and differ from the last
     /// proposal.
     fn go(&mut self, nodes: usize) -> bool {
@@ -147,9 +151,9 @@ impl Search for GaussSeidel {
     /// Several sweeps over all nodes.
     fn propose(&self, mut asked: SearchInput<'_>) -> Result<Proposal, NoProposal> {
         let nodes = asked.brought.len();
-        let mut going: Box<SweepState> = match asked.take_kept() {
-            Some(going) if is_at(&going, &asked) => going,
-            _ => Box::new(going(&mut asked)?),
+        let mut going = match asked.take_kept(SweepState::place) {
+            Some(going) => going,
+            None => Box::new(going(&mut asked)?),
         };
         if going.is_over() {
             return Err(NotFound::Unsettled {
@@ -191,14 +195,10 @@ impl Search for GaussSeidel {
     }
 }
 
-fn is_at(going: &SweepState, asked: &SearchInput<'_>) -> bool {
-    (going.start, going.step) == (asked.start, asked.step)
-}
-
 /// The state of the sweeps so far.
 fn going(asked: &mut SearchInput<'_>) -> Result<SweepState, NotFound> {
     let mut going = SweepState::new((asked.sweep)()?);
-    while !is_at(&going, asked) && !going.is_over() {
+    while going.place() != (asked.start, asked.step) && !going.is_over() {
         going.go(asked.brought.len());
     }
     Ok(going)

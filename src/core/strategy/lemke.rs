@@ -2,7 +2,7 @@
 //! minor iteration. Table 2 checks the result in the next minor iteration.
 
 use crate::contact::table2::{Rule, TestedQuantity};
-use crate::interface::lemke::{Lemke as Tableau, PathEnd, STARTS};
+use crate::interface::lemke::{Lemke, PathEnd, STARTS};
 use crate::interface::method::{NoProposal, NotFound, Proposal, Search, SearchInput};
 
 /// Pivoting from several starts.
@@ -10,7 +10,7 @@ pub struct LemkeStrategy;
 
 /// A tableau, the start that it came from, and the pivots done.
 struct LemkePath {
-    tableau: Tableau,
+    lemke: Lemke,
     start: usize,
     step: usize,
 }
@@ -18,26 +18,26 @@ struct LemkePath {
 impl Search for LemkeStrategy {
     /// One pivot; if a path has ended on a ray, continues with the next start.
     fn propose(&self, mut asked: SearchInput<'_>) -> Result<Proposal, NoProposal> {
-        let mut path: Box<LemkePath> = match asked.take_kept() {
-            Some(path) if is_at(&path, &asked) => path,
-            _ => Box::new(path(&mut asked)?),
+        let mut path = match asked.take_kept(|path: &LemkePath| (path.start, path.step)) {
+            Some(path) => path,
+            None => Box::new(path(&mut asked)?),
         };
         // A path that starts at the solution has already ended.
-        if path.tableau.pivot().is_some() {
+        if path.lemke.tableau.pivot().is_some() {
             path.step += 1;
         }
-        let tableau = &path.tableau;
-        let ended = tableau.ended();
-        let nodes = (0..asked.brought.len()).map(|k| (tableau.assumed(k), tableau.numbers(k)));
+        let lemke = &path.lemke;
+        let ended = lemke.tableau.ended();
+        let nodes = (0..asked.brought.len()).map(|k| (lemke.assumed(k), lemke.numbers(k)));
         let proposal = Proposal {
             nodes: nodes.collect(),
             rule: match ended {
                 Some(PathEnd::Solved) => Rule::Found,
                 _ => Rule::Pivots,
             },
-            cover: tableau.cover(),
+            cover: lemke.tableau.cover(),
             covers: TestedQuantity::Cover,
-            bound: tableau.bound(),
+            bound: lemke.bound(),
             next: PathEnd::next(ended, path.start, path.step),
         };
         *asked.kept = Some(path);
@@ -45,18 +45,14 @@ impl Search for LemkeStrategy {
     }
 }
 
-fn is_at(path: &LemkePath, asked: &SearchInput<'_>) -> bool {
-    (path.start, path.step) == (asked.start, asked.step)
-}
-
 /// The tableau after the pivots done so far, for a start or the next one with a regular basis.
 fn path(asked: &mut SearchInput<'_>) -> Result<LemkePath, NotFound> {
     let problem = (asked.problem)().ok_or(NotFound::NotCondensed)?;
     let mut starts = (asked.start..STARTS).filter_map(|number| {
-        let tableau = Tableau::new(&problem, asked.brought, number)?;
-        Some((tableau, number))
+        let lemke = Lemke::new(&problem, asked.brought, number)?;
+        Some((lemke, number))
     });
-    let Some((mut tableau, start)) = starts.next() else {
+    let Some((mut lemke, start)) = starts.next() else {
         return Err(match (asked.start, asked.unconfirmed) {
             (0, _) => NotFound::NoStart,
             (_, 0) => NotFound::Ray,
@@ -65,11 +61,7 @@ fn path(asked: &mut SearchInput<'_>) -> Result<LemkePath, NotFound> {
     };
     let step = if start == asked.start { asked.step } else { 0 };
     for _ in 0..step {
-        tableau.pivot();
+        lemke.tableau.pivot();
     }
-    Ok(LemkePath {
-        tableau,
-        start,
-        step,
-    })
+    Ok(LemkePath { lemke, start, step })
 }

@@ -187,10 +187,10 @@ fn by_pivoting(problem: &InterfaceProblem, tolerance: f64) -> Option<Answer> {
     let mut trials = Trials::new(problem)?;
     (0..STARTS).find_map(|start| {
         let mut path = Lemke::new(problem, &brought, start)?;
-        while path.ended().is_none() {
-            path.pivot()?;
+        while path.tableau.ended().is_none() {
+            path.tableau.pivot()?;
         }
-        let found = path.ended() == Some(PathEnd::Solved);
+        let found = path.tableau.ended() == Some(PathEnd::Solved);
         let assumed: Vec<AssumedMode> = (0..brought.len()).map(|k| path.assumed(k)).collect();
         let answer = found.then(|| trials.answer(&assumed)).flatten()?;
         answer.obeys(tolerance).then_some(answer)

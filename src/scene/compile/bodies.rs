@@ -6,7 +6,7 @@ use super::super::limits;
 use super::super::nodes::checks::unique;
 use super::super::nodes::{Mesh, NameEntry, Names};
 use super::linear;
-use crate::format::error::{AtPath, Fault, Path, at, bail, did_you_mean, fault, quoted, some_of};
+use crate::format::error::{AtPath, Fault, Path, at, bail, fault, none_called};
 use crate::format::spec::{BodySpec, Material, Point, Region, Spec};
 use std::collections::HashSet;
 use stickslip_core::model::{Beam, Body, BodyKind, Elastic, Node, Solid, SolidElement, boundary};
@@ -210,15 +210,10 @@ pub(super) fn chain<'n>(
 
 /// The material with an id.
 fn material<'s>(here: &Path, spec: &'s Spec, id: &str) -> Result<&'s Material, Fault> {
-    let ids = || spec.materials.iter().map(Material::id);
+    let ids = spec.materials.iter().map(Material::id);
     spec.materials.iter().find(|m| m.id() == id).ok_or_else(|| {
-        fault!(
-            here,
-            "no material called {}{} (materials: {})",
-            quoted(id),
-            did_you_mean(id, ids()),
-            some_of(ids())
-        )
+        let message = none_called("material", id, "materials", ids);
+        Fault::new(here, message)
     })
 }
 

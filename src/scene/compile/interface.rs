@@ -8,7 +8,7 @@ use super::super::nodes::checks::unique;
 use super::bodies::{chain, check_chain};
 use super::laws;
 use crate::format::contact_law::FrictionSpec;
-use crate::format::error::{Fault, Path, at, bail, did_you_mean, quoted, some_of};
+use crate::format::error::{Fault, Path, at, bail, none_called, quoted};
 use crate::format::spec::{Nodes, Side, SlaveSpec, Spec};
 use std::collections::HashSet;
 use stickslip_core::contact::element::closed;
@@ -198,12 +198,7 @@ fn candidates(
             return fault(format!("surface {name:?} is named twice"));
         }
         let Some(listed) = ids().position(|id| id == name) else {
-            return fault(format!(
-                "no surface called {}{} (surfaces: {})",
-                quoted(name),
-                did_you_mean(name, ids()),
-                some_of(ids())
-            ));
+            return fault(none_called("surface", name, "surfaces", ids()));
         };
         let pieces = (0..surfaces.made.len()).filter(|&s| surfaces.listed[s] == listed);
         on.extend(pieces);

@@ -2,7 +2,7 @@
 
 use super::super::limits;
 use super::super::nodes::Names;
-use crate::format::error::{AtPath, Fault, Path, did_you_mean, quoted, some_of};
+use crate::format::error::{AtPath, Fault, Path, none_called};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use stickslip_core::fem::continuum::{self, Sample};
 use stickslip_core::model::{Body, BodyKind, Elastic, ElementKind, Solid, SolidElement};
@@ -61,13 +61,8 @@ fn parts<'b>(
         return Err(format!("body {on:?} is not a solid and has no volume"));
     }
     let Ok(mesh) = names.mesh(on) else {
-        let known = || solids().map(|(body, _)| body.name.as_str());
-        return Err(format!(
-            "no solid called {}{} (solids: {}), and no block or mesh",
-            quoted(on),
-            did_you_mean(on, known()),
-            some_of(known())
-        ));
+        let known = solids().map(|(body, _)| body.name.as_str());
+        return Err(none_called("solid", on, "solids", known) + ", and no block or mesh");
     };
     let wanted: HashSet<Vec<usize>> = mesh.elements.into_iter().map(|(_, nodes)| nodes).collect();
     let all = solids().flat_map(|(_, solid)| of(solid));

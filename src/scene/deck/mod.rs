@@ -15,8 +15,6 @@ mod contact;
 mod curves;
 mod loads;
 #[cfg(test)]
-mod patch_tests;
-#[cfg(test)]
 mod tests;
 
 use crate::format::error::{self, Path, SceneError, Step, at};

@@ -184,6 +184,21 @@ impl fmt::Display for SceneError {
     }
 }
 
+/// The message that a `what` does not exist, with similar and some known names; `known` is the plural of `what`.
+pub(crate) fn none_called<'a>(
+    what: &str,
+    name: &str,
+    known: &str,
+    names: impl Iterator<Item = &'a str> + Clone,
+) -> String {
+    format!(
+        "no {what} called {}{} ({known}: {})",
+        quoted(name),
+        did_you_mean(name, names.clone()),
+        some_of(names)
+    )
+}
+
 /// Some of the names for a message, in quotes; the others are only counted.
 pub fn some_of<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     let quoted = names.into_iter().map(|name| format!("{name:?}"));

@@ -1,6 +1,6 @@
 //! Interface problems in space, in the frames (n, t, n × t) of their contacts.
 
-use super::described::{Described, ScalarPlace, Visit};
+use super::described::fixed;
 use serde::{Deserialize, Serialize};
 use stickslip_core::model::Friction;
 
@@ -16,19 +16,6 @@ pub struct SpaceSpec {
     pub free: Vec<f64>,
 }
 
-impl Described for SpaceSpec {
-    /// Its numbers cannot be set from outside.
-    fn walk(&mut self, _place: &ScalarPlace<'_>, _visit: &mut Visit<'_>) {}
-
-    fn kind() -> String {
-        "an interface problem in space".to_owned()
-    }
-
-    fn blank() -> String {
-        String::new()
-    }
-
-    fn shown(&self) -> String {
-        String::new()
-    }
+fixed! {
+    SpaceSpec, "an interface problem in space", "";
 }

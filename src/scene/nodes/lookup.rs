@@ -2,7 +2,7 @@
 
 use super::given::nodes_of;
 use super::{EntryKind, Mesh, NameEntry, Names};
-use crate::format::error::{did_you_mean, quoted, some_of};
+use crate::format::error::{did_you_mean, none_called, quoted, some_of};
 use crate::shown::first_of;
 
 impl Names {
@@ -76,18 +76,8 @@ impl Names {
                 )),
             };
         }
-        let chains = || {
-            self.entries
-                .iter()
-                .filter(|e| e.kind.per_element().is_some())
-                .map(|e| e.id.as_str())
-        };
-        Err(format!(
-            "no chain of nodes called {}{} (chains: {})",
-            quoted(id),
-            did_you_mean(id, chains()),
-            some_of(chains())
-        ))
+        let chains = self.ids(|kind| kind.per_element().is_some());
+        Err(none_called("chain of nodes", id, "chains", chains))
     }
 
     /// The mesh with an id, of one or several blocks.
@@ -95,22 +85,12 @@ impl Names {
     /// # Errors
     /// A message that lists the existing meshes.
     pub(crate) fn mesh(&self, id: &str) -> Result<Mesh, String> {
-        let meshes = || {
-            let is_mesh = |e: &&NameEntry| {
-                matches!(
-                    e.kind,
-                    EntryKind::Block(_) | EntryKind::Mesh | EntryKind::Given | EntryKind::Part
-                )
-            };
-            self.entries.iter().filter(is_mesh).map(|e| e.id.as_str())
-        };
+        let meshes = self.ids(|kind| {
+            use EntryKind::{Block, Given, Mesh, Part};
+            matches!(kind, Block(_) | Mesh | Given | Part)
+        });
         let Some(entry) = self.index.get(id).map(|&k| &self.entries[k]) else {
-            return Err(format!(
-                "no block called {}{} (blocks: {})",
-                quoted(id),
-                did_you_mean(id, meshes()),
-                some_of(meshes())
-            ));
+            return Err(none_called("block", id, "blocks", meshes));
         };
         let blocks: Vec<&NameEntry> = match entry.kind {
             EntryKind::Block(_) => vec![entry],
@@ -130,7 +110,7 @@ impl Names {
             _ => {
                 return Err(format!(
                     "{id:?} is not a block; a solid needs a mesh (blocks: {})",
-                    some_of(meshes())
+                    some_of(meshes)
                 ));
             }
         };
@@ -165,25 +145,24 @@ impl Names {
 
     /// Index of the block with an id among the entries.
     pub(super) fn block(&self, id: &str) -> Result<usize, String> {
-        let blocks = || {
-            let is_block = |e: &&NameEntry| matches!(e.kind, EntryKind::Block(_));
-            self.entries.iter().filter(is_block).map(|e| e.id.as_str())
-        };
+        let is_block = |kind| matches!(kind, EntryKind::Block(_));
         let found = self.index.get(id).copied();
         found
-            .filter(|&k| matches!(self.entries[k].kind, EntryKind::Block(_)))
-            .ok_or_else(|| {
-                format!(
-                    "no block called {}{} (blocks: {})",
-                    quoted(id),
-                    did_you_mean(id, blocks()),
-                    some_of(blocks())
-                )
-            })
+            .filter(|&k| is_block(self.entries[k].kind))
+            .ok_or_else(|| none_called("block", id, "blocks", self.ids(is_block)))
+    }
+
+    /// Ids of the entries of some kinds.
+    fn ids(
+        &self,
+        is_one: impl Fn(EntryKind) -> bool + Clone,
+    ) -> impl Iterator<Item = &str> + Clone {
+        let entries = self.entries.iter().filter(move |e| is_one(e.kind));
+        entries.map(|e| e.id.as_str())
     }
 
     fn split(&self, name: &str) -> Result<(&NameEntry, Selector), String> {
-        if self.entry_of(name).is_none() {
+        let Some((entry, selector)) = self.entry_of(name) else {
             // Problems written by earlier versions use beam-5 for beam.5.
             let other = |from: char, to: &str| {
                 let at = name.rfind(from)?;
@@ -195,9 +174,6 @@ impl Names {
                 Some(known) => self.split(&known),
                 None => Err(self.unknown(name)),
             };
-        }
-        let Some((entry, selector)) = self.entry_of(name) else {
-            return Err(self.unknown(name));
         };
         let id = &entry.id;
         if selector.is_empty() {
@@ -314,12 +290,10 @@ impl Names {
 impl EntryKind {
     fn word(self) -> &'static str {
         match self {
-            EntryKind::Block(_) => "block",
-            EntryKind::Mesh | EntryKind::Given => "mesh",
             EntryKind::Part => "part",
             EntryKind::Set => "set",
-            EntryKind::Sides(_) => "line of sides",
-            EntryKind::Single | EntryKind::Chain(_) | EntryKind::Edge(_) => "chain",
+            EntryKind::Single | EntryKind::Edge(_) => "chain",
+            other => other.called().trim_start_matches("a "),
         }
     }
 
@@ -369,11 +343,7 @@ impl NameEntry {
                 (self.kind.called(), format!("\"{id}.{}\"", count.min(2)))
             }
             kind => (
-                if matches!(kind, EntryKind::Edge(_)) {
-                    "an edge"
-                } else {
-                    "a chain"
-                },
+                kind.called(),
                 format!("\"{id}.start\", \"{id}.end\" or \"{id}.{}\"", count.min(2)),
             ),
         };

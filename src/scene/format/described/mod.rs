@@ -367,29 +367,31 @@ pairs! {
     String, "a", "b", "two texts (a, b)";
 }
 
-/// A node of a given mesh (label, x and y); none of its parts can be set by a path.
-impl Described for (usize, usize, f64) {
-    fn walk(&mut self, _place: &ScalarPlace<'_>, _visit: &mut Visit<'_>) {}
-    fn kind() -> String {
-        "two whole numbers and a number (row, column, value)".to_owned()
-    }
-    fn blank() -> String {
-        "(0, 0, 0.0)".to_owned()
-    }
-    fn shown(&self) -> String {
-        format!("{self:?}")
-    }
+/// Types whose parts cannot be set by a path: type, accepted values, and shortest text.
+macro_rules! fixed {
+    ($($type:ty, $kind:literal, $blank:literal;)*) => {
+        $(impl $crate::format::described::Described for $type {
+            fn walk(
+                &mut self,
+                _: &$crate::format::described::ScalarPlace<'_>,
+                _: &mut $crate::format::described::Visit<'_>,
+            ) {
+            }
+            fn kind() -> String {
+                $kind.to_owned()
+            }
+            fn blank() -> String {
+                $blank.to_owned()
+            }
+            fn shown(&self) -> String {
+                format!("{self:?}")
+            }
+        })*
+    };
 }
+pub(crate) use fixed;
 
-impl Described for (usize, f64, f64) {
-    fn walk(&mut self, _place: &ScalarPlace<'_>, _visit: &mut Visit<'_>) {}
-    fn kind() -> String {
-        "a whole number and two numbers (label, x, y)".to_owned()
-    }
-    fn blank() -> String {
-        "(0, 0.0, 0.0)".to_owned()
-    }
-    fn shown(&self) -> String {
-        format!("{self:?}")
-    }
+fixed! {
+    (usize, usize, f64), "two whole numbers and a number (row, column, value)", "(0, 0, 0.0)";
+    (usize, f64, f64), "a whole number and two numbers (label, x, y)", "(0, 0.0, 0.0)";
 }

@@ -8,11 +8,11 @@
 //!    △ △   △   △ △
 //! ```
 
-use crate::Scene;
 use std::fmt::Write;
 use std::sync::Arc;
-use stickslip_core::step::state::Status;
-use stickslip_core::step::stepper::Stepper;
+use stickslip::scene::Scene;
+use stickslip::step::state::Status;
+use stickslip::step::stepper::Stepper;
 
 const E: f64 = 1000.0;
 const NU: f64 = 0.3;
