@@ -6,6 +6,7 @@
 //! cargo bench --bench random_scenes -- --seed 1 --only 157         one scene, with all that is wrong in it
 //! cargo bench --bench random_scenes -- 1000 --set surfaces.*.smooth=true   each scene changed in some way
 //! cargo bench --bench random_scenes -- 200 --pages                 the diagnosis pages of those that fail, checked
+//! cargo bench --bench random_scenes -- 200 --needs                 the recoveries and strategies that each scene uses and needs
 //! cargo bench --bench random_scenes -- --write 157 FILE.ron        writes one scene to a file, to be run or debugged
 //! cargo bench --bench random_scenes -- --file FILE.ron --set refine=2    the same for any scene, changed in some way
 //! ```
@@ -17,6 +18,8 @@ mod outside;
 
 use outside::tally;
 use outside::trial::{attempt, forgives};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
@@ -37,6 +40,7 @@ struct Asked {
     files: Vec<String>,
     set: Vec<(String, String)>,
     pages: bool,
+    needs: bool,
 }
 
 fn asked() -> Option<Asked> {
@@ -50,6 +54,7 @@ fn asked() -> Option<Asked> {
             // What cargo says to every bench.
             "--bench" => {}
             "--pages" => asked.pages = true,
+            "--needs" => asked.needs = true,
             "--seed" => asked.seed = args.next()?.parse().ok()?,
             "--from" => asked.from = args.next()?.parse().ok()?,
             "--only" => asked.only = Some(args.next()?.parse().ok()?),
@@ -106,6 +111,10 @@ fn main() -> ExitCode {
     if asked.pages {
         return pages(&asked);
     }
+    if asked.needs {
+        needs(&asked);
+        return ExitCode::SUCCESS;
+    }
     if asked.files.is_empty() {
         return many(&asked);
     }
@@ -155,6 +164,43 @@ fn pages(asked: &Asked) -> ExitCode {
     }
     println!("{failed} scenes fail, {faulty} of their pages have faults");
     ExitCode::from(u8::from(faulty > 0))
+}
+
+/// Prints what each scene that finishes uses and needs, and how many scenes use and need each recovery and strategy.
+fn needs(asked: &Asked) {
+    let numbers = asked.from..asked.from + asked.count.unwrap_or(SCENES);
+    let one = |number: u64| {
+        let (_, scene) = tally::scene(asked.seed, number, &asked.set).ok()?;
+        let (ends, used) = outside::needs::run(&scene, None);
+        ends.then(|| (number, outside::needs::needs(&scene, &used), used))
+    };
+    let numbers: Vec<u64> = numbers.collect();
+    let found: Vec<_> = numbers
+        .into_par_iter()
+        .with_max_len(1)
+        .filter_map(one)
+        .collect();
+    let mut counts: BTreeMap<&str, [usize; 2]> = BTreeMap::new();
+    for (number, needed, used) in &found {
+        if !used.is_empty() {
+            println!("{number}: uses {used:?}, needs {needed:?}");
+        }
+        used.iter()
+            .for_each(|name| counts.entry(name).or_default()[0] += 1);
+        needed
+            .iter()
+            .for_each(|name| counts.entry(name).or_default()[1] += 1);
+    }
+    println!(
+        "{} scenes finish\n{:<14} {:>6} {:>6}",
+        found.len(),
+        "",
+        "use it",
+        "need it"
+    );
+    for (name, [used, needed]) in counts {
+        println!("{name:<14} {used:>6} {needed:>7}");
+    }
 }
 
 fn many(asked: &Asked) -> ExitCode {

@@ -5,6 +5,7 @@
 //! - [`judge`]: Coulomb's law between two accepted states, from positions and forces alone;
 //! - [`draw`] and [`families`]: scenes by seed and number, as texts of scene files;
 //! - [`trial`]: a scene's run with every accepted increment judged;
+//! - [`needs`]: the recoveries and strategies without which a scene fails;
 //! - [`page`]: the diagnosis page of a failed scene, checked for contradictions;
 //! - [`tally`]: what came out of many, as a table.
 //!
@@ -18,6 +19,7 @@ pub mod draw;
 pub mod families;
 pub mod give;
 pub mod judge;
+pub mod needs;
 pub mod page;
 pub mod tally;
 pub mod trial;

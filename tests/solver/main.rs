@@ -5,6 +5,8 @@
 mod common;
 #[path = "../outside/hyperstatic.rs"]
 mod hyperstatic;
+#[path = "../outside/needs.rs"]
+mod needs;
 #[path = "../common/packing.rs"]
 mod packing;
 #[path = "../common/program.rs"]
