@@ -11,7 +11,7 @@ use tempfile::NamedTempFile;
 
 /// An unfinished file. It gets its name in [`finish`](Output::finish), and is removed if dropped before.
 pub struct Output {
-    target: PathBuf,
+    pub(super) target: PathBuf,
     overwrite: bool,
     to: OutputTarget,
 }
@@ -29,10 +29,7 @@ impl Output {
     /// # Errors
     /// If it exists and `overwrite` is not set, or if its folder is not writable.
     pub fn create(path: &Path, overwrite: bool) -> Result<Output, FileError> {
-        let failed = |source| FileError::Failed {
-            path: path.to_owned(),
-            source,
-        };
+        let failed = |source| FileError::new(path, source);
         let found = std::fs::metadata(path).ok();
         if let Some(found) = &found
             && !found.is_file()
@@ -77,10 +74,7 @@ impl Output {
             overwrite,
             to,
         } = self;
-        let failed = |source| FileError::Failed {
-            path: target.clone(),
-            source,
-        };
+        let failed = |source| FileError::new(&target, source);
         let file = match to {
             OutputTarget::Direct(mut file) => {
                 file.flush().map_err(failed)?;
@@ -97,22 +91,6 @@ impl Output {
             overwrite,
             file,
         })
-    }
-
-    /// Appends bytes.
-    ///
-    /// # Errors
-    /// If they cannot be written.
-    pub fn append(&mut self, bytes: &[u8]) -> Result<(), FileError> {
-        self.write_all(bytes).map_err(|source| self.failed(source))
-    }
-
-    /// A write error with the file's name.
-    pub fn failed(&self, source: io::Error) -> FileError {
-        FileError::Failed {
-            path: self.target.clone(),
-            source,
-        }
     }
 }
 
@@ -137,13 +115,6 @@ struct ReadyFile {
 }
 
 impl ReadyFile {
-    fn failed(&self, source: io::Error) -> FileError {
-        FileError::Failed {
-            path: self.target.clone(),
-            source,
-        }
-    }
-
     /// A copy (a hard link if possible) of the file that currently has the name; `None` if there is none.
     fn former(&self) -> Result<Option<NamedTempFile>, FileError> {
         if self.file.is_none() || !self.overwrite || !self.target.is_file() {
@@ -157,7 +128,7 @@ impl ReadyFile {
         };
         let _making = MAKING.lock().unwrap_or_else(PoisonError::into_inner);
         let former = builder().make_in(folder(&self.target), kept);
-        let former = former.map_err(|source| self.failed(source))?;
+        let former = former.map_err(|source| FileError::new(&self.target, source))?;
         let _ = former.as_file().try_lock();
         Ok(Some(former))
     }
@@ -173,10 +144,7 @@ impl ReadyFile {
         };
         placed.map(drop).map_err(|e| match e.error.kind() {
             io::ErrorKind::AlreadyExists if !self.overwrite => FileError::Exists(self.target),
-            _ => FileError::Failed {
-                path: self.target,
-                source: e.error,
-            },
+            _ => FileError::new(&self.target, e.error),
         })
     }
 }

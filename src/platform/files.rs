@@ -1,7 +1,7 @@
 //! Writes files completely or not at all, and overwrites existing ones only on request.
 
 use crate::system;
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 #[cfg_attr(not(target_family = "wasm"), path = "disk_output.rs")]
@@ -26,6 +26,29 @@ pub enum FileError {
     },
 }
 
+impl FileError {
+    /// Writing failed.
+    fn new(path: &Path, source: io::Error) -> Self {
+        let path = path.to_owned();
+        FileError::Failed { path, source }
+    }
+}
+
+impl Output {
+    /// Appends bytes.
+    ///
+    /// # Errors
+    /// If they cannot be written.
+    pub fn append(&mut self, bytes: &[u8]) -> Result<(), FileError> {
+        self.write_all(bytes).map_err(|source| self.failed(source))
+    }
+
+    /// A write error with the file's name.
+    pub fn failed(&self, source: io::Error) -> FileError {
+        FileError::new(&self.target, source)
+    }
+}
+
 /// Writes several files, all or none.
 ///
 /// # Errors
@@ -48,10 +71,7 @@ pub fn regular(path: &Path) -> Result<(), FileError> {
     let found = crate::disk::metadata(path).ok();
     match found.and_then(|found| system::special_kind(found.file_type())) {
         None => Ok(()),
-        Some(kind) => Err(FileError::Failed {
-            path: path.to_owned(),
-            source: io::Error::other(format!("is {kind}")),
-        }),
+        Some(kind) => Err(FileError::new(path, io::Error::other(format!("is {kind}")))),
     }
 }
 
@@ -83,7 +103,6 @@ pub fn write(path: &Path, text: impl AsRef<[u8]>, overwrite: bool) -> Result<(),
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::io::Write;
 
     fn names(directory: &Path) -> Vec<String> {
         let entries = std::fs::read_dir(directory).unwrap();

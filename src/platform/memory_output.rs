@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 /// An unfinished file. It gets its name in [`finish`](Output::finish).
 pub struct Output {
-    target: PathBuf,
+    pub(super) target: PathBuf,
     bytes: Vec<u8>,
 }
 
@@ -37,22 +37,6 @@ impl Output {
             .open(&self.target);
         let written = open.and_then(|mut file: File| file.write_all(&self.bytes));
         written.map_err(|source| self.failed(source))
-    }
-
-    /// Appends bytes.
-    ///
-    /// # Errors
-    /// Never.
-    pub fn append(&mut self, bytes: &[u8]) -> Result<(), FileError> {
-        self.write_all(bytes).map_err(|source| self.failed(source))
-    }
-
-    /// A write error with the file's name.
-    pub fn failed(&self, source: io::Error) -> FileError {
-        FileError::Failed {
-            path: self.target.clone(),
-            source,
-        }
     }
 }
 
