@@ -22,6 +22,7 @@ use std::time::Duration;
 use stickslip_debugger::action::{
     Action, ChartOf, Colours, Context, Filter, Keymap, ParseError, Sort, Ui,
 };
+use stickslip_debugger::explain::facts::Part;
 use stickslip_debugger::record::command::Command;
 use stickslip_debugger::teach::Tutor;
 use stickslip_scene::shown;
@@ -162,8 +163,10 @@ pub struct App {
     pub filter: Filter,
     /// Monitor of the load-displacement curve.
     pub monitor: Option<usize>,
-    /// The selected consistent state in the diagnosis, from 0.
+    /// The selected line of Try or consistent state in the diagnosis, from 0; behind them, the headings of the parts below.
     pub answer: usize,
+    /// The parts of the diagnosis of which only the heading is shown.
+    pub folded: Vec<Part>,
     /// The selected row of the branch tree, from 0.
     pub branch: usize,
     /// The selected remedy, from 0.
@@ -226,6 +229,7 @@ impl App {
             filter: Filter::All,
             monitor: None,
             answer: 0,
+            folded: Vec::new(),
             branch: 0,
             remedy: 0,
             scroll: 0,

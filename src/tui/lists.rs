@@ -2,6 +2,7 @@
 
 use crate::app::{App, Effect, PAGE};
 use crate::layout::Pane;
+use crate::panes::diagnosis::choices;
 use crate::screen;
 use crate::view::View;
 use stickslip_debugger::action::{Page, Step};
@@ -77,12 +78,21 @@ impl App {
         None
     }
 
-    /// Enter in the diagnosis: takes the selected line of Try, or starts from the selected state; runs the analysis if there is
-    /// no result yet.
+    /// Enter in the diagnosis: takes the selected line of Try, starts from the selected state, or folds the selected part; runs
+    /// the analysis if there is no result yet.
     pub(super) fn take_answer(&mut self, view: Option<&View>) -> Option<Effect> {
         let Some(found) = view.and_then(View::examination) else {
             return self.ask_page(Pane::Diagnosis, view);
         };
+        if let Some((part, _)) =
+            found.and_then(|page| page.below.get(self.answer.checked_sub(choices(page))?))
+        {
+            match self.folded.iter().position(|folded| folded == part) {
+                Some(at) => drop(self.folded.remove(at)),
+                None => self.folded.push(*part),
+            }
+            return None;
+        }
         match found.filter(|page| !page.tries.is_empty()) {
             Some(page) => self.take_try(page, view),
             None => self.start_from(self.answer, view),
@@ -220,13 +230,8 @@ impl App {
         {
             return self.submit(Command::Goto { step: to }, view);
         }
-        let answers = view.and_then(|view| view.examination()?).map(|page| {
-            let census = page.found.census.as_ref();
-            match page.tries.len() {
-                0 => census.map_or(0, |census| census.answers.len()),
-                tries => tries,
-            }
-        });
+        let answers = view.and_then(|view| view.examination()?);
+        let answers = answers.map(|page| choices(page) + page.below.len());
         let list = match self.panes.focus {
             Pane::Branches => {
                 let count = view.and_then(|view| Some(view.tree?.branches().len()));

@@ -556,3 +556,22 @@ fn what_no_chart_can_be_made_of_is_told() {
         );
     }
 }
+
+#[test]
+fn enter_on_the_heading_of_a_part_of_the_diagnosis_folds_it_and_unfolds_it() {
+    let mut debugger = debugger("osc-two6", "c d");
+    let page = |debugger: &Debugger| text(debugger, 120, 80);
+    let unfolded = page(&debugger);
+    assert!(
+        unfolded.contains("minor") && !unfolded.contains("Loop …"),
+        "{unfolded}"
+    );
+    // Behind the last line of Try.
+    let tries = unfolded.matches(" ✓ ").count() + unfolded.matches(" ✗ ").count();
+    debugger.type_keys(&"Down ".repeat(tries));
+    debugger.type_keys("Enter");
+    let folded = page(&debugger);
+    assert!(folded.contains("Loop … (Enter)"), "{folded}");
+    debugger.type_keys("Enter");
+    assert!(!page(&debugger).contains("Loop …"));
+}

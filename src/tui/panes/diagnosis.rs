@@ -1,5 +1,5 @@
 //! The diagnosis: What, Why and Try, and below them the loop, the census, the rates and the details. Enter takes the selected line
-//! of Try. If nothing failed, the consistent states are listed side by side, and Enter starts from the selected one.
+//! of Try, or folds the selected part below. If nothing failed, the consistent states are listed side by side, and Enter starts from the selected one.
 
 use super::frame;
 use crate::app::App;
@@ -23,6 +23,16 @@ const CELL: usize = 34;
 const NAME: usize = 12;
 /// Maximum number of nodes listed; if there are more, nodes in which the states differ come first.
 const MOST_LISTED: usize = 8;
+
+/// Number of rows of the diagnosis that can be selected above its parts: lines of Try, or consistent states.
+pub fn choices(page: &DiagnosisPage) -> usize {
+    let states = page.found.census.as_ref();
+    let choices = match page.tries.len() {
+        0 => states.map_or(0, |census| census.answers.len()),
+        tries => tries,
+    };
+    choices.max(1)
+}
 
 /// Draws the diagnosis.
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
@@ -87,7 +97,11 @@ fn words(page: &DiagnosisPage, width: usize, app: &App) -> (paint::Lines, usize)
         let heading = if k == 0 { "Why" } else { "" };
         hang(&mut lines, heading, text, (width, theme.text), app);
     }
-    let at = app.answer.min(page.tries.len().saturating_sub(1));
+    let choices = choices(page);
+    // Trials that end may shorten the page.
+    let at = app
+        .answer
+        .min((choices + page.below.len()).saturating_sub(1));
     let mut selected = 0;
     for (k, line) in page.tries.iter().enumerate() {
         let heading = if k == 0 { "Try" } else { "" };
@@ -104,10 +118,17 @@ fn words(page: &DiagnosisPage, width: usize, app: &App) -> (paint::Lines, usize)
             selected = lines.len() - 1;
         }
     }
-    for (part, texts) in &page.below {
-        let heading = format!(" {}", part.heading());
-        lines.push(Line::styled(heading, theme.heading));
-        for text in texts {
+    for (k, (part, texts)) in page.below.iter().enumerate() {
+        let (mut heading, mut style) = (format!(" {}", part.heading()), theme.heading);
+        let folded = app.folded.contains(part);
+        if folded {
+            heading += " … (Enter)";
+        }
+        if at == choices + k {
+            (style, selected) = (theme.selected, lines.len());
+        }
+        lines.push(Line::styled(heading, style));
+        for text in texts.iter().filter(|_| !folded) {
             match part {
                 // A table is not wrapped.
                 Part::Loop => {
