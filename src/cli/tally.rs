@@ -330,7 +330,8 @@ impl<'a> Tally<'a> {
         let error = after.relative.max(after.interface);
         if let Some(error) = accuracy::natural_map(event) {
             self.settled = Some(self.settled.map_or(error, |most| most.max(error)));
-        } else if error <= after.limit {
+        } else if error <= after.limit && self.most.is_none() {
+            // An attached solver has its own tolerance.
             self.reached = self.reached.max(error);
         }
         let although = report::reservations(&self.scene.model, event);

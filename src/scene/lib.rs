@@ -1,8 +1,8 @@
 //! Reads scene files (through [`format`](mod@format)), checks them, and compiles them to the model that the solver uses.
 //!
 //! - [`readers`]: the kinds of files: how each is recognised, and how those with a scene are read.
-//! - `compile`, with [`nodes`], `curves`, `blocks`, `geometry` and [`limits`]: converts a [`Spec`] to a [`Model`], or reports
-//!   errors.
+//! - `compile`, with [`nodes`], `curves`, `blocks`, `geometry` and [`limits`]: converts a [`format::Spec`] to a
+//!   [`Model`](stickslip_core::model::Model), or reports errors.
 //! - [`cost`]: estimated time and memory of a scene, and unused features; [`memory`]: available memory.
 //! - [`base`]: a scene read once for many settings; [`solver`]: creates the solver of a scene, with all threads.
 //! - `deck`: CalculiX and Abaqus decks; [`import`]: meshes of other programs.

@@ -69,6 +69,8 @@ SETTINGS = {
 
 class Kratos(Solver):
     name, version = "Kratos ALM", version("KratosMultiphysics")
+    slave_numbers, friction, settings = SLAVES, FRICTION, SETTINGS
+    components = "XY"
 
     def __init__(self) -> None:
         # Kratos prints while it is imported.
@@ -80,9 +82,22 @@ class Kratos(Solver):
         core.ParallelUtilities.SetNumThreads(1)  # Sums in one order: the same bits in every run.
         core.Logger.GetDefaultOutput().SetSeverity(core.Logger.Severity.WARNING)
         self.core, self.law = core, contact
-        self.analysis = StructuralMechanicsAnalysis(core.Model(), core.Parameters(json.dumps(SETTINGS)))
+        self.analysis = StructuralMechanicsAnalysis(core.Model(), core.Parameters(json.dumps(self.settings)))
         self.solver = self.analysis._GetSolver()
         self.part = self.solver.main_model_part
+        self.build(structural)
+        self.analysis.Initialize()
+        self.analysis.time = self.solver.AdvanceInTime(self.analysis.time)
+        self.analysis.InitializeSolutionStep()
+        self.solver.Predict()
+        self.slaves = [self.part.Nodes[number] for number in self.slave_numbers]
+        self.iteration = 0
+        self.first: dict[str, float] = {}  # Residuals of the first iteration.
+        self.last: dict[str, float] = {}
+
+    def build(self, structural: Any) -> None:
+        """Nodes, elements and parts of the model."""
+        core = self.core
         for number, (x, y) in PLACES.items():
             self.part.CreateNewNode(number, x, y, 0.0)
         for number, (nodes, ratio) in ELEMENTS.items():
@@ -95,14 +110,6 @@ class Kratos(Solver):
             part = self.part.CreateSubModelPart(name)
             part.AddNodes(nodes)
             part.AddElements(elements)
-        self.analysis.Initialize()
-        self.analysis.time = self.solver.AdvanceInTime(self.analysis.time)
-        self.analysis.InitializeSolutionStep()
-        self.solver.Predict()
-        self.slaves = [self.part.Nodes[number] for number in SLAVES]
-        self.iteration = 0
-        self.first: dict[str, float] = {}  # Residuals of the first iteration.
-        self.last: dict[str, float] = {}
 
     def scene(self) -> Message:
         at = list(PLACES)
@@ -133,10 +140,10 @@ class Kratos(Solver):
         self.solver.SolveSolutionStep()
         before, self.last = self.last, self.residuals()
         self.first = self.first or self.last
-        contacts = [self.found(number, mode) for number, mode in zip(SLAVES, modes)]
+        contacts = [self.found(number, mode) for number, mode in zip(self.slave_numbers, modes)]
         state = {"at": {"increment": 1, "major": self.iteration}, "load": 1.0, "contacts": contacts, "ended": "equilibrium",
                  "residual": self.norms(before) if before else {}, "after": self.norms(self.last),
-                 "displacements": [self.plane(node, self.core.DISPLACEMENT) for node in self.part.Nodes]}
+                 "displacements": [self.vector(node, self.core.DISPLACEMENT) for node in self.part.Nodes]}
         settled = modes == [self.held.get(row["id"], row["next"]) for row in contacts]
         if not all(map(math.isfinite, self.last.values())):
             return {"at": state["at"], "ended": "failure", "reason": "the displacements are no numbers any more"}
@@ -149,14 +156,14 @@ class Kratos(Solver):
     def found(self, number: int, mode: str) -> Message:
         """What the iteration found at a slave node. Its normal looks out of the slave, and n out of the master."""
         node, law = self.part.Nodes[number], self.law
-        x, y = self.plane(node, self.core.NORMAL)
+        x, y = self.vector(node, self.core.NORMAL)
         normal, tangent = (-x, -y), (y, -x)
         area = node.GetValue(self.core.NODAL_AREA)
         # Multipliers are tractions on the slave by the scale factor.
         scale = area * self.part.ProcessInfo[self.core.SCALE_FACTOR]
-        multiplier = self.plane(node, self.core.VECTOR_LAGRANGE_MULTIPLIER)
+        multiplier = self.vector(node, self.core.VECTOR_LAGRANGE_MULTIPLIER)
         f_n, f_t = (scale * (multiplier[0] * a + multiplier[1] * b) for a, b in (normal, tangent))
-        slip = self.plane(node, law.WEIGHTED_SLIP)
+        slip = self.vector(node, law.WEIGHTED_SLIP)
         reasons = {"free": "augmented pressure not compressive", "fixed": "augmented friction within its limit",
                    "sliding": "augmented friction at its limit"}
         after = self.mode(node)
@@ -164,19 +171,17 @@ class Kratos(Solver):
                 "gap": node.GetSolutionStepValue(law.WEIGHTED_GAP) / area, "f_n": f_n, "f_t": f_t,
                 "limit": math.copysign(FRICTION * f_n, f_t), "slip": (slip[0] * tangent[0] + slip[1] * tangent[1]) / area}
 
-    def plane(self, node: Any, variable: Any) -> tuple[float, float]:
-        x, y, _ = node.GetSolutionStepValue(variable)
-        return x, y
+    def vector(self, node: Any, variable: Any) -> list[float]:
+        return list(node.GetSolutionStepValue(variable))[:len(self.components)]
 
     def residuals(self) -> dict[str, float]:
         """Norms of what is out of balance: forces at unknown displacements, and conditions of the slaves' multipliers."""
-        core, vector = self.core, self.solver._GetSolutionStrategy().GetSystemVector()
-        unknowns = {"force": [(node, core.DISPLACEMENT_X, core.DISPLACEMENT_Y) for node in self.part.Nodes],
-                    "interface": [(node, core.VECTOR_LAGRANGE_MULTIPLIER_X, core.VECTOR_LAGRANGE_MULTIPLIER_Y)
-                                  for node in self.slaves]}
-        return {name: math.hypot(*(vector[node.GetDof(component).EquationId] for node, *components in group
-                                   for component in components if not node.IsFixed(component)))
-                for name, group in unknowns.items()}
+        core, system = self.core, self.solver._GetSolutionStrategy().GetSystemVector()
+        unknowns = {"force": ("DISPLACEMENT", self.part.Nodes), "interface": ("VECTOR_LAGRANGE_MULTIPLIER", self.slaves)}
+        return {name: math.hypot(*(system[node.GetDof(component).EquationId] for node in nodes
+                                   for component in (getattr(core, f"{variable}_{axis}") for axis in self.components)
+                                   if not node.IsFixed(component)))
+                for name, (variable, nodes) in unknowns.items()}
 
     def norms(self, residuals: dict[str, float]) -> dict[str, float]:
         relative = {name: value / self.first[name] for name, value in residuals.items()}

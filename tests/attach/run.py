@@ -61,6 +61,7 @@ class Adapter:
     drive: Callable[[Attached], Driven]
     close: float = 0.0  # By how much of its largest number two runs may differ.
     run_ends: Optional[int] = 0  # Code with which `stickslip run` ends; none where it is not asked.
+    check_ends: int = 0  # Code with which `--check` ends: 1 for a solver that breaks a law.
 
 
 class Failed(Exception):
@@ -242,6 +243,23 @@ def kratos(solver: Attached) -> Driven:
     return Driven(states, "6 iterations, u_x 0.007575 0.005162; forced: FS FS FX XX XF FF", times=times)
 
 
+def kratos_blocks(solver: Attached) -> Driven:
+    """All nodes slide; the states after a restore are the same. Friction is not along the slip, in Kratos' own loop neither."""
+    start = solver.ask("save")["token"]
+    states, times = times_of(solver, 60)
+    must("modes", " ".join(map(letters, states)), " ".join(["X" * 9, "S" * 9, "S" * 9]))
+    must("its end", states[-1]["ended"], "done")
+    solver.ask("restore", token=start)
+    must("the run after a restore", solver.run(60), states)
+    off = 0.0
+    for row in states[-1]["contacts"]:
+        near("|F_t| by F_n", size(row["f_t"]) / row["f_n"], 0.3, 1e-4)
+        (a, b), (u, v) = row["f_t"], row["slip"]
+        off = max(off, abs(math.degrees(math.atan2(a * v - b * u, a * u + b * v))))
+    near("angle between friction and slip", off, 45.4, 1e-2)
+    return Driven(states, f"all slide; friction up to {off:.1f} degrees off the slip", times=times)
+
+
 def getfem(solver: Attached) -> Driven:
     """As many iterations and the same forces as calls that make all iterations of an increment; Coulomb's law overall."""
     states, times = times_of(solver, 100)
@@ -318,6 +336,9 @@ ADAPTERS = (
     Adapter("Kratos", "kratos.py", ("KratosContactStructuralMechanicsApplication==10.4.4",
                                     "KratosStructuralMechanicsApplication==10.4.4"), "KratosMultiphysics", kratos),
     # Lengths of vectors may differ in the last digit between Python and Rust.
+    Adapter("Kratos 3-D", "kratos_block.py", ("KratosContactStructuralMechanicsApplication==10.4.4",
+                                              "KratosStructuralMechanicsApplication==10.4.4"), "KratosMultiphysics", kratos_blocks,
+            close=1e-12, check_ends=1),
     Adapter("block3d", "block3d.py", (), "json", block3d, close=1e-12),
     # Its last digits depend on where its memory lies.
     Adapter("GetFEM", "getfem_blocks.py", (), "getfem", getfem, close=1e-9),
@@ -428,7 +449,7 @@ def main() -> int:
                     "ms a step": f"{milliseconds:.1f}", "figures": found.said, "result": "right"}
             if built and adapter.run_ends is not None:
                 began = time.perf_counter()
-                stickslip(program, ["attach", "--check", "--", *command], environment, 0)
+                stickslip(program, ["attach", "--check", "--", *command], environment, adapter.check_ends)
                 row["--check"] = f"{time.perf_counter() - began:.1f} s"
                 trace = stickslip(program, ["run", "--trace", "-", "--", *command], environment, adapter.run_ends)
                 row["run"] = f"{same_trace(trace, found.states, adapter.close)} same"

@@ -7,7 +7,7 @@ use libtest_mimic::Trial;
 use std::io::{Read, Write};
 use std::path::Path;
 use std::process::Command as Process;
-use stickslip::attach::check::check;
+use stickslip::attach::check::{Verdict, check};
 use stickslip::attach::{Attached, Channel, PYTHON, Start};
 use stickslip::contact::record::ContactRecord;
 use stickslip::history::frame::Frame;
@@ -25,6 +25,7 @@ pub fn tests() -> Vec<Trial> {
             the_swing_of_the_direction_of_friction_is_found_and_is_the_cause,
             a_state_with_friction_across_its_slip_is_marked,
             a_solver_in_space_passes_every_check,
+            a_check_finds_friction_off_the_slip,
             a_stored_exchange_in_space_has_the_same_states,
             remedies_are_tried_on_the_solver_itself,
             a_vtu_has_three_coordinates,
@@ -125,6 +126,11 @@ fn a_state_with_friction_across_its_slip_is_marked() {
             let angles = event.nodes.iter().filter_map(ContactRecord::deviation);
             let largest = angles.fold(0.0, f64::max).to_degrees();
             assert_eq!(largest > 60.0, marked, "{increment}: {largest}");
+            does(&mut session, Command::Census(Vec::new()));
+            session.background_mut().wait();
+            let page = session.background().examination(session.timeline().place());
+            let page = page.flatten().unwrap().lines().join("\n");
+            assert_eq!(page.contains("degrees off"), marked, "{page}");
         }
     }
 }
@@ -138,6 +144,16 @@ fn a_solver_in_space_passes_every_check() {
         text.contains("every iteration satisfies it within"),
         "{text}"
     );
+}
+
+fn a_check_finds_friction_off_the_slip() {
+    let folder = tempfile::tempdir().unwrap();
+    let report = check(&start(folder.path(), &["1", "wrong"]), &Log::default());
+    let laws = report.checks.iter().find(|check| check.what == "laws");
+    let text = report.text();
+    let failed = matches!(laws.unwrap().verdict, Verdict::Fails(_));
+    assert!(failed, "{text}");
+    assert!(text.contains("degrees off its slip"), "{text}");
 }
 
 fn a_stored_exchange_in_space_has_the_same_states() {

@@ -44,6 +44,24 @@ fn every_message_on_the_page_of_the_protocol_is_read_whole() {
 }
 
 #[test]
+fn requests_of_a_version_1_exchange_are_written_as_they_were() {
+    let text = include_str!("../../problems/lessons/kratos-walk.exchange");
+    let of = |sign| text.lines().filter_map(move |line| line.strip_prefix(sign));
+    let mut count = 0;
+    for line in of("> ") {
+        let request = Request::read(line).expect("a request");
+        assert_eq!(request.line().trim_end(), line);
+        count += 1;
+    }
+    assert!(count > 50, "{count}");
+    for line in of("< ") {
+        let written = Answer::read(line).expect("an answer").line();
+        let again = Answer::read(&written).expect("an answer of ours").line();
+        assert_eq!(again, written);
+    }
+}
+
+#[test]
 fn the_schema_has_every_key_of_the_page_and_requires_what_the_reader_requires() {
     let schema: serde_json::Value = serde_json::from_str(stickslip::attach::SCHEMA).expect("JSON");
     let page = manual::page("protocol").expect("the page exists").text();

@@ -29,10 +29,12 @@ use stickslip::record::differences::compare;
 use stickslip::record::journal::{JournalTarget, Record};
 use stickslip::record::snapshot::Snapshot;
 use stickslip::record::story::story;
+use stickslip::recorded::exchange;
 use stickslip::scene::Scene;
 use stickslip::scene::cost::Cost;
 use stickslip::scene::shown;
 use stickslip::session::Session;
+use stickslip::step::solver::Solver as _;
 use stickslip::step::stepper::Stepper;
 use stickslip::study::chart_file::Chart;
 use stickslip::study::precision;
@@ -226,6 +228,39 @@ fn interface_problems() {
 #[test]
 fn siconos() {
     fuzz("siconos", &files("tests/siconos", "dat"), scene);
+}
+
+/// A solver in space, in version 2 of the protocol.
+const SPACE: &str = r#"# stickslip exchange 1
+# started: block
+> {"type":"hello","protocol":1,"protocols":[1,2],"reads":["progress","space","partial"],"name":"stickslip","version":"0.1.0"}
+< {"type":"hello","protocol":2,"name":"block","version":"1","abilities":{"force":true,"restore":"any","partial":true}}
+> {"type":"scene"}
+< {"type":"scene","title":"","dimension":3,"nodes":[{"at":[0,0,0]},{"at":[1,0,0]},{"at":[-1,-1,0]},{"at":[2,-1,0]},{"at":[2,2,0]}],"faces":[[0,1,2]],"surfaces":[{"name":"plane","faces":[[2,3,4]],"rigid":true}],"contacts":[{"id":0,"node":0,"surface":"plane","friction":{"mu":0.3}},{"id":1,"node":1,"surface":"plane"}]}
+> {"type":"step"}
+< {"type":"progress","done":1,"of":2}
+< {"type":"state","at":{"increment":1},"load":0.5,"ended":"iteration","contacts":[{"id":0,"mode":"free","next":"sliding","gap":-1e-3,"f_n":0,"f_t":[0,0],"limit":0,"slip":[0,1e-3]},{"id":1,"mode":"free","next":"free","gap":1,"f_n":0,"f_t":[0,0],"limit":0,"slip":[0,0]}],"displacements":[[0,0,0],[0,0,0],[0,0,0],[0,0,0],[0,0,0]]}
+> {"type":"step"}
+< {"type":"state","load":0.5,"ended":"done","contacts":[{"id":0,"mode":"sliding","next":"sliding","gap":0,"f_n":10,"f_t":[2.4,1.8],"limit":3,"slip":[4e-3,3e-3],"normal":[0,0,1],"tangent":[1,0,0]}]}
+"#;
+
+#[test]
+fn exchanges() {
+    let mut corpus = files("problems/lessons", "exchange");
+    corpus.push(SPACE.into());
+    for text in &corpus {
+        assert!(exchange::open("x.exchange", text).is_ok());
+    }
+    fuzz("exchanges", &corpus, |text| {
+        let mut past = match exchange::open("x.exchange", text) {
+            Ok(opened) => opened.past,
+            Err(error) => return Took::Refused(error.to_string()),
+        };
+        for _ in 0..4 {
+            let _ = past.step();
+        }
+        Took::Well
+    });
 }
 
 #[test]

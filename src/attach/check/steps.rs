@@ -272,6 +272,9 @@ fn laws(states: &[State]) -> Outcome {
     let forces = all.flat_map(|found| [found.f_n, found.f_t.map(|f| f.size())]);
     let forces = forces.flatten();
     let largest = forces.fold(0.0, |most: f64, force| most.max(force.abs()));
+    let slips = states.iter().flat_map(|state| &state.contacts);
+    let slips = slips.filter_map(|found| Some(found.slip?.size()));
+    let crawl = ALLOWED * slips.fold(0.0, f64::max);
     let (mut count, mut nearly) = (0, String::new());
     for state in accepted {
         count += 1;
@@ -281,10 +284,10 @@ fn laws(states: &[State]) -> Outcome {
                 let at = state.at.increment;
                 format!("increment {at}, contact {}: {why}", shown::line(&id))
             };
-            if let Some((why, mend)) = unlawful(found, ALLOWED * largest) {
+            if let Some((why, mend)) = unlawful(found, ALLOWED * largest, crawl) {
                 return fails(located(why), mend);
             }
-            if let Some((why, _)) = unlawful(found, ROUNDED * largest)
+            if let Some((why, _)) = unlawful(found, ROUNDED * largest, crawl)
                 && nearly.is_empty()
             {
                 nearly = format!(
@@ -311,8 +314,8 @@ pub fn is_settled(state: &State) -> bool {
         && state.contacts.iter().all(|found| found.mode == found.next)
 }
 
-/// How a settled contact violates the laws; forces below `small` count as zero.
-fn unlawful(found: &ContactResult, small: f64) -> Option<(String, &'static str)> {
+/// How a settled contact violates the laws; forces below `small` count as zero, and slips below `crawl` have no direction.
+fn unlawful(found: &ContactResult, small: f64, crawl: f64) -> Option<(String, &'static str)> {
     let size = found.f_t.map_or(0.0, |f| f.size());
     let f_n = found.f_n.unwrap_or(0.0);
     // The sign, in the plane.
@@ -320,6 +323,18 @@ fn unlawful(found: &ContactResult, small: f64) -> Option<(String, &'static str)>
     let slip = found.f_t.zip(found.slip);
     let slip = slip.and_then(|(f, slip)| Some((f.pair()?, slip.pair()?)));
     let limit = found.limit;
+    // In space: the distance of the force from the point of the circle that the slip demands.
+    let (off, degrees) = match slip {
+        Some(([a, b], [u, v])) if u.hypot(v) > crawl => {
+            let demanded = limit.unwrap_or(size) / u.hypot(v);
+            let angle = (a * v - b * u).atan2(a * u + b * v).abs();
+            (
+                (a - demanded * u).hypot(b - demanded * v),
+                angle.to_degrees(),
+            )
+        }
+        _ => (0.0, 0.0),
+    };
     match found.mode {
         Mode::Free if f_n.abs() > small || size > small => Some((
             format!("free, but with forces ({f_n:?}, {f_t:?})"),
@@ -339,14 +354,10 @@ fn unlawful(found: &ContactResult, small: f64) -> Option<(String, &'static str)>
                 "give limit the sign of the friction force: copysign(mu * f_n + cohesion, f_t)",
             ))
         }
-        Mode::Sliding
-            if slip.is_some_and(|([a, b], [u, v])| a * u + b * v < 0.0) && size > small =>
-        {
-            Some((
-                format!("sliding with f_t = {f_t:?} against its slip"),
-                "slip is the motion of the master relative to the node, so friction on the node has its direction",
-            ))
-        }
+        Mode::Sliding if off > small => Some((
+            format!("sliding with f_t = {f_t:?}, {degrees:.1} degrees off its slip"),
+            "|f_t| = limit in the direction of slip, the motion of the master relative to the node",
+        )),
         _ if limit.is_some_and(|limit| size > limit.abs() + small) => Some((
             format!("f_t = {f_t:?} exceeds the limit {:?}", limit.unwrap_or(0.0)),
             "in an accepted state |f_t| <= |limit| = mu f_n + cohesion",

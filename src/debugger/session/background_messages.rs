@@ -26,8 +26,10 @@ pub(super) enum BackgroundRequest {
 /// What a line shows about an attached solver; empty for our own.
 #[derive(Default)]
 pub(super) struct Reported {
-    /// How it failed, and whether its modes repeat.
+    /// How it failed or what law the accepted state breaks, and whether its modes repeat.
     pub findings: Vec<String>,
+    /// Whether modes repeat or keep changing.
+    pub changing: bool,
     /// The latest minor iterations of the frozen problem.
     pub iterations: ReportedIterations,
 }

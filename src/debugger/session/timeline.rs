@@ -25,6 +25,7 @@ use stickslip_core::model::Model;
 use stickslip_core::step::event::{Event, Position};
 use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::state::{State, Status};
+use stickslip_scene::number::shortest;
 use stickslip_scene::shown;
 
 /// Maximum number of minor iterations compared with the interface problem of an attached solver.
@@ -397,13 +398,20 @@ impl Timeline {
 
     /// What the line shows about an attached solver up to the cursor.
     pub(super) fn reported(&self) -> Reported {
-        let what = match &self.frame().state.status {
+        let frame = self.frame();
+        let doubt = frame.event.as_ref().and_then(|event| {
+            let doubt = report::reservations(self.model(), event);
+            (!doubt.is_empty())
+                .then(|| format!("load {} accepted{doubt}", shortest(event.load_factor)))
+        });
+        let what = match &frame.state.status {
             Status::Failed(failure) => Some(failures::describe(self.model(), failure)),
-            _ => None,
+            _ => doubt,
         };
         let found = rounds(&self.strips()[..=self.cursor]);
         let place = found.map(|found| rounds::words(self.model(), &found, true));
         Reported {
+            changing: place.is_some(),
             findings: what.into_iter().chain(place).collect(),
             iterations: self.iterations_reported(),
         }

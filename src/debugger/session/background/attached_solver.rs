@@ -72,7 +72,7 @@ impl Helper {
             format!("start from the consistent state {n} (:start-from {n} forces its modes)")
         });
         let mut tries: Vec<String> = answers.collect();
-        if tries.is_empty() && !known.is_empty() {
+        if tries.is_empty() && reported.changing {
             tries.push("force one of the changing nodes into another mode (m)".into());
         }
         let tries = tries.iter().filter(|_| self.offers.force);
