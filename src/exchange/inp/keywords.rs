@@ -261,7 +261,7 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
             Reader::node_set,
         ),
     ),
-    ("ORIENTATION", Refused(FRAMES)),
+    ("ORIENTATION", Ignored("materials are isotropic")),
     ("OUTPUT", Ignored(OUTPUT)),
     ("PART", Read("", None)),
     ("PHYSICAL CONSTANTS", Ignored("it only concerns heat")),
@@ -296,7 +296,7 @@ pub const KEYWORDS: &[(&str, Treatment)] = &[
         read(
             "including the thickness",
             Model,
-            &["ELSET", "MATERIAL", "CONTROLS"],
+            &["ELSET", "MATERIAL", "CONTROLS", "ORIENTATION"],
             Reader::solid_section,
         ),
     ),

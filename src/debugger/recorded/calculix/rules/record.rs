@@ -48,8 +48,19 @@ pub fn increments_used(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunF
     }]
 }
 
+/// Did the last attempt converge? Then attempts that were cut on the way did not stop the run.
+fn ended_converged(run: &CalculixRun) -> bool {
+    run.files
+        .attempts
+        .last()
+        .is_some_and(|last| last.end == End::Converged)
+}
+
 /// Contacts that open and close in turn: who, where, how often, and against whom.
 pub fn chatter(run: &CalculixRun, shape: Option<&DeckShape>) -> Vec<RunFinding> {
+    if ended_converged(run) {
+        return Vec::new();
+    }
     let often = run
         .switching
         .iter()
@@ -138,6 +149,9 @@ fn masters(run: &CalculixRun, attempt: usize, slaves: &BTreeSet<usize>) -> Strin
 
 /// Attempts whose correction stays at its cap of 100 % while the residual grows.
 pub fn capped_correction(run: &CalculixRun, _: Option<&DeckShape>) -> Vec<RunFinding> {
+    if ended_converged(run) {
+        return Vec::new();
+    }
     let capped = run
         .files
         .attempts
