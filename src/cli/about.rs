@@ -60,9 +60,15 @@ fn features() -> String {
 }
 
 fn target() -> String {
-    let libc = match (cfg!(target_env = "musl"), cfg!(target_env = "gnu")) {
-        (true, _) => "musl",
-        (_, true) => "glibc",
+    let libc = match (
+        env::consts::OS,
+        cfg!(target_env = "musl"),
+        cfg!(target_env = "gnu"),
+    ) {
+        ("windows", _, true) => "MinGW",
+        ("windows", ..) => "MSVC",
+        (_, true, _) => "musl",
+        (_, _, true) => "glibc",
         _ => "other libc",
     };
     let linked = match cfg!(target_feature = "crt-static") {

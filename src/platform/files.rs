@@ -156,6 +156,7 @@ mod tests {
         assert_eq!(std::fs::read_to_string(at("a")).unwrap(), "new");
     }
 
+    #[cfg(unix)]
     #[test]
     fn a_dangling_link_gets_its_target_on_request_and_stays_a_link() {
         use std::os::unix::fs::symlink;
@@ -179,6 +180,7 @@ mod tests {
         assert!(write(&at("loop"), "a", true).is_err());
     }
 
+    #[cfg(unix)]
     #[test]
     fn only_files_of_killed_runs_are_swept() {
         let directory = tempfile::tempdir().unwrap();
@@ -209,6 +211,7 @@ mod tests {
         assert_eq!(left, wanted);
     }
 
+    #[cfg(unix)]
     #[test]
     fn a_pipe_without_a_reader_fails_at_once() {
         let directory = tempfile::tempdir().unwrap();

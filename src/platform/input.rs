@@ -167,10 +167,11 @@ fn regular(found: &Metadata) -> Result<(), Unreadable> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rustix::fs::{CWD, Mode, mkfifoat};
 
+    #[cfg(unix)]
     #[test]
     fn special_files_are_rejected_without_blocking() {
+        use rustix::fs::{CWD, Mode, mkfifoat};
         let directory = tempfile::tempdir().unwrap();
         let pipe = directory.path().join("pipe");
         mkfifoat(CWD, &pipe, Mode::RUSR | Mode::WUSR).unwrap();
@@ -189,6 +190,7 @@ mod tests {
         assert!(matches!(missing, Unreadable::Failed(_)));
     }
 
+    #[cfg(unix)]
     #[test]
     fn a_named_file_is_in_the_folder_or_below() {
         let directory = tempfile::tempdir().unwrap();

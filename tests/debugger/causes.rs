@@ -70,6 +70,13 @@ fn rules_are_silent_on_the_cured_decks() {
 }
 
 #[test]
+fn a_run_that_converged_has_no_cause_from_attempts_that_were_cut() {
+    let run = run(&root(), "slider-soft");
+    assert!(!run.switching.is_empty());
+    assert!(run.findings.is_empty(), "{:?}", run.findings);
+}
+
+#[test]
 fn cards_that_couple_nodes_silence_the_rules_on_supports() {
     let open = text("open");
     assert_eq!(causes(&open), ["held by open contact"]);

@@ -327,6 +327,24 @@ fn ignored_and_reinterpreted_input_is_listed_with_its_line() {
 }
 
 #[test]
+fn an_orientation_of_an_isotropic_section_is_ignored_with_a_note() {
+    let section = "*SOLID SECTION";
+    let oriented = BLOCK.replace(
+        section,
+        "*ORIENTATION, NAME=AXES\n1., 0., 0., 0., 1., 0.\n*SOLID SECTION, ORIENTATION=AXES",
+    );
+    assert!(BLOCK.contains(section));
+    let read = deck(&oriented);
+    assert_eq!(read.elements.len(), deck(BLOCK).elements.len());
+    let noted = read.remarks.iter().map(|remark| &remark.text);
+    assert!(
+        noted
+            .into_iter()
+            .any(|text| text.contains("*ORIENTATION is ignored"))
+    );
+}
+
+#[test]
 fn loads_on_sides_and_volumes_and_adjusted_gaps_are_read() {
     let text = but(
         BLOCK,
