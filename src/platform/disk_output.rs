@@ -122,7 +122,7 @@ impl ReadyFile {
         }
         let kept = |path: &Path| {
             // Some file systems have no hard links.
-            std::fs::hard_link(&self.target, path)
+            system::second_name(&self.target, path)
                 .or_else(|_| std::fs::copy(&self.target, path).map(drop))?;
             File::open(path)
         };

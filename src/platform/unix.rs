@@ -116,3 +116,11 @@ pub fn shell() -> Command {
 
 /// The pager without the user's choice.
 pub const PAGER: &str = "less -R";
+
+/// Gives a file a second name (a hard link).
+///
+/// # Errors
+/// From the system.
+pub fn second_name(file: &Path, name: &Path) -> io::Result<()> {
+    std::fs::hard_link(file, name)
+}

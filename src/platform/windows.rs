@@ -104,3 +104,11 @@ pub fn shell() -> Command {
 
 /// The pager without the user's choice.
 pub const PAGER: &str = "more";
+
+/// Fails: while the second name is open, the file itself cannot be replaced.
+///
+/// # Errors
+/// Always.
+pub fn second_name(_: &Path, _: &Path) -> io::Result<()> {
+    Err(io::ErrorKind::Unsupported.into())
+}

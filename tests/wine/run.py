@@ -50,7 +50,7 @@ def prepare(folder):
 
 
 def tested(environment):
-    """Builds the program and its tests, and runs those of the packages and of `run`. Returns the program."""
+    """Builds the program and its tests, and runs those of five packages and of snapshots. Returns the program."""
     environment = {**environment, f"CARGO_TARGET_{TARGET.upper().replace('-', '_')}_RUNNER": wine()}
     cargo = ["cargo", "test", "--locked", "--target", TARGET, "--quiet"]
     packages = ["stickslip-core", "stickslip-linalg", "stickslip-exchange", "stickslip-scene", "stickslip-platform"]
