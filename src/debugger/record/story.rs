@@ -79,10 +79,7 @@ pub fn done(model: &Model, entry: &Entry) -> String {
             )
         }
         Command::Follow { label, steps } => {
-            format!(
-                "AppliedIntervention a remedy ({} steps): {label}.",
-                steps.len()
-            )
+            format!("Applied a remedy ({} steps): {label}.", steps.len())
         }
         Command::Release { slave: s } => {
             format!("Released {}, so that Table 2 decides again.", slave(s))
