@@ -127,6 +127,7 @@ fn kind(arg: &clap::Arg) -> Option<Kind> {
         (_, "topic") => Kind::Words(|begun| of(begun, topics())),
         (_, "name") => Kind::Words(|begun| of(begun, shown())),
         ("SCENE|STUDY", _) => Kind::Words(|begun| with_files(begun, with_studies())),
+        ("SCREEN|SCENE", _) => Kind::Words(|begun| with_files(begun, screens())),
         ("SCENE" | "SCENE|SNAPSHOT" | "SCENE|SNAPSHOT|JOURNAL|MESH|CEL", _) => {
             Kind::Words(|begun| with_files(begun, scenes()))
         }
@@ -149,9 +150,11 @@ const FREE: &[&str] = &[
     "ADDRESS",
     "CELLS",
     "ERROR",
+    "COLOURS",
     "INC[.MAJOR[.MINOR]]",
     "ITERATIONS",
     "K",
+    "KEYS",
     "K/N",
     "MONITOR",
     "N",
@@ -174,6 +177,13 @@ fn scenes() -> Vec<Named> {
     let list = builtin::list().iter();
     list.map(|scene| (scene.name, builtin::title(scene)))
         .collect()
+}
+
+/// The main screens of the debugger, and scenes.
+fn screens() -> Vec<Named> {
+    let screens = super::front::MAIN_SCREENS.iter();
+    let named = screens.map(|screen| (screen.name, screen.keys.to_owned()));
+    named.chain(scenes()).collect()
 }
 
 fn with_studies() -> Vec<Named> {

@@ -1,10 +1,13 @@
 //! Entry points of the terminal debugger for the subcommands. A build without the feature `tui` uses `front/disabled.rs` instead.
 
 use super::base::Error;
+use stickslip_debugger::action::Colours;
 use stickslip_debugger::record::journal::{JournalTarget, Record};
 use stickslip_debugger::session::Session;
 use stickslip_debugger::teach::Lesson;
 use stickslip_tui as tui;
+
+pub use tui::main_screens::{MAIN_SCREENS, MainScreen, SIZES};
 
 /// Succeeds: this build has the debugger.
 pub fn ready() -> Result<(), Error> {
@@ -33,4 +36,20 @@ pub fn lesson(lesson: Lesson, step: Option<usize>) -> Result<(), Error> {
 /// Converts a journal to a film.
 pub fn film(record: &Record, session: Session) -> Result<String, Error> {
     Ok(tui::cast::film(record, session)?)
+}
+
+/// A screen as PNG, in each of these colours.
+pub fn screenshots(
+    screen: &MainScreen<'_>,
+    size: (u16, u16),
+    colours: &[Colours],
+) -> Result<Vec<Vec<u8>>, Error> {
+    let mono = tui::theme::Theme::mono();
+    let mut debugger =
+        tui::after_keys(screen.scene, screen.keys, size, mono).map_err(Error::Usage)?;
+    let draw = |&colours| {
+        debugger.app.theme = tui::theme::Theme::new(colours);
+        tui::screenshot::png(&debugger, size, colours).map_err(Error::usage)
+    };
+    colours.iter().map(draw).collect()
 }

@@ -15,7 +15,7 @@ const GROUPS: [(&str, &[&str]); 8] = [
     ("Record", &["record", "replay", "diff"]),
     ("Sweep", &["study", "map", "chart"]),
     ("Learn", &["lesson", "help"]),
-    ("Files", &["list", "show", "export"]),
+    ("Files", &["list", "show", "export", "screens"]),
     ("Install", &["completions", "man"]),
 ];
 

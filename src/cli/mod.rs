@@ -41,6 +41,7 @@ mod replay;
 mod resume;
 mod run;
 mod run_outputs;
+mod screens;
 mod serve;
 mod show;
 mod sink;
@@ -141,6 +142,8 @@ subcommands! {
     Lesson lesson,
     /// Prints the file of a built-in scene, study or lesson, or a finished CalculiX run as text
     Show show,
+    /// Draws screens of the debugger as pictures
+    Screens screens,
     /// Prints a shell's completion script
     Completions completions,
     /// Writes pages for man

@@ -194,6 +194,8 @@ fn inline(text: &str) -> Vec<(Style, String)> {
     while let Some(first) = rest.chars().next() {
         let found = match first {
             '`' => between(rest, "`", "`").map(|(inner, after)| (Style::Code, inner, after)),
+            // A star after a letter, as in S*, opens nothing.
+            '*' if plain.ends_with(char::is_alphanumeric) => None,
             '*' => between(rest, "**", "**")
                 .map(|(inner, after)| (Style::Strong, inner, after))
                 .or_else(|| {

@@ -16,6 +16,16 @@ pub enum Anchor {
     Right,
 }
 
+/// A font.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Face {
+    /// DejaVu Sans.
+    #[default]
+    Sans,
+    /// DejaVu Sans Mono, with the glyphs of DejaVu Sans where it has none.
+    Mono,
+}
+
 /// A shape.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Shape {
@@ -33,6 +43,8 @@ pub enum Shape {
         anchor: Anchor,
         /// Whether it is vertical, reading upwards.
         upright: bool,
+        /// Its font.
+        face: Face,
     },
     /// A polyline.
     Line {

@@ -8,7 +8,7 @@ use super::pen::{self, width_of};
 use super::placing::Patch;
 use stickslip_scene::shown;
 
-pub use super::drawn::{Anchor, Colour, PlotError, Shape};
+pub use super::drawn::{Anchor, Colour, Face, PlotError, Shape};
 
 /// Text and axes.
 pub const BLACK: Colour = (0, 0, 0);
@@ -153,6 +153,7 @@ impl Sheet {
             colour,
             anchor,
             upright: false,
+            face: Face::Sans,
         });
     }
 
@@ -165,6 +166,7 @@ impl Sheet {
             colour: BLACK,
             anchor: Anchor::Middle,
             upright: true,
+            face: Face::Sans,
         });
     }
 

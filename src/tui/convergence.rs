@@ -35,6 +35,9 @@ impl Point {
 struct Scale {
     top: f64,
     bottom: f64,
+    /// Decades from one label to the next, and the rows between them; the same everywhere.
+    every: u16,
+    apart: u16,
     /// Rows of decades.
     rows: u16,
     zero: bool,
@@ -57,10 +60,16 @@ impl Scale {
         } else {
             (0.0, -1.0)
         };
+        let rows = rows.saturating_sub(u16::from(zero)).max(1);
+        let decades = (top - bottom) as u16;
+        let every = decades.div_ceil(((rows - 1) / 2).max(1)).max(1);
+        let apart = (rows - 1) / decades.div_ceil(every);
         Scale {
             top,
             bottom,
-            rows: rows.saturating_sub(u16::from(zero)).max(1),
+            every,
+            apart,
+            rows,
             zero,
         }
     }
@@ -71,8 +80,8 @@ impl Scale {
             v if v <= 0.0 => f64::from(self.rows) + 0.5,
             v if !v.is_finite() => 0.0,
             v => {
-                let part = (self.top - v.log10()) / (self.top - self.bottom);
-                0.5 + part * f64::from(self.rows - 1)
+                let labels = (self.top - v.log10()) / f64::from(self.every);
+                0.5 + labels * f64::from(self.apart)
             }
         }
     }
@@ -136,11 +145,8 @@ pub fn draw(buffer: &mut Buffer, area: Rect, points: &[Point], theme: &Theme) {
 /// Labels of the decades.
 fn axis(buffer: &mut Buffer, frame: ChartFrame, scale: &Scale, theme: &Theme) {
     let decades = (scale.top - scale.bottom) as usize;
-    let every = decades
-        .div_ceil((scale.rows as usize).saturating_sub(1).max(1))
-        .max(1);
     frame.axis(buffer, theme.faint);
-    for decade in (0..=decades).step_by(every) {
+    for decade in (0..=decades).step_by(usize::from(scale.every)) {
         let power = scale.top as i32 - decade as i32;
         let row = scale.height(10f64.powi(power)).floor() as u16;
         let row = row.min(scale.rows - 1);
@@ -195,6 +201,20 @@ mod tests {
         assert_eq!(scale.height(1.0), 0.5);
         assert_eq!(scale.height(1e-10), 10.5);
         assert_eq!(scale.height(0.0), 11.5);
+    }
+
+    #[test]
+    fn labels_are_equally_far_apart() {
+        for rows in 2..40 {
+            for decades in 1..20 {
+                let scale = Scale::new(&[point(1.0), point(10f64.powi(-decades))], rows);
+                let label = |k: u16| scale.height(10f64.powi(-i32::from(k * scale.every)));
+                assert_eq!(label(1) - label(0), f64::from(scale.apart));
+                let lowest = scale.height(10f64.powi(-decades));
+                assert!(lowest <= f64::from(scale.rows), "{rows} {decades}");
+                assert!(scale.apart >= 1);
+            }
+        }
     }
 
     #[test]

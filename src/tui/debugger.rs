@@ -269,9 +269,9 @@ impl Debugger {
         true
     }
 
-    /// Types keys, named as in the key table and separated by blanks, and waits for the solver after each. For tests and pictures.
+    /// Types keys ([`keys::presses`]; nothing if they are wrong), and waits for the solver after each. For tests and pictures.
     pub fn type_keys(&mut self, names: &str) {
-        for key in names.split_whitespace().filter_map(keys::press) {
+        for key in keys::presses(names).unwrap_or_default() {
             self.key(&key);
             self.settle();
         }
@@ -625,11 +625,29 @@ impl Debugger {
 /// # Errors
 /// If the scene cannot be loaded.
 pub fn screen(scene: &str, keys: &str, width: u16, height: u16) -> Result<String, String> {
-    let session = Session::open(scene)?;
-    let mut debugger = Debugger::new(Theme::mono(), offers(), Some(session));
-    debugger.app.area = Rect::new(0, 0, width, height);
-    debugger.type_keys(keys);
+    let debugger = after_keys(Some(scene), keys, (width, height), Theme::mono())?;
     Ok(debugger.text(width, height))
+}
+
+/// The debugger on a scene, or on the chooser, after some keys, which must be valid ([`keys::presses`]).
+///
+/// # Errors
+/// If the scene cannot be loaded, or a key is unknown.
+pub fn after_keys(
+    scene: Option<&str>,
+    keys: &str,
+    (width, height): (u16, u16),
+    theme: Theme,
+) -> Result<Debugger, String> {
+    keys::presses(keys).map_err(|word| format!("unknown key '{word}' (`stickslip help keys`)"))?;
+    let session = scene.map(Session::open).transpose()?;
+    let offers = chooser_state::offers(&Progress::default());
+    let mut debugger = Debugger::new(theme, offers, session);
+    debugger.app.area = Rect::new(0, 0, width, height);
+    debugger.settle();
+    debugger.type_keys(keys);
+    debugger.settle();
+    Ok(debugger)
 }
 
 /// The first message after opening a scene: warnings about its start, or the first key to press.

@@ -76,6 +76,36 @@ pub fn press(name: &str) -> Option<KeyEvent> {
     Some(KeyEvent::new(code, modifiers))
 }
 
+/// The key presses of names separated by blanks. A longer word that begins with `:` or `/` and the words after it, up to Enter, Tab or
+/// Esc, are typed letter by letter; so are counts.
+///
+/// # Errors
+/// The first word that is no key.
+pub fn presses(names: &str) -> Result<Vec<KeyEvent>, String> {
+    let mut pressed = Vec::new();
+    let mut types = false;
+    for word in names.split_whitespace() {
+        let ends = ["Enter", "Tab", "Esc"].contains(&word);
+        match press(word) {
+            Some(key) if ends || !types => {
+                types &= word == "Tab";
+                pressed.push(key);
+            }
+            None if !types && word.bytes().all(|byte| byte.is_ascii_digit()) => {
+                pressed.extend(word.chars().filter_map(|digit| press(&digit.to_string())));
+            }
+            None if !types && !word.starts_with([':', '/']) => return Err(word.to_owned()),
+            _ => {
+                let blank = if types { " " } else { "" };
+                let letters = blank.chars().chain(word.chars());
+                pressed.extend(letters.map(|c| KeyEvent::new(KeyCode::Char(c), Modifiers::NONE)));
+                types = true;
+            }
+        }
+    }
+    Ok(pressed)
+}
+
 const NAMED: [KeyCode; 15] = [
     KeyCode::Char(' '),
     KeyCode::BackTab,
@@ -113,6 +143,25 @@ mod tests {
             let pressed = press(key).unwrap_or_else(|| panic!("no key is called {key}"));
             assert_eq!(name(&pressed).as_deref(), Some(*key));
         }
+    }
+
+    #[test]
+    fn command_lines_are_typed_letter_by_letter() {
+        let names = |keys: &str| {
+            let pressed = presses(keys)?;
+            Ok::<_, String>(
+                pressed
+                    .iter()
+                    .filter_map(name)
+                    .collect::<Vec<_>>()
+                    .join(" "),
+            )
+        };
+        assert_eq!(names("3 s Tab").unwrap(), "3 s Tab");
+        assert_eq!(names("c :go 3 Enter d").unwrap(), "c : g o Space 3 Enter d");
+        assert_eq!(names(": /a").unwrap(), ": / a");
+        assert_eq!(names("20 f").unwrap(), "2 0 f");
+        assert_eq!(names("s Enetr").unwrap_err(), "Enetr");
     }
 
     #[test]

@@ -30,6 +30,7 @@ mod lesson_text;
 mod lists;
 pub mod loading;
 mod log_counts;
+pub mod main_screens;
 mod mouse;
 mod order;
 pub mod paint;
@@ -38,6 +39,7 @@ mod prompts;
 #[cfg(feature = "terminal")]
 pub mod run;
 pub mod screen;
+pub mod screenshot;
 mod scroll;
 #[cfg(feature = "terminal")]
 pub mod terminal;
@@ -46,7 +48,7 @@ pub mod view;
 mod waiting;
 
 pub use app::{App, Effect};
-pub use debugger::{Debugger, screen};
+pub use debugger::{Debugger, after_keys, screen};
 #[cfg(feature = "terminal")]
 pub use run::{Error, resume, run, run_lesson};
 pub use screen::picture;

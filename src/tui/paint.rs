@@ -75,6 +75,14 @@ pub fn over(buffer: &mut Buffer, area: Rect, lines: &[Line], theme: &Theme) {
     }
 }
 
+/// Writes a text at a point, in this style alone, whatever was there before.
+pub fn label(buffer: &mut Buffer, (x, y): (u16, u16), text: &str, style: Style, theme: &Theme) {
+    let area = Rect::new(x, y, text.width() as u16, 1).intersection(buffer.area);
+    Clear.render(area, buffer);
+    buffer.set_style(area, theme.ground);
+    buffer.set_stringn(x, y, text, usize::from(area.width), style);
+}
+
 /// Wraps a text into lines of this width, with a blank on either side.
 pub fn wrapped(text: &str, width: usize, style: Style) -> Lines {
     let lines = wrap(text, width.saturating_sub(2)).into_iter();

@@ -301,7 +301,7 @@ fn a_solver_of_our_own_has_no_log_and_no_parameters() {
         holds(&debugger, "only attached solvers");
     }
     debugger.type_keys("m");
-    holds(&debugger, "capital letter: hold until M releases it");
+    holds(&debugger, "(capital letter: hold)");
 }
 
 #[test]

@@ -475,6 +475,8 @@ fn colours_follow_a_light_background_and_keys_around_the_reply_are_kept() {
     let (yellow, magenta) = (3, 5);
     let mut session = started(&nothing, &[]);
     session.see(" s step");
+    // The mark of a held mode is a warning.
+    session.type_and_see("mF", "◆");
     tinted(&session, yellow);
     session.keys("s\x1b]11;rgb:ffff/ffff/dddd\x1b\\s");
     session.see("minor 2");
@@ -483,7 +485,8 @@ fn colours_follow_a_light_background_and_keys_around_the_reply_are_kept() {
     tinted(&session, yellow);
     session.quit();
     let mut session = started(&nothing, &[("COLORFGBG", "0;15")]);
-    session.type_and_see("s", "minor 1");
+    session.see(" s step");
+    session.type_and_see("mF", "◆");
     tinted(&session, magenta);
     session.quit();
 }

@@ -14,6 +14,8 @@ mod by_hand;
 mod failures;
 // Whole screens at every size; what does not fit says so.
 mod screens;
+// The main screens as stored texts, and as pictures.
+mod main_screens;
 // What can be opened: found, looked at, taken; files completed.
 mod chooser;
 // The table of slave nodes: marks with and without colour, ties, order, words.

@@ -457,27 +457,6 @@ fn answers_and_remedies_are_in_the_journal_and_replay_to_the_same_bits() {
 }
 
 #[test]
-fn screens_at_three_sizes() {
-    for (name, keys) in [
-        ("timeline", "c Left t"),
-        ("diagnosis", "c d z"),
-        ("remedies", "c r z"),
-        ("branches", "c r Enter v v Up"),
-        ("card", "c e"),
-    ] {
-        let debugger = debugger("osc-two6", keys);
-        for (width, height) in [(80, 24), (120, 40), (200, 60)] {
-            // How long each remedy took is in a column of its own, which a narrow screen leaves out.
-            if name == "remedies" && width > 80 {
-                continue;
-            }
-            let name = format!("{name}-{width}x{height}");
-            insta::assert_snapshot!(name, text(&debugger, width, height));
-        }
-    }
-}
-
-#[test]
 #[ignore = "a measurement"]
 fn drawing_thousands_of_iterations() {
     let mut debugger = debugger("osc-inclined-cantilever", "c r Enter c t");

@@ -91,8 +91,8 @@ fn the_load_is_drawn_over_a_monitor() {
     );
     view.cursor = 4;
     let back = screen::text(&app, Some(&view), 80, 24);
-    assert!(back.contains("● -9.000e-2  at load 0.3"), "{back}");
-    assert!(back.contains("-6.400e-1"), "the scale stays");
+    assert!(back.contains("● -0.09  at load 0.3"), "{back}");
+    assert!(back.contains("-0.64 "), "the scale stays");
     press(&mut app, &view, "y");
     assert!(screen::text(&app, Some(&view), 80, 24).contains(" Load over tip x  2/2 "));
     press(&mut app, &view, "Shift-Tab");

@@ -1,6 +1,7 @@
 //! Replaces `front` in a build without the feature `tui`: every function reports that this build has no debugger.
 
 use super::base::Error;
+use stickslip_debugger::action::Colours;
 use stickslip_debugger::record::journal::{JournalTarget, Record};
 use stickslip_debugger::session::Session;
 use stickslip_debugger::teach::Lesson;
@@ -25,4 +26,21 @@ pub fn lesson(_: Lesson, _: Option<usize>) -> Result<(), Error> {
 
 pub fn film(_: &Record, _: Session) -> Result<String, Error> {
     ready().map(|()| String::new())
+}
+
+pub struct MainScreen<'a> {
+    pub name: &'a str,
+    pub scene: Option<&'a str>,
+    pub keys: &'a str,
+}
+
+pub const MAIN_SCREENS: [MainScreen<'static>; 0] = [];
+pub const SIZES: [(u16, u16); 0] = [];
+
+pub fn screenshots(
+    _: &MainScreen<'_>,
+    _: (u16, u16),
+    _: &[Colours],
+) -> Result<Vec<Vec<u8>>, Error> {
+    ready().map(|()| Vec::new())
 }

@@ -159,7 +159,21 @@ impl<'a> BodyMotion<'a> {
                 format!("the loads turn it with moment {}", sig4(power))
             }
         };
-        format!("body {} {moves} (→ in the shape); {loads}", self.name())
+        format!(
+            "body {} {moves} ({} in the shape); {loads}",
+            self.name(),
+            self.head()
+        )
+    }
+
+    /// The arrow of the motion in the shape.
+    fn head(&self) -> &'static str {
+        const HEADS: [&str; 8] = ["→", "↗", "↑", "↖", "←", "↙", "↓", "↘"];
+        let LooseMotion::Translation([x, y]) = self.motion else {
+            return "arrow";
+        };
+        let eighth = (self.sign * y).atan2(self.sign * x) / std::f64::consts::FRAC_PI_4;
+        HEADS[eighth.round().rem_euclid(8.0) as usize]
     }
 
     /// How many contacts of the body are open, slide or stick; `still` if it is loose with these modes.

@@ -75,8 +75,9 @@ impl Bitmap {
                 colour,
                 anchor,
                 upright,
+                face,
             } => {
-                let font = font::font()?;
+                let font = font::font(*face, text)?;
                 let scale = font::scale(font, size * pixels);
                 let (glyphs, width) = font::glyphs(font, scale, text);
                 let left = match anchor {
@@ -215,6 +216,7 @@ fn clipped(corners: &[(f64, f64)], (width, height): (f64, f64)) -> Vec<(f64, f64
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::drawn::Face;
 
     /// The runs of columns that contain ink.
     fn strokes(bitmap: &Bitmap) -> Vec<(usize, usize)> {
@@ -250,6 +252,7 @@ mod tests {
             colour: (0, 0, 0),
             anchor: Anchor::Left,
             upright: false,
+            face: Face::Sans,
         };
         let runs = strokes(&drawn((400, 60), &shape));
         assert_eq!(runs.len(), 13);

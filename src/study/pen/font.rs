@@ -1,16 +1,40 @@
-//! The font DejaVu Sans: widths of texts, and positions of their glyphs.
+//! The fonts DejaVu Sans and DejaVu Sans Mono: widths of texts, and positions of their glyphs.
 
-use crate::drawn::PlotError;
+use crate::drawn::{Face, PlotError};
 use ab_glyph::{Font, FontRef, GlyphId, PxScale, ScaleFont};
 use std::sync::OnceLock;
 
 /// Ratio of the em size to the text size.
 pub(super) const EM: f64 = 1.0 / 1.24;
 
-/// The built-in font.
-pub(super) fn font() -> Result<&'static FontRef<'static>, PlotError> {
-    static FONT: OnceLock<Option<FontRef<'static>>> = OnceLock::new();
-    let font = FONT.get_or_init(|| FontRef::try_from_slice(dejavu::sans::regular()).ok());
+/// A font that is read once.
+type ReadFont = OnceLock<Option<FontRef<'static>>>;
+
+/// The built-in font of a face that has all glyphs of a text; DejaVu Sans if there is none.
+pub(super) fn font(face: Face, text: &str) -> Result<&'static FontRef<'static>, PlotError> {
+    static SANS: ReadFont = OnceLock::new();
+    static MONO: ReadFont = OnceLock::new();
+    let sans = || read(&SANS, dejavu::sans::regular);
+    let mono = || read(&MONO, dejavu::sans_mono::regular);
+    match face {
+        Face::Sans => sans(),
+        Face::Mono => {
+            let font = mono()?;
+            let lacks = |c: char| font.glyph_id(c) == GlyphId(0);
+            if text.chars().any(lacks) {
+                sans()
+            } else {
+                Ok(font)
+            }
+        }
+    }
+}
+
+fn read(
+    font: &'static ReadFont,
+    bytes: fn() -> &'static [u8],
+) -> Result<&'static FontRef<'static>, PlotError> {
+    let font = font.get_or_init(|| FontRef::try_from_slice(bytes()).ok());
     font.as_ref()
         .ok_or_else(|| PlotError::new("its font cannot be read"))
 }
@@ -42,6 +66,6 @@ pub(super) fn scale(font: &FontRef, size: f64) -> PxScale {
 /// # Errors
 /// If the font cannot be read.
 pub fn width_of(text: &str, size: f64) -> Result<f64, PlotError> {
-    let font = font()?;
+    let font = font(Face::Sans, text)?;
     Ok(f64::from(glyphs(font, scale(font, size), text).1))
 }

@@ -1,7 +1,7 @@
 //! Draws shapes as SVG.
 
 use super::font::EM;
-use crate::drawn::{Anchor, Colour, PlotError, Shape};
+use crate::drawn::{Anchor, Colour, Face, PlotError, Shape};
 use std::fmt::Write;
 
 /// Draws shapes on a white sheet.
@@ -24,6 +24,7 @@ pub fn svg(shapes: &[Shape], (width, height): (f64, f64)) -> Result<String, Plot
                 colour,
                 anchor,
                 upright,
+                face,
             } => {
                 let (x, y) = (short(at.0), short(at.1));
                 let anchor = match anchor {
@@ -35,10 +36,14 @@ pub fn svg(shapes: &[Shape], (width, height): (f64, f64)) -> Result<String, Plot
                     true => format!(" transform=\"rotate(270, {x}, {y})\""),
                     false => String::new(),
                 };
+                let family = match face {
+                    Face::Sans => "sans-serif",
+                    Face::Mono => "monospace",
+                };
                 let (size, colour, words) = (short(size * EM), hex(*colour), escaped(words));
                 writeln!(
                     text,
-                    "<text x=\"{x}\" y=\"{y}\" dy=\"0.5ex\" text-anchor=\"{anchor}\" font-family=\"sans-serif\" \
+                    "<text x=\"{x}\" y=\"{y}\" dy=\"0.5ex\" text-anchor=\"{anchor}\" font-family=\"{family}\" \
                      font-size=\"{size}\" fill=\"{colour}\"{turned}>\n{words}\n</text>"
                 )
             }

@@ -19,9 +19,12 @@ use stickslip_scene::number;
 use stickslip_scene::shown;
 use unicode_width::UnicodeWidthStr;
 
-/// Width of one column of the comparison.
+/// Width of one column of the comparison, and of its names; a narrow pane has narrower columns.
 const SIDE: usize = 32;
 const NAME: usize = 12;
+/// Width of a mode in it, and least width of a number.
+const MODE: usize = 8;
+const NUMBER: usize = 8;
 
 /// Draws the tree and the comparison.
 pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
@@ -36,7 +39,8 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     let inner = frame(buffer, area, Pane::Branches, &title, app);
     let order = verdicts::order(&all);
     let width = usize::from(inner.width);
-    let compared = comparison(tree, &all, order.get(at).map_or(0, |o| o.0), app, view);
+    let selected = order.get(at).map_or(0, |o| o.0);
+    let compared = comparison(tree, &all, selected, width, (app, view));
     let room = usize::from(inner.height);
     let (top, rows) = shown(at, order.len(), room.saturating_sub(compared.len()));
     let mut lines: Vec<Line> = order
@@ -66,7 +70,8 @@ pub fn row_at(area: Rect, app: &App, view: &View, at: Position) -> Option<usize>
     let all = verdicts::summaries(tree);
     let selected = app.branch.min(all.len().saturating_sub(1));
     let order = verdicts::order(&all);
-    let compared = comparison(tree, &all, order.get(selected)?.0, app, view);
+    let width = usize::from(area.width.saturating_sub(2));
+    let compared = comparison(tree, &all, order.get(selected)?.0, width, (app, view));
     let room = usize::from(area.height).saturating_sub(2);
     let (top, rows) = shown(selected, order.len(), room.saturating_sub(compared.len()));
     let row = usize::from(at.y).checked_sub(usize::from(area.y) + 1)?;
@@ -129,9 +134,12 @@ fn comparison(
     tree: &Tree,
     all: &[Summary],
     selected: usize,
-    app: &App,
-    view: &View,
+    width: usize,
+    (app, view): (&App, &View),
 ) -> paint::Lines {
+    let least = MODE + 2 * NUMBER;
+    let side = (width.saturating_sub(NAME + 2) / 2).clamp(least, SIDE);
+    let number = (side - MODE) / 2;
     let theme = &app.theme;
     let current = tree.current();
     if all.len() < 2 {
@@ -157,9 +165,10 @@ fn comparison(
         (_, Some(Sameness::Different)) => "different states",
         (_, None) => "one state is not stored; go there first",
     };
+    let wide = side;
     let head = |side: &Side| {
-        let name = paint::cut(&branches::name(tree, side.branch), SIDE - 2);
-        Span::styled(format!("{name:<SIDE$}"), theme.heading)
+        let name = paint::cut(&branches::name(tree, side.branch), wide - 2);
+        Span::styled(format!("{name:<wide$}"), theme.heading)
     };
     let mut lines = vec![
         Line::default(),
@@ -172,7 +181,7 @@ fn comparison(
     ];
     let row = |name: &str, style: Style, cells: [String; 2]| {
         let name = format!(" {} ", shown::padded(&paint::cut(name, NAME), NAME));
-        let [a, b] = cells.map(|cell| Span::raw(format!("{cell:<SIDE$}")));
+        let [a, b] = cells.map(|cell| Span::raw(format!("{cell:<wide$}")));
         Line::from(vec![Span::styled(name, style), a, b])
     };
     let of = |value: &dyn Fn(&Side) -> String| [value(&sides[0]), value(&sides[1])];
@@ -180,12 +189,12 @@ fn comparison(
         "cost",
         theme.faint,
         of(&|side| {
-            format!(
-                "{} minor, {} major, {:.1} ms",
-                side.cost.minors,
-                side.cost.majors,
-                side.cost.seconds * 1e3
-            )
+            let cost = format!("{} minor, {} major", side.cost.minors, side.cost.majors);
+            let time = format!(", {:.1} ms", side.cost.seconds * 1e3);
+            match cost.len() + time.len() < wide {
+                true => cost + &time,
+                false => cost,
+            }
         }),
     ));
     lines.push(row(
@@ -196,7 +205,7 @@ fn comparison(
             residual => format!("{residual:.1e}"),
         }),
     ));
-    let heads = format!("{:<8} {:<11} F_t", "mode", "F_n");
+    let heads = format!("{:<MODE$} {:<rest$} F_t", "mode", "F_n", rest = number - 1);
     lines.push(row("node", theme.faint, [heads.clone(), heads]));
     let round_off = view.round_off();
     for slave in 0..view.model.contacts.len() {
@@ -209,11 +218,11 @@ fn comparison(
         let cell = |node: &compare::NodeSide| {
             let numbers = match node.forces {
                 Some(forces) => forces
-                    .map(|force| number::fixed_width(round_off.force(force), 12))
+                    .map(|force| number::fixed_width(round_off.force(force), number))
                     .concat(),
                 None => String::new(),
             };
-            format!("{:<8}{numbers}", names::mode(node.next))
+            format!("{:<MODE$}{numbers}", names::mode(node.next))
         };
         let name = format!(
             "{}{}",

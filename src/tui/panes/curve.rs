@@ -12,7 +12,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::text::{Line, Span};
 use stickslip_debugger::history::frame;
-use stickslip_scene::number::{short, shortest};
+use stickslip_scene::number::{shortest, sig6};
 
 /// Width of the axis with its labels.
 const LABELS: u16 = 9;
@@ -43,7 +43,7 @@ pub fn draw(buffer: &mut Buffer, area: Rect, app: &App, view: &View) {
     };
     let caption = Line::from(vec![
         Span::styled(" ● ", theme.strong),
-        Span::raw(short(*value)),
+        Span::raw(sig6(*value)),
         Span::styled("  at load ", theme.faint),
         Span::raw(shortest(*load)),
     ]);
@@ -117,15 +117,18 @@ fn chart(
 
 /// Draws both axes with the numbers at their ends.
 fn axes(buffer: &mut Buffer, frame: ChartFrame, x: [f64; 2], y: [f64; 2], theme: &Theme) {
-    let label = |value: f64| match value {
-        0.0 => "0".into(),
-        _ => format!("{value:.1e}"),
+    let label = |value: f64| {
+        let whole = sig6(value);
+        match whole.len() < usize::from(LABELS) {
+            true => whole,
+            false => format!("{value:.1e}"),
+        }
     };
     frame.axis(buffer, theme.faint);
     let low = frame.field.height.saturating_sub(1);
     frame.tick(buffer, low, &label(y[0]), theme.faint);
     frame.tick(buffer, 0, &label(y[1]), theme.faint);
-    let (left, right) = (short(x[0]), short(x[1]));
+    let (left, right) = (sig6(x[0]), sig6(x[1]));
     let width = frame.field.width as usize;
     let room = width.saturating_sub(left.len());
     let text: String = format!("{left}{right:>room$}")

@@ -17,6 +17,7 @@ use stickslip_debugger::explain::page::DiagnosisPage;
 use stickslip_debugger::explain::try_list::TryOutcome;
 use stickslip_scene::number;
 use stickslip_scene::shown;
+use unicode_width::UnicodeWidthStr;
 
 /// Width of a consistent state's column: a letter and three numbers.
 const CELL: usize = 34;
@@ -92,10 +93,10 @@ fn words(page: &DiagnosisPage, width: usize, app: &App) -> (paint::Lines, usize)
         true => theme.strong,
         false => theme.text,
     };
-    hang(&mut lines, "What", &page.what, (width, strong), app);
+    hang(&mut lines, "What", &page.what, (width, strong, ""), app);
     for (k, text) in page.why.iter().enumerate() {
         let heading = if k == 0 { "Why" } else { "" };
-        hang(&mut lines, heading, text, (width, theme.text), app);
+        hang(&mut lines, heading, text, (width, theme.text, ""), app);
     }
     let choices = choices(page);
     // Trials that end may shorten the page.
@@ -112,8 +113,14 @@ fn words(page: &DiagnosisPage, width: usize, app: &App) -> (paint::Lines, usize)
             TryOutcome::Fails => theme.faint,
         };
         let cursor = if k == at { "▸" } else { " " };
-        let text = format!("{cursor}{} {} {}", k + 1, line.mark(), line.words());
-        hang(&mut lines, heading, &text, (width, style), app);
+        let number = format!("{cursor}{} {} ", k + 1, line.mark());
+        hang(
+            &mut lines,
+            heading,
+            &line.words(),
+            (width, style, &number),
+            app,
+        );
         if k == at {
             selected = lines.len() - 1;
         }
@@ -142,17 +149,22 @@ fn words(page: &DiagnosisPage, width: usize, app: &App) -> (paint::Lines, usize)
     (lines, selected)
 }
 
-/// Adds a text next to a heading; further lines are indented to the text.
+/// Adds a text next to a heading; further lines are indented to the text, which begins after `lead`.
 fn hang(
     lines: &mut paint::Lines,
     heading: &str,
     text: &str,
-    (width, style): (usize, Style),
+    (width, style, lead): (usize, Style, &str),
     app: &App,
 ) {
-    let wrapped = paint::wrap(text, width.saturating_sub(HEADINGS + 1));
+    let indent = lead.width();
+    let wrapped = paint::wrap(text, width.saturating_sub(HEADINGS + 1 + indent));
     for (k, part) in wrapped.into_iter().enumerate() {
         let heading = if k == 0 { heading } else { "" };
+        let part = match k {
+            0 => format!("{lead}{part}"),
+            _ => format!("{:indent$}{part}", ""),
+        };
         let heading = format!(" {heading:<width$}", width = HEADINGS - 1);
         lines.push(Line::from(vec![
             Span::styled(heading, app.theme.heading),

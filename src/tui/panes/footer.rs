@@ -93,7 +93,7 @@ fn question(app: &App, view: Option<&View>) -> Option<String> {
                 Some(offers) if !offers.force => {
                     "capital letters only: this solver can only hold it, until M releases it"
                 }
-                _ => "capital letter: hold until M releases it",
+                _ => "capital letter: hold",
             };
             Some(format!(
                 "mode of {}:  {MODES}   ({held})",

@@ -5,7 +5,7 @@ use crate::app::App;
 use crate::columns::rows_shown;
 use crate::layout::Pane;
 use crate::paint;
-use crate::theme;
+use crate::theme::{self, Theme};
 use crate::view::View;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
@@ -255,7 +255,7 @@ fn row<'a>(
             change_mark(differs, changed, !hidden && view.t_max_moves(slave)),
             theme.strong,
         ),
-        Span::styled(forced_mark(view.forced(slave)), theme.warning),
+        forced_mark(view.forced(slave), theme),
         Span::styled(fitted(view.slave(slave), columns.name), name_style),
         Span::raw(" "),
     ];
@@ -304,11 +304,11 @@ fn change_mark(differs: bool, changed: bool, t_max_moves: bool) -> &'static str 
 }
 
 /// `◆` if the user holds the mode, `◇` if it is forced once.
-fn forced_mark(forced: Forced) -> &'static str {
+fn forced_mark(forced: Forced, theme: &Theme) -> Span<'static> {
     match forced {
-        Forced::Held(_) => "◆",
-        Forced::Once(_) => "◇",
-        Forced::No => " ",
+        Forced::Held(_) => Span::styled("◆", theme.warning),
+        Forced::Once(_) => Span::styled("◇", theme.warning),
+        Forced::No => Span::raw(" "),
     }
 }
 

@@ -9,7 +9,7 @@ use crate::camera::Camera;
 use crate::canvas::{Canvas, Dot};
 use crate::layout::Pane;
 use crate::paint;
-use crate::theme;
+use crate::theme::{self, Theme};
 use crate::view::View;
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::{Margin, Position, Rect};
@@ -323,7 +323,7 @@ fn body_names(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, 
         };
         let rows = [y, y.saturating_sub(1), y + 1, y.saturating_sub(2), y + 2];
         if let Some(row) = rows.into_iter().find(|row| blank(*row)) {
-            buffer.set_string(left, row, &name, app.theme.heading);
+            paint::label(buffer, (left, row), &name, app.theme.heading, &app.theme);
         }
     }
 }
@@ -475,10 +475,8 @@ fn supports(
         false => (node, "↻"),
     });
     for (node, glyph) in supports.chain(turns) {
-        if let Some(at) = canvas.cell(window.dot(window.place(view, node)))
-            && let Some(cell) = buffer.cell_mut(at)
-        {
-            cell.set_symbol(glyph).set_style(app.theme.good);
+        if let Some(at) = canvas.cell(window.dot(window.place(view, node))) {
+            paint::label(buffer, at, glyph, app.theme.good, &app.theme);
         }
     }
 }
@@ -543,28 +541,26 @@ fn slaves(buffer: &mut Buffer, canvas: &Canvas, window: &Window, app: &App, view
         // The shape must not reveal a mode that is still to be predicted.
         let mode = app.shown_mode(view, slave);
         let style = theme.mode(mode).add_modifier(Modifier::BOLD);
-        if let Some(cell) = buffer.cell_mut((x, y)) {
-            cell.set_symbol(theme::letter(mode)).set_style(style);
-            if slave == selected {
-                cell.set_style(style.add_modifier(Modifier::REVERSED));
-            }
-        }
+        let style = match slave == selected {
+            true => style.add_modifier(Modifier::REVERSED),
+            false => style,
+        };
+        paint::label(buffer, (x, y), theme::letter(mode), style, theme);
         let right = (x + 1, y);
         let crowded = |&(a, b): &&(u16, u16)| a.abs_diff(x) < APART && b.abs_diff(y) < 2;
         if app.camera.zoom > 1.0 && seen.iter().filter(crowded).count() == 1 {
-            name(buffer, canvas, (x + 2, y), view.slave(slave), theme.faint);
+            name(buffer, canvas, (x + 2, y), view.slave(slave), theme);
         }
         if found(view).is_some_and(|found| found.nodes.contains(&slave))
             && canvas.area().contains(right.into())
-            && let Some(cell) = buffer.cell_mut(right)
         {
-            cell.set_symbol(MARK).set_style(theme.strong);
+            paint::label(buffer, right, MARK, theme.strong, theme);
         }
     }
 }
 
 /// Writes a name where no letter is in its way.
-fn name(buffer: &mut Buffer, canvas: &Canvas, (x, y): (u16, u16), name: &str, style: Style) {
+fn name(buffer: &mut Buffer, canvas: &Canvas, (x, y): (u16, u16), name: &str, theme: &Theme) {
     let area = canvas.area();
     let name = paint::cut(name, 12);
     let fits = x + name.width() as u16 <= area.right();
@@ -573,7 +569,7 @@ fn name(buffer: &mut Buffer, canvas: &Canvas, (x, y): (u16, u16), name: &str, st
         .into_iter()
         .find(|row| (area.top()..area.bottom()).contains(row));
     if let (true, Some(row)) = (fits, row) {
-        buffer.set_string(x, row, &name, style);
+        paint::label(buffer, (x, row), &name, theme.faint, theme);
     }
 }
 
@@ -609,7 +605,7 @@ fn caption(buffer: &mut Buffer, inner: Rect, shown: Scales, moves: bool, app: &A
     spans.push(Span::styled(UNLOADED, theme.faint));
     if longest > 0.0 {
         spans.push(Span::styled(
-            format!("   longest force {}", number::short(longest)),
+            format!("   longest force {}", number::sig4(longest)),
             theme.faint,
         ));
     }
