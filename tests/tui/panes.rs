@@ -451,8 +451,7 @@ fn answers_and_remedies_are_in_the_journal_and_replay_to_the_same_bits() {
     }
     let told = story(&record).unwrap();
     assert!(
-        told.contains("AppliedIntervention a remedy")
-            && told.contains("Started from a consistent state"),
+        told.contains("Applied a remedy") && told.contains("Started from a consistent state"),
         "{told}"
     );
 }

@@ -4,6 +4,7 @@ use crate::explain::names;
 use crate::record::command::{BranchTarget, Command, Unit};
 use crate::record::journal::{Entry, JournalError, Record, date};
 use stickslip_core::model::Model;
+use stickslip_core::words::counted;
 
 /// The text of a journal.
 ///
@@ -80,8 +81,8 @@ pub fn done(model: &Model, entry: &Entry) -> String {
         }
         Command::Follow { label, steps } => {
             format!(
-                "AppliedIntervention a remedy ({} steps): {label}.",
-                steps.len()
+                "Applied a remedy ({}): {label}.",
+                counted(steps.len(), "step")
             )
         }
         Command::Release { slave: s } => {
@@ -132,15 +133,13 @@ fn forward(unit: Unit, count: u32) -> String {
 fn result_lines(entry: &Entry) -> Vec<String> {
     let mut lines = Vec::new();
     if entry.solved > 0 {
-        let plural = |n: u64| if n == 1 { "" } else { "s" };
         let increments = match entry.accepted {
             0 => String::new(),
-            n => format!(", {n} increment{} accepted", plural(n)),
+            n => format!(", {} accepted", counted(n, "increment")),
         };
         lines.push(format!(
-            "Solved {} minor iteration{}{increments}.",
-            entry.solved,
-            plural(entry.solved)
+            "Solved {}{increments}.",
+            counted(entry.solved, "minor iteration")
         ));
     }
     lines.push(format!("Result: {}", entry.said));
