@@ -370,7 +370,7 @@ fn state(
     let mut stepper = solver(Arc::new(scene.model.clone()));
     let picture = picture(args, &scene.model)?;
     let parts: Vec<_> = picture.only.into_iter().collect();
-    let mut seen = RunHistory::at_start(&stepper, &parts);
+    let mut seen = RunHistory::at_start(&mut stepper, &parts);
     // The scene file itself needs no solve.
     let solves = kind.extension != "ron" || args.frozen;
     let ended = match solves {

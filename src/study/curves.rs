@@ -4,6 +4,7 @@
 //! cut off.
 
 use super::drawn::PlotError;
+use super::linear_axis;
 use super::log_axis::range;
 use super::sheet::{Anchor, Axes, BLACK, CROSS, ENTRY, GREY, LABEL, MARGIN, SMALL, Sheet, widest};
 use stickslip_scene::number::sig6;
@@ -176,15 +177,9 @@ fn bounds(axis: &Axis, values: impl Iterator<Item = f64>) -> (f64, f64) {
 }
 
 /// At most nine round numbers within the range of an axis.
-fn ticks(axis: &Axis, (low, high): (f64, f64)) -> impl Iterator<Item = f64> + use<> {
+fn ticks(axis: &Axis, range: (f64, f64)) -> impl Iterator<Item = f64> + use<> {
     const MOST: f64 = 9.0;
-    let least = (high - low) / MOST;
-    let decade = 10_f64.powf(least.log10().floor());
-    let steps = [1.0, 2.0, 5.0, 10.0].map(|step| step * decade);
-    let step = steps.into_iter().find(|step| *step >= least);
-    let step = step.unwrap_or(least);
+    let step = linear_axis::step(range, MOST);
     let step = if axis.counts { step.max(1.0) } else { step };
-    let first = (low / step).ceil();
-    let count = ((high / step).floor() - first).clamp(0.0, MOST) as u32;
-    (0..=count).map(move |k| (first + f64::from(k)) * step)
+    linear_axis::ticks(range, step)
 }

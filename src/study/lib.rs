@@ -6,7 +6,7 @@
 //!   runs by memory; [`result`]: the result of a run; [`monitor_kind`]: the units of its numbers.
 //! - [`csv`]: all results as one table; [`figure`]: as [`curves`]; [`sheet`]: drawings as plain data, made of
 //!   [`drawn`] shapes; [`pen`]: written as SVG and PNG, with the feature `plot`; [`placing`]: positions of
-//!   labels; [`log_axis`]: logarithmic axes.
+//!   labels; [`linear_axis`], [`log_axis`]: axes with round numbers.
 //!
 //! Comparison with values from other sources: [`benchmarks`].
 //!
@@ -41,6 +41,7 @@ pub mod csv;
 pub mod curves;
 pub mod drawn;
 pub mod figure;
+pub mod linear_axis;
 pub mod log;
 pub mod log_axis;
 pub mod map;

@@ -50,7 +50,7 @@ pub fn pictures(
     let path = &scene.spec.history.path;
     let whole: f64 = path.windows(2).map(|leg| (leg[1] - leg[0]).abs()).sum();
     let mut stepper = solver(Arc::new(scene.model.clone()));
-    let mut history = RunHistory::at_start(&stepper, &PARTS);
+    let mut history = RunHistory::at_start(&mut stepper, &PARTS);
     let (mut travelled, mut load) = (0.0, path.first().copied().unwrap_or_default());
     stepper.drive(Until::end(), |stepper| {
         history.add(stepper);

@@ -330,6 +330,22 @@ fn a_part_of_a_picture_has_the_requested_size_and_options_of_pictures_are_refuse
         assert!(texts(&svg).contains(wanted), "{part}: {}", texts(&svg));
         let table = texts(&svg).contains("slave node");
         assert!(!table, "{part} is the only part");
+        // No side of the beam has pressures, so that none is drawn or named.
+        assert!(!texts(&svg).contains("pressure"), "{}", texts(&svg));
+    }
+    // The timeline of one node fills its picture with bands; the numbers of the axes are round.
+    for (part, wanted) in [
+        ("timeline", &["50.12", "50.11", "50.10", "50.9", "50.8"][..]),
+        ("chart", &["−0.014", "−0.01", "−0.004", "0.05", "0.25"]),
+    ] {
+        let scene = ["01-pinned-beam-rough-floor", "-o", "whole.svg", "--force"];
+        let size = ["--only", part, "--size", "1920x1080", "--font", "20"];
+        assert_eq!(code(&exported(here, &[&scene[..], &size].concat())), 0);
+        let seen = texts(&read(here, "whole.svg"));
+        let lines: Vec<&str> = seen.lines().map(str::trim).collect();
+        assert!(wanted.iter().all(|text| lines.contains(text)), "{seen}");
+        let bands = lines.iter().filter(|line| **line == "beam.5").count();
+        assert!((part == "chart") == (bands < 5), "{seen}");
     }
     let png = [
         "01-pinned-beam-rough-floor",

@@ -73,6 +73,26 @@ fn a_ball_on_its_axis_presses_a_block_by_its_load() {
     assert!((areas / cap - 1.0).abs() < 1e-5, "{areas} {cap}");
 }
 
+/// The same ball with its faces integrated: at gap 0 none of the integration points touches, and the ball is loose.
+#[test]
+fn a_ball_integrated_over_its_faces_finds_its_block() {
+    let nodes = std::fs::read_to_string("tests/findings/ball-on-axis.inp").unwrap();
+    assert!(nodes.contains("NODE TO SURFACE"));
+    let folder = tempfile::tempdir().unwrap();
+    let deck = folder.path().join("ball-on-axis.inp");
+    std::fs::write(
+        &deck,
+        nodes.replace("NODE TO SURFACE", "SURFACE TO SURFACE"),
+    )
+    .unwrap();
+    let run = solved(&scene(deck.to_str().unwrap(), &[]));
+    let force = last(&run, "contact y");
+    let exact = 10.0 * std::f64::consts::PI * 64.0;
+    assert!((force / exact - 1.0).abs() < 2e-4, "{force} {exact}");
+    let contacts = &run.stepper.model().contacts;
+    assert!(contacts.iter().all(|contact| !contact.weights.is_empty()));
+}
+
 /// Its force at this depth is 1e-12, where another node's is 1.
 #[test]
 fn a_node_on_a_spring_whose_force_is_nothing_may_be_inside() {

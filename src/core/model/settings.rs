@@ -216,7 +216,7 @@ documented! {
 documented! {
     /// Whether to search for other solutions where an increment fails.
     pub choice SearchMode {
-        /// After the strategies and the other parts of the increment: nodes that touch at the start are held, the increment is cut
+        /// After the strategies and the other parts of the increment: contacts near each other at the start are closed, the increment is cut
         /// below its least size, and where equilibrium ends the nodes move damped to the next one, which is marked.
         #[default]
         Auto,

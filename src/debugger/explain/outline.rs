@@ -249,14 +249,15 @@ const TO_SCALE: f64 = 0.015;
 /// Largest automatic magnification.
 const MOST: f64 = 1e6;
 
-/// A round magnification that makes the largest of some displacements visible; 1 if it is visible to scale.
+/// A round magnification that makes the largest of some displacements visible; 1 if it is visible to scale, or too small to be made
+/// visible.
 pub fn magnification<'a>(model: &Model, displacements: impl Iterator<Item = &'a [f64]>) -> f64 {
     let moved = displacements
         .flat_map(|u| (0..model.nodes.len()).map(move |node| displacement(model, u, node)));
     let largest = moved.filter(|size| size.is_finite()).fold(0.0, f64::max);
     let part = largest / model.length;
-    match part > 0.0 && part < TO_SCALE {
-        true => round_down((SEEN / part).min(MOST)).max(1.0),
+    match part < TO_SCALE && SEEN / part <= MOST {
+        true => round_down(SEEN / part).max(1.0),
         false => 1.0,
     }
 }

@@ -88,6 +88,28 @@ impl Cone {
             edge: [[-friction.cohesion, 0.0], [-bound, high]],
         })
     }
+
+    /// The cone with more room on one axis, so that both have the same scale in a drawing of this size, and the friction angle
+    /// is true.
+    #[must_use]
+    pub fn to_scale(self, (width, height): (f64, f64), friction: &Friction) -> Cone {
+        let scale = (0.5 * width / self.f_t).min(height / (self.f_n - self.least));
+        let f_n = self.least + height / scale;
+        let f_t = 0.5 * width / scale;
+        let mu = friction.coefficient();
+        let bound = mu * f_n + friction.cohesion;
+        // The edge ends at the frame.
+        let end = match bound > f_t {
+            true => [-f_t, (f_t - friction.cohesion) / mu],
+            false => [-bound, f_n],
+        };
+        Cone {
+            f_t,
+            f_n,
+            edge: [self.edge[0], end],
+            ..self
+        }
+    }
 }
 
 /// Part of T_max below which the differences are drawn instead.
@@ -167,6 +189,13 @@ mod tests {
         assert!(cone.f_n > 1.0 && cone.f_t > 0.2 && cone.least == 0.0);
         assert_eq!(cone.edge[0], [-0.5, 0.0]);
         assert!((cone.edge[1][0] + cone.f_n + 0.5).abs() < 1e-9);
+        let drawn = cone.clone().to_scale((300.0, 100.0), &friction);
+        let per_unit = [150.0 / drawn.f_t, 100.0 / (drawn.f_n - drawn.least)];
+        assert!((per_unit[0] / per_unit[1] - 1.0).abs() < 1e-12);
+        assert!(drawn.f_t >= cone.f_t && drawn.f_n >= cone.f_n);
+        assert!((drawn.edge[1][0] + drawn.f_n + 0.5).abs() < 1e-9);
+        let high = cone.clone().to_scale((100.0, 300.0), &friction);
+        assert_eq!(high.edge[1], [-high.f_t, high.f_t - 0.5]);
         let none = TrailPoint {
             f_n: 0.0,
             f_t: 0.0,

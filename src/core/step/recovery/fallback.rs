@@ -32,8 +32,8 @@ crate::words! {
     #[derive(PartialOrd, Ord, Serialize, Deserialize)]
     #[serde(rename_all = "kebab-case")]
     pub enum Fallback, words {
-        /// Nodes that touch at the start of the history, without a gap, start fixed.
-        Touching "nodes that touch at the start fixed",
+        /// Contacts with a small gap at the start of the history are closed.
+        Touching "near contacts closed at the start",
         /// The smaller part of the golden section first.
         Section "unequal parts",
         /// T_max in the equations from the first strategy on.

@@ -171,7 +171,7 @@ impl Iterate {
                 .take_if(|adopted| *adopted != by);
         }
         if by == Some(Fallback::Touching) {
-            self.hold_touching();
+            self.hold_near();
         }
         if by == Some(Fallback::Release) {
             self.state.record.searched.released = Some(self.state.start.load_factor);
@@ -186,12 +186,13 @@ impl Iterate {
         Some(outcome)
     }
 
-    /// Makes the free nodes that touch without a gap start fixed.
-    fn hold_touching(&mut self) {
-        let touching: Vec<usize> = self.stalled().touching().collect();
+    /// Makes the near free contacts start closed: sliding without friction, otherwise fixed.
+    fn hold_near(&mut self) {
+        let near: Vec<usize> = self.stalled().near().collect();
         let start = Arc::make_mut(&mut self.state.start);
-        for contact in touching {
-            start.nodes[contact].mode = Mode::Fixed;
+        for contact in near {
+            let smooth = self.state.controls.friction[contact].is_smooth();
+            start.nodes[contact].mode = if smooth { Mode::Sliding } else { Mode::Fixed };
         }
     }
 }

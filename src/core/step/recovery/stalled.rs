@@ -10,8 +10,8 @@ use crate::step::state::State;
 
 /// Minimum size of a half, as a fraction of the whole increment.
 const SMALLEST_HALF: f64 = 1e-9;
-/// Maximum gap of a node that counts as touching at the start, over the scene's length.
-const TOUCHING: f64 = 1e-9;
+/// Maximum gap of a contact that is closed at the start if a body is loose, over the scene's length.
+const NEAR: f64 = 1e-4;
 
 /// A failed increment.
 pub(in crate::step) struct FailedIncrement<'a> {
@@ -67,19 +67,19 @@ impl FailedIncrement<'_> {
             && !self.is_given()
     }
 
-    /// Whether a body is unsupported at the start of the history, and a free node touches there without a gap.
+    /// Whether a body is unsupported at the start of the history, and a free contact is near there.
     pub fn can_touch(&self, why: &Failure) -> bool {
         let loose = match why {
             Failure::Singular(_) => true,
             Failure::LadderEnded { first, .. } => matches!(**first, Failure::Singular(_)),
             _ => false,
         };
-        loose && self.state.start.verdict.is_none() && self.touching().next().is_some()
+        loose && self.state.start.verdict.is_none() && self.near().next().is_some()
     }
 
-    /// Free contacts without a gap.
-    pub fn touching(&self) -> impl Iterator<Item = usize> {
-        let least = TOUCHING * self.model.length;
+    /// Free contacts whose gap is small.
+    pub fn near(&self) -> impl Iterator<Item = usize> {
+        let least = NEAR * self.model.length;
         let closed = move |contact: usize| {
             let over = self.source.kinematics(contact);
             over.is_some_and(|over| over.gap.abs() <= least)

@@ -7,18 +7,27 @@ use crate::explain::round_off::RoundOff;
 use crate::explain::trail::{self, Cone, TrailPoint};
 use stickslip_core::model::MonitorQuantity;
 use stickslip_core::words::counted;
-use stickslip_scene::number::{short, sig4};
+use stickslip_scene::number::{sig4, sig6};
 use stickslip_study::drawn::PlotError;
+use stickslip_study::linear_axis;
 use stickslip_study::sheet::{Axes, BLACK, COLOURS, GREY, LABEL, MARGIN, SMALL, Sheet};
 
 /// Columns left of an axis, and rows below it.
 const LEFT: f64 = 96.0;
 const BELOW: f64 = 44.0;
-/// Number of intervals of an axis.
-const TICKS: u32 = 4;
+/// Minimum pixels between two numbers of an axis: horizontally and vertically.
+const APART: (f64, f64) = (78.0, 44.0);
 
 /// The name of an axis, and its ends.
 type AxisRange<'a> = (&'a str, [f64; 2]);
+
+/// Size of the frame of a plot in columns `left` to `right` of the sheet.
+fn frame((left, right): (f64, f64), high: f64) -> (f64, f64) {
+    (
+        right - left - LEFT - 3.0 * MARGIN,
+        high - BELOW - 0.6 * LABEL,
+    )
+}
 
 /// Axes over a range, drawn in columns `left` to `right` of the sheet; returns the map to the sheet.
 fn axes(
@@ -31,27 +40,34 @@ fn axes(
         left: left + LEFT,
         top: sheet.height + 0.6 * LABEL,
         name: left + MARGIN,
-        size: (
-            right - left - LEFT - 3.0 * MARGIN,
-            high - BELOW - 0.6 * LABEL,
-        ),
+        size: frame((left, right), high),
     };
-    let ticks = |[low, up]: [f64; 2]| {
-        (0..=TICKS).map(move |k| {
-            let part = f64::from(k) / f64::from(TICKS);
-            let value = low + part * (up - low);
-            // Round-off at 0 is not written.
-            let value = if value.abs() < 1e-9 * (up - low) {
-                0.0
-            } else {
-                value
-            };
-            (part, sig4(value))
-        })
+    let ticks = |[low, up]: [f64; 2], step: f64| {
+        linear_axis::ticks((low, up), step)
+            .map(move |value| ((value - low) / (up - low), sig6(value).replace('-', "−")))
     };
-    axes.draw(sheet, (x.0, ticks(x.1)), (y.0, ticks(y.1)));
+    let steps = (
+        step(x.1, axes.size.0 / APART.0),
+        step(y.1, axes.size.1 / APART.1),
+    );
+    axes.draw(
+        sheet,
+        (x.0, ticks(x.1, steps.0)),
+        (y.0, ticks(y.1, steps.1)),
+    );
     let ([x0, x1], [y0, y1]) = (x.1, y.1);
     move |[a, b]: [f64; 2]| axes.at((a - x0) / (x1 - x0), (b - y0) / (y1 - y0))
+}
+
+/// The step between the numbers of an axis on which `most` numbers have room.
+fn step([low, up]: [f64; 2], most: f64) -> f64 {
+    linear_axis::step((low, up), most.clamp(2.0, 9.0))
+}
+
+/// A range extended to numbers of an axis of this length.
+fn rounded(range: [f64; 2], (long, apart): (f64, f64)) -> [f64; 2] {
+    let step = step(range, long / apart);
+    linear_axis::rounded(range.into(), step).into()
 }
 
 /// The range of some values with 0.
@@ -95,18 +111,19 @@ pub(super) fn load(sheet: &mut Sheet, shown: &ExportState, high: f64) -> Result<
         .iter()
         .filter_map(|(load, values)| Some([*values.get(at)?, *load]))
         .collect();
-    let (Some(monitor), false) = (monitors.get(at), points.is_empty()) else {
+    let (Some(monitor), true) = (monitors.get(at), points.len() > 1) else {
         return sheet.paragraph(
             &["no accepted increment with a monitor".to_owned()],
             LABEL,
             GREY,
         );
     };
-    let (x, y) = (
-        range(points.iter().map(|p| p[0])),
-        range(points.iter().map(|p| p[1])),
-    );
     let width = sheet.width;
+    let (wide, long) = frame((0.0, width), high);
+    let (x, y) = (
+        rounded(range(points.iter().map(|p| p[0])), (wide, APART.0)),
+        rounded(range(points.iter().map(|p| p[1])), (long, APART.1)),
+    );
     let map = axes(
         sheet,
         (0.0, width),
@@ -140,11 +157,16 @@ pub(super) fn cone(sheet: &mut Sheet, shown: &ExportState, high: f64) -> Result<
     let (Some(cone), Some(now)) = (Cone::new(&trail, &friction), trail.last()) else {
         return sheet.paragraph(&[format!("no force at {name}")], LABEL, GREY);
     };
+    let round_off = shown
+        .event
+        .map(|event| RoundOff::new(model, &event.before))
+        .unwrap_or_default();
+    let clean = |force: f64| sig4(round_off.force(force));
     let words = format!(
         "{name}: F_n {}, F_t {}, T_max {}; friction angle {}°",
-        short(now.f_n),
-        short(now.f_t),
-        short(now.t_max),
+        clean(now.f_n),
+        clean(now.f_t),
+        clean(now.t_max),
         sig4(friction.angle)
     );
     sheet.paragraph(&[words], LABEL, BLACK)?;
@@ -158,6 +180,7 @@ pub(super) fn cone(sheet: &mut Sheet, shown: &ExportState, high: f64) -> Result<
         });
     let has_web = top - low > shown.event.map_or(0.0, |event| 1e-12 * event.before.scale);
     let middle = if has_web { 0.5 * width } else { width };
+    let cone = cone.to_scale(frame((0.0, middle), high), &friction);
     let ranges = (
         ("F_t", [-cone.f_t, cone.f_t]),
         ("F_n", [cone.least, cone.f_n]),

@@ -14,7 +14,7 @@ use stickslip_scene::Scene;
 use stickslip_scene::format::SceneError;
 use stickslip_study::drawn::PlotError;
 
-/// Number of minor iterations in a picture's timeline.
+/// Number of minor iterations in the timeline of a whole picture.
 pub const COLUMNS: usize = 60;
 
 /// A state and its context.
@@ -39,7 +39,7 @@ pub struct ExportState<'a> {
     pub picture: &'a PictureRequest,
     /// The last minor iterations, oldest first, for the cone.
     pub events: &'a [Arc<Event>],
-    /// Load factor and monitors at the accepted increments, for the chart.
+    /// Load factor and monitors at the start and the accepted increments, for the chart.
     pub accepted: &'a [(f64, Vec<f64>)],
 }
 

@@ -19,7 +19,7 @@ use stickslip_core::step::event::Outcome;
 use stickslip_core::step::state::Status;
 use stickslip_core::step::stepper::Stepper;
 use stickslip_core::words::counted;
-use stickslip_scene::number::{short, shortest};
+use stickslip_scene::number::{short, shortest, sig4};
 use stickslip_study::drawn::PlotError;
 use stickslip_study::origin;
 use stickslip_study::placing::{OccupiedArea, Patch};
@@ -113,12 +113,12 @@ fn parts(shown: &ExportState, width: f64, high: f64) -> Result<Sheet, PlotError>
         None => {
             shape(&mut sheet, shown, &rows, high)?;
             table(&mut sheet, shown, &rows)?;
-            timeline::draw(&mut sheet, model, shown.strips, timeline::ROWS)?;
+            timeline::draw(&mut sheet, model, shown.strips, None)?;
         }
         Some(PicturePart::Shape) => shape(&mut sheet, shown, &rows, high)?,
         Some(PicturePart::Timeline) => {
             let top = sheet.height;
-            timeline::draw(&mut sheet, model, shown.strips, timeline::rows(high))?;
+            timeline::draw(&mut sheet, model, shown.strips, Some(high))?;
             sheet.height = sheet.height.max(top + high);
         }
         Some(PicturePart::Chart) => chart::load(&mut sheet, shown, high)?,
@@ -235,8 +235,8 @@ fn shape(
     shape.legend(largest, magnified)?;
     if pressure > 0.0 {
         let text = format!(
-            "blue: contact pressure F_n / A on undeformed areas, maximum {}",
-            short(pressure)
+            "Blue: contact pressure F_n / A on undeformed areas, maximum {}",
+            sig4(pressure)
         );
         sheet.paragraph(&[text], SMALL, GREY)?;
     }
@@ -285,6 +285,11 @@ impl ShapeDrawing<'_> {
                 .map(|&node| OBLIQUE.at(model, node))
                 .collect();
             self.stroke(&points, &before);
+            for chain in self.window.inside(&curve(&points)) {
+                for pair in chain.windows(2) {
+                    self.taken.take_line(pair[0], pair[1]);
+                }
+            }
         }
         for body in &model.bodies {
             let BodyKind::Solid(solid) = &body.kind else {

@@ -10,7 +10,8 @@ const BLUE: Colour = (86, 180, 233);
 
 impl ShapeDrawing<'_> {
     /// Draws contact pressures along the sides of bodies whose nodes are all slaves, from the nodes along the
-    /// master's normal; the largest has half the length of the longest force. Returns the largest.
+    /// master's normal; the largest has half the length of the longest force. Returns the largest that is
+    /// drawn, 0 if none.
     pub(super) fn pressures(&mut self) -> f64 {
         let (model, Some(event)) = (&self.shown.scene.model, self.shown.event) else {
             return 0.0;
@@ -27,6 +28,7 @@ impl ShapeDrawing<'_> {
             return 0.0;
         }
         let scale = 0.5 * FORCE / largest;
+        let mut drawn = 0.0_f64;
         let lines = model.bodies.iter().flat_map(|body| body.kind.lines());
         for line in lines {
             let ends: Option<Vec<[(f64, f64); 2]>> = line
@@ -46,12 +48,14 @@ impl ShapeDrawing<'_> {
             else {
                 continue;
             };
+            let sizes = line.iter().filter_map(|&node| of_node[node]);
+            drawn = sizes.fold(drawn, |most, (pressure, _)| most.max(pressure.abs()));
             let tips: Vec<(f64, f64)> = ends.iter().map(|end| end[1]).collect();
             self.sheet.line(&tips, 1.6, BLUE);
             for end in &ends {
                 self.sheet.line(end, 0.8, BLUE);
             }
         }
-        largest
+        drawn
     }
 }

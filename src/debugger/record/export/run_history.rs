@@ -16,20 +16,26 @@ pub struct RunHistory<'a> {
     last_major: State,
     /// The last minor iterations, oldest first, if a picture shows them.
     events: Vec<Arc<Event>>,
-    /// Load factor and monitors at the accepted increments, if a picture shows them.
+    /// Load factor and monitors at the start and the accepted increments, if a picture shows them.
     accepted: Vec<(f64, Vec<f64>)>,
     parts: &'a [PicturePart],
 }
 
 impl<'a> RunHistory<'a> {
     /// The history of a run that starts now; `parts` are the parts of pictures that it must provide.
-    pub fn at_start(stepper: &Stepper, parts: &'a [PicturePart]) -> RunHistory<'a> {
+    pub fn at_start(stepper: &mut Stepper, parts: &'a [PicturePart]) -> RunHistory<'a> {
+        let mut accepted = Vec::new();
+        if parts.contains(&PicturePart::Chart) {
+            let mut monitors = Vec::new();
+            stepper.monitors(&mut monitors);
+            accepted.push((stepper.state().start.load_factor, monitors));
+        }
         let state = stepper.state();
         RunHistory {
             strips: vec![Strip::new(stepper.model(), state, None, None, 0.0)],
             last_major: state.clone(),
             events: Vec::new(),
-            accepted: Vec::new(),
+            accepted,
             parts,
         }
     }
