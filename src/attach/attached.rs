@@ -16,6 +16,7 @@ use stickslip_core::step::intervene::{Intervention, Refusal};
 use stickslip_core::step::solver::{Capabilities, ReportedProblem, Solver, SolverLost};
 use stickslip_core::step::state::State;
 use stickslip_core::step::stored_states::StoredStates;
+use stickslip_core::words::counted;
 use stickslip_debugger::explain::names;
 use stickslip_debugger::recorded::decode::{self, RecordedStep, WireFrame};
 use stickslip_debugger::recorded::fault::Fault;
@@ -463,14 +464,14 @@ impl Solver for Attached {
         let again = std::mem::take(&mut self.again);
         let lost = self.log.lost();
         let anew = std::mem::take(&mut self.anew);
-        let s = if again == 1 { "" } else { "s" };
+        let iterations = counted(again, "iteration");
         let repeated = match (anew, again) {
             (true, 0) => Some("the solver was restarted".to_owned()),
             (true, _) => Some(format!(
-                "the solver was restarted and repeated {again} iteration{s}"
+                "the solver was restarted and repeated {iterations}"
             )),
             (false, 0) => None,
-            (false, _) => Some(format!("the solver repeated {again} iteration{s}")),
+            (false, _) => Some(format!("the solver repeated {iterations}")),
         };
         let parts: Vec<String> = repeated.into_iter().chain(lost).collect();
         (!parts.is_empty()).then(|| parts.join("; "))

@@ -6,6 +6,7 @@ use super::front;
 use super::solver::SolverArgs;
 use std::path::PathBuf;
 use stickslip_attach::{C, FORTRAN, PYTHON, SCHEMA, check};
+use stickslip_core::words::counted;
 use stickslip_debugger::record::journal::JournalTarget;
 use stickslip_debugger::session::Session;
 
@@ -90,8 +91,7 @@ fn checked(args: &Args) -> Result<Exit, Error> {
     }
     let failed = report.failed();
     if failed > 0 {
-        let s = if failed == 1 { "" } else { "s" };
-        notify(&format!("{failed} check{s} failed"));
+        notify(&format!("{} failed", counted(failed, "check")));
         return Ok(Exit::Differ);
     }
     Ok(Exit::Good)

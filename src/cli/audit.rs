@@ -16,6 +16,7 @@ use stickslip_core::model::Model;
 use stickslip_core::step::drive::{RunEnd, Until};
 use stickslip_core::step::event::Outcome;
 use stickslip_core::step::solver::Solver;
+use stickslip_core::words::counted;
 use stickslip_debugger::explain::audit::{Audit, PenetratingMaster, StretchFinding, WorstFinding};
 use stickslip_debugger::explain::judged;
 use stickslip_debugger::explain::names;
@@ -227,9 +228,10 @@ fn table(name: &str, model: &Model, audit: &Audit) -> String {
     let Audit {
         increments, marked, ..
     } = audit;
+    let accepted = counted(*increments, "increment");
     let mut text = match marked {
-        0 => format!("{name}: {increments} increments accepted\n"),
-        _ => format!("{name}: {increments} increments accepted, {marked} of them marked\n"),
+        0 => format!("{name}: {accepted} accepted\n"),
+        _ => format!("{name}: {accepted} accepted, {marked} of them marked\n"),
     };
     text += "  law          worst     allowed   where\n";
     let of_bonds = JudgedLaw::OF_BONDS

@@ -5,6 +5,7 @@ use super::interrupt::Interrupt;
 use super::outputs::Outputs;
 use super::sweep::{Report, SweepArgs, failed};
 use std::path::{Path, PathBuf};
+use stickslip_core::words::counted;
 use stickslip_scene::number::sig6;
 use stickslip_scene::readers::{FileKind, mistaken};
 use stickslip_scene::shown::aligned;
@@ -150,7 +151,7 @@ fn lines(chart: &Precision) -> Vec<String> {
             (Some(why), ..) => format!("✗ {why}"),
             (None, true, _) => "reference".to_owned(),
             (None, false, 0) => String::new(),
-            (None, false, n) => format!("{n} increments unsettled"),
+            (None, false, n) => format!("{} unsettled", counted(n, "increment")),
         };
         let near = point
             .error

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use stickslip_core::step::event::{Event, Outcome};
 use stickslip_core::step::state::State;
 use stickslip_core::step::stepper::Stepper;
+use stickslip_core::words::counted;
 use stickslip_debugger::record::export::grid::grid;
 use stickslip_exchange::vtu;
 use stickslip_platform::files::{self, FileError, Output};
@@ -125,9 +126,9 @@ impl Grids {
         let time = if rises { "load factor" } else { "number" };
         let path = self.folder.join(format!("{}.pvd", self.stem));
         Ok(format!(
-            "wrote {}: {} files, with the {time} as time",
+            "wrote {}: {}, with the {time} as time",
             path.display(),
-            files.len()
+            counted(files.len(), "file")
         ))
     }
 }

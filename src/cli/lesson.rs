@@ -7,6 +7,7 @@ use super::front;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use stickslip_core::words::counted;
 use stickslip_debugger::teach::play::play;
 use stickslip_debugger::teach::progress::{self, Progress, ProgressError};
 use stickslip_debugger::teach::tutor::{Paragraph, paragraphs};
@@ -136,8 +137,10 @@ fn check(lesson: Lesson) -> Result<String, Error> {
     let answers = play(&lesson)?;
     let (steps, questions) = (lesson.steps.len(), answers.len());
     let mut text = format!(
-        "{}: sound; {steps} steps, {questions} questions\n",
-        lesson.name
+        "{}: sound; {}, {}\n",
+        lesson.name,
+        counted(steps, "step"),
+        counted(questions, "question")
     );
     for answered in &answers {
         let step = answered.step + 1;

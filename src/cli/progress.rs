@@ -5,6 +5,7 @@ use std::time::{Duration, Instant};
 use stickslip_core::model::Model;
 use stickslip_core::step::event::Event;
 use stickslip_core::step::state::State;
+use stickslip_core::words::counted;
 use stickslip_debugger::explain::names;
 
 /// Interval between two progress lines.
@@ -36,7 +37,8 @@ impl Progress {
         let load = names::load_of(model, state.start.leg, event.load_factor);
         let _ = write!(
             io::stderr(),
-            "\r\x1b[K{load}: {at}; {steps} minor iterations so far"
+            "\r\x1b[K{load}: {at}; {} so far",
+            counted(steps, "minor iteration")
         );
         (self.shown, self.last) = (true, Instant::now());
     }

@@ -8,6 +8,7 @@ use super::sink::Sink;
 use super::solver::SolverArgs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
+use stickslip_core::words::counted;
 use stickslip_debugger::record::differences::{Difference, Differences, compare};
 use stickslip_debugger::record::snapshot::{Snapshot, SnapshotError};
 use stickslip_platform::files::finish_all;
@@ -154,7 +155,10 @@ fn print(file: &Path, replayed: &ReplayResult, says: bool) -> Result<(), Error> 
             differences,
             ..
         } if differences.is_empty() => {
-            format!("{file}: equal, after {minors} minor iterations\n")
+            format!(
+                "{file}: equal, after {}\n",
+                counted(*minors, "minor iteration")
+            )
         }
         ReplayResult::Compared { differences, .. } => {
             format!("{file}: differs (left: recorded, right: recomputed)\n{differences}")
@@ -223,8 +227,7 @@ fn result(replayed: &ReplayResult) -> TestResult {
         ReplayResult::NotRepeatable(_, why) => TestResult::Failed(why.clone(), String::new()),
         ReplayResult::Compared { differences, .. } => match differences.rows.len() {
             0 => TestResult::Passed,
-            1 => TestResult::Failed("1 difference".into(), differences.to_string()),
-            n => TestResult::Failed(format!("{n} differences"), differences.to_string()),
+            n => TestResult::Failed(counted(n, "difference"), differences.to_string()),
         },
     }
 }

@@ -5,6 +5,7 @@ use super::debugger::{DEBUGGER, needs_terminal};
 use super::front;
 use super::solver::{SolverArgs, session_of};
 use std::path::PathBuf;
+use stickslip_core::words::counted;
 use stickslip_debugger::record::journal::{self, Journal, JournalError, Record};
 
 #[derive(Debug, clap::Args)]
@@ -37,9 +38,10 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     }
     let solved: u64 = record.entries.iter().map(|(_, entry)| entry.solved).sum();
     let text = format!(
-        "{}: {} entries, {solved} minor iterations",
+        "{}: {}, {}",
         path.display(),
-        record.entries.len()
+        counted(record.entries.len(), "entry"),
+        counted(solved, "minor iteration")
     );
     notify(&format!("replaying {text}"));
     let session = session_of(&record, &args.solver)?;
@@ -58,8 +60,8 @@ pub fn main(args: &Args) -> Result<Exit, Error> {
     journal.cut(record.whole_bytes)?;
     session.journal_mut().write_to(journal);
     let text = format!(
-        "resumed after {} entries{reservations}",
-        record.entries.len()
+        "resumed after {}{reservations}",
+        counted(record.entries.len(), "entry")
     );
     front::resume(session, &text)?;
     Ok(Exit::Good)

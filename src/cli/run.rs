@@ -15,6 +15,7 @@ use stickslip_core::model::{Control, Jumps, Touch};
 use stickslip_core::step::drive::{RunEnd, Until, drive};
 use stickslip_core::step::event::Failure;
 use stickslip_core::step::solver::{Solver, SolverLost};
+use stickslip_core::words::counted;
 use stickslip_debugger::explain::names;
 use stickslip_debugger::explain::page;
 use stickslip_debugger::explain::report;
@@ -380,12 +381,12 @@ impl<'a> Run<'a> {
 
     fn report_summary(&self, monitors: bool) {
         notify(&format!(
-            "{}: {} increments accepted, up to load {}; {} major and {} minor iterations",
+            "{}: {} accepted, up to load {}; {} major and {}",
             self.tally.scene.name,
-            self.tally.accepted,
+            counted(self.tally.accepted, "increment"),
             shortest(self.solver.state().start.load_factor),
             self.tally.majors,
-            self.tally.steps,
+            counted(self.tally.steps, "minor iteration"),
         ));
         let stability = self.tally.stability.as_ref();
         if let Some(stability) = stability.and_then(Stretches::words) {

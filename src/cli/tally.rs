@@ -12,6 +12,7 @@ use stickslip_core::linear::stability::Stability;
 use stickslip_core::step::event::{Event, MotionEvent, Outcome};
 use stickslip_core::step::recovery::fallback::Fallback;
 use stickslip_core::step::solver::Solver;
+use stickslip_core::words::counted;
 use stickslip_debugger::explain::accuracy;
 use stickslip_debugger::explain::bond;
 use stickslip_debugger::explain::limit_load::body_without_friction;
@@ -200,7 +201,8 @@ impl<'a> Tally<'a> {
             .now()
             .map(|now| rounds::words(solver.model(), &now, false));
         Some(format!(
-            "stopped after {most} iterations in one increment (--most): {}",
+            "stopped after {} in one increment (--max-iterations): {}",
+            counted(*most, "iteration"),
             rounds.unwrap_or_else(|| "the modes no longer change".into())
         ))
     }
@@ -266,10 +268,8 @@ impl<'a> Tally<'a> {
             notify(&line);
         }
         if self.slaves.len() > MOST_SLAVES {
-            let more = self.slaves.len() - MOST_SLAVES;
-            notify(&format!(
-                "  and {more} more slave nodes; --trace writes all"
-            ));
+            let more = counted(self.slaves.len() - MOST_SLAVES, "more slave node");
+            notify(&format!("  and {more}; --trace writes all"));
         }
     }
 
@@ -451,7 +451,7 @@ impl Stretches {
         let first: Vec<String> = self.0.iter().take(MOST_STRETCHES).map(stretch).collect();
         let more = match self.0.len().saturating_sub(MOST_STRETCHES) {
             0 => String::new(),
-            more => format!(", and {more} more changes; --csv lists all"),
+            more => format!(", and {}; --csv lists all", counted(more, "more change")),
         };
         Some(format!("stability: {}{more}", first.join(", ")))
     }

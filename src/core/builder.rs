@@ -4,6 +4,7 @@ use crate::model::{
     Body, BodyKind, Component, Contact, Dofs, Factor, Load, Model, Monitor, Node, Prescribed,
     Settings, Surface, diagonal,
 };
+use crate::words::counted;
 use std::collections::BTreeSet;
 
 /// A [`Model`] in the making: the methods that add something return its number.
@@ -22,7 +23,7 @@ pub struct ModelBuilder {
 #[non_exhaustive]
 pub enum ModelError {
     /// A node number without a node.
-    #[error("{what} refers to node {node}, and there are {count} nodes")]
+    #[error("{what} refers to node {node}; the model has {}", counted(*count, "node"))]
     NoNode {
         /// What refers to it.
         what: String,

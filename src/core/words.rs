@@ -46,3 +46,48 @@ macro_rules! words {
 pub fn is_default<T: Default + PartialEq>(value: &T) -> bool {
     *value == T::default()
 }
+
+/// A count with its noun, which is given in the singular: "1 entry", "2 entries".
+pub fn counted<N: std::fmt::Display + PartialEq + From<u8>>(count: N, noun: &str) -> String {
+    format!("{count} {}", noun_for(&count, noun))
+}
+
+/// The noun in the form that the count needs, for lines in which the count is written elsewhere.
+pub fn noun_for<N: PartialEq + From<u8>>(count: &N, noun: &str) -> String {
+    if *count == N::from(1) {
+        return noun.to_owned();
+    }
+    let vowel_before_y = ["ay", "ey", "oy"].iter().any(|end| noun.ends_with(end));
+    match noun.strip_suffix('y') {
+        Some(stem) if !vowel_before_y => format!("{stem}ies"),
+        _ if ["ch", "sh", "s", "x"].iter().any(|end| noun.ends_with(end)) => format!("{noun}es"),
+        _ => format!("{noun}s"),
+    }
+}
+
+/// How often: "once", "2 times".
+pub fn times<N: std::fmt::Display + PartialEq + From<u8>>(count: N) -> String {
+    match count == N::from(1) {
+        true => "once".to_owned(),
+        false => format!("{count} times"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::counted;
+
+    #[test]
+    fn nouns_agree_with_their_counts() {
+        for (count, noun, text) in [
+            (0, "node", "0 nodes"),
+            (1, "minor iteration", "1 minor iteration"),
+            (1, "entry", "1 entry"),
+            (2, "entry", "2 entries"),
+            (3, "key", "3 keys"),
+            (2, "branch", "2 branches"),
+        ] {
+            assert_eq!(counted(count, noun), text);
+        }
+    }
+}

@@ -5,6 +5,7 @@ use crate::format::contact_law::ContactLaw;
 use crate::format::spec::SlaveSpec;
 use std::collections::HashSet;
 use stickslip_core::model::{Contact, Model, Surface};
+use stickslip_core::words::counted;
 
 /// One line per contact law other than hard contact that a slave node has; empty without any.
 pub fn words(scene: &Scene) -> Vec<String> {
@@ -18,14 +19,14 @@ pub fn words(scene: &Scene) -> Vec<String> {
     if !normal.is_empty() {
         lines.push(format!(
             "penalty at {}: penetration c F_n, c {}; adds no unknowns, only a diagonal term on the interface",
-            nodes(normal.len()),
+            counted(normal.len(), "slave node"),
             range(&normal)
         ));
     }
     if !tangential.is_empty() {
         lines.push(format!(
             "stick stiffness at {}: elastic slip c F_t, c {}; adds no unknowns",
-            nodes(tangential.len()),
+            counted(tangential.len(), "slave node"),
             range(&tangential)
         ));
     }
@@ -41,7 +42,7 @@ pub fn words(scene: &Scene) -> Vec<String> {
     if tied > 0 {
         lines.push(format!(
             "tied: {}, always fixed and without friction; strategies do not choose their modes",
-            nodes(tied)
+            counted(tied, "slave node")
         ));
     }
     lines.extend(left_out(scene));
@@ -92,13 +93,6 @@ fn left_out(scene: &Scene) -> Option<String> {
     (!named.is_empty()).then(|| format!("{why}: {}", named.join(", ")))
 }
 
-fn nodes(count: usize) -> String {
-    match count {
-        1 => "1 slave node".into(),
-        count => format!("{count} slave nodes"),
-    }
-}
-
 /// The smallest and the largest value.
 fn range(values: &[f64]) -> String {
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
@@ -115,10 +109,10 @@ fn areas(contacts: &[Contact]) -> String {
     let (count, sum) = (known().count(), known().sum::<f64>());
     let without = match contacts.len() - count {
         0 => String::new(),
-        none => format!("; {} without", nodes(none)),
+        none => format!("; {} without", counted(none, "slave node")),
     };
     format!(
         "areas of {} (undeformed): {sum:.6} in total{without}",
-        nodes(count)
+        counted(count, "slave node")
     )
 }

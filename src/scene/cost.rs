@@ -11,6 +11,7 @@ use stickslip_core::model::{
     Beam, Body, BodyKind, Elastic, ElementKind, Form, Linear, Model, Solid, Surface,
 };
 use stickslip_core::model::{LinearSolver, Update};
+use stickslip_core::words;
 use stickslip_core::words::is_default;
 
 /// Size and cost of a scene. Displayed as a table, so that users can check whether the scene is what they meant.
@@ -102,11 +103,6 @@ impl Cost {
     }
 }
 
-fn plural(count: usize, one: &str) -> String {
-    let end = if count == 1 { "" } else { "s" };
-    format!("{count} {one}{end}")
-}
-
 /// Unknown forces of a body given by a compliance.
 fn own_forces(body: &Body) -> usize {
     match &body.kind {
@@ -120,7 +116,7 @@ fn body_line(body: &Body) -> String {
         BodyKind::Beam(beam) => beam_line(&body.name, beam),
         BodyKind::Solid(solid) => solid_line(&body.name, solid),
         BodyKind::Truss(truss) => {
-            let bars = plural(truss.bars.len(), "bar");
+            let bars = words::counted(truss.bars.len(), "bar");
             let small = if truss.small {
                 ", small displacements"
             } else {
@@ -145,12 +141,8 @@ fn linear_line(body: &Body, linear: &Linear) -> String {
     format!(
         "{}: linear, {}, a {symmetric} {form} of {}",
         body.name,
-        plural(body.nodes.len(), "node"),
-        if linear.entries.len() == 1 {
-            "1 entry".to_owned()
-        } else {
-            format!("{} entries", linear.entries.len())
-        }
+        words::counted(body.nodes.len(), "node"),
+        words::counted(linear.entries.len(), "entry")
     )
 }
 
@@ -160,7 +152,7 @@ fn beam_line(name: &str, beam: &Beam) -> String {
         Some(ga) => format!("GA {}", sig6(ga)),
         None => "shear-rigid".to_owned(),
     };
-    let elements = plural(beam.elements.len(), "element");
+    let elements = words::counted(beam.elements.len(), "element");
     format!(
         "{name}: beam, {elements} of {per} nodes, EA {}, EI {}, {shear}",
         sig6(beam.ea),
@@ -201,7 +193,7 @@ fn elements_of(solid: &Solid) -> String {
     let of_kind = |kind: &ElementKind| {
         let count = solid.elements.iter().filter(|e| e.kind == *kind).count();
         (count > 0).then(|| {
-            let elements = plural(count, "element");
+            let elements = words::counted(count, "element");
             let word = if is_default(kind) {
                 String::new()
             } else {
@@ -222,7 +214,7 @@ fn elements_of(solid: &Solid) -> String {
 
 fn surface_line(surface: &Surface) -> String {
     if !surface.smooth.is_empty() {
-        let pieces = plural(surface.elements.len(), "piece");
+        let pieces = words::counted(surface.elements.len(), "piece");
         return format!(
             "{}: a smooth curve of {pieces}, {}",
             surface.name,
@@ -230,7 +222,7 @@ fn surface_line(surface: &Surface) -> String {
         );
     }
     let per = surface.elements.first().map_or(0, Vec::len);
-    let elements = plural(surface.elements.len(), "interface element");
+    let elements = words::counted(surface.elements.len(), "interface element");
     format!(
         "{}: {elements} of {per} nodes, {}",
         surface.name,
@@ -262,11 +254,11 @@ fn slaves_line(model: &Model) -> String {
         .map(|(n, w)| format!("{n} {w}"))
         .collect();
     if parts.is_empty() {
-        return plural(0, "node");
+        return words::counted(0, "node");
     }
     format!(
         "{}; they start {}",
-        plural(model.contacts.len(), "node"),
+        words::counted(model.contacts.len(), "node"),
         parts.join(", ")
     )
 }
@@ -291,7 +283,7 @@ fn axis_lines(model: &Model) -> Vec<String> {
     let names = some_of(nodes.iter().map(|&node| model.nodes[node].name.as_str()));
     vec![format!(
         "{} at x = 0 may move off the axis: {names}; to prevent it, support them with fix: [x]",
-        plural(nodes.len(), "node")
+        words::counted(nodes.len(), "node")
     )]
 }
 
@@ -303,7 +295,8 @@ fn history_line(model: &Model) -> String {
         of_legs => of_legs.iter().map(f64::to_string).collect(),
     };
     format!(
-        "{count} increments of at most {}, load factor {}",
+        "{} of at most {}, load factor {}",
+        words::counted(count, "increment"),
         sizes.join(", "),
         corners.join(" -> ")
     )

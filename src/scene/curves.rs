@@ -3,6 +3,7 @@
 use super::limits;
 use crate::format::error::{Fault, Path, bail, fault};
 use crate::format::spec::Point;
+use stickslip_core::words::counted;
 
 pub(crate) fn point(path: &Path, (x, y): Point) -> Result<(), Fault> {
     limits::finite(&path.then(0), x, "x")?;
@@ -35,7 +36,8 @@ pub(crate) fn check_chain_count(
     };
     Err(fault!(
         path,
-        "{count} nodes do not form complete elements of {per_element} nodes with shared ends; {fits} would"
+        "{} cannot form complete elements of {per_element} nodes with shared ends; {fits} would",
+        counted(count, "node")
     ))
 }
 

@@ -6,6 +6,7 @@ use super::origin;
 use super::plan::{Case, Plan};
 use super::read::{AxisQuantity, Study};
 use super::result::{CaseEnd, Run};
+use stickslip_core::words::counted;
 use stickslip_scene::number::sig6;
 
 /// The chart of a study: a curve per run, over the plan's axes.
@@ -135,8 +136,8 @@ fn footer(plan: &Plan, runs: &[Run]) -> Vec<String> {
     made += &changes(study);
     let failed = runs.iter().filter(|run| run.failed().is_some()).count();
     let by = format!(
-        "{} runs, of which {failed} failed. {}",
-        runs.len(),
+        "{}, of which {failed} failed. {}",
+        counted(runs.len(), "run"),
         origin::made_by()
     );
     vec![made, by]

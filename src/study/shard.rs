@@ -15,6 +15,7 @@
 use std::fmt;
 use std::num::NonZeroU64;
 use std::str::FromStr;
+use stickslip_core::words::counted;
 
 /// Identifies a cell: a hash (FNV-1a, 128 bits) of everything that its result depends on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -135,8 +136,7 @@ pub fn ranges(numbers: &[usize], most: usize) -> String {
     let words: Vec<String> = ranges.iter().take(most).map(word).collect();
     let more = match ranges.len().saturating_sub(most) {
         0 => String::new(),
-        1 => " and 1 more range".to_owned(),
-        n => format!(" and {n} more ranges"),
+        n => format!(" and {}", counted(n, "more range")),
     };
     words.join(", ") + &more
 }

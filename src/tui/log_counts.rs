@@ -1,5 +1,6 @@
 //! Counts the warnings and errors in an attached solver's log, and announces the last new one once.
 
+use stickslip_core::words::counted;
 use stickslip_debugger::recorded::log::Log;
 use stickslip_debugger::recorded::log::LogOrigin;
 use stickslip_exchange::attach::message::Level;
@@ -37,11 +38,7 @@ impl LogCounts {
 
     /// The number of warnings and errors in words; empty if there are none.
     pub fn words(&self) -> String {
-        let of = |count: usize, what: &str| match count {
-            0 => None,
-            1 => Some(format!("1 {what}")),
-            count => Some(format!("{count} {what}s")),
-        };
+        let of = |count: usize, what: &str| (count > 0).then(|| counted(count, what));
         let parts = [of(self.errors, "error"), of(self.warnings, "warning")];
         parts.into_iter().flatten().collect::<Vec<_>>().join(", ")
     }

@@ -531,7 +531,7 @@ fn curves_that_cannot_be_elements_are_refused() {
         ),
         (
             "Through(id: \"b\", points: [], per_element: 3)",
-            "0 nodes do not form complete elements",
+            "0 nodes cannot form complete elements",
         ),
         (
             "Arc(id: \"b\", center: (0, 0), radius: -1, from: 0, to: 90, elements: 1, per_element: 3)",

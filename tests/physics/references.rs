@@ -123,7 +123,7 @@ fn cantilevers(case: &str) -> Vec<Row> {
 
 #[test]
 fn problem_02_smooth_slides_along_the_reference() {
-    for (refine, limit) in [("1", 3.1e-3), ("2", 6e-4)] {
+    for (refine, limit) in [("1", 2e-4), ("2", 4e-5)] {
         let run = run(&scene("02-two-cantilevers-smooth", &[("refine", refine)]));
         finished(&run);
         let e = error(&run, &cantilevers("phi0"), "P", "u_x", "u_tip");

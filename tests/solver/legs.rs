@@ -114,7 +114,7 @@ fn what_is_no_list_of_increments_is_refused_with_its_place() {
     let cases = [
         (
             load(&[0.1]),
-            "history.increments: there are 1 increments for 2 legs",
+            "history.increments: the list has 1 increment, and the path 2 legs",
         ),
         (
             load(&[0.1, 0.0]),

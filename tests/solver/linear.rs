@@ -174,7 +174,7 @@ fn contacts_and_a_matrix_are_a_scene_by_themselves() {
     let error = Scene::from_text("t", &lacking, &[])
         .unwrap_err()
         .to_string();
-    assert!(error.contains("4 degrees of freedom"), "{error}");
+    assert!(error.contains("it must have 4, one for x"), "{error}");
 }
 
 fn single(k: f64) -> Matrix {
@@ -298,9 +298,9 @@ fn each_fault_has_one_message_with_its_place() {
             "[[1.0, 0.0], [0.0, 1.0]]",
             "[[1.0, 0.0]]",
             5,
-            "the matrix has 1 rows",
+            "the matrix has 1 row;",
         ),
-        ("[[1.0, 0.0],", "[[1.0],", 5, "the row has 1 numbers"),
+        ("[[1.0, 0.0],", "[[1.0],", 5, "the row has 1 number;"),
         (
             "[[1.0, 0.0],",
             "[[1.0, inf],",
@@ -323,7 +323,7 @@ fn each_fault_has_one_message_with_its_place() {
             "stiffness: [[",
             "free: [1.0], stiffness: [[",
             5,
-            "the row has 1 numbers; it must have 2",
+            "the row has 1 number; it must have 2",
         ),
         (
             "nodes: [\"a\"], stiff",

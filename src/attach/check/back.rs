@@ -5,6 +5,7 @@ use super::steps::difference;
 use super::trial::{Trial, at, is_last};
 use serde_json::Value;
 use stickslip_core::model::Mode;
+use stickslip_core::words::counted;
 use stickslip_debugger::recorded::fault::Fault;
 use stickslip_exchange::attach::message::{EndedLevel, Restore, State};
 
@@ -56,9 +57,9 @@ pub fn restore(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
     {
         return Ok(fails(found, MEND));
     }
-    let (count, s) = (kept.len(), if kept.len() == 1 { "" } else { "s" });
     Ok(good(format!(
-        "{count} state{s} restored; the following iterations are bit-identical"
+        "{} restored; the following iterations are bit-identical",
+        counted(kept.len(), "state")
     )))
 }
 

@@ -4,6 +4,7 @@ use super::report::{Outcome, fails, good, not_offered};
 use super::trial::{Trial, at, is_last};
 use serde_json::Value;
 use stickslip_core::model::Mode;
+use stickslip_core::words::counted;
 use stickslip_debugger::explain::names::{self, MODES};
 use stickslip_debugger::recorded::fault::Fault;
 use stickslip_debugger::recorded::orders::{FRICTION, INCREMENT};
@@ -97,7 +98,8 @@ pub fn force(mut trial: Trial, _: &[State]) -> Result<Outcome, Fault> {
     }
     let count = trial.scene.contacts.len();
     let mut found = format!(
-        "{tried} of {count} contacts, one by one and all at once: the next iteration has the forced mode"
+        "{tried} of {}, one by one and all at once: the next iteration has the forced mode",
+        counted(count, "contact")
     );
     if let Some(first) = refused.first() {
         found += &format!(
@@ -177,7 +179,9 @@ pub fn hold(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
             "offer hold in hello only if contacts can be held",
         ),
         _ => good(format!(
-            "{held} contacts held through {longest} iterations and released"
+            "{} held through {} and released",
+            counted(held, "contact"),
+            counted(longest, "iteration")
         )),
     })
 }

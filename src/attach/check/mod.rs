@@ -15,6 +15,7 @@ mod trial;
 
 use super::link::Start;
 pub use report::{CheckResult, Outcome, Report, Verdict};
+use stickslip_core::words::counted;
 use stickslip_debugger::recorded::fault::Fault;
 use stickslip_debugger::recorded::log::Log;
 use stickslip_exchange::attach::message::State;
@@ -35,9 +36,8 @@ pub fn check(start: &Start, log: &Log) -> Report {
     };
     report.name = format!("{} {}", first.hello.name, first.hello.version);
     let count = first.scene.contacts.len();
-    let s = if count == 1 { "" } else { "s" };
     let took = millis(first.began);
-    let found = format!("{count} contact{s}, {took:.0} ms");
+    let found = format!("{}, {took:.0} ms", counted(count, "contact"));
     report.add("start", Ok(report::good(found)));
     let states = steps::stepping(&mut report, first);
     if states.is_empty() {

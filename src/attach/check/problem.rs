@@ -13,6 +13,7 @@ use super::trial::{Trial, is_last};
 use nalgebra::DVector;
 use stickslip_core::model::Mode;
 use stickslip_core::step::solver::ReportedProblem;
+use stickslip_core::words::times;
 use stickslip_debugger::recorded::fault::Fault;
 use stickslip_debugger::recorded::interface_problem::read_problem;
 use stickslip_exchange::attach::message::{EndedLevel, Id, State};
@@ -100,13 +101,6 @@ pub fn problem(mut trial: Trial, states: &[State]) -> Result<Outcome, Fault> {
             break;
         }
     }
-    let times = |count: usize| {
-        if count == 1 {
-            "once".into()
-        } else {
-            format!("{count} times")
-        }
-    };
     Ok(match (asked, settled) {
         (0, _) => {
             let reason = refused.unwrap_or_default();

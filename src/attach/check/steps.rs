@@ -5,6 +5,7 @@ use super::report::{Outcome, Report, fails, good, not_tried};
 use super::trial::{Trial, is_last, millis};
 use stickslip_core::model::{Mode, Model};
 use stickslip_core::step::judged::ALLOWED;
+use stickslip_core::words::counted;
 use stickslip_debugger::explain::names;
 use stickslip_debugger::recorded::decode::WireFrame;
 use stickslip_debugger::recorded::fault::Fault;
@@ -64,8 +65,8 @@ pub fn stepping(report: &mut Report, mut trial: Trial) -> Vec<State> {
             "answer the first step with a state",
         ),
         Some(median) => good(format!(
-            "{} iterations, {median:.1} ms each (median; the slowest {:.1} ms)",
-            states.len(),
+            "{}, {median:.1} ms each (median; the slowest {:.1} ms)",
+            counted(states.len(), "iteration"),
             times[times.len() - 1]
         )),
     });
@@ -300,10 +301,14 @@ fn laws(states: &[State]) -> Outcome {
     match count {
         0 => not_tried(
             "",
-            format!("no increment was accepted in {} iterations", states.len()),
+            format!(
+                "no increment was accepted in {}",
+                counted(states.len(), "iteration")
+            ),
         ),
         _ => good(format!(
-            "in {count} accepted increments: signs are right, forces within their limits{nearly}"
+            "in {}: signs are right, forces within their limits{nearly}",
+            counted(count, "accepted increment")
         )),
     }
 }

@@ -18,6 +18,7 @@ use crate::linear::norms::Norms;
 use crate::linear::source::{LinearisationPoint, Source};
 use crate::linear::violation::violation;
 use crate::model::{Bond, Contact, Dofs, Friction, Mode, Model, Node, Settings, Touch};
+use crate::words::counted;
 
 /// A constant interface: its stiffness, loads and gaps.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,7 +37,7 @@ pub struct Constant {
 
 /// Lists with inconsistent lengths.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
-#[error("{name} has {found} entries, but {contacts} contacts need {wanted}")]
+#[error("{name} has {}, but {} must have {wanted}", counted(*found, "entry"), counted(*contacts, "contact"))]
 pub struct WrongSize {
     /// Name of the list.
     pub name: &'static str,

@@ -17,6 +17,7 @@ use stickslip_core::interface::trials::Trials;
 use stickslip_core::model::{BoundUpdate, SlipCount};
 use stickslip_core::model::{Mode, Model};
 use stickslip_core::strategy::method;
+use stickslip_core::words;
 use stickslip_scene::shown::{aligned, first_of};
 
 /// Maximum number of nodes of a diagnosed problem: each iteration of its cycle requires dense solves of twice
@@ -430,7 +431,8 @@ fn loop_table<'a>(diagnosis: &Diagnosis, name: &impl Fn(usize) -> &'a str) -> Ve
     let all: usize = diagnosis.phases.iter().map(changes).sum();
     let more = all.saturating_sub(pushes.count().min(MOST_PUSHES));
     if more > 0 {
-        lines.push(format!("and {more} more changes of modes"));
+        let changes = words::counted(more, "more mode change");
+        lines.push(format!("and {changes}"));
     }
     lines
 }
@@ -565,13 +567,14 @@ pub(super) fn census_words<'a>(census: &Census, name: &impl Fn(usize) -> &'a str
         (0, false) => format!("{of}none of {all} assignments has been found consistent so far"),
         (n, false) => format!("{of}at least {n} of {all} assignments are consistent"),
     }];
+    let branches = words::counted(census.visited, "branch");
     match (census.visited, census.exact) {
         (0, true) => {}
-        (n, true) => lines.push(format!(
-            "  branch and bound: {n} branches exclude all others"
+        (_, true) => lines.push(format!(
+            "  branch and bound: all others are excluded by {branches}"
         )),
-        (n, false) => lines.push(format!(
-            "  branch and bound: incomplete after {n} branches; there may be more"
+        _ => lines.push(format!(
+            "  branch and bound: incomplete after {branches}; there may be more"
         )),
     }
     for (number, found) in census.answers.iter().enumerate().take(MOST_TOLD) {

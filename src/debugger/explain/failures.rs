@@ -11,6 +11,7 @@ use stickslip_core::linear::norms::Norms;
 use stickslip_core::linear::singular::{LooseMotion, RigidMotion, Singular};
 use stickslip_core::model::Model;
 use stickslip_core::step::event::Failure;
+use stickslip_core::words::{counted, times};
 use stickslip_scene::shown::first_of;
 
 /// Maximum number of nodes or motions named.
@@ -78,12 +79,13 @@ pub fn describe(model: &Model, failure: &Failure) -> String {
             format!("refused: {}", strain::inverted(model, point))
         }
         Failure::CutTooOften { slave: s, cuts, last } => format!(
-            "the increment was cut {cuts} times because of {}: {}",
+            "the increment was cut {} because of {}: {}",
+            times(*cuts),
             slave(model, *s),
             describe(model, last)
         ),
         Failure::NoRest { steps } => {
-            format!("the damped motion still moves after {steps} steps")
+            format!("the damped motion still moves after {}", counted(*steps, "step"))
         }
         Failure::BranchJump {
             motion,
@@ -121,7 +123,7 @@ fn not_found(why: NotFound) -> String {
             "pivoting cannot start: the equations of all known starts are singular".into()
         }
         NotFound::Unsettled { sweeps } => {
-            format!("after {sweeps} sweeps of Gauss-Seidel the modes still change")
+            format!("after {} of Gauss-Seidel the modes still change", counted(sweeps, "sweep"))
         }
         NotFound::TooMany { nodes } => format!(
             "{nodes} nodes can touch, too many for a census (limit {})",
@@ -134,9 +136,8 @@ fn not_found(why: NotFound) -> String {
             "the bodies cannot be condensed to the interface, so pivoting and census are not possible".into()
         }
         NotFound::Unconfirmed { states } => format!(
-            "{states} state{} found consistent, but no minor iteration confirmed {}",
-            if states == 1 { " was" } else { "s were" },
-            if states == 1 { "it" } else { "one" }
+            "{} found, but not confirmed by a minor iteration",
+            counted(states, "consistent state")
         ),
     }
 }

@@ -5,6 +5,7 @@ use super::names::slave;
 use stickslip_core::model::Model;
 use stickslip_core::step::event::Failure;
 use stickslip_core::step::state::State;
+use stickslip_core::words::times;
 use stickslip_scene::number::shortest;
 use stickslip_scene::shown::first_of;
 
@@ -50,7 +51,8 @@ pub fn brief(model: &Model, failure: &Failure) -> String {
             cuts,
             last,
         } => format!(
-            "cut {cuts} times because of {}: {}",
+            "cut {} because of {}: {}",
+            times(*cuts),
             slave(model, *s),
             brief(model, last)
         ),

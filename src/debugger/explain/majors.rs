@@ -11,6 +11,7 @@ use stickslip_core::model::{Geometry, Mode, Model, ResidualMethod, Settings};
 use stickslip_core::plane::{cross, dot};
 use stickslip_core::step::major_history::{MajorCycle, Stop};
 use stickslip_core::step::state::State;
+use stickslip_core::words::counted;
 use stickslip_scene::number::sig4;
 use stickslip_scene::shown::first_of;
 
@@ -164,8 +165,8 @@ pub fn cycle_words(model: &Model, attempt: &Attempt, round: &MajorCycle) -> Vec<
         lines.push(Fact::new(
             Part::Details,
             format!(
-                "{} more nodes change or follow",
-                round.members.len() - shown
+                "not shown: {}",
+                counted(round.members.len() - shown, "other node")
             ),
         ));
     }

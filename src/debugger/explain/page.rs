@@ -31,6 +31,7 @@ use stickslip_core::model::{Body, BodyKind, FinishedRun, InitialGaps, Model};
 use stickslip_core::step::event::Failure;
 use stickslip_core::step::state::{State, Status};
 use stickslip_core::step::stepper::Stepper;
+use stickslip_core::words::counted;
 use stickslip_scene::format::spec::Spec;
 use stickslip_scene::gaps::turned;
 use stickslip_scene::number::sig4;
@@ -591,7 +592,10 @@ fn finer_line(finer: &MeshProbe) -> TryLine {
     let (outcome, end) = match &finer.run.failure {
         None => (
             TryOutcome::Works,
-            format!("tried from the start: passes, {} minors", finer.run.minors),
+            format!(
+                "tried from the start: passes, {}",
+                counted(finer.run.minors, "minor")
+            ),
         ),
         Some(Some(failure)) => {
             let end = remedies::end_words(&TrialEnd::Failed(failure.clone()));

@@ -7,6 +7,7 @@ use stickslip_core::interface::problem::InterfaceProblem;
 use stickslip_core::interface::t_max_iteration::{TMaxIteration, TMaxLimit, spiral};
 use stickslip_core::interface::uniqueness::{Inapplicable, Uniqueness};
 use stickslip_core::strategy::method;
+use stickslip_core::words::counted;
 use stickslip_scene::number::sig4;
 
 /// Number of minor iterations used to follow T_max.
@@ -87,7 +88,7 @@ pub fn family_words<'a>(
         let forces: Vec<String> = forces.collect();
         let more = match family.ranges.len().saturating_sub(MOST_NAMED) {
             0 => String::new(),
-            more => format!("; and {more} more nodes"),
+            more => format!("; and {}", counted(more, "more node")),
         };
         format!(
             "the forces are not unique, with a family of dimension {} for the same motion ({which}): {}{more}",
@@ -121,7 +122,10 @@ pub fn spiral_words(problem: &InterfaceProblem, spiral: &TMaxIteration) -> Strin
         _ => format!("in each period of {period} iterations"),
     };
     let more = match spiral.iterations(problem.force) {
-        Some(more) => format!("after {more} more iterations it repeats to 1e-12"),
+        Some(more) => format!(
+            "after {} it repeats to 1e-12",
+            counted(more, "more iteration")
+        ),
         None => "it never repeats".to_owned(),
     };
     let away = spiral.distance;
@@ -131,13 +135,12 @@ pub fn spiral_words(problem: &InterfaceProblem, spiral: &TMaxIteration) -> Strin
         }
         TMaxLimit::Cycles => format!(
             "T_max spirals into the cycle by a factor of {radius:.4} {round} ({away:.3e} away \
-             after {} iterations); {more}, but the modes repeat endlessly",
-            spiral.start
+             after {}); {more}, but the modes repeat endlessly",
+            counted(spiral.start, "iteration")
         ),
         TMaxLimit::Settles => format!(
-            "the modes have settled; T_max converges by a factor of {radius:.4} {round} ({away:.3e} away after {} \
-             iterations); {more}",
-            spiral.start
+            "the modes have settled; T_max converges by a factor of {radius:.4} {round} ({away:.3e} away after {}); {more}",
+            counted(spiral.start, "iteration")
         ),
         TMaxLimit::Diverges => format!(
             "T_max diverges by a factor of {radius:.4} {round}: it cannot settle with these modes"
@@ -173,7 +176,7 @@ fn fixed_words<'a>(found: &TMaxIteration, name: &impl Fn(usize) -> &'a str) -> O
     let text = text.collect::<Vec<_>>().join(", ");
     let more = match found.places.len().saturating_sub(MOST_NAMED) {
         0 => String::new(),
-        more => format!(", and {more} more nodes"),
+        more => format!(", and {}", counted(more, "more node")),
     };
     (!text.is_empty()).then(|| format!("  its fixed point: T_max = {text}{more}"))
 }

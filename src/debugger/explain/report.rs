@@ -17,6 +17,7 @@ use stickslip_core::step::event::{
 };
 use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::state::State;
+use stickslip_core::words::counted;
 use stickslip_scene::number::{shortest, sig4, sig6};
 use stickslip_scene::shown::first_of;
 
@@ -356,8 +357,10 @@ pub fn reservations(model: &Model, event: &Event) -> String {
     };
     let mut text = match unsettled {
         0 => String::new(),
-        1 => ", but 1 loop of minor iterations did not settle".into(),
-        n => format!(", but {n} loops of minor iterations did not settle"),
+        n => format!(
+            ", but {} of minor iterations did not settle",
+            counted(*n, "loop")
+        ),
     };
     let defied = |rule: fn(Rule) -> bool| -> Vec<&str> {
         (0..event.nodes.len())
@@ -391,8 +394,8 @@ pub fn reservations(model: &Model, event: &Event) -> String {
     text += &jumped::reservation(*jumped, unstable.as_ref());
     if let Some(motion) = motion {
         text += &format!(
-            ", after a damped motion of {} steps from the equilibrium at load {} (energy {} dissipated)",
-            motion.steps,
+            ", after a damped motion of {} from the equilibrium at load {} (energy {} dissipated)",
+            counted(motion.steps, "step"),
             shortest(motion.from),
             sig6(motion.dissipated)
         );

@@ -3,6 +3,7 @@
 use super::remedies::{self, BUDGET, RemedyTrial, TrialEnd, compare};
 use super::remedy::{Remedy, RemedyInput};
 use stickslip_core::model::RunFinding;
+use stickslip_core::words::counted;
 
 /// Outcome of a line of the list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -34,10 +35,7 @@ impl TryLine {
     /// The line of a tried remedy.
     pub fn tried(trial: &RemedyTrial) -> TryLine {
         let works = helps(trial);
-        let minors = match trial.minors {
-            1 => "1 minor".to_owned(),
-            n => format!("{n} minors"),
-        };
+        let minors = counted(trial.minors, "minor");
         let end = match (works, &trial.how) {
             (true, RemedyInput::Restart(_)) => format!("tried from the start: passes, {minors}"),
             (true, _) => format!("tried: converges, {minors}"),

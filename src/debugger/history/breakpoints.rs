@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::str::FromStr;
 use stickslip_core::model::{Mode, Model};
+use stickslip_core::words::noun_for;
 
 /// Condition of a breakpoint. A node is a slave number; `None` matches any node.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -196,8 +197,8 @@ impl Breakpoints {
         match hit.clone().count() {
             0 => String::new(),
             count => {
-                let s = if count == 1 { "" } else { "s" };
-                format!("breakpoint{s} {}: ", listed(model, hit))
+                let noun = noun_for(&count, "breakpoint");
+                format!("{noun} {}: ", listed(model, hit))
             }
         }
     }

@@ -12,6 +12,7 @@ use std::collections::VecDeque;
 use stickslip_core::contact::record;
 use stickslip_core::interface::cycle;
 use stickslip_core::model::{Mode, Model};
+use stickslip_core::words::counted;
 
 /// Longest period searched for.
 const LONGEST: usize = 200;
@@ -232,7 +233,7 @@ pub fn words(model: &Model, rounds: &Rounds, tells_since: bool) -> String {
             let swing = most.map(|(slave, degrees)| {
                 let others = match swings.len() - 1 {
                     0 => String::new(),
-                    others => format!(" (and at {others} more nodes)"),
+                    others => format!(" (and at {})", counted(others, "more node")),
                 };
                 format!(
                     "the direction of friction at {}{others} swings by up to {degrees:.0} degrees per iteration",
@@ -251,7 +252,11 @@ pub fn words(model: &Model, rounds: &Rounds, tells_since: bool) -> String {
         }
         Rounds::Irregular { members, over } => {
             let member = |(slave, count): &(usize, usize)| {
-                format!("{} ({count} times)", names::slave(model, *slave))
+                format!(
+                    "{} ({})",
+                    names::slave(model, *slave),
+                    counted(*count, "time")
+                )
             };
             let lines: Vec<String> = members.iter().take(NAMED).map(member).collect();
             // Fewer iterations have had no time to repeat.
@@ -261,7 +266,8 @@ pub fn words(model: &Model, rounds: &Rounds, tells_since: bool) -> String {
                 " without a period"
             };
             format!(
-                "changed in the last {over} iterations{order}: {}{}",
+                "changed in the last {}{order}: {}{}",
+                counted(*over, "iteration"),
                 lines.join(", "),
                 more(members.len())
             )

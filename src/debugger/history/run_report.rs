@@ -9,6 +9,7 @@ use crate::explain::strain;
 use stickslip_core::fem::deformation::deformation;
 use stickslip_core::model::Model;
 use stickslip_core::step::event::Outcome;
+use stickslip_core::words::{counted, noun_for};
 use stickslip_scene::number::{shortest, sig4};
 use stickslip_scene::shown::first_of;
 
@@ -32,9 +33,10 @@ pub fn run_report(model: &Model, strips: &[Strip], frames: &[Frame]) -> (String,
     let minors: u32 = costs.iter().map(|cost| cost.minors).sum();
     let load = costs.last().map_or(0.0, |cost| cost.load);
     let head = format!(
-        "The history is complete: {} increments to load {}, {minors} minor iterations.",
-        costs.len(),
-        shortest(load)
+        "The history is complete: {} to load {}, {}.",
+        counted(costs.len(), "increment"),
+        shortest(load),
+        counted(minors, "minor iteration")
     );
     let mut lines = cuts(model, strips, frames);
     let loads = |is: &dyn Fn(&Strip, &Frame) -> bool| {
@@ -90,9 +92,10 @@ fn cuts(model: &Model, strips: &[Strip], frames: &[Frame]) -> Vec<String> {
     if count == 0 {
         return vec!["no increment was cut".into()];
     }
-    let plural = if count == 1 { "" } else { "s" };
     let mut lines = vec![format!(
-        "{count} cut{plural} or other restart{plural} of an increment"
+        "{} or other {} of an increment",
+        counted(count, "cut"),
+        noun_for(&count, "restart")
     )];
     let all = strips.iter().zip(frames).filter(|(strip, _)| is_cut(strip));
     let causes = all.filter_map(|(strip, frame)| {

@@ -18,6 +18,7 @@ use stickslip_core::step::event::{Event, Position};
 use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::solver::Solver;
 use stickslip_core::step::state::{State, Status};
+use stickslip_core::words::counted;
 use stickslip_platform::disk;
 use stickslip_platform::files::{self, FileError};
 use stickslip_platform::input::{self, RECORD_BYTES};
@@ -297,7 +298,8 @@ impl Snapshot {
             RunEnd::Spent => {}
             RunEnd::Finished | RunEnd::Failed(_) | RunEnd::Interrupted => {
                 return Err(SnapshotError::Replay(format!(
-                    "the history ends after {done} minor iterations, but the snapshot was taken after {}",
+                    "the history ends after {}, but the snapshot was taken after {}",
+                    counted(done, "minor iteration"),
                     self.steps
                 )));
             }

@@ -4,6 +4,7 @@ use crate::explain::names;
 use crate::record::command::{BranchTarget, Command, Unit};
 use crate::record::journal::{Entry, JournalError, Record, date};
 use stickslip_core::model::Model;
+use stickslip_core::words::counted;
 
 /// The text of a journal.
 ///
@@ -79,7 +80,10 @@ pub fn done(model: &Model, entry: &Entry) -> String {
             )
         }
         Command::Follow { label, steps } => {
-            format!("Applied a remedy ({} steps): {label}.", steps.len())
+            format!(
+                "Applied a remedy ({}): {label}.",
+                counted(steps.len(), "step")
+            )
         }
         Command::Release { slave: s } => {
             format!("Released {}, so that Table 2 decides again.", slave(s))
@@ -129,15 +133,13 @@ fn forward(unit: Unit, count: u32) -> String {
 fn result_lines(entry: &Entry) -> Vec<String> {
     let mut lines = Vec::new();
     if entry.solved > 0 {
-        let plural = |n: u64| if n == 1 { "" } else { "s" };
         let increments = match entry.accepted {
             0 => String::new(),
-            n => format!(", {n} increment{} accepted", plural(n)),
+            n => format!(", {} accepted", counted(n, "increment")),
         };
         lines.push(format!(
-            "Solved {} minor iteration{}{increments}.",
-            entry.solved,
-            plural(entry.solved)
+            "Solved {}{increments}.",
+            counted(entry.solved, "minor iteration")
         ));
     }
     lines.push(format!("Result: {}", entry.said));

@@ -21,6 +21,7 @@ use stickslip_core::step::event::{Event, Failure, Frame, Outcome, Position, Word
 use stickslip_core::step::judged::{self, ReferenceSizes};
 use stickslip_core::step::state::State;
 use stickslip_core::strategy::method;
+use stickslip_core::words::counted;
 use stickslip_exchange::attach::message::{
     self, Components, ContactResult, Decides, EndedLevel, Id,
 };
@@ -167,8 +168,8 @@ impl WireFrame<'_> {
         let solved = sent.ended != EndedLevel::Failure && sent.ended != EndedLevel::Cut;
         if sent.contacts.len() != count && (solved || !sent.contacts.is_empty()) {
             return unfit(format!(
-                "it has {} contacts; the scene has {count}",
-                sent.contacts.len()
+                "it has {}; the scene has {count}",
+                counted(sent.contacts.len(), "contact")
             ));
         }
         for (k, (found, id)) in sent.contacts.iter().zip(self.ids).enumerate() {
@@ -182,8 +183,9 @@ impl WireFrame<'_> {
         let nodes = self.model.nodes.len();
         match &sent.displacements {
             Some(all) if all.len() != nodes => unfit(format!(
-                "it has {} displacements; the scene has {nodes} nodes",
-                all.len()
+                "it has {}; the scene has {}",
+                counted(all.len(), "displacement"),
+                counted(nodes, "node")
             )),
             Some(all)
                 if all
@@ -217,8 +219,8 @@ impl WireFrame<'_> {
         let other = |given: &Components, wanted: usize| given.as_slice().len() != wanted;
         for (name, given, wanted) in vectors {
             if given.is_some_and(|given| other(&given, wanted)) {
-                let s = if wanted == 1 { "" } else { "s" };
-                return unfit(format!("contacts[{k}].{name}: must be {wanted} number{s}"));
+                let numbers = counted(wanted, "number");
+                return unfit(format!("contacts[{k}].{name}: must be {numbers}"));
             }
         }
         for (name, given) in [("normal", found.normal), ("tangent", found.tangent)] {

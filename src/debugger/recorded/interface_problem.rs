@@ -3,6 +3,7 @@
 use super::fault::Fault;
 use stickslip_core::model::Friction;
 use stickslip_core::step::solver::{ReportedForm, ReportedProblem};
+use stickslip_core::words::counted;
 use stickslip_exchange::attach::message::{Id, MatrixMessage, ProblemMessage};
 
 /// Converts the problem, whose contacts have these ids.
@@ -76,7 +77,9 @@ pub fn read_problem(problem: &ProblemMessage, ids: &[Id]) -> Result<ReportedProb
     };
     if matrix.len() != size || matrix.iter().any(|row| row.len() != size) {
         return Err(unfit(format!(
-            "the matrix must have {size} rows of {size} numbers"
+            "the matrix must have {} of {}",
+            counted(size, "row"),
+            counted(size, "number")
         )));
     }
     let friction = problem.mu.iter().zip(&cohesion);

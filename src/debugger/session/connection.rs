@@ -8,6 +8,7 @@ use stickslip_core::model::Friction;
 use stickslip_core::step::intervene::Intervention;
 use stickslip_core::step::solver::{Capabilities, RewindSupport};
 use stickslip_core::step::state::{Controls, State};
+use stickslip_core::words::counted;
 
 /// A solver as its session sees it.
 pub struct Connection {
@@ -88,8 +89,7 @@ impl Connection {
             |strips: &[Strip]| strips.iter().filter(|strip| strip.kind.is_solved()).count();
         let again = |start: &str, count: usize| match count {
             0 => start.to_owned(),
-            1 => format!("{start} and repeats 1 iteration"),
-            count => format!("{start} and repeats {count} iterations"),
+            count => format!("{start} and repeats {}", counted(count, "iteration")),
         };
         match self.offers.goes_back {
             _ if self.lost.is_some() => Some(again(

@@ -3,6 +3,7 @@
 use super::refusal::Refusal;
 use crate::record::journal::{Entry, Journal, JournalError};
 use std::path::{Path, PathBuf};
+use stickslip_core::words::counted;
 use stickslip_scene::Scene;
 
 /// The entries of a session and where they are written.
@@ -92,9 +93,9 @@ impl JournalWriter {
         }
         self.write_to(Journal::create(&file, scene, &self.entries)?);
         Ok(format!(
-            "the journal is now written to {}, which already contains {} entries",
+            "the journal is now written to {}, which already contains {}",
             file.display(),
-            self.entries.len()
+            counted(self.entries.len(), "entry")
         ))
     }
 
@@ -123,7 +124,7 @@ impl JournalWriter {
             Ok(journal) => {
                 self.to = Destination::File(journal);
                 self.trouble = format!(
-                    "; {} was deleted and has been rewritten with all {} entries",
+                    "; {} was deleted and has been rewritten with all its entries ({})",
                     path.display(),
                     self.entries.len()
                 );

@@ -6,6 +6,7 @@ use super::worker::Steps;
 use crate::history::breakpoints::Breakpoints;
 use crate::record::command::Unit;
 use stickslip_core::step::state::Status;
+use stickslip_core::words::counted;
 
 impl Session {
     /// Moves the cursor over recorded steps, then solves.
@@ -68,7 +69,10 @@ impl Session {
                 sound: true,
             };
             self.work(from, task, again);
-            return format!("recomputing {} steps; Ctrl-C interrupts", target - from);
+            return format!(
+                "recomputing {}; Ctrl-C interrupts",
+                counted(target - from, "step")
+            );
         }
         self.timeline.move_to(target);
         let way = match self.connection.way_back(&self.timeline, target) {

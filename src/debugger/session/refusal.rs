@@ -6,6 +6,7 @@ use crate::history::watches::WatchError;
 use crate::record::export::export_state::ExportError;
 use crate::record::journal::JournalError;
 use crate::record::snapshot::SnapshotError;
+use stickslip_core::words::counted;
 use stickslip_platform::files::FileError;
 use stickslip_scene::format::error::SetError;
 
@@ -121,7 +122,7 @@ pub(super) enum Departure {
     Refused(#[from] Refusal),
     #[error("it solves too many iterations for one motion")]
     TooMuch,
-    #[error("it now solves {now} minor iterations instead of {then}")]
+    #[error("it now solves {} instead of {then}", counted(*now, "minor iteration"))]
     Solves { now: u64, then: u64 },
     #[error("it now ends at step {} of branch b{} instead of step {} of b{}", now.1, now.0, then.1, then.0)]
     Leads {

@@ -2,6 +2,7 @@
 
 use crate::action::ParseError;
 use crate::session::Refusal;
+use stickslip_core::words::counted;
 use stickslip_scene::format::error::did_you_mean;
 
 /// Why an action is not allowed now.
@@ -58,7 +59,7 @@ pub enum LessonError {
     #[error("the history is complete")]
     Done,
     /// The number of minor iterations tried.
-    #[error("the increment does not end within {0} minor iterations")]
+    #[error("the increment does not end within {}", counted(*.0, "minor iteration"))]
     Endless(u32),
     /// The bodies cannot be condensed.
     #[error("the bodies of this state cannot be condensed")]
@@ -159,6 +160,6 @@ pub(super) enum PlaybackError {
     Refused(#[from] Refusal),
     #[error("the solution does not reach the goal: {0}")]
     NotReached(String),
-    #[error("the history has fewer than {0} iterations to predict")]
+    #[error("the history has fewer than {} to predict", counted(*.0, "iteration"))]
     FewIterations(u32),
 }

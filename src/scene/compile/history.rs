@@ -4,6 +4,7 @@ use super::super::limits;
 use crate::format::error::{Fault, at, bail, fault};
 use crate::format::spec::History;
 use stickslip_core::model::{Body, BodyKind, Control, Settings, Touch};
+use stickslip_core::words::counted;
 
 /// Rejects an empty or endless path.
 pub(super) fn history(history: &History) -> Result<(), Fault> {
@@ -69,8 +70,9 @@ fn of_legs(history: &History) -> Result<(), Fault> {
     if sizes.len() != legs {
         bail!(
             here,
-            "there are {} increments for {legs} legs of the path; list one per leg, or leave them out",
-            sizes.len()
+            "the list has {}, and the path {}; list one per leg, or leave them out",
+            counted(sizes.len(), "increment"),
+            counted(legs, "leg")
         );
     }
     if history.control == Control::Arc {

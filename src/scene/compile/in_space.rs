@@ -9,6 +9,7 @@ use crate::nodes::Names;
 use std::collections::HashSet;
 use std::sync::Arc;
 use stickslip_core::model::{Contact, Model, Node, SpaceProblem, Surface};
+use stickslip_core::words::counted;
 
 /// Checks a problem; the texts have been checked.
 pub(super) fn compile(spec: &Spec, problem: &SpaceSpec) -> Result<(Model, Names), Fault> {
@@ -90,8 +91,9 @@ fn check(problem: &SpaceSpec) -> Result<(), Fault> {
     if problem.free.len() != 3 * count {
         bail!(
             at!["free"],
-            "it has {} numbers; a problem in space with {count} contacts has {}",
-            problem.free.len(),
+            "it has {}; a problem in space with {} has {}",
+            counted(problem.free.len(), "number"),
+            counted(count, "contact"),
             3 * count
         );
     }

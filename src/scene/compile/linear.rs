@@ -7,6 +7,7 @@ use crate::format::spec::{Bar, BodySpec, Spec};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use stickslip_core::model::{Body, BodyKind, Dofs, Factor, Form, Linear, Load, Truss};
 use stickslip_core::plane::minus;
+use stickslip_core::words::counted;
 use stickslip_exchange::problem::Matrix;
 
 /// A body given by a stiffness or a compliance. The degrees of freedom of a compliance's forces are numbered later, with all
@@ -127,9 +128,8 @@ fn square(here: &Path, rows: &[Vec<f64>], size: usize) -> Result<(), Fault> {
     if rows.len() != size {
         bail!(
             here,
-            "the matrix has {} rows; {} nodes have {size} degrees of freedom, x and y of each",
-            rows.len(),
-            size / 2
+            "the matrix has {}; it must have {size}, one for x and one for y of each node",
+            counted(rows.len(), "row")
         );
     }
     rows.iter()
@@ -141,8 +141,8 @@ fn sized(here: &Path, row: &[f64], size: usize) -> Result<(), Fault> {
     if row.len() != size {
         bail!(
             here,
-            "the row has {} numbers; it must have {size}",
-            row.len()
+            "the row has {}; it must have {size}",
+            counted(row.len(), "number")
         );
     }
     for (k, value) in row.iter().enumerate() {

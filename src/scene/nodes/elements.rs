@@ -4,6 +4,7 @@ use super::super::geometry::Folds;
 use crate::format::error::{Fault, Path, bail, fault};
 use stickslip_core::model::{ElementKind, Node};
 use stickslip_core::plane::minus;
+use stickslip_core::words::counted;
 
 /// An element: its kind and its node numbers, anticlockwise.
 pub(crate) type Element = (ElementKind, Vec<usize>);
@@ -28,8 +29,8 @@ pub(super) fn sound(
     if own.len() != kind.nodes() {
         bail!(
             path(),
-            "the element has {} nodes; a {} has {}",
-            own.len(),
+            "the element has {}; a {} has {}",
+            counted(own.len(), "node"),
             kind.word(),
             kind.nodes()
         );

@@ -5,6 +5,7 @@ use super::{EntryKind, NameEntry, Names};
 use crate::format::error::{Fault, Path, at, bail, fault};
 use crate::format::spec::Nodes;
 use std::collections::HashSet;
+use stickslip_core::words::counted;
 
 impl Names {
     /// Adds a mesh of several blocks, and returns the node pairs that its joints merge: the node that stays and the one that is
@@ -100,9 +101,9 @@ impl Names {
         if a.nodes.len() != b.nodes.len() {
             bail!(
                 here,
-                "{:?} has {} elements and {:?} has {}; joined edges need the same number",
+                "{:?} has {} and {:?} has {}; joined edges need the same number",
                 a.id,
-                elements(a),
+                counted(elements(a), "element"),
                 b.id,
                 elements(b)
             );

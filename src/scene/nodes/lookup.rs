@@ -4,6 +4,7 @@ use super::given::nodes_of;
 use super::{EntryKind, Mesh, NameEntry, Names};
 use crate::format::error::{did_you_mean, none_called, quoted, some_of};
 use crate::shown::first_of;
+use stickslip_core::words::counted;
 
 impl Names {
     /// Number of a node by any of its names.
@@ -233,9 +234,10 @@ impl Names {
             _ => match selector.parse::<usize>() {
                 Ok(k) if (1..=count).contains(&k) => Ok(Selector::Index(k - 1)),
                 Ok(_) => Err(format!(
-                    "no node called {}: the {} has {count} nodes, \"{}.1\" to \"{}.{count}\"",
+                    "no node called {}: the {} has {}, \"{}.1\" to \"{}.{count}\"",
                     quoted(name),
                     entry.kind.word(),
+                    counted(count, "node"),
                     entry.id,
                     entry.id
                 )),
@@ -347,7 +349,10 @@ impl NameEntry {
                 format!("\"{id}.start\", \"{id}.end\" or \"{id}.{}\"", count.min(2)),
             ),
         };
-        format!("{name:?} is {what} of {count} nodes; name one of them, as {examples}")
+        format!(
+            "{name:?} is {what} of {}; name one of them, as {examples}",
+            counted(count, "node")
+        )
     }
 }
 

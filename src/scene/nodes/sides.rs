@@ -6,6 +6,7 @@ use crate::shown::first_of;
 use std::collections::{HashMap, HashSet};
 use stickslip_core::fem::lagrange::MAX_NODES;
 use stickslip_core::model::Node;
+use stickslip_core::words::counted;
 
 /// Sides in walking order.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -47,10 +48,7 @@ impl SideLine {
             }
         };
         let shown = first_of(self.pieces.iter().map(piece), MOST, ", ");
-        let count = match self.pieces.len() {
-            1 => "1 piece".to_owned(),
-            count => format!("{count} pieces"),
-        };
+        let count = counted(self.pieces.len(), "piece");
         format!("{count} ({shown})")
     }
 
@@ -120,8 +118,8 @@ pub(super) fn line(
             [start, .., end] if side.len() <= MAX_NODES => (start, end),
             _ => {
                 return Err(fault(format!(
-                    "the side has {} nodes; it must have 2 to {MAX_NODES}",
-                    side.len()
+                    "the side has {}; it must have 2 to {MAX_NODES}",
+                    counted(side.len(), "node")
                 )));
             }
         };

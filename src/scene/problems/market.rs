@@ -18,6 +18,7 @@ use super::{compliance, entries_fit, fits};
 use crate::format::condensed::{Matrix, Problem};
 use crate::format::{SceneError, read};
 use std::path::{Path, PathBuf};
+use stickslip_core::words::counted;
 use stickslip_exchange::matrix_market;
 use stickslip_platform::input;
 
@@ -67,8 +68,9 @@ pub fn read(file: &str, text: &str, memory: Option<f64>) -> Result<Problem, Scen
     let divided = size.is_multiple_of(2) || size.is_multiple_of(3);
     if size == 0 || size != matrix.columns || !divided {
         return Err(whole(format!(
-            "the matrix has {} rows and {} columns; it must be square, with two rows per contact, normal and tangential, or three in space",
-            matrix.rows, matrix.columns
+            "the matrix has {} and {}; it must be square, with two rows per contact, normal and tangential, or three in space",
+            counted(matrix.rows, "row"),
+            counted(matrix.columns, "column")
         )));
     }
     match names.stiffness {
@@ -95,8 +97,9 @@ pub fn read(file: &str, text: &str, memory: Option<f64>) -> Result<Problem, Scen
     let q = column(&names, "q", &[size])?;
     if (tangents == 2 && (names.stiffness || f.is_some())) || (1 + tangents) * mu.len() != size {
         return Err(whole(format!(
-            "the matrix has {size} rows for {} contacts; a problem in space has three per contact, and is given by W and q",
-            mu.len()
+            "the matrix has {} for {}; a problem in space has three per contact, and is given by W and q",
+            counted(size, "row"),
+            counted(mu.len(), "contact")
         )));
     }
     if q.is_none() && !(names.stiffness && f.is_some()) {
@@ -138,9 +141,9 @@ fn column(
     if read.rows.min(read.columns) != 1 || !sizes.contains(&size) {
         let sizes: Vec<String> = sizes.iter().map(usize::to_string).collect();
         let why = format!(
-            "{part} has {} rows and {} columns; it must be a column of {} numbers",
-            read.rows,
-            read.columns,
+            "{part} has {} and {}; it must be a column of {} numbers",
+            counted(read.rows, "row"),
+            counted(read.columns, "column"),
             sizes.join(" or ")
         );
         return Err(SceneError::whole(&file, why));

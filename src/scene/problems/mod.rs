@@ -19,14 +19,19 @@ use crate::format::{SceneError, error, read};
 use std::path::Path;
 use stickslip_core::linear::estimate::sparse_bytes;
 use stickslip_core::linear::sparse_contacts::FEW;
+use stickslip_core::words::counted;
 use stickslip_exchange::problem;
 use stickslip_platform::input;
 
 /// Rejects a matrix with all entries of this many contacts if it does not fit into memory.
 fn fits(contacts: usize, memory: Option<f64>) -> Result<(), String> {
     let entries = 4.0 * (contacts as f64).powi(2);
-    limits::memory(entries * limits::ENTRY_BYTES, memory)
-        .map_err(|why| format!("the problem has {contacts} contacts; its matrix needs {why}"))
+    limits::memory(entries * limits::ENTRY_BYTES, memory).map_err(|why| {
+        format!(
+            "the problem has {}; its matrix needs {why}",
+            counted(contacts, "contact")
+        )
+    })
 }
 
 /// Rejects a compliance of this many contacts if its entries do not fit into memory.
@@ -34,8 +39,12 @@ fn entries_fit(contacts: usize, entries: f64, memory: Option<f64>) -> Result<(),
     if contacts <= FEW {
         return fits(contacts, memory);
     }
-    limits::memory(sparse_bytes(contacts as f64, entries), memory)
-        .map_err(|why| format!("the problem has {contacts} contacts; it needs {why}"))
+    limits::memory(sparse_bytes(contacts as f64, entries), memory).map_err(|why| {
+        format!(
+            "the problem has {}; it needs {why}",
+            counted(contacts, "contact")
+        )
+    })
 }
 
 /// Rejects this many contacts if not even the diagonal of their matrix fits into memory.

@@ -12,6 +12,7 @@ use ratatui::style::Style;
 use ratatui::text::Line;
 use stickslip_core::step::intervene::Value;
 use stickslip_core::step::solver::Parameter;
+use stickslip_core::words::counted;
 use stickslip_debugger::action::present;
 use stickslip_debugger::recorded::log::LogOrigin;
 use stickslip_exchange::attach::message::Level;
@@ -195,7 +196,8 @@ fn log_rows((first, lines): (usize, Vec<stickslip_debugger::recorded::log::LogLi
         (0, true) => rows.push(faint("No messages yet.".into())),
         (0, false) => {}
         (gone, _) => rows.push(faint(format!(
-            "The first {gone} lines are no longer stored."
+            "No longer stored: the first {}.",
+            counted(gone, "line")
         ))),
     }
     rows.extend(lines.into_iter().map(|said| Row {

@@ -14,6 +14,7 @@ use stickslip_core::model::Strategy;
 use stickslip_core::step::event::{Event, Outcome};
 use stickslip_core::step::solver::RewindSupport;
 use stickslip_core::step::state::Status;
+use stickslip_core::words::counted;
 use stickslip_debugger::action::by_name;
 use stickslip_debugger::explain::names;
 use stickslip_debugger::explain::page::DiagnosisPage;
@@ -182,7 +183,7 @@ fn place(app: &App, view: &View, apart: &str, attempt: bool) -> Line<'static> {
     let (shown, last) = (view.cursor, view.frames.len() - 1);
     if shown < last {
         spans.push(Span::styled(
-            format!("{apart}{shown} of {last} steps"),
+            format!("{apart}{shown} of {}", counted(last, "step")),
             app.theme.warning,
         ));
     }
@@ -216,9 +217,8 @@ fn outcome(app: &App, view: &View, width: u16) -> paint::Lines {
         };
         let progress = view.attached.and_then(|attached| attached.log.progress());
         let progress = progress.map_or(String::new(), |text| format!("; {text}"));
-        let steps = view.frames.len() - 1;
-        let text =
-            format!(" {turn} solving: {far}; {steps} steps so far{took}{progress}; Ctrl-C stops");
+        let steps = counted(view.frames.len() - 1, "step");
+        let text = format!(" {turn} solving: {far}; {steps} so far{took}{progress}; Ctrl-C stops");
         let again = view.attached.map_or("", |attached| attached.again);
         let first = (!again.is_empty()).then(|| format!("   {again} first"));
         return [Some(text), first]

@@ -13,6 +13,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 use ratatui::text::{Line, Span};
+use stickslip_core::words::counted;
 use stickslip_scene::number;
 use stickslip_study::log_axis::{LogAxis, written};
 use stickslip_study::precision::{Point, Precision, ROUND_OFF};
@@ -202,10 +203,10 @@ fn details(page: &ChartPage, theme: &Theme, width: usize) -> paint::Lines {
         (None, None) => "reference".to_owned(),
     };
     let cost = format!(
-        "   {error}   {} s, {} factorizations, {} minor iterations",
+        "   {error}   {} s, {}, {}",
         number::sig4(point.seconds),
-        point.factorizations,
-        point.minors
+        counted(point.factorizations, "factorization"),
+        counted(point.minors, "minor iteration")
     );
     let about = page.charts.last().and_then(|chart| chart.about.last());
     let about = format!(" {}", about.map_or("", String::as_str));

@@ -6,6 +6,7 @@ use crate::explain::names;
 use crate::explain::round_off::RoundOff;
 use crate::explain::trail::{self, Cone, TrailPoint};
 use stickslip_core::model::MonitorQuantity;
+use stickslip_core::words::counted;
 use stickslip_scene::number::{sig4, sig6};
 use stickslip_study::drawn::PlotError;
 use stickslip_study::linear_axis;
@@ -212,8 +213,8 @@ pub(super) fn cone(sheet: &mut Sheet, shown: &ExportState, high: f64) -> Result<
     }
     sheet.height += high;
     let key = format!(
-        "The last {} minor iterations; large: the last one. Circle free, triangle sliding, square fixed.",
-        trail.len()
+        "The last {}; large: the last one. Circle free, triangle sliding, square fixed.",
+        counted(trail.len(), "minor iteration")
     );
     sheet.paragraph(&[key], SMALL, GREY)
 }

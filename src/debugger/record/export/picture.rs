@@ -18,6 +18,7 @@ use stickslip_core::model::{BodyKind, Mode, Model, SolidElement};
 use stickslip_core::step::event::Outcome;
 use stickslip_core::step::state::Status;
 use stickslip_core::step::stepper::Stepper;
+use stickslip_core::words::counted;
 use stickslip_scene::number::{short, shortest, sig4};
 use stickslip_study::drawn::PlotError;
 use stickslip_study::origin;
@@ -686,7 +687,7 @@ fn table(sheet: &mut Sheet, shown: &ExportState, rows: &[usize]) -> Result<(), P
     sheet.height = y + SMALL;
     let left = model.contacts.len() - rows.len();
     if left > 0 {
-        let words = format!("and {left} more slave nodes");
+        let words = format!("and {}", counted(left, "more slave node"));
         sheet.paragraph(&[words], SMALL, GREY)?;
     }
     sheet.height += 0.5 * SMALL;

@@ -2,6 +2,7 @@
 
 use super::run::{CORRECTION_LIMIT, CalculixRun, Status, face, residual_limit};
 use std::fmt::Write;
+use stickslip_core::words::counted;
 use stickslip_exchange::calculix::Stop;
 use stickslip_exchange::calculix::cel::Slave;
 use stickslip_exchange::calculix::files::OptionalFile;
@@ -20,12 +21,6 @@ pub const NO_MODES_IN_FULL: &str = "CalculiX's files do not distinguish stick fr
     given up is only in CalculiX's screen output.";
 /// Maximum number of cycle members named.
 const MOST_MEMBERS: usize = 4;
-
-/// `1 iteration`, `2 iterations`.
-fn counted(count: usize, what: &str) -> String {
-    let end = if count == 1 { "" } else { "s" };
-    format!("{count} {what}{end}")
-}
 
 /// Numbers of steps, increments, attempts, iterations and contacts.
 fn size(run: &CalculixRun) -> String {
