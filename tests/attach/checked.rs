@@ -84,7 +84,7 @@ const WRONGS: &[(&str, &str, &str)] = &[
     (
         "displacements",
         "states",
-        "it has 1 displacements; the scene has 4 nodes",
+        "it has 1 displacement; the scene has 4 nodes",
     ),
     ("random", "determinism", "after a restart, iteration"),
     ("restores-another", "restore", "after restoring iteration"),
