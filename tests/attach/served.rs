@@ -490,7 +490,7 @@ fn a_lagged_t_max_is_inferred_from_the_iterations_of_a_solver() {
     // The only mode that slides is held by the pushes of its own lagged T_max.
     let page = page_of_failure("osc-lag4", "");
     assert!(
-        page.contains("new T_max of a  a opens   ΔF_n = -5.6209e0"),
+        page.contains("new T_max of a  a opens   ΔF_n = -5.621"),
         "{page}"
     );
 }
