@@ -262,7 +262,7 @@ mod tests {
         };
         assert!(of('A').is_some(), "{shown}");
         assert!(
-            shown.contains("▸ A mesh, refine=1") && shown.contains("error 1.000e-2"),
+            shown.contains("▸ A mesh, refine=1") && shown.contains("error 0.01"),
             "{shown}"
         );
         assert!(page.key("Left"));
