@@ -134,8 +134,8 @@ fn words((load, how): &(f64, PathEnd), model: &Model) -> String {
             )
         }
         PathEnd::Inverts(point) => format!(
-            "limit load: equilibrium exists on this path up to load {load}; beyond it {}",
-            strain::inverted(model, point)
+            "limit load: equilibrium exists on this path up to load {load}; beyond it {} is inverted",
+            strain::place(model, point)
         ),
     }
 }
