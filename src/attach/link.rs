@@ -17,7 +17,8 @@ use stickslip_debugger::recorded::log::Log;
 use stickslip_exchange::attach::conversation::STARTED;
 use stickslip_exchange::attach::message::{Level, Progress};
 use stickslip_exchange::attach::{Answer, Line, LineReader, MOST_BYTES, Request, Side};
-use stickslip_platform::{local_socket, process};
+use stickslip_platform::local_socket;
+use stickslip_platform::process::{self, Guard};
 use stickslip_scene::{number, shown};
 
 /// Polling interval for interrupts.
@@ -69,6 +70,7 @@ impl Start {
 /// A running solver.
 pub struct Link {
     child: Option<Child>,
+    guard: Option<Guard>,
     input: Option<Input>,
     output: Receiver<io::Result<Line>>,
     log: Log,
@@ -94,6 +96,7 @@ impl Link {
         let mut link = Link {
             input: None,
             child: None,
+            guard: None,
             output,
             log: log.clone(),
             stop,
@@ -127,6 +130,8 @@ impl Link {
                 child.stdout.take().map(|stream| Box::new(stream) as _),
                 child.stderr.take().map(|stream| Box::new(stream) as _),
             ];
+            // Without a shell the solver ends when it reads its input next.
+            link.guard = Guard::new(&child).ok();
             link.child = Some(child);
         }
         log.noted(&format!("{STARTED}: {}", start.typed()));
@@ -488,6 +493,7 @@ impl Drop for Link {
         // Also kills processes that the solver started.
         if let Some(child) = &mut self.child {
             process::kill(child);
+            self.guard = None;
             let _ = child.wait();
         }
     }
